@@ -1,0 +1,54 @@
+"""The state, its noise and the inputs: every name, unit and order is declared here, once.
+
+Frames: `chart` is fixed to the Earth, East-North-Up at the start of a record unless the
+filter has moved its chart; `platform` is the stabilised platform. Equation numbers are
+those of Li Zhong, Geophysical and Geochemical Exploration 39(S1), 2015, 28-32.
+"""
+
+from casadi_program import Element, Group
+
+AXES = ("x", "y", "z")
+
+theta = Group(
+    "theta",
+    "Platform angles: rotations about x, then y, then z that carry the chart axes into "
+    "the platform axes, equation (4).",
+    [Element(f"theta_{i}", "rad", f"rotation about the {i} axis") for i in AXES],
+)
+
+drift = Group(
+    "drift",
+    "Drift coefficients of the three gyros, equations (1) and (2): constant parameters.",
+    [
+        element
+        for i in AXES
+        for element in (
+            Element(f"gyro_{i}_bias", "deg/h", f"D_F of gyro {i}: drift at zero specific force",
+                    f"gyro_{i}.bias"),
+            Element(f"gyro_{i}_g_{i}", "deg/h/g",
+                    f"D_I of gyro {i}: mass unbalance along its input axis", f"gyro_{i}.g_{i}"),
+            Element(f"gyro_{i}_g_{i}{i}", "deg/h/g^2",
+                    f"D_II of gyro {i}: square term along its input axis", f"gyro_{i}.g_{i}{i}"),
+        )
+    ],
+)
+
+drift_noise = Group(
+    "drift_noise",
+    "White drift of the three gyros, held over a step (epsilon of equation (1)).",
+    [Element(f"epsilon_{i}", "deg/h", f"drift noise of gyro {i}") for i in AXES],
+)
+
+omega_0 = Group(
+    "omega_0",
+    "Earth rate in chart axes; in ENU it is (0, Omega cos(latitude), Omega sin(latitude)).",
+    [Element(f"omega_0_{i}", "rad/s", f"Earth rate along chart {i}") for i in AXES],
+)
+
+f_0 = Group(
+    "f_0",
+    "Specific force in chart axes, in units of local gravity, up positive; (0, 0, 1) in ENU.",
+    [Element(f"f_0_{i}", "g", f"specific force along chart {i}") for i in AXES],
+)
+
+step = Group("step", "Length of one filter step.", [Element("dt", "s", "step length")])

@@ -1,0 +1,18 @@
+"""Derives the programs of the platform. Run by the build, or by hand:
+
+    python -I -B codegen/emit/exporter/run.py codegen/derive OUTPUT_DIRECTORY
+"""
+
+from pathlib import Path
+
+import oracle_program
+import platform_program
+import reference
+
+
+def derive(output: Path) -> None:
+    """Writes one program file for each generated Rust module, and CasADi's own numbers."""
+    programs = [platform_program.program(), oracle_program.program()]
+    for program in programs:
+        program.write(output / f"{program.name}.json")
+    reference.write(programs, output / "reference.json")

@@ -1,0 +1,73 @@
+"""CasADi's own values of every function at fixed random points, for the tests.
+
+Their last bits depend on the processor's mathematics library, so they are compared
+with a tolerance and never byte for byte.
+"""
+
+import json
+import math
+import random
+from pathlib import Path
+
+import casadi as ca
+
+from casadi_program import Program
+
+POINTS = 200
+SEED = 20150101
+EARTH_RATE_RAD_PER_S = 7.292115e-5  # WGS 84
+
+
+def _unit_vector(rng: random.Random) -> list[float]:
+    z = rng.uniform(-1, 1)
+    azimuth = rng.uniform(-math.pi, math.pi)
+    r = math.sqrt(1 - z * z)
+    return [r * math.cos(azimuth), r * math.sin(azimuth), z]
+
+
+def _point(rng: random.Random) -> dict[str, list[float]]:
+    """Angles to 80 deg, coefficients to 5, any direction of Earth rate and of gravity."""
+    limit = math.radians(80)
+    return {
+        "theta": [rng.uniform(-limit, limit) for _ in range(3)],
+        "drift": [rng.uniform(-5, 5) for _ in range(9)],
+        "drift_noise": [rng.uniform(-0.1, 0.1) for _ in range(3)],
+        "omega_0": [EARTH_RATE_RAD_PER_S * component for component in _unit_vector(rng)],
+        "f_0": _unit_vector(rng),
+        "step": [rng.uniform(1, 120)],
+    }
+
+
+def write(programs: list[Program], path: Path) -> None:
+    rng = random.Random(SEED)
+    points = [_point(rng) for _ in range(POINTS)]
+    document = {
+        "casadi_version": ca.__version__,
+        "inputs": points,
+        "functions": {
+            function.name: [
+                [float(value) for output in _evaluate(function, point) for value in output]
+                for point in points
+            ]
+            for program in programs
+            for function in program.functions
+        },
+    }
+    lines = [f'{{"casadi_version": {json.dumps(document["casadi_version"])},', '"inputs": [']
+    lines.append(",\n".join(json.dumps(point) for point in points))
+    lines.append('],\n"functions": {')
+    lines.append(
+        ",\n".join(
+            f"{json.dumps(name)}: [\n" + ",\n".join(json.dumps(row) for row in rows) + "\n]"
+            for name, rows in document["functions"].items()
+        )
+    )
+    lines.append("}}\n")
+    path.write_text("\n".join(lines), encoding="utf-8", newline="\n")
+
+
+def _evaluate(function, point):
+    """Structural nonzeros of every output, in the order of the program."""
+    compiled = function.casadi()
+    results = compiled.call([ca.DM(point[group.name]) for group in function.inputs])
+    return [result.nonzeros() for result in results]

@@ -1,0 +1,296 @@
+"""Turns CasADi `SX` functions into a *program*: a JSON file of named functions,
+each with named inputs and outputs and a flat list of scalar instructions.
+
+The exporter knows nothing of any particular model. A derivation script builds a
+`Program`, adds `Function`s to it and writes it; `gyrocal-codegen` reads it.
+
+Schema version 1
+----------------
+    {"schema_version": 1, "name", "doc", "casadi_version",
+     "groups":    [{"name", "doc", "elements": [{"name", "id", "unit", "doc"}]}],
+     "functions": [{"name", "doc", "source", "domain",
+                    "inputs":  [{"group"}],
+                    "outputs": [{"name", "doc", "unit", "rows", "columns",
+                                 "row_names", "column_names",
+                                 "nonzeros": [[row, column]]}],
+                    "work_size", "instructions": [[op, ...]]}],
+     "model": null or {...}}
+
+A *group* is a named vector of scalar inputs (a state, a set of parameters, a
+physical vector). `nonzeros` are the structural nonzeros of an output in the order
+in which `output` instructions number them.
+
+Instructions, `w` being a work vector of `work_size` scalars:
+    ["input", w, input, element]      ["output", output, nonzero, w]
+    ["const", w, value]               [operation, w, operand, ...]
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import casadi as ca
+
+SCHEMA_VERSION = 1
+
+# What the emitter can lower. CasADi has more operations; anything else is refused
+# here, by name, before a program is written.
+_UNARY = {
+    ca.OP_NEG: "neg", ca.OP_SQ: "sq", ca.OP_TWICE: "twice", ca.OP_INV: "inv",
+    ca.OP_SQRT: "sqrt", ca.OP_EXP: "exp", ca.OP_LOG: "log",
+    ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_TAN: "tan",
+    ca.OP_ASIN: "asin", ca.OP_ACOS: "acos", ca.OP_ATAN: "atan",
+    ca.OP_SINH: "sinh", ca.OP_COSH: "cosh", ca.OP_TANH: "tanh",
+    ca.OP_FABS: "abs", ca.OP_SIGN: "sign", ca.OP_NOT: "not", ca.OP_ASSIGN: "copy",
+}
+_BINARY = {
+    ca.OP_ADD: "add", ca.OP_SUB: "sub", ca.OP_MUL: "mul", ca.OP_DIV: "div",
+    ca.OP_POW: "pow", ca.OP_CONSTPOW: "pow", ca.OP_ATAN2: "atan2",
+    ca.OP_FMIN: "min", ca.OP_FMAX: "max",
+    ca.OP_LT: "lt", ca.OP_LE: "le", ca.OP_EQ: "eq", ca.OP_NE: "ne",
+    ca.OP_AND: "and", ca.OP_OR: "or", ca.OP_IF_ELSE_ZERO: "if_else_zero",
+}
+_NAMES = {
+    getattr(ca, name): name
+    for name in dir(ca)
+    if name.startswith("OP_") and isinstance(getattr(ca, name), int)
+}
+
+
+class ExportError(Exception):
+    """A model that cannot become a program; the message says what to change."""
+
+
+@dataclass(frozen=True)
+class Element:
+    """One scalar of a group: Rust name, unit, meaning, and its public id."""
+
+    name: str
+    unit: str
+    doc: str
+    id: str = ""
+
+
+class Group:
+    """A named vector of scalar inputs, declared once and used by many functions."""
+
+    def __init__(self, name: str, doc: str, elements: list[Element]):
+        self.name = name
+        self.doc = doc
+        self.elements = elements
+        self.sx = ca.vertcat(*[ca.SX.sym(element.name) for element in elements])
+
+    def __getitem__(self, name: str) -> ca.SX:
+        """The symbol of the element called `name`."""
+        for index, element in enumerate(self.elements):
+            if element.name == name:
+                return self.sx[index]
+        raise KeyError(f"group `{self.name}` has no element `{name}`")
+
+    @property
+    def names(self) -> list[str]:
+        return [element.name for element in self.elements]
+
+
+@dataclass(frozen=True)
+class Output:
+    """A named result: a vector, or a matrix of which only structural nonzeros count."""
+
+    name: str
+    expression: ca.SX
+    unit: str
+    doc: str
+    row_names: list[str] = field(default_factory=list)
+    column_names: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Function:
+    """Expressions of some groups, with what a reader of the Rust must know."""
+
+    name: str
+    doc: str
+    source: str
+    inputs: list[Group]
+    outputs: list[Output]
+    domain: str = "all finite inputs"
+
+    def casadi(self) -> ca.Function:
+        """The CasADi function; refuses what a program cannot hold."""
+        for output in self.outputs:
+            if not isinstance(output.expression, ca.SX):
+                raise ExportError(
+                    f"output `{output.name}` of function `{self.name}` is "
+                    f"{type(output.expression).__name__}, expected casadi.SX; "
+                    "build it from the symbols of groups"
+                )
+        known = [group.sx for group in self.inputs]
+        free = [
+            str(symbol)
+            for symbol in ca.symvar(ca.veccat(*[o.expression for o in self.outputs]))
+            if not any(ca.depends_on(group, symbol) for group in known)
+        ]
+        if free:
+            raise ExportError(
+                f"function `{self.name}` has the free variable(s) {', '.join(free)}; "
+                "add the group that declares them to its inputs"
+            )
+        return ca.Function(
+            self.name,
+            known,
+            [ca.densify(o.expression) if o.expression.is_dense() else o.expression
+             for o in self.outputs],
+            [group.name for group in self.inputs],
+            [output.name for output in self.outputs],
+        )
+
+
+@dataclass
+class Program:
+    """A set of functions that become one Rust module."""
+
+    name: str
+    doc: str
+    functions: list[Function] = field(default_factory=list)
+    model: dict | None = None
+
+    def write(self, path: Path) -> None:
+        """Writes the program; the same symbols give the same bytes."""
+        path.write_text(self.to_json(), encoding="utf-8", newline="\n")
+
+    def to_json(self) -> str:
+        names = [function.name for function in self.functions]
+        for name in names:
+            if names.count(name) > 1:
+                raise ExportError(f"program `{self.name}` has two functions `{name}`")
+        groups: dict[str, Group] = {}
+        for function in self.functions:
+            for group in function.inputs:
+                if groups.setdefault(group.name, group) is not group:
+                    raise ExportError(f"two different groups are called `{group.name}`")
+        document = {
+            "schema_version": SCHEMA_VERSION,
+            "name": self.name,
+            "doc": self.doc,
+            "casadi_version": ca.__version__,
+            "groups": [
+                {
+                    "name": group.name,
+                    "doc": group.doc,
+                    "elements": [
+                        {"name": e.name, "id": e.id, "unit": e.unit, "doc": e.doc}
+                        for e in group.elements
+                    ],
+                }
+                for group in groups.values()
+            ],
+            "functions": [_function_to_dict(function) for function in self.functions],
+            "model": self.model,
+        }
+        return _dump(document) + "\n"
+
+
+def jacobian_output(of: Output, by: Group | ca.SX, name: str, doc: str, unit: str,
+                    column_names: list[str] | None = None) -> Output:
+    """The exact Jacobian of `of` with respect to `by` (a group, or some of its symbols)."""
+    symbols = by.sx if isinstance(by, Group) else by
+    if column_names is None:
+        column_names = by.names if isinstance(by, Group) else []
+    return Output(
+        name,
+        ca.sparsify(ca.jacobian(of.expression, symbols)),
+        unit,
+        doc,
+        of.row_names,
+        column_names,
+    )
+
+
+def _function_to_dict(function: Function) -> dict:
+    compiled = function.casadi()
+    outputs = []
+    for index, output in enumerate(function.outputs):
+        sparsity = compiled.sparsity_out(index)
+        rows, columns = sparsity.get_triplet()
+        for kind, names, count in (
+            ("row", output.row_names, sparsity.size1()),
+            ("column", output.column_names, sparsity.size2()),
+        ):
+            if names and len(names) != count:
+                raise ExportError(
+                    f"output `{output.name}` of `{function.name}` has {count} {kind}s "
+                    f"but {len(names)} {kind} names"
+                )
+        outputs.append(
+            {
+                "name": output.name,
+                "doc": output.doc,
+                "unit": output.unit,
+                "rows": sparsity.size1(),
+                "columns": sparsity.size2(),
+                "row_names": output.row_names,
+                "column_names": output.column_names,
+                "nonzeros": [[int(r), int(c)] for r, c in zip(rows, columns)],
+            }
+        )
+    return {
+        "name": function.name,
+        "doc": function.doc,
+        "source": function.source,
+        "domain": function.domain,
+        "inputs": [{"group": group.name} for group in function.inputs],
+        "outputs": outputs,
+        "work_size": compiled.sz_w(),
+        "instructions": _instructions(function.name, compiled),
+    }
+
+
+def _instructions(name: str, compiled: ca.Function) -> list[list]:
+    result: list[list] = []
+    for k in range(compiled.n_instructions()):
+        op = compiled.instruction_id(k)
+        to = compiled.instruction_output(k)
+        args = compiled.instruction_input(k)
+        if op == ca.OP_CONST:
+            value = compiled.instruction_constant(k)
+            if not math.isfinite(value):
+                raise ExportError(
+                    f"function `{name}` holds the constant {value}; "
+                    "constants must be finite, look for a division by zero or an overflow"
+                )
+            result.append(["const", to[0], value])
+        elif op == ca.OP_INPUT:
+            result.append(["input", to[0], args[0], args[1]])
+        elif op == ca.OP_OUTPUT:
+            result.append(["output", to[0], to[1], args[0]])
+        elif op in _UNARY:
+            result.append([_UNARY[op], to[0], args[0]])
+        elif op in _BINARY:
+            result.append([_BINARY[op], to[0], args[0], args[1]])
+        else:
+            raise ExportError(
+                f"function `{name}` uses the CasADi operation {_NAMES.get(op, op)}, which "
+                "is not supported; write it with "
+                + ", ".join(sorted(set(_UNARY.values()) | set(_BINARY.values())))
+            )
+    return result
+
+
+def _dump(value, indent: int = 0) -> str:
+    """JSON with one instruction a line, so that a change of the model reads as a diff."""
+    pad = " " * (indent + 1)
+    if isinstance(value, dict) and value:
+        body = ",\n".join(
+            f"{pad}{json.dumps(key)}: {_dump(item, indent + 1)}" for key, item in value.items()
+        )
+        return "{\n" + body + "\n" + " " * indent + "}"
+    if isinstance(value, list) and any(isinstance(item, (dict, list)) for item in value):
+        if all(isinstance(item, list) and len(item) == 2 and
+               all(isinstance(number, int) for number in item) for item in value):
+            return json.dumps(value, separators=(",", ":"))
+        body = ",\n".join(pad + _dump(item, indent + 1) for item in value)
+        return "[\n" + body + "\n" + " " * indent + "]"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(", ", ": "))

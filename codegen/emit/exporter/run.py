@@ -1,0 +1,32 @@
+"""Runs a derivation script: `run.py DERIVATION_DIRECTORY OUTPUT_DIRECTORY`.
+
+The script is `main.py` in the derivation directory; its function `derive(output)`
+writes programs into the directory `output`. Run with `python -I -B`, so that nothing
+of the caller's environment takes part and nothing is written into the sources.
+"""
+
+import sys
+from pathlib import Path
+
+
+def main(arguments: list[str]) -> int:
+    if len(arguments) != 2:
+        print("usage: run.py DERIVATION_DIRECTORY OUTPUT_DIRECTORY", file=sys.stderr)
+        return 2
+    derivation, output = Path(arguments[0]).resolve(), Path(arguments[1]).resolve()
+    sys.path[:0] = [str(Path(__file__).resolve().parent), str(derivation)]
+    from casadi_program import ExportError
+
+    import main as derivation_script
+
+    output.mkdir(parents=True, exist_ok=True)
+    try:
+        derivation_script.derive(output)
+    except ExportError as error:
+        print(f"derivation refused: {error}", file=sys.stderr)
+        return 3
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

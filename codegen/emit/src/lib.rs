@@ -1,0 +1,1 @@
+//! Turns CasADi programs into no_std Rust

@@ -1,0 +1,1 @@
+//! Records in, drift coefficients with covariances out

@@ -1,0 +1,1 @@
+//! Test oracles: dual numbers, finite differences, an interpreter of programs

@@ -1,0 +1,1 @@
+//! Records, bench descriptions and results: files with located errors

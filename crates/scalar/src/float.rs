@@ -1,0 +1,92 @@
+//! `f32` and `f64` as [`Scalar`]: `libm` for everything but sine and cosine, so that bits
+//! are the same on every machine, with and without the standard library.
+
+use crate::{Real, Scalar, sin_cos_f32, sin_cos_f64};
+
+macro_rules! impl_float {
+    ($float:ident, $sin_cos:path, $($method:ident => $function:path),* ; $atan2:path, $pow:path) => {
+        impl Scalar for $float {
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as $float
+            }
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) {
+                $sin_cos(self)
+            }
+            $(
+                #[inline]
+                fn $method(self) -> Self {
+                    $function(self)
+                }
+            )*
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                $atan2(self, x)
+            }
+            #[inline]
+            fn powf(self, exponent: Self) -> Self {
+                $pow(self, exponent)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $float::abs(self)
+            }
+            #[inline(always)]
+            fn sign(self) -> Self {
+                if self > 0.0 { 1.0 } else if self < 0.0 { -1.0 } else { self }
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                $float::min(self, other)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                $float::max(self, other)
+            }
+            #[inline(always)]
+            fn less(self, other: Self) -> Self {
+                if self < other { 1.0 } else { 0.0 }
+            }
+            #[inline(always)]
+            fn less_or_equal(self, other: Self) -> Self {
+                if self <= other { 1.0 } else { 0.0 }
+            }
+            #[inline(always)]
+            fn equal(self, other: Self) -> Self {
+                if self == other { 1.0 } else { 0.0 }
+            }
+            #[inline(always)]
+            fn if_else_zero(self, value: Self) -> Self {
+                if self == 0.0 { 0.0 } else { value }
+            }
+            #[cfg(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")))]
+            #[inline(always)]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                $float::mul_add(self, factor, addend)
+            }
+        }
+
+        impl Real for $float {
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                $float::is_finite(self)
+            }
+        }
+    };
+}
+
+impl_float!(f64, sin_cos_f64,
+    tan => libm::tan, asin => libm::asin, acos => libm::acos, atan => libm::atan,
+    sinh => libm::sinh, cosh => libm::cosh, tanh => libm::tanh,
+    exp => libm::exp, ln => libm::log, sqrt => libm::sqrt;
+    libm::atan2, libm::pow);
+impl_float!(f32, sin_cos_f32,
+    tan => libm::tanf, asin => libm::asinf, acos => libm::acosf, atan => libm::atanf,
+    sinh => libm::sinhf, cosh => libm::coshf, tanh => libm::tanhf,
+    exp => libm::expf, ln => libm::logf, sqrt => libm::sqrtf;
+    libm::atan2f, libm::powf);

@@ -1,0 +1,24 @@
+//! The number and model traits that generated code names.
+//!
+//! Generated functions are generic over [`Scalar`], so one derivation serves `f64`, `f32`,
+//! several filters side by side ([`Lanes`]) and dual numbers. A generated model implements
+//! [`Model`], which is all that the filters of `gyrocal-estimation` know of it.
+//!
+//! Nothing here allocates or needs the standard library. Sine and cosine are computed by
+//! this crate ([`sin_cos_f64`]), so their bits do not depend on the machine.
+
+#![no_std]
+
+#[cfg(feature = "std")]
+extern crate std;
+
+mod float;
+mod lanes;
+mod model;
+mod scalar;
+mod trigonometry;
+
+pub use lanes::Lanes;
+pub use model::{Element, Model, RatesJacobian, Recentre};
+pub use scalar::{Real, Scalar};
+pub use trigonometry::{sin_cos_f32, sin_cos_f64};

@@ -1,0 +1,106 @@
+use crate::Scalar;
+
+/// Name, public id, unit and meaning of one scalar of a model's state or input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Element {
+    /// Name of the field in generated structs.
+    pub name: &'static str,
+    /// Public id, such as `gyro_x.bias`; the name where the model gives none.
+    pub id: &'static str,
+    /// Unit, such as `deg/h`.
+    pub unit: &'static str,
+    /// Meaning in a few words.
+    pub doc: &'static str,
+}
+
+/// Derivatives of the rates of the moving states.
+///
+/// A model writes structural nonzeros only; whoever passes this in has zeroed the rest.
+#[derive(Debug)]
+pub struct RatesJacobian<'a, T, const M: usize> {
+    /// With respect to the moving states: `moving[i][j]` = d rate i / d state j.
+    pub moving: [[T; M]; M],
+    /// With respect to the noise inputs, padded with zero columns to `M`.
+    pub noise: [[T; M]; M],
+    /// With respect to the parameters, row-major: rate i, parameter j at `i * parameters + j`.
+    pub parameters: &'a mut [T],
+}
+
+/// A continuous model with `M` moving states, some constant parameters and `Y` outputs:
+/// d moving / dt = rates(moving, parameters, inputs) + noise, output = output(…).
+///
+/// Implementations are generated; the filters know nothing of a model but this.
+pub trait Model<T: Scalar, const M: usize, const Y: usize> {
+    /// What rates and outputs depend on besides the state, held over a step.
+    type Inputs: Copy;
+
+    /// Number of constant parameters.
+    fn parameters(&self) -> usize;
+
+    /// How many of the parameters, counted from the first, enter the output.
+    fn output_parameters(&self) -> usize;
+
+    /// For each noise input the parameter that enters the rates in exactly the same way, if
+    /// there is one for every input: the filter then needs no noise sensitivities of its own.
+    fn noise_parameters(&self) -> Option<[usize; M]>;
+
+    /// Rates of the moving states.
+    ///
+    /// # Panics
+    /// If `parameters` has not the length [`Self::parameters`].
+    fn rates(&self, moving: &[T; M], parameters: &[T], inputs: &Self::Inputs) -> [T; M];
+
+    /// Rates of the moving states and their exact derivatives.
+    ///
+    /// # Panics
+    /// If `parameters` or `jacobian.parameters` has not the right length.
+    fn rates_jacobian(
+        &self,
+        moving: &[T; M],
+        parameters: &[T],
+        inputs: &Self::Inputs,
+        jacobian: &mut RatesJacobian<'_, T, M>,
+    ) -> [T; M];
+
+    /// Outputs: what the sensors would read without noise.
+    ///
+    /// # Panics
+    /// If `parameters` has not the length [`Self::parameters`].
+    fn output(&self, moving: &[T; M], parameters: &[T], inputs: &Self::Inputs) -> [T; Y];
+
+    /// Outputs and their exact derivatives: `d_moving[i][j]`, and `d_parameters` row-major
+    /// with [`Self::output_parameters`] columns. Structural nonzeros only are written.
+    ///
+    /// # Panics
+    /// If `parameters` or `d_parameters` has not the right length.
+    fn output_jacobian(
+        &self,
+        moving: &[T; M],
+        parameters: &[T],
+        inputs: &Self::Inputs,
+        d_moving: &mut [[T; M]; Y],
+        d_parameters: &mut [T],
+    ) -> [T; Y];
+}
+
+/// A model whose moving states are coordinates in a chart that can be moved.
+///
+/// The defaults are those of a flat state space: no chart, corrections are added.
+pub trait Recentre<T: Scalar, const M: usize, const Y: usize>: Model<T, M, Y> {
+    /// Moves the origin of the chart to `moving`: `moving` becomes zero, `inputs` are carried
+    /// along. Returns the derivative of the error at the new origin with respect to the error
+    /// of the old coordinates, or `None` if the state space is flat and nothing moved.
+    fn recentre(&self, moving: &mut [T; M], inputs: &mut Self::Inputs) -> Option<[[T; M]; M]> {
+        let _ = (moving, inputs);
+        None
+    }
+
+    /// Applies a correction, expressed as the error at the origin of the chart, when the
+    /// moving states are at the origin; a flat model adds it to the moving states.
+    fn correct(&self, moving: &mut [T; M], inputs: &mut Self::Inputs, correction: &[T; M]) {
+        let _ = inputs;
+        for (state, change) in moving.iter_mut().zip(correction) {
+            *state = *state + *change;
+        }
+    }
+}

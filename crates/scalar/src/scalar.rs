@@ -1,0 +1,98 @@
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number that generated code can compute with.
+///
+/// Comparisons return numbers (1 for true, 0 for false) instead of `bool`, so that lanes
+/// and dual numbers can implement them and generated code has no branches.
+pub trait Scalar:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The number nearest to `value`.
+    #[must_use]
+    fn from_f64(value: f64) -> Self;
+    /// Sine and cosine of an angle in radians.
+    #[must_use]
+    fn sin_cos(self) -> (Self, Self);
+    /// Tangent of an angle in radians.
+    #[must_use]
+    fn tan(self) -> Self;
+    /// Inverse sine in radians.
+    #[must_use]
+    fn asin(self) -> Self;
+    /// Inverse cosine in radians.
+    #[must_use]
+    fn acos(self) -> Self;
+    /// Inverse tangent in radians.
+    #[must_use]
+    fn atan(self) -> Self;
+    /// Angle of the point (`x`, `self`) in radians.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+    /// Hyperbolic sine.
+    #[must_use]
+    fn sinh(self) -> Self;
+    /// Hyperbolic cosine.
+    #[must_use]
+    fn cosh(self) -> Self;
+    /// Hyperbolic tangent.
+    #[must_use]
+    fn tanh(self) -> Self;
+    /// Natural exponential.
+    #[must_use]
+    fn exp(self) -> Self;
+    /// Natural logarithm.
+    #[must_use]
+    fn ln(self) -> Self;
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// `self` to a power that is not a small integer.
+    #[must_use]
+    fn powf(self, exponent: Self) -> Self;
+    /// Absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// -1, 0 or 1.
+    #[must_use]
+    fn sign(self) -> Self;
+    /// The smaller of two numbers.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+    /// The larger of two numbers.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// 1 where `self < other`, else 0.
+    #[must_use]
+    fn less(self, other: Self) -> Self;
+    /// 1 where `self <= other`, else 0.
+    #[must_use]
+    fn less_or_equal(self, other: Self) -> Self;
+    /// 1 where `self == other`, else 0.
+    #[must_use]
+    fn equal(self, other: Self) -> Self;
+    /// `value` where `self` is not 0, else 0, whatever `value` is there.
+    #[must_use]
+    fn if_else_zero(self, value: Self) -> Self;
+
+    /// `self * factor + addend`, fused into one rounding only where the target does so fast.
+    #[inline(always)]
+    #[must_use]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+}
+
+/// A real number with an order: what a filter needs beyond what generated code does.
+pub trait Real: Scalar + PartialOrd + Default + core::fmt::Debug {
+    /// The number as `f64`.
+    #[must_use]
+    fn to_f64(self) -> f64;
+    /// Neither infinite nor NaN.
+    #[must_use]
+    fn is_finite(self) -> bool;
+}

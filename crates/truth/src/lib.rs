@@ -1,0 +1,1 @@
+//! An independent simulator of the platform
