@@ -1,0 +1,45 @@
+use core::fmt;
+
+/// Why a filter could not go on. The filter's state is as it was before the call that failed
+/// only where the variant says so; otherwise start again from a known state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum EstimationError {
+    /// A pivot of the covariance is not positive: prior or noise are zero, or the numbers
+    /// overflowed.
+    NotPositiveDefinite {
+        /// Index of the state whose pivot failed.
+        state: usize,
+    },
+    /// A prediction or an innovation is infinite or NaN: the model was evaluated outside its
+    /// domain, or the prior is too wide for the step.
+    NotFinite {
+        /// What was computed.
+        quantity: &'static str,
+    },
+    /// An argument has no meaning; the filter is unchanged.
+    InvalidArgument {
+        /// Which argument, and what was expected.
+        expected: &'static str,
+    },
+}
+
+impl fmt::Display for EstimationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotPositiveDefinite { state } => write!(
+                f,
+                "the covariance is not positive definite at state {state}; \
+                 check that prior sigmas and noise are positive and of sensible size"
+            ),
+            Self::NotFinite { quantity } => write!(
+                f,
+                "{quantity} is not finite; the model has left its domain, \
+                 use a shorter step or a narrower prior"
+            ),
+            Self::InvalidArgument { expected } => write!(f, "invalid argument: expected {expected}"),
+        }
+    }
+}
+
+impl core::error::Error for EstimationError {}

@@ -1,0 +1,358 @@
+use core::marker::PhantomData;
+
+use gyrocal_scalar::{Real, Recentre};
+
+use crate::error::EstimationError;
+use crate::factor::{self, Observation};
+use crate::innovation::Innovation;
+use crate::storage::{Storage, View};
+use crate::transition::{self, Integration};
+
+/// When the chart of the moving states is moved to the estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Recentring<T> {
+    /// At every step, and corrections are applied on the manifold: the consistent choice.
+    EveryStep,
+    /// When a moving state leaves ±limit; in between, corrections are added to coordinates.
+    Beyond(T),
+    /// Never: coordinates of the first chart all along.
+    Never,
+}
+
+impl<T: Real> Recentring<T> {
+    #[inline(always)]
+    fn wanted<const M: usize>(self, moving: &[T; M]) -> bool {
+        match self {
+            Self::EveryStep => true,
+            Self::Beyond(limit) => moving.iter().any(|state| state.abs() > limit),
+            Self::Never => false,
+        }
+    }
+}
+
+/// Continuous-discrete extended Kalman filter on a generated model.
+///
+/// `M` moving states, `Y` outputs, and as many parameters as the model has. The state is
+/// `[moving, parameters]`; noise enters the rates, held over each step.
+#[derive(Clone, Debug)]
+pub struct Filter<T, D, I, S, const M: usize, const Y: usize> {
+    model: D,
+    inputs: I,
+    integration: Integration,
+    recentring: Recentring<T>,
+    storage: S,
+    moving_transition: [[T; M]; M],
+    number: PhantomData<T>,
+}
+
+impl<T, D, S, const M: usize, const Y: usize> Filter<T, D, D::Inputs, S, M, Y>
+where
+    T: Real,
+    D: Recentre<T, M, Y>,
+    S: Storage<T>,
+{
+    /// A filter at `state` with independent prior errors of the given standard deviations.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidArgument`] if lengths differ from the model's number of
+    /// states or `integration` has no sub-step; [`EstimationError::NotPositiveDefinite`] if a
+    /// sigma is not positive.
+    pub fn new(
+        model: D,
+        inputs: D::Inputs,
+        integration: Integration,
+        recentring: Recentring<T>,
+        mut storage: S,
+        state: &[T],
+        sigma: &[T],
+    ) -> Result<Self, EstimationError> {
+        let n = storage.states();
+        if M + model.parameters() != n || state.len() != n || sigma.len() != n {
+            return Err(EstimationError::InvalidArgument {
+                expected: "as many states, sigmas and places in the storage as the model has",
+            });
+        }
+        if integration.substeps() == 0 {
+            return Err(EstimationError::InvalidArgument { expected: "at least one sub-step" });
+        }
+        let buffers = storage.buffers();
+        buffers.state.copy_from_slice(state);
+        buffers.factor.fill(T::from_f64(0.0));
+        for (j, sigma) in sigma.iter().enumerate() {
+            let variance = *sigma * *sigma;
+            if !(*sigma > T::from_f64(0.0) && variance.is_finite()) {
+                return Err(EstimationError::NotPositiveDefinite { state: j });
+            }
+            buffers.factor[j * n + j] = T::from_f64(1.0);
+            buffers.pivots[j] = variance;
+        }
+        let mut filter = Self {
+            model,
+            inputs,
+            integration,
+            recentring,
+            storage,
+            moving_transition: [[T::from_f64(0.0); M]; M],
+            number: PhantomData,
+        };
+        filter.recentre_at_start()?;
+        Ok(filter)
+    }
+
+    /// The prior is given in the coordinates of the first chart; carries it to a chart at the
+    /// first state where the policy wants one.
+    fn recentre_at_start(&mut self) -> Result<(), EstimationError> {
+        let buffers = self.storage.buffers();
+        let mut moving = to_array(&buffers.state[..M]);
+        if !self.recentring.wanted(&moving) {
+            return Ok(());
+        }
+        let Some(map) = self.model.recentre(&mut moving, &mut self.inputs) else {
+            return Ok(());
+        };
+        buffers.state[..M].copy_from_slice(&moving);
+        let zero = [T::from_f64(0.0); M];
+        factor::predict_corner(buffers.factor, buffers.pivots, &map, &[zero; M], &zero)
+    }
+
+    /// Predicts over `dt` seconds with noise of the given spectral densities (unit of the
+    /// noise input squared, times seconds).
+    ///
+    /// The noise is held over the step: its variance is density / dt.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidArgument`] if `dt` is not positive;
+    /// [`EstimationError::NotFinite`] or [`EstimationError::NotPositiveDefinite`] if the
+    /// prediction left the numbers.
+    #[inline]
+    pub fn predict(&mut self, dt: T, noise_density: &[T; M]) -> Result<(), EstimationError> {
+        if !(dt > T::from_f64(0.0) && dt.is_finite()) {
+            return Err(EstimationError::InvalidArgument { expected: "a positive step" });
+        }
+        let n = self.storage.states();
+        let buffers = self.storage.buffers();
+        let (moving_slice, parameters) = buffers.state.split_at_mut(M);
+        let mut moving = to_array(moving_slice);
+        let mut transition = transition::integrate(
+            &self.model,
+            &self.inputs,
+            self.integration,
+            dt,
+            &mut moving,
+            parameters,
+            buffers.transition,
+            buffers.stages,
+        );
+        if !moving.iter().all(|state| state.is_finite()) {
+            return Err(EstimationError::NotFinite { quantity: "a predicted moving state" });
+        }
+        if self.recentring.wanted(&moving)
+            && let Some(map) = self.model.recentre(&mut moving, &mut self.inputs) {
+            transition.moving = small_product(&map, &transition.moving);
+            transition.noise = small_product(&map, &transition.noise);
+            map_rows(&map, buffers.transition, n - M);
+        }
+        moving_slice.copy_from_slice(&moving);
+        self.moving_transition = transition.moving;
+        let variance = noise_density.map(|density| density / dt);
+        factor::predict(
+            buffers.factor,
+            buffers.pivots,
+            &transition.moving,
+            buffers.transition,
+            &transition.noise,
+            &variance,
+        )
+    }
+
+    /// Updates with a measurement of the outputs, NaN where a component is missing.
+    ///
+    /// # Errors
+    /// [`EstimationError::NotPositiveDefinite`] if a noise variance is not positive (index of
+    /// the output); [`EstimationError::NotFinite`] if the innovation is not finite.
+    #[inline]
+    pub fn update(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        let mut moving = to_array(&self.storage.view().state[..M]);
+        let observation = self.observe(&moving, measured, noise_variance)?;
+        let buffers = self.storage.buffers();
+        let (moving_slice, parameters) = buffers.state.split_at_mut(M);
+        let n = buffers.pivots.len();
+        let mut correction = [T::from_f64(0.0); M];
+        let innovation = factor::update(
+            buffers.factor,
+            buffers.pivots,
+            &observation,
+            buffers.output,
+            buffers.gain,
+            buffers.sweep,
+            |head, weights, gain| {
+                for k in 0..Y {
+                    for i in 0..M {
+                        correction[i] = head[k][i].mul_add(weights[k], correction[i]);
+                    }
+                }
+                for (i, parameter) in parameters.iter_mut().enumerate() {
+                    for k in 0..Y {
+                        *parameter = gain[k * n + M + i].mul_add(weights[k], *parameter);
+                    }
+                }
+            },
+        )?;
+        match self.recentring {
+            Recentring::EveryStep => {
+                self.model.correct(&mut moving, &mut self.inputs, &correction);
+            }
+            _ => {
+                for i in 0..M {
+                    moving[i] = moving[i] + correction[i];
+                }
+            }
+        }
+        moving_slice.copy_from_slice(&moving);
+        Ok(innovation)
+    }
+
+    /// Residual, Jacobian and noise of a measurement; components that are NaN are blanked.
+    #[inline(always)]
+    fn observe(
+        &mut self,
+        moving: &[T; M],
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Observation<T, M, Y>, EstimationError> {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let q = self.model.output_parameters();
+        let buffers = self.storage.buffers();
+        let mut observation = Observation {
+            moving: [[zero; M]; Y],
+            output_parameters: q,
+            variance: [one; Y],
+            residual: [zero; Y],
+            observed: [false; Y],
+        };
+        let predicted = self.model.output_jacobian(
+            moving,
+            &buffers.state[M..],
+            &self.inputs,
+            &mut observation.moving,
+            &mut buffers.output[..Y * q],
+        );
+        for k in 0..Y {
+            if !(noise_variance[k] > zero && noise_variance[k].is_finite()) {
+                return Err(EstimationError::NotPositiveDefinite { state: k });
+            }
+            if measured[k] == measured[k] {
+                observation.residual[k] = measured[k] - predicted[k];
+                observation.variance[k] = noise_variance[k];
+                observation.observed[k] = true;
+            } else {
+                observation.moving[k] = [zero; M];
+                buffers.output[k * q..(k + 1) * q].fill(zero);
+            }
+        }
+        Ok(observation)
+    }
+
+    /// As [`Self::update`], but a measurement whose NIS exceeds `largest_nis` is not used.
+    /// Returns the innovation and whether the measurement was used.
+    ///
+    /// # Errors
+    /// As [`Self::update`].
+    pub fn update_gated(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+        largest_nis: T,
+    ) -> Result<(Innovation<T, Y>, bool), EstimationError> {
+        let moving = to_array(&self.storage.view().state[..M]);
+        let observation = self.observe(&moving, measured, noise_variance)?;
+        let buffers = self.storage.buffers();
+        let innovation =
+            factor::innovation(buffers.factor, buffers.pivots, &observation, buffers.output, buffers.gain)?;
+        if innovation.nis > largest_nis {
+            return Ok((innovation, false));
+        }
+        self.update(measured, noise_variance).map(|innovation| (innovation, true))
+    }
+
+    /// The state: moving states in the current chart, then parameters.
+    #[must_use]
+    pub fn state(&self) -> &[T] {
+        self.storage.view().state
+    }
+
+    /// Element (`i`, `j`) of the error covariance.
+    ///
+    /// # Panics
+    /// If an index is not that of a state.
+    #[must_use]
+    pub fn covariance(&self, i: usize, j: usize) -> T {
+        let View { factor, pivots, .. } = self.storage.view();
+        factor::covariance(factor, pivots, i, j)
+    }
+
+    /// Standard deviation of the error of state `i`.
+    ///
+    /// # Panics
+    /// If `i` is not the index of a state.
+    #[must_use]
+    pub fn sigma(&self, i: usize) -> T {
+        self.covariance(i, i).sqrt()
+    }
+
+    /// What the model depends on besides its state; it carries the chart.
+    #[must_use]
+    pub fn inputs(&self) -> &D::Inputs {
+        &self.inputs
+    }
+
+    /// The inputs, to change what is held over the next step.
+    pub fn inputs_mut(&mut self) -> &mut D::Inputs {
+        &mut self.inputs
+    }
+
+    /// Numbers that persist between steps: factors, last transition and gain.
+    #[must_use]
+    pub fn view(&self) -> View<'_, T> {
+        self.storage.view()
+    }
+
+    /// Moving columns of the last transition.
+    #[must_use]
+    pub fn moving_transition(&self) -> &[[T; M]; M] {
+        &self.moving_transition
+    }
+}
+
+#[inline(always)]
+fn to_array<T: Copy + Default, const M: usize>(slice: &[T]) -> [T; M] {
+    let mut array = [T::default(); M];
+    array.copy_from_slice(slice);
+    array
+}
+
+#[inline(always)]
+fn small_product<T: Real, const M: usize>(a: &[[T; M]; M], b: &[[T; M]; M]) -> [[T; M]; M] {
+    core::array::from_fn(|i| {
+        core::array::from_fn(|j| {
+            (0..M).fold(T::from_f64(0.0), |sum, l| a[i][l].mul_add(b[l][j], sum))
+        })
+    })
+}
+
+/// Replaces the M rows of `rows` (stride p) by their product with `map` from the left.
+#[inline(always)]
+fn map_rows<T: Real, const M: usize>(map: &[[T; M]; M], rows: &mut [T], p: usize) {
+    for column in 0..p {
+        let old: [T; M] = core::array::from_fn(|l| rows[l * p + column]);
+        for (i, weights) in map.iter().enumerate() {
+            rows[i * p + column] =
+                (0..M).fold(T::from_f64(0.0), |sum, l| weights[l].mul_add(old[l], sum));
+        }
+    }
+}

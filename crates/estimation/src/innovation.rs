@@ -1,0 +1,87 @@
+use gyrocal_scalar::Real;
+
+use crate::error::EstimationError;
+
+/// What one measurement said: the innovation and its predicted covariance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Innovation<T, const Y: usize> {
+    /// Measured minus predicted output; zero where nothing was observed.
+    pub residual: [T; Y],
+    /// Which outputs were observed.
+    pub observed: [bool; Y],
+    /// Normalised innovation squared over the observed outputs; its expectation is their number.
+    pub nis: T,
+    /// Residual of each output given the earlier ones, over its variance.
+    pub(crate) weights: [T; Y],
+    /// L of S = L diag(variance) Lᵀ.
+    pub(crate) lower: [[T; Y]; Y],
+    /// Variance of each output given the earlier ones.
+    pub(crate) variance: [T; Y],
+}
+
+impl<T: Real, const Y: usize> Innovation<T, Y> {
+    /// From L and α of S = L diag(α) Lᵀ.
+    #[inline(always)]
+    pub(crate) fn from_factors(
+        residual: [T; Y],
+        observed: [bool; Y],
+        lower: [[T; Y]; Y],
+        variance: [T; Y],
+    ) -> Result<Self, EstimationError> {
+        let zero = T::from_f64(0.0);
+        let mut own = [zero; Y];
+        let mut weights = [zero; Y];
+        let mut nis = zero;
+        for k in 0..Y {
+            own[k] = (0..k).fold(residual[k], |rest, l| rest - lower[k][l] * own[l]);
+            weights[k] = own[k] / variance[k];
+            nis = weights[k].mul_add(own[k], nis);
+        }
+        if nis.is_finite() {
+            Ok(Self { residual, observed, nis, weights, lower, variance })
+        } else {
+            Err(EstimationError::NotFinite { quantity: "the normalised innovation" })
+        }
+    }
+
+    /// S = H P Hᵀ + R. Rows and columns of outputs that were not observed are NaN.
+    #[must_use]
+    pub fn covariance(&self) -> [[T; Y]; Y] {
+        core::array::from_fn(|i| {
+            core::array::from_fn(|j| {
+                if !(self.observed[i] && self.observed[j]) {
+                    return T::from_f64(f64::NAN);
+                }
+                (0..=i.min(j)).fold(T::from_f64(0.0), |sum, l| {
+                    (self.lower[i][l] * self.variance[l]).mul_add(self.lower[j][l], sum)
+                })
+            })
+        })
+    }
+
+    /// Number of observed outputs: the expectation of [`Self::nis`].
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.observed.iter().filter(|observed| **observed).count()
+    }
+
+    /// Innovations made independent and of unit variance, output by output; zero where
+    /// nothing was observed.
+    #[must_use]
+    pub fn standardised(&self) -> [T; Y] {
+        core::array::from_fn(|k| self.weights[k] * self.variance[k].sqrt())
+    }
+
+    /// Natural logarithm of the density of this innovation.
+    #[must_use]
+    pub fn log_likelihood(&self) -> T {
+        let log_two_pi = T::from_f64(1.837_877_066_409_345_5);
+        let mut sum = self.nis;
+        for k in 0..Y {
+            if self.observed[k] {
+                sum = sum + self.variance[k].ln() + log_two_pi;
+            }
+        }
+        T::from_f64(-0.5) * sum
+    }
+}

@@ -1,0 +1,27 @@
+//! Loops over `W` neighbouring numbers that the compiler turns into vector instructions.
+
+use gyrocal_scalar::Scalar;
+
+/// `W` consecutive numbers of `slice` from `at`.
+#[inline(always)]
+pub(crate) fn load<T: Scalar, const W: usize>(slice: &[T], at: usize) -> [T; W] {
+    let mut lanes = [T::from_f64(0.0); W];
+    lanes.copy_from_slice(&slice[at..at + W]);
+    lanes
+}
+
+/// Writes `lanes` to `slice` from `at`.
+#[inline(always)]
+pub(crate) fn store<T: Scalar, const W: usize>(slice: &mut [T], at: usize, lanes: [T; W]) {
+    slice[at..at + W].copy_from_slice(&lanes);
+}
+
+/// `a * factor + b`, lane by lane.
+#[inline(always)]
+pub(crate) fn mul_add<T: Scalar, const W: usize>(a: [T; W], factor: T, b: [T; W]) -> [T; W] {
+    let mut result = b;
+    for (sum, term) in result.iter_mut().zip(a) {
+        *sum = term.mul_add(factor, *sum);
+    }
+    result
+}

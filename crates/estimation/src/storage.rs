@@ -1,0 +1,168 @@
+//! Where a filter keeps its numbers: arrays for controllers, vectors for batch work.
+
+/// Everything a filter step reads and writes, as slices.
+///
+/// Matrices over all n states are stored by columns with stride n, those over the n - M
+/// parameters by rows with stride n - M.
+#[derive(Debug)]
+pub struct Buffers<'a, T> {
+    /// The state: moving states, then parameters; n.
+    pub state: &'a mut [T],
+    /// U by columns, with its unit diagonal and the zeros below it; n × n.
+    pub factor: &'a mut [T],
+    /// D; n.
+    pub pivots: &'a mut [T],
+    /// Parameter columns of Φ by rows; M × (n - M).
+    pub transition: &'a mut [T],
+    /// Parameter columns of the rates' Jacobian at each of up to four stages, by rows;
+    /// 4 × M × (n - M). Structural zeros stay zero.
+    pub stages: &'a mut [T],
+    /// Parameter columns of the output's Jacobian by rows; Y × n at most.
+    pub output: &'a mut [T],
+    /// Unnormalised gain of each output; Y × n.
+    pub gain: &'a mut [T],
+    /// Coefficients of the sweep over the columns of U, v and λ; 2 × n × Y.
+    pub sweep: &'a mut [T],
+}
+
+/// What can be read of a filter's numbers between steps.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a, T> {
+    /// The state: moving states, then parameters.
+    pub state: &'a [T],
+    /// U by columns; n × n.
+    pub factor: &'a [T],
+    /// D.
+    pub pivots: &'a [T],
+    /// Parameter columns of the last Φ by rows.
+    pub transition: &'a [T],
+    /// Unnormalised gain of each output of the last update; Y × n.
+    pub gain: &'a [T],
+}
+
+/// Numbers of a filter with `states()` states.
+pub trait Storage<T> {
+    /// Number of states, moving ones and parameters together.
+    fn states(&self) -> usize;
+    /// All numbers, for a step.
+    fn buffers(&mut self) -> Buffers<'_, T>;
+    /// The numbers that persist between steps.
+    fn view(&self) -> View<'_, T>;
+}
+
+/// Storage in arrays for `N` states, `M` of them moving, and `Y` outputs.
+#[derive(Clone, Debug)]
+pub struct ArrayStorage<T, const M: usize, const Y: usize, const N: usize> {
+    state: [T; N],
+    factor: [[T; N]; N],
+    pivots: [T; N],
+    transition: [[T; N]; M],
+    stages: [[[T; N]; M]; 4],
+    output: [[T; N]; Y],
+    gain: [[T; N]; Y],
+    sweep: [[[T; Y]; N]; 2],
+}
+
+impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M, Y, N> {
+    /// All numbers at their default.
+    #[must_use]
+    pub fn new() -> Self {
+        const { assert!(M <= N, "a filter has at least as many states as moving states") };
+        let zero = T::default();
+        Self {
+            state: [zero; N],
+            factor: [[zero; N]; N],
+            pivots: [zero; N],
+            transition: [[zero; N]; M],
+            stages: [[[zero; N]; M]; 4],
+            output: [[zero; N]; Y],
+            gain: [[zero; N]; Y],
+            sweep: [[[zero; Y]; N]; 2],
+        }
+    }
+}
+
+impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> Default
+    for ArrayStorage<T, M, Y, N>
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStorage<T, M, Y, N> {
+    #[inline(always)]
+    fn states(&self) -> usize {
+        N
+    }
+
+    #[inline(always)]
+    fn buffers(&mut self) -> Buffers<'_, T> {
+        Buffers {
+            state: &mut self.state,
+            factor: self.factor.as_flattened_mut(),
+            pivots: &mut self.pivots,
+            transition: self.transition.as_flattened_mut(),
+            stages: self.stages.as_flattened_mut().as_flattened_mut(),
+            output: self.output.as_flattened_mut(),
+            gain: self.gain.as_flattened_mut(),
+            sweep: self.sweep.as_flattened_mut().as_flattened_mut(),
+        }
+    }
+
+    #[inline(always)]
+    fn view(&self) -> View<'_, T> {
+        View {
+            state: &self.state,
+            factor: self.factor.as_flattened(),
+            pivots: &self.pivots,
+            transition: self.transition.as_flattened(),
+            gain: self.gain.as_flattened(),
+        }
+    }
+}
+
+/// Storage on the heap for a number of states known at run time.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Debug)]
+pub struct VecStorage<T> {
+    states: usize,
+    numbers: [alloc::vec::Vec<T>; 8],
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Copy + Default> VecStorage<T> {
+    /// Room for `states` states, `moving` of them moving, and `outputs` outputs.
+    #[must_use]
+    pub fn new(states: usize, moving: usize, outputs: usize) -> Self {
+        let lengths = [
+            states,
+            states * states,
+            states,
+            moving * states,
+            4 * moving * states,
+            outputs * states,
+            outputs * states,
+            2 * outputs * states,
+        ];
+        Self { states, numbers: lengths.map(|length| alloc::vec![T::default(); length]) }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T> Storage<T> for VecStorage<T> {
+    fn states(&self) -> usize {
+        self.states
+    }
+
+    fn buffers(&mut self) -> Buffers<'_, T> {
+        let [state, factor, pivots, transition, stages, output, gain, sweep] =
+            self.numbers.each_mut();
+        Buffers { state, factor, pivots, transition, stages, output, gain, sweep }
+    }
+
+    fn view(&self) -> View<'_, T> {
+        let [state, factor, pivots, transition, _, _, gain, _] = self.numbers.each_ref();
+        View { state, factor, pivots, transition, gain }
+    }
+}
