@@ -150,7 +150,12 @@ class Function:
 
 @dataclass
 class Program:
-    """A set of functions that become one Rust module."""
+    """A set of functions that become one Rust module.
+
+    `model` is the section of that name, see the derivation of `platform`; where it names
+    groups, they may stand there themselves, which adds those that no function takes
+    (noise) to the program.
+    """
 
     name: str
     doc: str
@@ -169,8 +174,14 @@ class Program:
         groups: dict[str, Group] = {}
         for function in self.functions:
             for group in function.inputs:
+                if not isinstance(group, Group):
+                    raise ExportError(
+                        f"an input of function `{function.name}` is {type(group).__name__}, "
+                        "expected a Group: arguments need names, declare them in one"
+                    )
                 if groups.setdefault(group.name, group) is not group:
                     raise ExportError(f"two different groups are called `{group.name}`")
+        model = _model_to_dict(self.model, groups)
         document = {
             "schema_version": SCHEMA_VERSION,
             "name": self.name,
@@ -188,7 +199,7 @@ class Program:
                 for group in groups.values()
             ],
             "functions": [_function_to_dict(function) for function in self.functions],
-            "model": self.model,
+            "model": model,
         }
         return _dump(document) + "\n"
 
@@ -207,6 +218,21 @@ def jacobian_output(of: Output, by: Group | ca.SX, name: str, doc: str, unit: st
         of.row_names,
         column_names,
     )
+
+
+def _model_to_dict(model: dict | None, groups: dict[str, Group]) -> dict | None:
+    """The model section with names for groups; adds its groups to `groups`."""
+
+    def name(value):
+        if isinstance(value, list):
+            return [name(item) for item in value]
+        if not isinstance(value, Group):
+            return value
+        if groups.setdefault(value.name, value) is not value:
+            raise ExportError(f"two different groups are called `{value.name}`")
+        return value.name
+
+    return None if model is None else {key: name(value) for key, value in model.items()}
 
 
 def _function_to_dict(function: Function) -> dict:

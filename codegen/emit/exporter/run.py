@@ -17,10 +17,10 @@ def main(arguments: list[str]) -> int:
     sys.path[:0] = [str(Path(__file__).resolve().parent), str(derivation)]
     from casadi_program import ExportError
 
-    import main as derivation_script
-
     output.mkdir(parents=True, exist_ok=True)
     try:
+        import main as derivation_script
+
         derivation_script.derive(output)
     except ExportError as error:
         print(f"derivation refused: {error}", file=sys.stderr)

@@ -1,1 +1,38 @@
-//! Records in, drift coefficients with covariances out
+//! Records in, drift coefficients with covariances out.
+//!
+//! # What it is
+//!
+//! [`calibrate`] runs the streaming filter of [`gyrocal`] over a record and says what it
+//! found: the nine coefficients, their covariance, how well the record fits the model, and
+//! which coefficients the record determined.
+//!
+//! # Example
+//!
+//! ```no_run
+//! use gyrocal_calibration::{Options, calibrate};
+//! use gyrocal_record::{Bench, Record};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let record = Record::read("record.csv".as_ref())?;
+//! let bench = Bench::read("bench.toml".as_ref())?;
+//! let calibration = calibrate(&record, &bench, &Options::default(), |_| ())?;
+//! for coefficient in calibration.coefficients() {
+//!     println!("{} {} ± {}", coefficient.id, coefficient.estimate, coefficient.sigma);
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # What it does not do
+//!
+//! It reads and writes no files and prints nothing.
+
+mod calibrate;
+mod error;
+mod fit;
+mod settings;
+
+pub use calibrate::{Calibration, CoefficientEstimate, Options, calibrate};
+pub use error::CalibrationError;
+pub use fit::{Fit, Verdict, chi_square_band};
+pub use settings::settings;

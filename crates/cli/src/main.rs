@@ -1,1 +1,89 @@
-fn main() {}
+//! The command `gyrocal`.
+//!
+//! Exit codes: 0 when the answer was written, 1 when an input or the work failed, 2 when the
+//! command line is wrong.
+
+mod command;
+mod outputs;
+mod progress;
+mod simulate;
+
+use std::io::{IsTerminal as _, Write as _};
+use std::process::ExitCode;
+
+use clap::Parser as _;
+use miette::{MietteHandlerOpts, Report};
+
+use crate::command::{Cli, Command};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    start_logging(cli.verbose);
+    show_errors_plainly();
+    let outcome = match &cli.command {
+        Command::Simulate(arguments) => simulate::run(arguments),
+    };
+    match outcome {
+        Ok(summary) => {
+            // A reader that has gone away, as in `| head`, is no failure of the work.
+            let _ = std::io::stdout().write_all(summary.as_bytes());
+            ExitCode::SUCCESS
+        }
+        Err(Failure::Usage(message)) => {
+            use clap::CommandFactory as _;
+            let error = Cli::command().error(clap::error::ErrorKind::ArgumentConflict, message);
+            let _ = error.print();
+            ExitCode::from(2)
+        }
+        Err(Failure::Work(report)) => {
+            let _ = writeln!(std::io::stderr(), "{report:?}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+/// Why a command did not do what it was asked for.
+#[derive(Debug)]
+enum Failure {
+    /// The command line contradicts itself.
+    Usage(String),
+    /// An input is wrong or an output cannot be written.
+    Work(Report),
+}
+
+impl From<gyrocal_record::Error> for Failure {
+    fn from(error: gyrocal_record::Error) -> Self {
+        Self::Work(error.into())
+    }
+}
+
+fn start_logging(verbose: u8) {
+    let level = match verbose {
+        0 => "warn",
+        1 => "info",
+        2 => "debug",
+        _ => "trace",
+    };
+    let filter = tracing_subscriber::EnvFilter::builder()
+        .with_env_var("GYROCAL_LOG")
+        .try_from_env()
+        .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new(level));
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
+        .init();
+}
+
+/// Lines are wrapped for people only: scripts look for `file:line:column` in one piece.
+fn show_errors_plainly() {
+    let wrap = std::io::stderr().is_terminal();
+    // It fails if a handler is there already, and then that one serves.
+    let _ = miette::set_hook(Box::new(move |_| {
+        let options = MietteHandlerOpts::new()
+            .terminal_links(false)
+            .break_words(false)
+            .wrap_lines(wrap);
+        Box::new(options.build())
+    }));
+}

@@ -1,1 +1,78 @@
-//! An independent simulator of the platform
+//! An independent simulator of the platform: what the calibration is judged by.
+//!
+//! # The platform
+//!
+//! Three gyros hold a platform in inertial space on a bench that turns with the Earth. They
+//! drift, so the platform turns slowly against the stars; each gyro drifts by a constant, by a
+//! part proportional to the specific force along its axis and by a part proportional to the
+//! square of that. Three accelerometers on the platform see gravity sweep round once a sidereal
+//! day.
+//!
+//! # How it is simulated
+//!
+//! The state is one unit quaternion, the platform against an inertial frame that is local
+//! east, north, up at the first row. Its rate is the drift, nothing else. The Earth's turn is
+//! applied exactly, by one rotation about its axis; gravity is fixed to the turned frame. The
+//! quaternion is carried by a Runge–Kutta rule of fourth order in steps of at most ten seconds.
+//! There is no Euler angle in it and none of the generated model, whose equations in Euler
+//! angles against an Earth-fixed chart it is there to check.
+//!
+//! # Example
+//!
+//! ```
+//! use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};
+//!
+//! let scenario = Scenario {
+//!     seed: 7,
+//!     coefficients: Coefficients::PAPER_LIKE,
+//!     initial: InitialAttitude::AnglesDeg([10.0, -20.0, 30.0]),
+//!     duration_s: 86_400.0,
+//!     ..Scenario::default()
+//! };
+//! let simulation = simulate(&scenario)?;
+//! assert_eq!(simulation.record.len(), 1441);
+//! let platform_c_enu = simulation.truth.platform_c_enu_last().matrix();
+//! // The third column is the vertical in platform axes, which the last sample measures.
+//! let sample = simulation.record.accel_g[1440];
+//! assert!((sample[0] - platform_c_enu[0][2]).abs() < 6.0 * scenario.accel_noise_g);
+//! # Ok::<(), gyrocal_truth::Error>(())
+//! ```
+//!
+//! # Entry points
+//!
+//! - [`simulate`]: a [`Scenario`] in, a record, its bench description and the [`Truth`] out;
+//!   [`simulate_with`] adds hidden [`Term`]s.
+//! - [`euler_rule`]: the same by the paper's own rule, explicit Euler steps on the three angles.
+//! - [`Platform::specific_force_g`]: what ideal accelerometers read at given times.
+//! - [`Population`]: random scenarios by the hundred.
+//!
+//! Same scenario, same record, bit for bit: random numbers are ChaCha with one stream for each
+//! seed and purpose, and sine, cosine and logarithm are those of `libm` on every machine.
+//!
+//! # What it does not do
+//!
+//! It estimates nothing and knows no filter.
+
+mod attitude;
+mod coefficients;
+mod error;
+mod euler_rule;
+mod motion;
+mod platform;
+mod population;
+mod random;
+mod sampling;
+mod scenario;
+mod scenario_file;
+mod simulation;
+mod term;
+
+pub use attitude::Attitude;
+pub use coefficients::Coefficients;
+pub use error::Error;
+pub use euler_rule::euler_rule;
+pub use platform::{EARTH_RATE_RAD_PER_S, Platform};
+pub use population::Population;
+pub use scenario::{InitialAttitude, Scenario};
+pub use simulation::{Simulation, Truth, simulate, simulate_watched, simulate_with};
+pub use term::{Moment, Term};

@@ -1,0 +1,82 @@
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use super::committed::Stale;
+use super::derivation::Derivation;
+use super::run::Timings;
+use super::settings::VARIABLES;
+
+/// What [`Derivation::build`](super::Derivation::build) did.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Outcome {
+    /// The committed files that could not be used; empty when all are fresh.
+    pub stale: Vec<Stale>,
+    /// How long deriving took; nothing when it was not necessary, or when the same
+    /// inputs had been derived into the directory before.
+    pub timings: Option<Timings>,
+    write_command: String,
+    inputs: Vec<PathBuf>,
+}
+
+impl Outcome {
+    pub(super) fn fresh(derivation: &Derivation) -> Self {
+        // The directory stands for all its files, those to come too. A path that does
+        // not exist would run the build script every time.
+        let mut inputs = vec![derivation.directory.clone()];
+        for path in derivation.committed_rust() {
+            inputs.extend(path.ancestors().find(|path| path.exists()).map(Into::into));
+        }
+        inputs.dedup();
+        Self {
+            stale: Vec::new(),
+            timings: None,
+            write_command: derivation.write_command().to_owned(),
+            inputs,
+        }
+    }
+
+    pub(super) fn rederived(
+        derivation: &Derivation,
+        stale: Vec<Stale>,
+        timings: Option<Timings>,
+    ) -> Self {
+        Self {
+            stale,
+            timings,
+            ..Self::fresh(derivation)
+        }
+    }
+
+    /// The committed files are used.
+    #[must_use]
+    pub fn is_fresh(&self) -> bool {
+        self.stale.is_empty()
+    }
+
+    /// The lines for cargo that a build script prints: what to watch, and, when the model
+    /// was derived anew, the configuration `cfg` and a warning for each stale file.
+    #[must_use]
+    pub fn cargo_instructions(&self, cfg: &str) -> String {
+        let mut lines = format!("cargo::rustc-check-cfg=cfg({cfg})\n");
+        for path in &self.inputs {
+            let _ = writeln!(lines, "cargo::rerun-if-changed={}", path.display());
+        }
+        if self.is_fresh() {
+            return lines;
+        }
+        for name in VARIABLES {
+            let _ = writeln!(lines, "cargo::rerun-if-env-changed={name}");
+        }
+        let _ = writeln!(lines, "cargo::rustc-cfg={cfg}");
+        for stale in &self.stale {
+            let _ = writeln!(
+                lines,
+                "cargo::warning={stale}; this build uses the model derived anew, commit it with \
+                 `{}`",
+                self.write_command
+            );
+        }
+        lines
+    }
+}

@@ -1,0 +1,128 @@
+//! A function: its struct of outputs, if it needs one, and the function itself.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::count::Count;
+use super::doc::{self, Doc};
+use super::items::{Items, Namespace, ident, integer};
+use super::{output, plan};
+use crate::ir::{Expressions, Node};
+use crate::program::{Function, Group, pascal_case};
+use crate::{Error, Program};
+
+/// Functions up to this many operations are always inlined: for them a call that passes
+/// arrays through memory costs a noticeable part of the work. Larger ones are left to the
+/// compiler, which sees them in the caller's crate anyway, as they are generic.
+const ALWAYS_INLINED_OPERATIONS: usize = 64;
+
+/// Arguments that clippy takes without a word.
+const FEW_ARGUMENTS: usize = 7;
+
+pub(super) fn emit(
+    program: &Program,
+    function: &Function,
+    expressions: &Expressions,
+    items: &mut Items<'_>,
+) -> Result<Vec<TokenStream>, Error> {
+    let mut result = output::structure(function, items)?;
+    let place = format!("function `{}`", function.name);
+    let name = items.claim(Namespace::Value, &function.name, &place)?;
+    let count = Count::of(expressions);
+    let doc = documentation(program, function, count).tokens();
+    let inline = if count.total() <= ALWAYS_INLINED_OPERATIONS {
+        quote!(#[inline(always)])
+    } else {
+        quote!(#[inline])
+    };
+    let allowances = allowances(function, expressions);
+    let arguments = program.inputs_of(function).map(|group| {
+        let (argument, length) = (ident(&group.name), integer(group.elements.len()));
+        quote!(#argument: &[T; #length])
+    });
+    let return_type = output::return_type(function);
+    let body = plan::body(program, function, expressions);
+    let statements = body.statements;
+    let value = output::return_value(function, &body.outputs);
+    result.push(quote! {
+        #doc
+        #inline
+        #[must_use]
+        #allowances
+        pub fn #name<T: Scalar>(#(#arguments),*) -> #return_type {
+            #(#statements)*
+            #value
+        }
+    });
+    Ok(result)
+}
+
+fn documentation(program: &Program, function: &Function, count: Count) -> Doc {
+    let mut doc = Doc::of(&doc::sentence(&function.doc));
+    if !function.source.is_empty() {
+        doc.paragraph(&format!("Source: {}", without_capital(&function.source)));
+    }
+    let arguments: Vec<String> = program.inputs_of(function).map(argument).collect();
+    if !arguments.is_empty() {
+        doc.list("Arguments", &arguments);
+    }
+    let structure = output::structure_name(function);
+    let outputs: Vec<String> = function
+        .outputs
+        .iter()
+        .map(|output| format!("`{}`: {}", output.name, output::meaning(output, &structure)))
+        .collect();
+    doc.list("Returns", &outputs);
+    if !function.domain.is_empty() {
+        doc.paragraph("# Domain");
+        doc.lines_of(&doc::sentence(&function.domain));
+    }
+    doc.paragraph("# Cost");
+    doc.lines_of(&count.text());
+    doc
+}
+
+/// Meaning, unit, shape and order of an argument.
+fn argument(group: &Group) -> String {
+    let mut meaning = doc::sentence(&group.doc);
+    if meaning.ends_with('.') {
+        meaning.pop();
+    }
+    format!(
+        "`{}`: {meaning} \\[{}\\], {} in the order of [`{}`].",
+        group.name,
+        doc::units(group),
+        group.elements.len(),
+        pascal_case(&group.name)
+    )
+}
+
+/// A source reads on after a colon: "equations (7) and (9)".
+fn without_capital(text: &str) -> String {
+    let text = doc::escape(text);
+    if text.ends_with('.') {
+        text
+    } else {
+        format!("{text}.")
+    }
+}
+
+/// Lints that the numbers or the interface of a model would set off.
+fn allowances(function: &Function, expressions: &Expressions) -> TokenStream {
+    let has_fraction = expressions.graph.iter().any(
+        |(_, node)| matches!(node, Node::Constant(constant) if constant.value().fract() != 0.0),
+    );
+    let constants = has_fraction.then(|| {
+        quote!(#[allow(
+            clippy::approx_constant,
+            reason = "constants are those of the derivation, to the last digit"
+        )])
+    });
+    let arguments = (function.inputs.len() > FEW_ARGUMENTS).then(|| {
+        quote!(#[allow(
+            clippy::too_many_arguments,
+            reason = "one argument for each group of the derivation"
+        )])
+    });
+    quote!(#constants #arguments)
+}

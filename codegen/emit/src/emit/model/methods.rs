@@ -1,0 +1,343 @@
+//! The implementation of `Model`: calls of the functions, and the nonzeros of their
+//! Jacobians put into the caller's buffers by constant indices.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+use super::Parts;
+use crate::emit::items::{ident, integer};
+use crate::emit::output::{Layout, is_returned_directly};
+use crate::program::{Function, ModelFunction, Output};
+
+pub(super) struct Methods<'a> {
+    parts: &'a Parts<'a>,
+    moving: usize,
+    parameters: usize,
+    outputs: usize,
+}
+
+/// The argument names of a method and what it does with them.
+struct Arguments {
+    moving: Ident,
+    inputs: Ident,
+    /// Checks the length of `parameters`, and makes an array of it where it is used.
+    check: TokenStream,
+    /// Calls the function with the groups it takes.
+    call: TokenStream,
+}
+
+impl<'a> Methods<'a> {
+    pub(super) fn new(parts: &'a Parts<'a>) -> Self {
+        Self {
+            parts,
+            moving: parts.moving().elements.len(),
+            parameters: parts.parameters().len(),
+            outputs: parts.function(parts.model.output.value).outputs[0].rows,
+        }
+    }
+
+    pub(super) fn implementation(&self) -> TokenStream {
+        let name = ident(&self.parts.model.name);
+        let [moving, outputs, parameters] =
+            [self.moving, self.outputs, self.parameters].map(integer);
+        let inputs_type = if self.parts.model.inputs.is_empty() {
+            quote!(())
+        } else {
+            let inputs = format_ident!("{name}Inputs");
+            quote!(#inputs<T>)
+        };
+        let output_parameters = self.parts.output_parameters();
+        let noise_parameters = match self.parts.noise_parameters() {
+            Some(indices) => {
+                let indices = indices.into_iter().map(integer);
+                quote!(Some([#(#indices),*]))
+            }
+            None => quote!(None),
+        };
+        let rates = self.rates();
+        let rates_jacobian = self.rates_jacobian();
+        let output = self.output();
+        let output_jacobian = self.output_jacobian(output_parameters);
+        let output_parameters = integer(output_parameters);
+        quote! {
+            impl<T: Scalar> Model<T, #moving, #outputs> for #name {
+                type Inputs = #inputs_type;
+
+                #[inline(always)]
+                fn parameters(&self) -> usize {
+                    #parameters
+                }
+
+                #[inline(always)]
+                fn output_parameters(&self) -> usize {
+                    #output_parameters
+                }
+
+                #[inline(always)]
+                fn noise_parameters(&self) -> Option<[usize; #moving]> {
+                    #noise_parameters
+                }
+
+                #rates
+                #rates_jacobian
+                #output
+                #output_jacobian
+            }
+        }
+    }
+
+    fn rates(&self) -> TokenStream {
+        let function = self.parts.function(self.parts.model.rates.value);
+        self.value(&ident("rates"), function, self.moving)
+    }
+
+    fn output(&self) -> TokenStream {
+        let function = self.parts.function(self.parts.model.output.value);
+        self.value(&ident("output"), function, self.outputs)
+    }
+
+    fn value(&self, name: &Ident, function: &Function, rows: usize) -> TokenStream {
+        let (count, rows) = (integer(self.moving), integer(rows));
+        let Arguments {
+            moving,
+            inputs,
+            check,
+            call,
+        } = self.arguments(function);
+        quote! {
+            #[inline]
+            fn #name(
+                &self,
+                #moving: &[T; #count],
+                parameters: &[T],
+                #inputs: &Self::Inputs,
+            ) -> [T; #rows] {
+                #check
+                #call
+            }
+        }
+    }
+
+    fn rates_jacobian(&self) -> TokenStream {
+        let function = self.parts.model.rates;
+        let count = integer(self.moving);
+        let Arguments {
+            moving,
+            inputs,
+            check,
+            call,
+        } = self.arguments(self.parts.function(function.jacobian));
+        let noise = self.parts.model.noise.as_deref();
+        let moving_group = &self.parts.moving().name;
+        let (d_moving, d_noise) = (quote!(jacobian.moving), quote!(jacobian.noise));
+        let d_moving = self.matrix(function, moving_group, &d_moving, &d_moving);
+        let d_noise = noise.map(|noise| self.matrix(function, noise, &d_noise, &d_noise));
+        let (d_parameters_check, d_parameters) = self.parameters_jacobian(
+            function,
+            self.moving,
+            self.parameters,
+            &quote!(jacobian.parameters),
+            &quote!(&mut *jacobian.parameters),
+        );
+        let value = self.value_field(function);
+        quote! {
+            #[inline]
+            fn rates_jacobian(
+                &self,
+                #moving: &[T; #count],
+                parameters: &[T],
+                #inputs: &Self::Inputs,
+                jacobian: &mut RatesJacobian<'_, T, #count>,
+            ) -> [T; #count] {
+                #check
+                #d_parameters_check
+                let result = #call;
+                #d_moving
+                #d_noise
+                #d_parameters
+                #value
+            }
+        }
+    }
+
+    fn output_jacobian(&self, output_parameters: usize) -> TokenStream {
+        let function = self.parts.model.output;
+        let (count, outputs) = (integer(self.moving), integer(self.outputs));
+        let Arguments {
+            moving,
+            inputs,
+            check,
+            call,
+        } = self.arguments(self.parts.function(function.jacobian));
+        let moving_group = &self.parts.moving().name;
+        let d_moving = self.matrix(
+            function,
+            moving_group,
+            &quote!(d_moving),
+            &quote!(*d_moving),
+        );
+        let d_moving_name = ident(if d_moving.is_empty() {
+            "_d_moving"
+        } else {
+            "d_moving"
+        });
+        let (d_parameters_check, d_parameters) = self.parameters_jacobian(
+            function,
+            self.outputs,
+            output_parameters,
+            &quote!(d_parameters),
+            &quote!(d_parameters),
+        );
+        let value = self.value_field(function);
+        quote! {
+            #[inline]
+            fn output_jacobian(
+                &self,
+                #moving: &[T; #count],
+                parameters: &[T],
+                #inputs: &Self::Inputs,
+                #d_moving_name: &mut [[T; #count]; #outputs],
+                d_parameters: &mut [T],
+            ) -> [T; #outputs] {
+                #check
+                #d_parameters_check
+                let result = #call;
+                #d_moving
+                #d_parameters
+                #value
+            }
+        }
+    }
+
+    /// The arguments of a method, and the call of a function with those it takes.
+    fn arguments(&self, function: &Function) -> Arguments {
+        let model = self.parts.model;
+        let takes = |group: usize| function.inputs.contains(&group);
+        let takes_inputs = model.inputs.iter().any(|&input| takes(input));
+        let group_name = |group: usize| ident(&self.parts.program.groups[group].name);
+        let parameters = self.parameters;
+        let message = format!("expected {parameters} parameters");
+        let message_with_count = format!("expected {parameters} parameters, found {{}}");
+        let parameters = integer(parameters);
+        let check = if model.parameters.is_some_and(takes) {
+            quote! {
+                let Ok(parameters) = <&[T; #parameters]>::try_from(parameters) else {
+                    panic!(#message_with_count, parameters.len())
+                };
+            }
+        } else {
+            quote!(assert_eq!(parameters.len(), #parameters, #message);)
+        };
+        let name = ident(&function.name);
+        let arguments = function.inputs.iter().map(|&group| {
+            if group == model.moving {
+                quote!(moving)
+            } else if Some(group) == model.parameters {
+                quote!(parameters)
+            } else {
+                let field = group_name(group);
+                quote!(&inputs.#field)
+            }
+        });
+        let call = quote!(#name(#(#arguments),*));
+        Arguments {
+            moving: ident(if takes(model.moving) {
+                "moving"
+            } else {
+                "_moving"
+            }),
+            inputs: ident(if takes_inputs { "inputs" } else { "_inputs" }),
+            check,
+            call,
+        }
+    }
+
+    /// Assigns the nonzeros of the Jacobian with respect to a group to a matrix; `whole`
+    /// is its place when all of it is assigned.
+    fn matrix(
+        &self,
+        function: ModelFunction,
+        group: &str,
+        matrix: &TokenStream,
+        whole: &TokenStream,
+    ) -> TokenStream {
+        let Some((_, output)) = self.parts.jacobian(function, group) else {
+            return TokenStream::new();
+        };
+        if Layout::of(output) == Layout::Matrix && output.columns == self.moving {
+            let field = ident(&output.name);
+            return quote!(#whole = result.#field;);
+        }
+        let entries = entries(output).map(|(row, column, value)| {
+            let (row, column) = (integer(row), integer(column));
+            quote!(#matrix[#row][#column] = #value;)
+        });
+        quote!(#(#entries)*)
+    }
+
+    /// The check of the length of a row-major parameter Jacobian with some columns, and
+    /// the assignments of its nonzeros.
+    fn parameters_jacobian(
+        &self,
+        function: ModelFunction,
+        rows: usize,
+        columns: usize,
+        slice: &TokenStream,
+        reborrowed: &TokenStream,
+    ) -> (TokenStream, TokenStream) {
+        let length = integer(rows * columns);
+        let message = format!("expected {length} derivatives by parameters");
+        let message_with_count = format!("{message}, found {{found}}");
+        let found = self
+            .parts
+            .parameters_name()
+            .and_then(|name| self.parts.jacobian(function, name));
+        match found.filter(|(_, output)| !output.nonzeros.is_empty()) {
+            None => (
+                quote!(assert_eq!(#slice.len(), #length, #message);),
+                TokenStream::new(),
+            ),
+            Some((_, output)) => {
+                let assignments = entries(output).map(|(row, column, value)| {
+                    let place = integer(row * columns + column);
+                    quote!(d_parameters[#place] = #value;)
+                });
+                let check = quote! {
+                    let found = #slice.len();
+                    let Ok(d_parameters) = <&mut [T; #length]>::try_from(#reborrowed) else {
+                        panic!(#message_with_count)
+                    };
+                };
+                (check, quote!(#(#assignments)*))
+            }
+        }
+    }
+
+    /// The value among the results of a function with Jacobians.
+    fn value_field(&self, function: ModelFunction) -> TokenStream {
+        let function = self.parts.function(function.jacobian);
+        if is_returned_directly(function) {
+            return quote!(result);
+        }
+        let field = ident(&function.outputs[0].name);
+        quote!(result.#field)
+    }
+}
+
+/// Row, column and expression of each nonzero of an output of `result`.
+fn entries(output: &Output) -> impl Iterator<Item = (usize, usize, TokenStream)> {
+    let field = ident(&output.name);
+    output
+        .nonzeros
+        .iter()
+        .enumerate()
+        .map(move |(nonzero, &(row, column))| {
+            let [i, j, k] = [row, column, nonzero].map(integer);
+            let value = match Layout::of(output) {
+                Layout::Vector => quote!(result.#field[#i]),
+                Layout::Matrix => quote!(result.#field[#i][#j]),
+                Layout::Sparse => quote!(result.#field[#k]),
+            };
+            (row, column, value)
+        })
+}

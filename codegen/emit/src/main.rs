@@ -1,0 +1,90 @@
+//! Writes or checks the committed files of a derivation: `gyrocal-codegen write|check`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::{Parser, Subcommand};
+use gyrocal_codegen::build::{DECLARATION_FILE, Derivation, Error};
+
+/// Writes or checks the files that a derivation generates.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    /// Directory that holds derivation.toml; a relative one is looked for here and in
+    /// the directories above.
+    #[arg(long, value_name = "DIRECTORY", default_value = ".")]
+    derivation: PathBuf,
+
+    /// Print how long each stage took.
+    #[arg(long, global = true)]
+    timings: bool,
+
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    /// Derive everything and rewrite the committed files that differ.
+    Write,
+    /// Derive everything and compare with the committed files; exit code 1 if any differs.
+    Check,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Error> {
+    let derivation = Derivation::open(find(&arguments.derivation))?;
+    let timings = match arguments.action {
+        Action::Write => {
+            let written = derivation.write()?;
+            let here = std::env::current_dir().unwrap_or_default();
+            for path in &written.paths {
+                println!(
+                    "wrote {}",
+                    path.strip_prefix(&here).unwrap_or(path).display()
+                );
+            }
+            if written.paths.is_empty() {
+                println!("nothing to write: every file is what the derivation gives");
+            }
+            written.timings
+        }
+        Action::Check => {
+            let timings = derivation.check()?;
+            println!("every file is what the derivation gives");
+            timings
+        }
+    };
+    if arguments.timings {
+        let line =
+            |stage: &str, time: Duration| println!("{stage:<12}{:8.3} s", time.as_secs_f64());
+        let made = if timings.environment_created {
+            "made env."
+        } else {
+            "found env."
+        };
+        line(made, timings.environment);
+        line("derivation", timings.derivation);
+        line("emission", timings.emission);
+    }
+    Ok(())
+}
+
+/// The directory as given, or below one of the directories above this one.
+fn find(given: &Path) -> PathBuf {
+    let here = std::env::current_dir().unwrap_or_default();
+    here.ancestors()
+        .map(|above| above.join(given))
+        .find(|directory| directory.join(DECLARATION_FILE).is_file())
+        .unwrap_or_else(|| given.to_owned())
+}

@@ -1,0 +1,117 @@
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Probability with which a record that fits the model is called inconsistent.
+const FALSE_ALARM: f64 = 1e-3;
+
+/// How well the innovations agree with the covariance that the filter predicted for them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// Sum of the normalised innovations squared.
+    pub nis_sum: f64,
+    /// Number of accelerometer values used: the expectation of `nis_sum`.
+    pub values: usize,
+    /// Number of rows with at least one value.
+    pub rows: usize,
+    /// Logarithm of the likelihood of the record.
+    pub log_likelihood: f64,
+}
+
+/// What the innovations say of the fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Innovations are as large as the declared noise explains.
+    Consistent,
+    /// They are larger.
+    TooLarge,
+    /// They are smaller.
+    TooSmall,
+}
+
+impl Fit {
+    /// Mean NIS of a row; expected is the mean number of values of a row, 3 without `nan`.
+    #[must_use]
+    pub fn nis_mean(&self) -> f64 {
+        self.nis_sum / self.rows as f64
+    }
+
+    /// The interval that holds [`Self::nis_mean`] of a record that fits, with probability 99.9 %.
+    #[must_use]
+    pub fn nis_band(&self) -> [f64; 2] {
+        chi_square_band(self.values as f64, FALSE_ALARM).map(|bound| bound / self.rows as f64)
+    }
+
+    /// Whether [`Self::nis_mean`] lies in [`Self::nis_band`].
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        let [low, high] = self.nis_band();
+        match self.nis_mean() {
+            mean if mean < low => Verdict::TooSmall,
+            mean if mean > high => Verdict::TooLarge,
+            _ => Verdict::Consistent,
+        }
+    }
+
+    /// The verdict in a sentence.
+    #[must_use]
+    pub fn verdict_text(&self) -> String {
+        let [low, high] = self.nis_band();
+        let mean = self.nis_mean();
+        let figures = format!("mean NIS {mean:.3}, 99.9 % band {low:.3} to {high:.3}");
+        match self.verdict() {
+            Verdict::Consistent => {
+                format!("the record fits the model within the declared noise ({figures})")
+            }
+            Verdict::TooLarge => format!(
+                "the innovations are larger than the declared noise explains ({figures}): the \
+                 model lacks something or the noise is larger than declared; the sigmas cannot \
+                 be trusted"
+            ),
+            Verdict::TooSmall => format!(
+                "the innovations are smaller than the declared noise explains ({figures}): the \
+                 noise is smaller than declared; the sigmas are too large"
+            ),
+        }
+    }
+}
+
+/// The central interval of a chi-square variable that leaves out `false_alarm` in both tails
+/// together.
+///
+/// # Panics
+/// If `degrees_of_freedom` is not positive.
+#[must_use]
+pub fn chi_square_band(degrees_of_freedom: f64, false_alarm: f64) -> [f64; 2] {
+    #[allow(clippy::expect_used)] // documented under # Panics
+    let distribution =
+        ChiSquared::new(degrees_of_freedom).expect("degrees of freedom must be positive");
+    [
+        distribution.inverse_cdf(false_alarm / 2.0),
+        distribution.inverse_cdf(1.0 - false_alarm / 2.0),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_band_is_that_of_published_tables() {
+        // Chi-square with 10 degrees of freedom: 2.5 % and 97.5 % points, printed to 3 decimals.
+        let [low, high] = chi_square_band(10.0, 0.05);
+        assert!((low - 3.247).abs() < 5e-4 && (high - 20.483).abs() < 5e-4);
+        // Large numbers: normal limit, sqrt(2 / n) times 3.29; its skewness enters as 1 / n.
+        let n = 13_000.0;
+        let [low, high] = chi_square_band(n, 1e-3);
+        let half_width = 3.2905 * (2.0 * n).sqrt();
+        assert!((low - (n - half_width)).abs() < 10.0 && (high - (n + half_width)).abs() < 10.0);
+    }
+
+    #[test]
+    fn the_verdict_follows_the_mean() {
+        let fit = |nis_sum| Fit { nis_sum, values: 12_000, rows: 4_000, log_likelihood: 0.0 };
+        assert_eq!(fit(12_000.0).verdict(), Verdict::Consistent);
+        assert_eq!(fit(13_000.0).verdict(), Verdict::TooLarge);
+        assert_eq!(fit(11_000.0).verdict(), Verdict::TooSmall);
+        assert!(fit(13_000.0).verdict_text().contains("mean NIS 3.250"));
+    }
+}

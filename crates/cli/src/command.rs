@@ -1,0 +1,27 @@
+//! The command line.
+
+use clap::{ArgAction, Parser, Subcommand};
+
+use crate::simulate::SimulateArguments;
+
+/// Gyro drift calibration of inertially stabilised platforms.
+#[derive(Debug, Parser)]
+#[command(
+    name = "gyrocal",
+    version,
+    about,
+    after_help = "Exit codes: 0 the answer was written, 1 an input or the work failed, \
+                  2 the command line is wrong."
+)]
+pub(crate) struct Cli {
+    /// Say more on stderr; -vv and -vvv say still more (GYROCAL_LOG takes a filter).
+    #[arg(short, long, action = ArgAction::Count, global = true)]
+    pub(crate) verbose: u8,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Simulate(SimulateArguments),
+}

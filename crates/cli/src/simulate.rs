@@ -1,0 +1,122 @@
+//! `gyrocal simulate`: a scenario in, a record and its bench description out.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use gyrocal_record::{Outputs, SCHEMA_VERSION, SimulationReport, TrueCoefficient};
+use gyrocal_truth::{Scenario, Simulation, simulate_watched};
+use miette::miette;
+
+use crate::Failure;
+use crate::outputs::{manifest, refuse_overlap};
+use crate::progress::Progress;
+
+/// Simulate a record from a scenario: known coefficients, bench and sampling.
+///
+/// The simulator is independent of the model that `calibrate` uses. Same scenario and seed,
+/// same record, bit for bit.
+#[derive(Debug, Args)]
+pub(crate) struct SimulateArguments {
+    /// The scenario (TOML); examples/data/three_days.scenario.toml is one.
+    scenario: PathBuf,
+    /// The record to write (CSV).
+    #[arg(long, value_name = "RECORD.csv")]
+    out: PathBuf,
+    /// The bench description to write (TOML), which `calibrate` wants beside the record.
+    #[arg(long, value_name = "BENCH.toml")]
+    bench_out: Option<PathBuf>,
+    /// Use this seed instead of the scenario's.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=SEED_MAX))]
+    seed: Option<u64>,
+    /// The truth behind the record to write (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+}
+
+/// The largest integer of TOML, so that a seed can be written into a scenario.
+const SEED_MAX: u64 = i64::MAX as u64;
+
+/// Runs the command; returns what is to be said on stdout.
+pub(crate) fn run(arguments: &SimulateArguments) -> Result<String, Failure> {
+    refuse_overlap(
+        &[&arguments.scenario],
+        &[
+            ("--out", Some(&arguments.out)),
+            ("--bench-out", arguments.bench_out.as_deref()),
+            ("--json", arguments.json.as_deref()),
+        ],
+    )?;
+    let mut scenario = Scenario::read(&arguments.scenario)?;
+    if let Some(seed) = arguments.seed {
+        scenario.seed = seed;
+    }
+    tracing::debug!(?scenario, "read");
+    let mut progress = Progress::new("simulating", scenario.grid_rows());
+    let simulation = simulate_watched(&scenario, &[], |rows| progress.reach(rows))
+        .map_err(|error| Failure::Work(miette!("{}: {error}", arguments.scenario.display())))?;
+    drop(progress);
+    tracing::info!(rows = simulation.record.len(), "simulated");
+    write(arguments, &scenario, &simulation)?;
+    Ok(summary(arguments, &scenario, &simulation))
+}
+
+/// Writes all files or none.
+fn write(
+    arguments: &SimulateArguments,
+    scenario: &Scenario,
+    simulation: &Simulation,
+) -> Result<(), Failure> {
+    let mut outputs = Outputs::new();
+    let record = simulation.record.to_csv(&arguments.out)?;
+    outputs.stage(&arguments.out, record.as_bytes())?;
+    if let Some(path) = &arguments.bench_out {
+        outputs.stage(path, simulation.bench.to_toml(path)?.as_bytes())?;
+    }
+    if let Some(path) = &arguments.json {
+        outputs.stage_json(path, &report(&arguments.scenario, scenario, simulation)?)?;
+    }
+    outputs.commit()?;
+    Ok(())
+}
+
+fn report(
+    path: &Path,
+    scenario: &Scenario,
+    simulation: &Simulation,
+) -> Result<SimulationReport, Failure> {
+    let truth = &simulation.truth;
+    let coefficients = truth.coefficients.named();
+    Ok(SimulationReport {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest("", scenario.seed, &[path])?,
+        coefficients: coefficients
+            .into_iter()
+            .map(|(name, value, unit)| TrueCoefficient {
+                name: name.to_owned(),
+                value,
+                unit: unit.to_owned(),
+            })
+            .collect(),
+        rows: simulation.record.len(),
+        initial_angles_deg: truth.platform_c_enu_first().angles_deg(),
+        final_angles_deg: truth.platform_c_enu_last().angles_deg(),
+    })
+}
+
+fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> String {
+    let mut text = format!(
+        "{}: {} rows over {:.2} days, seed {}\n",
+        arguments.out.display(),
+        simulation.record.len(),
+        simulation.record.duration_s() / 86_400.0,
+        scenario.seed
+    );
+    if let Some(path) = &arguments.bench_out {
+        let _ = writeln!(text, "{}: its bench description", path.display());
+    }
+    if let Some(path) = &arguments.json {
+        let _ = writeln!(text, "{}: the truth behind it", path.display());
+    }
+    text
+}

@@ -1,0 +1,88 @@
+use comfy_table::{ContentArrangement, Table, presets};
+
+/// One figure: what was asked for and what was measured.
+#[derive(Clone, Debug)]
+pub(crate) struct Figure {
+    /// What is measured.
+    pub(crate) name: String,
+    /// What it should be.
+    pub(crate) target: String,
+    /// What it is.
+    pub(crate) measured: String,
+    /// How many runs it is measured over.
+    pub(crate) runs: usize,
+    /// Which seeds, or what else identifies the runs.
+    pub(crate) seeds: String,
+    /// Whether the target is met; `None` for a figure without one.
+    pub(crate) holds: Option<bool>,
+}
+
+impl Figure {
+    /// A figure that must lie in a closed interval.
+    pub(crate) fn within(name: &str, bounds: [f64; 2], measured: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            target: match bounds {
+                [low, high] if low == f64::NEG_INFINITY => format!("<= {high}"),
+                [low, high] if high == f64::INFINITY => format!(">= {low}"),
+                [low, high] => format!("{low} to {high}"),
+            },
+            measured: format!("{measured:.3}"),
+            runs: 1,
+            seeds: String::new(),
+            holds: Some(bounds[0] <= measured && measured <= bounds[1]),
+        }
+    }
+
+    /// A figure that is yes or no.
+    pub(crate) fn truth(name: &str, measured: bool) -> Self {
+        Self {
+            name: name.to_owned(),
+            target: "yes".to_owned(),
+            measured: if measured { "yes" } else { "no" }.to_owned(),
+            runs: 1,
+            seeds: String::new(),
+            holds: Some(measured),
+        }
+    }
+
+    /// A figure that only informs.
+    pub(crate) fn note(name: &str, measured: String) -> Self {
+        Self {
+            name: name.to_owned(),
+            target: String::new(),
+            measured,
+            runs: 1,
+            seeds: String::new(),
+            holds: None,
+        }
+    }
+
+    pub(crate) fn over(self, runs: usize, seeds: impl Into<String>) -> Self {
+        Self { runs, seeds: seeds.into(), ..self }
+    }
+}
+
+/// The figures as a table.
+pub(crate) fn table(figures: &[Figure]) -> Table {
+    let mut table = Table::new();
+    table
+        .load_preset(presets::ASCII_MARKDOWN)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(["figure", "target", "measured", "runs", "seeds", "holds"]);
+    for figure in figures {
+        table.add_row([
+            figure.name.clone(),
+            figure.target.clone(),
+            figure.measured.clone(),
+            figure.runs.to_string(),
+            figure.seeds.clone(),
+            match figure.holds {
+                Some(true) => "yes".to_owned(),
+                Some(false) => "NO".to_owned(),
+                None => String::new(),
+            },
+        ]);
+    }
+    table
+}

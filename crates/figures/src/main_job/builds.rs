@@ -1,0 +1,4 @@
+//! What a build costs.
+use super::Error;
+use crate::figure::Figure;
+pub(crate) fn figures() -> Result<Vec<Figure>, Error> { Ok(Vec::new()) }

@@ -1,0 +1,193 @@
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use crate::copy::workspace;
+use crate::files::fresh_directory;
+
+/// What a command did.
+#[derive(Debug)]
+pub struct Outcome {
+    /// It ended with exit code 0.
+    pub success: bool,
+    /// The exit code, if it ended by itself.
+    pub code: Option<i32>,
+    /// Standard output.
+    pub stdout: String,
+    /// Standard error.
+    pub stderr: String,
+}
+
+impl Outcome {
+    /// Panics with the output unless the command succeeded.
+    #[track_caller]
+    pub fn succeeded(self) -> Self {
+        assert!(
+            self.success,
+            "exit code {:?}\n{}\n{}",
+            self.code, self.stdout, self.stderr
+        );
+        self
+    }
+
+    /// Panics with the output unless the command failed with a message that has every
+    /// one of `parts` and is no backtrace.
+    #[track_caller]
+    pub fn failed_with(self, parts: &[&str]) -> Self {
+        assert!(!self.success, "succeeded\n{}\n{}", self.stdout, self.stderr);
+        for part in parts {
+            assert!(
+                self.stderr.contains(part),
+                "no `{part}` in\n{}",
+                self.stderr
+            );
+        }
+        assert!(!self.stderr.contains("panicked at"), "{}", self.stderr);
+        assert!(!self.stderr.contains("RUST_BACKTRACE"), "{}", self.stderr);
+        self
+    }
+}
+
+/// Runs a command to its end.
+pub fn run(command: &mut Command) -> Outcome {
+    let output = command
+        .output()
+        .unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    Outcome {
+        success: output.status.success(),
+        code: output.status.code(),
+        stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
+        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+    }
+}
+
+/// Cargo in `directory`, offline, with its own target directory.
+pub fn cargo(directory: &Path, target: &Path) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    without_settings(&mut command);
+    command
+        .current_dir(directory)
+        .env("CARGO_TARGET_DIR", target)
+        .env("CARGO_NET_OFFLINE", "false")
+        .env("CARGO_TERM_COLOR", "never")
+        .env("GYROCAL_CODEGEN_ENV_DIR", real_environments());
+    command
+}
+
+/// The command `gyrocal-codegen` on the derivation in `directory`, built once.
+pub fn codegen(directory: &Path, arguments: &[&str]) -> Command {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    let program = BUILT.get_or_init(|| {
+        let target = target_directory();
+        let mut build = cargo(&workspace(), &target);
+        build.args([
+            "build",
+            "--offline",
+            "--package",
+            "gyrocal-codegen",
+            "--features",
+            "cli",
+        ]);
+        run(&mut build).succeeded();
+        target.join("debug/gyrocal-codegen")
+    });
+    let mut command = Command::new(program);
+    without_settings(&mut command);
+    command
+        .current_dir(directory.parent().unwrap())
+        .env("GYROCAL_CODEGEN_ENV_DIR", real_environments())
+        .arg("--derivation")
+        .arg(directory)
+        .args(arguments);
+    command
+}
+
+/// The environments of the workspace itself, which tests reuse.
+pub fn real_environments() -> PathBuf {
+    std::env::var_os("GYROCAL_CODEGEN_ENV_DIR")
+        .map_or_else(|| target_directory().join("gyrocal-codegen"), PathBuf::from)
+}
+
+/// A directory for `PATH` that has cargo, the compiler and a linker, and no Python.
+pub fn tools_only(directory: PathBuf) -> PathBuf {
+    let directory = fresh_directory(directory);
+    let sysroot = run(Command::new("rustc").args(["--print", "sysroot"]))
+        .succeeded()
+        .stdout;
+    let sysroot = PathBuf::from(sysroot.trim());
+    for name in ["cargo", "rustc"] {
+        link(&sysroot.join("bin").join(name), &directory.join(name));
+    }
+    for name in ["cc", "ld"] {
+        link(
+            &which(name).unwrap_or_else(|| panic!("no `{name}`")),
+            &directory.join(name),
+        );
+    }
+    directory
+}
+
+/// A real interpreter for fakes to stand before.
+pub fn system_python() -> PathBuf {
+    let names = [
+        "python3.11",
+        "python3.12",
+        "python3.13",
+        "python3.14",
+        "python3",
+    ];
+    let found = names
+        .iter()
+        .filter_map(|name| which(name))
+        .find_map(|python| {
+            let outcome =
+                run(Command::new(python).args(["-I", "-c", "import sys; print(sys.executable)"]));
+            outcome
+                .success
+                .then(|| PathBuf::from(outcome.stdout.trim()))
+        });
+    found.expect("a Python in PATH")
+}
+
+fn which(name: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    std::env::split_paths(&path)
+        .map(|directory| directory.join(name))
+        .find(|path| path.is_file())
+}
+
+fn link(original: &Path, link: &Path) {
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(original, link).unwrap();
+    #[cfg(not(unix))]
+    std::fs::copy(original, link).unwrap();
+}
+
+/// The target directory that this test program was built in.
+fn target_directory() -> PathBuf {
+    let program = std::env::current_exe().unwrap();
+    let marked = program
+        .ancestors()
+        .filter(|path| path.join("CACHEDIR.TAG").is_file());
+    marked.last().expect("a target directory").to_owned()
+}
+
+/// What the caller's settings must not decide.
+fn without_settings(command: &mut Command) {
+    for name in [
+        "GYROCAL_PYTHON",
+        "GYROCAL_OFFLINE",
+        "CARGO_NET_OFFLINE",
+        "RUST_BACKTRACE",
+    ] {
+        command.env_remove(OsStr::new(name));
+    }
+    // Cargo describes the tested package to its tests; the next cargo must not see that.
+    for (name, _) in std::env::vars_os() {
+        let text = name.to_string_lossy();
+        if text.starts_with("CARGO_PKG_") || text.starts_with("CARGO_MANIFEST_") {
+            command.env_remove(&name);
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Builds of a copy of the whole workspace with cargo, as a user starts them.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use gyrocal_freshness::{
+    Outcome, WorkspaceCopy, cargo, fresh_directory, run, snapshot, tools_only,
+};
+
+const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
+
+/// Prints the rates of drift by the squares of specific force alone, each with its
+/// derivatives by the coefficients.
+const PROBE: &str = r#"
+use gyrocal::generated::platform::{dynamics, dynamics_jacobian};
+
+fn main() {
+    let theta = [0.3, -0.2, 0.5];
+    let drift = [0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0, -1.0];
+    let (omega_0, f_0) = ([0.0; 3], [0.0, 0.6, 0.8]);
+    let rates: [f64; 3] = dynamics(&theta, &drift, &omega_0, &f_0);
+    let by_drift = dynamics_jacobian(&theta, &drift, &omega_0, &f_0).theta_dot_d_drift_dense();
+    for (rate, row) in rates.iter().zip(by_drift) {
+        print!("{rate:e}");
+        for entry in row {
+            print!(" {entry:e}");
+        }
+        println!();
+    }
+}
+"#;
+
+/// The one copy, equal to the workspace but for the probe. The tests take turns: cargo
+/// names artefacts by paths inside a workspace, so that several copies would only undo
+/// each other's builds.
+fn take_copy() -> (WorkspaceCopy, MutexGuard<'static, ()>) {
+    static TURN: Mutex<()> = Mutex::new(());
+    let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let copy = WorkspaceCopy::make(SCRATCH, "builds");
+    copy.add_probe(PROBE);
+    (copy, turn)
+}
+
+fn target(name: &str) -> PathBuf {
+    Path::new(SCRATCH).join("builds").join(name)
+}
+
+/// Cargo with all optimisation off: these builds are made once and run once.
+fn quick_cargo(copy: &WorkspaceCopy, target: &Path, action: &str) -> Command {
+    let mut command = cargo(&copy.root, target);
+    command.args([
+        action,
+        "--offline",
+        "--config",
+        "profile.dev.package.'*'.opt-level=0",
+    ]);
+    command
+        .env("CARGO_PROFILE_DEV_OPT_LEVEL", "0")
+        .env("CARGO_PROFILE_DEV_DEBUG", "0");
+    command
+}
+
+fn build(copy: &WorkspaceCopy, target: &Path) -> Command {
+    let mut command = quick_cargo(copy, target, "build");
+    command.args(["--package", "gyrocal"]);
+    command
+}
+
+/// Rows of the probe, and what cargo said.
+fn probe(copy: &WorkspaceCopy) -> (Vec<Vec<f64>>, String) {
+    let mut command = quick_cargo(copy, &target("target"), "run");
+    let Outcome { stdout, stderr, .. } = run(command.args(["--package", "probe"])).succeeded();
+    assert!(!stderr.contains("unexpected `cfg`"), "{stderr}");
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let rows = stdout
+        .lines()
+        .map(|line| line.split(' ').map(number).collect());
+    (rows.collect(), stderr)
+}
+
+#[test]
+fn without_python_an_unchanged_copy_builds_and_an_edited_one_says_what_to_do() {
+    let (copy, _turn) = take_copy();
+    let path = tools_only(Path::new(SCRATCH).join("tools-only"));
+    let environments = fresh_directory(Path::new(SCRATCH).join("no-python-environments"));
+    let build = || {
+        let mut command = build(&copy, &target("target"));
+        command
+            .env("PATH", &path)
+            .env("GYROCAL_CODEGEN_ENV_DIR", &environments);
+        command
+    };
+    let first = run(&mut build()).succeeded();
+    assert!(!first.stderr.contains("is stale"), "{}", first.stderr);
+    // Nothing that the build script watches makes it run again.
+    let second = run(build().arg("--verbose")).succeeded();
+    assert!(
+        second.stderr.contains("Fresh gyrocal v"),
+        "{}",
+        second.stderr
+    );
+
+    // An edit that no other test makes: a model that was derived once needs no Python either.
+    copy.edit(
+        "codegen/derive/drift.py",
+        "square * a**2",
+        "3 * square * a**2",
+    );
+    let before = snapshot(&copy.root);
+    run(&mut build()).failed_with(&[
+        "`src/generated/platform.rs` is stale",
+        "no suitable Python: found none in PATH",
+        "export GYROCAL_PYTHON=",
+    ]);
+    assert_eq!(snapshot(&copy.root), before, "something was written");
+    assert!(
+        snapshot(&environments).is_empty(),
+        "an environment was begun"
+    );
+
+    // Embedders compile the committed model, whatever was edited, and no emitter.
+    let embedded = run(build().args(["--no-default-features", "--verbose"])).succeeded();
+    assert!(
+        !embedded.stderr.contains("gyrocal-codegen"),
+        "{}",
+        embedded.stderr
+    );
+    assert!(
+        !embedded.stderr.contains("unexpected `cfg`"),
+        "{}",
+        embedded.stderr
+    );
+}
+
+#[test]
+fn an_edited_derivation_changes_the_compiled_dynamics() {
+    let (copy, _turn) = take_copy();
+    let (before, _) = probe(&copy);
+    let committed = snapshot(&copy.root.join("src"));
+
+    copy.edit(
+        "codegen/derive/drift.py",
+        "square * a**2",
+        "2 * square * a**2",
+    );
+    let sources = snapshot(&copy.derivation());
+    let (after, warnings) = probe(&copy);
+    assert!(warnings.contains("is stale"), "{warnings}");
+    assert!(warnings.contains("cargo codegen write"), "{warnings}");
+    for (before, after) in before.iter().zip(&after) {
+        for (column, (before, after)) in before.iter().zip(after).enumerate() {
+            // Column 0 is the rate; every third coefficient multiplies a square.
+            let factor = if column % 3 == 0 { 2.0 } else { 1.0 };
+            // Regrouping of products may change the last bits of a double.
+            let tolerance = 1e-14 * before.abs();
+            assert!(
+                (after - factor * before).abs() <= tolerance,
+                "{before} {after}"
+            );
+        }
+        assert!(before[0] != 0.0);
+    }
+    assert_eq!(
+        snapshot(&copy.root.join("src")),
+        committed,
+        "the build wrote into the sources"
+    );
+    assert_eq!(
+        snapshot(&copy.derivation()),
+        sources,
+        "byte code in the sources"
+    );
+    let again = run(build(&copy, &target("target")).arg("--verbose")).succeeded();
+    assert!(again.stderr.contains("Fresh gyrocal v"), "{}", again.stderr);
+
+    copy.edit(
+        "codegen/derive/drift.py",
+        "2 * square * a**2",
+        "square * a**2",
+    );
+    let (restored, warnings) = probe(&copy);
+    assert_eq!(restored, before);
+    assert!(!warnings.contains("is stale"), "{warnings}");
+
+    // A hand edit of the committed file does not reach the library, and is reported.
+    copy.edit(
+        "src/generated/platform.rs",
+        "pub fn dynamics<",
+        "pub fn dinamics<",
+    );
+    let (repaired, warnings) = probe(&copy);
+    assert_eq!(repaired, before);
+    assert!(
+        warnings.contains("src/generated/platform.rs` is damaged"),
+        "{warnings}"
+    );
+}
+
+/// Two builds with directories of their own (one of them for a named target) that need the
+/// same environment at the same time.
+#[test]
+fn two_cargo_processes_at_once() {
+    let (copy, _turn) = take_copy();
+    let environments = fresh_directory(Path::new(SCRATCH).join("two-cargos-environments"));
+    let host = run(Command::new("rustc").args(["--print", "host-tuple"]))
+        .succeeded()
+        .stdout;
+    let builds = || {
+        let mut plain = build(&copy, &target("target"));
+        let mut named = build(&copy, &target("other-target"));
+        named.args(["--target", host.trim()]);
+        for command in [&mut plain, &mut named] {
+            command.env("GYROCAL_CODEGEN_ENV_DIR", &environments);
+        }
+        [plain, named]
+    };
+    // Everything else first, so that both come to the environment together.
+    for mut command in builds() {
+        run(&mut command).succeeded();
+    }
+    assert!(
+        snapshot(&environments).is_empty(),
+        "an unchanged copy needs no environment"
+    );
+    copy.edit(
+        "codegen/derive/drift.py",
+        "square * a**2",
+        "2 * square * a**2",
+    );
+    std::thread::scope(|scope| {
+        let running = builds().map(|mut command| scope.spawn(move || run(&mut command)));
+        for process in running {
+            let outcome = process.join().unwrap().succeeded();
+            assert!(outcome.stderr.contains("is stale"), "{}", outcome.stderr);
+        }
+    });
+    std::fs::remove_dir_all(environments).unwrap(); // 375 MB
+}

@@ -1,0 +1,152 @@
+//! Seeded random states of the platform to compare functions at.
+
+use core::f64::consts::PI;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Earth rate in rad/s (WGS 84).
+pub const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;
+
+const SEED: u64 = 20_150_101;
+
+/// What states are drawn for. Each purpose has a stream of random numbers of its own, so
+/// that a test sees the same states whatever the others draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub enum Purpose {
+    /// Comparison with the interpreter.
+    Interpreter = 1,
+    /// Comparison with dual numbers.
+    Dual = 2,
+    /// Comparison with differences.
+    Difference = 3,
+    /// Comparison of scalar types with each other.
+    ScalarTypes = 4,
+    /// Proof that a comparison fails when it should.
+    Mutation = 5,
+    /// Comparison with the equations, written out.
+    Equations = 6,
+}
+
+/// A state with everything that a generated function may ask for, group by group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Platform angles, rad: to ±80°.
+    pub theta: [f64; 3],
+    /// Drift coefficients in deg/h, deg/h/g, deg/h/g², gyro by gyro: to ±5.
+    pub drift: [f64; 9],
+    /// Drift noise, deg/h: to ±0.1.
+    pub drift_noise: [f64; 3],
+    /// Earth rate in chart axes, rad/s: latitudes to ±85°.
+    pub omega_0: [f64; 3],
+    /// Specific force in chart axes, g.
+    pub f_0: [f64; 3],
+    /// Length of a step, s: 1 to 120.
+    pub step: [f64; 1],
+}
+
+impl State {
+    /// The scalars of the group called `name`, or `None` if states have no such group.
+    #[must_use]
+    pub fn group(&self, name: &str) -> Option<&[f64]> {
+        Some(match name {
+            "theta" => &self.theta,
+            "drift" => &self.drift,
+            "drift_noise" => &self.drift_noise,
+            "omega_0" => &self.omega_0,
+            "f_0" => &self.f_0,
+            "step" => &self.step,
+            _ => return None,
+        })
+    }
+}
+
+/// The first `count` states of a purpose.
+///
+/// In every other state the chart is East-North-Up; in the rest it is turned at random, as
+/// it is after the filter has moved it.
+#[must_use]
+pub fn states(purpose: Purpose, count: usize) -> Vec<State> {
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    rng.set_stream(purpose as u64);
+    (0..count).map(|number| state(&mut rng, number % 2 == 1)).collect()
+}
+
+fn state(rng: &mut ChaCha8Rng, turned: bool) -> State {
+    let within = |rng: &mut ChaCha8Rng, limit: f64| rng.random_range(-limit..=limit);
+    let angle_limit = 80_f64.to_radians();
+    let latitude = within(rng, 85_f64.to_radians());
+    let (omega_y, omega_z) = (latitude.cos(), latitude.sin());
+    let turn = if turned { quaternion(rng) } else { [1.0, 0.0, 0.0, 0.0] };
+    State {
+        theta: core::array::from_fn(|_| within(rng, angle_limit)),
+        drift: core::array::from_fn(|_| within(rng, 5.0)),
+        drift_noise: core::array::from_fn(|_| within(rng, 0.1)),
+        omega_0: rotate(turn, [0.0, omega_y, omega_z]).map(|part| EARTH_RATE_RAD_PER_S * part),
+        f_0: rotate(turn, [0.0, 0.0, 1.0]),
+        step: [rng.random_range(1.0..=120.0)],
+    }
+}
+
+/// A uniformly random unit quaternion (w, x, y, z): Shoemake, Graphics Gems III, 1992.
+fn quaternion(rng: &mut ChaCha8Rng) -> [f64; 4] {
+    let share: f64 = rng.random_range(0.0..=1.0);
+    let (first, second) = (rng.random_range(-PI..=PI), rng.random_range(-PI..=PI));
+    let (a, b) = ((1.0 - share).sqrt(), share.sqrt());
+    [b * second.cos(), a * first.sin(), a * first.cos(), b * second.sin()]
+}
+
+/// v + 2 q × (q × v + w v), with q the vector part.
+fn rotate([w, x, y, z]: [f64; 4], v: [f64; 3]) -> [f64; 3] {
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let q = [x, y, z];
+    let inner = cross(q, v);
+    let outer = cross(q, core::array::from_fn(|i| inner[i] + w * v[i]));
+    core::array::from_fn(|i| v[i] + 2.0 * outer[i])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| a * b).sum()
+    }
+
+    #[test]
+    fn a_purpose_has_its_own_states_and_they_do_not_change() {
+        let states_of_dual = states(Purpose::Dual, 20);
+        assert_eq!(states_of_dual, states(Purpose::Dual, 20));
+        assert_eq!(states_of_dual[..5], states(Purpose::Dual, 5));
+        assert_ne!(states_of_dual, states(Purpose::Difference, 20));
+    }
+
+    #[test]
+    fn states_fill_their_ranges_and_charts_are_rigid() {
+        let states = states(Purpose::Interpreter, 10_000);
+        for (number, state) in states.iter().enumerate() {
+            // Two unit vectors at the angle that a latitude within ±85° makes: sin 85°.
+            assert!((dot(&state.f_0, &state.f_0) - 1.0).abs() < 1e-14);
+            let earth_rate = dot(&state.omega_0, &state.omega_0).sqrt() / EARTH_RATE_RAD_PER_S;
+            assert!((earth_rate - 1.0).abs() < 1e-14);
+            let sine = dot(&state.omega_0, &state.f_0) / EARTH_RATE_RAD_PER_S;
+            assert!(sine.abs() < 0.996_195);
+            if number % 2 == 0 {
+                assert_eq!((state.f_0, state.omega_0[0]), ([0.0, 0.0, 1.0], 0.0));
+            }
+        }
+        let largest = |of: fn(&State) -> f64| states.iter().map(of).fold(f64::MIN, f64::max);
+        // Of 10 000 uniform numbers the largest is within 0.1% of the limit (but for e^-10).
+        let angle = largest(|state| state.theta[1].abs()).to_degrees();
+        assert!(angle <= 80.0 && angle > 79.92, "{angle}");
+        let drift = largest(|state| -state.drift[8]);
+        assert!(drift <= 5.0 && drift > 4.99, "{drift}");
+        let turned: Vec<&State> = states.iter().skip(1).step_by(2).collect();
+        let mean = turned.iter().map(|state| state.f_0[0]).sum::<f64>() / turned.len() as f64;
+        // Uniform on the sphere: mean 0 with standard deviation 1/sqrt(3 · 5000) = 0.0082.
+        assert!(mean.abs() < 0.033, "{mean}");
+    }
+}

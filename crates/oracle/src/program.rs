@@ -1,0 +1,375 @@
+//! Programs as the exporter writes them: named functions of flat scalar instructions.
+//!
+//! The schema is described in `codegen/emit/exporter/casadi_program.py`. Everything that
+//! an instruction refers to is checked here, once, so that running it cannot go wrong.
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::OracleError;
+
+const SCHEMA_VERSION: u64 = 1;
+
+/// A set of functions.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Name of the program, which is that of the generated module.
+    pub name: String,
+    /// The functions, in the order of the file.
+    pub functions: Vec<Function>,
+}
+
+/// A named function of groups of scalars.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Name of the function, which is that of the generated one.
+    pub name: String,
+    /// The groups of scalars that it takes.
+    pub inputs: Vec<Group>,
+    /// What it returns.
+    pub outputs: Vec<Output>,
+    /// Scalars in the work vector.
+    pub work_size: usize,
+    /// What it does. Changing it is how a test shows that an oracle can disagree.
+    pub instructions: Vec<Instruction>,
+}
+
+/// A named vector of scalar inputs.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Name of the group.
+    pub name: String,
+    /// Names of its scalars.
+    pub elements: Vec<String>,
+}
+
+/// A result: a matrix (a vector has one column) of which structural nonzeros are computed.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Output {
+    /// Name of the output.
+    pub name: String,
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub columns: usize,
+    /// Names of the rows; may be empty.
+    pub row_names: Vec<String>,
+    /// Names of the columns; may be empty.
+    pub column_names: Vec<String>,
+    /// Row and column of each structural nonzero.
+    pub nonzeros: Vec<(usize, usize)>,
+}
+
+/// One step of a function; `to`, `operand`, `left`, `right` are places in the work vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Instruction {
+    /// `work[to] = value`.
+    Const {
+        /// Where to.
+        to: usize,
+        /// The constant.
+        value: f64,
+    },
+    /// `work[to] = inputs[scalar]`, inputs one group after the other.
+    Input {
+        /// Where to.
+        to: usize,
+        /// Place in the flat inputs.
+        scalar: usize,
+    },
+    /// `outputs[nonzero] = work[from]`, nonzeros one output after the other.
+    Output {
+        /// Place in the flat outputs.
+        nonzero: usize,
+        /// Where from.
+        from: usize,
+    },
+    /// `work[to] = operation(work[operand])`.
+    Unary {
+        /// What to do.
+        operation: Unary,
+        /// Where to.
+        to: usize,
+        /// What with.
+        operand: usize,
+    },
+    /// `work[to] = operation(work[left], work[right])`.
+    Binary {
+        /// What to do.
+        operation: Binary,
+        /// Where to.
+        to: usize,
+        /// What with, first.
+        left: usize,
+        /// What with, second.
+        right: usize,
+    },
+}
+
+/// Operations on one scalar, by their names in the schema.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Unary {
+    Neg,
+    Sq,
+    Twice,
+    Inv,
+    Sqrt,
+    Exp,
+    Log,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Abs,
+    Sign,
+    Not,
+    Copy,
+}
+
+/// Operations on two scalars, by their names in the schema.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Binary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Pow,
+    Atan2,
+    Min,
+    Max,
+    Lt,
+    Le,
+    Eq,
+    Ne,
+    And,
+    Or,
+    IfElseZero,
+}
+
+impl Program {
+    /// Reads a program from the text of its file.
+    ///
+    /// # Errors
+    /// If the text is not a program of the schema's version, or an instruction refers to
+    /// what is not there.
+    pub fn from_json(text: &str) -> Result<Self, OracleError> {
+        let raw: RawProgram = serde_json::from_str(text)?;
+        if raw.schema_version != SCHEMA_VERSION {
+            return Err(OracleError::Schema {
+                program: raw.name,
+                found: raw.schema_version,
+                expected: SCHEMA_VERSION,
+            });
+        }
+        let functions = raw
+            .functions
+            .into_iter()
+            .map(|function| function.check(&raw.groups))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { name: raw.name, functions })
+    }
+
+    /// The function called `name`.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn function(&self, name: &str) -> Result<&Function, OracleError> {
+        self.functions
+            .iter()
+            .find(|function| function.name == name)
+            .ok_or_else(|| OracleError::Unknown { kind: "function", name: name.to_owned() })
+    }
+}
+
+impl Function {
+    /// Scalars in all inputs together.
+    #[must_use]
+    pub fn input_count(&self) -> usize {
+        self.inputs.iter().map(|group| group.elements.len()).sum()
+    }
+
+    /// Structural nonzeros of all outputs together.
+    #[must_use]
+    pub fn nonzero_count(&self) -> usize {
+        self.outputs.iter().map(|output| output.nonzeros.len()).sum()
+    }
+
+    /// Splits flat outputs (nonzeros, one output after the other) into one dense matrix,
+    /// row by row, for each output; `zero` stands where the structure has no element.
+    ///
+    /// # Panics
+    /// If `flat` is shorter than [`Self::nonzero_count`].
+    #[must_use]
+    pub fn dense_outputs<T: Copy>(&self, flat: &[T], zero: T) -> Vec<Vec<T>> {
+        let mut rest = flat;
+        self.outputs
+            .iter()
+            .map(|output| {
+                let (own, others) = rest.split_at(output.nonzeros.len());
+                rest = others;
+                output.dense(own, zero)
+            })
+            .collect()
+    }
+}
+
+impl Output {
+    /// The dense matrix, row by row, from the structural nonzeros.
+    #[must_use]
+    pub fn dense<T: Copy>(&self, nonzeros: &[T], zero: T) -> Vec<T> {
+        let mut dense = vec![zero; self.rows * self.columns];
+        for (&(row, column), &value) in self.nonzeros.iter().zip(nonzeros) {
+            dense[row * self.columns + column] = value;
+        }
+        dense
+    }
+
+    /// Name of a row, or its number where rows have no names.
+    #[must_use]
+    pub fn row_name(&self, row: usize) -> String {
+        self.row_names.get(row).cloned().unwrap_or_else(|| row.to_string())
+    }
+
+    /// Name of a column, or its number where columns have no names.
+    #[must_use]
+    pub fn column_name(&self, column: usize) -> String {
+        self.column_names.get(column).cloned().unwrap_or_else(|| column.to_string())
+    }
+
+    /// Name of a column, or nothing for the only column of a vector without names.
+    #[must_use]
+    pub fn column_label(&self, column: usize) -> String {
+        if self.columns == 1 && self.column_names.is_empty() {
+            String::new()
+        } else {
+            self.column_name(column)
+        }
+    }
+}
+
+#[derive(Deserialize)]
+struct RawProgram {
+    schema_version: u64,
+    name: String,
+    groups: Vec<RawGroup>,
+    functions: Vec<RawFunction>,
+}
+
+#[derive(Deserialize)]
+struct RawGroup {
+    name: String,
+    elements: Vec<RawElement>,
+}
+
+#[derive(Deserialize)]
+struct RawElement {
+    name: String,
+}
+
+#[derive(Deserialize)]
+struct RawInput {
+    group: String,
+}
+
+#[derive(Deserialize)]
+struct RawFunction {
+    name: String,
+    inputs: Vec<RawInput>,
+    outputs: Vec<Output>,
+    work_size: usize,
+    instructions: Vec<Vec<Value>>,
+}
+
+impl RawFunction {
+    fn check(self, groups: &[RawGroup]) -> Result<Function, OracleError> {
+        let inputs = self
+            .inputs
+            .iter()
+            .map(|input| {
+                let group = groups.iter().find(|group| group.name == input.group);
+                let group = group.ok_or_else(|| OracleError::Unknown {
+                    kind: "group",
+                    name: input.group.clone(),
+                })?;
+                Ok(Group {
+                    name: group.name.clone(),
+                    elements: group.elements.iter().map(|e| e.name.clone()).collect(),
+                })
+            })
+            .collect::<Result<Vec<_>, OracleError>>()?;
+        let mut function = Function {
+            name: self.name,
+            inputs,
+            outputs: self.outputs,
+            work_size: self.work_size,
+            instructions: Vec::with_capacity(self.instructions.len()),
+        };
+        for (index, raw) in self.instructions.iter().enumerate() {
+            let instruction = parse(&function, raw).map_err(|problem| {
+                OracleError::Instruction { function: function.name.clone(), index, problem }
+            })?;
+            function.instructions.push(instruction);
+        }
+        Ok(function)
+    }
+}
+
+fn parse(function: &Function, raw: &[Value]) -> Result<Instruction, String> {
+    let operation = raw.first().and_then(Value::as_str).ok_or("no operation")?;
+    let place = |at: usize| bounded(raw, at, function.work_size, "work vector");
+    let input_sizes = || function.inputs.iter().map(|group| group.elements.len());
+    let output_sizes = || function.outputs.iter().map(|output| output.nonzeros.len());
+    let instruction = match operation {
+        "const" => Instruction::Const {
+            to: place(1)?,
+            value: raw.get(2).and_then(Value::as_f64).ok_or("no constant")?,
+        },
+        "input" => Instruction::Input { to: place(1)?, scalar: flat(raw, 2, input_sizes())? },
+        "output" => Instruction::Output { nonzero: flat(raw, 1, output_sizes())?, from: place(3)? },
+        name if raw.len() == 3 => {
+            Instruction::Unary { operation: named(name)?, to: place(1)?, operand: place(2)? }
+        }
+        name => Instruction::Binary {
+            operation: named(name)?,
+            to: place(1)?,
+            left: place(2)?,
+            right: place(3)?,
+        },
+    };
+    Ok(instruction)
+}
+
+/// The number at `at`, which must be below `limit`.
+fn bounded(raw: &[Value], at: usize, limit: usize, of: &str) -> Result<usize, String> {
+    let number = raw.get(at).and_then(Value::as_u64).ok_or(format!("no number at {at}"))?;
+    usize::try_from(number)
+        .ok()
+        .filter(|&number| number < limit)
+        .ok_or(format!("{number} is beyond the {of} of {limit}"))
+}
+
+/// Flat place of the pair (vector, element) that stands at `at`.
+fn flat(raw: &[Value], at: usize, sizes: impl Iterator<Item = usize>) -> Result<usize, String> {
+    let sizes: Vec<usize> = sizes.collect();
+    let vector = bounded(raw, at, sizes.len(), "list of vectors")?;
+    let element = bounded(raw, at + 1, sizes[vector], "vector")?;
+    Ok(sizes[..vector].iter().sum::<usize>() + element)
+}
+
+fn named<T: DeserializeOwned>(name: &str) -> Result<T, String> {
+    serde_json::from_value(Value::from(name)).map_err(|_| format!("unknown operation `{name}`"))
+}
+
+#[cfg(test)]
+#[path = "program_tests.rs"]
+mod tests;

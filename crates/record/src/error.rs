@@ -1,0 +1,168 @@
+//! The one error type, and the located error inside it.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+
+/// Whatever can go wrong with a file.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[non_exhaustive]
+pub enum Error {
+    /// Something in an input file is not what its format asks for.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Input(Box<InputError>),
+    /// An input file cannot be read at all.
+    #[error("{}: cannot be read: {reason}", path.display())]
+    #[diagnostic(
+        code(gyrocal::file::unreadable),
+        help("check that the file exists and that you may read it")
+    )]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        reason: std::io::Error,
+    },
+    /// An output file cannot be written; nothing was left behind.
+    #[error("{}: cannot be written: {reason}", path.display())]
+    #[diagnostic(
+        code(gyrocal::file::unwritable),
+        help("check that the folder exists, that you may write there and that the disk has room")
+    )]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        reason: std::io::Error,
+    },
+    /// A value in memory cannot be written because no reader would accept it.
+    #[error("{}: not written: found {found}, expected {expected}", path.display())]
+    #[diagnostic(code(gyrocal::file::invalid_value))]
+    InvalidValue {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What the value is.
+        found: String,
+        /// What it would have to be.
+        expected: String,
+    },
+}
+
+/// What kind of thing is wrong in an input file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum InputErrorKind {
+    /// The file has no content.
+    Empty,
+    /// The file is not UTF-8 text.
+    NotUtf8,
+    /// The file is not TOML.
+    Syntax,
+    /// The header row is missing, or a column of it is unknown, missing or doubled.
+    Header,
+    /// A row has more or fewer fields than the header.
+    FieldCount,
+    /// A field or value is not a number.
+    NotANumber,
+    /// Time repeats or goes back.
+    Time,
+    /// There are fewer rows than the job needs.
+    TooFewRows,
+    /// The norm of specific force is far from 1 g.
+    Norm,
+    /// A key that the format does not have.
+    UnknownKey,
+    /// A key that the format needs is absent.
+    MissingKey,
+    /// A value of another type than the key takes.
+    WrongType,
+    /// A number outside the range that makes sense.
+    OutOfRange,
+}
+
+impl InputErrorKind {
+    fn code(self) -> &'static str {
+        match self {
+            Self::Empty => "gyrocal::input::empty",
+            Self::NotUtf8 => "gyrocal::input::not_utf8",
+            Self::Syntax => "gyrocal::input::syntax",
+            Self::Header => "gyrocal::input::header",
+            Self::FieldCount => "gyrocal::input::field_count",
+            Self::NotANumber => "gyrocal::input::not_a_number",
+            Self::Time => "gyrocal::input::time",
+            Self::TooFewRows => "gyrocal::input::too_few_rows",
+            Self::Norm => "gyrocal::input::norm",
+            Self::UnknownKey => "gyrocal::input::unknown_key",
+            Self::MissingKey => "gyrocal::input::missing_key",
+            Self::WrongType => "gyrocal::input::wrong_type",
+            Self::OutOfRange => "gyrocal::input::out_of_range",
+        }
+    }
+}
+
+/// An error at one place of one file.
+///
+/// `Display` is `file:line:column: found …, expected …`; [`Diagnostic`] adds the marked line
+/// and the advice.
+#[derive(Debug, Clone)]
+pub struct InputError {
+    /// What kind of thing is wrong.
+    pub kind: InputErrorKind,
+    /// Line of the place, from 1.
+    pub line: usize,
+    /// Column of the place in characters, from 1.
+    pub column: usize,
+    /// What stands there.
+    pub found: String,
+    /// What should stand there.
+    pub expected: String,
+    /// What to do about it; empty if `expected` says it all.
+    pub advice: String,
+    pub(crate) source: NamedSource<String>,
+    pub(crate) span: SourceSpan,
+}
+
+impl InputError {
+    /// The name of the file as it was given.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        self.source.name()
+    }
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            formatter,
+            "{}:{}:{}: found {}, expected {}",
+            self.file(),
+            self.line,
+            self.column,
+            self.found,
+            self.expected
+        )
+    }
+}
+
+impl core::error::Error for InputError {}
+
+impl Diagnostic for InputError {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(self.kind.code()))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        (!self.advice.is_empty()).then(|| Box::new(&self.advice) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.source)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = LabeledSpan::new_with_span(Some("here".to_owned()), self.span);
+        Some(Box::new(core::iter::once(label)))
+    }
+}

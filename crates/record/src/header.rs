@@ -1,0 +1,155 @@
+//! The header row of a record: which column is where.
+
+use std::ops::Range;
+
+use crate::error::{Error, InputErrorKind};
+use crate::source::{SourceText, quoted};
+use crate::suggest::{any_of, nearest};
+
+/// The columns that a record must have.
+pub(crate) const REQUIRED_COLUMNS: [&str; 4] = ["time_s", "accel_x_g", "accel_y_g", "accel_z_g"];
+
+/// The columns that a record may have.
+pub(crate) const COLUMNS: [&str; 5] = [
+    "time_s",
+    "accel_x_g",
+    "accel_y_g",
+    "accel_z_g",
+    "temperature_c",
+];
+
+/// Where each column stands.
+#[derive(Debug)]
+pub(crate) struct Header {
+    /// Number of fields of a row.
+    pub(crate) fields: usize,
+    /// Field of `time_s`.
+    pub(crate) time: usize,
+    /// Fields of the three accelerometers.
+    pub(crate) accel: [usize; 3],
+    /// Field of `temperature_c`.
+    pub(crate) temperature: Option<usize>,
+}
+
+/// The fields of one line, without white space and quotation marks around them, with their
+/// places in the text.
+pub(crate) fn split_fields(
+    text: &str,
+    line: Range<usize>,
+) -> impl Iterator<Item = (Range<usize>, &str)> {
+    let content = text.get(line.clone()).unwrap_or("");
+    let mut start = line.start;
+    content.split(',').map(move |field| {
+        let bare = field.trim();
+        let unquoted = bare
+            .strip_prefix('"')
+            .and_then(|rest| rest.strip_suffix('"'))
+            .map_or(bare, str::trim);
+        let indent = field.len() - field.trim_start().len();
+        let span = start + indent..start + indent + bare.len();
+        start += field.len() + 1;
+        (span, unquoted)
+    })
+}
+
+impl Header {
+    /// Finds the columns in the header line.
+    pub(crate) fn parse(source: &SourceText, line: Range<usize>) -> Result<Self, Error> {
+        let fields: Vec<_> = split_fields(source.text(), line.clone()).collect();
+        refuse_other_separators(source, &line, &fields)?;
+        refuse_numbers(source, &line, &fields)?;
+        let names: Vec<&str> = fields.iter().map(|(_, name)| *name).collect();
+        for (column, (span, name)) in fields.iter().enumerate() {
+            if !COLUMNS.contains(name) {
+                return Err(unknown(source, span.clone(), name, &names));
+            }
+            if names[..column].contains(name) {
+                return Err(source.error(
+                    InputErrorKind::Header,
+                    span.clone(),
+                    format!("a second column `{name}`"),
+                    "each column once",
+                    "remove or rename one of them",
+                ));
+            }
+        }
+        let place = |wanted: &str| names.iter().position(|name| *name == wanted);
+        let required = |wanted: &str| {
+            place(wanted).ok_or_else(|| {
+                source.error(
+                    InputErrorKind::Header,
+                    line.clone(),
+                    format!("the header {}", quoted(&names.join(","))),
+                    format!("a column `{wanted}` too"),
+                    format!("a record has the columns {}", REQUIRED_COLUMNS.join(",")),
+                )
+            })
+        };
+        Ok(Self {
+            fields: names.len(),
+            time: required(REQUIRED_COLUMNS[0])?,
+            accel: [
+                required(REQUIRED_COLUMNS[1])?,
+                required(REQUIRED_COLUMNS[2])?,
+                required(REQUIRED_COLUMNS[3])?,
+            ],
+            temperature: place(COLUMNS[4]),
+        })
+    }
+}
+
+fn unknown(source: &SourceText, span: Range<usize>, name: &str, names: &[&str]) -> Error {
+    let absent: Vec<&str> = COLUMNS
+        .into_iter()
+        .filter(|column| !names.contains(column))
+        .collect();
+    let advice = match nearest(name, &absent) {
+        Some(near) => format!("did you mean `{near}`? (names carry their unit)"),
+        None => "rename it if it is one of these, remove it if it is not".to_owned(),
+    };
+    source.error(
+        InputErrorKind::Header,
+        span,
+        format!("the unknown column {}", quoted(name)),
+        any_of(if absent.is_empty() { &COLUMNS } else { &absent }),
+        advice,
+    )
+}
+
+fn refuse_other_separators(
+    source: &SourceText,
+    line: &Range<usize>,
+    fields: &[(Range<usize>, &str)],
+) -> Result<(), Error> {
+    let [(_, only)] = fields else {
+        return Ok(());
+    };
+    let Some(separator) = only.find([';', '\t']) else {
+        return Ok(());
+    };
+    let place = line.start + separator;
+    Err(source.error(
+        InputErrorKind::Header,
+        place..place + 1,
+        "fields separated by another character",
+        "fields separated by commas",
+        "export the file again with commas, and with points in decimal numbers",
+    ))
+}
+
+fn refuse_numbers(
+    source: &SourceText,
+    line: &Range<usize>,
+    fields: &[(Range<usize>, &str)],
+) -> Result<(), Error> {
+    if fields.iter().all(|(_, name)| name.parse::<f64>().is_ok()) {
+        return Err(source.error(
+            InputErrorKind::Header,
+            line.clone(),
+            "a row of numbers",
+            format!("the header `{}`", REQUIRED_COLUMNS.join(",")),
+            "put the header before the first row",
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,53 @@
+//! Where a result comes from.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::error::Error;
+
+/// Which program made a result, from which inputs, and how.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Name of the program.
+    pub program: String,
+    /// Its version.
+    pub version: String,
+    /// Hash of the symbolic model that its filter was generated from; empty if it used none.
+    pub model_hash: String,
+    /// The files that were read.
+    pub inputs: Vec<Input>,
+    /// Seed of whatever was drawn at random; 0 if nothing was.
+    pub seed: u64,
+    /// The command line.
+    pub command: String,
+}
+
+/// A file that was read.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Input {
+    /// The path as it was given.
+    pub path: String,
+    /// SHA-256 of the content, in hexadecimal.
+    pub sha256: String,
+}
+
+impl Input {
+    /// Hashes a file.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`] if it cannot be read.
+    pub fn of(path: &Path) -> Result<Self, Error> {
+        let bytes = std::fs::read(path).map_err(|reason| Error::Unreadable {
+            path: path.to_owned(),
+            reason,
+        })?;
+        let digest = Sha256::digest(&bytes);
+        Ok(Self {
+            path: path.display().to_string(),
+            sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+        })
+    }
+}

@@ -1,0 +1,149 @@
+//! The record: accelerometer samples of a platform in the space-stable state.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::error::Error;
+use crate::header::{COLUMNS, REQUIRED_COLUMNS};
+use crate::output::write_whole;
+use crate::rows::read_rows;
+use crate::source::SourceText;
+
+/// Accelerometer samples, one a row.
+///
+/// The three vectors have the same length. A record that was read is never empty, its times
+/// rise, and no value but a component of `accel_g` is `NaN`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Record {
+    /// Time of each row.
+    pub time_s: Vec<f64>,
+    /// Specific force in platform axes x, y, z \[g\], up positive; `NaN` is a missing component.
+    pub accel_g: Vec<[f64; 3]>,
+    /// Temperature of each row, if it was logged.
+    pub temperature_c: Option<Vec<f64>>,
+}
+
+impl Record {
+    /// Reads a record.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Self::read_at_least(path, 1)
+    }
+
+    /// Reads a record that must have at least some number of rows, as many as a filter has
+    /// states.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    pub fn read_at_least(path: &Path, rows: usize) -> Result<Self, Error> {
+        read_rows(&SourceText::read(path)?, rows)
+    }
+
+    /// Parses the text of a record; errors call it `name`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] for whatever is wrong in it.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
+        read_rows(&SourceText::new(text, name)?, 1)
+    }
+
+    /// Writes the record whole or not at all. Reading it gives the same numbers.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::InvalidValue`] if [`Record::read`] would refuse it, [`Error::Unwritable`].
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        write_whole(path, self.to_csv(path)?.as_bytes())
+    }
+
+    /// The text of the record's file; errors call it `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::InvalidValue`] if the columns differ in length, if time does not rise or if a
+    /// value is infinite.
+    pub fn to_csv(&self, path: &Path) -> Result<String, Error> {
+        self.check(path)?;
+        let columns = match self.temperature_c {
+            Some(_) => &COLUMNS[..],
+            None => &REQUIRED_COLUMNS[..],
+        };
+        // A number takes up to 20 characters.
+        let mut text = String::with_capacity(self.len() * columns.len() * 20);
+        text.push_str(&columns.join(","));
+        text.push('\n');
+        for (row, (time_s, accel_g)) in self.time_s.iter().zip(&self.accel_g).enumerate() {
+            let _ = write!(text, "{time_s:?}");
+            for component in accel_g {
+                if component.is_nan() {
+                    text.push_str(",nan");
+                } else {
+                    let _ = write!(text, ",{component:?}");
+                }
+            }
+            if let Some(temperature_c) = &self.temperature_c {
+                let _ = write!(text, ",{:?}", temperature_c[row]);
+            }
+            text.push('\n');
+        }
+        Ok(text)
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.time_s.len()
+    }
+
+    /// Whether there are no rows.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.time_s.is_empty()
+    }
+
+    /// Time from the first row to the last.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        match (self.time_s.first(), self.time_s.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        }
+    }
+
+    fn check(&self, path: &Path) -> Result<(), Error> {
+        let invalid = |found: String, expected: &str| Error::InvalidValue {
+            path: path.to_owned(),
+            found,
+            expected: expected.to_owned(),
+        };
+        let temperatures = self.temperature_c.as_ref().map_or(self.len(), Vec::len);
+        if self.accel_g.len() != self.len() || temperatures != self.len() {
+            let found = format!(
+                "{} times, {} samples, {temperatures} temperatures",
+                self.len(),
+                self.accel_g.len()
+            );
+            return Err(invalid(found, "as many of each"));
+        }
+        let not_finite = |value: &&f64| !value.is_finite();
+        let components = self.accel_g.iter().flatten();
+        let temperatures = self.temperature_c.iter().flatten();
+        if let Some(value) = components
+            .filter(|component| component.is_infinite())
+            .chain(self.time_s.iter().chain(temperatures).filter(not_finite))
+            .next()
+        {
+            return Err(invalid(format!("the value {value}"), "finite values"));
+        }
+        if let Some(pair) = self.time_s.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let found = format!("time {:?} after {:?}", pair[1], pair[0]);
+            return Err(invalid(found, "times that rise"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,147 @@
+//! The text of an input file, and the way from a byte offset to line and column.
+
+use std::ops::Range;
+use std::path::Path;
+
+use miette::NamedSource;
+
+use crate::error::{Error, InputError, InputErrorKind};
+
+/// The text of an input file with the name that errors give it.
+#[derive(Debug, Clone)]
+pub struct SourceText {
+    name: String,
+    text: String,
+}
+
+impl SourceText {
+    /// Reads a file as UTF-8 text, without the byte-order mark that some editors put first.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`] if the operating system refuses, [`Error::Input`] if the file has
+    /// no content or is not UTF-8.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let bytes = std::fs::read(path).map_err(|reason| Error::Unreadable {
+            path: path.to_owned(),
+            reason,
+        })?;
+        Self::from_bytes(bytes, &path.display().to_string())
+    }
+
+    /// Takes the content of a file as UTF-8 text.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if there is no content or if it is not UTF-8.
+    pub fn from_bytes(bytes: Vec<u8>, name: &str) -> Result<Self, Error> {
+        let text = match String::from_utf8(bytes) {
+            Ok(text) => text,
+            Err(error) => return Err(not_utf8(error.as_bytes(), name)),
+        };
+        Self::new(text.trim_start_matches('\u{feff}'), name)
+    }
+
+    /// Takes a text.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if there is nothing but white space.
+    pub fn new(text: &str, name: &str) -> Result<Self, Error> {
+        let source = Self {
+            name: name.to_owned(),
+            text: text.to_owned(),
+        };
+        if text.trim().is_empty() {
+            return Err(source.error(
+                InputErrorKind::Empty,
+                0..0,
+                "an empty file",
+                "some content",
+                "check that the program that wrote it had finished",
+            ));
+        }
+        Ok(source)
+    }
+
+    /// The name of the file as it was given.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Line and column in characters of a byte offset, both from 1.
+    #[must_use]
+    pub fn line_and_column(&self, offset: usize) -> (usize, usize) {
+        let before = self.text.get(..offset).unwrap_or(&self.text);
+        let line = before.matches('\n').count() + 1;
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let column = before.get(line_start..).unwrap_or("").chars().count() + 1;
+        (line, column)
+    }
+
+    /// An error at a byte range of this text.
+    #[must_use]
+    pub fn error(
+        &self,
+        kind: InputErrorKind,
+        span: Range<usize>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        advice: impl Into<String>,
+    ) -> Error {
+        let (line, column) = self.line_and_column(span.start);
+        Error::Input(Box::new(InputError {
+            kind,
+            line,
+            column,
+            found: found.into(),
+            expected: expected.into(),
+            advice: advice.into(),
+            source: NamedSource::new(&self.name, self.text.clone()),
+            span: span.into(),
+        }))
+    }
+}
+
+/// Quotes a piece of a file for an error message, cut if it is long.
+pub(crate) fn quoted(text: &str) -> String {
+    const LONGEST_CHARS: usize = 60;
+    let one_line: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if one_line.chars().count() > LONGEST_CHARS {
+        let head: String = one_line.chars().take(LONGEST_CHARS).collect();
+        format!("`{head}…`")
+    } else if one_line.is_empty() {
+        "nothing".to_owned()
+    } else {
+        format!("`{one_line}`")
+    }
+}
+
+/// The bytes before the first wrong one are valid, so offsets into the lossy text are right.
+fn not_utf8(bytes: &[u8], name: &str) -> Error {
+    let offset = match std::str::from_utf8(bytes) {
+        Ok(text) => text.len(),
+        Err(error) => error.valid_up_to(),
+    };
+    let found = bytes
+        .get(offset)
+        .map_or_else(|| "the end".to_owned(), |byte| format!("byte 0x{byte:02X}"));
+    let source = SourceText {
+        name: name.to_owned(),
+        text: String::from_utf8_lossy(bytes).into_owned(),
+    };
+    source.error(
+        InputErrorKind::NotUtf8,
+        offset..offset,
+        found,
+        "UTF-8 text",
+        "save the file as UTF-8; spreadsheets and compressed or binary files are not read",
+    )
+}

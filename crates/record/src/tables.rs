@@ -1,0 +1,378 @@
+//! TOML tables read key by key, so that every mistake has its place.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::{Error, InputErrorKind};
+use crate::source::{SourceText, quoted};
+use crate::suggest::{any_of, nearest};
+
+/// A TOML file that [`Table`]s are taken from.
+#[derive(Debug, Clone)]
+pub struct Document {
+    source: SourceText,
+}
+
+/// What range a number may have. All are finite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Bound {
+    /// Any finite number.
+    Finite,
+    /// Greater than zero.
+    Positive,
+    /// Zero or greater.
+    NotNegative,
+    /// From the first to the second, both included.
+    Within(f64, f64),
+}
+
+/// One table of a TOML file, with the keys that it may have.
+#[derive(Debug)]
+pub struct Table<'a> {
+    source: &'a SourceText,
+    name: String,
+    entries: &'a DeTable<'a>,
+    span: Range<usize>,
+}
+
+impl Document {
+    /// Reads a TOML file.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`] if that is not possible, [`Error::Input`] if it is empty or not
+    /// UTF-8.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        SourceText::read(path).map(|source| Self { source })
+    }
+
+    /// Takes the text of a TOML file.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if it is empty.
+    pub fn new(text: &str, name: &str) -> Result<Self, Error> {
+        SourceText::new(text, name).map(|source| Self { source })
+    }
+
+    /// Parses the file and hands its root table, which may have the keys `known`, to `interpret`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if the file is not TOML or has an unknown key, and what `interpret`
+    /// says.
+    pub fn interpret<T>(
+        &self,
+        known: &[&str],
+        interpret: impl FnOnce(&Table<'_>) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let root = DeTable::parse(self.source.text()).map_err(|error| {
+            let span = error.span().unwrap_or(0..0);
+            let there = self.source.text().get(span.clone()).unwrap_or("");
+            self.source.error(
+                InputErrorKind::Syntax,
+                span,
+                quoted(there),
+                format!("valid TOML ({})", error.message().replace('\n', ", ")),
+                "see toml.io for the format",
+            )
+        })?;
+        let table = Table {
+            source: &self.source,
+            name: String::new(),
+            entries: root.get_ref(),
+            span: 0..0,
+        };
+        table.refuse_unknown(known)?;
+        interpret(&table)
+    }
+}
+
+impl<'a> Table<'a> {
+    /// A table inside this one, which may have the keys `known`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if it is absent, is no table, or has an unknown key.
+    pub fn table(&self, key: &str, known: &[&str]) -> Result<Table<'a>, Error> {
+        self.optional_table(key, known)?
+            .ok_or_else(|| self.missing(&format!("the table `[{key}]`"), known))
+    }
+
+    /// A table inside this one that may be absent.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if it is no table or has an unknown key.
+    pub fn optional_table(&self, key: &str, known: &[&str]) -> Result<Option<Table<'a>>, Error> {
+        let Some((key_span, value)) = self.entry(key) else {
+            return Ok(None);
+        };
+        let Some(entries) = value.get_ref().as_table() else {
+            return Err(self.wrong_type(value, &format!("a table `[{key}]`")));
+        };
+        let table = Table {
+            source: self.source,
+            name: key.to_owned(),
+            entries,
+            span: key_span,
+        };
+        table.refuse_unknown(known)?;
+        Ok(Some(table))
+    }
+
+    /// A number.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if it is absent, no number, or out of bounds.
+    pub fn number(&self, key: &str, bound: Bound) -> Result<f64, Error> {
+        self.optional_number(key, bound)?
+            .ok_or_else(|| self.missing(&format!("`{key} = ` {}", bound.describe()), &[]))
+    }
+
+    /// A number that may be absent.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if it is no number or out of bounds.
+    pub fn optional_number(&self, key: &str, bound: Bound) -> Result<Option<f64>, Error> {
+        match self.entry(key) {
+            Some((_, value)) => self.as_number(value, bound).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// Three numbers, for x, y and z.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if they are absent, not three, no numbers, or out of bounds.
+    pub fn three_numbers(&self, key: &str, bound: Bound) -> Result<[f64; 3], Error> {
+        match self.entry(key) {
+            Some((_, value)) => self.as_three(value, bound),
+            None => Err(self.missing(&format!("`{key} = [x, y, z]`"), &[])),
+        }
+    }
+
+    /// Three numbers, or one that stands for all three, or nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if what is there is neither, or out of bounds.
+    pub fn optional_one_or_three(
+        &self,
+        key: &str,
+        bound: Bound,
+    ) -> Result<Option<[f64; 3]>, Error> {
+        match self.entry(key) {
+            Some((_, value)) if value.get_ref().is_array() => self.as_three(value, bound).map(Some),
+            Some((_, value)) => self.as_number(value, bound).map(|one| Some([one; 3])),
+            None => Ok(None),
+        }
+    }
+
+    /// Pairs of numbers `[[a, b], …]` that may be absent.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if what is there is something else, or if an `a` is not less than its `b`.
+    pub fn optional_intervals(&self, key: &str, bound: Bound) -> Result<Vec<[f64; 2]>, Error> {
+        const EXPECTED: &str = "intervals `[[from, to], …]` with from less than to";
+        let Some((_, value)) = self.entry(key) else {
+            return Ok(Vec::new());
+        };
+        let intervals = value
+            .get_ref()
+            .as_array()
+            .ok_or_else(|| self.wrong_type(value, EXPECTED))?;
+        let interval = |value: &Spanned<DeValue<'_>>| {
+            let ends = value.get_ref().as_array();
+            let [from, to] = ends.map(|array| &array[..]).unwrap_or(&[]) else {
+                return Err(self.wrong_type(value, EXPECTED));
+            };
+            let ends = [self.as_number(from, bound)?, self.as_number(to, bound)?];
+            if ends[0] < ends[1] {
+                Ok(ends)
+            } else {
+                Err(self.value_error(InputErrorKind::OutOfRange, value, EXPECTED, ""))
+            }
+        };
+        intervals.iter().map(interval).collect()
+    }
+
+    /// A whole number from 0, as seeds are.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if it is absent or anything else.
+    pub fn whole_number(&self, key: &str) -> Result<u64, Error> {
+        const EXPECTED: &str = "a whole number from 0 to 9223372036854775807";
+        let Some((_, value)) = self.entry(key) else {
+            return Err(self.missing(&format!("`{key} = ` {EXPECTED}"), &[]));
+        };
+        value
+            .get_ref()
+            .as_integer()
+            .and_then(|integer| i64::from_str_radix(integer.as_str(), integer.radix()).ok())
+            .and_then(|integer| u64::try_from(integer).ok())
+            .ok_or_else(|| self.wrong_type(value, EXPECTED))
+    }
+
+    /// Whether the value of a key is this word.
+    #[must_use]
+    pub fn is_word(&self, key: &str, word: &str) -> bool {
+        self.entry(key)
+            .is_some_and(|(_, value)| value.get_ref().as_str() == Some(word))
+    }
+
+    /// An error at the value of a key, or at the table's head if the key is absent.
+    #[must_use]
+    pub fn error_at(&self, key: &str, kind: InputErrorKind, expected: &str, advice: &str) -> Error {
+        match self.entry(key) {
+            Some((_, value)) => self.value_error(kind, value, expected, advice),
+            None => self.missing(&format!("`{key}`: {expected}"), &[]),
+        }
+    }
+
+    fn entry(&self, key: &str) -> Option<(Range<usize>, &'a Spanned<DeValue<'a>>)> {
+        self.entries
+            .iter()
+            .find(|(name, _)| name.get_ref() == key)
+            .map(|(name, value)| (name.span(), value))
+    }
+
+    fn refuse_unknown(&self, known: &[&str]) -> Result<(), Error> {
+        let unknown = self
+            .entries
+            .iter()
+            .filter(|(name, _)| !known.contains(&name.get_ref().as_ref()))
+            .min_by_key(|(name, _)| name.span().start);
+        let Some((name, _)) = unknown else {
+            return Ok(());
+        };
+        let absent: BTreeSet<&str> = known
+            .iter()
+            .copied()
+            .filter(|key| self.entry(key).is_none())
+            .collect();
+        let absent: Vec<&str> = absent.into_iter().collect();
+        let advice = match nearest(name.get_ref(), &absent) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "remove it, or see the format in the documentation".to_owned(),
+        };
+        Err(self.source.error(
+            InputErrorKind::UnknownKey,
+            name.span(),
+            format!("the unknown key `{}`{}", name.get_ref(), self.place()),
+            any_of(known),
+            advice,
+        ))
+    }
+
+    fn place(&self) -> String {
+        if self.name.is_empty() {
+            String::new()
+        } else {
+            format!(" in `[{}]`", self.name)
+        }
+    }
+
+    fn missing(&self, expected: &str, keys: &[&str]) -> Error {
+        let found = if self.name.is_empty() {
+            "a file without it".to_owned()
+        } else {
+            format!("`[{}]` without it", self.name)
+        };
+        let advice = if keys.is_empty() {
+            "add the line".to_owned()
+        } else {
+            format!("add the table with {}", any_of(keys))
+        };
+        self.source.error(
+            InputErrorKind::MissingKey,
+            self.span.clone(),
+            found,
+            expected,
+            advice,
+        )
+    }
+
+    fn as_three(&self, value: &Spanned<DeValue<'_>>, bound: Bound) -> Result<[f64; 3], Error> {
+        let items = value.get_ref().as_array();
+        let [x, y, z] = items.map(|array| &array[..]).unwrap_or(&[]) else {
+            return Err(self.wrong_type(value, "three numbers `[x, y, z]`"));
+        };
+        Ok([
+            self.as_number(x, bound)?,
+            self.as_number(y, bound)?,
+            self.as_number(z, bound)?,
+        ])
+    }
+
+    fn as_number(&self, value: &Spanned<DeValue<'_>>, bound: Bound) -> Result<f64, Error> {
+        let number = match value.get_ref() {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+                .ok()
+                .map(|integer| integer as f64),
+            _ => None,
+        };
+        let Some(number) = number else {
+            let expected = bound.describe();
+            return Err(self.value_error(InputErrorKind::NotANumber, value, &expected, ""));
+        };
+        if bound.holds(number) {
+            Ok(number)
+        } else {
+            let expected = bound.describe();
+            Err(self.value_error(InputErrorKind::OutOfRange, value, &expected, ""))
+        }
+    }
+
+    fn wrong_type(&self, value: &Spanned<DeValue<'_>>, expected: &str) -> Error {
+        self.value_error(InputErrorKind::WrongType, value, expected, "")
+    }
+
+    fn value_error(
+        &self,
+        kind: InputErrorKind,
+        value: &Spanned<DeValue<'_>>,
+        expected: &str,
+        advice: &str,
+    ) -> Error {
+        let there = self.source.text().get(value.span()).unwrap_or("");
+        self.source
+            .error(kind, value.span(), quoted(there), expected, advice)
+    }
+}
+
+impl Bound {
+    /// Whether a number is finite and within the bound.
+    #[must_use]
+    pub fn holds(self, number: f64) -> bool {
+        number.is_finite()
+            && match self {
+                Self::Finite => true,
+                Self::Positive => number > 0.0,
+                Self::NotNegative => number >= 0.0,
+                Self::Within(low, high) => (low..=high).contains(&number),
+            }
+    }
+
+    /// The bound in words.
+    #[must_use]
+    pub fn describe(self) -> String {
+        match self {
+            Self::Finite => "a finite number".to_owned(),
+            Self::Positive => "a finite number greater than 0".to_owned(),
+            Self::NotNegative => "a finite number not less than 0".to_owned(),
+            Self::Within(low, high) => format!("a number from {low} to {high}"),
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Each way in which a bench file can be wrong.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use gyrocal_record::{Bench, Error, InputErrorKind};
+
+const GOOD: &str = "\
+[site]
+latitude_deg = 39.1
+[platform]
+initial_angles_deg = [0.0, 0, 0.0]
+initial_angles_sigma_deg = [0.01, 0.01, 0.01]
+[noise]
+accel_g = 1e-5
+gyro_deg_per_h = 0.002
+";
+
+#[test]
+fn the_good_one_is_good() {
+    let bench = Bench::parse(GOOD, "b.toml").unwrap();
+    assert_eq!(bench.latitude_deg, 39.1);
+    assert_eq!(bench.accel_noise_g, 1e-5);
+    assert_eq!(bench.gyro_noise_deg_per_h, 0.002);
+    assert_eq!(bench.gravity, None);
+    let windows = GOOD.replace('\n', "\r\n");
+    assert_eq!(Bench::parse(&windows, "b.toml").unwrap(), bench);
+    let prior = format!("{GOOD}[prior]\nbias_sigma_deg_per_h = 3\n");
+    let prior = Bench::parse(&prior, "b.toml").unwrap().prior;
+    assert_eq!(prior.bias_sigma_deg_per_h, [3.0; 3]);
+    assert_eq!(prior.g_sigma_deg_per_h_per_g, [1.0; 3]);
+}
+
+#[test]
+fn each_mistake_is_shown_where_it_is() {
+    use InputErrorKind as Kind;
+    let cases: &[(&str, &str, Kind, &str, &str, &str)] = &[
+        (
+            "39.1",
+            "90.5",
+            Kind::OutOfRange,
+            "2:16",
+            "`90.5`",
+            "from -90 to 90",
+        ),
+        (
+            "39.1",
+            "-91",
+            Kind::OutOfRange,
+            "2:16",
+            "`-91`",
+            "from -90 to 90",
+        ),
+        (
+            "39.1",
+            "nan",
+            Kind::OutOfRange,
+            "2:16",
+            "`nan`",
+            "from -90 to 90",
+        ),
+        (
+            "39.1",
+            "\"39.1\"",
+            Kind::NotANumber,
+            "2:16",
+            "`\"39.1\"`",
+            "a number",
+        ),
+        ("39.1", "39,1", Kind::Syntax, "2:18", "", "valid TOML"),
+        (
+            "1e-5",
+            "0",
+            Kind::OutOfRange,
+            "7:11",
+            "`0`",
+            "greater than 0",
+        ),
+        (
+            "1e-5",
+            "-1e-5",
+            Kind::OutOfRange,
+            "7:11",
+            "`-1e-5`",
+            "greater than 0",
+        ),
+        (
+            "0.002",
+            "0.0",
+            Kind::OutOfRange,
+            "8:18",
+            "`0.0`",
+            "greater than 0",
+        ),
+        (
+            "0.002",
+            "inf",
+            Kind::OutOfRange,
+            "8:18",
+            "`inf`",
+            "greater than 0",
+        ),
+        (
+            "[0.01, 0.01, 0.01]",
+            "[0.01, 0, 0.01]",
+            Kind::OutOfRange,
+            "5:35",
+            "`0`",
+            "greater than 0",
+        ),
+        (
+            "[0.01, 0.01, 0.01]",
+            "[0.01, 0.01]",
+            Kind::WrongType,
+            "5:28",
+            "`[0.01, 0.01]`",
+            "three numbers",
+        ),
+        (
+            "[0.01, 0.01, 0.01]",
+            "0.01",
+            Kind::WrongType,
+            "5:28",
+            "`0.01`",
+            "three numbers",
+        ),
+        (
+            "[0.0, 0, 0.0]",
+            "[0.0, 0, 400.0]",
+            Kind::OutOfRange,
+            "4:31",
+            "`400.0`",
+            "from -360 to 360",
+        ),
+        (
+            "latitude_deg",
+            "lattitude_deg",
+            Kind::UnknownKey,
+            "2:1",
+            "`lattitude_deg` in `[site]`",
+            "`latitude_deg`",
+        ),
+        (
+            "accel_g",
+            "acel_g",
+            Kind::UnknownKey,
+            "7:1",
+            "`acel_g` in `[noise]`",
+            "`accel_g`",
+        ),
+        (
+            "[noise]",
+            "[noize]",
+            Kind::UnknownKey,
+            "6:2",
+            "`noize`",
+            "`noise`",
+        ),
+        (
+            "accel_g = 1e-5\n",
+            "",
+            Kind::MissingKey,
+            "6:2",
+            "`[noise]` without",
+            "`accel_g = `",
+        ),
+        (
+            "[site]\nlatitude_deg = 39.1\n",
+            "",
+            Kind::MissingKey,
+            "1:1",
+            "without",
+            "`[site]`",
+        ),
+        (
+            "[site]\nlatitude_deg",
+            "site",
+            Kind::WrongType,
+            "1:8",
+            "`39.1`",
+            "a table `[site]`",
+        ),
+        (
+            "[platform]",
+            "local_gravity_m_per_s2 = 9.8\n[platform]",
+            Kind::MissingKey,
+            "1:2",
+            "`[site]`",
+            "together",
+        ),
+        (
+            "[platform]",
+            "local_gravity_m_per_s2 = 980\n[platform]",
+            Kind::OutOfRange,
+            "3:26",
+            "`980`",
+            "9.7 to 9.9",
+        ),
+        (
+            "[noise]",
+            "[prior]\nbias_sigma_deg_per_h = -1\n[noise]",
+            Kind::OutOfRange,
+            "7:24",
+            "`-1`",
+            "greater than 0",
+        ),
+        (
+            "[noise]",
+            "[noise]\naccel_g = 1e-5",
+            Kind::Syntax,
+            "8:1",
+            "`accel_g`",
+            "duplicate key",
+        ),
+    ];
+    for (right, wrong, kind, place, found, expected) in cases {
+        assert_eq!(GOOD.matches(right).count(), 1, "{right}");
+        let error = Bench::parse(&GOOD.replace(right, wrong), "b.toml").unwrap_err();
+        let shown = error.to_string();
+        let rest = shown.strip_prefix(&format!("b.toml:{place}: found "));
+        let (before, after) = rest
+            .and_then(|rest| rest.split_once(", expected "))
+            .unwrap_or_else(|| panic!("{wrong}: {shown}"));
+        assert!(before.contains(found), "{wrong}: {shown}");
+        assert!(after.contains(expected), "{wrong}: {shown}");
+        let Error::Input(input) = error else { panic!() };
+        assert_eq!(input.kind, *kind, "{shown}");
+    }
+}
+
+#[test]
+fn a_slip_of_a_key_is_recognised() {
+    for (typed, meant) in [
+        ("lattitude_deg", "latitude_deg"),
+        ("latitude", "latitude_deg"),
+    ] {
+        let text = GOOD.replace("latitude_deg", typed);
+        let Error::Input(error) = Bench::parse(&text, "b.toml").unwrap_err() else {
+            panic!()
+        };
+        assert_eq!(error.advice, format!("did you mean `{meant}`?"));
+    }
+}

@@ -1,0 +1,255 @@
+//! Each way in which a record can be wrong: place, what was found, what was expected.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use gyrocal_record::{Error, InputError, InputErrorKind, Record, SourceText};
+use miette::Diagnostic as _;
+
+const HEADER: &str = "time_s,accel_x_g,accel_y_g,accel_z_g";
+
+fn refused(text: &str) -> InputError {
+    match Record::parse(text, "r.csv").unwrap_err() {
+        Error::Input(error) => *error,
+        other => panic!("{other}"),
+    }
+}
+
+/// The message has the place first, and then these words in this order.
+fn assert_says(error: &InputError, kind: InputErrorKind, place: &str, words: &[&str]) {
+    assert_eq!(error.kind, kind);
+    let shown = error.to_string();
+    let mut rest = shown
+        .strip_prefix(&format!("r.csv:{place}: found "))
+        .unwrap_or_else(|| panic!("{shown} is not at {place}"));
+    for word in words {
+        let (_, after) = rest
+            .split_once(word)
+            .unwrap_or_else(|| panic!("no `{word}` in `{rest}` of `{shown}`"));
+        rest = after;
+    }
+}
+
+fn rows(rows: &[&str]) -> String {
+    format!("{HEADER}\n{}\n", rows.join("\n"))
+}
+
+#[test]
+fn an_empty_file() {
+    for text in ["", " \n\n", "\u{feff}"] {
+        let error = match SourceText::from_bytes(text.into(), "r.csv").unwrap_err() {
+            Error::Input(error) => *error,
+            other => panic!("{other}"),
+        };
+        assert_says(
+            &error,
+            InputErrorKind::Empty,
+            "1:1",
+            &["an empty file", "expected"],
+        );
+    }
+}
+
+#[test]
+fn a_file_that_is_not_utf8() {
+    let mut bytes = rows(&["0,0,0,1"]).into_bytes();
+    bytes.extend(b"60,0,\xff,1\n");
+    let Error::Input(error) = SourceText::from_bytes(bytes, "r.csv").unwrap_err() else {
+        panic!()
+    };
+    let words = ["byte 0xFF", "expected UTF-8"];
+    assert_says(&error, InputErrorKind::NotUtf8, "3:6", &words);
+}
+
+#[test]
+fn a_header_that_is_wrong() {
+    let cases: [(&str, &str, &[&str], &str); 8] = [
+        (
+            "time_s,accel_x,accel_y_g,accel_z_g",
+            "1:8",
+            &["`accel_x`", "expected", "`accel_x_g`"],
+            "did you mean `accel_x_g`",
+        ),
+        (
+            "Time_s,accel_x_g,accel_y_g,accel_z_g",
+            "1:1",
+            &["`Time_s`", "expected"],
+            "did you mean `time_s`",
+        ),
+        (
+            "time_s,accel_x_g,accel_y_g",
+            "1:1",
+            &["the header", "expected a column `accel_z_g`"],
+            "time_s,accel_x_g",
+        ),
+        (
+            "time_s,accel_x_g,accel_y_g,accel_z_g,pressure_hpa",
+            "1:38",
+            &["`pressure_hpa`", "expected `temperature_c`"],
+            "remove it",
+        ),
+        (
+            "time_s,accel_x_g,accel_y_g,accel_y_g",
+            "1:28",
+            &["second column `accel_y_g`", "once"],
+            "rename",
+        ),
+        (
+            "time_s;accel_x_g;accel_y_g;accel_z_g",
+            "1:7",
+            &["another character", "commas"],
+            "commas",
+        ),
+        (
+            "time_s\taccel_x_g\taccel_y_g\taccel_z_g",
+            "1:7",
+            &["another character", "commas"],
+            "commas",
+        ),
+        (
+            "0,0,0,1",
+            "1:1",
+            &["a row of numbers", "header `time_s,"],
+            "header",
+        ),
+    ];
+    for (header, place, words, advice) in cases {
+        let error = refused(&format!("{header}\n0,0,0,1\n"));
+        assert_says(&error, InputErrorKind::Header, place, words);
+        assert!(error.advice.contains(advice), "{}", error.advice);
+    }
+}
+
+#[test]
+fn a_field_that_is_no_number() {
+    let cases = [
+        ("0,0,0,one", "2:7", "`one`", "a finite number or `nan`"),
+        ("0, zero ,0,1", "2:4", "`zero`", "a finite number or `nan`"),
+        ("0,,0,1", "2:3", "nothing", "a finite number or `nan`"),
+        ("0,inf,0,1", "2:3", "`inf`", "a finite number or `nan`"),
+        ("nan,0,0,1", "2:1", "`nan`", "a finite number"),
+        ("-inf,0,0,1", "2:1", "`-inf`", "a finite number"),
+        ("0,1e999,0,1", "2:3", "`1e999`", "a finite number or `nan`"),
+    ];
+    for (row, place, found, expected) in cases {
+        let error = refused(&rows(&[row]));
+        assert_says(
+            &error,
+            InputErrorKind::NotANumber,
+            place,
+            &[found, expected],
+        );
+    }
+    let text = format!("{HEADER},temperature_c\n0,0,0,1,nan\n");
+    let error = refused(&text);
+    assert_says(
+        &error,
+        InputErrorKind::NotANumber,
+        "2:9",
+        &["`nan`", "a finite number"],
+    );
+}
+
+#[test]
+fn a_row_with_too_many_or_too_few_fields() {
+    let error = refused(&rows(&["0,0,0,1", "60,0,0"]));
+    assert_says(
+        &error,
+        InputErrorKind::FieldCount,
+        "3:1",
+        &["3 fields", "4 fields"],
+    );
+    // Decimal commas.
+    let error = refused(&rows(&["0,0,0,0,0,1,0"]));
+    assert_says(
+        &error,
+        InputErrorKind::FieldCount,
+        "2:1",
+        &["7 fields", "4 fields"],
+    );
+    assert!(error.advice.contains("point"), "{}", error.advice);
+}
+
+#[test]
+fn time_that_repeats_or_goes_back() {
+    for time in ["60", "59.5", "-60"] {
+        let error = refused(&rows(&["0,0,0,1", "60,0,0,1", &format!("{time},0,0,1")]));
+        let words = [time, "after 60 s", "greater than 60 s"];
+        assert_says(&error, InputErrorKind::Time, "4:1", &words);
+    }
+}
+
+#[test]
+fn fewer_rows_than_states() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("r.csv");
+    std::fs::write(&path, rows(&["0,0,0,1", "60,0,0,1"])).unwrap();
+    assert_eq!(Record::read_at_least(&path, 2).unwrap().len(), 2);
+    let Error::Input(error) = Record::read_at_least(&path, 12).unwrap_err() else {
+        panic!()
+    };
+    assert_eq!(error.kind, InputErrorKind::TooFewRows);
+    assert_eq!((error.line, error.column), (3, 1));
+    let shown = error.to_string();
+    assert!(shown.contains("found 2 rows"), "{shown}");
+    assert!(shown.contains("expected at least 12 rows"), "{shown}");
+    let error = refused(&rows(&[]));
+    assert_says(
+        &error,
+        InputErrorKind::TooFewRows,
+        "1:1",
+        &["0 rows", "at least 1 row"],
+    );
+}
+
+#[test]
+fn a_norm_far_from_gravity_is_suspected_of_its_unit() {
+    let cases = [
+        ("9.81", "m/s^2"),
+        ("1000", "mg"),
+        ("981.2", "Gal"),
+        ("1e6", "micro-g"),
+        ("32.17", "ft/s^2"),
+        ("0.0002", "removed"),
+        ("0.7", "scale"),
+    ];
+    for (norm, suspicion) in cases {
+        let error = refused(&rows(&[
+            &format!("0,0,0,{norm}"),
+            &format!("60,{norm},0,0"),
+            "120,nan,0,0",
+        ]));
+        let words = ["median norm", "row 1", "near 1 g"];
+        assert_says(&error, InputErrorKind::Norm, "2:1", &words);
+        assert!(error.advice.contains(suspicion), "{norm}: {}", error.advice);
+    }
+}
+
+#[test]
+fn a_single_row_of_nonsense_is_named() {
+    let error = refused(&rows(&["0,0,0,1", "60,0,0,1", "120,0,2.5,1", "180,0,0,1"]));
+    let words = ["2.693 g (row 3", "from 0.5 to 1.5"];
+    assert_says(&error, InputErrorKind::Norm, "4:1", &words);
+    // An outlier is no nonsense.
+    let outlier = rows(&["0,0,0,1", "60,0,0,1", "120,0,0.2,1", "180,0,0,1"]);
+    assert_eq!(Record::parse(&outlier, "r.csv").unwrap().len(), 4);
+}
+
+#[test]
+fn the_marked_place_is_the_place_of_the_message() {
+    let text = rows(&["0,0,0,1", "60,0,null,1"]);
+    let error = refused(&text);
+    let label = error.labels().unwrap().next().unwrap();
+    assert_eq!(&text[label.offset()..label.offset() + label.len()], "null");
+    assert_eq!(error.file(), "r.csv");
+}
+
+#[test]
+fn a_file_that_is_not_there() {
+    let error = Record::read("no/such/record.csv".as_ref()).unwrap_err();
+    assert!(matches!(error, Error::Unreadable { .. }));
+    assert!(
+        error
+            .to_string()
+            .starts_with("no/such/record.csv: cannot be read")
+    );
+}

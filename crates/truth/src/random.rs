@@ -1,0 +1,90 @@
+//! Random numbers: one ChaCha stream for each seed and purpose.
+
+use libm::{cos, log, sin, sqrt};
+use rand_chacha::ChaCha12Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::attitude::Attitude;
+
+/// What random numbers are for. Drawing more or fewer for one purpose changes no other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// An initial attitude anywhere.
+    InitialAttitude,
+    /// The error of the declared initial angles.
+    InitialAngles,
+    /// The gyros' noise.
+    GyroNoise,
+    /// The accelerometers' noise.
+    AccelNoise,
+    /// Which components are missing.
+    Missing,
+    /// A scenario of a population, by its number.
+    Scenario(u64),
+}
+
+/// A stream of random numbers.
+pub(crate) struct Stream {
+    generator: ChaCha12Rng,
+    /// Normal deviates come in pairs.
+    second: Option<f64>,
+}
+
+impl Stream {
+    pub(crate) fn new(seed: u64, purpose: Purpose) -> Self {
+        /// Streams below are for single scenarios.
+        const FIRST_OF_POPULATION: u64 = 1 << 32;
+        let mut generator = ChaCha12Rng::seed_from_u64(seed);
+        generator.set_stream(match purpose {
+            Purpose::InitialAttitude => 0,
+            Purpose::InitialAngles => 1,
+            Purpose::GyroNoise => 2,
+            Purpose::AccelNoise => 3,
+            Purpose::Missing => 4,
+            Purpose::Scenario(number) => FIRST_OF_POPULATION.wrapping_add(number),
+        });
+        Self {
+            generator,
+            second: None,
+        }
+    }
+
+    /// Any whole number that fits a TOML integer.
+    pub(crate) fn whole(&mut self) -> u64 {
+        self.generator.next_u64() >> 1
+    }
+
+    /// Uniform between 0 and 1, neither included.
+    pub(crate) fn uniform(&mut self) -> f64 {
+        const SPACING: f64 = 1.0 / (1_u64 << 52) as f64;
+        ((self.generator.next_u64() >> 12) as f64 + 0.5) * SPACING
+    }
+
+    /// Uniform between two limits.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// Normal with mean 0 and standard deviation 1, by Box and Muller with `libm`, so that the
+    /// bits are the same on every machine.
+    pub(crate) fn normal(&mut self) -> f64 {
+        if let Some(second) = self.second.take() {
+            return second;
+        }
+        let radius = sqrt(-2.0 * log(self.uniform()));
+        let angle = core::f64::consts::TAU * self.uniform();
+        self.second = Some(radius * sin(angle));
+        radius * cos(angle)
+    }
+
+    /// Three of them.
+    pub(crate) fn three_normals(&mut self) -> [f64; 3] {
+        core::array::from_fn(|_| self.normal())
+    }
+
+    /// Uniform over the rotation group: the direction of four normals.
+    pub(crate) fn attitude(&mut self) -> Attitude {
+        let w = self.normal();
+        Attitude::from_quaternion(w, self.three_normals())
+    }
+}

@@ -1,0 +1,171 @@
+//! Scenario files.
+//!
+//! A scenario is a bench description with what a bench does not know: the coefficients of the
+//! gyros, the sampling and the seed. See `examples/data/three_days.scenario.toml`.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use gyrocal_record::{Bound, Document, Error, Gravity, InputErrorKind, Prior, Table};
+
+use crate::coefficients::Coefficients;
+use crate::scenario::{InitialAttitude, MOST_ROWS, Scenario};
+
+const ROOT_KEYS: [&str; 7] = [
+    "seed", "site", "platform", "gyros", "noise", "sampling", "prior",
+];
+const GYRO_KEYS: [&str; 3] = ["bias_deg_per_h", "g_deg_per_h_per_g", "gg_deg_per_h_per_g2"];
+const SAMPLING_KEYS: [&str; 5] = [
+    "duration_s",
+    "interval_s",
+    "start_s",
+    "gaps_s",
+    "missing_fraction",
+];
+
+impl Scenario {
+    /// Reads a scenario file.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Self::from_document(&Document::read(path)?)
+    }
+
+    /// Parses the text of a scenario file; errors call it `name`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] for whatever is wrong in it.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
+        Self::from_document(&Document::new(text, name)?)
+    }
+
+    /// The text of a scenario file that [`Scenario::parse`] reads as the same scenario.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        let mut text = format!(
+            "seed = {}\n\n[site]\nlatitude_deg = {:?}\n",
+            self.seed, self.latitude_deg
+        );
+        if let Some(gravity) = self.gravity {
+            text.push_str(&gravity.to_toml());
+        }
+        text.push_str("\n[platform]\ninitial_angles_deg = ");
+        let _ = match self.initial {
+            InitialAttitude::AnglesDeg(angles_deg) => writeln!(text, "{angles_deg:?}"),
+            InitialAttitude::Random => writeln!(text, "\"random\""),
+        };
+        let _ = writeln!(
+            text,
+            "initial_angles_sigma_deg = {:?}\n\n[gyros]",
+            self.initial_angles_sigma_deg
+        );
+        let coefficients = [
+            self.coefficients.bias_deg_per_h,
+            self.coefficients.g_deg_per_h_per_g,
+            self.coefficients.gg_deg_per_h_per_g2,
+        ];
+        for (key, values) in GYRO_KEYS.iter().zip(coefficients) {
+            let _ = writeln!(text, "{key} = {values:?}");
+        }
+        let _ = write!(
+            text,
+            "\n[noise]\naccel_g = {:?}\ngyro_deg_per_h = {:?}\n\
+             \n[sampling]\nduration_s = {:?}\ninterval_s = {:?}\nstart_s = {:?}\n\
+             gaps_s = {:?}\nmissing_fraction = {:?}\n",
+            self.accel_noise_g,
+            self.gyro_noise_deg_per_h,
+            self.duration_s,
+            self.interval_s,
+            self.start_s,
+            self.gaps_s,
+            self.missing_fraction,
+        );
+        if self.prior != Prior::default() {
+            text.push_str(&self.prior.to_toml());
+        }
+        text
+    }
+
+    fn from_document(document: &Document) -> Result<Self, Error> {
+        document.interpret(&ROOT_KEYS, |root| {
+            let site = root.table(
+                "site",
+                &["latitude_deg", Gravity::KEYS[0], Gravity::KEYS[1]],
+            )?;
+            let platform = root.table(
+                "platform",
+                &["initial_angles_deg", "initial_angles_sigma_deg"],
+            )?;
+            let noise = root.table("noise", &["accel_g", "gyro_deg_per_h"])?;
+            let scenario = Self {
+                seed: root.whole_number("seed")?,
+                latitude_deg: site.number("latitude_deg", Bound::Within(-90.0, 90.0))?,
+                gravity: Gravity::from_site(&site)?,
+                coefficients: read_coefficients(root)?,
+                initial: read_initial(&platform)?,
+                // A bench file, which goes with every record, asks for positive sigmas.
+                initial_angles_sigma_deg: platform
+                    .three_numbers("initial_angles_sigma_deg", Bound::Positive)?,
+                accel_noise_g: noise.number("accel_g", Bound::Positive)?,
+                gyro_noise_deg_per_h: noise.number("gyro_deg_per_h", Bound::Positive)?,
+                prior: Prior::from_root(root)?,
+                ..Self::default()
+            };
+            with_sampling(scenario, &root.table("sampling", &SAMPLING_KEYS)?)
+        })
+    }
+}
+
+fn read_coefficients(root: &Table<'_>) -> Result<Coefficients, Error> {
+    let gyros = root.table("gyros", &GYRO_KEYS)?;
+    Ok(Coefficients {
+        bias_deg_per_h: gyros.three_numbers(GYRO_KEYS[0], Bound::Finite)?,
+        g_deg_per_h_per_g: gyros.three_numbers(GYRO_KEYS[1], Bound::Finite)?,
+        gg_deg_per_h_per_g2: gyros.three_numbers(GYRO_KEYS[2], Bound::Finite)?,
+    })
+}
+
+fn read_initial(platform: &Table<'_>) -> Result<InitialAttitude, Error> {
+    const KEY: &str = "initial_angles_deg";
+    if platform.is_word(KEY, "random") {
+        return Ok(InitialAttitude::Random);
+    }
+    platform
+        .three_numbers(KEY, Bound::Within(-360.0, 360.0))
+        .map(InitialAttitude::AnglesDeg)
+}
+
+fn with_sampling(scenario: Scenario, sampling: &Table<'_>) -> Result<Scenario, Error> {
+    let out_of_range = |key: &str, expected: &str, advice: &str| {
+        Err(sampling.error_at(key, InputErrorKind::OutOfRange, expected, advice))
+    };
+    let duration_s = sampling.number("duration_s", Bound::Positive)?;
+    let interval_s = sampling.number("interval_s", Bound::Positive)?;
+    if duration_s / interval_s > MOST_ROWS {
+        let expected = format!("at most {MOST_ROWS:?} intervals");
+        return out_of_range("duration_s", &expected, "is everything in seconds?");
+    }
+    let gaps_s = sampling.optional_intervals("gaps_s", Bound::NotNegative)?;
+    if gaps_s.iter().any(|gap| gap[0] <= 0.0) {
+        return out_of_range(
+            "gaps_s",
+            "gaps that begin after 0 s",
+            "the first row is needed: the initial attitude belongs to it",
+        );
+    }
+    Ok(Scenario {
+        duration_s,
+        interval_s,
+        gaps_s,
+        start_s: sampling
+            .optional_number("start_s", Bound::Finite)?
+            .unwrap_or(0.0),
+        missing_fraction: sampling
+            .optional_number("missing_fraction", Bound::Within(0.0, 1.0))?
+            .unwrap_or(0.0),
+        ..scenario
+    })
+}

@@ -1,0 +1,39 @@
+//! Where a hidden effect can enter.
+
+/// What a hidden effect may depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Moment {
+    /// True time since the first row.
+    pub time_s: f64,
+    /// True specific force in platform axes \[g\].
+    pub accel_g: [f64; 3],
+}
+
+/// The point of a term that works on the drift or on the output at a moment.
+pub(crate) type AtMoment = dyn Fn(&Moment) -> [f64; 3] + Send + Sync;
+
+/// One hidden effect: something that the platform does and the nominal model does not know.
+#[non_exhaustive]
+pub enum Term {
+    /// Drift to be added to that of the three gyros \[deg/h\].
+    Drift(Box<AtMoment>),
+    /// Error to be added to the three accelerometers' outputs before noise \[g\].
+    Output(Box<AtMoment>),
+    /// What becomes of a noisy sample \[g\]; the first argument is its row on the regular grid.
+    Noise(Box<dyn Fn(usize, [f64; 3]) -> [f64; 3] + Send + Sync>),
+    /// True time since the first row when the record's clock shows some time since it \[s\];
+    /// must rise and start at zero.
+    Time(Box<dyn Fn(f64) -> f64 + Send + Sync>),
+}
+
+impl core::fmt::Debug for Term {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        formatter.write_str(match self {
+            Self::Drift(_) => "Term::Drift",
+            Self::Output(_) => "Term::Output",
+            Self::Noise(_) => "Term::Noise",
+            Self::Time(_) => "Term::Time",
+        })
+    }
+}

@@ -1,0 +1,173 @@
+use gyrocal_scalar::{Model, RatesJacobian, Real, Recentre};
+
+use crate::generated::platform::{PlatformInputs, reanchor};
+use crate::rotation::{cross, dot, rotate, turned_by};
+use crate::site::Site;
+
+/// A chart fixed to the Earth: Earth rate and specific force along its axes, and how it lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chart<T> {
+    inputs: PlatformInputs<T>,
+    /// Unit vectors along the chart axes.
+    north: [T; 3],
+    up: [T; 3],
+    site: Site<T>,
+    /// Horizontal (north) and vertical component of Earth rate, rad/s.
+    earth_rate: [T; 2],
+    turns: u32,
+}
+
+impl<T: Real> Chart<T> {
+    /// The chart East-North-Up at a site.
+    #[must_use]
+    pub fn east_north_up(site: Site<T>) -> Self {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let (sine, cosine) = site.latitude_rad.sin_cos();
+        let rate = site.earth_rate_rad_per_s;
+        let mut chart = Self {
+            inputs: PlatformInputs { omega_0: [zero; 3], f_0: [zero; 3] },
+            north: [zero, one, zero],
+            up: [zero, zero, one],
+            site,
+            earth_rate: [rate * cosine, rate * sine],
+            turns: 0,
+        };
+        chart.refresh();
+        chart
+    }
+
+    /// What the generated model takes: Earth rate in rad/s, specific force in g.
+    #[must_use]
+    pub fn inputs(&self) -> &PlatformInputs<T> {
+        &self.inputs
+    }
+
+    /// Matrix that takes components along East, North, Up to components along the chart.
+    #[must_use]
+    pub fn chart_c_enu(&self) -> [[T; 3]; 3] {
+        let east = cross(&self.north, &self.up);
+        core::array::from_fn(|i| [east[i], self.north[i], self.up[i]])
+    }
+
+    /// Turns the chart: `matrix` takes old components to new ones.
+    #[inline(always)]
+    fn turn(&mut self, matrix: &[[T; 3]; 3]) {
+        self.north = rotate(matrix, &self.north);
+        self.up = rotate(matrix, &self.up);
+        self.turns = self.turns.wrapping_add(1);
+        // Rounding adds at most some units of the last place a turn; in f32 that would matter
+        // after a few thousand.
+        if self.turns & 63 == 0 {
+            self.orthonormalise();
+        }
+        self.refresh();
+    }
+
+    #[inline(always)]
+    fn refresh(&mut self) {
+        let [horizontal, vertical] = self.earth_rate;
+        for i in 0..3 {
+            self.inputs.omega_0[i] = horizontal.mul_add(self.north[i], vertical * self.up[i]);
+            self.inputs.f_0[i] = self.site.gravity_g * self.up[i];
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn orthonormalise(&mut self) {
+        let one = T::from_f64(1.0);
+        let scale = one / dot(&self.up, &self.up).sqrt();
+        self.up = self.up.map(|component| component * scale);
+        let along = dot(&self.up, &self.north);
+        for i in 0..3 {
+            self.north[i] = self.north[i] - along * self.up[i];
+        }
+        let scale = one / dot(&self.north, &self.north).sqrt();
+        self.north = self.north.map(|component| component * scale);
+    }
+}
+
+/// A generated platform model whose chart moves with the platform.
+///
+/// The moving states are the platform angles in the current [`Chart`]. Moving the chart
+/// replaces the error of the angles by the small rotation W δθ between the platform and its
+/// estimate, in platform axes, which is what a correction is applied as:
+/// C ← exp(-[δφ]×) C. At the new origin W is the identity, so rates, output and covariance
+/// need no further change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Anchored<D>(pub D);
+
+impl<T, D> Model<T, 3, 3> for Anchored<D>
+where
+    T: Real,
+    D: Model<T, 3, 3, Inputs = PlatformInputs<T>>,
+{
+    type Inputs = Chart<T>;
+
+    #[inline(always)]
+    fn parameters(&self) -> usize {
+        self.0.parameters()
+    }
+
+    #[inline(always)]
+    fn output_parameters(&self) -> usize {
+        self.0.output_parameters()
+    }
+
+    #[inline(always)]
+    fn noise_parameters(&self) -> Option<[usize; 3]> {
+        self.0.noise_parameters()
+    }
+
+    #[inline(always)]
+    fn rates(&self, moving: &[T; 3], parameters: &[T], chart: &Chart<T>) -> [T; 3] {
+        self.0.rates(moving, parameters, &chart.inputs)
+    }
+
+    #[inline(always)]
+    fn rates_jacobian(
+        &self,
+        moving: &[T; 3],
+        parameters: &[T],
+        chart: &Chart<T>,
+        jacobian: &mut RatesJacobian<'_, T, 3>,
+    ) -> [T; 3] {
+        self.0.rates_jacobian(moving, parameters, &chart.inputs, jacobian)
+    }
+
+    #[inline(always)]
+    fn output(&self, moving: &[T; 3], parameters: &[T], chart: &Chart<T>) -> [T; 3] {
+        self.0.output(moving, parameters, &chart.inputs)
+    }
+
+    #[inline(always)]
+    fn output_jacobian(
+        &self,
+        moving: &[T; 3],
+        parameters: &[T],
+        chart: &Chart<T>,
+        d_moving: &mut [[T; 3]; 3],
+        d_parameters: &mut [T],
+    ) -> [T; 3] {
+        self.0.output_jacobian(moving, parameters, &chart.inputs, d_moving, d_parameters)
+    }
+}
+
+impl<T, D> Recentre<T, 3, 3> for Anchored<D>
+where
+    T: Real,
+    D: Model<T, 3, 3, Inputs = PlatformInputs<T>>,
+{
+    #[inline(always)]
+    fn recentre(&self, moving: &mut [T; 3], chart: &mut Chart<T>) -> Option<[[T; 3]; 3]> {
+        let at = reanchor(moving);
+        chart.turn(&at.platform_c_chart);
+        *moving = [T::from_f64(0.0); 3];
+        Some(at.rotation_d_theta_dense())
+    }
+
+    #[inline(always)]
+    fn correct(&self, _moving: &mut [T; 3], chart: &mut Chart<T>, correction: &[T; 3]) {
+        chart.turn(&turned_by(correction));
+    }
+}

@@ -1,0 +1,117 @@
+//! Small rotations and attitude matrices.
+
+use gyrocal_scalar::Scalar;
+
+/// `a` × `b`.
+#[inline(always)]
+pub(crate) fn cross<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// `a` · `b`.
+#[inline(always)]
+pub(crate) fn dot<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> T {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+}
+
+/// `matrix` times `vector`.
+#[inline(always)]
+pub(crate) fn rotate<T: Scalar>(matrix: &[[T; 3]; 3], vector: &[T; 3]) -> [T; 3] {
+    [dot(&matrix[0], vector), dot(&matrix[1], vector), dot(&matrix[2], vector)]
+}
+
+/// exp(-[φ]×), the matrix of new from old components when the axes turn by the vector φ.
+///
+/// Below a quarter of a radian sine and cosine are series in |φ|² to the last bit, so no root
+/// and no division by a small angle is taken.
+#[inline(always)]
+pub(crate) fn turned_by<T: Scalar + PartialOrd>(phi: &[T; 3]) -> [[T; 3]; 3] {
+    let one = T::from_f64(1.0);
+    let square = dot(phi, phi);
+    // sin|φ| / |φ| and (1 - cos|φ|) / |φ|²
+    let (s, c) = if square < T::from_f64(0.0625) {
+        let term = |inner: T, divisor: f64| one - square * T::from_f64(1.0 / divisor) * inner;
+        let s = term(term(term(term(term(one, 110.0), 72.0), 42.0), 20.0), 6.0);
+        let c = term(term(term(term(term(one, 132.0), 90.0), 56.0), 30.0), 12.0);
+        (s, T::from_f64(0.5) * c)
+    } else {
+        let angle = square.sqrt();
+        let (sine, cosine) = angle.sin_cos();
+        (sine / angle, (one - cosine) / square)
+    };
+    let [x, y, z] = *phi;
+    let (sx, sy, sz) = (s * x, s * y, s * z);
+    let (cx, cy) = (c * x, c * y);
+    let (xy, xz, yz) = (cx * y, cx * z, cy * z);
+    let (xx, yy, zz) = (cx * x, cy * y, c * z * z);
+    [
+        [one - yy - zz, xy + sz, xz - sy],
+        [xy - sz, one - xx - zz, yz + sx],
+        [xz + sy, yz - sx, one - xx - yy],
+    ]
+}
+
+/// Platform angles of equation (4) from the direction cosine matrix: rotations about x, then
+/// y, then z. At theta_y = ±90° only a combination of x and z is determined.
+#[inline]
+pub(crate) fn angles<T: Scalar>(platform_c_enu: &[[T; 3]; 3]) -> [T; 3] {
+    let one = T::from_f64(1.0);
+    let c = platform_c_enu;
+    [
+        (-c[2][1]).atan2(c[2][2]),
+        c[2][0].min(one).max(-one).asin(),
+        (-c[1][0]).atan2(c[0][0]),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generated::platform::reanchor;
+
+    fn largest_difference(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> f64 {
+        let pairs = a.iter().flatten().zip(b.iter().flatten());
+        pairs.fold(0.0, |worst: f64, (x, y)| worst.max((x - y).abs()))
+    }
+
+    #[test]
+    fn a_turn_about_one_axis_is_the_elementary_rotation_on_both_branches() {
+        for angle in [1e-9, 0.1, 0.249, 0.251, 2.0] {
+            for axis in 0..3 {
+                let mut phi = [0.0; 3];
+                phi[axis] = angle;
+                let expected = reanchor(&phi).platform_c_chart;
+                // Two formulas of a handful of operations each.
+                assert!(largest_difference(&turned_by(&phi), &expected) < 4e-16, "{axis} {angle}");
+            }
+        }
+    }
+
+    #[test]
+    fn turning_by_parts_about_one_axis_adds_up() {
+        let phi = [0.11, -0.07, 0.2];
+        let third = phi.map(|component| component / 3.0);
+        let part = turned_by(&third);
+        let whole = turned_by(&phi);
+        for axis in 0..3 {
+            let mut vector = [0.0; 3];
+            vector[axis] = 1.0;
+            let stepwise = rotate(&part, &rotate(&part, &rotate(&part, &vector)));
+            let direct = rotate(&whole, &vector);
+            for i in 0..3 {
+                assert!((stepwise[i] - direct[i]).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn angles_invert_the_generated_matrix() {
+        for theta in [[0.3, -1.2, 2.9], [-3.0, 0.01, -0.4], [1.0, 1.5, -2.0]] {
+            let recovered = angles(&reanchor(&theta).platform_c_chart);
+            for i in 0..3 {
+                // asin loses accuracy like 1 / cos(theta_y), 14 at 1.5 rad.
+                assert!((recovered[i] - theta[i]).abs() < 1e-14);
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The generated functions, and the proof that none is left out.
+
+use gyrocal::generated::{oracle, platform};
+use gyrocal_oracle::nonzeros::Nonzeros;
+use gyrocal_scalar::Scalar;
+
+use crate::callable::{Callable, callable, take};
+use crate::programs;
+
+/// Lists generated functions as `module::function(group, …) -> [output, …]`; one that has
+/// a single output returns it bare and needs no list.
+macro_rules! generated {
+    ($($module:ident::$function:ident($($group:ident),*) $(-> [$($output:ident),*])?;)*) => {
+        /// All generated functions, in the order of their programs.
+        pub(crate) fn generated() -> Vec<Callable> {
+            vec![$({
+                fn flat<T: Scalar>(inputs: &[T]) -> Vec<T> {
+                    let mut rest = inputs;
+                    let result = $module::$function($(generated!(@take rest $group)),*);
+                    assert!(rest.is_empty(), "scalars left over");
+                    let mut flat = Vec::new();
+                    generated!(@append result flat $([$($output),*])?);
+                    flat
+                }
+                callable!(
+                    stringify!($function),
+                    &[$(stringify!($group)),*],
+                    flat,
+                    lanes: generated!(@lanes $module flat),
+                    dual: generated!(@dual flat $([$($output),*])?)
+                )
+            }),*]
+        }
+    };
+    (@take $rest:ident $group:ident) => { take(&mut $rest) };
+    (@lanes platform $flat:ident) => { Some($flat) };
+    (@lanes oracle $flat:ident) => { None };
+    (@dual $flat:ident) => { Some($flat) };
+    (@dual $flat:ident [$($output:ident),*]) => { None };
+    (@append $result:ident $flat:ident) => { $result.append_to(&mut $flat) };
+    (@append $result:ident $flat:ident [$($output:ident),*]) => {
+        $($result.$output.append_to(&mut $flat);)*
+    };
+}
+
+generated! {
+    platform::reanchor(theta) -> [platform_c_chart, rotation_d_theta];
+    platform::drift_rate(theta, drift, f_0);
+    platform::drift_rate_jacobian(theta, drift, f_0)
+        -> [omega_d, omega_d_d_theta, omega_d_d_drift];
+    platform::dynamics(theta, drift, omega_0, f_0);
+    platform::dynamics_jacobian(theta, drift, omega_0, f_0)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_drift, theta_dot_d_drift_noise];
+    platform::specific_force(theta, f_0);
+    platform::specific_force_jacobian(theta, f_0) -> [specific_force, specific_force_d_theta];
+    platform::euler_step(theta, drift, omega_0, f_0, step);
+    platform::euler_step_jacobian(theta, drift, omega_0, f_0, step)
+        -> [theta_next, theta_next_d_theta, theta_next_d_drift, theta_next_d_drift_noise];
+    oracle::rk4_step_jacobian(theta, drift, drift_noise, omega_0, f_0, step)
+        -> [theta_next, theta_next_d_theta, theta_next_d_drift, theta_next_d_drift_noise];
+}
+
+/// The generated function called `name`.
+pub(crate) fn function(name: &str) -> Callable {
+    generated().into_iter().find(|function| function.name == name).expect(name)
+}
+
+#[test]
+fn every_function_of_every_program_is_compared() {
+    let listed: Vec<(String, Vec<String>)> = generated()
+        .iter()
+        .map(|f| (f.name.to_owned(), f.groups.iter().map(|&group| group.to_owned()).collect()))
+        .collect();
+    let programmed: Vec<(String, Vec<String>)> = programs()
+        .into_iter()
+        .flat_map(|program| program.functions)
+        .map(|f| (f.name, f.inputs.into_iter().map(|group| group.name).collect()))
+        .collect();
+    assert_eq!(listed, programmed, "add what is missing to `generated!` in this file");
+}

@@ -1,0 +1,59 @@
+//! Functions that generated ones are derivatives of, where no generated function is.
+
+use gyrocal::generated::platform;
+use gyrocal_scalar::Scalar;
+
+use crate::callable::{Callable, callable, take};
+
+/// All of them.
+pub(crate) fn hand_written() -> Vec<Callable> {
+    let step = &["theta", "drift", "drift_noise", "omega_0", "f_0", "step"];
+    vec![
+        callable!("rk4_step", step, rk4, lanes: None, dual: Some(rk4)),
+        callable!(
+            "rotation_from",
+            &["theta", "theta"],
+            rotation_from,
+            lanes: None,
+            dual: Some(rotation_from)
+        ),
+    ]
+}
+
+/// One classical Runge–Kutta step over the generated rates. Noise is drift at any specific
+/// force, so it is added to the biases.
+fn rk4<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let theta: &[T; 3] = take(&mut rest);
+    let mut drift: [T; 9] = *take(&mut rest);
+    let noise: &[T; 3] = take(&mut rest);
+    let (omega_0, f_0): (&[T; 3], &[T; 3]) = (take(&mut rest), take(&mut rest));
+    let [dt]: [T; 1] = *take(&mut rest);
+    for (gyro, &epsilon) in noise.iter().enumerate() {
+        drift[3 * gyro] = drift[3 * gyro] + epsilon;
+    }
+    let rates = |theta: &[T; 3]| platform::dynamics(theta, &drift, omega_0, f_0);
+    let moved = |rates: &[T; 3], share: f64| {
+        core::array::from_fn(|i| theta[i] + T::from_f64(share) * dt * rates[i])
+    };
+    let k1 = rates(theta);
+    let k2 = rates(&moved(&k1, 0.5));
+    let k3 = rates(&moved(&k2, 0.5));
+    let k4 = rates(&moved(&k3, 1.0));
+    let two = T::from_f64(2.0);
+    let mean = core::array::from_fn(|i| k1[i] + two * k2[i] + two * k3[i] + k4[i]);
+    moved(&mean, 1.0 / 6.0).to_vec()
+}
+
+/// The small rotation, in platform axes, from the second attitude to the first: the vector
+/// of the antisymmetric part of C(second) C(first)ᵀ, where C = exp(−[φ]×) C(second).
+fn rotation_from<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let to = platform::reanchor::<T>(take(&mut rest)).platform_c_chart;
+    let from = platform::reanchor::<T>(take(&mut rest)).platform_c_chart;
+    let product = |i: usize, j: usize| {
+        from[i][0] * to[j][0] + from[i][1] * to[j][1] + from[i][2] * to[j][2]
+    };
+    let half = T::from_f64(0.5);
+    [(2, 1), (0, 2), (1, 0)].map(|(i, j)| half * (product(i, j) - product(j, i))).to_vec()
+}

@@ -1,0 +1,124 @@
+//! Where generated code says that the elements of its arrays are, against the programs.
+
+use gyrocal::generated::{oracle, platform};
+use gyrocal_oracle::points::{Purpose, states};
+use gyrocal_oracle::program::Output;
+use gyrocal_scalar::Element;
+
+use crate::functions::function;
+use crate::programs;
+
+/// Positions and dense forms of a sparse output.
+struct Sparse {
+    function: &'static str,
+    output: &'static str,
+    positions: Vec<(usize, usize)>,
+    /// The dense form, row by row, at the state that the test uses.
+    dense: Vec<f64>,
+}
+
+fn sparse_outputs() -> Vec<Sparse> {
+    let state = &states(Purpose::ScalarTypes, 1)[0];
+    let (theta, drift) = (&state.theta, &state.drift);
+    let (omega_0, f_0, step) = (&state.omega_0, &state.f_0, &state.step);
+    macro_rules! sparse {
+        ($($function:ident $inputs:tt -> $type:ident:
+           $($output:ident, $positions:ident, $dense:ident);*.)*) => {
+            vec![$($(Sparse {
+                function: stringify!($function),
+                output: stringify!($output),
+                positions: platform::$type::<f64>::$positions.to_vec(),
+                dense: platform::$function $inputs.$dense().as_flattened().to_vec(),
+            }),*),*]
+        };
+    }
+    sparse! {
+        reanchor(theta) -> Reanchor: rotation_d_theta, ROTATION_D_THETA, rotation_d_theta_dense.
+        drift_rate_jacobian(theta, drift, f_0) -> DriftRateJacobian:
+            omega_d_d_theta, OMEGA_D_D_THETA, omega_d_d_theta_dense;
+            omega_d_d_drift, OMEGA_D_D_DRIFT, omega_d_d_drift_dense.
+        dynamics_jacobian(theta, drift, omega_0, f_0) -> DynamicsJacobian:
+            theta_dot_d_drift, THETA_DOT_D_DRIFT, theta_dot_d_drift_dense;
+            theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
+        specific_force_jacobian(theta, f_0) -> SpecificForceJacobian:
+            specific_force_d_theta, SPECIFIC_FORCE_D_THETA, specific_force_d_theta_dense.
+        euler_step_jacobian(theta, drift, omega_0, f_0, step) -> EulerStepJacobian:
+            theta_next_d_drift, THETA_NEXT_D_DRIFT, theta_next_d_drift_dense;
+            theta_next_d_drift_noise, THETA_NEXT_D_DRIFT_NOISE, theta_next_d_drift_noise_dense.
+    }
+}
+
+#[test]
+fn sparse_outputs_stand_where_the_program_has_them() {
+    let state = &states(Purpose::ScalarTypes, 1)[0];
+    let programs = programs();
+    let listed = sparse_outputs();
+    let is_sparse = |output: &&Output| output.nonzeros.len() < output.rows * output.columns;
+    let functions = programs.iter().flat_map(|program| &program.functions);
+    let programmed = functions
+        .flat_map(|f| f.outputs.iter().filter(is_sparse).map(|o| (f.name.as_str(), &*o.name)));
+    let names: Vec<(&str, &str)> = listed.iter().map(|s| (s.function, s.output)).collect();
+    assert_eq!(names, programmed.collect::<Vec<_>>(), "add what is missing to `sparse!`");
+    for sparse in listed {
+        let program = programs.iter().find_map(|p| p.function(sparse.function).ok()).unwrap();
+        let index = program.outputs.iter().position(|o| o.name == sparse.output).unwrap();
+        let name = (sparse.function, sparse.output);
+        assert_eq!(sparse.positions, program.outputs[index].nonzeros, "{name:?}");
+        let function = function(sparse.function);
+        let flat = (function.double)(&function.inputs(state));
+        assert_eq!(sparse.dense, program.dense_outputs(&flat, 0.0)[index], "{name:?}");
+    }
+}
+
+#[test]
+fn groups_have_the_elements_of_the_program() {
+    let generated: [(&str, &[Element]); 11] = [
+        ("theta", &platform::THETA),
+        ("drift", &platform::DRIFT),
+        ("omega_0", &platform::OMEGA_0),
+        ("f_0", &platform::F_0),
+        ("step", &platform::STEP),
+        ("theta", &oracle::THETA),
+        ("drift", &oracle::DRIFT),
+        ("drift_noise", &oracle::DRIFT_NOISE),
+        ("omega_0", &oracle::OMEGA_0),
+        ("f_0", &oracle::F_0),
+        ("step", &oracle::STEP),
+    ];
+    let programs = programs();
+    let mut seen = Vec::new();
+    for group in programs.iter().flat_map(|p| &p.functions).flat_map(|f| &f.inputs) {
+        let mut same_name = generated.iter().filter(|(name, _)| *name == group.name).peekable();
+        assert!(same_name.peek().is_some(), "group `{}` is not generated", group.name);
+        for (name, elements) in same_name {
+            assert!(elements.iter().map(|element| element.name).eq(group.elements.iter()));
+            seen.push(*name);
+        }
+    }
+    assert!(generated.iter().all(|(name, _)| seen.contains(name)), "compared: {seen:?}");
+}
+
+#[test]
+fn fields_and_indices_name_the_same_places() {
+    use platform::{drift_index, f_0_index, omega_0_index, platform_index, theta_index};
+
+    let state = platform::PlatformState::from_array(core::array::from_fn(|place| place));
+    assert_eq!(state.to_array(), core::array::from_fn(|place| place));
+    assert_eq!(state.theta_z, platform_index::THETA_Z);
+    assert_eq!(state.gyro_x_bias, platform_index::GYRO_X_BIAS);
+    assert_eq!(state.gyro_y_g_yy, platform_index::GYRO_Y_G_YY);
+    assert_eq!(state.gyro_z_g_z, platform_index::GYRO_Z_G_Z);
+    // Parameters come after the moving states, in the order of their group.
+    let drift = platform::Drift::from_array(core::array::from_fn(|place| place));
+    assert_eq!(drift.to_array(), core::array::from_fn(|place| place));
+    assert_eq!(drift.gyro_z_g_z, drift_index::GYRO_Z_G_Z);
+    assert_eq!(drift.gyro_z_g_z + platform::Platform::MOVING, state.gyro_z_g_z);
+    assert_eq!(platform::DRIFT[drift_index::GYRO_Y_BIAS].name, "gyro_y_bias");
+    assert_eq!(platform::DRIFT[drift_index::GYRO_Y_BIAS].id, "gyro_y.bias");
+    let theta = platform::Theta::from_array([0, 1, 2]);
+    assert_eq!((theta.theta_y, theta.to_array()), (theta_index::THETA_Y, [0, 1, 2]));
+    let f_0 = platform::F0::from_array([0, 1, 2]);
+    assert_eq!((f_0.f_0_z, f_0.to_array()), (f_0_index::F_0_Z, [0, 1, 2]));
+    let omega_0 = platform::Omega0::from_array([0, 1, 2]);
+    assert_eq!((omega_0.omega_0_x, omega_0.to_array()), (omega_0_index::OMEGA_0_X, [0, 1, 2]));
+}
