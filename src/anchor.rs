@@ -136,6 +136,16 @@ where
     }
 
     #[inline(always)]
+    fn rates_jacobian_at_origin(
+        &self,
+        parameters: &[T],
+        chart: &Chart<T>,
+        jacobian: &mut RatesJacobian<'_, T, 3>,
+    ) -> [T; 3] {
+        self.0.rates_jacobian_at_origin(parameters, &chart.inputs, jacobian)
+    }
+
+    #[inline(always)]
     fn output(&self, moving: &[T; 3], parameters: &[T], chart: &Chart<T>) -> [T; 3] {
         self.0.output(moving, parameters, &chart.inputs)
     }
@@ -151,6 +161,17 @@ where
     ) -> [T; 3] {
         self.0.output_jacobian(moving, parameters, &chart.inputs, d_moving, d_parameters)
     }
+
+    #[inline(always)]
+    fn output_jacobian_at_origin(
+        &self,
+        parameters: &[T],
+        chart: &Chart<T>,
+        d_moving: &mut [[T; 3]; 3],
+        d_parameters: &mut [T],
+    ) -> [T; 3] {
+        self.0.output_jacobian_at_origin(parameters, &chart.inputs, d_moving, d_parameters)
+    }
 }
 
 impl<T, D> Recentre<T, 3, 3> for Anchored<D>
@@ -158,6 +179,11 @@ where
     T: Real,
     D: Model<T, 3, 3, Inputs = PlatformInputs<T>>,
 {
+    #[inline(always)]
+    fn has_chart(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn recentre(&self, moving: &mut [T; 3], chart: &mut Chart<T>) -> Option<[[T; 3]; 3]> {
         let at = reanchor(moving);

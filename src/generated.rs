@@ -14,6 +14,16 @@ pub mod platform {
     include!(concat!(env!("OUT_DIR"), "/platform.rs"));
 }
 
+/// Hash of what [`platform`] was derived from, as its header says: the symbolic sources, the
+/// pinned tools and the emitter.
+#[cfg(not(gyrocal_rederived))]
+pub const MODEL_HASH: &str = inputs_hash(include_str!("generated/platform.rs"));
+
+/// Hash of what [`platform`] was derived from, as its header says: the symbolic sources, the
+/// pinned tools and the emitter.
+#[cfg(gyrocal_rederived)]
+pub const MODEL_HASH: &str = inputs_hash(include_str!(concat!(env!("OUT_DIR"), "/platform.rs")));
+
 /// Functions that only tests run: the Runge-Kutta step written out, with its exact Jacobian.
 #[cfg(all(feature = "oracle", not(gyrocal_rederived)))]
 #[rustfmt::skip]
@@ -40,3 +50,22 @@ pub const ORACLE_PROGRAM: &str = include_str!("generated/oracle.json");
 /// The program of [`oracle`], as derived: for interpreters.
 #[cfg(all(feature = "oracle", gyrocal_rederived))]
 pub const ORACLE_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/oracle.json"));
+
+/// The hexadecimal digits on the line `Inputs` of a generated file's header; a file without it
+/// does not compile.
+const fn inputs_hash(source: &'static str) -> &'static str {
+    const MARK: &[u8] = b"\n// Inputs: ";
+    const DIGITS: usize = 64;
+    let bytes = source.as_bytes();
+    let mut start = 0;
+    let mut matched = 0;
+    while matched < MARK.len() {
+        if bytes[start + matched] == MARK[matched] {
+            matched += 1;
+        } else {
+            start += 1;
+            matched = 0;
+        }
+    }
+    source.split_at(start + MARK.len()).1.split_at(DIGITS).0
+}

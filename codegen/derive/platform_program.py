@@ -13,7 +13,8 @@ from specific_force import specific_force
 
 NO_NOISE = ca.SX.zeros(3)
 AWAY_FROM_GIMBAL_LOCK = (
-    "theta_y away from +-90 deg, where the chart is singular and values grow like 1/cos(theta_y)"
+    "Angles with theta_y away from +-90 deg, where the chart is singular and values grow like "
+    "1/cos(theta_y); all other inputs finite"
 )
 
 
@@ -26,6 +27,23 @@ def _without_noise(output: Output) -> Output:
         output.doc,
         output.row_names,
         output.column_names,
+    )
+
+
+def _at_origin(name: str, doc: str, function: Function) -> Function:
+    """The same outputs with all platform angles zero: where each step of a filter starts whose
+    chart moves with the platform."""
+
+    def at_zero(output: Output) -> Output:
+        expression = ca.substitute(output.expression, theta.sx, ca.SX.zeros(3))
+        if output.column_names:
+            expression = ca.sparsify(expression)
+        return Output(output.name, expression, output.unit, output.doc,
+                      output.row_names, output.column_names)
+
+    return Function(
+        name, doc, function.source, [group for group in function.inputs if group is not theta],
+        [at_zero(output) for output in function.outputs],
     )
 
 
@@ -91,14 +109,14 @@ def program() -> Program:
             "all finite inputs",
         ),
         *_with_jacobian(
-            "dynamics", "f1-f3: rates of the platform angles under Earth rate and gyro drift.",
+            "dynamics", "Rates of the platform angles under Earth rate and gyro drift: f1-f3.",
             "equations (7) and (9)", [theta, drift, omega_0, f_0], rates,
             [(theta, "1/s"), (drift, "rad/s per unit of the coefficient"),
              (drift_noise, "rad/s per deg/h")],
             AWAY_FROM_GIMBAL_LOCK,
         ),
         *_with_jacobian(
-            "specific_force", "h1-h3: what ideal accelerometers read.",
+            "specific_force", "What ideal accelerometers read: h1-h3.",
             "equations (8) and (12)", [theta, f_0], force, [(theta, "g/rad")],
             "all finite inputs",
         ),
@@ -108,6 +126,19 @@ def program() -> Program:
             [(theta, "1"), (drift, "rad per unit of the coefficient"),
              (drift_noise, "rad per deg/h")],
             AWAY_FROM_GIMBAL_LOCK,
+        ),
+    ]
+    by_name = {function.name: function for function in functions}
+    functions += [
+        _at_origin(
+            "dynamics_at_origin_jacobian",
+            "Rates of the platform angles, with their exact Jacobians, at zero angles.",
+            by_name["dynamics_jacobian"],
+        ),
+        _at_origin(
+            "specific_force_at_origin_jacobian",
+            "What ideal accelerometers read, with its exact Jacobian, at zero angles.",
+            by_name["specific_force_jacobian"],
         ),
     ]
     return Program(
@@ -121,7 +152,15 @@ def program() -> Program:
             "parameters": layout.drift.name,
             "noise": layout.drift_noise.name,
             "inputs": [layout.omega_0.name, layout.f_0.name],
-            "rates": {"value": "dynamics", "jacobian": "dynamics_jacobian"},
-            "output": {"value": "specific_force", "jacobian": "specific_force_jacobian"},
+            "rates": {
+                "value": "dynamics",
+                "jacobian": "dynamics_jacobian",
+                "jacobian_at_origin": "dynamics_at_origin_jacobian",
+            },
+            "output": {
+                "value": "specific_force",
+                "jacobian": "specific_force_jacobian",
+                "jacobian_at_origin": "specific_force_at_origin_jacobian",
+            },
         },
     )

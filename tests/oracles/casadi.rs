@@ -23,13 +23,19 @@ fn generated_functions_agree_with_casadi_at_its_points() {
             .map(|output| Comparison::new(function.name, output, EXACT))
             .collect();
         for (point, (groups, row)) in reference.inputs.iter().zip(rows).enumerate() {
-            let inputs: Vec<f64> =
-                function.groups.iter().flat_map(|&group| groups[group].clone()).collect();
+            let inputs: Vec<f64> = function
+                .groups
+                .iter()
+                .flat_map(|&group| groups[group].clone())
+                .collect();
             let value = program.dense_outputs(&(function.double)(&inputs), 0.0);
             let expected = program.dense_outputs(row, 0.0);
             // Each side has its own rounding.
-            let rounding: Vec<f64> =
-                function.rounding(&inputs).iter().map(|bound| 2.0 * bound).collect();
+            let rounding: Vec<f64> = function
+                .rounding(&inputs)
+                .iter()
+                .map(|bound| 2.0 * bound)
+                .collect();
             let rounding = program.dense_outputs(&rounding, 0.0);
             for (output, comparison) in comparisons.iter_mut().enumerate() {
                 comparison.add(point, &value[output], &expected[output], &rounding[output]);

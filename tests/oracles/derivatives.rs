@@ -30,7 +30,8 @@ pub(crate) enum By {
 }
 
 /// function, output, what it is the derivative of, with respect to what.
-const DERIVATIVES: [(&str, &str, &str, By); 14] = [
+#[rustfmt::skip] // a table
+const DERIVATIVES: [(&str, &str, &str, By); 18] = [
     // C f_0 is linear in f_0, and the rate matrix turns angle rates into a rotation rate.
     ("reanchor", "platform_c_chart", "specific_force", By::Group("f_0")),
     ("reanchor", "rotation_d_theta", "rotation_from", By::Group("theta")),
@@ -39,7 +40,11 @@ const DERIVATIVES: [(&str, &str, &str, By); 14] = [
     ("dynamics_jacobian", "theta_dot_d_theta", "dynamics", By::Group("theta")),
     ("dynamics_jacobian", "theta_dot_d_drift", "dynamics", By::Group("drift")),
     ("dynamics_jacobian", "theta_dot_d_drift_noise", "dynamics", By::Bias),
+    ("dynamics_at_origin_jacobian", "theta_dot_d_theta", "dynamics_from_origin", By::Group("origin")),
+    ("dynamics_at_origin_jacobian", "theta_dot_d_drift", "dynamics_from_origin", By::Group("drift")),
+    ("dynamics_at_origin_jacobian", "theta_dot_d_drift_noise", "dynamics_from_origin", By::Bias),
     ("specific_force_jacobian", "specific_force_d_theta", "specific_force", By::Group("theta")),
+    ("specific_force_at_origin_jacobian", "specific_force_d_theta", "specific_force_from_origin", By::Group("origin")),
     ("euler_step_jacobian", "theta_next_d_theta", "euler_step", By::Group("theta")),
     ("euler_step_jacobian", "theta_next_d_drift", "euler_step", By::Group("drift")),
     ("euler_step_jacobian", "theta_next_d_drift_noise", "euler_step", By::Bias),
@@ -49,10 +54,13 @@ const DERIVATIVES: [(&str, &str, &str, By); 14] = [
 ];
 
 /// function, output, and the function whose value it repeats.
-pub(crate) const VALUES: [(&str, &str, &str); 5] = [
+#[rustfmt::skip] // a table
+pub(crate) const VALUES: [(&str, &str, &str); 7] = [
     ("drift_rate_jacobian", "omega_d", "drift_rate"),
     ("dynamics_jacobian", "theta_dot", "dynamics"),
+    ("dynamics_at_origin_jacobian", "theta_dot", "dynamics_from_origin"),
     ("specific_force_jacobian", "specific_force", "specific_force"),
+    ("specific_force_at_origin_jacobian", "specific_force", "specific_force_from_origin"),
     ("euler_step_jacobian", "theta_next", "euler_step"),
     ("rk4_step_jacobian", "theta_next", "rk4_step"),
 ];
@@ -61,8 +69,11 @@ pub(crate) const VALUES: [(&str, &str, &str); 5] = [
 pub(crate) fn derivatives() -> Vec<Derivative> {
     DERIVATIVES
         .iter()
-        .map(|&(name, output, of, by)| {
-            Derivative { function: function(name), output, of: value_function(of), by }
+        .map(|&(name, output, of, by)| Derivative {
+            function: function(name),
+            output,
+            of: value_function(of),
+            by,
         })
         .collect()
 }
@@ -78,7 +89,12 @@ impl Derivative {
     pub(crate) fn places(&self, state: &State) -> Vec<usize> {
         match self.by {
             By::Group(group) => self.of.places(group, state),
-            By::Bias => self.of.places("drift", state).into_iter().step_by(3).collect(),
+            By::Bias => self
+                .of
+                .places("drift", state)
+                .into_iter()
+                .step_by(3)
+                .collect(),
         }
     }
 }
@@ -87,18 +103,31 @@ impl Derivative {
 fn every_jacobian_of_every_program_is_compared() {
     let of_programs = programs().into_iter().flat_map(|program| program.functions);
     let outputs: Vec<(String, String)> = of_programs
-        .flat_map(|f| f.outputs.into_iter().map(move |output| (f.name.clone(), output)))
+        .flat_map(|f| {
+            f.outputs
+                .into_iter()
+                .map(move |output| (f.name.clone(), output))
+        })
         // A function that returns nothing but a vector is a value; it has oracles of its own.
         .filter(|(name, output)| output.columns > 1 || name.ends_with("_jacobian"))
         .map(|(name, output)| (name, output.name))
         .collect();
-    let listed = DERIVATIVES.iter().map(|&(function, output, ..)| (function, output));
+    let listed = DERIVATIVES
+        .iter()
+        .map(|&(function, output, ..)| (function, output));
     let mut listed: Vec<(String, String)> = listed
-        .chain(VALUES.iter().map(|&(function, output, _)| (function, output)))
+        .chain(
+            VALUES
+                .iter()
+                .map(|&(function, output, _)| (function, output)),
+        )
         .map(|(function, output)| (function.to_owned(), output.to_owned()))
         .collect();
     listed.sort();
     let mut outputs = outputs;
     outputs.sort();
-    assert_eq!(listed, outputs, "add what is missing to the tables of this file");
+    assert_eq!(
+        listed, outputs,
+        "add what is missing to the tables of this file"
+    );
 }

@@ -15,17 +15,31 @@ fn generated_jacobians_agree_with_dual_numbers() {
     let programs = programs();
     let comparisons = derivatives().into_iter().map(|derivative| {
         let name = derivative.function.name;
-        let program = programs.iter().find_map(|program| program.function(name).ok()).unwrap();
-        let index = program.outputs.iter().position(|o| o.name == derivative.output).unwrap();
+        let program = programs
+            .iter()
+            .find_map(|program| program.function(name).ok())
+            .unwrap();
+        let index = program
+            .outputs
+            .iter()
+            .position(|o| o.name == derivative.output)
+            .unwrap();
         let mut comparison = Comparison::new(name, &program.outputs[index], EXACT);
         for (point, state) in states.iter().enumerate() {
             let inputs = derivative.function.inputs(state);
             let value = (derivative.function.double)(&inputs);
             // The chain rule rounds at other places than CasADi's expressions, as often.
-            let rounding: Vec<f64> =
-                derivative.function.rounding(&inputs).iter().map(|bound| 2.0 * bound).collect();
+            let rounding: Vec<f64> = derivative
+                .function
+                .rounding(&inputs)
+                .iter()
+                .map(|bound| 2.0 * bound)
+                .collect();
             let expected = dual::jacobian::<VARIABLES>(
-                derivative.of.dual.expect("a function that can be differentiated"),
+                derivative
+                    .of
+                    .dual
+                    .expect("a function that can be differentiated"),
                 &derivative.of.inputs(state),
                 &derivative.places(state),
             );

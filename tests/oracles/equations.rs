@@ -27,9 +27,21 @@ fn apply(a: &Matrix, v: &Vector) -> Vector {
 
 /// Equation (4): Rz Ry Rx of passive elementary rotations.
 fn platform_c_chart(&[x, y, z]: &Vector) -> Matrix {
-    let rx = [[1.0, 0.0, 0.0], [0.0, x.cos(), x.sin()], [0.0, -x.sin(), x.cos()]];
-    let ry = [[y.cos(), 0.0, -y.sin()], [0.0, 1.0, 0.0], [y.sin(), 0.0, y.cos()]];
-    let rz = [[z.cos(), z.sin(), 0.0], [-z.sin(), z.cos(), 0.0], [0.0, 0.0, 1.0]];
+    let rx = [
+        [1.0, 0.0, 0.0],
+        [0.0, x.cos(), x.sin()],
+        [0.0, -x.sin(), x.cos()],
+    ];
+    let ry = [
+        [y.cos(), 0.0, -y.sin()],
+        [0.0, 1.0, 0.0],
+        [y.sin(), 0.0, y.cos()],
+    ];
+    let rz = [
+        [z.cos(), z.sin(), 0.0],
+        [-z.sin(), z.cos(), 0.0],
+        [0.0, 0.0, 1.0],
+    ];
     times(&rz, &times(&ry, &rx))
 }
 
@@ -47,7 +59,10 @@ fn generated_values_satisfy_the_equations_of_the_paper() {
     // Numbers of size 1 after some ten to twenty roundings of 1.1e-16 each on either side.
     let near = |value: f64, expected: f64, scale: f64, what: &str, point: usize| {
         let error = (value - expected).abs() / scale;
-        assert!(error <= 5e-15, "{what} at point {point}: {value:e}, expected {expected:e}");
+        assert!(
+            error <= 5e-15,
+            "{what} at point {point}: {value:e}, expected {expected:e}"
+        );
     };
     for (point, state) in states(Purpose::Equations, STATES).iter().enumerate() {
         let (c, w) = (platform_c_chart(&state.theta), rate_matrix(&state.theta));
@@ -63,16 +78,21 @@ fn generated_values_satisfy_the_equations_of_the_paper() {
         });
         let omega_d = platform::drift_rate(&state.theta, &state.drift, &state.f_0);
         // (5), in deg/h: the solution must satisfy it; no matrix is inverted here.
-        let theta_dot =
-            platform::dynamics(&state.theta, &state.drift, &state.omega_0, &state.f_0);
+        let theta_dot = platform::dynamics(&state.theta, &state.drift, &state.omega_0, &state.f_0);
         let earth_rate = apply(&c, &state.omega_0);
         let relative_rate = apply(&w, &theta_dot);
         // Terms of (5): the largest of Earth rate, drift, and what cancels in W θ̇.
-        let largest = theta_dot.iter().fold(1e-4, |largest: f64, rate| largest.max(rate.abs()));
+        let largest = theta_dot
+            .iter()
+            .fold(1e-4, |largest: f64, rate| largest.max(rate.abs()));
         // (14), (15)
         let [dt] = state.step;
         let next = platform::euler_step(
-            &state.theta, &state.drift, &state.omega_0, &state.f_0, &state.step,
+            &state.theta,
+            &state.drift,
+            &state.omega_0,
+            &state.f_0,
+            &state.step,
         );
         for i in 0..3 {
             for j in 0..3 {
@@ -84,7 +104,13 @@ fn generated_values_satisfy_the_equations_of_the_paper() {
             let rate = RAD_PER_S_IN_DEG_PER_H * (relative_rate[i] + earth_rate[i]);
             let scale = RAD_PER_S_IN_DEG_PER_H * largest;
             near(rate, drift[i], scale, "rates", point);
-            near(next[i], state.theta[i] + dt * theta_dot[i], 1.4, "Euler step", point);
+            near(
+                next[i],
+                state.theta[i] + dt * theta_dot[i],
+                1.4,
+                "Euler step",
+                point,
+            );
         }
     }
 }

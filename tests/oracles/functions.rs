@@ -56,25 +56,44 @@ generated! {
     platform::euler_step(theta, drift, omega_0, f_0, step);
     platform::euler_step_jacobian(theta, drift, omega_0, f_0, step)
         -> [theta_next, theta_next_d_theta, theta_next_d_drift, theta_next_d_drift_noise];
+    platform::dynamics_at_origin_jacobian(drift, omega_0, f_0)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_drift, theta_dot_d_drift_noise];
+    platform::specific_force_at_origin_jacobian(f_0) -> [specific_force, specific_force_d_theta];
     oracle::rk4_step_jacobian(theta, drift, drift_noise, omega_0, f_0, step)
         -> [theta_next, theta_next_d_theta, theta_next_d_drift, theta_next_d_drift_noise];
 }
 
 /// The generated function called `name`.
 pub(crate) fn function(name: &str) -> Callable {
-    generated().into_iter().find(|function| function.name == name).expect(name)
+    generated()
+        .into_iter()
+        .find(|function| function.name == name)
+        .expect(name)
 }
 
 #[test]
 fn every_function_of_every_program_is_compared() {
     let listed: Vec<(String, Vec<String>)> = generated()
         .iter()
-        .map(|f| (f.name.to_owned(), f.groups.iter().map(|&group| group.to_owned()).collect()))
+        .map(|f| {
+            (
+                f.name.to_owned(),
+                f.groups.iter().map(|&group| group.to_owned()).collect(),
+            )
+        })
         .collect();
     let programmed: Vec<(String, Vec<String>)> = programs()
         .into_iter()
         .flat_map(|program| program.functions)
-        .map(|f| (f.name, f.inputs.into_iter().map(|group| group.name).collect()))
+        .map(|f| {
+            (
+                f.name,
+                f.inputs.into_iter().map(|group| group.name).collect(),
+            )
+        })
         .collect();
-    assert_eq!(listed, programmed, "add what is missing to `generated!` in this file");
+    assert_eq!(
+        listed, programmed,
+        "add what is missing to `generated!` in this file"
+    );
 }

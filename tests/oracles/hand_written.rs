@@ -7,22 +7,28 @@ use crate::callable::{Callable, callable, take};
 
 /// All of them.
 pub(crate) fn hand_written() -> Vec<Callable> {
-    let step = &["theta", "drift", "drift_noise", "omega_0", "f_0", "step"];
-    vec![
-        callable!("rk4_step", step, rk4, lanes: None, dual: Some(rk4)),
-        callable!(
-            "rotation_from",
-            &["theta", "theta"],
-            rotation_from,
-            lanes: None,
-            dual: Some(rotation_from)
-        ),
-    ]
+    macro_rules! list {
+        ($($function:ident($($group:ident),*);)*) => {
+            vec![$(callable!(
+                stringify!($function),
+                &[$(stringify!($group)),*],
+                $function,
+                lanes: None,
+                dual: Some($function)
+            )),*]
+        };
+    }
+    list! {
+        rk4_step(theta, drift, drift_noise, omega_0, f_0, step);
+        rotation_from(theta, theta);
+        dynamics_from_origin(origin, drift, omega_0, f_0);
+        specific_force_from_origin(origin, f_0);
+    }
 }
 
 /// One classical Runge–Kutta step over the generated rates. Noise is drift at any specific
 /// force, so it is added to the biases.
-fn rk4<T: Scalar>(inputs: &[T]) -> Vec<T> {
+fn rk4_step<T: Scalar>(inputs: &[T]) -> Vec<T> {
     let mut rest = inputs;
     let theta: &[T; 3] = take(&mut rest);
     let mut drift: [T; 9] = *take(&mut rest);
@@ -51,9 +57,23 @@ fn rotation_from<T: Scalar>(inputs: &[T]) -> Vec<T> {
     let mut rest = inputs;
     let to = platform::reanchor::<T>(take(&mut rest)).platform_c_chart;
     let from = platform::reanchor::<T>(take(&mut rest)).platform_c_chart;
-    let product = |i: usize, j: usize| {
-        from[i][0] * to[j][0] + from[i][1] * to[j][1] + from[i][2] * to[j][2]
-    };
+    let product =
+        |i: usize, j: usize| from[i][0] * to[j][0] + from[i][1] * to[j][1] + from[i][2] * to[j][2];
     let half = T::from_f64(0.5);
-    [(2, 1), (0, 2), (1, 0)].map(|(i, j)| half * (product(i, j) - product(j, i))).to_vec()
+    [(2, 1), (0, 2), (1, 0)]
+        .map(|(i, j)| half * (product(i, j) - product(j, i)))
+        .to_vec()
+}
+
+/// The rates at angles near zero, to be differentiated there.
+fn dynamics_from_origin<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let (theta, drift) = (take(&mut rest), take(&mut rest));
+    platform::dynamics(theta, drift, take(&mut rest), take(&mut rest)).to_vec()
+}
+
+/// The specific force at angles near zero, to be differentiated there.
+fn specific_force_from_origin<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    platform::specific_force(take(&mut rest), take(&mut rest)).to_vec()
 }

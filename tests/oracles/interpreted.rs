@@ -11,7 +11,10 @@ use crate::{STATES, hold, programs};
 /// of sine and cosine between the two libraries: 1e-13 is some hundred roundings. A specific
 /// force that nearly vanishes, and its square, have fewer digits than that where it is below
 /// some 1e-3: a column in a thousand of the two in nine that hold them.
-pub(crate) const EXACT: Tolerance = Tolerance { relative: 1e-13, ill_conditioned_share: 2e-4 };
+pub(crate) const EXACT: Tolerance = Tolerance {
+    relative: 1e-13,
+    ill_conditioned_share: 2e-4,
+};
 
 #[test]
 fn generated_functions_agree_with_the_interpreter() {
@@ -31,8 +34,11 @@ fn generated_functions_agree_with_the_interpreter() {
                 let value = dense(&(function.double)(&inputs));
                 let expected = dense(&function_of_program.evaluate(&inputs).unwrap());
                 // Each side has its own rounding.
-                let rounding: Vec<f64> =
-                    function.rounding(&inputs).iter().map(|bound| 2.0 * bound).collect();
+                let rounding: Vec<f64> = function
+                    .rounding(&inputs)
+                    .iter()
+                    .map(|bound| 2.0 * bound)
+                    .collect();
                 let rounding = dense(&rounding);
                 for (output, comparison) in comparisons.iter_mut().enumerate() {
                     comparison.add(point, &value[output], &expected[output], &rounding[output]);
@@ -50,7 +56,10 @@ fn values_beside_jacobians_are_those_of_the_value_functions() {
     for (name, output, value_name) in VALUES {
         let function = function(name);
         let value_function = value_function(value_name);
-        let program = programs.iter().find_map(|program| program.function(name).ok()).unwrap();
+        let program = programs
+            .iter()
+            .find_map(|program| program.function(name).ok())
+            .unwrap();
         let (first, own) = (&program.outputs[0], program.outputs[0].nonzeros.len());
         assert_eq!(first.name, output, "the value comes first");
         let mut comparison = Comparison::new(name, first, EXACT);
@@ -58,11 +67,16 @@ fn values_beside_jacobians_are_those_of_the_value_functions() {
             let inputs = function.inputs(state);
             let value = (function.double)(&inputs);
             let expected = (value_function.double)(&value_function.inputs(state));
-            let rounding: Vec<f64> =
-                function.rounding(&inputs)[..own].iter().map(|bound| 2.0 * bound).collect();
+            let rounding: Vec<f64> = function.rounding(&inputs)[..own]
+                .iter()
+                .map(|bound| 2.0 * bound)
+                .collect();
             comparison.add(point, &value[..own], &expected, &rounding);
         }
         hold([comparison]);
     }
-    assert_eq!(generated().len(), programs.iter().map(|p| p.functions.len()).sum::<usize>());
+    assert_eq!(
+        generated().len(),
+        programs.iter().map(|p| p.functions.len()).sum::<usize>()
+    );
 }

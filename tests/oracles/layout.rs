@@ -45,6 +45,12 @@ fn sparse_outputs() -> Vec<Sparse> {
         euler_step_jacobian(theta, drift, omega_0, f_0, step) -> EulerStepJacobian:
             theta_next_d_drift, THETA_NEXT_D_DRIFT, theta_next_d_drift_dense;
             theta_next_d_drift_noise, THETA_NEXT_D_DRIFT_NOISE, theta_next_d_drift_noise_dense.
+        dynamics_at_origin_jacobian(drift, omega_0, f_0) -> DynamicsAtOriginJacobian:
+            theta_dot_d_theta, THETA_DOT_D_THETA, theta_dot_d_theta_dense;
+            theta_dot_d_drift, THETA_DOT_D_DRIFT, theta_dot_d_drift_dense;
+            theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
+        specific_force_at_origin_jacobian(f_0) -> SpecificForceAtOriginJacobian:
+            specific_force_d_theta, SPECIFIC_FORCE_D_THETA, specific_force_d_theta_dense.
     }
 }
 
@@ -55,18 +61,40 @@ fn sparse_outputs_stand_where_the_program_has_them() {
     let listed = sparse_outputs();
     let is_sparse = |output: &&Output| output.nonzeros.len() < output.rows * output.columns;
     let functions = programs.iter().flat_map(|program| &program.functions);
-    let programmed = functions
-        .flat_map(|f| f.outputs.iter().filter(is_sparse).map(|o| (f.name.as_str(), &*o.name)));
+    let programmed = functions.flat_map(|f| {
+        f.outputs
+            .iter()
+            .filter(is_sparse)
+            .map(|o| (f.name.as_str(), &*o.name))
+    });
     let names: Vec<(&str, &str)> = listed.iter().map(|s| (s.function, s.output)).collect();
-    assert_eq!(names, programmed.collect::<Vec<_>>(), "add what is missing to `sparse!`");
+    assert_eq!(
+        names,
+        programmed.collect::<Vec<_>>(),
+        "add what is missing to `sparse!`"
+    );
     for sparse in listed {
-        let program = programs.iter().find_map(|p| p.function(sparse.function).ok()).unwrap();
-        let index = program.outputs.iter().position(|o| o.name == sparse.output).unwrap();
+        let program = programs
+            .iter()
+            .find_map(|p| p.function(sparse.function).ok())
+            .unwrap();
+        let index = program
+            .outputs
+            .iter()
+            .position(|o| o.name == sparse.output)
+            .unwrap();
         let name = (sparse.function, sparse.output);
-        assert_eq!(sparse.positions, program.outputs[index].nonzeros, "{name:?}");
+        assert_eq!(
+            sparse.positions, program.outputs[index].nonzeros,
+            "{name:?}"
+        );
         let function = function(sparse.function);
         let flat = (function.double)(&function.inputs(state));
-        assert_eq!(sparse.dense, program.dense_outputs(&flat, 0.0)[index], "{name:?}");
+        assert_eq!(
+            sparse.dense,
+            program.dense_outputs(&flat, 0.0)[index],
+            "{name:?}"
+        );
     }
 }
 
@@ -87,15 +115,34 @@ fn groups_have_the_elements_of_the_program() {
     ];
     let programs = programs();
     let mut seen = Vec::new();
-    for group in programs.iter().flat_map(|p| &p.functions).flat_map(|f| &f.inputs) {
-        let mut same_name = generated.iter().filter(|(name, _)| *name == group.name).peekable();
-        assert!(same_name.peek().is_some(), "group `{}` is not generated", group.name);
+    for group in programs
+        .iter()
+        .flat_map(|p| &p.functions)
+        .flat_map(|f| &f.inputs)
+    {
+        let mut same_name = generated
+            .iter()
+            .filter(|(name, _)| *name == group.name)
+            .peekable();
+        assert!(
+            same_name.peek().is_some(),
+            "group `{}` is not generated",
+            group.name
+        );
         for (name, elements) in same_name {
-            assert!(elements.iter().map(|element| element.name).eq(group.elements.iter()));
+            assert!(
+                elements
+                    .iter()
+                    .map(|element| element.name)
+                    .eq(group.elements.iter())
+            );
             seen.push(*name);
         }
     }
-    assert!(generated.iter().all(|(name, _)| seen.contains(name)), "compared: {seen:?}");
+    assert!(
+        generated.iter().all(|(name, _)| seen.contains(name)),
+        "compared: {seen:?}"
+    );
 }
 
 #[test]
@@ -112,13 +159,25 @@ fn fields_and_indices_name_the_same_places() {
     let drift = platform::Drift::from_array(core::array::from_fn(|place| place));
     assert_eq!(drift.to_array(), core::array::from_fn(|place| place));
     assert_eq!(drift.gyro_z_g_z, drift_index::GYRO_Z_G_Z);
-    assert_eq!(drift.gyro_z_g_z + platform::Platform::MOVING, state.gyro_z_g_z);
-    assert_eq!(platform::DRIFT[drift_index::GYRO_Y_BIAS].name, "gyro_y_bias");
+    assert_eq!(
+        drift.gyro_z_g_z + platform::Platform::MOVING,
+        state.gyro_z_g_z
+    );
+    assert_eq!(
+        platform::DRIFT[drift_index::GYRO_Y_BIAS].name,
+        "gyro_y_bias"
+    );
     assert_eq!(platform::DRIFT[drift_index::GYRO_Y_BIAS].id, "gyro_y.bias");
     let theta = platform::Theta::from_array([0, 1, 2]);
-    assert_eq!((theta.theta_y, theta.to_array()), (theta_index::THETA_Y, [0, 1, 2]));
+    assert_eq!(
+        (theta.theta_y, theta.to_array()),
+        (theta_index::THETA_Y, [0, 1, 2])
+    );
     let f_0 = platform::F0::from_array([0, 1, 2]);
     assert_eq!((f_0.f_0_z, f_0.to_array()), (f_0_index::F_0_Z, [0, 1, 2]));
     let omega_0 = platform::Omega0::from_array([0, 1, 2]);
-    assert_eq!((omega_0.omega_0_x, omega_0.to_array()), (omega_0_index::OMEGA_0_X, [0, 1, 2]));
+    assert_eq!(
+        (omega_0.omega_0_x, omega_0.to_array()),
+        (omega_0_index::OMEGA_0_X, [0, 1, 2])
+    );
 }

@@ -7,7 +7,7 @@ use gyrocal_oracle::dual;
 use gyrocal_oracle::points::{Purpose, State, states};
 use gyrocal_oracle::program::{Binary, Function, Instruction, Unary};
 
-use crate::callable::VARIABLES;
+use crate::callable::{Callable, VARIABLES};
 use crate::derivatives::derivatives;
 use crate::differences::{NUMERIC, steps};
 use crate::functions::function;
@@ -21,17 +21,29 @@ const FEW: usize = 4;
 fn spoilt(function: &Function, instruction: Instruction) -> Instruction {
     match instruction {
         // Wrong in the sixth digit.
-        Instruction::Const { to, value } => Instruction::Const { to, value: value * (1.0 + 1e-6) },
+        Instruction::Const { to, value } => Instruction::Const {
+            to,
+            value: value * (1.0 + 1e-6),
+        },
         // The neighbour of the right input.
         Instruction::Input { to, scalar } => {
-            let scalar = if scalar == 0 { function.input_count() - 1 } else { scalar - 1 };
+            let scalar = if scalar == 0 {
+                function.input_count() - 1
+            } else {
+                scalar - 1
+            };
             Instruction::Input { to, scalar }
         }
-        // Of the opposite sign: an output cannot be negated, but what it reads can.
-        Instruction::Output { nonzero, from } => {
-            Instruction::Output { nonzero, from: (from + 1) % function.work_size }
-        }
-        Instruction::Unary { operation, to, operand } => {
+        // The neighbour of the right place.
+        Instruction::Output { nonzero, from } => Instruction::Output {
+            nonzero,
+            from: (from + 1) % function.work_size,
+        },
+        Instruction::Unary {
+            operation,
+            to,
+            operand,
+        } => {
             let operation = match operation {
                 Unary::Neg => Unary::Copy,
                 Unary::Sq => Unary::Twice,
@@ -40,16 +52,30 @@ fn spoilt(function: &Function, instruction: Instruction) -> Instruction {
                 Unary::Cos => Unary::Sin,
                 _ => Unary::Neg,
             };
-            Instruction::Unary { operation, to, operand }
+            Instruction::Unary {
+                operation,
+                to,
+                operand,
+            }
         }
-        Instruction::Binary { operation, to, left, right } => {
+        Instruction::Binary {
+            operation,
+            to,
+            left,
+            right,
+        } => {
             let operation = match operation {
                 Binary::Add => Binary::Sub,
                 Binary::Sub => Binary::Add,
                 Binary::Mul => Binary::Div,
                 _ => Binary::Mul,
             };
-            Instruction::Binary { operation, to, left, right }
+            Instruction::Binary {
+                operation,
+                to,
+                left,
+                right,
+            }
         }
     }
 }
@@ -64,7 +90,9 @@ fn fed_by(function: &Function, index: usize) -> Vec<bool> {
             Instruction::Const { to, .. } | Instruction::Input { to, .. } => work[to] = own,
             Instruction::Output { nonzero, from } => outputs[nonzero] = own || work[from],
             Instruction::Unary { to, operand, .. } => work[to] = own || work[operand],
-            Instruction::Binary { to, left, right, .. } => {
+            Instruction::Binary {
+                to, left, right, ..
+            } => {
                 work[to] = own || work[left] || work[right];
             }
         }
@@ -72,44 +100,51 @@ fn fed_by(function: &Function, index: usize) -> Vec<bool> {
     outputs
 }
 
-/// Compares one output of a spoilt function with what it should be, at each state.
+/// What an oracle says of one output at one state.
+struct Verdict {
+    inputs: Vec<f64>,
+    expected: Vec<f64>,
+    rounding: Vec<f64>,
+}
+
+/// Compares one output of a program, right or spoilt, with what an oracle says.
 fn compare(
-    spoilt: &Function,
+    program: &Function,
     output: usize,
-    tolerance: Tolerance,
-    expected: &[Vec<f64>],
-    inputs: &[Vec<f64>],
+    relative: f64,
+    verdicts: &[Verdict],
 ) -> Option<Mismatch> {
-    let mut comparison = Comparison::new(&spoilt.name, &spoilt.outputs[output], tolerance);
-    for (point, (inputs, expected)) in inputs.iter().zip(expected).enumerate() {
-        let value = spoilt.dense_outputs(&spoilt.evaluate(inputs).unwrap(), 0.0);
-        // Nothing is excused: the right program passes at these states without.
-        let rounding = vec![0.0; expected.len()];
-        comparison.add(point, &value[output], expected, &rounding);
+    // A share says nothing of a handful of states.
+    let tolerance = Tolerance {
+        relative,
+        ill_conditioned_share: 1.0,
+    };
+    let mut comparison = Comparison::new(&program.name, &program.outputs[output], tolerance);
+    for (point, verdict) in verdicts.iter().enumerate() {
+        let value = program.dense_outputs(&program.evaluate(&verdict.inputs).unwrap(), 0.0);
+        comparison.add(point, &value[output], &verdict.expected, &verdict.rounding);
     }
     comparison.finish().err()
 }
 
 /// Spoils each `stride`-th instruction of a function in turn and asserts that the comparison
-/// of `output` fails if and only if the instruction feeds it, naming an element it feeds.
-/// Returns how many were noticed.
-fn every_mutant_is_named(
+/// of `output`, if it fails, names an element that the instruction feeds. Returns for each
+/// of those instructions whether it was noticed, or `None` if it does not feed the output.
+fn spoil_each(
     program: &Function,
     output: usize,
     stride: usize,
-    tolerance: Tolerance,
-    expected: &[Vec<f64>],
-    states: &[State],
-) -> usize {
-    let generated = function(&program.name);
-    let inputs: Vec<Vec<f64>> = states.iter().map(|state| generated.inputs(state)).collect();
-    let right = compare(program, output, tolerance, expected, &inputs);
+    relative: f64,
+    verdicts: &[Verdict],
+) -> Vec<Option<bool>> {
+    let right = compare(program, output, relative, verdicts);
     assert_eq!(right, None, "the right program must pass");
-    let mut noticed = 0;
-    for index in (0..program.instructions.len()).step_by(stride) {
+    let spoil = |index: usize| {
         let mut mutant = program.clone();
         mutant.instructions[index] = spoilt(program, program.instructions[index]);
-        let fed = program.dense_outputs(&fed_by(program, index), false).swap_remove(output);
+        let fed = program
+            .dense_outputs(&fed_by(program, index), false)
+            .swap_remove(output);
         let shape = &program.outputs[output];
         let names: Vec<(String, String)> = (0..fed.len())
             .filter(|&place| fed[place])
@@ -117,17 +152,23 @@ fn every_mutant_is_named(
             .map(|(row, column)| (shape.row_name(row), shape.column_label(column)))
             .collect();
         let change = (program.instructions[index], mutant.instructions[index]);
-        match compare(&mutant, output, tolerance, expected, &inputs) {
-            None => assert!(names.is_empty(), "{}, {index}: {change:?} hides", program.name),
+        match compare(&mutant, output, relative, verdicts) {
+            None => (!names.is_empty()).then_some(false),
             Some(Mismatch::Element(worst)) => {
                 let named = (worst.row.clone(), worst.column.clone());
-                assert!(names.contains(&named), "{index}: {change:?} is named {worst}");
-                noticed += 1;
+                assert!(
+                    names.contains(&named),
+                    "{index}: {change:?} is named {worst}"
+                );
+                Some(true)
             }
             Some(other) => panic!("{index}: {other}"),
         }
-    }
-    noticed
+    };
+    (0..program.instructions.len())
+        .step_by(stride)
+        .map(spoil)
+        .collect()
 }
 
 #[test]
@@ -136,18 +177,38 @@ fn the_interpreter_notices_every_spoilt_instruction() {
     for program in programs().iter().flat_map(|program| &program.functions) {
         let generated = function(&program.name);
         // Of the thousands of instructions of the written-out step every 13th is enough.
-        let stride = if program.instructions.len() > 1000 { 13 } else { 1 };
-        let mut noticed = 0;
-        for output in 0..program.outputs.len() {
-            let expected: Vec<Vec<f64>> = states
-                .iter()
-                .map(|state| (generated.double)(&generated.inputs(state)))
-                .map(|flat| program.dense_outputs(&flat, 0.0).swap_remove(output))
-                .collect();
-            noticed += every_mutant_is_named(program, output, stride, EXACT, &expected, &states);
+        let stride = if program.instructions.len() > 1000 {
+            13
+        } else {
+            1
+        };
+        let verdict = |state: &State, output: usize| {
+            let inputs = generated.inputs(state);
+            let flat = (generated.double)(&inputs);
+            let expected = program.dense_outputs(&flat, 0.0).swap_remove(output);
+            Verdict {
+                inputs,
+                rounding: vec![0.0; expected.len()],
+                expected,
+            }
+        };
+        let noticed_by: Vec<Vec<Option<bool>>> = (0..program.outputs.len())
+            .map(|output| {
+                let verdicts: Vec<Verdict> =
+                    states.iter().map(|state| verdict(state, output)).collect();
+                spoil_each(program, output, stride, EXACT.relative, &verdicts)
+            })
+            .collect();
+        for mutant in 0..noticed_by[0].len() {
+            let noticed = noticed_by.iter().any(|output| output[mutant] == Some(true));
+            let index = mutant * stride;
+            let instruction = program.instructions[index];
+            assert!(
+                noticed,
+                "{}, {index}: spoilt {instruction:?} hides",
+                program.name
+            );
         }
-        // Every instruction feeds at least one output.
-        assert!(noticed >= program.instructions.len() / stride, "{}: {noticed}", program.name);
     }
 }
 
@@ -157,25 +218,63 @@ fn dual_numbers_and_differences_notice_every_spoilt_jacobian() {
     let programs = programs();
     for derivative in derivatives() {
         let name = derivative.function.name;
-        let program = programs.iter().find_map(|program| program.function(name).ok()).unwrap();
-        let stride = if program.instructions.len() > 1000 { 101 } else { 1 };
-        let index = program.outputs.iter().position(|o| o.name == derivative.output).unwrap();
+        let program = programs
+            .iter()
+            .find_map(|program| program.function(name).ok())
+            .unwrap();
+        let stride = if program.instructions.len() > 1000 {
+            101
+        } else {
+            1
+        };
+        let index = program
+            .outputs
+            .iter()
+            .position(|o| o.name == derivative.output)
+            .unwrap();
         let by_dual = |state: &State| {
             let function = derivative.of.dual.unwrap();
             let inputs = derivative.of.inputs(state);
-            dual::jacobian::<VARIABLES>(function, &inputs, &derivative.places(state))
+            let expected =
+                dual::jacobian::<VARIABLES>(function, &inputs, &derivative.places(state));
+            let rounding = vec![0.0; expected.len()];
+            Verdict {
+                inputs: derivative.function.inputs(state),
+                expected,
+                rounding,
+            }
         };
         let by_difference = |state: &State| {
             let (inputs, places) = (derivative.of.inputs(state), derivative.places(state));
             let steps = steps(&derivative, state);
-            difference::jacobian(derivative.of.double, &inputs, &places, &steps)
+            let expected = difference::jacobian(derivative.of.double, &inputs, &places, &steps);
+            let rounding = difference::rounding(&derivative.of.rounding(&inputs), &steps);
+            Verdict {
+                inputs: derivative.function.inputs(state),
+                expected,
+                rounding,
+            }
         };
-        let duals: Vec<Vec<f64>> = states.iter().map(by_dual).collect();
-        let differences: Vec<Vec<f64>> = states.iter().map(by_difference).collect();
-        for (tolerance, expected) in [(EXACT, duals), (NUMERIC, differences)] {
-            let noticed =
-                every_mutant_is_named(program, index, stride, tolerance, &expected, &states);
-            assert!(noticed > 0, "{name}");
+        let duals: Vec<Verdict> = states.iter().map(by_dual).collect();
+        let differences: Vec<Verdict> = states.iter().map(by_difference).collect();
+        for (relative, verdicts) in [(EXACT.relative, duals), (NUMERIC.relative, differences)] {
+            let noticed = spoil_each(program, index, stride, relative, &verdicts);
+            assert!(noticed.contains(&Some(true)), "{name}");
+            let spoilt = program.instructions.iter().step_by(stride);
+            for (instruction, _) in spoilt.zip(noticed).filter(|(_, n)| *n == Some(false)) {
+                assert!(
+                    reads_omega_x(&derivative.function, *instruction, &states[0]),
+                    "{name}, {}: spoilt {instruction:?} hides",
+                    derivative.output
+                );
+            }
         }
     }
+}
+
+/// Earth rate along chart x makes the rates (1, 0, 0) times itself at any attitude, as the
+/// first rotation is about that axis: a spoilt one is in no derivative by angles.
+fn reads_omega_x(function: &Callable, instruction: Instruction, state: &State) -> bool {
+    let omega_x = function.places("omega_0", state)[0];
+    matches!(instruction, Instruction::Input { scalar, .. } if scalar == omega_x)
 }

@@ -14,11 +14,27 @@ Schema version 1
                                  "row_names", "column_names",
                                  "nonzeros": [[row, column]]}],
                     "work_size", "instructions": [[op, ...]]}],
-     "model": null or {...}}
+     "model": null or
+        {"name", "doc", "moving", "parameters", "noise", "inputs": [group],
+         "rates":  {"value", "jacobian", "jacobian_at_origin"},
+         "output": {"value", "jacobian", "jacobian_at_origin"}}}
 
 A *group* is a named vector of scalar inputs (a state, a set of parameters, a
 physical vector). `nonzeros` are the structural nonzeros of an output in the order
 in which `output` instructions number them.
+
+A *model* says which groups and functions play which part. `name` is that of a Rust
+type. `moving` (states with rates), `parameters` (constant states, or null), `noise`
+(inputs of the rates that are zero on average, or null; no function takes them) and
+`inputs` (the rest) name groups, each in one part. Of `rates` and `output`
+    value               names a function of one output, a full column;
+    jacobian            one that gives the same value first, then VALUE_d_GROUP for
+                        moving, parameters and (rates only) noise; what is left out is
+                        structurally zero;
+    jacobian_at_origin  may be left out: one that gives the outputs of `jacobian` where
+                        all moving states are zero. It takes no moving states; its
+                        outputs have the same names, order and shapes, and nonzeros
+                        only where those of `jacobian` have them.
 
 Instructions, `w` being a work vector of `work_size` scalars:
     ["input", w, input, element]      ["output", output, nonzero, w]
@@ -152,9 +168,9 @@ class Function:
 class Program:
     """A set of functions that become one Rust module.
 
-    `model` is the section of that name, see the derivation of `platform`; where it names
-    groups, they may stand there themselves, which adds those that no function takes
-    (noise) to the program.
+    `model` is the section of that name in the schema; where it names groups, they may
+    stand there themselves, which adds those that no function takes (noise) to the
+    program.
     """
 
     name: str

@@ -189,6 +189,8 @@ pub struct ModelFunction {
     pub value: usize,
     /// Function with the value first, then Jacobians named `VALUE_d_GROUP`.
     pub jacobian: usize,
+    /// The same outputs where all moving states are zero, if there is a shorter form of them.
+    pub jacobian_at_origin: Option<usize>,
 }
 
 impl Program {

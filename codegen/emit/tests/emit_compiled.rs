@@ -229,41 +229,13 @@ const LIBRARY: &str = "//! Emitted modules.
 pub mod pendulum;
 /// Of the platform.
 pub mod platform;
+/// Of a model that stands still at its origin.
+pub mod square;
 ";
 
-const PRELUDE: &str = r#"
-use gyrocal_scalar::{Lanes, Model, RatesJacobian};
-
-fn print(values: &[f64]) {
-    let values: Vec<String> = values.iter().map(|value| format!("{value:e}")).collect();
-    println!("{}", values.join(" "));
-}
-
-/// Prints what a model gives with buffers of the right length, zeroed before.
-fn model<A: Model<f64, M, Y>, const M: usize, const Y: usize>(
-    model: &A, moving: &[f64; M], parameters: &[f64], inputs: &A::Inputs,
-) {
-    let mut d_parameters = vec![0.0; M * model.parameters()];
-    let mut jacobian = RatesJacobian {
-        moving: [[0.0; M]; M], noise: [[0.0; M]; M], parameters: &mut d_parameters,
-    };
-    let value = model.rates_jacobian(moving, parameters, inputs, &mut jacobian);
-    assert_eq!(value.len(), model.rates(moving, parameters, inputs).len());
-    let (d_moving, d_noise) = (jacobian.moving, jacobian.noise);
-    let mut y_d_moving = [[0.0; M]; Y];
-    let mut y_d_parameters = vec![0.0; Y * model.output_parameters()];
-    let y = model.output_jacobian(moving, parameters, inputs, &mut y_d_moving, &mut y_d_parameters);
-    assert_eq!(y, model.output(moving, parameters, inputs));
-    print(&[
-        &value[..], d_moving.as_flattened(), d_noise.as_flattened(), &d_parameters,
-        &y, y_d_moving.as_flattened(), &y_d_parameters,
-    ].concat());
-}
-
-fn panics(function: impl FnOnce() + std::panic::UnwindSafe) -> String {
-    let payload = std::panic::catch_unwind(function).expect_err("a panic");
-    payload.downcast::<String>().map(|text| *text).unwrap_or_default()
-}
+const PRELUDE: &str = r#"use gyrocal_scalar::{Lanes, Model};
+mod support;
+use support::{Buffers, model, panics, print};
 
 fn main() {
     std::panic::set_hook(Box::new(|_| {}));
@@ -286,6 +258,19 @@ fn main() {
         }),
         "expected 2 derivatives by parameters, found 1"
     );
+    assert_eq!(
+        panics(move || {
+            Pendulum.output_jacobian_at_origin(&[1.0; 2], &inputs, &mut [[0.0; 2]; 2], &mut [0.0]);
+        }),
+        "expected 2 derivatives by parameters, found 1"
+    );
+    // From here on a panic is a fault, to be shown.
+    drop(std::panic::take_hook());
+    let mut buffers = Buffers::<1, 1>::zeroed(&emitted::square::Square);
+    let full = buffers.call(&emitted::square::Square, Some(&[3.0]), &[], &());
+    assert_eq!(full.concat(), [9.0, 6.0, 0.0, 9.0, 6.0]);
+    let at_origin = buffers.call(&emitted::square::Square, None, &[], &());
+    assert_eq!(at_origin.concat(), [0.0; 5]);
 "#;
 
 #[test]
@@ -331,6 +316,13 @@ fn write_package(directory: &Path, cases: &[&Case]) {
         ),
     );
     write("src/lib.rs", LIBRARY);
+    let square = common::program("tests/data/square/square.json");
+    let module = emit_module(&square, &common::header()).unwrap();
+    write("src/square.rs", &module);
+    write(
+        "src/support.rs",
+        &common::read("tests/data/printer/support.rs"),
+    );
     let mut main = PRELUDE.to_owned();
     for case in cases {
         let module = emit_module(&case.program, &common::header()).unwrap();

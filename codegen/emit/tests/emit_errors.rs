@@ -299,8 +299,66 @@ fn more_noise_inputs_than_moving_states() {
 }
 
 #[test]
+fn a_form_at_the_origin_that_does_not_fit() {
+    let at_origin = |function: &str| {
+        let mut program = pendulum_value();
+        program["model"]["rates"]["jacobian_at_origin"] = function.into();
+        refused(&program.to_string())
+    };
+    assert_message(
+        &at_origin("rates"),
+        "test.json: model, rates, jacobian_at_origin: found the function `rates`, expected a \
+         function of the program; name one of the functions",
+    );
+    assert_message(
+        &at_origin("swing_rates_jacobian"),
+        "test.json: model, rates, jacobian_at_origin: found the function `swing_rates_jacobian` of \
+         the group `swing`, expected functions of parameters and inputs alone; put zeros in the \
+         place of the moving states, and take the group out of the function",
+    );
+    assert_message(
+        &at_origin("bob_place_at_origin"),
+        "found the function `bob_place_at_origin` with the outputs `bob`, `bob_d_swing`, \
+         `bob_d_rod`, expected those of `swing_rates_jacobian`: `swing_dot`, `swing_dot_d_swing`, \
+         `swing_dot_d_rod`, `swing_dot_d_push`; give both functions the same outputs in the same \
+         order",
+    );
+
+    let edited = |edit: &dyn Fn(&mut serde_json::Value)| {
+        let mut program = pendulum_value();
+        let function = &mut program["functions"][6];
+        assert_eq!(function["name"], "swing_rates_at_origin");
+        edit(function);
+        refused(&program.to_string())
+    };
+    assert_message(
+        &edited(&|function| {
+            function["inputs"][1]["group"] = "push".into();
+        }),
+        "model, rates, jacobian_at_origin: found the function `swing_rates_at_origin` of the group \
+         `push`, expected functions of parameters and inputs alone; add the group",
+    );
+    assert_message(
+        &edited(&|function| {
+            function["outputs"][2]["columns"] = 3.into();
+            function["outputs"][2]["column_names"] = serde_json::json!([]);
+        }),
+        "model, rates, jacobian_at_origin: found the output `swing_dot_d_rod` (2 rows, 3 columns, 0 \
+         nonzeros), expected 2 rows and 2 columns; keep the rows and columns of the full form",
+    );
+    assert_message(
+        &edited(&|function| {
+            function["outputs"][3]["nonzeros"][0] = serde_json::json!([0, 0]);
+        }),
+        "model, rates, jacobian_at_origin, output `swing_dot_d_push`: found a nonzero at row 0, \
+         column 0, expected nonzeros only where `swing_rates_jacobian` has them; sparsify",
+    );
+}
+
+#[test]
 fn a_missing_jacobian_of_a_dependence() {
     let mut program = pendulum_value();
+    program["model"]["rates"]["jacobian_at_origin"] = serde_json::Value::Null;
     let function = &mut program["functions"][1];
     assert_eq!(function["outputs"][2]["name"], "swing_dot_d_rod");
     function["outputs"].as_array_mut().unwrap().remove(2);

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{header, pendulum, read};
-use gyrocal_codegen::{Error, Options, emit_module, emit_module_with};
+use gyrocal_codegen::{Error, Options, Program, emit_module, emit_module_with};
 
 /// Set to write the snapshot instead of comparing it.
 const UPDATE: &str = "GYROCAL_UPDATE_SNAPSHOTS";
@@ -27,6 +27,21 @@ fn a_small_program_gives_the_committed_module() {
          `{UPDATE}=1 cargo test -p gyrocal-codegen --test emit_golden` and look at the change",
         path.display()
     );
+}
+
+/// The trait has a default for it.
+#[test]
+fn a_model_without_a_form_at_the_origin_has_no_method_for_it() {
+    let mut program: serde_json::Value =
+        serde_json::from_str(&read("tests/data/pendulum/pendulum.json")).unwrap();
+    for part in ["rates", "output"] {
+        let functions = program["model"][part].as_object_mut().unwrap();
+        assert!(functions.remove("jacobian_at_origin").is_some());
+    }
+    let program = Program::from_json(&program.to_string(), "test.json").unwrap();
+    let emitted = emit_module(&program, &header()).unwrap();
+    assert!(emitted.contains("fn rates_jacobian("));
+    assert!(!emitted.contains("jacobian_at_origin"));
 }
 
 /// Every map of the emitter that is hashed has its own random state, so an order that leaks

@@ -2,6 +2,7 @@
 
 use clap::{ArgAction, Parser, Subcommand};
 
+use crate::calibrate::CalibrateArguments;
 use crate::simulate::SimulateArguments;
 
 /// Gyro drift calibration of inertially stabilised platforms.
@@ -23,5 +24,6 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    Calibrate(CalibrateArguments),
     Simulate(SimulateArguments),
 }

@@ -3,9 +3,12 @@
 //! Exit codes: 0 when the answer was written, 1 when an input or the work failed, 2 when the
 //! command line is wrong.
 
+mod calibrate;
 mod command;
+mod latitude;
 mod outputs;
 mod progress;
+mod rounding;
 mod simulate;
 
 use std::io::{IsTerminal as _, Write as _};
@@ -21,6 +24,7 @@ fn main() -> ExitCode {
     start_logging(cli.verbose);
     show_errors_plainly();
     let outcome = match &cli.command {
+        Command::Calibrate(arguments) => calibrate::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
     };
     match outcome {

@@ -13,7 +13,7 @@ use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
 use crate::innovation::Innovation;
-use crate::lanes4::{load, mul_add, store};
+use crate::lanes4::{load, mul_add, multiply_add, store};
 
 /// Factors a covariance in place: on entry `factor` holds the upper triangle of a symmetric
 /// matrix by columns (n × n), on return U, and `pivots` D.
@@ -71,33 +71,32 @@ pub(crate) fn predict<T: Real, const M: usize>(
 ) -> Result<(), EstimationError> {
     let n = pivots.len();
     let p = n - M;
-    let zero = T::from_f64(0.0);
-    for j in M..n {
-        let column = &mut factor[j * n..(j + 1) * n];
-        let mut sums = [[zero; 4]; M];
-        let mut l = 0;
-        while l + 4 <= p && l + M <= j {
-            let u: [T; 4] = load(column, M + l);
-            for (i, sum) in sums.iter_mut().enumerate() {
-                let phi: [T; 4] = load(parameter_columns, i * p + l);
-                for lane in 0..4 {
-                    sum[lane] = phi[lane].mul_add(u[lane], sum[lane]);
-                }
+    let phi: [&[T]; M] = core::array::from_fn(|i| &parameter_columns[i * p..(i + 1) * p]);
+    let blocks: [&[[T; 4]]; M] = core::array::from_fn(|i| phi[i].as_chunks().0);
+    for (k, column) in factor[M * n..].chunks_exact_mut(n).enumerate() {
+        let (head, rest) = column.split_at_mut(M);
+        // Below its diagonal, at row k of the parameters, the column is zero.
+        let used = k / 4 + 1;
+        let (quads, tail) = rest.as_chunks::<4>();
+        let mut sums = [[T::from_f64(0.0); 4]; M];
+        for block in 0..used.min(quads.len()) {
+            for (sum, phi) in sums.iter_mut().zip(&blocks) {
+                *sum = multiply_add(phi[block], quads[block], *sum);
             }
-            l += 4;
         }
-        let mut rows = [zero; M];
+        let old: [T; M] = core::array::from_fn(|l| head[l]);
         for i in 0..M {
             let mut total = (sums[i][0] + sums[i][1]) + (sums[i][2] + sums[i][3]);
-            for rest in l..(j - M + 1).max(l) {
-                total = parameter_columns[i * p + rest].mul_add(column[M + rest], total);
+            for (phi, u) in transition[i].iter().zip(old) {
+                total = phi.mul_add(u, total);
             }
-            for (k, phi) in transition[i].iter().enumerate() {
-                total = phi.mul_add(column[k], total);
+            if used > quads.len() {
+                for (phi, u) in phi[i][4 * quads.len()..].iter().zip(&*tail) {
+                    total = phi.mul_add(*u, total);
+                }
             }
-            rows[i] = total;
+            head[i] = total;
         }
-        column[..M].copy_from_slice(&rows);
     }
     predict_corner(factor, pivots, transition, noise, variance)
 }
@@ -157,13 +156,11 @@ pub(crate) fn predict_corner<T: Real, const M: usize>(
 /// One measurement: Jacobian of the outputs, their noise and their residuals. An output
 /// that was not observed has a zero row, unit variance and zero residual.
 ///
-/// The columns of H of the parameters that enter the output are kept apart, as rows of
-/// `output_parameters` numbers, because their number is the model's.
+/// The columns of H of the q parameters that enter the output are kept apart, as `output`
+/// (Y × q, by rows), because their number is the model's.
 pub(crate) struct Observation<T, const M: usize, const Y: usize> {
     /// Moving columns of H.
     pub(crate) moving: [[T; M]; Y],
-    /// Number of parameters that enter the output.
-    pub(crate) output_parameters: usize,
     /// Noise variance of each output.
     pub(crate) variance: [T; Y],
     /// Measured minus predicted output.
@@ -183,7 +180,7 @@ pub(crate) fn innovation<T: Real, const M: usize, const Y: usize>(
     products: &mut [T],
 ) -> Result<Innovation<T, Y>, EstimationError> {
     let n = pivots.len();
-    let q = observation.output_parameters;
+    let q = output.len() / Y;
     let zero = T::from_f64(0.0);
     for k in 0..Y {
         for j in 0..n {
@@ -212,41 +209,58 @@ pub(crate) fn innovation<T: Real, const M: usize, const Y: usize>(
         variance[i] = (0..i).fold(covariance[i][i], |rest, l| rest - lower[i][l] * lower[i][l] * variance[l]);
         lower[i][i] = T::from_f64(1.0);
     }
-    Innovation::from_factors(observation.residual, observation.observed, lower, variance)
+    let reciprocal = variance.map(|variance| T::from_f64(1.0) / variance);
+    let Observation { residual, observed, .. } = *observation;
+    Innovation::from_factors(residual, observed, lower, variance, &reciprocal)
 }
 
 /// Bierman's update of the factors for all outputs in one sweep.
 ///
 /// `gain` (Y × n) receives the unnormalised gain of each output given the ones before it.
-/// The change of the state is the sum over outputs of gain times weight; `state_change` is
-/// called with the moving rows of the gain, the weights and all of the gain.
-/// `sweep` is workspace of 2 × n × Y numbers.
+/// Adds the correction to `parameters` and returns that of the moving states. `sweep` is
+/// workspace of 2 × n × Y numbers. Nothing but the factors' head and the workspace has changed
+/// when the innovation turns out not to be finite.
 #[inline(always)]
 pub(crate) fn update<T: Real, const M: usize, const Y: usize>(
     factor: &mut [T],
     pivots: &mut [T],
+    parameters: &mut [T],
     observation: &Observation<T, M, Y>,
     output: &[T],
     gain: &mut [T],
     sweep: &mut [T],
-    state_change: impl FnOnce(&[[T; M]; Y], &[T; Y], &[T]),
-) -> Result<Innovation<T, Y>, EstimationError> {
+) -> Result<(Innovation<T, Y>, [T; M]), EstimationError> {
     let n = pivots.len();
-    let q = observation.output_parameters;
-    let head = sweep_head(factor, pivots, observation, output, gain, sweep);
-    let (v, lambda) = sweep.split_at(n * Y);
+    let q = output.len() / Y;
+    let (v, rest) = sweep.as_chunks_mut::<Y>().0.split_at_mut(n);
+    let mut sweep = Sweep { v, lambda: &mut rest[..n] };
+    let head = sweep_head(factor, pivots, observation, output, gain, &mut sweep);
+    let innovation = head.innovation(observation, output, gain, n)?;
+    let mut correction = [T::from_f64(0.0); M];
+    for k in 0..Y {
+        correction = mul_add(head.gain[k], innovation.weights[k], correction);
+    }
+    for i in 0..q {
+        for k in 0..Y {
+            parameters[i] = gain[k * n + M + i].mul_add(innovation.weights[k], parameters[i]);
+        }
+    }
     let mut row = M + q;
     while row + 4 <= n {
-        sweep_rows::<T, Y, 4>(factor, gain, v, lambda, n, row);
+        sweep_rows::<T, M, Y, 4>(factor, gain, &sweep, &innovation.weights, parameters, row);
         row += 4;
     }
     while row < n {
-        sweep_rows::<T, Y, 1>(factor, gain, v, lambda, n, row);
+        sweep_rows::<T, M, Y, 1>(factor, gain, &sweep, &innovation.weights, parameters, row);
         row += 1;
     }
-    let innovation = head.innovation(observation, output, gain, n)?;
-    state_change(&head.gain, &innovation.weights, gain);
-    Ok(innovation)
+    Ok((innovation, correction))
+}
+
+/// Coefficients of the sweep for each column of U and each output.
+struct Sweep<'a, T, const Y: usize> {
+    v: &'a mut [[T; Y]],
+    lambda: &'a mut [[T; Y]],
 }
 
 /// What the rows that enter the output yield: everything about the innovation.
@@ -263,87 +277,88 @@ fn sweep_head<T: Real, const M: usize, const Y: usize>(
     observation: &Observation<T, M, Y>,
     output: &[T],
     gain: &mut [T],
-    sweep: &mut [T],
+    sweep: &mut Sweep<'_, T, Y>,
 ) -> Head<T, M, Y> {
     let n = pivots.len();
-    let q = observation.output_parameters;
+    let q = output.len() / Y;
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
     let h = observation.moving;
-    let mut head = Head {
-        gain: [[zero; M]; Y],
-        variance: observation.variance,
-        reciprocal: observation.variance.map(|variance| one / variance),
-    };
+    let mut gains = [[zero; M]; Y];
+    let mut variances = observation.variance;
+    let mut reciprocals = variances.map(|variance| one / variance);
     for k in 0..Y {
         gain[k * n + M..k * n + M + q].fill(zero);
     }
-    let (v_all, lambda_all) = sweep.split_at_mut(n * Y);
-    for j in 0..n {
-        let mut column: [T; M] = load(factor, j * n);
-        let mut pivot = pivots[j];
+    let columns = factor.chunks_exact_mut(n).zip(pivots.iter_mut());
+    let coefficients = sweep.v.iter_mut().zip(sweep.lambda.iter_mut());
+    for ((column, pivot), (v_out, lambda_out)) in columns.zip(coefficients) {
+        let mut u: [T; M] = load(column, 0);
+        let mut d = *pivot;
         for k in 0..Y {
-            let mut f = zero;
-            for (derivative, u) in h[k].iter().zip(column) {
-                f = derivative.mul_add(u, f);
+            let mut f = h[k][0] * u[0];
+            for i in 1..M {
+                f = h[k][i].mul_add(u[i], f);
             }
             for i in 0..q {
-                f = output[k * q + i].mul_add(factor[j * n + M + i], f);
+                f = output[k * q + i].mul_add(column[M + i], f);
             }
-            let v = pivot * f;
-            let before = head.variance[k];
+            let v = d * f;
+            let before = variances[k];
             let after = v.mul_add(f, before);
             let reciprocal = one / after;
-            let lambda = -f * head.reciprocal[k];
-            pivot = pivot * (before * reciprocal);
-            for i in 0..M {
-                let u = column[i];
-                column[i] = head.gain[k][i].mul_add(lambda, u);
-                head.gain[k][i] = u.mul_add(v, head.gain[k][i]);
-            }
+            let lambda = -(f * reciprocals[k]);
+            d = d * (before * reciprocal);
+            let old = u;
+            u = mul_add(gains[k], lambda, u);
+            gains[k] = mul_add(old, v, gains[k]);
             for i in 0..q {
-                let (u, g) = (factor[j * n + M + i], gain[k * n + M + i]);
-                factor[j * n + M + i] = g.mul_add(lambda, u);
+                let (u, g) = (column[M + i], gain[k * n + M + i]);
+                column[M + i] = g.mul_add(lambda, u);
                 gain[k * n + M + i] = u.mul_add(v, g);
             }
-            head.variance[k] = after;
-            head.reciprocal[k] = reciprocal;
-            v_all[j * Y + k] = v;
-            lambda_all[j * Y + k] = lambda;
+            variances[k] = after;
+            reciprocals[k] = reciprocal;
+            v_out[k] = v;
+            lambda_out[k] = lambda;
         }
-        store(factor, j * n, column);
-        pivots[j] = pivot;
+        store(column, 0, u);
+        *pivot = d;
     }
-    for (k, moving) in head.gain.iter().enumerate() {
+    for (k, moving) in gains.iter().enumerate() {
         store(gain, k * n, *moving);
     }
-    head
+    Head { gain: gains, variance: variances, reciprocal: reciprocals }
 }
 
-/// Applies the coefficients of the sweep to `W` rows of U from `row`, and gathers their gain.
+/// Applies the coefficients of the sweep to `W` rows of U from `row`, gathers their gain, and
+/// corrects their parameters.
 #[inline(always)]
-fn sweep_rows<T: Real, const Y: usize, const W: usize>(
+fn sweep_rows<T: Real, const M: usize, const Y: usize, const W: usize>(
     factor: &mut [T],
     gain: &mut [T],
-    v: &[T],
-    lambda: &[T],
-    n: usize,
+    sweep: &Sweep<'_, T, Y>,
+    weights: &[T; Y],
+    parameters: &mut [T],
     row: usize,
 ) {
+    let n = sweep.v.len();
     let mut gains = [[T::from_f64(0.0); W]; Y];
-    for j in row..n {
-        let mut u: [T; W] = load(factor, j * n + row);
-        let v: [T; Y] = load(v, j * Y);
-        let lambda: [T; Y] = load(lambda, j * Y);
+    let coefficients = sweep.v[row..].iter().zip(&sweep.lambda[row..]);
+    for (column, (v, lambda)) in factor[row * n..].chunks_exact_mut(n).zip(coefficients) {
+        let mut u: [T; W] = load(column, row);
         for k in 0..Y {
             let changed = mul_add(gains[k], lambda[k], u);
             gains[k] = mul_add(u, v[k], gains[k]);
             u = changed;
         }
-        store(factor, j * n + row, u);
+        store(column, row, u);
     }
-    for (k, lanes) in gains.iter().enumerate() {
-        store(gain, k * n + row, *lanes);
+    let mut corrected: [T; W] = load(parameters, row - M);
+    for k in 0..Y {
+        store(gain, k * n + row, gains[k]);
+        corrected = mul_add(gains[k], weights[k], corrected);
     }
+    store(parameters, row - M, corrected);
 }
 
 impl<T: Real, const M: usize, const Y: usize> Head<T, M, Y> {
@@ -356,7 +371,7 @@ impl<T: Real, const M: usize, const Y: usize> Head<T, M, Y> {
         gain: &[T],
         n: usize,
     ) -> Result<Innovation<T, Y>, EstimationError> {
-        let q = observation.output_parameters;
+        let q = output.len() / Y;
         let zero = T::from_f64(0.0);
         let mut lower = [[zero; Y]; Y];
         for k in 0..Y {
@@ -372,6 +387,12 @@ impl<T: Real, const M: usize, const Y: usize> Head<T, M, Y> {
             }
             lower[k][k] = T::from_f64(1.0);
         }
-        Innovation::from_factors(observation.residual, observation.observed, lower, self.variance)
+        Innovation::from_factors(
+            observation.residual,
+            observation.observed,
+            lower,
+            self.variance,
+            &self.reciprocal,
+        )
     }
 }

@@ -5,8 +5,9 @@ use gyrocal_scalar::{Real, Recentre};
 use crate::error::EstimationError;
 use crate::factor::{self, Observation};
 use crate::innovation::Innovation;
+use crate::lanes4::{load, mul_add, store};
 use crate::storage::{Storage, View};
-use crate::transition::{self, Integration};
+use crate::transition::{Integration, Integrator};
 
 /// When the chart of the moving states is moved to the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,16 +135,15 @@ where
         let buffers = self.storage.buffers();
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
         let mut moving = to_array(moving_slice);
-        let mut transition = transition::integrate(
-            &self.model,
-            &self.inputs,
-            self.integration,
-            dt,
-            &mut moving,
+        let mut transition = Integrator {
+            model: &self.model,
+            inputs: &self.inputs,
             parameters,
-            buffers.transition,
-            buffers.stages,
-        );
+            columns: buffers.transition,
+            stages: buffers.stages,
+            at_origin: self.recentring == Recentring::EveryStep && self.model.has_chart(),
+        }
+        .integrate(self.integration, dt, &mut moving);
         if !moving.iter().all(|state| state.is_finite()) {
             return Err(EstimationError::NotFinite { quantity: "a predicted moving state" });
         }
@@ -177,31 +177,20 @@ where
         measured: &[T; Y],
         noise_variance: &[T; Y],
     ) -> Result<Innovation<T, Y>, EstimationError> {
+        check_noise(noise_variance)?;
         let mut moving = to_array(&self.storage.view().state[..M]);
-        let observation = self.observe(&moving, measured, noise_variance)?;
+        let observation = self.observe(&moving, measured, noise_variance);
+        let q = self.model.output_parameters();
         let buffers = self.storage.buffers();
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
-        let n = buffers.pivots.len();
-        let mut correction = [T::from_f64(0.0); M];
-        let innovation = factor::update(
+        let (innovation, correction) = factor::update(
             buffers.factor,
             buffers.pivots,
+            parameters,
             &observation,
-            buffers.output,
+            &buffers.output[..Y * q],
             buffers.gain,
             buffers.sweep,
-            |head, weights, gain| {
-                for k in 0..Y {
-                    for i in 0..M {
-                        correction[i] = head[k][i].mul_add(weights[k], correction[i]);
-                    }
-                }
-                for (i, parameter) in parameters.iter_mut().enumerate() {
-                    for k in 0..Y {
-                        *parameter = gain[k * n + M + i].mul_add(weights[k], *parameter);
-                    }
-                }
-            },
         )?;
         match self.recentring {
             Recentring::EveryStep => {
@@ -224,28 +213,24 @@ where
         moving: &[T; M],
         measured: &[T; Y],
         noise_variance: &[T; Y],
-    ) -> Result<Observation<T, M, Y>, EstimationError> {
+    ) -> Observation<T, M, Y> {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let q = self.model.output_parameters();
         let buffers = self.storage.buffers();
         let mut observation = Observation {
             moving: [[zero; M]; Y],
-            output_parameters: q,
             variance: [one; Y],
             residual: [zero; Y],
             observed: [false; Y],
         };
-        let predicted = self.model.output_jacobian(
-            moving,
-            &buffers.state[M..],
-            &self.inputs,
-            &mut observation.moving,
-            &mut buffers.output[..Y * q],
-        );
+        let (parameters, d_parameters) = (&buffers.state[M..], &mut buffers.output[..Y * q]);
+        let d_moving = &mut observation.moving;
+        let predicted = if self.recentring == Recentring::EveryStep && self.model.has_chart() {
+            self.model.output_jacobian_at_origin(parameters, &self.inputs, d_moving, d_parameters)
+        } else {
+            self.model.output_jacobian(moving, parameters, &self.inputs, d_moving, d_parameters)
+        };
         for k in 0..Y {
-            if !(noise_variance[k] > zero && noise_variance[k].is_finite()) {
-                return Err(EstimationError::NotPositiveDefinite { state: k });
-            }
             if measured[k] == measured[k] {
                 observation.residual[k] = measured[k] - predicted[k];
                 observation.variance[k] = noise_variance[k];
@@ -255,7 +240,7 @@ where
                 buffers.output[k * q..(k + 1) * q].fill(zero);
             }
         }
-        Ok(observation)
+        observation
     }
 
     /// As [`Self::update`], but a measurement whose NIS exceeds `largest_nis` is not used.
@@ -269,11 +254,18 @@ where
         noise_variance: &[T; Y],
         largest_nis: T,
     ) -> Result<(Innovation<T, Y>, bool), EstimationError> {
+        check_noise(noise_variance)?;
         let moving = to_array(&self.storage.view().state[..M]);
-        let observation = self.observe(&moving, measured, noise_variance)?;
+        let observation = self.observe(&moving, measured, noise_variance);
+        let q = self.model.output_parameters();
         let buffers = self.storage.buffers();
-        let innovation =
-            factor::innovation(buffers.factor, buffers.pivots, &observation, buffers.output, buffers.gain)?;
+        let innovation = factor::innovation(
+            buffers.factor,
+            buffers.pivots,
+            &observation,
+            &buffers.output[..Y * q],
+            buffers.gain,
+        )?;
         if innovation.nis > largest_nis {
             return Ok((innovation, false));
         }
@@ -330,6 +322,16 @@ where
 }
 
 #[inline(always)]
+fn check_noise<T: Real, const Y: usize>(variance: &[T; Y]) -> Result<(), EstimationError> {
+    for (output, variance) in variance.iter().enumerate() {
+        if !(*variance > T::from_f64(0.0) && variance.is_finite()) {
+            return Err(EstimationError::NotPositiveDefinite { state: output });
+        }
+    }
+    Ok(())
+}
+
+#[inline(always)]
 fn to_array<T: Copy + Default, const M: usize>(slice: &[T]) -> [T; M] {
     let mut array = [T::default(); M];
     array.copy_from_slice(slice);
@@ -348,11 +350,30 @@ fn small_product<T: Real, const M: usize>(a: &[[T; M]; M], b: &[[T; M]; M]) -> [
 /// Replaces the M rows of `rows` (stride p) by their product with `map` from the left.
 #[inline(always)]
 fn map_rows<T: Real, const M: usize>(map: &[[T; M]; M], rows: &mut [T], p: usize) {
-    for column in 0..p {
-        let old: [T; M] = core::array::from_fn(|l| rows[l * p + column]);
-        for (i, weights) in map.iter().enumerate() {
-            rows[i * p + column] =
-                (0..M).fold(T::from_f64(0.0), |sum, l| weights[l].mul_add(old[l], sum));
+    let mut column = 0;
+    while column + 4 <= p {
+        map_columns::<T, M, 4>(map, rows, p, column);
+        column += 4;
+    }
+    while column < p {
+        map_columns::<T, M, 1>(map, rows, p, column);
+        column += 1;
+    }
+}
+
+#[inline(always)]
+fn map_columns<T: Real, const M: usize, const W: usize>(
+    map: &[[T; M]; M],
+    rows: &mut [T],
+    p: usize,
+    column: usize,
+) {
+    let old: [[T; W]; M] = core::array::from_fn(|l| load(rows, l * p + column));
+    for (i, weights) in map.iter().enumerate() {
+        let mut sum = [T::from_f64(0.0); W];
+        for (row, weight) in old.iter().zip(weights) {
+            sum = mul_add(*row, *weight, sum);
         }
+        store(rows, i * p + column, sum);
     }
 }

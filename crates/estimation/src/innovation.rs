@@ -20,13 +20,14 @@ pub struct Innovation<T, const Y: usize> {
 }
 
 impl<T: Real, const Y: usize> Innovation<T, Y> {
-    /// From L and α of S = L diag(α) Lᵀ.
+    /// From L, α and 1 / α of S = L diag(α) Lᵀ.
     #[inline(always)]
     pub(crate) fn from_factors(
         residual: [T; Y],
         observed: [bool; Y],
         lower: [[T; Y]; Y],
         variance: [T; Y],
+        reciprocal: &[T; Y],
     ) -> Result<Self, EstimationError> {
         let zero = T::from_f64(0.0);
         let mut own = [zero; Y];
@@ -34,7 +35,7 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         let mut nis = zero;
         for k in 0..Y {
             own[k] = (0..k).fold(residual[k], |rest, l| rest - lower[k][l] * own[l]);
-            weights[k] = own[k] / variance[k];
+            weights[k] = own[k] * reciprocal[k];
             nis = weights[k].mul_add(own[k], nis);
         }
         if nis.is_finite() {

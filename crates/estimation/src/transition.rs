@@ -44,160 +44,224 @@ pub(crate) struct Transition<T, const M: usize> {
     pub(crate) noise: [[T; M]; M],
 }
 
-/// Integrates the moving states over `dt` and their derivatives with them.
-///
-/// `parameter_columns` receives the parameter columns of Φ (M × p, by rows); `stages` is
-/// workspace of 4 × M × p numbers whose structural zeros are zero.
-#[inline(always)]
-pub(crate) fn integrate<T, D, const M: usize, const Y: usize>(
-    model: &D,
-    inputs: &D::Inputs,
-    integration: Integration,
-    dt: T,
-    moving: &mut [T; M],
-    parameters: &[T],
-    parameter_columns: &mut [T],
-    stages: &mut [T],
-) -> Transition<T, M>
+/// What integration starts from and works on.
+pub(crate) struct Integrator<'a, T, D, I, const M: usize, const Y: usize> {
+    pub(crate) model: &'a D,
+    pub(crate) inputs: &'a I,
+    pub(crate) parameters: &'a [T],
+    /// Receives the parameter columns of Φ: M × p, by rows.
+    pub(crate) columns: &'a mut [T],
+    /// Workspace of 4 × M × p numbers whose structural zeros are zero.
+    pub(crate) stages: &'a mut [T],
+    /// Whether the moving states start at zero, where models have a shorter Jacobian.
+    pub(crate) at_origin: bool,
+}
+
+/// Where a column of the sensitivity starts from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Start {
+    /// Zero: a parameter's column at the beginning of a step.
+    Zero,
+    /// The unit matrix: the moving columns at the beginning of a step.
+    Identity,
+    /// What earlier sub-steps left.
+    Given,
+}
+
+impl<T, D, const M: usize, const Y: usize> Integrator<'_, T, D, D::Inputs, M, Y>
 where
     T: Scalar,
     D: Model<T, M, Y>,
 {
-    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-    let p = parameters.len();
-    let own_noise = model.noise_parameters().is_none();
-    let mut transition = Transition { moving: [[zero; M]; M], noise: [[zero; M]; M] };
-    for (i, row) in transition.moving.iter_mut().enumerate() {
-        row[i] = one;
-    }
-    parameter_columns[..M * p].fill(zero);
-    let (order, nodes, weights): (usize, [f64; 4], [f64; 4]) = match integration {
-        Integration::Euler { .. } => (1, [0.0; 4], [1.0, 0.0, 0.0, 0.0]),
-        Integration::Rk4 { .. } => {
-            (4, [0.0, 0.5, 0.5, 1.0], [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0])
+    /// Integrates the moving states over `dt` and their derivatives with them.
+    #[inline(always)]
+    pub(crate) fn integrate(
+        &mut self,
+        integration: Integration,
+        dt: T,
+        moving: &mut [T; M],
+    ) -> Transition<T, M> {
+        let count = integration.substeps();
+        let h = if count == 1 { dt } else { dt / T::from_f64(f64::from(count)) };
+        match integration {
+            Integration::Euler { .. } => {
+                self.substeps::<1>(count, &[T::from_f64(0.0)], &[h], moving)
+            }
+            Integration::Rk4 { .. } => {
+                let scaled = |factors: [f64; 4]| factors.map(|factor| T::from_f64(factor) * h);
+                let nodes = scaled([0.0, 0.5, 0.5, 1.0]);
+                let weights = scaled([1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0]);
+                self.substeps::<4>(count, &nodes, &weights, moving)
+            }
         }
-    };
-    let count = integration.substeps();
-    let h = if count == 1 { dt } else { dt / T::from_f64(f64::from(count)) };
-    let nodes = nodes.map(|node| T::from_f64(node) * h);
-    let weights = weights.map(|weight| T::from_f64(weight) * h);
-    for _ in 0..count {
-        // The stage points do not depend on the sensitivities: all stages first, then every
-        // column of the sensitivity in one pass.
-        let start = *moving;
-        let mut jacobians = [[[zero; M]; M]; 4];
-        let mut noises = [[[zero; M]; M]; 4];
-        let mut rates = [zero; M];
-        for stage in 0..order {
-            let mut at = start;
-            if stage > 0 {
-                for i in 0..M {
-                    at[i] = rates[i].mul_add(nodes[stage], start[i]);
+    }
+
+    #[inline(always)]
+    fn substeps<const ORDER: usize>(
+        &mut self,
+        count: u32,
+        nodes: &[T; ORDER],
+        weights: &[T; ORDER],
+        moving: &mut [T; M],
+    ) -> Transition<T, M> {
+        let zero = [[T::from_f64(0.0); M]; M];
+        let mut transition = Transition { moving: zero, noise: zero };
+        self.substep(true, nodes, weights, moving, &mut transition);
+        for _ in 1..count {
+            self.substep(false, nodes, weights, moving, &mut transition);
+        }
+        if let Some(same) = self.model.noise_parameters() {
+            let p = self.parameters.len();
+            for (i, row) in transition.noise.iter_mut().enumerate() {
+                for (noise, parameter) in row.iter_mut().zip(same) {
+                    *noise = self.columns[i * p + parameter];
                 }
             }
+        }
+        transition
+    }
+
+    /// One Runge-Kutta step of `ORDER` stages. The stage points do not depend on the
+    /// sensitivities: all stages first, then every column of the sensitivity in one pass.
+    #[inline(always)]
+    fn substep<const ORDER: usize>(
+        &mut self,
+        first: bool,
+        nodes: &[T; ORDER],
+        weights: &[T; ORDER],
+        moving: &mut [T; M],
+        transition: &mut Transition<T, M>,
+    ) {
+        let p = self.parameters.len();
+        let zero = T::from_f64(0.0);
+        let start = *moving;
+        let mut jacobians = [[[zero; M]; M]; ORDER];
+        let mut noises = [[[zero; M]; M]; ORDER];
+        let mut rates = [zero; M];
+        for stage in 0..ORDER {
             let mut jacobian = RatesJacobian {
                 moving: [[zero; M]; M],
                 noise: [[zero; M]; M],
-                parameters: &mut stages[stage * M * p..(stage + 1) * M * p],
+                parameters: &mut self.stages[stage * M * p..(stage + 1) * M * p],
             };
-            rates = model.rates_jacobian(&at, parameters, inputs, &mut jacobian);
+            let (model, parameters, inputs) = (self.model, self.parameters, self.inputs);
+            rates = if stage == 0 && first && self.at_origin {
+                model.rates_jacobian_at_origin(parameters, inputs, &mut jacobian)
+            } else {
+                let at = if stage == 0 { start } else { mul_add(rates, nodes[stage], start) };
+                model.rates_jacobian(&at, parameters, inputs, &mut jacobian)
+            };
             jacobians[stage] = jacobian.moving;
             noises[stage] = jacobian.noise;
-            for i in 0..M {
-                moving[i] = rates[i].mul_add(weights[stage], moving[i]);
-            }
+            *moving = mul_add(rates, weights[stage], *moving);
         }
-        let scheme = Scheme { order, jacobians: &jacobians, nodes: &nodes, weights: &weights };
-        advance_small(&scheme, None, &mut transition.moving);
-        if own_noise {
-            advance_small(&scheme, Some(&noises), &mut transition.noise);
+        let scheme = Scheme { jacobians: &jacobians, nodes, weights };
+        let (moving_start, parameter_start) =
+            if first { (Start::Identity, Start::Zero) } else { (Start::Given, Start::Given) };
+        scheme.advance(moving_start, &mut transition.moving, |_, _| [zero; M]);
+        if self.model.noise_parameters().is_none() {
+            let drive = |stage: usize, i: usize| noises[stage][i];
+            scheme.advance(parameter_start, &mut transition.noise, drive);
         }
         let mut column = 0;
         while column + 4 <= p {
-            advance_columns::<T, M, 4>(&scheme, stages, parameter_columns, p, column);
+            scheme.advance_columns::<4>(parameter_start, self.stages, self.columns, p, column);
             column += 4;
         }
         while column < p {
-            advance_columns::<T, M, 1>(&scheme, stages, parameter_columns, p, column);
+            scheme.advance_columns::<1>(parameter_start, self.stages, self.columns, p, column);
             column += 1;
         }
     }
-    if let Some(same) = model.noise_parameters() {
-        for (i, row) in transition.noise.iter_mut().enumerate() {
-            for (noise, parameter) in row.iter_mut().zip(same) {
-                *noise = parameter_columns[i * p + parameter];
-            }
-        }
-    }
-    transition
 }
 
 /// A Runge-Kutta scheme on one step, with the rates' Jacobian at its stages.
-struct Scheme<'a, T, const M: usize> {
-    order: usize,
-    jacobians: &'a [[[T; M]; M]; 4],
-    nodes: &'a [T; 4],
-    weights: &'a [T; 4],
+struct Scheme<'a, T, const M: usize, const ORDER: usize> {
+    jacobians: &'a [[[T; M]; M]; ORDER],
+    nodes: &'a [T; ORDER],
+    weights: &'a [T; ORDER],
 }
 
-impl<T: Scalar, const M: usize> Scheme<'_, T, M> {
+impl<T: Scalar, const M: usize, const ORDER: usize> Scheme<'_, T, M, ORDER> {
     /// Advances `W` columns of the sensitivity; `drive(stage, i)` is row i of the inhomogeneous
     /// term at a stage.
     #[inline(always)]
     fn advance<const W: usize>(
         &self,
+        start: Start,
         sensitivity: &mut [[T; W]; M],
         drive: impl Fn(usize, usize) -> [T; W],
     ) {
-        let start = *sensitivity;
-        let mut rate = [[T::from_f64(0.0); W]; M];
-        for stage in 0..self.order {
-            let mut at = start;
-            if stage > 0 {
-                for i in 0..M {
-                    at[i] = mul_add(rate[i], self.nodes[stage], start[i]);
+        let zero = T::from_f64(0.0);
+        match start {
+            Start::Zero => *sensitivity = [[zero; W]; M],
+            Start::Identity => {
+                *sensitivity = [[zero; W]; M];
+                for (i, row) in sensitivity.iter_mut().enumerate() {
+                    row[i] = T::from_f64(1.0);
                 }
             }
+            Start::Given => {}
+        }
+        let begin = *sensitivity;
+        let mut rate = [[zero; W]; M];
+        for stage in 0..ORDER {
+            let before = rate;
             for i in 0..M {
                 let mut sum = drive(stage, i);
-                for (l, row) in at.iter().enumerate() {
-                    sum = mul_add(*row, self.jacobians[stage][i][l], sum);
+                let coefficients = &self.jacobians[stage][i];
+                match start {
+                    Start::Zero if stage == 0 => {}
+                    Start::Identity if stage == 0 => {
+                        for (sum, coefficient) in sum.iter_mut().zip(coefficients) {
+                            *sum = *coefficient;
+                        }
+                    }
+                    _ => {
+                        for (l, coefficient) in coefficients.iter().enumerate() {
+                            let at = if stage == 0 {
+                                begin[l]
+                            } else if start == Start::Zero {
+                                before[l].map(|rate| rate * self.nodes[stage])
+                            } else {
+                                mul_add(before[l], self.nodes[stage], begin[l])
+                            };
+                            sum = mul_add(at, *coefficient, sum);
+                        }
+                    }
                 }
                 rate[i] = sum;
-                sensitivity[i] = mul_add(sum, self.weights[stage], sensitivity[i]);
+            }
+            for i in 0..M {
+                sensitivity[i] = if start == Start::Zero && stage == 0 {
+                    rate[i].map(|rate| rate * self.weights[stage])
+                } else {
+                    mul_add(rate[i], self.weights[stage], sensitivity[i])
+                };
             }
         }
     }
-}
 
-#[inline(always)]
-fn advance_small<T: Scalar, const M: usize>(
-    scheme: &Scheme<'_, T, M>,
-    drive: Option<&[[[T; M]; M]; 4]>,
-    sensitivity: &mut [[T; M]; M],
-) {
-    scheme.advance(sensitivity, |stage, i| match drive {
-        Some(drive) => drive[stage][i],
-        None => [T::from_f64(0.0); M],
-    });
-}
-
-#[inline(always)]
-fn advance_columns<T: Scalar, const M: usize, const W: usize>(
-    scheme: &Scheme<'_, T, M>,
-    stages: &[T],
-    columns: &mut [T],
-    stride: usize,
-    column: usize,
-) {
-    let mut sensitivity = [[T::from_f64(0.0); W]; M];
-    for (i, row) in sensitivity.iter_mut().enumerate() {
-        *row = load(columns, i * stride + column);
-    }
-    scheme.advance(&mut sensitivity, |stage, i| {
-        load(stages, (stage * M + i) * stride + column)
-    });
-    for (i, row) in sensitivity.iter().enumerate() {
-        store(columns, i * stride + column, *row);
+    #[inline(always)]
+    fn advance_columns<const W: usize>(
+        &self,
+        start: Start,
+        stages: &[T],
+        columns: &mut [T],
+        stride: usize,
+        column: usize,
+    ) {
+        let mut sensitivity = [[T::from_f64(0.0); W]; M];
+        if start == Start::Given {
+            for (i, row) in sensitivity.iter_mut().enumerate() {
+                *row = load(columns, i * stride + column);
+            }
+        }
+        self.advance(start, &mut sensitivity, |stage, i| {
+            load(stages, (stage * M + i) * stride + column)
+        });
+        for (i, row) in sensitivity.iter().enumerate() {
+            store(columns, i * stride + column, *row);
+        }
     }
 }

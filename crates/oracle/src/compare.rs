@@ -66,7 +66,7 @@ pub struct Element {
 pub enum Mismatch {
     /// An element is beyond its tolerance; this is the worst.
     #[error("{0}")]
-    Element(Element),
+    Element(Box<Element>),
     /// Rounding had to excuse too many elements.
     #[error("{function}, {output}: {count} of {elements} elements are ill-conditioned")]
     IllConditioned {
@@ -93,7 +93,12 @@ impl<'a> Comparison<'a> {
     /// A comparison of one output of a function.
     #[must_use]
     pub fn new(function: &'a str, output: &'a Output, tolerance: Tolerance) -> Self {
-        Self { function, output, tolerance, summary: Summary::default() }
+        Self {
+            function,
+            output,
+            tolerance,
+            summary: Summary::default(),
+        }
     }
 
     /// Compares dense matrices, row by row, at one point.
@@ -106,15 +111,30 @@ impl<'a> Comparison<'a> {
     pub fn add(&mut self, point: usize, value: &[f64], expected: &[f64], rounding: &[f64]) {
         let (rows, columns) = (self.output.rows, self.output.columns);
         for matrix in [value, expected, rounding] {
-            assert_eq!(matrix.len(), rows * columns, "shape of {}", self.output.name);
+            assert_eq!(
+                matrix.len(),
+                rows * columns,
+                "shape of {}",
+                self.output.name
+            );
         }
         for column in 0..columns {
             let places = || (0..rows).map(|row| row * columns + column);
-            let scale = places().map(|place| expected[place].abs()).fold(0.0, f64::max);
+            let scale = places()
+                .map(|place| expected[place].abs())
+                .fold(0.0, f64::max);
             for place in places() {
                 let difference = (value[place] - expected[place]).abs();
-                let relative = if difference == 0.0 { 0.0 } else { difference / scale };
-                let relative = if relative.is_nan() { f64::INFINITY } else { relative };
+                let relative = if difference == 0.0 {
+                    0.0
+                } else {
+                    difference / scale
+                };
+                let relative = if relative.is_nan() {
+                    f64::INFINITY
+                } else {
+                    relative
+                };
                 let excuse = rounding[place] / scale;
                 let excuse = if excuse.is_finite() { excuse } else { 0.0 };
                 let allowed = self.tolerance.relative.max(excuse);
@@ -148,7 +168,11 @@ impl<'a> Comparison<'a> {
     /// was compared.
     pub fn finish(self) -> Result<Summary, Mismatch> {
         let (function, output) = (self.function.to_owned(), self.output.name.clone());
-        let Summary { elements, ill_conditioned, .. } = self.summary;
+        let Summary {
+            elements,
+            ill_conditioned,
+            ..
+        } = self.summary;
         match &self.summary.worst {
             None => Err(Mismatch::Nothing { function, output }),
             Some(worst) if worst.error <= worst.allowed => {
@@ -164,7 +188,7 @@ impl<'a> Comparison<'a> {
                     })
                 }
             }
-            Some(worst) => Err(Mismatch::Element(worst.clone())),
+            Some(worst) => Err(Mismatch::Element(Box::new(worst.clone()))),
         }
     }
 }
@@ -189,7 +213,10 @@ impl fmt::Display for Element {
 mod tests {
     use super::*;
 
-    const STRICT: Tolerance = Tolerance { relative: 1e-13, ill_conditioned_share: 0.0 };
+    const STRICT: Tolerance = Tolerance {
+        relative: 1e-13,
+        ill_conditioned_share: 0.0,
+    };
 
     fn output() -> Output {
         Output {
@@ -214,16 +241,21 @@ mod tests {
     #[test]
     fn an_error_in_a_small_column_is_seen_and_named() {
         // 1e-16 absolute: nothing beside 1, but 1e-12 of the largest in its own column.
-        let Err(Mismatch::Element(worst)) =
-            compare(&[1.0, 1e-4, 0.5, 2e-5 + 1e-16], 0.0, STRICT)
+        let Err(Mismatch::Element(worst)) = compare(&[1.0, 1e-4, 0.5, 2e-5 + 1e-16], 0.0, STRICT)
         else {
             panic!("not seen");
         };
-        assert_eq!((worst.row.as_str(), worst.column.as_str()), ("rate_y", "drift"));
+        assert_eq!(
+            (worst.row.as_str(), worst.column.as_str()),
+            ("rate_y", "drift")
+        );
         assert_eq!((worst.point, worst.expected), (1, 2e-5));
         assert!((worst.error - 1e-12).abs() < 1e-15);
         let message = worst.to_string();
-        assert!(message.starts_with("rates, rate_d_state[rate_y, drift] at point 1"), "{message}");
+        assert!(
+            message.starts_with("rates, rate_d_state[rate_y, drift] at point 1"),
+            "{message}"
+        );
     }
 
     #[test]
@@ -236,20 +268,43 @@ mod tests {
     #[test]
     fn rounding_excuses_a_declared_share_of_elements() {
         let value = [1.0, 1e-4, 0.5, 2e-5 + 1e-16];
-        assert!(compare(&value, 0.5e-16, Tolerance { ill_conditioned_share: 1.0, ..STRICT }).is_err());
-        let eighth = Tolerance { ill_conditioned_share: 0.125, ..STRICT };
+        assert!(
+            compare(
+                &value,
+                0.5e-16,
+                Tolerance {
+                    ill_conditioned_share: 1.0,
+                    ..STRICT
+                }
+            )
+            .is_err()
+        );
+        let eighth = Tolerance {
+            ill_conditioned_share: 0.125,
+            ..STRICT
+        };
         assert_eq!(compare(&value, 2e-16, eighth).unwrap().ill_conditioned, 1);
-        let less = Tolerance { ill_conditioned_share: 0.12, ..STRICT };
+        let less = Tolerance {
+            ill_conditioned_share: 0.12,
+            ..STRICT
+        };
         assert!(matches!(
             compare(&value, 2e-16, less),
-            Err(Mismatch::IllConditioned { count: 1, elements: 8, .. })
+            Err(Mismatch::IllConditioned {
+                count: 1,
+                elements: 8,
+                ..
+            })
         ));
     }
 
     #[test]
     fn what_is_not_a_number_agrees_with_nothing() {
         for bad in [f64::NAN, f64::INFINITY] {
-            let generous = Tolerance { relative: 1e9, ill_conditioned_share: 1.0 };
+            let generous = Tolerance {
+                relative: 1e9,
+                ill_conditioned_share: 1.0,
+            };
             for rounding in [1.0, f64::NAN, f64::INFINITY] {
                 assert!(compare(&[1.0, 1e-4, bad, 2e-5], rounding, generous).is_err());
             }

@@ -34,7 +34,9 @@ pub fn jacobian(
         .map(|(&place, &step)| column(&function, &mut point.to_vec(), place, step))
         .collect();
     let rows = columns.first().map_or(0, Vec::len);
-    (0..rows).flat_map(|row| columns.iter().map(move |column| column[row])).collect()
+    (0..rows)
+        .flat_map(|row| columns.iter().map(move |column| column[row]))
+        .collect()
 }
 
 /// Bound of the error that errors `value_errors` of the values (one for each row) bring into
@@ -89,7 +91,10 @@ mod tests {
         let error = (derivative * -distance * distance - 1.0).abs();
         // 36 (h/d)⁶ of the module's documentation, and a fifth for the next order.
         assert!(error <= 1.2 * 36e-12, "{error:e}");
-        assert!(error >= 0.8 * 36e-12, "{error:e}: the order is not what it should be");
+        assert!(
+            error >= 0.8 * 36e-12,
+            "{error:e}: the order is not what it should be"
+        );
     }
 
     #[test]

@@ -147,13 +147,19 @@ impl<const N: usize> Scalar for Dual<N> {
         Self::constant(self.0.re.equal(other.0.re))
     }
     fn if_else_zero(self, value: Self) -> Self {
-        if self.0.re == 0.0 { Self::constant(0.0) } else { value }
+        if self.0.re == 0.0 {
+            Self::constant(0.0)
+        } else {
+            value
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    type Function = fn(Dual<1>) -> Dual<1>;
 
     fn derivative(function: impl Fn(Dual<1>) -> Dual<1>, at: f64) -> f64 {
         function(Dual::variable(at, 0)).derivative(0)
@@ -163,7 +169,7 @@ mod tests {
     fn derivatives_of_every_function_are_those_of_the_textbook() {
         let x: f64 = 0.6;
         let root = (1.0 - x * x).sqrt();
-        let cases: [(&str, fn(Dual<1>) -> Dual<1>, f64); 19] = [
+        let cases: [(&str, Function, f64); 19] = [
             ("sin", |x| x.sin_cos().0, x.cos()),
             ("cos", |x| x.sin_cos().1, -x.sin()),
             ("tan", Scalar::tan, 1.0 / x.cos().powi(2)),
@@ -176,12 +182,24 @@ mod tests {
             ("exp", Scalar::exp, x.exp()),
             ("ln", Scalar::ln, 1.0 / x),
             ("sqrt", Scalar::sqrt, 0.5 / x.sqrt()),
-            ("atan2(x, 2)", |x| x.atan2(Dual::constant(2.0)), 2.0 / (4.0 + x * x)),
-            ("atan2(2, x)", |x| Dual::constant(2.0).atan2(x), -2.0 / (4.0 + x * x)),
+            (
+                "atan2(x, 2)",
+                |x| x.atan2(Dual::constant(2.0)),
+                2.0 / (4.0 + x * x),
+            ),
+            (
+                "atan2(2, x)",
+                |x| Dual::constant(2.0).atan2(x),
+                -2.0 / (4.0 + x * x),
+            ),
             ("x^2.5", |x| x.powf(Dual::constant(2.5)), 2.5 * x.powf(1.5)),
             ("x^x", |x| x.powf(x), x.powf(x) * (x.ln() + 1.0)),
             ("|x|", |x| (-x).abs(), 1.0),
-            ("(x + 1) / (x - 3)", |x| (x + c(1.0)) / (x - c(3.0)), -4.0 / (x - 3.0).powi(2)),
+            (
+                "(x + 1) / (x - 3)",
+                |x| (x + c(1.0)) / (x - c(3.0)),
+                -4.0 / (x - 3.0).powi(2),
+            ),
             ("if", |x| x.less(c(1.0)).if_else_zero(x * x), 2.0 * x),
         ];
         for (name, function, expected) in cases {
@@ -198,7 +216,12 @@ mod tests {
     #[test]
     fn what_is_piecewise_constant_has_no_derivative() {
         let x = Dual::<1>::variable(0.5, 0);
-        for number in [x.sign(), x.less(c(1.0)), x.less_or_equal(c(0.5)), x.equal(c(0.5))] {
+        for number in [
+            x.sign(),
+            x.less(c(1.0)),
+            x.less_or_equal(c(0.5)),
+            x.equal(c(0.5)),
+        ] {
             assert_eq!((number.value(), number.derivative(0)), (1.0, 0.0));
         }
         // The branch that is not taken leaves nothing, not even what is not finite.

@@ -29,10 +29,19 @@ impl Function {
                 Instruction::Const { to, value } => work[to] = value,
                 Instruction::Input { to, scalar } => work[to] = inputs[scalar],
                 Instruction::Output { nonzero, from } => outputs[nonzero] = work[from],
-                Instruction::Unary { operation, to, operand } => {
+                Instruction::Unary {
+                    operation,
+                    to,
+                    operand,
+                } => {
                     work[to] = unary(operation, work[operand]);
                 }
-                Instruction::Binary { operation, to, left, right } => {
+                Instruction::Binary {
+                    operation,
+                    to,
+                    left,
+                    right,
+                } => {
                     work[to] = binary(operation, work[left], work[right]);
                 }
             }

@@ -5,7 +5,7 @@
 //! | [`interpreter`] | running the instruction list of the [`program`] that it was generated from |
 //! | [`dual`] | the chain rule, on the function's own value: exact derivatives |
 //! | [`difference`] | sixth-order central differences of the value |
-//! | [`reference`] | numbers that CasADi itself computed |
+//! | [`reference`](mod@reference) | numbers that CasADi itself computed |
 //!
 //! [`compare`] measures a result against an oracle and names the worst element,
 //! [`rounding`] bounds what rounding alone can do to a result, and [`points`] draws the

@@ -70,7 +70,9 @@ impl State {
 pub fn states(purpose: Purpose, count: usize) -> Vec<State> {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     rng.set_stream(purpose as u64);
-    (0..count).map(|number| state(&mut rng, number % 2 == 1)).collect()
+    (0..count)
+        .map(|number| state(&mut rng, number % 2 == 1))
+        .collect()
 }
 
 fn state(rng: &mut ChaCha8Rng, turned: bool) -> State {
@@ -78,7 +80,11 @@ fn state(rng: &mut ChaCha8Rng, turned: bool) -> State {
     let angle_limit = 80_f64.to_radians();
     let latitude = within(rng, 85_f64.to_radians());
     let (omega_y, omega_z) = (latitude.cos(), latitude.sin());
-    let turn = if turned { quaternion(rng) } else { [1.0, 0.0, 0.0, 0.0] };
+    let turn = if turned {
+        quaternion(rng)
+    } else {
+        [1.0, 0.0, 0.0, 0.0]
+    };
     State {
         theta: core::array::from_fn(|_| within(rng, angle_limit)),
         drift: core::array::from_fn(|_| within(rng, 5.0)),
@@ -94,13 +100,22 @@ fn quaternion(rng: &mut ChaCha8Rng) -> [f64; 4] {
     let share: f64 = rng.random_range(0.0..=1.0);
     let (first, second) = (rng.random_range(-PI..=PI), rng.random_range(-PI..=PI));
     let (a, b) = ((1.0 - share).sqrt(), share.sqrt());
-    [b * second.cos(), a * first.sin(), a * first.cos(), b * second.sin()]
+    [
+        b * second.cos(),
+        a * first.sin(),
+        a * first.cos(),
+        b * second.sin(),
+    ]
 }
 
 /// v + 2 q × (q × v + w v), with q the vector part.
 fn rotate([w, x, y, z]: [f64; 4], v: [f64; 3]) -> [f64; 3] {
     let cross = |a: [f64; 3], b: [f64; 3]| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
     };
     let q = [x, y, z];
     let inner = cross(q, v);

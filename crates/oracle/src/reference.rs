@@ -10,8 +10,7 @@ use serde::Deserialize;
 use crate::OracleError;
 
 /// Where the committed values are.
-pub const REFERENCE_PATH: &str =
-    concat!(env!("CARGO_MANIFEST_DIR"), "/reference/platform.json");
+pub const REFERENCE_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/reference/platform.json");
 
 /// Values of functions at points.
 #[derive(Clone, Debug, Deserialize)]
@@ -38,8 +37,10 @@ impl Reference {
     /// # Errors
     /// If there is no such file, or it is of another form.
     pub fn read(path: &Path) -> Result<Self, OracleError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| OracleError::Read { path: path.to_owned(), source })?;
+        let text = std::fs::read_to_string(path).map_err(|source| OracleError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
         Self::from_json(&text)
     }
 
@@ -51,7 +52,10 @@ impl Reference {
         self.functions
             .get(name)
             .map(Vec::as_slice)
-            .ok_or_else(|| OracleError::Unknown { kind: "reference of", name: name.to_owned() })
+            .ok_or_else(|| OracleError::Unknown {
+                kind: "reference of",
+                name: name.to_owned(),
+            })
     }
 }
 
@@ -68,7 +72,9 @@ mod tests {
         assert_eq!(reference.inputs[0]["theta"], [0.1 + 0.2]);
         assert_eq!(reference.function("f").unwrap()[0], [7.292115e-5, -0.1]);
         assert!(reference.function("g").is_err());
-        let message = Reference::read(Path::new("absent.json")).unwrap_err().to_string();
+        let message = Reference::read(Path::new("absent.json"))
+            .unwrap_err()
+            .to_string();
         assert!(message.contains("absent.json"), "{message}");
     }
 }

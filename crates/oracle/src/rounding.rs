@@ -48,18 +48,28 @@ impl Bounded {
 
     /// A basic operation: correctly rounded, so half a unit in the last place.
     fn rounded(value: f64, inherited: f64) -> Self {
-        Self { value, bound: inherited + value.abs() }
+        Self {
+            value,
+            bound: inherited + value.abs(),
+        }
     }
 
     /// A function with derivative `slope`: at most one unit in the last place.
     fn function(self, value: f64, slope: f64) -> Self {
-        Self { value, bound: inherited(slope, self.bound) + 2.0 * value.abs() }
+        Self {
+            value,
+            bound: inherited(slope, self.bound) + 2.0 * value.abs(),
+        }
     }
 }
 
 /// Error handed on by a factor; an exact operand hands on none, whatever the factor.
 fn inherited(slope: f64, bound: f64) -> f64 {
-    if bound == 0.0 { 0.0 } else { slope.abs() * bound }
+    if bound == 0.0 {
+        0.0
+    } else {
+        slope.abs() * bound
+    }
 }
 
 // Inlined into generated code these operations would take minutes to compile.
@@ -103,7 +113,10 @@ impl Div for Bounded {
 impl Neg for Bounded {
     type Output = Self;
     fn neg(self) -> Self {
-        Self { value: -self.value, bound: self.bound }
+        Self {
+            value: -self.value,
+            bound: self.bound,
+        }
     }
 }
 
@@ -111,7 +124,10 @@ impl Scalar for Bounded {
     fn from_f64(value: f64) -> Self {
         // Rounded in any precision below f64, unless it is short enough for f32.
         let short = f64::from(value as f32) == value;
-        Self { value, bound: if short { 0.0 } else { value.abs() } }
+        Self {
+            value,
+            bound: if short { 0.0 } else { value.abs() },
+        }
     }
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = self.value.sin_cos();
@@ -122,10 +138,16 @@ impl Scalar for Bounded {
         self.function(value, 1.0 + value * value)
     }
     fn asin(self) -> Self {
-        self.function(self.value.asin(), 1.0 / (1.0 - self.value * self.value).sqrt())
+        self.function(
+            self.value.asin(),
+            1.0 / (1.0 - self.value * self.value).sqrt(),
+        )
     }
     fn acos(self) -> Self {
-        self.function(self.value.acos(), 1.0 / (1.0 - self.value * self.value).sqrt())
+        self.function(
+            self.value.acos(),
+            1.0 / (1.0 - self.value * self.value).sqrt(),
+        )
     }
     fn atan(self) -> Self {
         self.function(self.value.atan(), 1.0 / (1.0 + self.value * self.value))
@@ -166,16 +188,25 @@ impl Scalar for Bounded {
         result
     }
     fn abs(self) -> Self {
-        Self { value: self.value.abs(), ..self }
+        Self {
+            value: self.value.abs(),
+            ..self
+        }
     }
     fn sign(self) -> Self {
         Self::exact(Scalar::sign(self.value))
     }
     fn min(self, other: Self) -> Self {
-        Self { value: self.value.min(other.value), bound: self.bound.max(other.bound) }
+        Self {
+            value: self.value.min(other.value),
+            bound: self.bound.max(other.bound),
+        }
     }
     fn max(self, other: Self) -> Self {
-        Self { value: self.value.max(other.value), bound: self.bound.max(other.bound) }
+        Self {
+            value: self.value.max(other.value),
+            bound: self.bound.max(other.bound),
+        }
     }
     fn less(self, other: Self) -> Self {
         Self::exact(self.value.less(other.value))
@@ -187,7 +218,11 @@ impl Scalar for Bounded {
         Self::exact(self.value.equal(other.value))
     }
     fn if_else_zero(self, value: Self) -> Self {
-        if self.value == 0.0 { Self::exact(0.0) } else { value }
+        if self.value == 0.0 {
+            Self::exact(0.0)
+        } else {
+            value
+        }
     }
 }
 

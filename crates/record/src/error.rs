@@ -58,7 +58,7 @@ pub enum InputErrorKind {
     Empty,
     /// The file is not UTF-8 text.
     NotUtf8,
-    /// The file is not TOML.
+    /// The file is not TOML, or not CSV.
     Syntax,
     /// The header row is missing, or a column of it is unknown, missing or doubled.
     Header,

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::error::{Error, InputErrorKind};
+use crate::fields::Line;
 use crate::source::{SourceText, quoted};
 use crate::suggest::{any_of, nearest};
 
@@ -31,42 +32,21 @@ pub(crate) struct Header {
     pub(crate) temperature: Option<usize>,
 }
 
-/// The fields of one line, without white space and quotation marks around them, with their
-/// places in the text.
-pub(crate) fn split_fields(
-    text: &str,
-    line: Range<usize>,
-) -> impl Iterator<Item = (Range<usize>, &str)> {
-    let content = text.get(line.clone()).unwrap_or("");
-    let mut start = line.start;
-    content.split(',').map(move |field| {
-        let bare = field.trim();
-        let unquoted = bare
-            .strip_prefix('"')
-            .and_then(|rest| rest.strip_suffix('"'))
-            .map_or(bare, str::trim);
-        let indent = field.len() - field.trim_start().len();
-        let span = start + indent..start + indent + bare.len();
-        start += field.len() + 1;
-        (span, unquoted)
-    })
-}
-
 impl Header {
     /// Finds the columns in the header line.
-    pub(crate) fn parse(source: &SourceText, line: Range<usize>) -> Result<Self, Error> {
-        let fields: Vec<_> = split_fields(source.text(), line.clone()).collect();
-        refuse_other_separators(source, &line, &fields)?;
-        refuse_numbers(source, &line, &fields)?;
-        let names: Vec<&str> = fields.iter().map(|(_, name)| *name).collect();
-        for (column, (span, name)) in fields.iter().enumerate() {
-            if !COLUMNS.contains(name) {
-                return Err(unknown(source, span.clone(), name, &names));
+    pub(crate) fn parse(source: &SourceText, line: &Line<'_>) -> Result<Self, Error> {
+        let names: Vec<&str> = line.fields.iter().map(|field| field.text).collect();
+        refuse_other_separators(source, line)?;
+        refuse_numbers(source, line)?;
+        for (column, field) in line.fields.iter().enumerate() {
+            let name = field.text;
+            if !COLUMNS.contains(&name) {
+                return Err(unknown(source, field.span.clone(), name, &names));
             }
-            if names[..column].contains(name) {
+            if names[..column].contains(&name) {
                 return Err(source.error(
                     InputErrorKind::Header,
-                    span.clone(),
+                    field.span.clone(),
                     format!("a second column `{name}`"),
                     "each column once",
                     "remove or rename one of them",
@@ -78,7 +58,7 @@ impl Header {
             place(wanted).ok_or_else(|| {
                 source.error(
                     InputErrorKind::Header,
-                    line.clone(),
+                    line.span.clone(),
                     format!("the header {}", quoted(&names.join(","))),
                     format!("a column `{wanted}` too"),
                     format!("a record has the columns {}", REQUIRED_COLUMNS.join(",")),
@@ -116,18 +96,14 @@ fn unknown(source: &SourceText, span: Range<usize>, name: &str, names: &[&str]) 
     )
 }
 
-fn refuse_other_separators(
-    source: &SourceText,
-    line: &Range<usize>,
-    fields: &[(Range<usize>, &str)],
-) -> Result<(), Error> {
-    let [(_, only)] = fields else {
+fn refuse_other_separators(source: &SourceText, line: &Line<'_>) -> Result<(), Error> {
+    let [only] = &line.fields[..] else {
         return Ok(());
     };
-    let Some(separator) = only.find([';', '\t']) else {
+    let Some(separator) = source.text()[only.span.clone()].find([';', '\t']) else {
         return Ok(());
     };
-    let place = line.start + separator;
+    let place = only.span.start + separator;
     Err(source.error(
         InputErrorKind::Header,
         place..place + 1,
@@ -137,15 +113,12 @@ fn refuse_other_separators(
     ))
 }
 
-fn refuse_numbers(
-    source: &SourceText,
-    line: &Range<usize>,
-    fields: &[(Range<usize>, &str)],
-) -> Result<(), Error> {
-    if fields.iter().all(|(_, name)| name.parse::<f64>().is_ok()) {
+fn refuse_numbers(source: &SourceText, line: &Line<'_>) -> Result<(), Error> {
+    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    if line.fields.iter().all(|field| is_number(field.text)) {
         return Err(source.error(
             InputErrorKind::Header,
-            line.clone(),
+            line.span.clone(),
             "a row of numbers",
             format!("the header `{}`", REQUIRED_COLUMNS.join(",")),
             "put the header before the first row",

@@ -54,6 +54,7 @@
 
 mod bench;
 mod error;
+mod fields;
 mod header;
 mod manifest;
 mod output;

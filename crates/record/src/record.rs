@@ -1,6 +1,6 @@
 //! The record: accelerometer samples of a platform in the space-stable state.
 
-use std::fmt::Write as _;
+use std::io;
 use std::path::Path;
 
 use crate::error::Error;
@@ -69,29 +69,10 @@ impl Record {
     /// value is infinite.
     pub fn to_csv(&self, path: &Path) -> Result<String, Error> {
         self.check(path)?;
-        let columns = match self.temperature_c {
-            Some(_) => &COLUMNS[..],
-            None => &REQUIRED_COLUMNS[..],
-        };
-        // A number takes up to 20 characters.
-        let mut text = String::with_capacity(self.len() * columns.len() * 20);
-        text.push_str(&columns.join(","));
-        text.push('\n');
-        for (row, (time_s, accel_g)) in self.time_s.iter().zip(&self.accel_g).enumerate() {
-            let _ = write!(text, "{time_s:?}");
-            for component in accel_g {
-                if component.is_nan() {
-                    text.push_str(",nan");
-                } else {
-                    let _ = write!(text, ",{component:?}");
-                }
-            }
-            if let Some(temperature_c) = &self.temperature_c {
-                let _ = write!(text, ",{:?}", temperature_c[row]);
-            }
-            text.push('\n');
-        }
-        Ok(text)
+        self.format().map_err(|error| Error::Unwritable {
+            path: path.to_owned(),
+            reason: io::Error::other(error),
+        })
     }
 
     /// Number of rows.
@@ -113,6 +94,20 @@ impl Record {
             (Some(first), Some(last)) => last - first,
             _ => 0.0,
         }
+    }
+
+    fn format(&self) -> Result<String, Box<dyn core::error::Error + Send + Sync>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        match self.temperature_c {
+            Some(_) => writer.write_record(COLUMNS)?,
+            None => writer.write_record(REQUIRED_COLUMNS)?,
+        }
+        for (row, (time_s, accel_g)) in self.time_s.iter().zip(&self.accel_g).enumerate() {
+            let temperature_c = self.temperature_c.as_ref().map(|column| column[row]);
+            let values = [*time_s].into_iter().chain(*accel_g).chain(temperature_c);
+            writer.write_record(values.map(number))?;
+        }
+        Ok(String::from_utf8(writer.into_inner()?)?)
     }
 
     fn check(&self, path: &Path) -> Result<(), Error> {
@@ -145,5 +140,14 @@ impl Record {
             return Err(invalid(found, "times that rise"));
         }
         Ok(())
+    }
+}
+
+/// The shortest text that gives the same number again.
+fn number(value: f64) -> String {
+    if value.is_nan() {
+        "nan".to_owned()
+    } else {
+        format!("{value:?}")
     }
 }

@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use crate::error::{Error, InputErrorKind};
-use crate::header::{Header, split_fields};
+use crate::fields::{Field, Line, Lines};
+use crate::header::Header;
 use crate::record::Record;
 use crate::source::{SourceText, quoted};
 
@@ -12,35 +13,54 @@ const MEDIAN_NORM: std::ops::RangeInclusive<f64> = 0.9..=1.1;
 /// The norm of one row: outliers are the diagnosis' business, nonsense is not.
 const ROW_NORM: std::ops::RangeInclusive<f64> = 0.5..=1.5;
 
+/// A hundred years: longer records are mistakes in the unit of time, and take ages to integrate.
+const LONGEST_S: f64 = 3.16e9;
+
 /// Reads header and rows.
 pub(crate) fn read_rows(source: &SourceText, least: usize) -> Result<Record, Error> {
-    let mut lines = lines(source.text());
-    let first = lines.next().unwrap_or(0..0);
-    let header = Header::parse(source, first.clone())?;
+    let mut lines = Lines::of(source);
+    let first = lines.next_line()?.unwrap_or_default();
+    let header = Header::parse(source, &first)?;
     let mut record = Record {
         temperature_c: header.temperature.map(|_| Vec::new()),
         ..Record::default()
     };
     let mut places = Vec::new();
-    let mut fields = Vec::with_capacity(header.fields);
-    for line in lines {
-        fields.clear();
-        fields.extend(split_fields(source.text(), line.clone()));
-        push_row(&mut record, source, &header, &line, &fields)?;
-        places.push(line);
+    while let Some(line) = lines.next_line()? {
+        push_row(&mut record, source, &header, &line)?;
+        places.push(line.span);
     }
-    if record.len() < least {
-        return Err(source.error(
-            InputErrorKind::TooFewRows,
-            places.last().cloned().unwrap_or(first),
-            format!("{} after the header", counted(record.len())),
-            format!("at least {}", counted(least)),
-            "a record takes as many rows as there are states to estimate, and a day or more \
-             to determine them",
-        ));
-    }
+    let last = places.last().unwrap_or(&first.span);
+    refuse_too_few(&record, source, last, least)?;
     check_norms(&record, source, &places)?;
     Ok(record)
+}
+
+/// A row in which all accelerometers say `nan` counts for nothing.
+fn refuse_too_few(
+    record: &Record,
+    source: &SourceText,
+    last: &Range<usize>,
+    least: usize,
+) -> Result<(), Error> {
+    let measured = |row: &&[f64; 3]| row.iter().any(|component| !component.is_nan());
+    let found = record.accel_g.iter().filter(measured).count();
+    if found >= least {
+        return Ok(());
+    }
+    let which = if found == record.len() {
+        "after the header"
+    } else {
+        "with a value of an accelerometer"
+    };
+    Err(source.error(
+        InputErrorKind::TooFewRows,
+        last.clone(),
+        format!("{} {which}", counted(found)),
+        format!("at least {}", counted(least)),
+        "a record takes as many rows as there are states to estimate, and a day or more to \
+         determine them",
+    ))
 }
 
 fn counted(rows: usize) -> String {
@@ -48,45 +68,32 @@ fn counted(rows: usize) -> String {
     format!("{rows} row{ending}")
 }
 
-/// The places of the lines that have something in them, without their line ends.
-fn lines(text: &str) -> impl Iterator<Item = Range<usize>> {
-    let mut start = 0;
-    text.split_inclusive('\n').filter_map(move |line| {
-        let content = line.trim_end();
-        let place = start..start + content.len();
-        start += line.len();
-        (!content.trim_start().is_empty()).then_some(place)
-    })
-}
-
 fn push_row(
     record: &mut Record,
     source: &SourceText,
     header: &Header,
-    line: &Range<usize>,
-    fields: &[(Range<usize>, &str)],
+    line: &Line<'_>,
 ) -> Result<(), Error> {
+    let fields = &line.fields;
     if fields.len() != header.fields {
         return Err(source.error(
             InputErrorKind::FieldCount,
-            line.clone(),
+            line.span.clone(),
             format!("{} fields", fields.len()),
             format!("{} fields, as the header has", header.fields),
             "a missing accelerometer value is written `nan`; decimal numbers have a point",
         ));
     }
     let number = |field: usize, expected: &str| {
-        let (span, text) = &fields[field];
-        text.parse::<f64>()
-            .ok()
+        let number = fields[field].text.parse::<f64>().ok();
+        number
             .filter(|number| !number.is_infinite())
-            .ok_or_else(|| not_a_number(source, span.clone(), text, expected))
+            .ok_or_else(|| not_a_number(source, &fields[field], expected))
     };
     let finite = |field: usize| {
         let number = number(field, "a finite number")?;
         if number.is_nan() {
-            let (span, text) = &fields[field];
-            return Err(not_a_number(source, span.clone(), text, "a finite number"));
+            return Err(not_a_number(source, &fields[field], "a finite number"));
         }
         Ok(number)
     };
@@ -94,10 +101,20 @@ fn push_row(
     if let Some(last) = record.time_s.last().filter(|last| time_s <= **last) {
         return Err(source.error(
             InputErrorKind::Time,
-            fields[header.time].0.clone(),
+            fields[header.time].span.clone(),
             format!("time {time_s} s after {last} s"),
             format!("a time greater than {last} s"),
             "sort the rows by time and keep one of those that repeat",
+        ));
+    }
+    let first_s = record.time_s.first().copied().unwrap_or(time_s);
+    if time_s - first_s > LONGEST_S {
+        return Err(source.error(
+            InputErrorKind::Time,
+            fields[header.time].span.clone(),
+            format!("time {time_s:?} s in a record that starts at {first_s:?} s"),
+            "a record of at most a hundred years",
+            "time_s is in seconds: divide milliseconds by 1e3, nanoseconds by 1e9",
         ));
     }
     let mut accel_g = [0.0; 3];
@@ -112,8 +129,9 @@ fn push_row(
     Ok(())
 }
 
-fn not_a_number(source: &SourceText, span: Range<usize>, text: &str, expected: &str) -> Error {
-    let found = quoted(text);
+fn not_a_number(source: &SourceText, field: &Field<'_>, expected: &str) -> Error {
+    let found = quoted(field.text);
+    let span = field.span.clone();
     source.error(InputErrorKind::NotANumber, span, found, expected, "")
 }
 

@@ -15,7 +15,7 @@ pub struct SourceText {
 }
 
 impl SourceText {
-    /// Reads a file as UTF-8 text, without the byte-order mark that some editors put first.
+    /// Reads a file as UTF-8 text.
     ///
     /// # Errors
     ///
@@ -39,15 +39,16 @@ impl SourceText {
             Ok(text) => text,
             Err(error) => return Err(not_utf8(error.as_bytes(), name)),
         };
-        Self::new(text.trim_start_matches('\u{feff}'), name)
+        Self::new(&text, name)
     }
 
-    /// Takes a text.
+    /// Takes a text, without the byte-order mark that some editors put first.
     ///
     /// # Errors
     ///
     /// [`Error::Input`] if there is nothing but white space.
     pub fn new(text: &str, name: &str) -> Result<Self, Error> {
+        let text = text.trim_start_matches('\u{feff}');
         let source = Self {
             name: name.to_owned(),
             text: text.to_owned(),
@@ -80,8 +81,13 @@ impl SourceText {
     #[must_use]
     pub fn line_and_column(&self, offset: usize) -> (usize, usize) {
         let before = self.text.get(..offset).unwrap_or(&self.text);
-        let line = before.matches('\n').count() + 1;
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        // A carriage return ends a line too unless a line feed follows.
+        let ends = before.match_indices(['\n', '\r']);
+        let ends = ends.filter(|(at, end)| *end == "\n" || !self.text[at + 1..].starts_with('\n'));
+        let (mut line, mut line_start) = (1, 0);
+        for (at, _) in ends {
+            (line, line_start) = (line + 1, at + 1);
+        }
         let column = before.get(line_start..).unwrap_or("").chars().count() + 1;
         (line, column)
     }

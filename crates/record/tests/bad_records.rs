@@ -150,6 +150,24 @@ fn a_field_that_is_no_number() {
 }
 
 #[test]
+fn places_are_right_whatever_stands_around_them() {
+    let plain = format!("{HEADER}\n0,0,0,1\n60,0, zéro ,1\n");
+    let windows = plain.replace('\n', "\r\n");
+    let macintosh = plain.replace('\n', "\r");
+    let marked = format!("\u{feff}{plain}");
+    let quoted = plain
+        .replace(" zéro ", "\"zéro\"")
+        .replace("\n60,0", "\n60,0 ");
+    for text in [plain, windows, macintosh, marked, quoted] {
+        let error = refused(&text);
+        assert_says(&error, InputErrorKind::NotANumber, "3:7", &["`zéro`"]);
+    }
+    // The header of a marked file starts in column 1, and empty lines are counted.
+    let error = refused(&format!("\u{feff}\r\n\r\n{HEADER}x\r\n"));
+    assert_says(&error, InputErrorKind::Header, "3:28", &["`accel_z_gx`"]);
+}
+
+#[test]
 fn a_row_with_too_many_or_too_few_fields() {
     let error = refused(&rows(&["0,0,0,1", "60,0,0"]));
     assert_says(
@@ -179,6 +197,19 @@ fn time_that_repeats_or_goes_back() {
 }
 
 #[test]
+fn time_that_runs_for_ages_is_suspected_of_its_unit() {
+    for (first, last) in [("0", "6e9"), ("-1.7e308", "1.7e308")] {
+        let error = refused(&rows(&[
+            &format!("{first},0,0,1"),
+            &format!("{last},0,0,1"),
+        ]));
+        let words = ["s in a record that starts at", "a hundred years"];
+        assert_says(&error, InputErrorKind::Time, "3:1", &words);
+        assert!(error.advice.contains("milliseconds"), "{}", error.advice);
+    }
+}
+
+#[test]
 fn fewer_rows_than_states() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("r.csv");
@@ -192,6 +223,10 @@ fn fewer_rows_than_states() {
     let shown = error.to_string();
     assert!(shown.contains("found 2 rows"), "{shown}");
     assert!(shown.contains("expected at least 12 rows"), "{shown}");
+    // A row without any value says nothing.
+    let error = refused(&rows(&["0,nan,nan,nan", "60,nan,nan,nan"]));
+    let words = ["0 rows with a value", "at least 1 row"];
+    assert_says(&error, InputErrorKind::TooFewRows, "3:1", &words);
     let error = refused(&rows(&[]));
     assert_says(
         &error,

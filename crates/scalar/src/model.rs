@@ -62,6 +62,21 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
         jacobian: &mut RatesJacobian<'_, T, M>,
     ) -> [T; M];
 
+    /// [`Self::rates_jacobian`] with all moving states zero. Generated models may have a shorter
+    /// form of it; a filter whose chart moves with the estimate starts every step there.
+    ///
+    /// # Panics
+    /// As [`Self::rates_jacobian`].
+    #[inline(always)]
+    fn rates_jacobian_at_origin(
+        &self,
+        parameters: &[T],
+        inputs: &Self::Inputs,
+        jacobian: &mut RatesJacobian<'_, T, M>,
+    ) -> [T; M] {
+        self.rates_jacobian(&[T::from_f64(0.0); M], parameters, inputs, jacobian)
+    }
+
     /// Outputs: what the sensors would read without noise.
     ///
     /// # Panics
@@ -81,12 +96,33 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
         d_moving: &mut [[T; M]; Y],
         d_parameters: &mut [T],
     ) -> [T; Y];
+
+    /// [`Self::output_jacobian`] with all moving states zero.
+    ///
+    /// # Panics
+    /// As [`Self::output_jacobian`].
+    #[inline(always)]
+    fn output_jacobian_at_origin(
+        &self,
+        parameters: &[T],
+        inputs: &Self::Inputs,
+        d_moving: &mut [[T; M]; Y],
+        d_parameters: &mut [T],
+    ) -> [T; Y] {
+        self.output_jacobian(&[T::from_f64(0.0); M], parameters, inputs, d_moving, d_parameters)
+    }
 }
 
 /// A model whose moving states are coordinates in a chart that can be moved.
 ///
 /// The defaults are those of a flat state space: no chart, corrections are added.
 pub trait Recentre<T: Scalar, const M: usize, const Y: usize>: Model<T, M, Y> {
+    /// Whether there is a chart: after [`Self::recentre`] and [`Self::correct`] the moving
+    /// states are then zero.
+    fn has_chart(&self) -> bool {
+        false
+    }
+
     /// Moves the origin of the chart to `moving`: `moving` becomes zero, `inputs` are carried
     /// along. Returns the derivative of the error at the new origin with respect to the error
     /// of the old coordinates, or `None` if the state space is flat and nothing moved.

@@ -135,8 +135,7 @@ impl Derivation {
     ///
     /// No suitable Python, no environment, or a derivation that does not give programs.
     pub fn derive(&self) -> Result<Derived, Error> {
-        let program = std::env::current_exe().unwrap_or_default();
-        derive(self, &self.environments(&program))
+        derive(self, &self.environments(&self.command_directory()))
     }
 
     /// Derives everything and rewrites the committed files that differ.
@@ -235,15 +234,31 @@ impl Derivation {
             .collect()
     }
 
-    /// Where the private environments live, for a file of the build that asks.
+    /// Where the private environments live when the build works in `inside`.
     fn environments(&self, inside: &Path) -> PathBuf {
         if let Some(directory) = &self.settings.environments {
             return directory.clone();
         }
         target_directory(inside)
-            .or_else(|| std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from))
-            .unwrap_or_else(|| self.directory.join("target"))
+            .unwrap_or_else(|| inside.to_owned())
             .join("gyrocal-codegen")
+    }
+
+    /// Where a command works: the target directory that it was built in, or, if it was
+    /// installed, that of the workspace around the derivation.
+    fn command_directory(&self) -> PathBuf {
+        let program = std::env::current_exe().unwrap_or_default();
+        if let Some(directory) = target_directory(&program) {
+            return directory;
+        }
+        if let Some(directory) = std::env::var_os("CARGO_TARGET_DIR") {
+            return PathBuf::from(directory);
+        }
+        let mut above = self.directory.ancestors();
+        above
+            .find(|path| path.join("Cargo.lock").is_file())
+            .unwrap_or(Path::new(""))
+            .join("target")
     }
 
     /// A declared path, with `..` taken away where it follows a name.

@@ -28,6 +28,7 @@ const EMITTER: &[(&str, &str)] = embedded![
     "src/emit/local.rs",
     "src/emit/model.rs",
     "src/emit/model/complete.rs",
+    "src/emit/model/form.rs",
     "src/emit/model/methods.rs",
     "src/emit/noise.rs",
     "src/emit/output.rs",

@@ -113,11 +113,11 @@ pub(super) fn sentence(text: &str) -> String {
     let Some(first) = letters.next() else {
         return String::new();
     };
-    // Symbols such as `f1` or `theta_x` keep their case.
-    let is_word = text
-        .split(' ')
-        .next()
-        .is_some_and(|word| word.len() > 1 && !word.contains(|c: char| c == '_' || c.is_numeric()));
+    // Symbols such as `f1` or `theta_x` keep their case; a comma after a word is none of it.
+    let is_word = text.split(' ').next().is_some_and(|word| {
+        let word = word.trim_end_matches(['.', ',', ';', ':', '!', '?']);
+        word.len() > 1 && word.chars().all(char::is_alphabetic)
+    });
     let first = if is_word {
         first.to_ascii_uppercase()
     } else {
@@ -170,5 +170,26 @@ pub(super) fn unit_text(unit: &str) -> String {
         "1".to_owned()
     } else {
         escape(unit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sentence;
+
+    #[test]
+    fn a_sentence_begins_with_a_capital_unless_with_a_symbol() {
+        let cases = [
+            ("length above 0", "Length above 0."),
+            ("angle, from the vertical", "Angle, from the vertical."),
+            ("theta_y away from +-90 deg", "theta_y away from +-90 deg."),
+            ("f1-f3: rates", "f1-f3: rates."),
+            ("x of the bob", "x of the bob."),
+            ("sin(x) of the angle", "sin(x) of the angle."),
+            ("`rod` by length", "`rod` by length."),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(sentence(text), expected);
+        }
     }
 }

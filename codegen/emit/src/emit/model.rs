@@ -1,6 +1,7 @@
 //! The model: its type, inputs, state and the implementation of `Model`.
 
 mod complete;
+mod form;
 mod methods;
 
 use proc_macro2::TokenStream;

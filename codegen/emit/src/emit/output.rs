@@ -182,7 +182,8 @@ fn positions(output: &Output) -> TokenStream {
         output.name
     ));
     let row_name = |row: usize| output.row_names.get(row).map(String::as_str);
-    if !output.row_names.is_empty() && !output.column_names.is_empty() {
+    let has_names = !output.row_names.is_empty() && !output.column_names.is_empty();
+    if has_names && !output.nonzeros.is_empty() {
         let runs: Vec<String> = output
             .nonzeros
             .chunk_by(|left, right| left.1 == right.1)
@@ -222,6 +223,7 @@ fn dense_method(output: &Output) -> TokenStream {
     let doc = Doc::of(&format!("`{}` with its zeros.", output.name)).tokens();
     quote! {
         #doc
+        #[inline]
         #[must_use]
         pub fn #method(&self) -> [[T; #columns]; #rows] {
             let mut dense = [[T::from_f64(0e0); #columns]; #rows];

@@ -53,6 +53,8 @@ pub(super) fn check(
     checker.value_has_rows("rates", rates, groups[moving].elements.len())?;
     checker.jacobians("rates", rates, raw.noise.as_deref(), true)?;
     checker.jacobians("output", output, raw.noise.as_deref(), false)?;
+    checker.at_origin("model, rates, jacobian_at_origin", rates)?;
+    checker.at_origin("model, output, jacobian_at_origin", output)?;
     Ok(Model {
         name: raw.name,
         doc: raw.doc,
@@ -110,12 +112,21 @@ impl Checker<'_> {
                         "name one of the functions",
                     )
                 })?;
-            self.groups_fit(&place, &self.functions[index])?;
+            let of = match role {
+                "jacobian_at_origin" => "parameters and inputs",
+                _ => "moving, parameters and inputs",
+            };
+            self.groups_fit(&place, &self.functions[index], of)?;
             Ok(index)
         };
         let function = ModelFunction {
             value: find("value", &raw.value)?,
             jacobian: find("jacobian", &raw.jacobian)?,
+            jacobian_at_origin: raw
+                .jacobian_at_origin
+                .as_deref()
+                .map(|name| find("jacobian_at_origin", name))
+                .transpose()?,
         };
         let place = format!("model, {part}");
         let value = &self.functions[function.value];
@@ -146,7 +157,63 @@ impl Checker<'_> {
         Ok(function)
     }
 
-    fn groups_fit(&self, place: &str, function: &Function) -> Result<(), Error> {
+    /// That the form at the origin gives what the full one does, of no moving states.
+    fn at_origin(&self, place: &str, function: ModelFunction) -> Result<(), Error> {
+        let Some(index) = function.jacobian_at_origin else {
+            return Ok(());
+        };
+        let (full, origin) = (&self.functions[function.jacobian], &self.functions[index]);
+        if origin.inputs.contains(&self.moving) {
+            return Err(self.context.error(
+                place,
+                format!(
+                    "the function `{}` of the group `{}`",
+                    origin.name, self.groups[self.moving].name
+                ),
+                "functions of parameters and inputs alone",
+                "put zeros in the place of the moving states, and take the group out of the function",
+            ));
+        }
+        let names = |function: &Function| {
+            let names = function.outputs.iter().map(|o| format!("`{}`", o.name));
+            names.collect::<Vec<_>>().join(", ")
+        };
+        if names(origin) != names(full) {
+            return Err(self.context.error(
+                place,
+                format!(
+                    "the function `{}` with the outputs {}",
+                    origin.name,
+                    names(origin)
+                ),
+                format!("those of `{}`: {}", full.name, names(full)),
+                "give both functions the same outputs in the same order",
+            ));
+        }
+        for (output, of_full) in origin.outputs.iter().zip(&full.outputs) {
+            if (output.rows, output.columns) != (of_full.rows, of_full.columns) {
+                return Err(self.context.error(
+                    place,
+                    format!("the output {}", shape(output)),
+                    format!("{} rows and {} columns", of_full.rows, of_full.columns),
+                    "keep the rows and columns of the full form, zeros too",
+                ));
+            }
+            let extra = |place: &&(usize, usize)| !of_full.nonzeros.contains(place);
+            if let Some((row, column)) = output.nonzeros.iter().find(extra) {
+                return Err(self.context.error(
+                    &format!("{place}, output `{}`", output.name),
+                    format!("a nonzero at row {row}, column {column}"),
+                    format!("nonzeros only where `{}` has them", full.name),
+                    "sparsify the output, or derive both functions from the same expressions",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// `of` says of what the function may be; whether it may be of `moving` is not checked.
+    fn groups_fit(&self, place: &str, function: &Function, of: &str) -> Result<(), Error> {
         for index in &function.inputs {
             if *index != self.moving
                 && Some(*index) != self.parameters
@@ -158,7 +225,7 @@ impl Checker<'_> {
                         "the function `{}` of the group `{}`",
                         function.name, self.groups[*index].name
                     ),
-                    "functions of moving, parameters and inputs alone",
+                    format!("functions of {of} alone"),
                     "add the group to the inputs of the model, or take it out of the function",
                 ));
             }

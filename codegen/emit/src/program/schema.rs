@@ -87,6 +87,8 @@ pub(super) struct RawModel {
 pub(super) struct RawModelFunction {
     pub(super) value: String,
     pub(super) jacobian: String,
+    #[serde(default)]
+    pub(super) jacobian_at_origin: Option<String>,
 }
 
 /// The version is read alone first, so that a newer form is named as such.

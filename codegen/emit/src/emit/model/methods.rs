@@ -5,9 +5,10 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Parts;
+use super::form::Form;
 use crate::emit::items::{ident, integer};
-use crate::emit::output::{Layout, is_returned_directly};
-use crate::program::{Function, ModelFunction, Output};
+use crate::emit::output::Layout;
+use crate::program::Function;
 
 pub(super) struct Methods<'a> {
     parts: &'a Parts<'a>,
@@ -55,9 +56,15 @@ impl<'a> Methods<'a> {
             None => quote!(None),
         };
         let rates = self.rates();
-        let rates_jacobian = self.rates_jacobian();
+        let (of_rates, of_output) = (self.parts.model.rates, self.parts.model.output);
+        let rates_jacobian = self.rates_jacobian(&Form::full(self.parts, of_rates));
+        let rates_at_origin =
+            Form::at_origin(self.parts, of_rates).map(|form| self.rates_jacobian(&form));
         let output = self.output();
-        let output_jacobian = self.output_jacobian(output_parameters);
+        let output_jacobian =
+            self.output_jacobian(&Form::full(self.parts, of_output), output_parameters);
+        let output_at_origin = Form::at_origin(self.parts, of_output)
+            .map(|form| self.output_jacobian(&form, output_parameters));
         let output_parameters = integer(output_parameters);
         quote! {
             impl<T: Scalar> Model<T, #moving, #outputs> for #name {
@@ -80,8 +87,10 @@ impl<'a> Methods<'a> {
 
                 #rates
                 #rates_jacobian
+                #rates_at_origin
                 #output
                 #output_jacobian
+                #output_at_origin
             }
         }
     }
@@ -118,40 +127,41 @@ impl<'a> Methods<'a> {
         }
     }
 
-    fn rates_jacobian(&self) -> TokenStream {
-        let function = self.parts.model.rates;
+    fn rates_jacobian(&self, form: &Form<'_>) -> TokenStream {
         let count = integer(self.moving);
         let Arguments {
             moving,
             inputs,
             check,
             call,
-        } = self.arguments(self.parts.function(function.jacobian));
+        } = self.arguments(form.given);
         let noise = self.parts.model.noise.as_deref();
         let moving_group = &self.parts.moving().name;
         let (d_moving, d_noise) = (quote!(jacobian.moving), quote!(jacobian.noise));
-        let d_moving = self.matrix(function, moving_group, &d_moving, &d_moving);
-        let d_noise = noise.map(|noise| self.matrix(function, noise, &d_noise, &d_noise));
+        let d_moving = self.matrix(form, moving_group, &d_moving, &d_moving);
+        let d_noise = noise.map(|noise| self.matrix(form, noise, &d_noise, &d_noise));
         let (d_parameters_check, d_parameters) = self.parameters_jacobian(
-            function,
+            form,
             self.moving,
             self.parameters,
             &quote!(jacobian.parameters),
             &quote!(&mut *jacobian.parameters),
         );
-        let value = self.value_field(function);
+        let (name, moving) = form.method("rates_jacobian", &quote!(#moving: &[T; #count],));
+        let result = form.result(&call);
+        let value = form.value();
         quote! {
             #[inline]
-            fn rates_jacobian(
+            fn #name(
                 &self,
-                #moving: &[T; #count],
+                #moving
                 parameters: &[T],
                 #inputs: &Self::Inputs,
                 jacobian: &mut RatesJacobian<'_, T, #count>,
             ) -> [T; #count] {
                 #check
                 #d_parameters_check
-                let result = #call;
+                #result
                 #d_moving
                 #d_noise
                 #d_parameters
@@ -160,40 +170,36 @@ impl<'a> Methods<'a> {
         }
     }
 
-    fn output_jacobian(&self, output_parameters: usize) -> TokenStream {
-        let function = self.parts.model.output;
+    fn output_jacobian(&self, form: &Form<'_>, output_parameters: usize) -> TokenStream {
         let (count, outputs) = (integer(self.moving), integer(self.outputs));
         let Arguments {
             moving,
             inputs,
             check,
             call,
-        } = self.arguments(self.parts.function(function.jacobian));
+        } = self.arguments(form.given);
         let moving_group = &self.parts.moving().name;
-        let d_moving = self.matrix(
-            function,
-            moving_group,
-            &quote!(d_moving),
-            &quote!(*d_moving),
-        );
+        let d_moving = self.matrix(form, moving_group, &quote!(d_moving), &quote!(*d_moving));
         let d_moving_name = ident(if d_moving.is_empty() {
             "_d_moving"
         } else {
             "d_moving"
         });
         let (d_parameters_check, d_parameters) = self.parameters_jacobian(
-            function,
+            form,
             self.outputs,
             output_parameters,
             &quote!(d_parameters),
             &quote!(d_parameters),
         );
-        let value = self.value_field(function);
+        let (name, moving) = form.method("output_jacobian", &quote!(#moving: &[T; #count],));
+        let result = form.result(&call);
+        let value = form.value();
         quote! {
             #[inline]
-            fn output_jacobian(
+            fn #name(
                 &self,
-                #moving: &[T; #count],
+                #moving
                 parameters: &[T],
                 #inputs: &Self::Inputs,
                 #d_moving_name: &mut [[T; #count]; #outputs],
@@ -201,7 +207,7 @@ impl<'a> Methods<'a> {
             ) -> [T; #outputs] {
                 #check
                 #d_parameters_check
-                let result = #call;
+                #result
                 #d_moving
                 #d_parameters
                 #value
@@ -239,7 +245,9 @@ impl<'a> Methods<'a> {
                 quote!(&inputs.#field)
             }
         });
-        let call = quote!(#name(#(#arguments),*));
+        // Nothing but the result would say which scalar a function without arguments is of.
+        let scalar = function.inputs.is_empty().then(|| quote!(::<T>));
+        let call = quote!(#name #scalar(#(#arguments),*));
         Arguments {
             moving: ident(if takes(model.moving) {
                 "moving"
@@ -252,23 +260,24 @@ impl<'a> Methods<'a> {
         }
     }
 
-    /// Assigns the nonzeros of the Jacobian with respect to a group to a matrix; `whole`
-    /// is its place when all of it is assigned.
+    /// Assigns the Jacobian with respect to a group to a matrix; `whole` is its place when
+    /// all of it is assigned.
     fn matrix(
         &self,
-        function: ModelFunction,
+        form: &Form<'_>,
         group: &str,
         matrix: &TokenStream,
         whole: &TokenStream,
     ) -> TokenStream {
-        let Some((_, output)) = self.parts.jacobian(function, group) else {
+        let Some(jacobian) = form.jacobian(group) else {
             return TokenStream::new();
         };
-        if Layout::of(output) == Layout::Matrix && output.columns == self.moving {
-            let field = ident(&output.name);
+        let given = jacobian.given;
+        if Layout::of(given) == Layout::Matrix && given.columns == self.moving {
+            let field = ident(&given.name);
             return quote!(#whole = result.#field;);
         }
-        let entries = entries(output).map(|(row, column, value)| {
+        let entries = jacobian.entries().map(|(row, column, value)| {
             let (row, column) = (integer(row), integer(column));
             quote!(#matrix[#row][#column] = #value;)
         });
@@ -276,10 +285,10 @@ impl<'a> Methods<'a> {
     }
 
     /// The check of the length of a row-major parameter Jacobian with some columns, and
-    /// the assignments of its nonzeros.
+    /// its assignments.
     fn parameters_jacobian(
         &self,
-        function: ModelFunction,
+        form: &Form<'_>,
         rows: usize,
         columns: usize,
         slice: &TokenStream,
@@ -291,14 +300,14 @@ impl<'a> Methods<'a> {
         let found = self
             .parts
             .parameters_name()
-            .and_then(|name| self.parts.jacobian(function, name));
-        match found.filter(|(_, output)| !output.nonzeros.is_empty()) {
+            .and_then(|name| form.jacobian(name));
+        match found.filter(|jacobian| !jacobian.written.nonzeros.is_empty()) {
             None => (
                 quote!(assert_eq!(#slice.len(), #length, #message);),
                 TokenStream::new(),
             ),
-            Some((_, output)) => {
-                let assignments = entries(output).map(|(row, column, value)| {
+            Some(jacobian) => {
+                let assignments = jacobian.entries().map(|(row, column, value)| {
                     let place = integer(row * columns + column);
                     quote!(d_parameters[#place] = #value;)
                 });
@@ -312,32 +321,4 @@ impl<'a> Methods<'a> {
             }
         }
     }
-
-    /// The value among the results of a function with Jacobians.
-    fn value_field(&self, function: ModelFunction) -> TokenStream {
-        let function = self.parts.function(function.jacobian);
-        if is_returned_directly(function) {
-            return quote!(result);
-        }
-        let field = ident(&function.outputs[0].name);
-        quote!(result.#field)
-    }
-}
-
-/// Row, column and expression of each nonzero of an output of `result`.
-fn entries(output: &Output) -> impl Iterator<Item = (usize, usize, TokenStream)> {
-    let field = ident(&output.name);
-    output
-        .nonzeros
-        .iter()
-        .enumerate()
-        .map(move |(nonzero, &(row, column))| {
-            let [i, j, k] = [row, column, nonzero].map(integer);
-            let value = match Layout::of(output) {
-                Layout::Vector => quote!(result.#field[#i]),
-                Layout::Matrix => quote!(result.#field[#i][#j]),
-                Layout::Sparse => quote!(result.#field[#k]),
-            };
-            (row, column, value)
-        })
 }

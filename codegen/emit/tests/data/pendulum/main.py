@@ -60,6 +60,16 @@ def derive(output: Path) -> None:
         return still(jacobian_output(value, group, f"{value.name}_d_{group.name}",
                                      f"`{value.name}` by `{group.name}`", "mixed"))
 
+    def at_origin(name: str, doc: str, function: Function) -> Function:
+        """The function with the pendulum at rest; values with structural zeros too."""
+        outputs = [
+            Output(o.name, ca.sparsify(ca.substitute(o.expression, swing.sx, ca.SX.zeros(2))),
+                   o.unit, o.doc, o.row_names, o.column_names)
+            for o in function.outputs
+        ]
+        groups = [group for group in function.inputs if group is not swing]
+        return Function(name, doc, function.source, groups, outputs, function.domain)
+
     inputs, source, domain = [swing, rod, field], "Newton <1687> [law 2]", "length above 0"
     functions = [
         Function("swing_rates", "Rates of a damped pendulum.", source, inputs, [still(rates)],
@@ -78,14 +88,23 @@ def derive(output: Path) -> None:
                   Output("turned", ca.logic_and(rate > 0, ca.logic_not(angle < 0)), "1",
                          "1 while it swings out to the right")]),
     ]
+    by_name = {function.name: function for function in functions}
+    functions += [
+        at_origin("swing_rates_at_origin", "Rates and Jacobians at rest.",
+                  by_name["swing_rates_jacobian"]),
+        at_origin("bob_place_at_origin", "Where the bob is at rest, with Jacobians.",
+                  by_name["bob_place_jacobian"]),
+    ]
     program = Program(
         "pendulum", "A damped pendulum.", functions,
         {
             "name": "Pendulum",
             "doc": "A damped pendulum whose rod is to be calibrated.",
             "moving": swing, "parameters": rod, "noise": push, "inputs": [field],
-            "rates": {"value": "swing_rates", "jacobian": "swing_rates_jacobian"},
-            "output": {"value": "bob_place", "jacobian": "bob_place_jacobian"},
+            "rates": {"value": "swing_rates", "jacobian": "swing_rates_jacobian",
+                      "jacobian_at_origin": "swing_rates_at_origin"},
+            "output": {"value": "bob_place", "jacobian": "bob_place_jacobian",
+                       "jacobian_at_origin": "bob_place_at_origin"},
         },
     )
     program.write(output / "pendulum.json")

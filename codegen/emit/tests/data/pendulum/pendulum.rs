@@ -273,6 +273,7 @@ impl<T> SwingRatesJacobian<T> {
 
 impl<T: Scalar> SwingRatesJacobian<T> {
     /// `swing_dot_d_swing` with its zeros.
+    #[inline]
     #[must_use]
     pub fn swing_dot_d_swing_dense(&self) -> [[T; 2]; 2] {
         let mut dense = [[T::from_f64(0e0); 2]; 2];
@@ -285,6 +286,7 @@ impl<T: Scalar> SwingRatesJacobian<T> {
         dense
     }
     /// `swing_dot_d_rod` with its zeros.
+    #[inline]
     #[must_use]
     pub fn swing_dot_d_rod_dense(&self) -> [[T; 2]; 2] {
         let mut dense = [[T::from_f64(0e0); 2]; 2];
@@ -297,6 +299,7 @@ impl<T: Scalar> SwingRatesJacobian<T> {
         dense
     }
     /// `swing_dot_d_push` with its zeros.
+    #[inline]
     #[must_use]
     pub fn swing_dot_d_push_dense(&self) -> [[T; 1]; 2] {
         let mut dense = [[T::from_f64(0e0); 1]; 2];
@@ -425,6 +428,7 @@ impl<T> BobPlaceJacobian<T> {
 
 impl<T: Scalar> BobPlaceJacobian<T> {
     /// `bob_d_swing` with its zeros.
+    #[inline]
     #[must_use]
     pub fn bob_d_swing_dense(&self) -> [[T; 2]; 2] {
         let mut dense = [[T::from_f64(0e0); 2]; 2];
@@ -435,6 +439,7 @@ impl<T: Scalar> BobPlaceJacobian<T> {
         dense
     }
     /// `bob_d_rod` with its zeros.
+    #[inline]
     #[must_use]
     pub fn bob_d_rod_dense(&self) -> [[T; 2]; 2] {
         let mut dense = [[T::from_f64(0e0); 2]; 2];
@@ -544,6 +549,230 @@ pub fn heading<T: Scalar>(swing: &[T; 2], rod: &[T; 2]) -> Heading<T> {
     Heading {
         heading: [(length * sin_angle).atan2(length * cos_angle)],
         turned: [zero.less(rate).if_else_zero(angle.less(zero).equal(zero))],
+    }
+}
+
+/// What [`swing_rates_at_origin`] gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwingRatesAtOrigin<T> {
+    /// Rates of the state \[rad/s, rad/s^2\], 2 x 1, 0 structural nonzeros at
+    /// [`SwingRatesAtOrigin::SWING_DOT`].
+    pub swing_dot: [T; 0],
+    /// `swing_dot` by `swing` \[mixed\], 2 x 2, 3 structural nonzeros at
+    /// [`SwingRatesAtOrigin::SWING_DOT_D_SWING`].
+    pub swing_dot_d_swing: [T; 3],
+    /// `swing_dot` by `rod` \[mixed\], 2 x 2, 0 structural nonzeros at
+    /// [`SwingRatesAtOrigin::SWING_DOT_D_ROD`].
+    pub swing_dot_d_rod: [T; 0],
+    /// `swing_dot` by `push` \[mixed\], 2 x 1, 1 structural nonzero at
+    /// [`SwingRatesAtOrigin::SWING_DOT_D_PUSH`].
+    pub swing_dot_d_push: [T; 1],
+}
+
+impl<T> SwingRatesAtOrigin<T> {
+    /// Row and column of each element of `swing_dot`.
+    pub const SWING_DOT: [(usize, usize); 0] = [];
+    /// Row and column of each element of `swing_dot_d_swing`.
+    ///
+    /// # Layout
+    /// - 0: column `angle`, row `rate_dot`
+    /// - 1-2: column `rate`, rows `angle_dot`, `rate_dot`
+    pub const SWING_DOT_D_SWING: [(usize, usize); 3] = [(1, 0), (0, 1), (1, 1)];
+    /// Row and column of each element of `swing_dot_d_rod`.
+    ///
+    /// # Layout
+    pub const SWING_DOT_D_ROD: [(usize, usize); 0] = [];
+    /// Row and column of each element of `swing_dot_d_push`.
+    ///
+    /// # Layout
+    /// - 0: column `torque`, row `rate_dot`
+    pub const SWING_DOT_D_PUSH: [(usize, usize); 1] = [(1, 0)];
+}
+
+impl<T: Scalar> SwingRatesAtOrigin<T> {
+    /// `swing_dot` with its zeros.
+    #[inline]
+    #[must_use]
+    pub fn swing_dot_dense(&self) -> [[T; 1]; 2] {
+        let mut dense = [[T::from_f64(0e0); 1]; 2];
+        for ((row, column), value) in Self::SWING_DOT.into_iter().zip(self.swing_dot) {
+            dense[row][column] = value;
+        }
+        dense
+    }
+    /// `swing_dot_d_swing` with its zeros.
+    #[inline]
+    #[must_use]
+    pub fn swing_dot_d_swing_dense(&self) -> [[T; 2]; 2] {
+        let mut dense = [[T::from_f64(0e0); 2]; 2];
+        for ((row, column), value) in Self::SWING_DOT_D_SWING
+            .into_iter()
+            .zip(self.swing_dot_d_swing)
+        {
+            dense[row][column] = value;
+        }
+        dense
+    }
+    /// `swing_dot_d_rod` with its zeros.
+    #[inline]
+    #[must_use]
+    pub fn swing_dot_d_rod_dense(&self) -> [[T; 2]; 2] {
+        let mut dense = [[T::from_f64(0e0); 2]; 2];
+        for ((row, column), value) in Self::SWING_DOT_D_ROD
+            .into_iter()
+            .zip(self.swing_dot_d_rod)
+        {
+            dense[row][column] = value;
+        }
+        dense
+    }
+    /// `swing_dot_d_push` with its zeros.
+    #[inline]
+    #[must_use]
+    pub fn swing_dot_d_push_dense(&self) -> [[T; 1]; 2] {
+        let mut dense = [[T::from_f64(0e0); 1]; 2];
+        for ((row, column), value) in Self::SWING_DOT_D_PUSH
+            .into_iter()
+            .zip(self.swing_dot_d_push)
+        {
+            dense[row][column] = value;
+        }
+        dense
+    }
+}
+
+/// Rates and Jacobians at rest.
+///
+/// Source: Newton \<1687\> \[law 2\].
+///
+/// # Arguments
+/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `field`: Field of gravity \[m/s^2\], 1 in the order of [`Field`].
+///
+/// # Returns
+/// - `swing_dot`: Rates of the state \[rad/s, rad/s^2\], 2 x 1, 0 structural nonzeros at
+///   [`SwingRatesAtOrigin::SWING_DOT`].
+/// - `swing_dot_d_swing`: `swing_dot` by `swing` \[mixed\], 2 x 2, 3 structural nonzeros at
+///   [`SwingRatesAtOrigin::SWING_DOT_D_SWING`].
+/// - `swing_dot_d_rod`: `swing_dot` by `rod` \[mixed\], 2 x 2, 0 structural nonzeros at
+///   [`SwingRatesAtOrigin::SWING_DOT_D_ROD`].
+/// - `swing_dot_d_push`: `swing_dot` by `push` \[mixed\], 2 x 1, 1 structural nonzero at
+///   [`SwingRatesAtOrigin::SWING_DOT_D_PUSH`].
+///
+/// # Domain
+/// Length above 0.
+///
+/// # Cost
+/// 2 multiplications, 3 divisions, 2 negations.
+#[inline(always)]
+#[must_use]
+pub fn swing_rates_at_origin<T: Scalar>(
+    rod: &[T; 2],
+    field: &[T; 1],
+) -> SwingRatesAtOrigin<T> {
+    let [length, damping] = *rod;
+    let [gravity] = *field;
+    let length_squared = length * length;
+    SwingRatesAtOrigin {
+        swing_dot: [],
+        swing_dot_d_swing: [
+            -gravity / length,
+            T::from_f64(1e0),
+            -damping / (length * length_squared),
+        ],
+        swing_dot_d_rod: [],
+        swing_dot_d_push: [T::from_f64(1e0) / length_squared],
+    }
+}
+
+/// What [`bob_place_at_origin`] gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BobPlaceAtOrigin<T> {
+    /// Place of the bob \[m\], 2 x 1, 1 structural nonzero at [`BobPlaceAtOrigin::BOB`].
+    pub bob: [T; 1],
+    /// `bob` by `swing` \[mixed\], 2 x 2, 1 structural nonzero at
+    /// [`BobPlaceAtOrigin::BOB_D_SWING`].
+    pub bob_d_swing: [T; 1],
+    /// `bob` by `rod` \[mixed\], 2 x 2, 1 structural nonzero at [`BobPlaceAtOrigin::BOB_D_ROD`].
+    pub bob_d_rod: [T; 1],
+}
+
+impl<T> BobPlaceAtOrigin<T> {
+    /// Row and column of each element of `bob`.
+    pub const BOB: [(usize, usize); 1] = [(1, 0)];
+    /// Row and column of each element of `bob_d_swing`.
+    ///
+    /// # Layout
+    /// - 0: column `angle`, row `across`
+    pub const BOB_D_SWING: [(usize, usize); 1] = [(0, 0)];
+    /// Row and column of each element of `bob_d_rod`.
+    ///
+    /// # Layout
+    /// - 0: column `length`, row `up`
+    pub const BOB_D_ROD: [(usize, usize); 1] = [(1, 0)];
+}
+
+impl<T: Scalar> BobPlaceAtOrigin<T> {
+    /// `bob` with its zeros.
+    #[inline]
+    #[must_use]
+    pub fn bob_dense(&self) -> [[T; 1]; 2] {
+        let mut dense = [[T::from_f64(0e0); 1]; 2];
+        for ((row, column), value) in Self::BOB.into_iter().zip(self.bob) {
+            dense[row][column] = value;
+        }
+        dense
+    }
+    /// `bob_d_swing` with its zeros.
+    #[inline]
+    #[must_use]
+    pub fn bob_d_swing_dense(&self) -> [[T; 2]; 2] {
+        let mut dense = [[T::from_f64(0e0); 2]; 2];
+        for ((row, column), value) in Self::BOB_D_SWING.into_iter().zip(self.bob_d_swing)
+        {
+            dense[row][column] = value;
+        }
+        dense
+    }
+    /// `bob_d_rod` with its zeros.
+    #[inline]
+    #[must_use]
+    pub fn bob_d_rod_dense(&self) -> [[T; 2]; 2] {
+        let mut dense = [[T::from_f64(0e0); 2]; 2];
+        for ((row, column), value) in Self::BOB_D_ROD.into_iter().zip(self.bob_d_rod) {
+            dense[row][column] = value;
+        }
+        dense
+    }
+}
+
+/// Where the bob is at rest, with Jacobians.
+///
+/// Source: Newton \<1687\> \[law 2\].
+///
+/// # Arguments
+/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+///
+/// # Returns
+/// - `bob`: Place of the bob \[m\], 2 x 1, 1 structural nonzero at [`BobPlaceAtOrigin::BOB`].
+/// - `bob_d_swing`: `bob` by `swing` \[mixed\], 2 x 2, 1 structural nonzero at
+///   [`BobPlaceAtOrigin::BOB_D_SWING`].
+/// - `bob_d_rod`: `bob` by `rod` \[mixed\], 2 x 2, 1 structural nonzero at
+///   [`BobPlaceAtOrigin::BOB_D_ROD`].
+///
+/// # Domain
+/// All finite inputs.
+///
+/// # Cost
+/// 1 negation.
+#[inline(always)]
+#[must_use]
+pub fn bob_place_at_origin<T: Scalar>(rod: &[T; 2]) -> BobPlaceAtOrigin<T> {
+    let [length, _] = *rod;
+    BobPlaceAtOrigin {
+        bob: [-length],
+        bob_d_swing: [length],
+        bob_d_rod: [T::from_f64(-1e0)],
     }
 }
 
@@ -661,6 +890,30 @@ impl<T: Scalar> Model<T, 2, 2> for Pendulum {
         result.swing_dot
     }
     #[inline]
+    fn rates_jacobian_at_origin(
+        &self,
+        parameters: &[T],
+        inputs: &Self::Inputs,
+        jacobian: &mut RatesJacobian<'_, T, 2>,
+    ) -> [T; 2] {
+        let Ok(parameters) = <&[T; 2]>::try_from(parameters) else {
+            panic!("expected 2 parameters, found {}", parameters.len())
+        };
+        let found = jacobian.parameters.len();
+        let Ok(d_parameters) = <&mut [T; 4]>::try_from(&mut *jacobian.parameters) else {
+            panic!("expected 4 derivatives by parameters, found {found}")
+        };
+        let result = swing_rates_at_origin(parameters, &inputs.field);
+        let zero = T::from_f64(0e0);
+        jacobian.moving[1][0] = result.swing_dot_d_swing[0];
+        jacobian.moving[0][1] = result.swing_dot_d_swing[1];
+        jacobian.moving[1][1] = result.swing_dot_d_swing[2];
+        jacobian.noise[1][0] = result.swing_dot_d_push[0];
+        d_parameters[2] = zero;
+        d_parameters[3] = zero;
+        [zero, zero]
+    }
+    #[inline]
     fn output(
         &self,
         moving: &[T; 2],
@@ -694,5 +947,28 @@ impl<T: Scalar> Model<T, 2, 2> for Pendulum {
         d_parameters[0] = result.bob_d_rod[0];
         d_parameters[1] = result.bob_d_rod[1];
         result.bob
+    }
+    #[inline]
+    fn output_jacobian_at_origin(
+        &self,
+        parameters: &[T],
+        _inputs: &Self::Inputs,
+        d_moving: &mut [[T; 2]; 2],
+        d_parameters: &mut [T],
+    ) -> [T; 2] {
+        let Ok(parameters) = <&[T; 2]>::try_from(parameters) else {
+            panic!("expected 2 parameters, found {}", parameters.len())
+        };
+        let found = d_parameters.len();
+        let Ok(d_parameters) = <&mut [T; 2]>::try_from(d_parameters) else {
+            panic!("expected 2 derivatives by parameters, found {found}")
+        };
+        let result = bob_place_at_origin(parameters);
+        let zero = T::from_f64(0e0);
+        d_moving[0][0] = result.bob_d_swing[0];
+        d_moving[1][0] = zero;
+        d_parameters[0] = zero;
+        d_parameters[1] = result.bob_d_rod[0];
+        [zero, result.bob[0]]
     }
 }

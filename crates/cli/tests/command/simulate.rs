@@ -1,12 +1,8 @@
 //! `gyrocal simulate` as a user runs it.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
-
-mod common;
-
 use std::fs;
 
-use common::{Folder, repository};
+use crate::folder::{Folder, repository};
 
 const SCENARIO: &str = "\
 seed = 1
@@ -88,9 +84,9 @@ fn the_record_that_ships_is_what_its_scenario_gives() {
         "--out",
         "three_days.csv",
         "--bench-out",
-        "three_days.toml",
+        "three_days.bench.toml",
     ]);
-    for name in ["three_days.csv", "three_days.toml"] {
+    for name in ["three_days.csv", "three_days.bench.toml"] {
         let shipped = repository("examples/data").join(name);
         assert!(
             folder.text(name) == fs::read_to_string(shipped).unwrap(),

@@ -37,7 +37,11 @@ fn a_program_is_read_and_run() {
 #[test]
 fn an_output_that_is_never_written_agrees_with_nothing() {
     let program = read(r#"["const", 0, 1.0], ["output", 0, 0, 0]"#).unwrap();
-    let flat = program.function("f").unwrap().evaluate(&[0.0, 0.0]).unwrap();
+    let flat = program
+        .function("f")
+        .unwrap()
+        .evaluate(&[0.0, 0.0])
+        .unwrap();
     assert!(flat[1].is_nan() && flat[2].is_nan());
 }
 
@@ -48,7 +52,11 @@ fn every_operation_of_the_schema_does_what_its_name_says() {
             r#"["input", 0, 0, 0], ["input", 1, 1, 0], ["{operation}", 2, {operands}], ["output", 1, 0, 2]"#
         ))
         .unwrap();
-        program.function("f").unwrap().evaluate(&[0.75, -2.0]).unwrap()[2]
+        program
+            .function("f")
+            .unwrap()
+            .evaluate(&[0.75, -2.0])
+            .unwrap()[2]
     };
     // Expected values to 16 digits, worked out outside this crate.
     let unary = [
@@ -107,7 +115,10 @@ fn what_cannot_be_run_is_refused_when_read() {
     for (instructions, says) in [
         (r#"["input", 3, 0, 0]"#, "3 is beyond the work vector of 3"),
         (r#"["input", 0, 1, 1]"#, "1 is beyond the vector of 1"),
-        (r#"["output", 2, 0, 0]"#, "2 is beyond the list of vectors of 2"),
+        (
+            r#"["output", 2, 0, 0]"#,
+            "2 is beyond the list of vectors of 2",
+        ),
         (r#"["frobnicate", 0, 0]"#, "unknown operation `frobnicate`"),
         (r#"["add", 0, 0]"#, "unknown operation `add`"),
         (r#"["const", 0]"#, "no constant"),
@@ -117,10 +128,21 @@ fn what_cannot_be_run_is_refused_when_read() {
         assert!(message.contains(says), "{message}");
     }
     let other = TEMPLATE.replace(r#""schema_version": 1"#, r#""schema_version": 2"#);
-    let message = Program::from_json(&other.replace("{instructions}", "")).unwrap_err().to_string();
+    let message = Program::from_json(&other.replace("{instructions}", ""))
+        .unwrap_err()
+        .to_string();
     assert_eq!(message, "program `small` has schema version 2, expected 1");
     let program = read(INSTRUCTIONS).unwrap();
-    assert!(program.function("g").unwrap_err().to_string().contains("`g`"));
-    let message = program.functions[0].evaluate(&[1.0]).unwrap_err().to_string();
+    assert!(
+        program
+            .function("g")
+            .unwrap_err()
+            .to_string()
+            .contains("`g`")
+    );
+    let message = program.functions[0]
+        .evaluate(&[1.0])
+        .unwrap_err()
+        .to_string();
     assert_eq!(message, "function `f` takes 2 scalars, 1 were given");
 }

@@ -1,0 +1,259 @@
+//! `gyrocal calibrate` on bad input: exit code 1, one message that says where, what was found
+//! and what was expected, no output, no panic.
+
+use std::fs;
+
+use crate::folder::{Folder, repository};
+
+const JSON: [&str; 6] = [
+    "calibrate",
+    "r.csv",
+    "--bench",
+    "b.toml",
+    "--json",
+    "o.json",
+];
+
+/// Header and the first rows of the record that ships, one a minute.
+fn record(rows: usize) -> String {
+    let whole = fs::read_to_string(repository("examples/data/three_days.csv")).unwrap();
+    let lines: Vec<&str> = whole.lines().take(rows + 1).collect();
+    lines.join("\n") + "\n"
+}
+
+fn bench() -> String {
+    fs::read_to_string(repository("examples/data/three_days.bench.toml")).unwrap()
+}
+
+/// The message for these two files.
+fn refused(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> String {
+    let folder = Folder::new();
+    folder.put("r.csv", record);
+    folder.put("b.toml", bench);
+    folder.fail(&JSON)
+}
+
+/// The record with one line, counted from 1, replaced.
+fn with_line(rows: usize, line: usize, replacement: &str) -> String {
+    let whole = record(rows);
+    let mut lines: Vec<&str> = whole.lines().collect();
+    lines[line - 1] = replacement;
+    lines.join("\n") + "\n"
+}
+
+#[track_caller]
+fn assert_says(errors: &str, message: &str) {
+    assert!(errors.contains(message), "{message}\nis not in\n{errors}");
+}
+
+#[test]
+fn what_the_cases_start_from_is_good() {
+    let folder = Folder::new();
+    folder.put("r.csv", record(12));
+    folder.put("b.toml", bench());
+    folder.succeed(&JSON);
+    assert_eq!(folder.names(), ["b.toml", "o.json", "r.csv"]);
+}
+
+#[test]
+fn bad_records_are_shown_where_they_are_wrong() {
+    let cases = [
+        (
+            with_line(20, 1, "time_s,accel_x,accel_y_g,accel_z_g"),
+            "r.csv:1:8: found the unknown column `accel_x`, expected `accel_x_g` or \
+             `temperature_c`",
+        ),
+        (
+            with_line(20, 1, "time_s,accel_x_g,accel_y_g"),
+            "r.csv:1:1: found the header `time_s,accel_x_g,accel_y_g`, expected a column \
+             `accel_z_g` too",
+        ),
+        (
+            with_line(20, 7, "300.0,0.46,-0.114,0.89O"),
+            "r.csv:7:19: found `0.89O`, expected a finite number or `nan`",
+        ),
+        (
+            with_line(20, 7, "300.0,0.46,-0.114"),
+            "r.csv:7:1: found 3 fields, expected 4 fields, as the header has",
+        ),
+        // The last line of the whole record lies beyond every buffer of a reader.
+        (
+            with_line(4321, 4322, "259200.0,inf,0.0,0.9"),
+            "r.csv:4322:10: found `inf`, expected a finite number or `nan`",
+        ),
+        (
+            with_line(20, 7, "180.0,0.46,-0.114,0.89"),
+            "r.csv:7:1: found time 180 s after 240 s, expected a time greater than 240 s",
+        ),
+        (
+            with_line(20, 7, "240.0,0.46,-0.114,0.89"),
+            "r.csv:7:1: found time 240 s after 240 s, expected a time greater than 240 s",
+        ),
+        (
+            record(11),
+            "r.csv:12:1: found 11 rows after the header, expected at least 12 rows",
+        ),
+        (
+            record(0),
+            "r.csv:1:1: found 0 rows after the header, expected at least 12 rows",
+        ),
+        (
+            with_line(20, 7, "300.0,0.0,0.0,9.81"),
+            "r.csv:7:1: found a norm of specific force of 9.810 g (row 6 after the header), \
+             expected a norm near 1 g, from 0.5 to 1.5",
+        ),
+        (
+            String::new(),
+            "r.csv:1:1: found an empty file, expected some content",
+        ),
+    ];
+    for (text, message) in cases {
+        // Shown as far as the message needs it, marked unless there is nothing to mark.
+        let errors = refused(&text, bench());
+        assert_says(&errors, message);
+        assert_eq!(errors.contains("here"), !text.is_empty(), "{errors}");
+        let windows = refused(text.replace('\n', "\r\n"), bench());
+        assert_says(&windows, message);
+    }
+}
+
+#[test]
+fn a_record_in_another_unit_is_suspected_of_it() {
+    let rows = (0..20).map(|row| format!("{},0.0,0.0,9.81\n", 60 * row));
+    let text = format!(
+        "time_s,accel_x_g,accel_y_g,accel_z_g\n{}",
+        rows.collect::<String>()
+    );
+    let errors = refused(text, bench());
+    assert_says(
+        &errors,
+        "r.csv:2:1: found a record in which the median norm of specific force is 9.810 g (row 1 \
+         after the header), expected a norm near 1 g",
+    );
+    assert_says(&errors, "the columns seem to be in m/s^2");
+}
+
+#[test]
+fn files_that_are_not_text_are_refused() {
+    let mut bytes = record(20).into_bytes();
+    bytes.extend(b"1200.0,0.4\xff,0.1,0.9\n");
+    assert_says(
+        &refused(bytes, bench()),
+        "r.csv:22:11: found byte 0xFF, expected UTF-8 text",
+    );
+    assert_says(
+        &refused(record(20), b"# caf\xe9\n"),
+        "b.toml:1:6: found byte 0xE9, expected UTF-8 text",
+    );
+}
+
+#[test]
+fn bad_bench_files_are_shown_where_they_are_wrong() {
+    let cases = [
+        (
+            "= 48.2",
+            "= 90.001",
+            "b.toml:2:16: found `90.001`, expected a number from -90 to 90",
+        ),
+        (
+            "= 48.2",
+            "= -90.001",
+            "b.toml:2:16: found `-90.001`, expected a number from -90 to 90",
+        ),
+        (
+            "= 1e-5",
+            "= 0.0",
+            "b.toml:11:11: found `0.0`, expected a finite number greater than 0",
+        ),
+        (
+            "= 1e-5",
+            "= -1e-5",
+            "b.toml:11:11: found `-1e-5`, expected a finite number greater than 0",
+        ),
+        (
+            "= 0.002",
+            "= 0",
+            "b.toml:13:18: found `0`, expected a finite number greater than 0",
+        ),
+        (
+            "= 0.002",
+            "= -0.002",
+            "b.toml:13:18: found `-0.002`, expected a finite number greater than 0",
+        ),
+        (
+            "latitude_deg",
+            "lattitude_deg",
+            "b.toml:2:1: found the unknown key `lattitude_deg` in `[site]`, expected \
+             `latitude_deg`",
+        ),
+        (
+            "[noise]",
+            "[noises]",
+            "b.toml:9:2: found the unknown key `noises`, expected `site`, `platform`, `noise` or \
+             `prior`",
+        ),
+        (
+            "= 0.002",
+            "= small",
+            "b.toml:13:18: found `small`, expected valid TOML",
+        ),
+    ];
+    for (right, wrong, message) in cases {
+        let good = bench();
+        assert_eq!(good.matches(right).count(), 1, "{right}");
+        let errors = refused(record(20), good.replace(right, wrong));
+        assert_says(&errors, message);
+        assert!(errors.contains("here"), "{errors}");
+    }
+    let errors = refused(record(20), "");
+    assert_says(
+        &errors,
+        "b.toml:1:1: found an empty file, expected some content",
+    );
+}
+
+#[test]
+fn files_that_are_not_there_are_named() {
+    let folder = Folder::new();
+    assert_says(&folder.fail(&JSON), "b.toml: cannot be read: ");
+    folder.put("b.toml", bench());
+    assert_says(&folder.fail(&JSON), "r.csv: cannot be read: ");
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_named() {
+    let folder = Folder::new();
+    folder.put("r.csv", record(20));
+    folder.put("b.toml", bench());
+    fs::create_dir(folder.path("taken")).unwrap();
+    for path in ["no/such/folder/o.json", "taken"] {
+        let errors = folder.fail(&["calibrate", "r.csv", "--bench", "b.toml", "--json", path]);
+        assert_says(&errors, &format!("{path}: cannot be written: "));
+    }
+}
+
+#[test]
+fn a_refused_input_leaves_an_older_output_as_it_was() {
+    let folder = Folder::new();
+    folder.put("r.csv", record(5));
+    folder.put("b.toml", bench());
+    folder.put("o.json", "old");
+    folder.fail(&JSON);
+    assert_eq!(folder.text("o.json"), "old");
+}
+
+#[test]
+fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
+    for (right, wrong, row) in [
+        ("= 1e-5", "= 1e-200", "row 1 of the data (t = 0 s)"),
+        ("= 0.002", "= 1e200", "row 2 of the data (t = 60 s)"),
+    ] {
+        let errors = refused(record(20), bench().replace(right, wrong));
+        assert_says(&errors, &format!("r.csv: the filter stopped at {row}: "));
+        assert_says(
+            &errors,
+            "help: the numbers of the bench file are out of proportion",
+        );
+        assert_eq!(errors.matches("the filter stopped").count(), 1, "{errors}");
+    }
+}

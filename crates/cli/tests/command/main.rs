@@ -1,0 +1,8 @@
+//! The command `gyrocal` as a user runs it.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod bad_input;
+mod calibrate;
+mod folder;
+mod simulate;

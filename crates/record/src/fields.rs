@@ -1,0 +1,165 @@
+//! The fields of a CSV file, each with its place in the text.
+
+use std::ops::Range;
+
+use csv::{ByteRecord, Reader, ReaderBuilder};
+
+use crate::error::{Error, InputErrorKind};
+use crate::source::SourceText;
+
+/// The lines of a CSV file that have something in them.
+pub(crate) struct Lines<'a> {
+    source: &'a SourceText,
+    reader: Reader<&'a [u8]>,
+    fields: ByteRecord,
+}
+
+/// One line.
+#[derive(Debug, Default)]
+pub(crate) struct Line<'a> {
+    /// Its place in the text, without white space around it.
+    pub(crate) span: Range<usize>,
+    /// Its fields.
+    pub(crate) fields: Vec<Field<'a>>,
+}
+
+/// One field, without white space around it.
+#[derive(Debug)]
+pub(crate) struct Field<'a> {
+    /// Its place in the text, with its quotation marks if it has any.
+    pub(crate) span: Range<usize>,
+    /// Its text without them.
+    pub(crate) text: &'a str,
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn of(source: &'a SourceText) -> Self {
+        // Quotation marks are left to `Field`: names and numbers need none, and a field that
+        // the reader had unquoted could not be found again in the text.
+        let reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .quoting(false)
+            .from_reader(source.text().as_bytes());
+        Self {
+            source,
+            reader,
+            fields: ByteRecord::new(),
+        }
+    }
+
+    /// The next line, or `None` after the last.
+    pub(crate) fn next_line(&mut self) -> Result<Option<Line<'a>>, Error> {
+        while self.read()? {
+            let line = self.line();
+            if !line.span.is_empty() {
+                return Ok(Some(line));
+            }
+        }
+        Ok(None)
+    }
+
+    fn read(&mut self) -> Result<bool, Error> {
+        let start = usize::try_from(self.reader.position().byte()).unwrap_or(0);
+        self.reader
+            .read_byte_record(&mut self.fields)
+            .map_err(|error| {
+                self.source.error(
+                    InputErrorKind::Syntax,
+                    start..start,
+                    error.to_string(),
+                    "comma-separated values",
+                    "",
+                )
+            })
+    }
+
+    fn line(&self) -> Line<'a> {
+        let text = self.source.text();
+        let position = self.fields.position().map_or(0, csv::Position::byte);
+        let position = usize::try_from(position).unwrap_or(text.len());
+        // The reader's position is before the end of the previous line if that is two
+        // characters, and before empty lines.
+        let ends = text[position..].bytes();
+        let start = position
+            + ends
+                .take_while(|byte| matches!(byte, b'\r' | b'\n'))
+                .count();
+        let fields: Vec<Field<'a>> = (0..self.fields.len())
+            .filter_map(|field| {
+                // One comma before each field but the first.
+                let place = self.fields.range(field)?;
+                Some(Field::at(
+                    text,
+                    start + field + place.start..start + field + place.end,
+                ))
+            })
+            .collect();
+        let span = match (fields.first(), fields.last()) {
+            (Some(first), Some(last)) => first.span.start..last.span.end,
+            _ => start..start,
+        };
+        Line { span, fields }
+    }
+}
+
+impl<'a> Field<'a> {
+    fn at(text: &'a str, place: Range<usize>) -> Self {
+        let whole = &text[place.clone()];
+        let bare = whole.trim();
+        let start = place.start + (whole.len() - whole.trim_start().len());
+        let unquoted = bare
+            .strip_prefix('"')
+            .and_then(|rest| rest.strip_suffix('"'))
+            .map_or(bare, str::trim);
+        Self {
+            span: start..start + bare.len(),
+            text: unquoted,
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::expect_used)]
+mod tests {
+    use super::*;
+
+    /// Each field of each line as it stands in the text, with line and column.
+    fn fields(text: &str) -> Vec<(usize, usize, String)> {
+        let source = SourceText::new(text, "t.csv").unwrap();
+        let mut lines = Lines::of(&source);
+        let mut found = Vec::new();
+        while let Some(line) = lines.next_line().unwrap() {
+            for field in line.fields {
+                let (at_line, at_column) = source.line_and_column(field.span.start);
+                found.push((at_line, at_column, source.text()[field.span].to_owned()));
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn every_field_is_where_it_stands_whatever_ends_the_lines() {
+        let expected = [
+            (1, 1, "a"),
+            (1, 3, "\"b\""),
+            (3, 2, "é1"),
+            (3, 6, "22"),
+            (6, 1, ""),
+            (6, 3, "4"),
+        ];
+        let expected = expected.map(|(line, column, text)| (line, column, text.to_owned()));
+        for end in ["\n", "\r\n", "\r"] {
+            let text = "a,\"b\"\n\n é1 ,22\n\n  \n, 4\n\n".replace('\n', end);
+            assert_eq!(fields(&text), expected, "{text:?}");
+            assert_eq!(fields(&format!("\u{feff}{text}")), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_quotation_mark_that_never_closes_swallows_no_lines() {
+        let found = fields("\"a,b\n1,2\n");
+        let texts: Vec<&str> = found.iter().map(|(_, _, text)| &text[..]).collect();
+        assert_eq!(texts, ["\"a", "b", "1", "2"]);
+    }
+}

@@ -1,0 +1,6 @@
+//! What the numbers of the filter are worth: against extended precision, over a year, from
+//! badly scaled priors, near gimbal lock, with poisoned workspace.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod accuracy;
+mod reference;
