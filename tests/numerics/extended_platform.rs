@@ -187,6 +187,10 @@ impl Model<f64, 3, 3> for ExtendedPlatform {
 }
 
 impl Recentre<f64, 3, 3> for ExtendedPlatform {
+    fn has_chart(&self) -> bool {
+        Recentre::<f64, 3, 3>::has_chart(&INNER)
+    }
+
     fn recentre(&self, moving: &mut [f64; 3], chart: &mut Chart<f64>) -> Option<[[f64; 3]; 3]> {
         INNER.recentre(moving, chart)
     }

@@ -3,4 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod accuracy;
+mod definiteness;
+mod extended_platform;
+mod extension;
+mod gimbal_lock;
+mod poisoning;
 mod reference;
+mod truth;

@@ -2,10 +2,10 @@ use core::marker::PhantomData;
 
 use gyrocal_scalar::{Real, Recentre};
 
+use crate::covariance::{self, Observation, Projection};
 use crate::error::EstimationError;
-use crate::factor::{self, Observation};
 use crate::innovation::Innovation;
-use crate::lanes4::{load, mul_add, store};
+use crate::lanes4::{load_rows, mul_add, store};
 use crate::storage::{Storage, View};
 use crate::transition::{Integration, Integrator};
 
@@ -79,14 +79,13 @@ where
         }
         let buffers = storage.buffers();
         buffers.state.copy_from_slice(state);
-        buffers.factor.fill(T::from_f64(0.0));
+        buffers.covariance.fill(T::from_f64(0.0));
         for (j, sigma) in sigma.iter().enumerate() {
             let variance = *sigma * *sigma;
             if !(*sigma > T::from_f64(0.0) && variance.is_finite()) {
                 return Err(EstimationError::NotPositiveDefinite { state: j });
             }
-            buffers.factor[j * n + j] = T::from_f64(1.0);
-            buffers.pivots[j] = variance;
+            buffers.covariance[j * n + j] = variance;
         }
         let mut filter = Self {
             model,
@@ -104,6 +103,7 @@ where
     /// The prior is given in the coordinates of the first chart; carries it to a chart at the
     /// first state where the policy wants one.
     fn recentre_at_start(&mut self) -> Result<(), EstimationError> {
+        let n = self.storage.states();
         let buffers = self.storage.buffers();
         let mut moving = to_array(&buffers.state[..M]);
         if !self.recentring.wanted(&moving) {
@@ -114,7 +114,9 @@ where
         };
         buffers.state[..M].copy_from_slice(&moving);
         let zero = [T::from_f64(0.0); M];
-        factor::predict_corner(buffers.factor, buffers.pivots, &map, &[zero; M], &zero)
+        buffers.transition.fill(T::from_f64(0.0));
+        let columns = &buffers.transition[..M * (n - M)];
+        covariance::predict(buffers.covariance, n, &map, columns, &[zero; M], &zero)
     }
 
     /// Predicts over `dt` seconds with noise of the given spectral densities (unit of the
@@ -156,11 +158,11 @@ where
         moving_slice.copy_from_slice(&moving);
         self.moving_transition = transition.moving;
         let variance = noise_density.map(|density| density / dt);
-        factor::predict(
-            buffers.factor,
-            buffers.pivots,
+        covariance::predict(
+            buffers.covariance,
+            n,
             &transition.moving,
-            buffers.transition,
+            &buffers.transition[..M * (n - M)],
             &transition.noise,
             &variance,
         )
@@ -180,17 +182,20 @@ where
         check_noise(noise_variance)?;
         let mut moving = to_array(&self.storage.view().state[..M]);
         let observation = self.observe(&moving, measured, noise_variance);
-        let q = self.model.output_parameters();
+        let (n, q) = (self.storage.states(), self.model.output_parameters());
         let buffers = self.storage.buffers();
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
-        let (innovation, correction) = factor::update(
-            buffers.factor,
-            buffers.pivots,
+        let output = &buffers.output[..Y * q];
+        let projection = Projection::new(buffers.covariance, n, &observation, output)?;
+        let innovation = projection.innovation(&observation)?;
+        let correction = projection.update(
+            buffers.covariance,
+            n,
             parameters,
             &observation,
-            &buffers.output[..Y * q],
+            output,
+            &innovation,
             buffers.gain,
-            buffers.sweep,
         )?;
         match self.recentring {
             Recentring::EveryStep => {
@@ -215,7 +220,7 @@ where
         noise_variance: &[T; Y],
     ) -> Observation<T, M, Y> {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        let q = self.model.output_parameters();
+        let (n, q) = (self.storage.states(), self.model.output_parameters());
         let buffers = self.storage.buffers();
         let mut observation = Observation {
             moving: [[zero; M]; Y],
@@ -257,15 +262,11 @@ where
         check_noise(noise_variance)?;
         let moving = to_array(&self.storage.view().state[..M]);
         let observation = self.observe(&moving, measured, noise_variance);
-        let q = self.model.output_parameters();
+        let (n, q) = (self.storage.states(), self.model.output_parameters());
         let buffers = self.storage.buffers();
-        let innovation = factor::innovation(
-            buffers.factor,
-            buffers.pivots,
-            &observation,
-            &buffers.output[..Y * q],
-            buffers.gain,
-        )?;
+        let output = &buffers.output[..Y * q];
+        let innovation =
+            Projection::new(buffers.covariance, n, &observation, output)?.innovation(&observation)?;
         if innovation.nis > largest_nis {
             return Ok((innovation, false));
         }
@@ -284,8 +285,7 @@ where
     /// If an index is not that of a state.
     #[must_use]
     pub fn covariance(&self, i: usize, j: usize) -> T {
-        let View { factor, pivots, .. } = self.storage.view();
-        factor::covariance(factor, pivots, i, j)
+        covariance::element(self.storage.view().covariance, self.storage.states(), M, i, j)
     }
 
     /// Standard deviation of the error of state `i`.
@@ -368,7 +368,7 @@ fn map_columns<T: Real, const M: usize, const W: usize>(
     p: usize,
     column: usize,
 ) {
-    let old: [[T; W]; M] = core::array::from_fn(|l| load(rows, l * p + column));
+    let old: [[T; W]; M] = load_rows(rows, p, column);
     for (i, weights) in map.iter().enumerate() {
         let mut sum = [T::from_f64(0.0); W];
         for (row, weight) in old.iter().zip(weights) {

@@ -10,6 +10,23 @@ pub(crate) fn load<T: Scalar, const W: usize>(slice: &[T], at: usize) -> [T; W] 
     lanes
 }
 
+/// `W` consecutive numbers from `at` of each of the first `R` rows of a matrix.
+///
+/// A loop and not `array::from_fn`: a closure that is not inlined hides from the compiler that
+/// the stride is a constant.
+#[inline(always)]
+pub(crate) fn load_rows<T: Scalar, const R: usize, const W: usize>(
+    matrix: &[T],
+    stride: usize,
+    at: usize,
+) -> [[T; W]; R] {
+    let mut rows = [[T::from_f64(0.0); W]; R];
+    for (i, row) in rows.iter_mut().enumerate() {
+        *row = load(matrix, i * stride + at);
+    }
+    rows
+}
+
 /// Writes `lanes` to `slice` from `at`.
 #[inline(always)]
 pub(crate) fn store<T: Scalar, const W: usize>(slice: &mut [T], at: usize, lanes: [T; W]) {
@@ -28,10 +45,20 @@ pub(crate) fn mul_add<T: Scalar, const W: usize>(a: [T; W], factor: T, b: [T; W]
 
 /// `a * b + c`, lane by lane.
 #[inline(always)]
-pub(crate) fn multiply_add<T: Scalar, const W: usize>(a: [T; W], b: [T; W], c: [T; W]) -> [T; W] {
+fn multiply_add<T: Scalar, const W: usize>(a: [T; W], b: [T; W], c: [T; W]) -> [T; W] {
     let mut result = c;
     for (sum, (a, b)) in result.iter_mut().zip(a.into_iter().zip(b)) {
         *sum = a.mul_add(b, *sum);
     }
     result
+}
+
+/// Inner product.
+#[inline(always)]
+pub(crate) fn dot<T: Scalar, const W: usize>(a: [T; W], b: [T; W]) -> T {
+    let products = multiply_add(a, b, [T::from_f64(0.0); W]);
+    match products.as_slice() {
+        [a, b, c, d] => (*a + *b) + (*c + *d),
+        other => other.iter().fold(T::from_f64(0.0), |sum, value| sum + *value),
+    }
 }

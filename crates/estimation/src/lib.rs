@@ -41,8 +41,8 @@ extern crate alloc;
 
 #[cfg(feature = "nalgebra")]
 pub mod dense;
+mod covariance;
 mod error;
-mod factor;
 mod filter;
 mod innovation;
 mod lanes4;
@@ -50,7 +50,6 @@ mod storage;
 mod transition;
 
 pub use error::EstimationError;
-pub use factor::factorise;
 pub use filter::{Filter, Recentring};
 pub use innovation::Innovation;
 #[cfg(feature = "alloc")]

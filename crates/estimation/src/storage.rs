@@ -8,10 +8,8 @@
 pub struct Buffers<'a, T> {
     /// The state: moving states, then parameters; n.
     pub state: &'a mut [T],
-    /// U by columns, with its unit diagonal and the zeros below it; n × n.
-    pub factor: &'a mut [T],
-    /// D; n.
-    pub pivots: &'a mut [T],
+    /// P by rows, n × n; of the parameters' rows only the parameter columns are used.
+    pub covariance: &'a mut [T],
     /// Parameter columns of Φ by rows; M × (n - M).
     pub transition: &'a mut [T],
     /// Parameter columns of the rates' Jacobian at each of up to four stages, by rows;
@@ -19,10 +17,8 @@ pub struct Buffers<'a, T> {
     pub stages: &'a mut [T],
     /// Parameter columns of the output's Jacobian by rows; Y × n at most.
     pub output: &'a mut [T],
-    /// Unnormalised gain of each output; Y × n.
+    /// Whitened gain V: row k times the whitened innovation k is the correction; Y × n.
     pub gain: &'a mut [T],
-    /// Coefficients of the sweep over the columns of U, v and λ; 2 × n × Y.
-    pub sweep: &'a mut [T],
 }
 
 /// What can be read of a filter's numbers between steps.
@@ -30,13 +26,11 @@ pub struct Buffers<'a, T> {
 pub struct View<'a, T> {
     /// The state: moving states, then parameters.
     pub state: &'a [T],
-    /// U by columns; n × n.
-    pub factor: &'a [T],
-    /// D.
-    pub pivots: &'a [T],
+    /// P by rows, n × n; of the parameters' rows only the parameter columns are used.
+    pub covariance: &'a [T],
     /// Parameter columns of the last Φ by rows.
     pub transition: &'a [T],
-    /// Unnormalised gain of each output of the last update; Y × n.
+    /// Whitened gain V of the last update; Y × n.
     pub gain: &'a [T],
 }
 
@@ -54,13 +48,11 @@ pub trait Storage<T> {
 #[derive(Clone, Debug)]
 pub struct ArrayStorage<T, const M: usize, const Y: usize, const N: usize> {
     state: [T; N],
-    factor: [[T; N]; N],
-    pivots: [T; N],
+    covariance: [[T; N]; N],
     transition: [[T; N]; M],
     stages: [[[T; N]; M]; 4],
     output: [[T; N]; Y],
     gain: [[T; N]; Y],
-    sweep: [[[T; Y]; N]; 2],
 }
 
 impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M, Y, N> {
@@ -71,13 +63,11 @@ impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArraySto
         let zero = T::default();
         Self {
             state: [zero; N],
-            factor: [[zero; N]; N],
-            pivots: [zero; N],
+            covariance: [[zero; N]; N],
             transition: [[zero; N]; M],
             stages: [[[zero; N]; M]; 4],
             output: [[zero; N]; Y],
             gain: [[zero; N]; Y],
-            sweep: [[[zero; Y]; N]; 2],
         }
     }
 }
@@ -100,13 +90,11 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
     fn buffers(&mut self) -> Buffers<'_, T> {
         Buffers {
             state: &mut self.state,
-            factor: self.factor.as_flattened_mut(),
-            pivots: &mut self.pivots,
+            covariance: self.covariance.as_flattened_mut(),
             transition: self.transition.as_flattened_mut(),
             stages: self.stages.as_flattened_mut().as_flattened_mut(),
             output: self.output.as_flattened_mut(),
             gain: self.gain.as_flattened_mut(),
-            sweep: self.sweep.as_flattened_mut().as_flattened_mut(),
         }
     }
 
@@ -114,8 +102,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
     fn view(&self) -> View<'_, T> {
         View {
             state: &self.state,
-            factor: self.factor.as_flattened(),
-            pivots: &self.pivots,
+            covariance: self.covariance.as_flattened(),
             transition: self.transition.as_flattened(),
             gain: self.gain.as_flattened(),
         }
@@ -127,7 +114,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
 #[derive(Clone, Debug)]
 pub struct VecStorage<T> {
     states: usize,
-    numbers: [alloc::vec::Vec<T>; 8],
+    numbers: [alloc::vec::Vec<T>; 6],
 }
 
 #[cfg(feature = "alloc")]
@@ -138,12 +125,10 @@ impl<T: Copy + Default> VecStorage<T> {
         let lengths = [
             states,
             states * states,
-            states,
             moving * states,
             4 * moving * states,
             outputs * states,
             outputs * states,
-            2 * outputs * states,
         ];
         Self { states, numbers: lengths.map(|length| alloc::vec![T::default(); length]) }
     }
@@ -156,13 +141,12 @@ impl<T> Storage<T> for VecStorage<T> {
     }
 
     fn buffers(&mut self) -> Buffers<'_, T> {
-        let [state, factor, pivots, transition, stages, output, gain, sweep] =
-            self.numbers.each_mut();
-        Buffers { state, factor, pivots, transition, stages, output, gain, sweep }
+        let [state, covariance, transition, stages, output, gain] = self.numbers.each_mut();
+        Buffers { state, covariance, transition, stages, output, gain }
     }
 
     fn view(&self) -> View<'_, T> {
-        let [state, factor, pivots, transition, _, _, gain, _] = self.numbers.each_ref();
-        View { state, factor, pivots, transition, gain }
+        let [state, covariance, transition, _, _, gain] = self.numbers.each_ref();
+        View { state, covariance, transition, gain }
     }
 }

@@ -579,8 +579,6 @@ impl<T> SwingRatesAtOrigin<T> {
     /// - 1-2: column `rate`, rows `angle_dot`, `rate_dot`
     pub const SWING_DOT_D_SWING: [(usize, usize); 3] = [(1, 0), (0, 1), (1, 1)];
     /// Row and column of each element of `swing_dot_d_rod`.
-    ///
-    /// # Layout
     pub const SWING_DOT_D_ROD: [(usize, usize); 0] = [];
     /// Row and column of each element of `swing_dot_d_push`.
     ///

@@ -1,0 +1,436 @@
+//! The covariance step on the structure of the model: moving states first, parameters after.
+//!
+//! P is one n × n array by rows. Rows of moving states are complete; of the rows of parameters
+//! only the parameter columns are kept, so the symmetric cross block is stored once. Both
+//! triangles of the parameter block are computed by the same operations in the same order, so
+//! it is symmetric to the last bit without being made so.
+//!
+//! - Prediction: Φ is the identity on the parameters, so the parameter block does not change;
+//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp.
+//! - Update: with S = L diag(α) Lᵀ the whitened gain is V = diag(α)^-1/2 L⁻¹ H P, and
+//!   P_pp ← P_pp - Vᵀ V. The moving block, where a measurement removes nearly all of a wide
+//!   prior, is updated in Joseph form, which cannot lose definiteness by cancellation.
+//!
+//! A variance that is not positive afterwards is an error; nothing is repaired.
+
+use gyrocal_scalar::Real;
+
+use crate::error::EstimationError;
+use crate::innovation::Innovation;
+use crate::lanes4::{dot, load, load_rows, mul_add, store};
+
+/// Element (i, j) of P, `moving` being the number of moving states.
+#[inline]
+pub(crate) fn element<T: Real>(p: &[T], n: usize, moving: usize, i: usize, j: usize) -> T {
+    if i < moving || j >= moving { p[i * n + j] } else { p[j * n + i] }
+}
+
+/// P ← Φ P Φᵀ + Γ diag(variance) Γᵀ.
+///
+/// `transition` are the moving columns of Φ, `columns` its parameter columns (M × p, by rows),
+/// `noise` is Γ.
+#[inline(always)]
+pub(crate) fn predict<T: Real, const M: usize>(
+    p: &mut [T],
+    n: usize,
+    transition: &[[T; M]; M],
+    columns: &[T],
+    noise: &[[T; M]; M],
+    variance: &[T; M],
+) -> Result<(), EstimationError> {
+    let count = n - M;
+    let half = T::from_f64(0.5);
+    // C Φ_mpᵀ with C = Φ_mp P_pp + 2 Φ_mm P_mp: its symmetric part is all that the parameters
+    // add to the moving block.
+    let mut added = [[T::from_f64(0.0); M]; M];
+    let mut column = 0;
+    while column + 4 <= count {
+        predict_columns::<T, M, 4>(p, n, transition, columns, column, &mut added);
+        column += 4;
+    }
+    while column < count {
+        predict_columns::<T, M, 1>(p, n, transition, columns, column, &mut added);
+        column += 1;
+    }
+    let corner: [[T; M]; M] = load_rows(p, n, 0);
+    let mut mapped = [[T::from_f64(0.0); M]; M];
+    for i in 0..M {
+        for (row, coefficient) in corner.iter().zip(&transition[i]) {
+            mapped[i] = mul_add(*row, *coefficient, mapped[i]);
+        }
+    }
+    for i in 0..M {
+        for j in 0..=i {
+            let mut sum = half * (added[i][j] + added[j][i]);
+            for k in 0..M {
+                sum = mapped[i][k].mul_add(transition[j][k], sum);
+                sum = (noise[i][k] * variance[k]).mul_add(noise[j][k], sum);
+            }
+            p[i * n + j] = sum;
+            p[j * n + i] = sum;
+        }
+    }
+    check_diagonal(p, n, M)
+}
+
+/// The moving rows Φ_mm P_mp + Φ_mp P_pp, for `W` columns, and what those columns add to C Φ_mpᵀ.
+#[inline(always)]
+fn predict_columns<T: Real, const M: usize, const W: usize>(
+    p: &mut [T],
+    n: usize,
+    transition: &[[T; M]; M],
+    columns: &[T],
+    column: usize,
+    added: &mut [[T; M]; M],
+) {
+    let (count, at) = (n - M, M + column);
+    let old: [[T; W]; M] = load_rows(p, n, at);
+    let mut mapped = [[T::from_f64(0.0); W]; M];
+    for i in 0..M {
+        for (row, coefficient) in old.iter().zip(&transition[i]) {
+            mapped[i] = mul_add(*row, *coefficient, mapped[i]);
+        }
+    }
+    let mut sums = mapped;
+    for l in 0..count {
+        let row: [T; W] = load(p, (M + l) * n + at);
+        for i in 0..M {
+            sums[i] = mul_add(row, columns[i * count + l], sums[i]);
+        }
+    }
+    let phi: [[T; W]; M] = load_rows(columns, count, column);
+    for i in 0..M {
+        store(p, i * n + at, sums[i]);
+        let both = mul_add(mapped[i], T::from_f64(1.0), sums[i]);
+        for j in 0..M {
+            added[i][j] = added[i][j] + dot(both, phi[j]);
+        }
+    }
+}
+
+/// One measurement: Jacobian of the outputs, their noise and their residuals. An output
+/// that was not observed has a zero row, unit variance and zero residual.
+///
+/// The columns of H of the q parameters that enter the output are kept apart, as `output`
+/// (Y × q, by rows), because their number is the model's.
+pub(crate) struct Observation<T, const M: usize, const Y: usize> {
+    /// Moving columns of H.
+    pub(crate) moving: [[T; M]; Y],
+    /// Noise variance of each output.
+    pub(crate) variance: [T; Y],
+    /// Measured minus predicted output.
+    pub(crate) residual: [T; Y],
+    /// Which outputs were observed.
+    pub(crate) observed: [bool; Y],
+}
+
+/// H P on the moving columns, and S = H P Hᵀ + R factored.
+pub(crate) struct Projection<T, const M: usize, const Y: usize> {
+    moving: [[T; M]; Y],
+    /// L, unit lower triangular.
+    lower: [[T; Y]; Y],
+    /// α.
+    variance: [T; Y],
+    /// α⁻¹.
+    reciprocal: [T; Y],
+}
+
+impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
+    /// Projects P on the outputs.
+    #[inline(always)]
+    pub(crate) fn new(
+        p: &[T],
+        n: usize,
+        observation: &Observation<T, M, Y>,
+        output: &[T],
+    ) -> Result<Self, EstimationError> {
+        let q = output.len() / Y;
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let h = &observation.moving;
+        let mut moving = [[zero; M]; Y];
+        for k in 0..Y {
+            for j in 0..M {
+                let mut sum = zero;
+                for i in 0..M {
+                    sum = h[k][i].mul_add(p[i * n + j], sum);
+                }
+                for i in 0..q {
+                    sum = output[k * q + i].mul_add(p[j * n + M + i], sum);
+                }
+                moving[k][j] = sum;
+            }
+        }
+        let mut projection =
+            Self { moving, lower: [[zero; Y]; Y], variance: [zero; Y], reciprocal: [zero; Y] };
+        for k in 0..Y {
+            for l in 0..=k {
+                let mut sum = zero;
+                for j in 0..M {
+                    sum = projection.moving[k][j].mul_add(h[l][j], sum);
+                }
+                for i in 0..q {
+                    let of_parameter = Self::of_parameter(p, n, h, output, k, i);
+                    sum = of_parameter.mul_add(output[l * q + i], sum);
+                }
+                if l == k {
+                    sum = sum + observation.variance[k];
+                }
+                for earlier in 0..l {
+                    let scaled = projection.lower[k][earlier] * projection.variance[earlier];
+                    sum = sum - scaled * projection.lower[l][earlier];
+                }
+                if l < k {
+                    projection.lower[k][l] = sum * projection.reciprocal[l];
+                } else {
+                    if !(sum > zero && sum.is_finite()) {
+                        return Err(not_positive(sum, 0));
+                    }
+                    projection.lower[k][k] = one;
+                    projection.variance[k] = sum;
+                    projection.reciprocal[k] = one / sum;
+                }
+            }
+        }
+        Ok(projection)
+    }
+
+    /// (H P) of output `k` and parameter `i`.
+    #[inline(always)]
+    fn of_parameter(p: &[T], n: usize, h: &[[T; M]; Y], output: &[T], k: usize, i: usize) -> T {
+        let q = output.len() / Y;
+        let mut sum = T::from_f64(0.0);
+        for j in 0..M {
+            sum = h[k][j].mul_add(p[j * n + M + i], sum);
+        }
+        for j in 0..q {
+            sum = output[k * q + j].mul_add(p[(M + j) * n + M + i], sum);
+        }
+        sum
+    }
+
+    /// The innovation.
+    #[inline(always)]
+    pub(crate) fn innovation(
+        &self,
+        observation: &Observation<T, M, Y>,
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        Innovation::from_factors(
+            observation.residual,
+            observation.observed,
+            self.lower,
+            self.variance,
+            &self.reciprocal,
+        )
+    }
+
+    /// P ← (I - K H) P, the state's correction, and the whitened gain V (Y × n) into `gain`.
+    /// Parameters are corrected in place, the moving states' correction is returned.
+    #[inline(always)]
+    pub(crate) fn update(
+        &self,
+        p: &mut [T],
+        n: usize,
+        parameters: &mut [T],
+        observation: &Observation<T, M, Y>,
+        output: &[T],
+        innovation: &Innovation<T, Y>,
+        gain: &mut [T],
+    ) -> Result<[T; M], EstimationError> {
+        let count = n - M;
+        let root = self.reciprocal.map(T::sqrt);
+        let whitened: [T; Y] = innovation.whitened(&root);
+        let mut head = self.moving;
+        self.whiten(&root, &mut head);
+        let mut correction = [T::from_f64(0.0); M];
+        for k in 0..Y {
+            store(gain, k * n, head[k]);
+            correction = mul_add(head[k], whitened[k], correction);
+        }
+        let pass = Pass { projection: self, h: &observation.moving, output, root, whitened, head };
+        let mut column = 0;
+        while column + 4 <= count {
+            pass.columns::<4>(p, n, parameters, gain, column);
+            column += 4;
+        }
+        while column < count {
+            pass.columns::<1>(p, n, parameters, gain, column);
+            column += 1;
+        }
+        self.update_corner(p, n, observation, output, &root, &pass.head);
+        for i in 0..count {
+            let weights: [[T; 1]; Y] = load_rows(gain, n, M + i);
+            let row = &mut p[(M + i) * n + M..(M + i + 1) * n];
+            let mut column = 0;
+            while column + 4 <= count {
+                downdate::<T, M, Y, 4>(row, n, gain, &weights, column);
+                column += 4;
+            }
+            while column < count {
+                downdate::<T, M, Y, 1>(row, n, gain, &weights, column);
+                column += 1;
+            }
+        }
+        check_diagonal(p, n, n)?;
+        Ok(correction)
+    }
+
+    /// diag(α)^-1/2 L⁻¹ applied to rows.
+    #[inline(always)]
+    fn whiten<const W: usize>(&self, root: &[T; Y], rows: &mut [[T; W]; Y]) {
+        for k in 0..Y {
+            for earlier in 0..k {
+                rows[k] = mul_add(rows[earlier], -self.lower[k][earlier], rows[k]);
+            }
+        }
+        for (row, root) in rows.iter_mut().zip(root) {
+            *row = row.map(|value| value * *root);
+        }
+    }
+
+    /// The moving block in Joseph form: (I - K H) P (I - K H)ᵀ + K R Kᵀ.
+    #[inline(always)]
+    fn update_corner(
+        &self,
+        p: &mut [T],
+        n: usize,
+        observation: &Observation<T, M, Y>,
+        output: &[T],
+        root: &[T; Y],
+        head: &[[T; M]; Y],
+    ) {
+        let q = output.len() / Y;
+        let zero = T::from_f64(0.0);
+        // K_m = V_mᵀ diag(α)^-1/2 L⁻¹, row by row from the last output back.
+        let mut gain = [[zero; M]; Y];
+        for k in (0..Y).rev() {
+            gain[k] = head[k].map(|value| value * root[k]);
+            for later in k + 1..Y {
+                gain[k] = mul_add(gain[later], -self.lower[later][k], gain[k]);
+            }
+        }
+        let mut rest = [[zero; M]; M];
+        for i in 0..M {
+            rest[i] = load(p, i * n);
+            for k in 0..Y {
+                rest[i] = mul_add(self.moving[k], -gain[k][i], rest[i]);
+            }
+        }
+        // (I - K H) P Hᵀ - K R, which is zero but for rounding.
+        let mut excess = [[zero; M]; Y];
+        for k in 0..Y {
+            for i in 0..M {
+                let mut sum = -(gain[k][i] * observation.variance[k]);
+                for j in 0..M {
+                    sum = rest[i][j].mul_add(observation.moving[k][j], sum);
+                }
+                for j in 0..q {
+                    sum = p[i * n + M + j].mul_add(output[k * q + j], sum);
+                }
+                excess[k][i] = sum;
+            }
+        }
+        for i in 0..M {
+            for j in 0..=i {
+                let mut sum = T::from_f64(0.5) * (rest[i][j] + rest[j][i]);
+                for k in 0..Y {
+                    sum = sum - excess[k][i] * gain[k][j];
+                }
+                p[i * n + j] = sum;
+                p[j * n + i] = sum;
+            }
+        }
+    }
+}
+
+/// What the pass over the parameter columns needs.
+struct Pass<'a, T, const M: usize, const Y: usize> {
+    projection: &'a Projection<T, M, Y>,
+    h: &'a [[T; M]; Y],
+    output: &'a [T],
+    root: [T; Y],
+    whitened: [T; Y],
+    /// Moving columns of V.
+    head: [[T; M]; Y],
+}
+
+impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
+    /// V, the cross block and the parameters, for `W` columns.
+    #[inline(always)]
+    fn columns<const W: usize>(
+        &self,
+        p: &mut [T],
+        n: usize,
+        parameters: &mut [T],
+        gain: &mut [T],
+        column: usize,
+    ) {
+        let q = self.output.len() / Y;
+        let at = M + column;
+        let mut cross: [[T; W]; M] = load_rows(p, n, at);
+        let mut v = [[T::from_f64(0.0); W]; Y];
+        for k in 0..Y {
+            for (row, h) in cross.iter().zip(&self.h[k]) {
+                v[k] = mul_add(*row, *h, v[k]);
+            }
+        }
+        for i in 0..q {
+            let row: [T; W] = load(p, (M + i) * n + at);
+            for k in 0..Y {
+                v[k] = mul_add(row, self.output[k * q + i], v[k]);
+            }
+        }
+        self.projection.whiten(&self.root, &mut v);
+        let mut corrected: [T; W] = load(parameters, column);
+        for k in 0..Y {
+            corrected = mul_add(v[k], self.whitened[k], corrected);
+            for i in 0..M {
+                cross[i] = mul_add(v[k], -self.head[k][i], cross[i]);
+            }
+            store(gain, k * n + at, v[k]);
+        }
+        store(parameters, column, corrected);
+        for (i, row) in cross.iter().enumerate() {
+            store(p, i * n + at, *row);
+        }
+    }
+}
+
+/// Subtracts Vᵀ V from `W` columns of a row of the parameter block.
+#[inline(always)]
+fn downdate<T: Real, const M: usize, const Y: usize, const W: usize>(
+    row: &mut [T],
+    n: usize,
+    gain: &[T],
+    weights: &[[T; 1]; Y],
+    column: usize,
+) {
+    let mut value: [T; W] = load(row, column);
+    for k in 0..Y {
+        let v: [T; W] = load(gain, k * n + M + column);
+        value = mul_add(v, -weights[k][0], value);
+    }
+    store(row, column, value);
+}
+
+#[inline(always)]
+fn check_diagonal<T: Real>(p: &[T], n: usize, count: usize) -> Result<(), EstimationError> {
+    let zero = T::from_f64(0.0);
+    let mut bad = 0_u32;
+    for i in 0..count {
+        bad |= u32::from(!(p[i * n + i] > zero));
+    }
+    if bad == 0 {
+        return Ok(());
+    }
+    let state = (0..count).find(|i| !(p[i * n + i] > zero)).unwrap_or(0);
+    Err(not_positive(p[state * n + state], state))
+}
+
+#[cold]
+fn not_positive<T: Real>(value: T, state: usize) -> EstimationError {
+    if value.is_finite() {
+        EstimationError::NotPositiveDefinite { state }
+    } else {
+        EstimationError::NotFinite { quantity: "the covariance" }
+    }
+}

@@ -1,0 +1,151 @@
+use gyrocal::estimation::{ArrayStorage, Filter};
+use gyrocal::{Anchored, Chart, Integration, Platform, Recentring};
+
+use crate::truth::{DENSITY, STEP_S, Truth, VARIANCE, chart};
+
+const STATES: usize = Platform::STATES;
+type PlatformKernel = Filter<f64, Anchored<Platform>, Chart<f64>, ArrayStorage<f64, 3, 3, 12>, 3, 3>;
+
+/// What rounding may add to a sigma that a step leaves alone: a few units of the last place.
+const SIGMA_ROUNDING: f64 = 1e-14;
+
+fn filter(integration: Integration, sigma: &[f64; STATES]) -> PlatformKernel {
+    let (model, storage) = (Anchored(Platform), ArrayStorage::new());
+    let state = [0.0; STATES];
+    Filter::new(model, chart(), integration, Recentring::EveryStep, storage, &state, sigma).unwrap()
+}
+
+/// The covariance as correlations, after checking that it is one.
+fn correlations(filter: &PlatformKernel) -> Result<[[f64; STATES]; STATES], String> {
+    let sigma: [f64; STATES] = core::array::from_fn(|i| filter.sigma(i));
+    if let Some(i) = (0..STATES).find(|&i| !(sigma[i] > 0.0 && sigma[i].is_finite())) {
+        return Err(format!("the variance of state {i} is {:e}", filter.covariance(i, i)));
+    }
+    let scaled = |i: usize, j: usize| filter.covariance(i, j) / sigma[i] / sigma[j];
+    for i in 0..STATES {
+        for j in 0..i {
+            // The sum over n products may be taken in another order.
+            if (scaled(i, j) - scaled(j, i)).abs() > STATES as f64 * f64::EPSILON {
+                return Err(format!("({i}, {j}) differs from ({j}, {i})"));
+            }
+        }
+    }
+    Ok(core::array::from_fn(|i| core::array::from_fn(|j| scaled(i, j))))
+}
+
+/// Cholesky of the correlations with `shift` on the diagonal.
+fn check_positive_definite(filter: &PlatformKernel, shift: f64) -> Result<(), String> {
+    let mut a = correlations(filter)?;
+    for j in 0..STATES {
+        let pivot = a[j][j] + shift - (0..j).map(|k| a[j][k] * a[j][k]).sum::<f64>();
+        if !(pivot > 0.0) {
+            return Err(format!("pivot {j} is {pivot:e}"));
+        }
+        let root = pivot.sqrt();
+        a[j][j] = root;
+        for i in j + 1..STATES {
+            let known: f64 = (0..j).map(|k| a[i][k] * a[j][k]).sum();
+            a[i][j] = (a[i][j] - known) / root;
+        }
+    }
+    Ok(())
+}
+
+/// Runs a filter and checks it after step 1, 2, 3, … and then every `interval` steps. Returns
+/// what is wrong first.
+fn watch(
+    mut filter: PlatformKernel,
+    truth: &mut Truth,
+    variance: f64,
+    steps: usize,
+    interval: usize,
+    shift: f64,
+) -> Result<(), String> {
+    let mut sigma = [f64::INFINITY; STATES];
+    let mut since = 0;
+    for step in 1..=steps {
+        let located = |what: String| format!("step {step}: {what}");
+        let sample = truth.sample();
+        filter.predict(STEP_S, &DENSITY).map_err(|error| located(error.to_string()))?;
+        filter.update(&sample, &[variance; 3]).map_err(|error| located(error.to_string()))?;
+        since += 1;
+        if step > 100 && step % interval != 0 {
+            continue;
+        }
+        if filter.state().iter().any(|state| state.is_nan()) {
+            return Err(located("a state is NaN".to_owned()));
+        }
+        check_positive_definite(&filter, shift).map_err(located)?;
+        for i in 3..STATES {
+            let now = filter.sigma(i);
+            let bound = sigma[i] * (1.0 + SIGMA_ROUNDING * f64::from(since));
+            if now > bound {
+                return Err(located(format!("sigma {i} grew from {:e} to {now:e}", sigma[i])));
+            }
+            sigma[i] = now;
+        }
+        since = 0;
+    }
+    Ok(())
+}
+
+const ANGLE_SIGMA_RAD: f64 = 2e-4;
+
+fn a_year(integration: Integration) {
+    let mut sigma = [1.0; STATES];
+    sigma[..3].fill(ANGLE_SIGMA_RAD);
+    let mut truth = Truth::at([0.0; 3], 11);
+    // The first hours leave combinations that are known 1e8 times better than their terms:
+    // correlations of 1 - 1e-16, which an f64 cannot hold to the sign of a pivot. A matrix
+    // that was rounded to n eps may lose n² eps of its smallest eigenvalue.
+    let shift = (STATES * STATES) as f64 * f64::EPSILON;
+    let start = filter(integration, &sigma);
+    let watched = watch(start, &mut truth, VARIANCE[0], 525_600, 1000, shift);
+    assert_eq!(watched, Ok(()), "{integration:?}");
+}
+
+#[test]
+fn positive_definite_over_a_year_of_runge_kutta_steps() {
+    a_year(Integration::RK4);
+}
+
+#[test]
+fn positive_definite_over_a_year_of_euler_steps() {
+    a_year(Integration::EULER);
+}
+
+#[test]
+fn positive_definite_from_badly_scaled_priors() {
+    let uniform = |angle: f64, coefficient: f64| {
+        core::array::from_fn(|i| if i < 3 { angle } else { coefficient })
+    };
+    let mixed = |angle: f64, exponents: [i32; 9]| {
+        core::array::from_fn(|i| if i < 3 { angle } else { 10.0_f64.powi(exponents[i - 3]) })
+    };
+    let priors: [(&str, [f64; STATES]); 8] = [
+        ("coefficients 1e6, angles 1 rad", uniform(1.0, 1e6)),
+        ("coefficients 1e6, angles 1e-9 rad", uniform(1e-9, 1e6)),
+        ("coefficients 1e3, angles 1 rad", uniform(1.0, 1e3)),
+        ("coefficients 1e-9, angles 1 rad", uniform(1.0, 1e-9)),
+        ("coefficients 1e-9, angles 1e-9 rad", uniform(1e-9, 1e-9)),
+        ("gyros of 1e6, 1, 1e-6", mixed(1e-3, [6, 6, 6, 0, 0, 0, -6, -6, -6])),
+        ("terms of 1e6, 1, 1e-6", mixed(1e-3, [6, 0, -6, 6, 0, -6, 6, 0, -6])),
+        ("twelve orders over the terms", mixed(1.0, [3, -9, 0, -6, 3, -9, -3, 0, -6])),
+    ];
+    let mut wrong = Vec::new();
+    // A rounded matrix: see `a_year`.
+    let shift = (STATES * STATES) as f64 * f64::EPSILON;
+    for integration in [Integration::EULER, Integration::RK4] {
+        for (name, sigma) in &priors {
+            for sample_noise in [1e-5, 1e-8] {
+                let mut truth = Truth::at([0.0; 3], 12);
+                let start = filter(integration, sigma);
+                let variance = sample_noise * sample_noise;
+                if let Err(what) = watch(start, &mut truth, variance, 3000, 20, shift) {
+                    wrong.push(format!("{integration:?}, {name}, {sample_noise:e} g: {what}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

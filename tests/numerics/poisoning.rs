@@ -1,0 +1,97 @@
+use gyrocal::estimation::{
+    ArrayStorage, Buffers, Filter, Integration, Recentring, Storage, VecStorage, View,
+};
+use gyrocal::scalar::Recentre;
+use gyrocal::{Anchored, Chart, Platform};
+
+use crate::extended_platform::ExtendedPlatform;
+use crate::truth::{DENSITY, STEP_S, Truth, VARIANCE, chart};
+
+/// Hands out buffers in which everything that a step must write before it reads is NaN.
+///
+/// `stages` and `output` keep structural zeros and stay as they are.
+struct Poisoned<S> {
+    inner: S,
+    moving: usize,
+}
+
+impl<S: Storage<f64>> Storage<f64> for Poisoned<S> {
+    fn states(&self) -> usize {
+        self.inner.states()
+    }
+
+    fn buffers(&mut self) -> Buffers<'_, f64> {
+        let (n, moving) = (self.inner.states(), self.moving);
+        let buffers = self.inner.buffers();
+        buffers.gain.fill(f64::NAN);
+        buffers.transition.fill(f64::NAN);
+        // The moving columns of the parameters' rows are not used.
+        for row in buffers.covariance[moving * n..].chunks_exact_mut(n) {
+            row[..moving].fill(f64::NAN);
+        }
+        buffers
+    }
+
+    fn view(&self) -> View<'_, f64> {
+        self.inner.view()
+    }
+}
+
+/// Every number that a run shows, as bits: innovations, states and covariances.
+fn trace<D, S>(model: D, integration: Integration, recentring: Recentring<f64>, storage: S) -> Vec<u64>
+where
+    D: Recentre<f64, 3, 3, Inputs = Chart<f64>>,
+    S: Storage<f64>,
+{
+    let n = storage.states();
+    let mut sigma = vec![1.0; n];
+    sigma[..3].fill(2e-4);
+    let state = vec![0.0; n];
+    let mut filter =
+        Filter::new(model, chart(), integration, recentring, storage, &state, &sigma).unwrap();
+    let mut truth = Truth::at([0.0; 3], 14);
+    let mut bits = Vec::new();
+    for step in 0..60 {
+        let mut sample = truth.sample();
+        if step % 7 == 3 {
+            sample[step % 3] = f64::NAN;
+        }
+        filter.predict(STEP_S, &DENSITY).unwrap();
+        let innovation = if step % 5 == 4 {
+            sample[0] += if step % 10 == 4 { 0.1 } else { 0.0 };
+            filter.update_gated(&sample, &VARIANCE, 30.0).unwrap().0
+        } else {
+            filter.update(&sample, &VARIANCE).unwrap()
+        };
+        bits.push(innovation.nis.to_bits());
+        bits.extend(filter.state().iter().map(|state| state.to_bits()));
+        for i in 0..n {
+            bits.extend((0..=i).map(|j| filter.covariance(i, j).to_bits()));
+        }
+    }
+    assert!(bits.iter().all(|bits| !f64::from_bits(*bits).is_nan()));
+    bits
+}
+
+#[test]
+fn what_a_step_must_not_read_does_not_matter() {
+    for integration in [Integration::EULER, Integration::RK4, Integration::Rk4 { substeps: 2 }] {
+        for recentring in [Recentring::EveryStep, Recentring::Never] {
+            let what = format!("{integration:?}, {recentring:?}");
+            let nominal = Anchored(Platform);
+            let array = ArrayStorage::<f64, 3, 3, 12>::new;
+            let clean = trace(nominal, integration, recentring, array());
+            let storage = Poisoned { inner: array(), moving: 3 };
+            assert_eq!(trace(nominal, integration, recentring, storage), clean, "arrays, {what}");
+            // Counts of parameters with every remainder of a division into blocks of four.
+            for additional in 0..4 {
+                let model = ExtendedPlatform { additional };
+                let vector = || VecStorage::new(12 + additional, 3, 3);
+                let clean = trace(model, integration, recentring, vector());
+                let storage = Poisoned { inner: vector(), moving: 3 };
+                let poisoned = trace(model, integration, recentring, storage);
+                assert_eq!(poisoned, clean, "{additional} additional parameters, {what}");
+            }
+        }
+    }
+}
