@@ -13,7 +13,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "rk4" => Integration::RK4,
         other => return Err(format!("expected euler or rk4, found {other}").into()),
     };
-    let settings = Settings { integration, ..Settings::level_at(Site::at_latitude_deg(39.1)) };
+    let settings = Settings {
+        integration,
+        ..Settings::level_at(Site::at_latitude_deg(39.1))
+    };
     let mut filter = PlatformFilter::<f64>::new(&settings)?;
     let sample = [0.0, 0.0, 1.0];
     let mut nis_sum = 0.0;

@@ -25,7 +25,10 @@ impl<T: Real> Chart<T> {
         let (sine, cosine) = site.latitude_rad.sin_cos();
         let rate = site.earth_rate_rad_per_s;
         let mut chart = Self {
-            inputs: PlatformInputs { omega_0: [zero; 3], f_0: [zero; 3] },
+            inputs: PlatformInputs {
+                omega_0: [zero; 3],
+                f_0: [zero; 3],
+            },
             north: [zero, one, zero],
             up: [zero, zero, one],
             site,
@@ -92,7 +95,7 @@ impl<T: Real> Chart<T> {
 /// The moving states are the platform angles in the current [`Chart`]. Moving the chart
 /// replaces the error of the angles by the small rotation W δθ between the platform and its
 /// estimate, in platform axes, which is what a correction is applied as:
-/// C ← exp(-[δφ]×) C. At the new origin W is the identity, so rates, output and covariance
+/// C ← exp(-\[δφ\]×) C. At the new origin W is the identity, so rates, output and covariance
 /// need no further change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Anchored<D>(pub D);
@@ -132,7 +135,8 @@ where
         chart: &Chart<T>,
         jacobian: &mut RatesJacobian<'_, T, 3>,
     ) -> [T; 3] {
-        self.0.rates_jacobian(moving, parameters, &chart.inputs, jacobian)
+        self.0
+            .rates_jacobian(moving, parameters, &chart.inputs, jacobian)
     }
 
     #[inline(always)]
@@ -142,7 +146,8 @@ where
         chart: &Chart<T>,
         jacobian: &mut RatesJacobian<'_, T, 3>,
     ) -> [T; 3] {
-        self.0.rates_jacobian_at_origin(parameters, &chart.inputs, jacobian)
+        self.0
+            .rates_jacobian_at_origin(parameters, &chart.inputs, jacobian)
     }
 
     #[inline(always)]
@@ -159,7 +164,8 @@ where
         d_moving: &mut [[T; 3]; 3],
         d_parameters: &mut [T],
     ) -> [T; 3] {
-        self.0.output_jacobian(moving, parameters, &chart.inputs, d_moving, d_parameters)
+        self.0
+            .output_jacobian(moving, parameters, &chart.inputs, d_moving, d_parameters)
     }
 
     #[inline(always)]
@@ -170,7 +176,8 @@ where
         d_moving: &mut [[T; 3]; 3],
         d_parameters: &mut [T],
     ) -> [T; 3] {
-        self.0.output_jacobian_at_origin(parameters, &chart.inputs, d_moving, d_parameters)
+        self.0
+            .output_jacobian_at_origin(parameters, &chart.inputs, d_moving, d_parameters)
     }
 }
 

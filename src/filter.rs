@@ -92,7 +92,10 @@ impl<T: Real> PlatformFilter<T> {
     /// sigma or noise is not positive.
     pub fn new(settings: &Settings<T>) -> Result<Self, EstimationError> {
         let (zero, noise) = (T::from_f64(0.0), settings.drift_noise_deg_per_h);
-        if !(settings.accel_noise_g > zero && noise > zero && settings.longest_step_s > zero) {
+        if !(settings.accel_noise_g.is_positive()
+            && noise.is_positive()
+            && settings.longest_step_s.is_positive())
+        {
             return Err(EstimationError::InvalidArgument {
                 expected: "positive noise and a positive longest step",
             });
@@ -129,7 +132,8 @@ impl<T: Real> PlatformFilter<T> {
         &mut self,
         specific_force_g: &[T; 3],
     ) -> Result<Innovation<T, 3>, EstimationError> {
-        self.kernel.update(specific_force_g, &self.accel_variance_g2)
+        self.kernel
+            .update(specific_force_g, &self.accel_variance_g2)
     }
 
     /// As [`Self::update`], but a sample whose NIS exceeds `largest_nis` is not used. Returns
@@ -142,7 +146,8 @@ impl<T: Real> PlatformFilter<T> {
         specific_force_g: &[T; 3],
         largest_nis: T,
     ) -> Result<(Innovation<T, 3>, bool), EstimationError> {
-        self.kernel.update_gated(specific_force_g, &self.accel_variance_g2, largest_nis)
+        self.kernel
+            .update_gated(specific_force_g, &self.accel_variance_g2, largest_nis)
     }
 
     /// Predicts over `interval_s` seconds.
@@ -196,9 +201,7 @@ impl<T: Real> PlatformFilter<T> {
     /// Covariance of the errors of [`Self::drift`], in the order of its fields.
     #[must_use]
     pub fn drift_covariance(&self) -> [[T; Platform::PARAMETERS]; Platform::PARAMETERS] {
-        core::array::from_fn(|i| {
-            core::array::from_fn(|j| self.kernel.covariance(3 + i, 3 + j))
-        })
+        core::array::from_fn(|i| core::array::from_fn(|j| self.kernel.covariance(3 + i, 3 + j)))
     }
 
     /// Estimated attitude: platform components from East, North, Up components.

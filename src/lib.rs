@@ -77,6 +77,8 @@ mod site;
 pub use anchor::{Anchored, Chart};
 pub use filter::{PlatformFilter, Settings};
 pub use generated::platform::{Drift, Platform};
-pub use gyrocal_estimation::{self as estimation, EstimationError, Innovation, Integration, Recentring};
+pub use gyrocal_estimation::{
+    self as estimation, EstimationError, Innovation, Integration, Recentring,
+};
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};

@@ -5,7 +5,11 @@ use gyrocal_scalar::Scalar;
 /// `a` × `b`.
 #[inline(always)]
 pub(crate) fn cross<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 /// `a` · `b`.
@@ -17,7 +21,11 @@ pub(crate) fn dot<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> T {
 /// `matrix` times `vector`.
 #[inline(always)]
 pub(crate) fn rotate<T: Scalar>(matrix: &[[T; 3]; 3], vector: &[T; 3]) -> [T; 3] {
-    [dot(&matrix[0], vector), dot(&matrix[1], vector), dot(&matrix[2], vector)]
+    [
+        dot(&matrix[0], vector),
+        dot(&matrix[1], vector),
+        dot(&matrix[2], vector),
+    ]
 }
 
 /// exp(-[φ]×), the matrix of new from old components when the axes turn by the vector φ.
@@ -82,7 +90,10 @@ mod tests {
                 phi[axis] = angle;
                 let expected = reanchor(&phi).platform_c_chart;
                 // Two formulas of a handful of operations each.
-                assert!(largest_difference(&turned_by(&phi), &expected) < 4e-16, "{axis} {angle}");
+                assert!(
+                    largest_difference(&turned_by(&phi), &expected) < 4e-16,
+                    "{axis} {angle}"
+                );
             }
         }
     }

@@ -8,8 +8,12 @@ use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 
-const SIGMA: [f64; 12] = [2e-4, 3e-4, 4e-4, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
-const STATE: [f64; 12] = [0.3, -0.5, 1.9, 0.2, -0.1, 0.05, 0.3, 0.1, -0.05, 0.1, 0.0, 0.02];
+const SIGMA: [f64; 12] = [
+    2e-4, 3e-4, 4e-4, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
+];
+const STATE: [f64; 12] = [
+    0.3, -0.5, 1.9, 0.2, -0.1, 0.05, 0.3, 0.1, -0.05, 0.1, 0.0, 0.02,
+];
 /// (0.002 deg/h)² held over 60 s.
 const DENSITY: [f64; 3] = [2.4e-4; 3];
 const VARIANCE: [f64; 3] = [1e-10; 3];
@@ -83,12 +87,18 @@ fn equals_the_dense_filter_in_every_configuration() {
             for i in 0..12 {
                 let sigma = dense.covariance[(i, i)].sqrt();
                 let difference = (filter.state()[i] - dense.state[i]).abs() / sigma;
-                assert!(difference < 1e-6, "{integration:?} step {step} state {i}: {difference:e}");
+                assert!(
+                    difference < 1e-6,
+                    "{integration:?} step {step} state {i}: {difference:e}"
+                );
                 for j in 0..12 {
                     let scale = sigma * dense.covariance[(j, j)].sqrt();
                     let difference =
                         (filter.covariance(i, j) - dense.covariance[(i, j)]).abs() / scale;
-                    assert!(difference < 1e-6, "{integration:?} step {step}: {difference:e}");
+                    assert!(
+                        difference < 1e-6,
+                        "{integration:?} step {step}: {difference:e}"
+                    );
                 }
             }
         }
@@ -106,7 +116,11 @@ fn single_precision_follows_double_precision() {
     for _ in 0..300 {
         truth.predict(60.0).unwrap();
         let [_, _, up] = [0, 1, 2].map(|row| truth.platform_c_enu()[row][2]);
-        let measured = [truth.platform_c_enu()[0][2], truth.platform_c_enu()[1][2], up];
+        let measured = [
+            truth.platform_c_enu()[0][2],
+            truth.platform_c_enu()[1][2],
+            up,
+        ];
         double.step(60.0, &measured).unwrap();
         single.step(60.0, &measured.map(|a| a as f32)).unwrap();
     }
@@ -115,8 +129,15 @@ fn single_precision_follows_double_precision() {
     for i in 0..9 {
         // An f32 attitude is good to 6e-8 rad, 1/160 of the sample noise, in 300 samples.
         let difference = (f64::from(single[i]) - double[i]).abs();
-        assert!(difference < 0.5 * expected[i], "coefficient {i}: {difference} of {}", expected[i]);
-        assert!((f64::from(sigma[i]) / expected[i] - 1.0).abs() < 0.05, "sigma {i}");
+        assert!(
+            difference < 0.5 * expected[i],
+            "coefficient {i}: {difference} of {}",
+            expected[i]
+        );
+        assert!(
+            (f64::from(sigma[i]) / expected[i] - 1.0).abs() < 0.05,
+            "sigma {i}"
+        );
     }
 }
 

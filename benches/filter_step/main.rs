@@ -14,9 +14,7 @@ use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gyrocal::estimation::dense::DenseFilter;
-use gyrocal::{
-    Anchored, Chart, Integration, Platform, PlatformFilter, Recentring, Settings, Site,
-};
+use gyrocal::{Anchored, Chart, Integration, Platform, PlatformFilter, Recentring, Settings, Site};
 use nalgebra::{SMatrix, SVector};
 
 /// Interval between samples, s.
@@ -74,10 +72,14 @@ fn filter_step(criterion: &mut Criterion) {
     let samples = samples();
     for (name, integration) in [("euler", Integration::EULER), ("rk4", Integration::RK4)] {
         let mut group = criterion.benchmark_group(format!("filter_step/{name}"));
-        group.warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
+        group
+            .warm_up_time(Duration::from_millis(500))
+            .measurement_time(Duration::from_secs(2));
 
-        let settings =
-            Settings { integration, ..Settings::level_at(Site::at_latitude_deg(39.1)) };
+        let settings = Settings {
+            integration,
+            ..Settings::level_at(Site::at_latitude_deg(39.1))
+        };
         let start = PlatformFilter::new(&settings).unwrap();
         group.bench_function("generated", |bencher| {
             bencher.iter_custom(|iterations| {
@@ -97,9 +99,10 @@ fn filter_step(criterion: &mut Criterion) {
                 SMatrix::from_diagonal(&SVector::from(PRIOR_VARIANCE)),
             )
         };
-        for (label, recentring) in
-            [("dense_joseph", Recentring::Never), ("dense_joseph_recentred", Recentring::EveryStep)]
-        {
+        for (label, recentring) in [
+            ("dense_joseph", Recentring::Never),
+            ("dense_joseph_recentred", Recentring::EveryStep),
+        ] {
             let start = dense(recentring);
             group.bench_function(label, |bencher| {
                 bencher.iter_custom(|iterations| {

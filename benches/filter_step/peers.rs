@@ -11,7 +11,12 @@ type State = SVector<f64, 12>;
 type Square = SMatrix<f64, 12, 12>;
 
 /// The Euler transition at `state`: next state, Φ and Γ Q Γᵀ.
-fn transition(chart: &Chart<f64>, state: &State, dt_s: f64, density: [f64; 3]) -> (State, Square, Square) {
+fn transition(
+    chart: &Chart<f64>,
+    state: &State,
+    dt_s: f64,
+    density: [f64; 3],
+) -> (State, Square, Square) {
     let theta = [state[0], state[1], state[2]];
     let drift: [f64; 9] = core::array::from_fn(|i| state[3 + i]);
     let inputs = chart.inputs();
@@ -26,8 +31,9 @@ fn transition(chart: &Chart<f64>, state: &State, dt_s: f64, density: [f64; 3]) -
         predicted[i] = next.theta_next[i];
         for j in 0..3 {
             phi[(i, j)] = by_theta[i][j];
-            noise[(i, j)] =
-                (0..3).map(|l| by_noise[i][l] * by_noise[j][l] * density[l] / dt_s).sum();
+            noise[(i, j)] = (0..3)
+                .map(|l| by_noise[i][l] * by_noise[j][l] * density[l] / dt_s)
+                .sum();
         }
         for j in 0..9 {
             phi[(i, 3 + j)] = by_drift[i][j];
@@ -115,13 +121,23 @@ impl Adskalman {
     ) -> Self {
         let covariance = Square::from_diagonal(&SVector::from(prior));
         let estimate = StateAndCovariance::new(State::zeros(), covariance);
-        Self { chart, estimate, density, variance }
+        Self {
+            chart,
+            estimate,
+            density,
+            variance,
+        }
     }
 
     pub(crate) fn step(&mut self, dt_s: f64, sample: &[f64; 3]) {
         let (predicted, phi, noise) =
             transition(&self.chart, self.estimate.state(), dt_s, self.density);
-        let linearised = Linearised { predicted, phi, phi_transposed: phi.transpose(), noise };
+        let linearised = Linearised {
+            predicted,
+            phi,
+            phi_transposed: phi.transpose(),
+            noise,
+        };
         let (output, h) = measurement(&self.chart, &predicted);
         let observed = Observed {
             predicted: output,
@@ -130,7 +146,9 @@ impl Adskalman {
             noise: SMatrix::from_diagonal(&SVector::from(self.variance)),
         };
         let filter = KalmanFilterNoControl::new(&linearised, &observed);
-        self.estimate = filter.step(&self.estimate, &SVector::from(*sample)).unwrap();
+        self.estimate = filter
+            .step(&self.estimate, &SVector::from(*sample))
+            .unwrap();
     }
 }
 
@@ -145,7 +163,9 @@ pub(crate) struct Multicalc {
 type MulticalcMatrix<const R: usize, const C: usize> = multicalc::linear_algebra::Matrix<R, C>;
 
 fn matrix<const R: usize, const C: usize>(from: &SMatrix<f64, R, C>) -> MulticalcMatrix<R, C> {
-    MulticalcMatrix::new(core::array::from_fn(|i| core::array::from_fn(|j| from[(i, j)])))
+    MulticalcMatrix::new(core::array::from_fn(|i| {
+        core::array::from_fn(|j| from[(i, j)])
+    }))
 }
 
 impl Multicalc {
@@ -166,7 +186,11 @@ impl Multicalc {
             matrix(&Square::from_diagonal(&SVector::from(prior))),
             model,
         );
-        Self { chart, filter, density }
+        Self {
+            chart,
+            filter,
+            density,
+        }
     }
 
     pub(crate) fn step(&mut self, dt_s: f64, sample: &[f64; 3]) {
@@ -176,12 +200,15 @@ impl Multicalc {
         self.filter.set_state_transition(matrix(&phi));
         self.filter.set_process_noise(matrix(&noise));
         self.filter.predict();
-        self.filter.set_state(multicalc::linear_algebra::Vector::new(predicted.into()));
+        self.filter
+            .set_state(multicalc::linear_algebra::Vector::new(predicted.into()));
         let (output, h) = measurement(&self.chart, &predicted);
         self.filter.set_measurement_model(matrix(&h));
         // The crate's output is linear: hand it the measurement with the same innovation.
         let linear = h * predicted;
         let equivalent = core::array::from_fn(|i| sample[i] - output[i] + linear[i]);
-        self.filter.update(multicalc::linear_algebra::Vector::new(equivalent)).unwrap();
+        self.filter
+            .update(multicalc::linear_algebra::Vector::new(equivalent))
+            .unwrap();
     }
 }

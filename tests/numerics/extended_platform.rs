@@ -3,8 +3,6 @@
 use gyrocal::scalar::{Model, RatesJacobian, Recentre};
 use gyrocal::{Anchored, Chart, Platform};
 
-type Inner = Anchored<Platform>;
-
 const INNER: Anchored<Platform> = Anchored(Platform);
 /// Nominal parameters.
 const NOMINAL: usize = Platform::PARAMETERS;
@@ -171,7 +169,13 @@ impl Model<f64, 3, 3> for ExtendedPlatform {
         d_moving: &mut [[f64; 3]; 3],
         d_parameters: &mut [f64],
     ) -> [f64; 3] {
-        INNER.output_jacobian(moving, &parameters[..NOMINAL], chart, d_moving, d_parameters)
+        INNER.output_jacobian(
+            moving,
+            &parameters[..NOMINAL],
+            chart,
+            d_moving,
+            d_parameters,
+        )
     }
 
     fn output_jacobian_at_origin(

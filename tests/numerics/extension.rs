@@ -20,8 +20,11 @@ fn derivatives_of_the_extended_platform_are_those_of_its_rates() {
     for moving in [MOVING, [0.0; 3]] {
         let p = parameters.len();
         let mut columns = vec![0.0; 3 * p];
-        let mut jacobian =
-            RatesJacobian { moving: [[0.0; 3]; 3], noise: [[0.0; 3]; 3], parameters: &mut columns };
+        let mut jacobian = RatesJacobian {
+            moving: [[0.0; 3]; 3],
+            noise: [[0.0; 3]; 3],
+            parameters: &mut columns,
+        };
         let rates = model.rates_jacobian(&moving, &parameters, &chart(), &mut jacobian);
         assert_eq!(rates, model.rates(&moving, &parameters, &chart()));
         // Rates are 1e-4 rad/s, so differences are good to 1e-4 eps / STEP = 2e-16; those by a
@@ -35,7 +38,11 @@ fn derivatives_of_the_extended_platform_are_those_of_its_rates() {
             });
             for i in 0..3 {
                 let exact = jacobian.moving[i][j];
-                assert!(close(exact, by_angle[i]), "{i} {j}: {exact:e} {:e}", by_angle[i]);
+                assert!(
+                    close(exact, by_angle[i]),
+                    "{i} {j}: {exact:e} {:e}",
+                    by_angle[i]
+                );
             }
         }
         for k in 0..p {
@@ -46,7 +53,11 @@ fn derivatives_of_the_extended_platform_are_those_of_its_rates() {
             });
             for i in 0..3 {
                 let exact = jacobian.parameters[i * p + k];
-                assert!(close(exact, by_parameter[i]), "{i} {k}: {exact:e} {:e}", by_parameter[i]);
+                assert!(
+                    close(exact, by_parameter[i]),
+                    "{i} {k}: {exact:e} {:e}",
+                    by_parameter[i]
+                );
             }
         }
         if moving == [0.0; 3] {
@@ -57,7 +68,12 @@ fn derivatives_of_the_extended_platform_are_those_of_its_rates() {
                 parameters: &mut shorter,
             };
             model.rates_jacobian_at_origin(&parameters, &chart(), &mut at_origin);
-            for (a, b) in at_origin.moving.iter().flatten().zip(jacobian.moving.iter().flatten()) {
+            for (a, b) in at_origin
+                .moving
+                .iter()
+                .flatten()
+                .zip(jacobian.moving.iter().flatten())
+            {
                 assert!(close(*a, *b));
             }
             assert!(shorter.iter().zip(&columns).all(|(a, b)| close(*a, *b)));

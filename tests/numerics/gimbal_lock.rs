@@ -13,15 +13,25 @@ fn near_gimbal_lock_numbers_are_huge_or_refused_but_never_nan() {
     sigma[..3].fill(2e-4);
     let distances = [1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 0.0];
     for integration in [Integration::EULER, Integration::RK4] {
-        for distance in distances.iter().flat_map(|distance| [*distance, -*distance]) {
+        for distance in distances
+            .iter()
+            .flat_map(|distance| [*distance, -*distance])
+        {
             let mut state = [0.0; Platform::STATES];
             state[1] = FRAC_PI_2 - distance;
             let mut truth = Truth::at([state[0], state[1], state[2]], 13);
             let storage = ArrayStorage::<f64, 3, 3, 12>::new();
             let (model, chart) = (Anchored(Platform), chart());
-            let mut filter =
-                Filter::new(model, chart, integration, Recentring::Never, storage, &state, &sigma)
-                    .unwrap();
+            let mut filter = Filter::new(
+                model,
+                chart,
+                integration,
+                Recentring::Never,
+                storage,
+                &state,
+                &sigma,
+            )
+            .unwrap();
             for step in 0..50 {
                 let sample = truth.sample();
                 let result = filter

@@ -38,7 +38,12 @@ impl<S: Storage<f64>> Storage<f64> for Poisoned<S> {
 }
 
 /// Every number that a run shows, as bits: innovations, states and covariances.
-fn trace<D, S>(model: D, integration: Integration, recentring: Recentring<f64>, storage: S) -> Vec<u64>
+fn trace<D, S>(
+    model: D,
+    integration: Integration,
+    recentring: Recentring<f64>,
+    storage: S,
+) -> Vec<u64>
 where
     D: Recentre<f64, 3, 3, Inputs = Chart<f64>>,
     S: Storage<f64>,
@@ -47,8 +52,16 @@ where
     let mut sigma = vec![1.0; n];
     sigma[..3].fill(2e-4);
     let state = vec![0.0; n];
-    let mut filter =
-        Filter::new(model, chart(), integration, recentring, storage, &state, &sigma).unwrap();
+    let mut filter = Filter::new(
+        model,
+        chart(),
+        integration,
+        recentring,
+        storage,
+        &state,
+        &sigma,
+    )
+    .unwrap();
     let mut truth = Truth::at([0.0; 3], 14);
     let mut bits = Vec::new();
     for step in 0..60 {
@@ -75,22 +88,39 @@ where
 
 #[test]
 fn what_a_step_must_not_read_does_not_matter() {
-    for integration in [Integration::EULER, Integration::RK4, Integration::Rk4 { substeps: 2 }] {
+    for integration in [
+        Integration::EULER,
+        Integration::RK4,
+        Integration::Rk4 { substeps: 2 },
+    ] {
         for recentring in [Recentring::EveryStep, Recentring::Never] {
             let what = format!("{integration:?}, {recentring:?}");
             let nominal = Anchored(Platform);
             let array = ArrayStorage::<f64, 3, 3, 12>::new;
             let clean = trace(nominal, integration, recentring, array());
-            let storage = Poisoned { inner: array(), moving: 3 };
-            assert_eq!(trace(nominal, integration, recentring, storage), clean, "arrays, {what}");
+            let storage = Poisoned {
+                inner: array(),
+                moving: 3,
+            };
+            assert_eq!(
+                trace(nominal, integration, recentring, storage),
+                clean,
+                "arrays, {what}"
+            );
             // Counts of parameters with every remainder of a division into blocks of four.
             for additional in 0..4 {
                 let model = ExtendedPlatform { additional };
                 let vector = || VecStorage::new(12 + additional, 3, 3);
                 let clean = trace(model, integration, recentring, vector());
-                let storage = Poisoned { inner: vector(), moving: 3 };
+                let storage = Poisoned {
+                    inner: vector(),
+                    moving: 3,
+                };
                 let poisoned = trace(model, integration, recentring, storage);
-                assert_eq!(poisoned, clean, "{additional} additional parameters, {what}");
+                assert_eq!(
+                    poisoned, clean,
+                    "{additional} additional parameters, {what}"
+                );
             }
         }
     }

@@ -29,7 +29,10 @@ impl Truth {
     pub(crate) fn at(angles_rad: [f64; 3], seed: u64) -> Self {
         let mut chart = chart();
         Anchored(Platform).recentre(&mut { angles_rad }, &mut chart);
-        Self { chart, rng: ChaCha12Rng::seed_from_u64(seed) }
+        Self {
+            chart,
+            rng: ChaCha12Rng::seed_from_u64(seed),
+        }
     }
 
     /// Moves on by a step (Runge-Kutta), and samples with noise of 1e-5 g.

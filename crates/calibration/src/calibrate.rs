@@ -114,7 +114,10 @@ pub fn calibrate(
     mut progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
     if record.len() < Platform::STATES {
-        return Err(CalibrationError::TooShort { found: record.len(), expected: Platform::STATES });
+        return Err(CalibrationError::TooShort {
+            found: record.len(),
+            expected: Platform::STATES,
+        });
     }
     let mut settings = settings(bench);
     settings.integration = options.integration;
@@ -128,11 +131,20 @@ pub fn calibrate(
         }
     };
     let mut filter = PlatformFilter::new(&settings).map_err(at(0))?;
-    let mut fit = Fit { nis_sum: 0.0, values: 0, rows: 0, log_likelihood: 0.0 };
+    let mut fit = Fit {
+        nis_sum: 0.0,
+        values: 0,
+        rows: 0,
+        log_likelihood: 0.0,
+    };
     fit.add(&filter.update(&record.accel_g[0]).map_err(at(0))?);
     for row in 1..record.len() {
         let interval_s = record.time_s[row] - record.time_s[row - 1];
-        fit.add(&filter.step(interval_s, &record.accel_g[row]).map_err(at(row))?);
+        fit.add(
+            &filter
+                .step(interval_s, &record.accel_g[row])
+                .map_err(at(row))?,
+        );
         if row % 1024 == 0 {
             progress(row);
         }

@@ -5,7 +5,9 @@ use gyrocal::EstimationError;
 #[non_exhaustive]
 pub enum CalibrationError {
     /// The record has fewer rows than the filter has states.
-    #[error("the record has {found} rows, expected at least {expected}, the number of states; record for longer")]
+    #[error(
+        "the record has {found} rows, expected at least {expected}, the number of states; record for longer"
+    )]
     TooShort {
         /// Rows of the record.
         found: usize,

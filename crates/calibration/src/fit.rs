@@ -108,7 +108,12 @@ mod tests {
 
     #[test]
     fn the_verdict_follows_the_mean() {
-        let fit = |nis_sum| Fit { nis_sum, values: 12_000, rows: 4_000, log_likelihood: 0.0 };
+        let fit = |nis_sum| Fit {
+            nis_sum,
+            values: 12_000,
+            rows: 4_000,
+            log_likelihood: 0.0,
+        };
         assert_eq!(fit(12_000.0).verdict(), Verdict::Consistent);
         assert_eq!(fit(13_000.0).verdict(), Verdict::TooLarge);
         assert_eq!(fit(11_000.0).verdict(), Verdict::TooSmall);

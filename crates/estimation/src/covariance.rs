@@ -22,7 +22,11 @@ use crate::lanes4::{dot, load, load_rows, mul_add, store};
 /// Element (i, j) of P, `moving` being the number of moving states.
 #[inline]
 pub(crate) fn element<T: Real>(p: &[T], n: usize, moving: usize, i: usize, j: usize) -> T {
-    if i < moving || j >= moving { p[i * n + j] } else { p[j * n + i] }
+    if i < moving || j >= moving {
+        p[i * n + j]
+    } else {
+        p[j * n + i]
+    }
 }
 
 /// P ← Φ P Φᵀ + Γ diag(variance) Γᵀ.
@@ -125,7 +129,11 @@ pub(crate) struct Observation<T, const M: usize, const Y: usize> {
 }
 
 /// H P on the moving columns, and S = H P Hᵀ + R factored.
-pub(crate) struct Projection<T, const M: usize, const Y: usize> {
+pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
+    observation: &'a Observation<T, M, Y>,
+    /// The columns of H of the parameters that enter the output.
+    output: &'a [T],
+    /// Moving columns of H P.
     moving: [[T; M]; Y],
     /// L, unit lower triangular.
     lower: [[T; Y]; Y],
@@ -135,14 +143,14 @@ pub(crate) struct Projection<T, const M: usize, const Y: usize> {
     reciprocal: [T; Y],
 }
 
-impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
+impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
     /// Projects P on the outputs.
     #[inline(always)]
     pub(crate) fn new(
         p: &[T],
         n: usize,
-        observation: &Observation<T, M, Y>,
-        output: &[T],
+        observation: &'a Observation<T, M, Y>,
+        output: &'a [T],
     ) -> Result<Self, EstimationError> {
         let q = output.len() / Y;
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
@@ -160,8 +168,14 @@ impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
                 moving[k][j] = sum;
             }
         }
-        let mut projection =
-            Self { moving, lower: [[zero; Y]; Y], variance: [zero; Y], reciprocal: [zero; Y] };
+        let mut projection = Self {
+            observation,
+            output,
+            moving,
+            lower: [[zero; Y]; Y],
+            variance: [zero; Y],
+            reciprocal: [zero; Y],
+        };
         for k in 0..Y {
             for l in 0..=k {
                 let mut sum = zero;
@@ -182,7 +196,7 @@ impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
                 if l < k {
                     projection.lower[k][l] = sum * projection.reciprocal[l];
                 } else {
-                    if !(sum > zero && sum.is_finite()) {
+                    if !(sum.is_positive() && sum.is_finite()) {
                         return Err(not_positive(sum, 0));
                     }
                     projection.lower[k][k] = one;
@@ -210,10 +224,8 @@ impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
 
     /// The innovation.
     #[inline(always)]
-    pub(crate) fn innovation(
-        &self,
-        observation: &Observation<T, M, Y>,
-    ) -> Result<Innovation<T, Y>, EstimationError> {
+    pub(crate) fn innovation(&self) -> Result<Innovation<T, Y>, EstimationError> {
+        let observation = self.observation;
         Innovation::from_factors(
             observation.residual,
             observation.observed,
@@ -231,8 +243,6 @@ impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
         p: &mut [T],
         n: usize,
         parameters: &mut [T],
-        observation: &Observation<T, M, Y>,
-        output: &[T],
         innovation: &Innovation<T, Y>,
         gain: &mut [T],
     ) -> Result<[T; M], EstimationError> {
@@ -246,7 +256,12 @@ impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
             store(gain, k * n, head[k]);
             correction = mul_add(head[k], whitened[k], correction);
         }
-        let pass = Pass { projection: self, h: &observation.moving, output, root, whitened, head };
+        let pass = Pass {
+            projection: self,
+            root,
+            whitened,
+            head,
+        };
         let mut column = 0;
         while column + 4 <= count {
             pass.columns::<4>(p, n, parameters, gain, column);
@@ -256,7 +271,7 @@ impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
             pass.columns::<1>(p, n, parameters, gain, column);
             column += 1;
         }
-        self.update_corner(p, n, observation, output, &root, &pass.head);
+        self.update_corner(p, n, &root, &pass.head);
         for i in 0..count {
             let weights: [[T; 1]; Y] = load_rows(gain, n, M + i);
             let row = &mut p[(M + i) * n + M..(M + i + 1) * n];
@@ -289,15 +304,8 @@ impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
 
     /// The moving block in Joseph form: (I - K H) P (I - K H)ᵀ + K R Kᵀ.
     #[inline(always)]
-    fn update_corner(
-        &self,
-        p: &mut [T],
-        n: usize,
-        observation: &Observation<T, M, Y>,
-        output: &[T],
-        root: &[T; Y],
-        head: &[[T; M]; Y],
-    ) {
+    fn update_corner(&self, p: &mut [T], n: usize, root: &[T; Y], head: &[[T; M]; Y]) {
+        let (observation, output) = (self.observation, self.output);
         let q = output.len() / Y;
         let zero = T::from_f64(0.0);
         // K_m = V_mᵀ diag(α)^-1/2 L⁻¹, row by row from the last output back.
@@ -344,9 +352,7 @@ impl<T: Real, const M: usize, const Y: usize> Projection<T, M, Y> {
 
 /// What the pass over the parameter columns needs.
 struct Pass<'a, T, const M: usize, const Y: usize> {
-    projection: &'a Projection<T, M, Y>,
-    h: &'a [[T; M]; Y],
-    output: &'a [T],
+    projection: &'a Projection<'a, T, M, Y>,
     root: [T; Y],
     whitened: [T; Y],
     /// Moving columns of V.
@@ -364,19 +370,20 @@ impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
         gain: &mut [T],
         column: usize,
     ) {
-        let q = self.output.len() / Y;
+        let (h, output) = (&self.projection.observation.moving, self.projection.output);
+        let q = output.len() / Y;
         let at = M + column;
         let mut cross: [[T; W]; M] = load_rows(p, n, at);
         let mut v = [[T::from_f64(0.0); W]; Y];
         for k in 0..Y {
-            for (row, h) in cross.iter().zip(&self.h[k]) {
+            for (row, h) in cross.iter().zip(&h[k]) {
                 v[k] = mul_add(*row, *h, v[k]);
             }
         }
         for i in 0..q {
             let row: [T; W] = load(p, (M + i) * n + at);
             for k in 0..Y {
-                v[k] = mul_add(row, self.output[k * q + i], v[k]);
+                v[k] = mul_add(row, output[k * q + i], v[k]);
             }
         }
         self.projection.whiten(&self.root, &mut v);
@@ -414,15 +421,16 @@ fn downdate<T: Real, const M: usize, const Y: usize, const W: usize>(
 
 #[inline(always)]
 fn check_diagonal<T: Real>(p: &[T], n: usize, count: usize) -> Result<(), EstimationError> {
-    let zero = T::from_f64(0.0);
     let mut bad = 0_u32;
     for i in 0..count {
-        bad |= u32::from(!(p[i * n + i] > zero));
+        bad |= u32::from(!p[i * n + i].is_positive());
     }
     if bad == 0 {
         return Ok(());
     }
-    let state = (0..count).find(|i| !(p[i * n + i] > zero)).unwrap_or(0);
+    let state = (0..count)
+        .find(|i| !p[i * n + i].is_positive())
+        .unwrap_or(0);
     Err(not_positive(p[state * n + state], state))
 }
 
@@ -431,6 +439,8 @@ fn not_positive<T: Real>(value: T, state: usize) -> EstimationError {
     if value.is_finite() {
         EstimationError::NotPositiveDefinite { state }
     } else {
-        EstimationError::NotFinite { quantity: "the covariance" }
+        EstimationError::NotFinite {
+            quantity: "the covariance",
+        }
     }
 }

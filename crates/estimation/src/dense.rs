@@ -52,14 +52,22 @@ where
         state: SVector<f64, N>,
         covariance: SMatrix<f64, N, N>,
     ) -> Self {
-        let mut filter = Self { model, inputs, state, covariance, integration, recentring };
+        let mut filter = Self {
+            model,
+            inputs,
+            state,
+            covariance,
+            integration,
+            recentring,
+        };
         let mut moving = filter.moving();
         if recentring == Recentring::EveryStep
             && let Some(map) = filter.model.recentre(&mut moving, &mut filter.inputs)
         {
             filter.set_moving(moving);
             let mut full = SMatrix::<f64, N, N>::identity();
-            full.fixed_view_mut::<M, M>(0, 0).copy_from(&to_matrix(&map));
+            full.fixed_view_mut::<M, M>(0, 0)
+                .copy_from(&to_matrix(&map));
             filter.covariance = full * filter.covariance * full.transpose();
         }
         filter
@@ -118,8 +126,8 @@ where
         let residual = SVector::from(*measured) - SVector::from(predicted);
         let cross = self.covariance * h.transpose();
         let covariance = h * cross + r;
-        let cholesky = Cholesky::new(covariance)
-            .ok_or(EstimationError::NotPositiveDefinite { state: 0 })?;
+        let cholesky =
+            Cholesky::new(covariance).ok_or(EstimationError::NotPositiveDefinite { state: 0 })?;
         let gain = cholesky.solve(&cross.transpose()).transpose();
         let nis = residual.dot(&cholesky.solve(&residual));
         let correction = gain * residual;
@@ -127,7 +135,11 @@ where
         self.covariance =
             joseph * self.covariance * joseph.transpose() + gain * r * gain.transpose();
         self.apply(&correction);
-        Ok(DenseInnovation { residual, covariance, nis })
+        Ok(DenseInnovation {
+            residual,
+            covariance,
+            nis,
+        })
     }
 
     fn apply(&mut self, correction: &SVector<f64, N>) {
@@ -147,9 +159,11 @@ where
     fn transition(&self, dt: f64) -> ([f64; M], SMatrix<f64, M, N>, SMatrix<f64, M, M>) {
         let (stages, nodes, weights): (usize, [f64; 4], [f64; 4]) = match self.integration {
             Integration::Euler { .. } => (1, [0.0; 4], [1.0, 0.0, 0.0, 0.0]),
-            Integration::Rk4 { .. } => {
-                (4, [0.0, 0.5, 0.5, 1.0], [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0])
-            }
+            Integration::Rk4 { .. } => (
+                4,
+                [0.0, 0.5, 0.5, 1.0],
+                [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+            ),
         };
         let substeps = self.integration.substeps();
         let h = dt / f64::from(substeps);
@@ -180,7 +194,12 @@ where
     fn rates(
         &self,
         moving: &SVector<f64, M>,
-    ) -> (SVector<f64, M>, SMatrix<f64, M, M>, SMatrix<f64, M, N>, SMatrix<f64, M, M>) {
+    ) -> (
+        SVector<f64, M>,
+        SMatrix<f64, M, M>,
+        SMatrix<f64, M, N>,
+        SMatrix<f64, M, M>,
+    ) {
         let p = N - M;
         let mut parameters = [[0.0; N]; M];
         let mut jacobian = RatesJacobian {
@@ -189,8 +208,12 @@ where
             parameters: &mut parameters.as_flattened_mut()[..M * p],
         };
         let at: [f64; M] = (*moving).into();
-        let rates =
-            self.model.rates_jacobian(&at, &self.state.as_slice()[M..], &self.inputs, &mut jacobian);
+        let rates = self.model.rates_jacobian(
+            &at,
+            &self.state.as_slice()[M..],
+            &self.inputs,
+            &mut jacobian,
+        );
         let by_moving = to_matrix(&jacobian.moving);
         let by_noise = to_matrix(&jacobian.noise);
         let mut by_state = SMatrix::<f64, M, N>::zeros();

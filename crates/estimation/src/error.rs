@@ -37,7 +37,9 @@ impl fmt::Display for EstimationError {
                 "{quantity} is not finite; the model has left its domain, \
                  use a shorter step or a narrower prior"
             ),
-            Self::InvalidArgument { expected } => write!(f, "invalid argument: expected {expected}"),
+            Self::InvalidArgument { expected } => {
+                write!(f, "invalid argument: expected {expected}")
+            }
         }
     }
 }

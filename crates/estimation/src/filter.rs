@@ -75,14 +75,16 @@ where
             });
         }
         if integration.substeps() == 0 {
-            return Err(EstimationError::InvalidArgument { expected: "at least one sub-step" });
+            return Err(EstimationError::InvalidArgument {
+                expected: "at least one sub-step",
+            });
         }
         let buffers = storage.buffers();
         buffers.state.copy_from_slice(state);
         buffers.covariance.fill(T::from_f64(0.0));
         for (j, sigma) in sigma.iter().enumerate() {
             let variance = *sigma * *sigma;
-            if !(*sigma > T::from_f64(0.0) && variance.is_finite()) {
+            if !(sigma.is_positive() && variance.is_finite()) {
                 return Err(EstimationError::NotPositiveDefinite { state: j });
             }
             buffers.covariance[j * n + j] = variance;
@@ -130,8 +132,10 @@ where
     /// prediction left the numbers.
     #[inline]
     pub fn predict(&mut self, dt: T, noise_density: &[T; M]) -> Result<(), EstimationError> {
-        if !(dt > T::from_f64(0.0) && dt.is_finite()) {
-            return Err(EstimationError::InvalidArgument { expected: "a positive step" });
+        if !(dt.is_positive() && dt.is_finite()) {
+            return Err(EstimationError::InvalidArgument {
+                expected: "a positive step",
+            });
         }
         let n = self.storage.states();
         let buffers = self.storage.buffers();
@@ -147,13 +151,25 @@ where
         }
         .integrate(self.integration, dt, &mut moving);
         if !moving.iter().all(|state| state.is_finite()) {
-            return Err(EstimationError::NotFinite { quantity: "a predicted moving state" });
+            return Err(EstimationError::NotFinite {
+                quantity: "a predicted moving state",
+            });
         }
         if self.recentring.wanted(&moving)
-            && let Some(map) = self.model.recentre(&mut moving, &mut self.inputs) {
+            && let Some(map) = self.model.recentre(&mut moving, &mut self.inputs)
+        {
             transition.moving = small_product(&map, &transition.moving);
-            transition.noise = small_product(&map, &transition.noise);
+            if self.model.noise_parameters().is_none() {
+                transition.noise = small_product(&map, &transition.noise);
+            }
             map_rows(&map, buffers.transition, n - M);
+        }
+        if let Some(same) = self.model.noise_parameters() {
+            for (i, row) in transition.noise.iter_mut().enumerate() {
+                for (noise, parameter) in row.iter_mut().zip(same) {
+                    *noise = buffers.transition[i * (n - M) + parameter];
+                }
+            }
         }
         moving_slice.copy_from_slice(&moving);
         self.moving_transition = transition.moving;
@@ -187,19 +203,13 @@ where
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
         let output = &buffers.output[..Y * q];
         let projection = Projection::new(buffers.covariance, n, &observation, output)?;
-        let innovation = projection.innovation(&observation)?;
-        let correction = projection.update(
-            buffers.covariance,
-            n,
-            parameters,
-            &observation,
-            output,
-            &innovation,
-            buffers.gain,
-        )?;
+        let innovation = projection.innovation()?;
+        let correction =
+            projection.update(buffers.covariance, n, parameters, &innovation, buffers.gain)?;
         match self.recentring {
             Recentring::EveryStep => {
-                self.model.correct(&mut moving, &mut self.inputs, &correction);
+                self.model
+                    .correct(&mut moving, &mut self.inputs, &correction);
             }
             _ => {
                 for i in 0..M {
@@ -220,7 +230,7 @@ where
         noise_variance: &[T; Y],
     ) -> Observation<T, M, Y> {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        let (n, q) = (self.storage.states(), self.model.output_parameters());
+        let q = self.model.output_parameters();
         let buffers = self.storage.buffers();
         let mut observation = Observation {
             moving: [[zero; M]; Y],
@@ -231,18 +241,20 @@ where
         let (parameters, d_parameters) = (&buffers.state[M..], &mut buffers.output[..Y * q]);
         let d_moving = &mut observation.moving;
         let predicted = if self.recentring == Recentring::EveryStep && self.model.has_chart() {
-            self.model.output_jacobian_at_origin(parameters, &self.inputs, d_moving, d_parameters)
+            self.model
+                .output_jacobian_at_origin(parameters, &self.inputs, d_moving, d_parameters)
         } else {
-            self.model.output_jacobian(moving, parameters, &self.inputs, d_moving, d_parameters)
+            self.model
+                .output_jacobian(moving, parameters, &self.inputs, d_moving, d_parameters)
         };
         for k in 0..Y {
-            if measured[k] == measured[k] {
+            if measured[k].is_nan() {
+                observation.moving[k] = [zero; M];
+                buffers.output[k * q..(k + 1) * q].fill(zero);
+            } else {
                 observation.residual[k] = measured[k] - predicted[k];
                 observation.variance[k] = noise_variance[k];
                 observation.observed[k] = true;
-            } else {
-                observation.moving[k] = [zero; M];
-                buffers.output[k * q..(k + 1) * q].fill(zero);
             }
         }
         observation
@@ -266,11 +278,12 @@ where
         let buffers = self.storage.buffers();
         let output = &buffers.output[..Y * q];
         let innovation =
-            Projection::new(buffers.covariance, n, &observation, output)?.innovation(&observation)?;
+            Projection::new(buffers.covariance, n, &observation, output)?.innovation()?;
         if innovation.nis > largest_nis {
             return Ok((innovation, false));
         }
-        self.update(measured, noise_variance).map(|innovation| (innovation, true))
+        self.update(measured, noise_variance)
+            .map(|innovation| (innovation, true))
     }
 
     /// The state: moving states in the current chart, then parameters.
@@ -285,7 +298,13 @@ where
     /// If an index is not that of a state.
     #[must_use]
     pub fn covariance(&self, i: usize, j: usize) -> T {
-        covariance::element(self.storage.view().covariance, self.storage.states(), M, i, j)
+        covariance::element(
+            self.storage.view().covariance,
+            self.storage.states(),
+            M,
+            i,
+            j,
+        )
     }
 
     /// Standard deviation of the error of state `i`.
@@ -324,7 +343,7 @@ where
 #[inline(always)]
 fn check_noise<T: Real, const Y: usize>(variance: &[T; Y]) -> Result<(), EstimationError> {
     for (output, variance) in variance.iter().enumerate() {
-        if !(*variance > T::from_f64(0.0) && variance.is_finite()) {
+        if !(variance.is_positive() && variance.is_finite()) {
             return Err(EstimationError::NotPositiveDefinite { state: output });
         }
     }

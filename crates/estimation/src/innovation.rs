@@ -39,9 +39,18 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
             nis = weights[k].mul_add(own[k], nis);
         }
         if nis.is_finite() {
-            Ok(Self { residual, observed, nis, weights, lower, variance })
+            Ok(Self {
+                residual,
+                observed,
+                nis,
+                weights,
+                lower,
+                variance,
+            })
         } else {
-            Err(EstimationError::NotFinite { quantity: "the normalised innovation" })
+            Err(EstimationError::NotFinite {
+                quantity: "the normalised innovation",
+            })
         }
     }
 

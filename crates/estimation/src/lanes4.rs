@@ -59,6 +59,8 @@ pub(crate) fn dot<T: Scalar, const W: usize>(a: [T; W], b: [T; W]) -> T {
     let products = multiply_add(a, b, [T::from_f64(0.0); W]);
     match products.as_slice() {
         [a, b, c, d] => (*a + *b) + (*c + *d),
-        other => other.iter().fold(T::from_f64(0.0), |sum, value| sum + *value),
+        other => other
+            .iter()
+            .fold(T::from_f64(0.0), |sum, value| sum + *value),
     }
 }

@@ -8,10 +8,9 @@
 //! [`gyrocal_scalar::Model`], and it is built on that structure: the transition is
 //! non-trivial in the moving rows only.
 //!
-//! The covariance is carried as P = U D Uᵀ (Bierman, *Factorization Methods for Discrete
-//! Sequential Estimation*, 1977), so it is symmetric and positive definite by construction.
-//! What rounding cannot break needs no repair; a pivot that is not positive or a number that
-//! is not finite is an [`EstimationError`].
+//! The covariance is symmetric to the last bit by the order of operations, and the moving
+//! block, where a measurement removes nearly all of a wide prior, is updated in Joseph form.
+//! A variance that is not positive or a number that is not finite is an [`EstimationError`].
 //!
 //! # Glossary
 //!
@@ -19,9 +18,9 @@
 //! |---|---|
 //! | n, M, Y | states, moving states, outputs |
 //! | Φ, Γ | transition of the state, effect of the noise held over a step |
-//! | P, U, D | error covariance and its factors: unit upper triangular, diagonal |
+//! | P | error covariance |
 //! | H, R, S | output Jacobian, output noise, innovation covariance |
-//! | K | gain |
+//! | K, V | gain; whitened gain, Vᵀ V being what an update takes from P |
 //! | NIS | normalised innovation squared, νᵀ S⁻¹ ν; Y expected |
 //!
 //! # Features
@@ -35,13 +34,17 @@
 //! It never repairs a covariance, never allocates in a step, and never looks into a model.
 
 #![no_std]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over several matrices by one index read like the equations"
+)]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+mod covariance;
 #[cfg(feature = "nalgebra")]
 pub mod dense;
-mod covariance;
 mod error;
 mod filter;
 mod innovation;

@@ -59,7 +59,12 @@ impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArraySto
     /// All numbers at their default.
     #[must_use]
     pub fn new() -> Self {
-        const { assert!(M <= N, "a filter has at least as many states as moving states") };
+        const {
+            assert!(
+                M <= N,
+                "a filter has at least as many states as moving states"
+            )
+        };
         let zero = T::default();
         Self {
             state: [zero; N],
@@ -130,7 +135,10 @@ impl<T: Copy + Default> VecStorage<T> {
             outputs * states,
             outputs * states,
         ];
-        Self { states, numbers: lengths.map(|length| alloc::vec![T::default(); length]) }
+        Self {
+            states,
+            numbers: lengths.map(|length| alloc::vec![T::default(); length]),
+        }
     }
 }
 
@@ -142,11 +150,23 @@ impl<T> Storage<T> for VecStorage<T> {
 
     fn buffers(&mut self) -> Buffers<'_, T> {
         let [state, covariance, transition, stages, output, gain] = self.numbers.each_mut();
-        Buffers { state, covariance, transition, stages, output, gain }
+        Buffers {
+            state,
+            covariance,
+            transition,
+            stages,
+            output,
+            gain,
+        }
     }
 
     fn view(&self) -> View<'_, T> {
         let [state, covariance, transition, _, _, gain] = self.numbers.each_ref();
-        View { state, covariance, transition, gain }
+        View {
+            state,
+            covariance,
+            transition,
+            gain,
+        }
     }
 }

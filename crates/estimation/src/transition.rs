@@ -40,7 +40,8 @@ impl Integration {
 pub(crate) struct Transition<T, const M: usize> {
     /// Moving columns of Φ.
     pub(crate) moving: [[T; M]; M],
-    /// Γ: effect of noise held over the step.
+    /// Γ: effect of noise held over the step. Zero for a model whose noise enters as parameters
+    /// do: Γ then consists of their columns.
     pub(crate) noise: [[T; M]; M],
 }
 
@@ -82,7 +83,11 @@ where
         moving: &mut [T; M],
     ) -> Transition<T, M> {
         let count = integration.substeps();
-        let h = if count == 1 { dt } else { dt / T::from_f64(f64::from(count)) };
+        let h = if count == 1 {
+            dt
+        } else {
+            dt / T::from_f64(f64::from(count))
+        };
         match integration {
             Integration::Euler { .. } => {
                 self.substeps::<1>(count, &[T::from_f64(0.0)], &[h], moving)
@@ -105,18 +110,13 @@ where
         moving: &mut [T; M],
     ) -> Transition<T, M> {
         let zero = [[T::from_f64(0.0); M]; M];
-        let mut transition = Transition { moving: zero, noise: zero };
+        let mut transition = Transition {
+            moving: zero,
+            noise: zero,
+        };
         self.substep(true, nodes, weights, moving, &mut transition);
         for _ in 1..count {
             self.substep(false, nodes, weights, moving, &mut transition);
-        }
-        if let Some(same) = self.model.noise_parameters() {
-            let p = self.parameters.len();
-            for (i, row) in transition.noise.iter_mut().enumerate() {
-                for (noise, parameter) in row.iter_mut().zip(same) {
-                    *noise = self.columns[i * p + parameter];
-                }
-            }
         }
         transition
     }
@@ -148,16 +148,27 @@ where
             rates = if stage == 0 && first && self.at_origin {
                 model.rates_jacobian_at_origin(parameters, inputs, &mut jacobian)
             } else {
-                let at = if stage == 0 { start } else { mul_add(rates, nodes[stage], start) };
+                let at = if stage == 0 {
+                    start
+                } else {
+                    mul_add(rates, nodes[stage], start)
+                };
                 model.rates_jacobian(&at, parameters, inputs, &mut jacobian)
             };
             jacobians[stage] = jacobian.moving;
             noises[stage] = jacobian.noise;
             *moving = mul_add(rates, weights[stage], *moving);
         }
-        let scheme = Scheme { jacobians: &jacobians, nodes, weights };
-        let (moving_start, parameter_start) =
-            if first { (Start::Identity, Start::Zero) } else { (Start::Given, Start::Given) };
+        let scheme = Scheme {
+            jacobians: &jacobians,
+            nodes,
+            weights,
+        };
+        let (moving_start, parameter_start) = if first {
+            (Start::Identity, Start::Zero)
+        } else {
+            (Start::Given, Start::Given)
+        };
         scheme.advance(moving_start, &mut transition.moving, |_, _| [zero; M]);
         if self.model.noise_parameters().is_none() {
             let drive = |stage: usize, i: usize| noises[stage][i];

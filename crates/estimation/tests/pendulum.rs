@@ -1,4 +1,4 @@
-//! The factorised filter against the dense textbook filter on a model of another kind:
+//! The structured filter against the dense textbook filter on a model of another kind:
 //! parameters in the output, noise of its own, flat state space.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
@@ -23,7 +23,16 @@ const STEP_S: f64 = 0.05;
 type Pendulums<S> = Filter<f64, Pendulum, (), S, 2, 2>;
 
 fn filter<S: Storage<f64>>(integration: Integration, storage: S) -> Pendulums<S> {
-    Filter::new(Pendulum, (), integration, Recentring::EveryStep, storage, &STATE, &SIGMA).unwrap()
+    Filter::new(
+        Pendulum,
+        (),
+        integration,
+        Recentring::EveryStep,
+        storage,
+        &STATE,
+        &SIGMA,
+    )
+    .unwrap()
 }
 
 /// Measurements of a pendulum with other parameters, roughly integrated: any data will do.
@@ -55,8 +64,7 @@ fn distance<S: Storage<f64>>(
         worst = worst.max((filter.state()[i] - dense.state[i]).abs() / sigma);
         for j in 0..6 {
             let scale = sigma * dense.covariance[(j, j)].sqrt();
-            worst =
-                worst.max((filter.covariance(i, j) - dense.covariance[(i, j)]).abs() / scale);
+            worst = worst.max((filter.covariance(i, j) - dense.covariance[(i, j)]).abs() / scale);
         }
     }
     worst
@@ -88,7 +96,11 @@ fn equals_the_dense_filter_on_a_model_with_output_parameters_and_noise_of_its_ow
             vector.update(&measured, &VARIANCE).unwrap();
             let reference = dense.update(&measured, &VARIANCE).unwrap();
             // Two algorithms, 400 steps of rounding at a condition number of about 1e4.
-            assert!(distance(&array, &dense) < 1e-10, "{}", distance(&array, &dense));
+            assert!(
+                distance(&array, &dense) < 1e-10,
+                "{}",
+                distance(&array, &dense)
+            );
             assert!((innovation.nis - reference.nis).abs() < 1e-9 * (1.0 + reference.nis));
             let covariance = innovation.covariance();
             for i in 0..2 {
@@ -100,14 +112,23 @@ fn equals_the_dense_filter_on_a_model_with_output_parameters_and_noise_of_its_ow
                 }
             }
         }
-        assert_eq!(array.state(), vector.state(), "storage must not change a bit");
-        assert!(array.sigma(STIFFNESS) < 0.1 && array.sigma(BIAS) < 0.02, "nothing was learnt");
+        assert_eq!(
+            array.state(),
+            vector.state(),
+            "storage must not change a bit"
+        );
+        assert!(
+            array.sigma(STIFFNESS) < 0.1 && array.sigma(BIAS) < 0.02,
+            "nothing was learnt"
+        );
     }
 }
 
 #[test]
 fn a_missing_component_is_the_limit_of_large_noise_and_says_so() {
-    let [measured] = measurements(2, 1)[..] else { unreachable!() };
+    let [measured] = measurements(2, 1)[..] else {
+        unreachable!()
+    };
     let mut missing = filter(Integration::RK4, ArrayStorage::<f64, 2, 2, 6>::new());
     let mut noisy = missing.clone();
     let innovation = missing.update(&[measured[0], f64::NAN], &VARIANCE).unwrap();
@@ -127,7 +148,9 @@ fn a_missing_component_is_the_limit_of_large_noise_and_says_so() {
 
 #[test]
 fn gating_keeps_the_filter_as_it_was_and_agrees_with_the_update() {
-    let [measured] = measurements(3, 1)[..] else { unreachable!() };
+    let [measured] = measurements(3, 1)[..] else {
+        unreachable!()
+    };
     let mut filter = filter(Integration::RK4, ArrayStorage::<f64, 2, 2, 6>::new());
     let wild = [measured[0] + 5.0, measured[1]];
     let before = filter.clone();
@@ -158,22 +181,50 @@ fn predicting_twice_over_half_a_step_adds_the_same_noise() {
 fn arguments_without_meaning_are_errors() {
     let storage = ArrayStorage::<f64, 2, 2, 6>::new;
     let every = Recentring::EveryStep;
-    let short = Filter::new(Pendulum, (), Integration::RK4, every, storage(), &STATE[..5], &SIGMA);
-    assert!(matches!(short, Err(EstimationError::InvalidArgument { .. })));
+    let short = Filter::new(
+        Pendulum,
+        (),
+        Integration::RK4,
+        every,
+        storage(),
+        &STATE[..5],
+        &SIGMA,
+    );
+    assert!(matches!(
+        short,
+        Err(EstimationError::InvalidArgument { .. })
+    ));
     let mut sigma = SIGMA;
     sigma[3] = 0.0;
-    let flat = Filter::new(Pendulum, (), Integration::RK4, every, storage(), &STATE, &sigma);
-    assert_eq!(flat.err(), Some(EstimationError::NotPositiveDefinite { state: 3 }));
+    let flat = Filter::new(
+        Pendulum,
+        (),
+        Integration::RK4,
+        every,
+        storage(),
+        &STATE,
+        &sigma,
+    );
+    assert_eq!(
+        flat.err(),
+        Some(EstimationError::NotPositiveDefinite { state: 3 })
+    );
     let none = Integration::Euler { substeps: 0 };
     let none = Filter::new(Pendulum, (), none, every, storage(), &STATE, &SIGMA);
     assert!(matches!(none, Err(EstimationError::InvalidArgument { .. })));
     let mut good = filter(Integration::RK4, storage());
     for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = good.predict(step, &NOISE_DENSITY);
-        assert!(matches!(error, Err(EstimationError::InvalidArgument { .. })), "{step}");
+        assert!(
+            matches!(error, Err(EstimationError::InvalidArgument { .. })),
+            "{step}"
+        );
     }
     let negative = good.update(&[0.0; 2], &[1e-4, -1.0]);
-    assert_eq!(negative.err(), Some(EstimationError::NotPositiveDefinite { state: 1 }));
+    assert_eq!(
+        negative.err(),
+        Some(EstimationError::NotPositiveDefinite { state: 1 })
+    );
     let infinite = good.update(&[f64::INFINITY, 0.0], &VARIANCE);
     assert!(matches!(infinite, Err(EstimationError::NotFinite { .. })));
 }

@@ -59,7 +59,11 @@ impl Figure {
     }
 
     pub(crate) fn over(self, runs: usize, seeds: impl Into<String>) -> Self {
-        Self { runs, seeds: seeds.into(), ..self }
+        Self {
+            runs,
+            seeds: seeds.into(),
+            ..self
+        }
     }
 }
 
@@ -67,7 +71,7 @@ impl Figure {
 pub(crate) fn table(figures: &[Figure]) -> Table {
     let mut table = Table::new();
     table
-        .load_preset(presets::ASCII_MARKDOWN)
+        .load_style(presets::ASCII_MARKDOWN)
         .set_content_arrangement(ContentArrangement::Disabled)
         .set_header(["figure", "target", "measured", "runs", "seeds", "holds"]);
     for figure in figures {

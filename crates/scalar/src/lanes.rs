@@ -61,11 +61,16 @@ impl<T: Scalar, const N: usize> Scalar for Lanes<T, N> {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let pairs = self.0.map(Scalar::sin_cos);
-        (Self(pairs.map(|pair| pair.0)), Self(pairs.map(|pair| pair.1)))
+        (
+            Self(pairs.map(|pair| pair.0)),
+            Self(pairs.map(|pair| pair.1)),
+        )
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self(array::from_fn(|lane| self.0[lane].mul_add(factor.0[lane], addend.0[lane])))
+        Self(array::from_fn(|lane| {
+            self.0[lane].mul_add(factor.0[lane], addend.0[lane])
+        }))
     }
     lanewise!(tan asin acos atan sinh cosh tanh exp ln sqrt abs sign;
               atan2 powf min max less less_or_equal equal if_else_zero);

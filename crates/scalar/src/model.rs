@@ -109,7 +109,13 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
         d_moving: &mut [[T; M]; Y],
         d_parameters: &mut [T],
     ) -> [T; Y] {
-        self.output_jacobian(&[T::from_f64(0.0); M], parameters, inputs, d_moving, d_parameters)
+        self.output_jacobian(
+            &[T::from_f64(0.0); M],
+            parameters,
+            inputs,
+            d_moving,
+            d_parameters,
+        )
     }
 }
 

@@ -92,6 +92,15 @@ pub trait Real: Scalar + PartialOrd + Default + core::fmt::Debug {
     /// The number as `f64`.
     #[must_use]
     fn to_f64(self) -> f64;
+    /// Greater than zero; not so for NaN.
+    #[inline(always)]
+    #[must_use]
+    fn is_positive(self) -> bool {
+        self > Self::from_f64(0.0)
+    }
+    /// Not a number.
+    #[must_use]
+    fn is_nan(self) -> bool;
     /// Neither infinite nor NaN.
     #[must_use]
     fn is_finite(self) -> bool;

@@ -8,7 +8,7 @@ const QUARTER_PI: f64 = core::f64::consts::FRAC_PI_4;
 
 const SINE: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
-    8.333_333_333_322_489e-3,
+    8.333_333_333_322_49e-3,
     -1.984_126_982_985_795e-4,
     2.755_731_370_707_006_8e-6,
     -2.505_076_025_340_686_3e-8,
@@ -28,7 +28,11 @@ const COSINE: [f64; 6] = [
 #[must_use]
 pub fn sin_cos_f64(angle: f64) -> (f64, f64) {
     // NaN takes this branch too: libm hands it back.
-    if angle.abs() <= QUARTER_PI { small(angle) } else { large(angle) }
+    if angle.abs() <= QUARTER_PI {
+        small(angle)
+    } else {
+        large(angle)
+    }
 }
 
 /// Sine and cosine of `angle` in radians, computed in `f64` and rounded.

@@ -6,10 +6,10 @@ use gyrocal_scalar::{Model, RatesJacobian, Recentre, Scalar};
 /// sensor (they enter the output), stiffness and damping. Outputs: biased angle, and rate.
 /// Noise: a torque, so no parameter enters the rates as the noise does.
 #[derive(Clone, Copy, Debug)]
-pub struct Pendulum;
+pub(crate) struct Pendulum;
 
-pub const BIAS: usize = 2;
-pub const STIFFNESS: usize = 4;
+pub(crate) const BIAS: usize = 2;
+pub(crate) const STIFFNESS: usize = 4;
 
 impl<T: Scalar> Model<T, 2, 2> for Pendulum {
     type Inputs = ();

@@ -16,18 +16,27 @@ pub(crate) struct Judged {
 
 pub(crate) fn judge(simulation: &Simulation, options: &Options) -> Result<Judged, Error> {
     let calibration = calibrate(&simulation.record, &simulation.bench, options, |_| ())?;
-    let truth = simulation.truth.coefficients.named().map(|(_, value, _)| value);
+    let truth = simulation
+        .truth
+        .coefficients
+        .named()
+        .map(|(_, value, _)| value);
     let estimate = calibration.drift.to_array();
-    Ok(Judged { error: core::array::from_fn(|i| estimate[i] - truth[i]), truth, calibration })
+    Ok(Judged {
+        error: core::array::from_fn(|i| estimate[i] - truth[i]),
+        truth,
+        calibration,
+    })
 }
 
 impl Judged {
     /// Normalised estimation error squared of the nine coefficients; 9 is expected.
     pub(crate) fn nees(&self) -> Result<f64, Error> {
-        let covariance =
-            SMatrix::<f64, 9, 9>::from_fn(|i, j| self.calibration.covariance[i][j]);
+        let covariance = SMatrix::<f64, 9, 9>::from_fn(|i, j| self.calibration.covariance[i][j]);
         let error = SVector::from(self.error);
-        let cholesky = covariance.cholesky().ok_or("the covariance is not positive definite")?;
+        let cholesky = covariance
+            .cholesky()
+            .ok_or("the covariance is not positive definite")?;
         Ok(error.dot(&cholesky.solve(&error)))
     }
 
@@ -36,9 +45,8 @@ impl Judged {
         core::array::from_fn(|i| self.error[i] / self.calibration.covariance[i][i].sqrt())
     }
 
-    /// Errors in percent of the coefficients, as text.
-    pub(crate) fn percent(&self) -> String {
-        let percent = |i: usize| format!("{:.2}", 100.0 * self.error[i] / self.truth[i]);
-        (0..9).map(percent).collect::<Vec<_>>().join(" ")
+    /// Errors in percent of the coefficients.
+    pub(crate) fn percent(&self) -> [f64; 9] {
+        core::array::from_fn(|i| 100.0 * self.error[i] / self.truth[i])
     }
 }

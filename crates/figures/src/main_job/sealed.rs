@@ -20,6 +20,10 @@ fn figure(case: &str) -> Result<Figure, Error> {
     let record = Record::read(&directory.join(format!("{case}.csv")))?;
     let bench = Bench::read(&directory.join(format!("{case}.toml")))?;
     let calibration = calibrate(&record, &bench, &Options::default(), |_| ())?;
-    Ok(Figure::within(&format!("{case}: mean NIS"), NIS_MEAN, calibration.fit.nis_mean())
-        .over(1, "sealed record"))
+    Ok(Figure::within(
+        &format!("{case}: mean NIS"),
+        NIS_MEAN,
+        calibration.fit.nis_mean(),
+    )
+    .over(1, "sealed record"))
 }

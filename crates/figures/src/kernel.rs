@@ -1,0 +1,44 @@
+//! The structured kernel: what a step costs against the textbook filter and against the number
+//! of states, what its numbers are worth, and how many instructions it takes.
+
+mod accuracy;
+mod instructions;
+mod scaling;
+mod speed;
+mod timing;
+
+// Test support of the library package, which has no other reader.
+#[allow(clippy::expect_used)]
+#[path = "../../../tests/numerics/extended_filter.rs"]
+mod extended_filter;
+#[path = "../../../tests/numerics/extended_platform.rs"]
+mod extended_platform;
+#[allow(clippy::expect_used, clippy::panic)]
+#[path = "../../../tests/numerics/reference.rs"]
+mod reference;
+
+use gyrocal::Integration;
+
+use crate::figure::Figure;
+
+/// Why a figure could not be measured.
+pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
+
+const RULES: [(&str, Integration); 2] = [("euler", Integration::EULER), ("rk4", Integration::RK4)];
+
+/// All figures of the topic. With `write`, the committed instruction counts are renewed.
+pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
+    if write {
+        return instructions::renewed();
+    }
+    let rounds = if small { 101 } else { 501 };
+    let mut figures = vec![Figure::note(
+        "target features of this build",
+        timing::target_features(),
+    )];
+    figures.extend(speed::figures(rounds)?);
+    figures.extend(scaling::figures(rounds)?);
+    figures.extend(accuracy::figures());
+    figures.extend(instructions::figures()?);
+    Ok(figures)
+}

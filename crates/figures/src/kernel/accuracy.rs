@@ -1,0 +1,28 @@
+//! Rounding errors of the kernel and of the dense Joseph form, against 400-bit arithmetic.
+
+use super::RULES;
+use super::reference::{TIE, dense_joseph, structured};
+use crate::figure::Figure;
+
+const RUNS: &str = "tests/data/numerics";
+
+pub(crate) fn figures() -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for (rule, integration) in RULES {
+        let (ours, dense) = (structured(integration), dense_joseph(integration));
+        let what = format!("{rule}, 1000 steps: rounding errors of the kernel");
+        figures.push(Figure::note(&what, ours.to_string()).over(8, RUNS));
+        let what = format!("{rule}, 1000 steps: rounding errors of dense Joseph");
+        figures.push(Figure::note(&what, dense.to_string()).over(8, RUNS));
+        let pairs = [
+            ("states", ours.state, dense.state),
+            ("sigmas", ours.sigma, dense.sigma),
+        ];
+        for (quantity, ours, dense) in pairs {
+            let what = format!("{rule}, 1000 steps: error of {quantity}, kernel / dense Joseph");
+            let bounds = [f64::NEG_INFINITY, TIE];
+            figures.push(Figure::within(&what, bounds, ours / dense).over(8, RUNS));
+        }
+    }
+    figures
+}

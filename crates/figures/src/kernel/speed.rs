@@ -1,0 +1,85 @@
+//! A step of the shipped filter against one of the textbook filter.
+
+use std::hint::black_box;
+
+use gyrocal::estimation::dense::DenseFilter;
+use gyrocal::{Anchored, Chart, Platform, PlatformFilter, Recentring, Settings, Site};
+use nalgebra::{SMatrix, SVector};
+
+use super::extended_filter::samples;
+use super::timing::{is_x86_64_v3, medians, seconds};
+use super::{Error, RULES};
+use crate::figure::Figure;
+
+/// Steps of one round: ten hours.
+const STEPS: usize = 600;
+const STEP_S: f64 = 60.0;
+const DENSITY: [f64; 3] = [2.4e-4; 3];
+const VARIANCE: [f64; 3] = [1e-10; 3];
+
+/// How many times faster a step is than one of `dense_joseph` of the bench `filter_step`: the
+/// same interval, samples and noise, Euler angles in one chart.
+pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
+    let samples = samples(STEPS)?;
+    let site = Site::at_latitude_deg(39.1);
+    let mut figures = Vec::new();
+    for (rule, integration) in RULES {
+        let settings = Settings {
+            integration,
+            ..Settings::level_at(site)
+        };
+        let ours = PlatformFilter::new(&settings)?;
+        let angle = settings.angles_sigma_rad[0];
+        let variances: [f64; 12] =
+            core::array::from_fn(|i| if i < 3 { angle * angle } else { 1.0 });
+        let dense = DenseFilter::<_, _, 3, 3, 12>::new(
+            Anchored(Platform),
+            Chart::east_north_up(site),
+            integration,
+            Recentring::Never,
+            SVector::zeros(),
+            SMatrix::from_diagonal(&SVector::from(variances)),
+        );
+        let (times, ratios) = medians(rounds, || {
+            let mut ours = black_box(ours.clone());
+            let ours_s = seconds(|| {
+                samples.iter().try_for_each(|sample| {
+                    ours.step(STEP_S, black_box(sample)).map(|innovation| {
+                        black_box(innovation);
+                    })
+                })
+            })?;
+            black_box(&ours);
+            let mut dense = black_box(dense.clone());
+            let dense_s = seconds(|| {
+                samples.iter().try_for_each(|sample| {
+                    dense.predict(STEP_S, &DENSITY);
+                    dense
+                        .update(black_box(sample), &VARIANCE)
+                        .map(|innovation| {
+                            black_box(innovation);
+                        })
+                })
+            })?;
+            black_box(&dense);
+            Ok::<_, gyrocal::EstimationError>([ours_s, dense_s])
+        })?;
+        let target = match (rule, is_x86_64_v3()) {
+            ("euler", true) => 7.0,
+            ("euler", false) => 5.0,
+            _ => 4.0,
+        };
+        let what = format!("{rule} step: time of dense_joseph / of the kernel");
+        let bounds = [target, f64::INFINITY];
+        figures.push(Figure::within(&what, bounds, ratios[1]).over(rounds, ""));
+        let [ours_ns, dense_ns] = times.map(|time| time / STEPS as f64 * 1e9);
+        figures.push(
+            Figure::note(
+                &format!("{rule} step: kernel, dense_joseph"),
+                format!("{ours_ns:.0} ns, {dense_ns:.0} ns"),
+            )
+            .over(rounds, ""),
+        );
+    }
+    Ok(figures)
+}

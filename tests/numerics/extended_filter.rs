@@ -1,0 +1,63 @@
+//! Filters with more and more constant parameters on the same samples, to time.
+
+use std::hint::black_box;
+
+use gyrocal::estimation::{Filter, VecStorage};
+use gyrocal::{Chart, Integration, PlatformFilter, Recentring, Settings, Site};
+
+use super::extended_platform::ExtendedPlatform;
+
+/// Numbers of states.
+pub(crate) const SIZES: [usize; 6] = [12, 14, 18, 24, 36, 60];
+const STEP_S: f64 = 60.0;
+const LATITUDE_DEG: f64 = 39.1;
+/// (0.002 deg/h)² held over 60 s.
+const DENSITY: [f64; 3] = [2.4e-4; 3];
+/// (1e-5 g)².
+const VARIANCE: [f64; 3] = [1e-10; 3];
+
+type ExtendedFilter = Filter<f64, ExtendedPlatform, Chart<f64>, VecStorage<f64>, 3, 3>;
+
+/// Noise-free samples of a platform without drift.
+pub(crate) fn samples(count: usize) -> Result<Vec<[f64; 3]>, gyrocal::EstimationError> {
+    let site = Site::at_latitude_deg(LATITUDE_DEG);
+    let mut truth = PlatformFilter::new(&Settings::level_at(site))?;
+    let mut samples = Vec::with_capacity(count);
+    for _ in 0..count {
+        truth.predict(STEP_S)?;
+        samples.push(truth.platform_c_enu().map(|row| row[2]));
+    }
+    Ok(samples)
+}
+
+/// A filter with `states` states at the start of the samples.
+pub(crate) fn start(
+    states: usize,
+    integration: Integration,
+) -> Result<ExtendedFilter, gyrocal::EstimationError> {
+    let mut sigma = vec![1.0; states];
+    sigma[..3].fill(2e-4);
+    sigma[12..].fill(0.1);
+    Filter::new(
+        ExtendedPlatform {
+            additional: states - 12,
+        },
+        Chart::east_north_up(Site::at_latitude_deg(LATITUDE_DEG)),
+        integration,
+        Recentring::EveryStep,
+        VecStorage::new(states, 3, 3),
+        &vec![0.0; states],
+        &sigma,
+    )
+}
+
+/// One step to a sample.
+#[inline]
+pub(crate) fn step(
+    filter: &mut ExtendedFilter,
+    sample: &[f64; 3],
+) -> Result<(), gyrocal::EstimationError> {
+    filter.predict(STEP_S, &DENSITY)?;
+    black_box(filter.update(black_box(sample), &VARIANCE)?);
+    Ok(())
+}
