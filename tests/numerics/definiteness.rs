@@ -53,7 +53,7 @@ fn check_positive_definite(filter: &PlatformKernel, shift: f64) -> Result<(), St
     let mut a = correlations(filter)?;
     for j in 0..STATES {
         let pivot = a[j][j] + shift - (0..j).map(|k| a[j][k] * a[j][k]).sum::<f64>();
-        if !(pivot > 0.0) {
+        if pivot.is_nan() || pivot <= 0.0 {
             return Err(format!("pivot {j} is {pivot:e}"));
         }
         let root = pivot.sqrt();
@@ -94,16 +94,15 @@ fn watch(
             return Err(located("a state is NaN".to_owned()));
         }
         check_positive_definite(&filter, shift).map_err(located)?;
-        for i in 3..STATES {
+        for (i, before) in sigma.iter_mut().enumerate().skip(3) {
             let now = filter.sigma(i);
-            let bound = sigma[i] * (1.0 + SIGMA_ROUNDING * f64::from(since));
+            let bound = *before * (1.0 + SIGMA_ROUNDING * f64::from(since));
             if now > bound {
                 return Err(located(format!(
-                    "sigma {i} grew from {:e} to {now:e}",
-                    sigma[i]
+                    "sigma {i} grew from {before:e} to {now:e}"
                 )));
             }
-            sigma[i] = now;
+            *before = now;
         }
         since = 0;
     }

@@ -36,13 +36,9 @@ fn derivatives_of_the_extended_platform_are_those_of_its_rates() {
                 moving[j] += change;
                 model.rates(&moving, &parameters, &chart())
             });
-            for i in 0..3 {
+            for (i, expected) in by_angle.into_iter().enumerate() {
                 let exact = jacobian.moving[i][j];
-                assert!(
-                    close(exact, by_angle[i]),
-                    "{i} {j}: {exact:e} {:e}",
-                    by_angle[i]
-                );
+                assert!(close(exact, expected), "{i} {j}: {exact:e} {:e}", expected);
             }
         }
         for k in 0..p {
@@ -51,13 +47,9 @@ fn derivatives_of_the_extended_platform_are_those_of_its_rates() {
                 parameters[k] += change;
                 model.rates(&moving, &parameters, &chart())
             });
-            for i in 0..3 {
+            for (i, expected) in by_parameter.into_iter().enumerate() {
                 let exact = jacobian.parameters[i * p + k];
-                assert!(
-                    close(exact, by_parameter[i]),
-                    "{i} {k}: {exact:e} {:e}",
-                    by_parameter[i]
-                );
+                assert!(close(exact, expected), "{i} {k}: {exact:e} {:e}", expected);
             }
         }
         if moving == [0.0; 3] {

@@ -15,7 +15,7 @@ use crate::simulate::SimulateArguments;
                   2 the command line is wrong."
 )]
 pub(crate) struct Cli {
-    /// Say more on stderr; -vv and -vvv say still more (GYROCAL_LOG takes a filter).
+    /// Say more on stderr; -vv and -vvv say still more.
     #[arg(short, long, action = ArgAction::Count, global = true)]
     pub(crate) verbose: u8,
     #[command(subcommand)]

@@ -44,7 +44,6 @@ impl Folder {
         Command::cargo_bin("gyrocal")
             .unwrap()
             .current_dir(self.folder.path())
-            .env_remove("GYROCAL_LOG")
             .args(arguments)
             .output()
             .unwrap()
