@@ -1,5 +1,6 @@
+use gyrocal_estimation::form::Form;
 use gyrocal_estimation::{
-    ArrayStorage, EstimationError, Filter, Innovation, Integration, Recentring,
+    ArrayStorage, Covariance, EstimationError, Factors, Filter, Innovation, Integration, Recentring,
 };
 use gyrocal_scalar::Real;
 
@@ -70,27 +71,63 @@ impl<T: Real> Settings<T> {
     }
 }
 
-type PlatformKernel<T> =
-    Filter<T, Anchored<Platform>, Chart<T>, ArrayStorage<T, 3, 3, { Platform::STATES }>, 3, 3>;
+type PlatformKernel<T, F> =
+    Filter<T, Anchored<Platform>, Chart<T>, ArrayStorage<T, 3, 3, { Platform::STATES }>, 3, 3, F>;
 
 /// Streaming filter of the nominal platform: feed it accelerometer samples, read coefficients.
 ///
-/// No call allocates.
+/// No call allocates. `F` is the form of the covariance: P itself for double precision, or its
+/// factors ([`FactorisedPlatformFilter`]) for single precision and priors of any width.
 #[derive(Clone, Debug)]
-pub struct PlatformFilter<T = f64> {
-    kernel: PlatformKernel<T>,
+pub struct PlatformFilter<T = f64, F = Covariance> {
+    kernel: PlatformKernel<T, F>,
     accel_variance_g2: [T; 3],
     drift_density: [T; 3],
     longest_step_s: T,
 }
 
-impl<T: Real> PlatformFilter<T> {
+/// The streaming filter on the factors of the covariance: it cannot lose definiteness, so it is
+/// the one for controllers that compute in single precision.
+///
+/// ```
+/// use gyrocal::{FactorisedPlatformFilter, Settings, Site};
+///
+/// # fn main() -> Result<(), gyrocal::EstimationError> {
+/// let settings = Settings::<f32>::level_at(Site::at_latitude_deg(39.1));
+/// let mut filter = FactorisedPlatformFilter::factorised(&settings)?;
+/// filter.update(&[0.0, 0.0, 1.0])?;
+/// # Ok(())
+/// # }
+/// ```
+pub type FactorisedPlatformFilter<T = f32> = PlatformFilter<T, Factors>;
+
+impl<T: Real> PlatformFilter<T, Covariance> {
     /// A filter at the first sample, which [`Self::update`] takes.
+    ///
+    /// # Errors
+    /// As [`Self::with_form`].
+    pub fn new(settings: &Settings<T>) -> Result<Self, EstimationError> {
+        Self::with_form(settings)
+    }
+}
+
+impl<T: Real> FactorisedPlatformFilter<T> {
+    /// A filter at the first sample, which [`Self::update`] takes.
+    ///
+    /// # Errors
+    /// As [`Self::with_form`].
+    pub fn factorised(settings: &Settings<T>) -> Result<Self, EstimationError> {
+        Self::with_form(settings)
+    }
+}
+
+impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
+    /// A filter at the first sample, which [`Self::update`] takes, in the form `F`.
     ///
     /// # Errors
     /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::InvalidArgument`] if a
     /// sigma or noise is not positive.
-    pub fn new(settings: &Settings<T>) -> Result<Self, EstimationError> {
+    pub fn with_form(settings: &Settings<T>) -> Result<Self, EstimationError> {
         let (zero, noise) = (T::from_f64(0.0), settings.drift_noise_deg_per_h);
         if !(settings.accel_noise_g.is_positive()
             && noise.is_positive()
@@ -106,7 +143,7 @@ impl<T: Real> PlatformFilter<T> {
             all[3..].copy_from_slice(&parameters);
             all
         };
-        let kernel = Filter::new(
+        let kernel = Filter::with_form(
             Anchored(Platform),
             Chart::east_north_up(settings.site),
             settings.integration,
@@ -227,7 +264,7 @@ impl<T: Real> PlatformFilter<T> {
 
     /// The filter underneath, for what this type does not show.
     #[must_use]
-    pub fn kernel(&self) -> &PlatformKernel<T> {
+    pub fn kernel(&self) -> &PlatformKernel<T, F> {
         &self.kernel
     }
 }

@@ -75,7 +75,7 @@ mod rotation;
 mod site;
 
 pub use anchor::{Anchored, Chart};
-pub use filter::{PlatformFilter, Settings};
+pub use filter::{FactorisedPlatformFilter, PlatformFilter, Settings};
 pub use generated::platform::{Drift, Platform};
 pub use gyrocal_estimation::{
     self as estimation, EstimationError, Innovation, Integration, Recentring,

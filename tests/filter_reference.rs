@@ -2,8 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal::estimation::dense::DenseFilter;
-use gyrocal::estimation::{ArrayStorage, Filter, VecStorage};
-use gyrocal::{Anchored, Chart, Integration, Platform, PlatformFilter, Recentring, Settings, Site};
+use gyrocal::estimation::{ArrayStorage, Factors, Filter, VecStorage};
+use gyrocal::{
+    Anchored, Chart, FactorisedPlatformFilter, Integration, Platform, PlatformFilter, Recentring,
+    Settings, Site,
+};
 use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
@@ -42,6 +45,16 @@ fn equals_the_dense_filter_in_every_configuration() {
             &SIGMA,
         )
         .unwrap();
+        let mut factors = Filter::<_, _, _, _, 3, 3, Factors>::with_form(
+            Anchored(Platform),
+            chart(),
+            integration,
+            recentring,
+            ArrayStorage::<f64, 3, 3, 12>::new(),
+            &STATE,
+            &SIGMA,
+        )
+        .unwrap();
         let mut vector = Filter::new(
             Anchored(Platform),
             chart(),
@@ -64,6 +77,7 @@ fn equals_the_dense_filter_in_every_configuration() {
         for step in 0..500 {
             filter.predict(60.0, &DENSITY).unwrap();
             vector.predict(60.0, &DENSITY).unwrap();
+            factors.predict(60.0, &DENSITY).unwrap();
             dense.predict(60.0, &DENSITY);
             truth.predict(60.0, &DENSITY).unwrap();
             let measured = {
@@ -75,6 +89,7 @@ fn equals_the_dense_filter_in_every_configuration() {
             };
             let innovation = filter.update(&measured, &VARIANCE).unwrap();
             vector.update(&measured, &VARIANCE).unwrap();
+            factors.update(&measured, &VARIANCE).unwrap();
             let reference = dense.update(&measured, &VARIANCE).unwrap();
             // The first updates shrink variances by 1e4 and more, where the dense form loses
             // digits; both agree to the dense form's own rounding.
@@ -111,7 +126,7 @@ fn single_precision_follows_double_precision() {
     let settings = Settings::level_at(Site::at_latitude_deg(39.1));
     let single = Settings::<f32>::level_at(Site::at_latitude_deg(39.1));
     let mut double = PlatformFilter::<f64>::new(&settings).unwrap();
-    let mut single = PlatformFilter::<f32>::new(&single).unwrap();
+    let mut single = FactorisedPlatformFilter::factorised(&single).unwrap();
     let mut truth = double.clone();
     for _ in 0..300 {
         truth.predict(60.0).unwrap();

@@ -1,19 +1,20 @@
-use gyrocal::estimation::{ArrayStorage, Filter};
+use gyrocal::estimation::form::Form;
+use gyrocal::estimation::{ArrayStorage, Covariance, Factors, Filter};
 use gyrocal::{Anchored, Chart, Integration, Platform, Recentring};
 
 use crate::truth::{DENSITY, STEP_S, Truth, VARIANCE, chart};
 
 const STATES: usize = Platform::STATES;
-type PlatformKernel =
-    Filter<f64, Anchored<Platform>, Chart<f64>, ArrayStorage<f64, 3, 3, 12>, 3, 3>;
+type PlatformKernel<F> =
+    Filter<f64, Anchored<Platform>, Chart<f64>, ArrayStorage<f64, 3, 3, 12>, 3, 3, F>;
 
 /// What rounding may add to a sigma that a step leaves alone: a few units of the last place.
 const SIGMA_ROUNDING: f64 = 1e-14;
 
-fn filter(integration: Integration, sigma: &[f64; STATES]) -> PlatformKernel {
+fn filter<F: Form<f64>>(integration: Integration, sigma: &[f64; STATES]) -> PlatformKernel<F> {
     let (model, storage) = (Anchored(Platform), ArrayStorage::new());
     let state = [0.0; STATES];
-    Filter::new(
+    Filter::with_form(
         model,
         chart(),
         integration,
@@ -26,7 +27,9 @@ fn filter(integration: Integration, sigma: &[f64; STATES]) -> PlatformKernel {
 }
 
 /// The covariance as correlations, after checking that it is one.
-fn correlations(filter: &PlatformKernel) -> Result<[[f64; STATES]; STATES], String> {
+fn correlations<F: Form<f64>>(
+    filter: &PlatformKernel<F>,
+) -> Result<[[f64; STATES]; STATES], String> {
     let sigma: [f64; STATES] = core::array::from_fn(|i| filter.sigma(i));
     if let Some(i) = (0..STATES).find(|&i| !(sigma[i] > 0.0 && sigma[i].is_finite())) {
         return Err(format!(
@@ -49,7 +52,10 @@ fn correlations(filter: &PlatformKernel) -> Result<[[f64; STATES]; STATES], Stri
 }
 
 /// Cholesky of the correlations with `shift` on the diagonal.
-fn check_positive_definite(filter: &PlatformKernel, shift: f64) -> Result<(), String> {
+fn check_positive_definite<F: Form<f64>>(
+    filter: &PlatformKernel<F>,
+    shift: f64,
+) -> Result<(), String> {
     let mut a = correlations(filter)?;
     for j in 0..STATES {
         let pivot = a[j][j] + shift - (0..j).map(|k| a[j][k] * a[j][k]).sum::<f64>();
@@ -68,8 +74,8 @@ fn check_positive_definite(filter: &PlatformKernel, shift: f64) -> Result<(), St
 
 /// Runs a filter and checks it after step 1, 2, 3, … and then every `interval` steps. Returns
 /// what is wrong first.
-fn watch(
-    mut filter: PlatformKernel,
+fn watch<F: Form<f64>>(
+    mut filter: PlatformKernel<F>,
     truth: &mut Truth,
     steps: usize,
     interval: usize,
@@ -111,26 +117,34 @@ fn watch(
 
 const ANGLE_SIGMA_RAD: f64 = 2e-4;
 
-fn a_year(integration: Integration) {
+fn a_year<F: Form<f64>>(integration: Integration) {
     let mut sigma = [1.0; STATES];
     sigma[..3].fill(ANGLE_SIGMA_RAD);
     let mut truth = Truth::at([0.0; 3], 11);
-    let watched = watch(filter(integration, &sigma), &mut truth, 525_600, 1000, 0.0);
+    let watched = watch(
+        filter::<F>(integration, &sigma),
+        &mut truth,
+        525_600,
+        1000,
+        0.0,
+    );
     assert_eq!(watched, Ok(()), "{integration:?}");
 }
 
 #[test]
 fn positive_definite_over_a_year_of_runge_kutta_steps() {
-    a_year(Integration::RK4);
+    a_year::<Covariance>(Integration::RK4);
+    a_year::<Factors>(Integration::RK4);
 }
 
 #[test]
 fn positive_definite_over_a_year_of_euler_steps() {
-    a_year(Integration::EULER);
+    a_year::<Covariance>(Integration::EULER);
+    a_year::<Factors>(Integration::EULER);
 }
 
-#[test]
-fn positive_definite_from_badly_scaled_priors() {
+/// What goes wrong, by form: nothing, or what `watch` says.
+fn badly_scaled_priors<F: Form<f64>>() -> Vec<String> {
     let uniform = |angle: f64, coefficient: f64| {
         core::array::from_fn(|i| if i < 3 { angle } else { coefficient })
     };
@@ -170,10 +184,34 @@ fn positive_definite_from_badly_scaled_priors() {
     for integration in [Integration::EULER, Integration::RK4] {
         for (name, sigma) in &priors {
             let mut truth = Truth::at([0.0; 3], 12);
-            if let Err(what) = watch(filter(integration, sigma), &mut truth, 3000, 20, shift) {
+            if let Err(what) = watch(filter::<F>(integration, sigma), &mut truth, 3000, 20, shift) {
                 wrong.push(format!("{integration:?}, {name}: {what}"));
             }
         }
     }
+    wrong
+}
+
+#[test]
+fn factors_are_positive_definite_from_badly_scaled_priors() {
+    let wrong = badly_scaled_priors::<Factors>();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_covariance_is_positive_definite_or_refuses_a_prior_that_is_too_wide() {
+    let wrong = badly_scaled_priors::<Covariance>();
+    // Coefficients of 1e6 deg/h turn the platform by hundreds of radians in the first minute:
+    // against samples of 1e-5 g an update would cancel more digits than there are.
+    let refused = |what: &String| what.contains("step 1: the prior is too wide against the noise");
+    assert!(wrong.iter().all(refused), "{}", wrong.join("\n"));
+    assert!(
+        wrong.iter().all(|what| what.contains("1e6")),
+        "{}",
+        wrong.join("\n")
+    );
+    assert!(
+        !wrong.is_empty(),
+        "no prior of the list is at the limit any more"
+    );
 }

@@ -24,9 +24,11 @@ impl<S: Storage<f64>> Storage<f64> for Poisoned<S> {
         let (n, moving) = (self.inner.states(), self.moving);
         let buffers = self.inner.buffers();
         buffers.gain.fill(f64::NAN);
+        buffers.sweep.fill(f64::NAN);
+        buffers.pivots.fill(f64::NAN);
         buffers.transition.fill(f64::NAN);
         // The moving columns of the parameters' rows are not used.
-        for row in buffers.covariance[moving * n..].chunks_exact_mut(n) {
+        for row in buffers.matrix[moving * n..].chunks_exact_mut(n) {
             row[..moving].fill(f64::NAN);
         }
         buffers

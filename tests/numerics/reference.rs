@@ -1,6 +1,7 @@
 //! Errors of the filters against tests/data/numerics: the same filter in 400-bit arithmetic.
 
 use gyrocal::estimation::dense::DenseFilter;
+use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{ArrayStorage, Filter};
 use gyrocal::generated::platform::reanchor;
 use gyrocal::{Anchored, Chart, EARTH_RATE_RAD_PER_S, Integration, Platform, Recentring, Site};
@@ -40,15 +41,15 @@ pub(crate) struct Accuracy {
     pub(crate) worst_correlation: f64,
 }
 
-/// The filter as shipped.
-pub(crate) fn structured(integration: Integration) -> Accuracy {
+/// The filter as shipped, in a form of the covariance.
+pub(crate) fn structured<F: Form<f64>>(integration: Integration) -> Accuracy {
     let mut state = [0.0; 12];
     state[..3].copy_from_slice(&ANGLES_RAD);
     accuracy(integration, |run| {
         let storage = ArrayStorage::<f64, 3, 3, 12>::new();
         let (model, sigmas) = (Anchored(Platform), sigmas(run));
         let recentring = Recentring::EveryStep;
-        let mut filter = Filter::new(
+        let mut filter = Filter::<_, _, _, _, 3, 3, F>::with_form(
             model,
             chart(),
             integration,

@@ -16,16 +16,68 @@
 use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
+use crate::form::{Form, Numbers, Observation};
 use crate::innovation::Innovation;
 use crate::lanes4::{dot, load, load_rows, mul_add, store};
 
-/// Element (i, j) of P, `moving` being the number of moving states.
-#[inline]
-pub(crate) fn element<T: Real>(p: &[T], n: usize, moving: usize, i: usize, j: usize) -> T {
-    if i < moving || j >= moving {
-        p[i * n + j]
-    } else {
-        p[j * n + i]
+/// P itself: the fast form. It needs double precision, and a prior that is not wider against
+/// the noise than that holds: what an update would cancel to nothing but rounding is
+/// [`EstimationError::LostPrecision`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Covariance;
+
+impl<T: Real> Form<T> for Covariance {
+    #[inline]
+    fn start(numbers: &mut Numbers<'_, T>, variances: impl Iterator<Item = T>) {
+        let n = numbers.pivots.len();
+        numbers.matrix.fill(T::from_f64(0.0));
+        for (j, variance) in variances.enumerate() {
+            numbers.matrix[j * n + j] = variance;
+        }
+    }
+
+    #[inline]
+    fn element(matrix: &[T], pivots: &[T], moving: usize, i: usize, j: usize) -> T {
+        let n = pivots.len();
+        if i < moving || j >= moving {
+            matrix[i * n + j]
+        } else {
+            matrix[j * n + i]
+        }
+    }
+
+    #[inline(always)]
+    fn predict<const M: usize>(
+        numbers: &mut Numbers<'_, T>,
+        transition: &[[T; M]; M],
+        columns: &[T],
+        noise: &[[T; M]; M],
+        variance: &[T; M],
+    ) -> Result<(), EstimationError> {
+        let n = numbers.pivots.len();
+        predict(numbers.matrix, n, transition, columns, noise, variance)
+    }
+
+    #[inline(always)]
+    fn innovation<const M: usize, const Y: usize>(
+        numbers: &mut Numbers<'_, T>,
+        observation: &Observation<'_, T, M, Y>,
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        Projection::new(numbers.matrix, numbers.pivots.len(), observation)?.innovation()
+    }
+
+    #[inline(always)]
+    fn update<const M: usize, const Y: usize>(
+        numbers: &mut Numbers<'_, T>,
+        parameters: &mut [T],
+        observation: &Observation<'_, T, M, Y>,
+    ) -> Result<(Innovation<T, Y>, [T; M]), EstimationError> {
+        let n = numbers.pivots.len();
+        let projection = Projection::new(numbers.matrix, n, observation)?;
+        let innovation = projection.innovation()?;
+        let correction =
+            projection.update(numbers.matrix, n, parameters, &innovation, numbers.gain)?;
+        Ok((innovation, correction))
     }
 }
 
@@ -34,7 +86,7 @@ pub(crate) fn element<T: Real>(p: &[T], n: usize, moving: usize, i: usize, j: us
 /// `transition` are the moving columns of Φ, `columns` its parameter columns (M × p, by rows),
 /// `noise` is Γ.
 #[inline(always)]
-pub(crate) fn predict<T: Real, const M: usize>(
+fn predict<T: Real, const M: usize>(
     p: &mut [T],
     n: usize,
     transition: &[[T; M]; M],
@@ -112,27 +164,9 @@ fn predict_columns<T: Real, const M: usize, const W: usize>(
     }
 }
 
-/// One measurement: Jacobian of the outputs, their noise and their residuals. An output
-/// that was not observed has a zero row, unit variance and zero residual.
-///
-/// The columns of H of the q parameters that enter the output are kept apart, as `output`
-/// (Y × q, by rows), because their number is the model's.
-pub(crate) struct Observation<T, const M: usize, const Y: usize> {
-    /// Moving columns of H.
-    pub(crate) moving: [[T; M]; Y],
-    /// Noise variance of each output.
-    pub(crate) variance: [T; Y],
-    /// Measured minus predicted output.
-    pub(crate) residual: [T; Y],
-    /// Which outputs were observed.
-    pub(crate) observed: [bool; Y],
-}
-
 /// H P on the moving columns, and S = H P Hᵀ + R factored.
-pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
-    observation: &'a Observation<T, M, Y>,
-    /// The columns of H of the parameters that enter the output.
-    output: &'a [T],
+struct Projection<'a, T, const M: usize, const Y: usize> {
+    observation: &'a Observation<'a, T, M, Y>,
     /// Moving columns of H P.
     moving: [[T; M]; Y],
     /// L, unit lower triangular.
@@ -146,12 +180,12 @@ pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
 impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
     /// Projects P on the outputs.
     #[inline(always)]
-    pub(crate) fn new(
+    fn new(
         p: &[T],
         n: usize,
-        observation: &'a Observation<T, M, Y>,
-        output: &'a [T],
+        observation: &'a Observation<'a, T, M, Y>,
     ) -> Result<Self, EstimationError> {
+        let output = observation.parameters;
         let q = output.len() / Y;
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let h = &observation.moving;
@@ -170,7 +204,6 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
         }
         let mut projection = Self {
             observation,
-            output,
             moving,
             lower: [[zero; Y]; Y],
             variance: [zero; Y],
@@ -199,6 +232,10 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
                     if !(sum.is_positive() && sum.is_finite()) {
                         return Err(not_positive(sum, 0));
                     }
+                    // More digits cancelled than there are: what is left would be rounding.
+                    if sum * T::epsilon() * T::from_f64(256.0) > observation.variance[k] {
+                        return Err(EstimationError::LostPrecision { output: k });
+                    }
                     projection.lower[k][k] = one;
                     projection.variance[k] = sum;
                     projection.reciprocal[k] = one / sum;
@@ -224,7 +261,7 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
 
     /// The innovation.
     #[inline(always)]
-    pub(crate) fn innovation(&self) -> Result<Innovation<T, Y>, EstimationError> {
+    fn innovation(&self) -> Result<Innovation<T, Y>, EstimationError> {
         let observation = self.observation;
         Innovation::from_factors(
             observation.residual,
@@ -238,7 +275,7 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
     /// P ← (I - K H) P, the state's correction, and the whitened gain V (Y × n) into `gain`.
     /// Parameters are corrected in place, the moving states' correction is returned.
     #[inline(always)]
-    pub(crate) fn update(
+    fn update(
         &self,
         p: &mut [T],
         n: usize,
@@ -305,7 +342,7 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
     /// The moving block in Joseph form: (I - K H) P (I - K H)ᵀ + K R Kᵀ.
     #[inline(always)]
     fn update_corner(&self, p: &mut [T], n: usize, root: &[T; Y], head: &[[T; M]; Y]) {
-        let (observation, output) = (self.observation, self.output);
+        let (observation, output) = (self.observation, self.observation.parameters);
         let q = output.len() / Y;
         let zero = T::from_f64(0.0);
         // K_m = V_mᵀ diag(α)^-1/2 L⁻¹, row by row from the last output back.
@@ -370,7 +407,8 @@ impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
         gain: &mut [T],
         column: usize,
     ) {
-        let (h, output) = (&self.projection.observation.moving, self.projection.output);
+        let observation = self.projection.observation;
+        let (h, output) = (&observation.moving, observation.parameters);
         let q = output.len() / Y;
         let at = M + column;
         let mut cross: [[T; W]; M] = load_rows(p, n, at);

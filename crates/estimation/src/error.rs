@@ -11,6 +11,12 @@ pub enum EstimationError {
         /// Index of the state whose pivot failed.
         state: usize,
     },
+    /// An update would cancel more digits than the number type has: the prior is too wide
+    /// against the noise for [`crate::Covariance`]. The filter is unchanged.
+    LostPrecision {
+        /// Index of the output.
+        output: usize,
+    },
     /// A prediction or an innovation is infinite or NaN: the model was evaluated outside its
     /// domain, or the prior is too wide for the step.
     NotFinite {
@@ -31,6 +37,11 @@ impl fmt::Display for EstimationError {
                 f,
                 "the covariance is not positive definite at state {state}; \
                  check that prior sigmas and noise are positive and of sensible size"
+            ),
+            Self::LostPrecision { output } => write!(
+                f,
+                "the prior is too wide against the noise of output {output} for this precision; \
+                 narrow the prior, shorten the first step, or carry the covariance as factors"
             ),
             Self::NotFinite { quantity } => write!(
                 f,

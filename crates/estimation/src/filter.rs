@@ -2,12 +2,25 @@ use core::marker::PhantomData;
 
 use gyrocal_scalar::{Real, Recentre};
 
-use crate::covariance::{self, Observation, Projection};
+use crate::covariance::Covariance;
 use crate::error::EstimationError;
+use crate::form::{Form, Numbers, Observation};
 use crate::innovation::Innovation;
 use crate::lanes4::{load_rows, mul_add, store};
 use crate::storage::{Storage, View};
 use crate::transition::{Integration, Integrator};
+
+/// The part of the buffers that belongs to the covariance.
+macro_rules! numbers {
+    ($buffers:ident) => {
+        Numbers {
+            matrix: $buffers.matrix,
+            pivots: $buffers.pivots,
+            gain: $buffers.gain,
+            sweep: $buffers.sweep,
+        }
+    };
+}
 
 /// When the chart of the moving states is moved to the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +50,7 @@ impl<T: Real> Recentring<T> {
 /// `M` moving states, `Y` outputs, and as many parameters as the model has. The state is
 /// `[moving, parameters]`; noise enters the rates, held over each step.
 #[derive(Clone, Debug)]
-pub struct Filter<T, D, I, S, const M: usize, const Y: usize> {
+pub struct Filter<T, D, I, S, const M: usize, const Y: usize, F = Covariance> {
     model: D,
     inputs: I,
     integration: Integration,
@@ -45,13 +58,46 @@ pub struct Filter<T, D, I, S, const M: usize, const Y: usize> {
     storage: S,
     moving_transition: [[T; M]; M],
     number: PhantomData<T>,
+    form: PhantomData<F>,
 }
 
-impl<T, D, S, const M: usize, const Y: usize> Filter<T, D, D::Inputs, S, M, Y>
+impl<T, D, S, const M: usize, const Y: usize> Filter<T, D, D::Inputs, S, M, Y, Covariance>
 where
     T: Real,
     D: Recentre<T, M, Y>,
     S: Storage<T>,
+{
+    /// A filter that carries P itself, see [`Self::with_form`].
+    ///
+    /// # Errors
+    /// As [`Self::with_form`].
+    pub fn new(
+        model: D,
+        inputs: D::Inputs,
+        integration: Integration,
+        recentring: Recentring<T>,
+        storage: S,
+        state: &[T],
+        sigma: &[T],
+    ) -> Result<Self, EstimationError> {
+        Self::with_form(
+            model,
+            inputs,
+            integration,
+            recentring,
+            storage,
+            state,
+            sigma,
+        )
+    }
+}
+
+impl<T, D, S, const M: usize, const Y: usize, F> Filter<T, D, D::Inputs, S, M, Y, F>
+where
+    T: Real,
+    D: Recentre<T, M, Y>,
+    S: Storage<T>,
+    F: Form<T>,
 {
     /// A filter at `state` with independent prior errors of the given standard deviations.
     ///
@@ -59,7 +105,7 @@ where
     /// [`EstimationError::InvalidArgument`] if lengths differ from the model's number of
     /// states or `integration` has no sub-step; [`EstimationError::NotPositiveDefinite`] if a
     /// sigma is not positive.
-    pub fn new(
+    pub fn with_form(
         model: D,
         inputs: D::Inputs,
         integration: Integration,
@@ -81,14 +127,15 @@ where
         }
         let buffers = storage.buffers();
         buffers.state.copy_from_slice(state);
-        buffers.covariance.fill(T::from_f64(0.0));
         for (j, sigma) in sigma.iter().enumerate() {
-            let variance = *sigma * *sigma;
-            if !(sigma.is_positive() && variance.is_finite()) {
+            if !(sigma.is_positive() && (*sigma * *sigma).is_finite()) {
                 return Err(EstimationError::NotPositiveDefinite { state: j });
             }
-            buffers.covariance[j * n + j] = variance;
         }
+        F::start(
+            &mut numbers!(buffers),
+            sigma.iter().map(|sigma| *sigma * *sigma),
+        );
         let mut filter = Self {
             model,
             inputs,
@@ -97,6 +144,7 @@ where
             storage,
             moving_transition: [[T::from_f64(0.0); M]; M],
             number: PhantomData,
+            form: PhantomData,
         };
         filter.recentre_at_start()?;
         Ok(filter)
@@ -118,7 +166,7 @@ where
         let zero = [T::from_f64(0.0); M];
         buffers.transition.fill(T::from_f64(0.0));
         let columns = &buffers.transition[..M * (n - M)];
-        covariance::predict(buffers.covariance, n, &map, columns, &[zero; M], &zero)
+        F::predict(&mut numbers!(buffers), &map, columns, &[zero; M], &zero)
     }
 
     /// Predicts over `dt` seconds with noise of the given spectral densities (unit of the
@@ -137,7 +185,7 @@ where
                 expected: "a positive step",
             });
         }
-        let n = self.storage.states();
+        let (n, at_origin) = (self.storage.states(), self.at_origin());
         let buffers = self.storage.buffers();
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
         let mut moving = to_array(moving_slice);
@@ -147,7 +195,7 @@ where
             parameters,
             columns: buffers.transition,
             stages: buffers.stages,
-            at_origin: self.recentring == Recentring::EveryStep && self.model.has_chart(),
+            at_origin,
         }
         .integrate(self.integration, dt, &mut moving);
         if !moving.iter().all(|state| state.is_finite()) {
@@ -174,9 +222,8 @@ where
         moving_slice.copy_from_slice(&moving);
         self.moving_transition = transition.moving;
         let variance = noise_density.map(|density| density / dt);
-        covariance::predict(
-            buffers.covariance,
-            n,
+        F::predict(
+            &mut numbers!(buffers),
             &transition.moving,
             &buffers.transition[..M * (n - M)],
             &transition.noise,
@@ -196,16 +243,23 @@ where
         noise_variance: &[T; Y],
     ) -> Result<Innovation<T, Y>, EstimationError> {
         check_noise(noise_variance)?;
-        let mut moving = to_array(&self.storage.view().state[..M]);
-        let observation = self.observe(&moving, measured, noise_variance);
-        let (n, q) = (self.storage.states(), self.model.output_parameters());
+        let at_origin = self.at_origin();
         let buffers = self.storage.buffers();
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
-        let output = &buffers.output[..Y * q];
-        let projection = Projection::new(buffers.covariance, n, &observation, output)?;
-        let innovation = projection.innovation()?;
-        let correction =
-            projection.update(buffers.covariance, n, parameters, &innovation, buffers.gain)?;
+        let mut moving = to_array(moving_slice);
+        let sensor = Sensor {
+            model: &self.model,
+            inputs: &self.inputs,
+            at_origin,
+        };
+        let observation = sensor.observe(
+            &moving,
+            parameters,
+            buffers.output,
+            measured,
+            noise_variance,
+        );
+        let (innovation, correction) = F::update(&mut numbers!(buffers), parameters, &observation)?;
         match self.recentring {
             Recentring::EveryStep => {
                 self.model
@@ -221,45 +275,6 @@ where
         Ok(innovation)
     }
 
-    /// Residual, Jacobian and noise of a measurement; components that are NaN are blanked.
-    #[inline(always)]
-    fn observe(
-        &mut self,
-        moving: &[T; M],
-        measured: &[T; Y],
-        noise_variance: &[T; Y],
-    ) -> Observation<T, M, Y> {
-        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        let q = self.model.output_parameters();
-        let buffers = self.storage.buffers();
-        let mut observation = Observation {
-            moving: [[zero; M]; Y],
-            variance: [one; Y],
-            residual: [zero; Y],
-            observed: [false; Y],
-        };
-        let (parameters, d_parameters) = (&buffers.state[M..], &mut buffers.output[..Y * q]);
-        let d_moving = &mut observation.moving;
-        let predicted = if self.recentring == Recentring::EveryStep && self.model.has_chart() {
-            self.model
-                .output_jacobian_at_origin(parameters, &self.inputs, d_moving, d_parameters)
-        } else {
-            self.model
-                .output_jacobian(moving, parameters, &self.inputs, d_moving, d_parameters)
-        };
-        for k in 0..Y {
-            if measured[k].is_nan() {
-                observation.moving[k] = [zero; M];
-                buffers.output[k * q..(k + 1) * q].fill(zero);
-            } else {
-                observation.residual[k] = measured[k] - predicted[k];
-                observation.variance[k] = noise_variance[k];
-                observation.observed[k] = true;
-            }
-        }
-        observation
-    }
-
     /// As [`Self::update`], but a measurement whose NIS exceeds `largest_nis` is not used.
     /// Returns the innovation and whether the measurement was used.
     ///
@@ -272,18 +287,33 @@ where
         largest_nis: T,
     ) -> Result<(Innovation<T, Y>, bool), EstimationError> {
         check_noise(noise_variance)?;
-        let moving = to_array(&self.storage.view().state[..M]);
-        let observation = self.observe(&moving, measured, noise_variance);
-        let (n, q) = (self.storage.states(), self.model.output_parameters());
+        let at_origin = self.at_origin();
         let buffers = self.storage.buffers();
-        let output = &buffers.output[..Y * q];
-        let innovation =
-            Projection::new(buffers.covariance, n, &observation, output)?.innovation()?;
+        let (moving, parameters) = buffers.state.split_at(M);
+        let sensor = Sensor {
+            model: &self.model,
+            inputs: &self.inputs,
+            at_origin,
+        };
+        let observation = sensor.observe(
+            &to_array(moving),
+            parameters,
+            buffers.output,
+            measured,
+            noise_variance,
+        );
+        let innovation = F::innovation(&mut numbers!(buffers), &observation)?;
         if innovation.nis > largest_nis {
             return Ok((innovation, false));
         }
         self.update(measured, noise_variance)
             .map(|innovation| (innovation, true))
+    }
+
+    /// Whether the moving states are zero between calls.
+    #[inline(always)]
+    fn at_origin(&self) -> bool {
+        self.recentring == Recentring::EveryStep && self.model.has_chart()
     }
 
     /// The state: moving states in the current chart, then parameters.
@@ -298,13 +328,8 @@ where
     /// If an index is not that of a state.
     #[must_use]
     pub fn covariance(&self, i: usize, j: usize) -> T {
-        covariance::element(
-            self.storage.view().covariance,
-            self.storage.states(),
-            M,
-            i,
-            j,
-        )
+        let View { matrix, pivots, .. } = self.storage.view();
+        F::element(matrix, pivots, M, i, j)
     }
 
     /// Standard deviation of the error of state `i`.
@@ -337,6 +362,61 @@ where
     #[must_use]
     pub fn moving_transition(&self) -> &[[T; M]; M] {
         &self.moving_transition
+    }
+}
+
+/// What turns a measurement into an observation.
+struct Sensor<'a, D, I> {
+    model: &'a D,
+    inputs: &'a I,
+    at_origin: bool,
+}
+
+impl<D, I: Copy> Sensor<'_, D, I> {
+    /// Residual, Jacobian and noise of a measurement; components that are NaN are blanked.
+    #[inline(always)]
+    fn observe<'b, T: Real, const M: usize, const Y: usize>(
+        &self,
+        moving: &[T; M],
+        parameters: &[T],
+        output: &'b mut [T],
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Observation<'b, T, M, Y>
+    where
+        D: Recentre<T, M, Y, Inputs = I>,
+    {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let q = self.model.output_parameters();
+        let output = &mut output[..Y * q];
+        let mut jacobian = [[zero; M]; Y];
+        let predicted = if self.at_origin {
+            self.model
+                .output_jacobian_at_origin(parameters, self.inputs, &mut jacobian, output)
+        } else {
+            self.model
+                .output_jacobian(moving, parameters, self.inputs, &mut jacobian, output)
+        };
+        let mut residual = [zero; Y];
+        let mut variance = [one; Y];
+        let mut observed = [false; Y];
+        for k in 0..Y {
+            if measured[k].is_nan() {
+                jacobian[k] = [zero; M];
+                output[k * q..(k + 1) * q].fill(zero);
+            } else {
+                residual[k] = measured[k] - predicted[k];
+                variance[k] = noise_variance[k];
+                observed[k] = true;
+            }
+        }
+        Observation {
+            moving: jacobian,
+            parameters: output,
+            variance,
+            residual,
+            observed,
+        }
     }
 }
 

@@ -45,7 +45,7 @@ pub(crate) fn mul_add<T: Scalar, const W: usize>(a: [T; W], factor: T, b: [T; W]
 
 /// `a * b + c`, lane by lane.
 #[inline(always)]
-fn multiply_add<T: Scalar, const W: usize>(a: [T; W], b: [T; W], c: [T; W]) -> [T; W] {
+pub(crate) fn multiply_add<T: Scalar, const W: usize>(a: [T; W], b: [T; W], c: [T; W]) -> [T; W] {
     let mut result = c;
     for (sum, (a, b)) in result.iter_mut().zip(a.into_iter().zip(b)) {
         *sum = a.mul_add(b, *sum);

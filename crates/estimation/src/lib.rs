@@ -8,9 +8,13 @@
 //! [`gyrocal_scalar::Model`], and it is built on that structure: the transition is
 //! non-trivial in the moving rows only.
 //!
-//! The covariance is symmetric to the last bit by the order of operations, and the moving
-//! block, where a measurement removes nearly all of a wide prior, is updated in Joseph form.
-//! A variance that is not positive or a number that is not finite is an [`EstimationError`].
+//! The covariance is carried in one of two forms ([`form`]). [`Covariance`], the default, is P
+//! itself: symmetric to the last bit by the order of operations, the moving block, where a
+//! measurement removes nearly all of a wide prior, in Joseph form. [`Factors`] are U and D of
+//! P = U D Uᵀ (Bierman, *Factorization Methods for Discrete Sequential Estimation*, 1977), which
+//! rounding cannot make indefinite: the form for single precision and for priors of any width.
+//! A variance that is not positive, digits that would cancel, or a number that is not finite is
+//! an [`EstimationError`]; nothing is ever repaired.
 //!
 //! # Glossary
 //!
@@ -46,13 +50,17 @@ mod covariance;
 #[cfg(feature = "nalgebra")]
 pub mod dense;
 mod error;
+mod factor;
 mod filter;
+pub mod form;
 mod innovation;
 mod lanes4;
 mod storage;
 mod transition;
 
+pub use covariance::Covariance;
 pub use error::EstimationError;
+pub use factor::Factors;
 pub use filter::{Filter, Recentring};
 pub use innovation::Innovation;
 #[cfg(feature = "alloc")]

@@ -8,8 +8,10 @@
 pub struct Buffers<'a, T> {
     /// The state: moving states, then parameters; n.
     pub state: &'a mut [T],
-    /// P by rows, n × n; of the parameters' rows only the parameter columns are used.
-    pub covariance: &'a mut [T],
+    /// P by rows (of the parameters' rows only the parameter columns), or U by columns; n × n.
+    pub matrix: &'a mut [T],
+    /// D of the factors; n.
+    pub pivots: &'a mut [T],
     /// Parameter columns of Φ by rows; M × (n - M).
     pub transition: &'a mut [T],
     /// Parameter columns of the rates' Jacobian at each of up to four stages, by rows;
@@ -17,8 +19,10 @@ pub struct Buffers<'a, T> {
     pub stages: &'a mut [T],
     /// Parameter columns of the output's Jacobian by rows; Y × n at most.
     pub output: &'a mut [T],
-    /// Whitened gain V: row k times the whitened innovation k is the correction; Y × n.
+    /// Gain of the last update, whitened ([`crate::Covariance`]) or unnormalised; Y × n.
     pub gain: &'a mut [T],
+    /// Workspace of an update; 2 × n × Y.
+    pub sweep: &'a mut [T],
 }
 
 /// What can be read of a filter's numbers between steps.
@@ -26,11 +30,13 @@ pub struct Buffers<'a, T> {
 pub struct View<'a, T> {
     /// The state: moving states, then parameters.
     pub state: &'a [T],
-    /// P by rows, n × n; of the parameters' rows only the parameter columns are used.
-    pub covariance: &'a [T],
+    /// P by rows (of the parameters' rows only the parameter columns), or U by columns; n × n.
+    pub matrix: &'a [T],
+    /// D of the factors; n.
+    pub pivots: &'a [T],
     /// Parameter columns of the last Φ by rows.
     pub transition: &'a [T],
-    /// Whitened gain V of the last update; Y × n.
+    /// Gain of the last update, whitened ([`crate::Covariance`]) or unnormalised; Y × n.
     pub gain: &'a [T],
 }
 
@@ -48,11 +54,13 @@ pub trait Storage<T> {
 #[derive(Clone, Debug)]
 pub struct ArrayStorage<T, const M: usize, const Y: usize, const N: usize> {
     state: [T; N],
-    covariance: [[T; N]; N],
+    matrix: [[T; N]; N],
+    pivots: [T; N],
     transition: [[T; N]; M],
     stages: [[[T; N]; M]; 4],
     output: [[T; N]; Y],
     gain: [[T; N]; Y],
+    sweep: [[[T; Y]; N]; 2],
 }
 
 impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M, Y, N> {
@@ -68,11 +76,13 @@ impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArraySto
         let zero = T::default();
         Self {
             state: [zero; N],
-            covariance: [[zero; N]; N],
+            matrix: [[zero; N]; N],
+            pivots: [zero; N],
             transition: [[zero; N]; M],
             stages: [[[zero; N]; M]; 4],
             output: [[zero; N]; Y],
             gain: [[zero; N]; Y],
+            sweep: [[[zero; Y]; N]; 2],
         }
     }
 }
@@ -95,11 +105,13 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
     fn buffers(&mut self) -> Buffers<'_, T> {
         Buffers {
             state: &mut self.state,
-            covariance: self.covariance.as_flattened_mut(),
+            matrix: self.matrix.as_flattened_mut(),
+            pivots: &mut self.pivots,
             transition: self.transition.as_flattened_mut(),
             stages: self.stages.as_flattened_mut().as_flattened_mut(),
             output: self.output.as_flattened_mut(),
             gain: self.gain.as_flattened_mut(),
+            sweep: self.sweep.as_flattened_mut().as_flattened_mut(),
         }
     }
 
@@ -107,7 +119,8 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
     fn view(&self) -> View<'_, T> {
         View {
             state: &self.state,
-            covariance: self.covariance.as_flattened(),
+            matrix: self.matrix.as_flattened(),
+            pivots: &self.pivots,
             transition: self.transition.as_flattened(),
             gain: self.gain.as_flattened(),
         }
@@ -119,7 +132,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
 #[derive(Clone, Debug)]
 pub struct VecStorage<T> {
     states: usize,
-    numbers: [alloc::vec::Vec<T>; 6],
+    numbers: [alloc::vec::Vec<T>; 8],
 }
 
 #[cfg(feature = "alloc")]
@@ -130,10 +143,12 @@ impl<T: Copy + Default> VecStorage<T> {
         let lengths = [
             states,
             states * states,
+            states,
             moving * states,
             4 * moving * states,
             outputs * states,
             outputs * states,
+            2 * outputs * states,
         ];
         Self {
             states,
@@ -149,22 +164,34 @@ impl<T> Storage<T> for VecStorage<T> {
     }
 
     fn buffers(&mut self) -> Buffers<'_, T> {
-        let [state, covariance, transition, stages, output, gain] = self.numbers.each_mut();
-        Buffers {
+        let [
             state,
-            covariance,
+            matrix,
+            pivots,
             transition,
             stages,
             output,
             gain,
+            sweep,
+        ] = self.numbers.each_mut();
+        Buffers {
+            state,
+            matrix,
+            pivots,
+            transition,
+            stages,
+            output,
+            gain,
+            sweep,
         }
     }
 
     fn view(&self) -> View<'_, T> {
-        let [state, covariance, transition, _, _, gain] = self.numbers.each_ref();
+        let [state, matrix, pivots, transition, _, _, gain, _] = self.numbers.each_ref();
         View {
             state,
-            covariance,
+            matrix,
+            pivots,
             transition,
             gain,
         }

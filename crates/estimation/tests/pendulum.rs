@@ -6,8 +6,10 @@ mod common;
 
 use common::{BIAS, Pendulum, STIFFNESS};
 use gyrocal_estimation::dense::DenseFilter;
+use gyrocal_estimation::form::Form;
 use gyrocal_estimation::{
-    ArrayStorage, EstimationError, Filter, Integration, Recentring, Storage, VecStorage,
+    ArrayStorage, Covariance, EstimationError, Factors, Filter, Integration, Recentring, Storage,
+    VecStorage,
 };
 use gyrocal_scalar::Model;
 use nalgebra::{SMatrix, SVector};
@@ -20,14 +22,22 @@ const NOISE_DENSITY: [f64; 2] = [1e-4, 0.0];
 const VARIANCE: [f64; 2] = [1e-4, 4e-4];
 const STEP_S: f64 = 0.05;
 
-type Pendulums<S> = Filter<f64, Pendulum, (), S, 2, 2>;
+type Pendulums<S, F = Covariance> = Filter<f64, Pendulum, (), S, 2, 2, F>;
 
 fn filter<S: Storage<f64>>(integration: Integration, storage: S) -> Pendulums<S> {
-    Filter::new(
+    with_form(integration, storage)
+}
+
+fn with_form<S: Storage<f64>, F: Form<f64>>(
+    integration: Integration,
+    storage: S,
+) -> Pendulums<S, F> {
+    let recentring = Recentring::EveryStep;
+    Filter::with_form(
         Pendulum,
         (),
         integration,
-        Recentring::EveryStep,
+        recentring,
         storage,
         &STATE,
         &SIGMA,
@@ -54,8 +64,8 @@ fn measurements(seed: u64, count: usize) -> Vec<[f64; 2]> {
 }
 
 /// Largest difference of states and covariances, in sigmas of the dense filter.
-fn distance<S: Storage<f64>>(
-    filter: &Pendulums<S>,
+fn distance<S: Storage<f64>, F: Form<f64>>(
+    filter: &Pendulums<S, F>,
     dense: &DenseFilter<Pendulum, (), 2, 2, 6>,
 ) -> f64 {
     let mut worst = 0.0_f64;
@@ -79,6 +89,8 @@ fn equals_the_dense_filter_on_a_model_with_output_parameters_and_noise_of_its_ow
         Integration::Rk4 { substeps: 2 },
     ] {
         let mut array = filter(integration, ArrayStorage::<f64, 2, 2, 6>::new());
+        let mut factors: Pendulums<_, Factors> =
+            with_form(integration, ArrayStorage::<f64, 2, 2, 6>::new());
         let mut vector = filter(integration, VecStorage::new(6, 2, 2));
         let mut dense = DenseFilter::new(
             Pendulum,
@@ -91,10 +103,17 @@ fn equals_the_dense_filter_on_a_model_with_output_parameters_and_noise_of_its_ow
         for measured in measurements(1, 400) {
             array.predict(STEP_S, &NOISE_DENSITY).unwrap();
             vector.predict(STEP_S, &NOISE_DENSITY).unwrap();
+            factors.predict(STEP_S, &NOISE_DENSITY).unwrap();
             dense.predict(STEP_S, &NOISE_DENSITY);
             let innovation = array.update(&measured, &VARIANCE).unwrap();
             vector.update(&measured, &VARIANCE).unwrap();
+            factors.update(&measured, &VARIANCE).unwrap();
             let reference = dense.update(&measured, &VARIANCE).unwrap();
+            assert!(
+                distance(&factors, &dense) < 1e-10,
+                "{}",
+                distance(&factors, &dense)
+            );
             // Two algorithms, 400 steps of rounding at a condition number of about 1e4.
             assert!(
                 distance(&array, &dense) < 1e-10,

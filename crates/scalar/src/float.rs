@@ -73,6 +73,10 @@ macro_rules! impl_float {
                 f64::from(self)
             }
             #[inline(always)]
+            fn epsilon() -> Self {
+                $float::EPSILON
+            }
+            #[inline(always)]
             fn is_nan(self) -> bool {
                 $float::is_nan(self)
             }

@@ -92,6 +92,9 @@ pub trait Real: Scalar + PartialOrd + Default + core::fmt::Debug {
     /// The number as `f64`.
     #[must_use]
     fn to_f64(self) -> f64;
+    /// Distance from 1 to the next larger number.
+    #[must_use]
+    fn epsilon() -> Self;
     /// Greater than zero; not so for NaN.
     #[inline(always)]
     #[must_use]

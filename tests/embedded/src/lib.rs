@@ -9,7 +9,7 @@
 use core::mem::{align_of, size_of};
 use core::panic::PanicInfo;
 
-use gyrocal::{PlatformFilter, Settings, Site};
+use gyrocal::{FactorisedPlatformFilter, Settings, Site};
 
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
@@ -19,13 +19,13 @@ fn panic(_: &PanicInfo<'_>) -> ! {
 /// Bytes that a filter needs.
 #[unsafe(no_mangle)]
 pub extern "C" fn gyrocal_filter_size() -> usize {
-    size_of::<PlatformFilter<f32>>()
+    size_of::<FactorisedPlatformFilter<f32>>()
 }
 
 /// Alignment that a filter needs.
 #[unsafe(no_mangle)]
 pub extern "C" fn gyrocal_filter_alignment() -> usize {
-    align_of::<PlatformFilter<f32>>()
+    align_of::<FactorisedPlatformFilter<f32>>()
 }
 
 /// Makes a filter in `place`; false if the settings are refused.
@@ -34,10 +34,10 @@ pub extern "C" fn gyrocal_filter_alignment() -> usize {
 /// `place` must be valid for writes of [`gyrocal_filter_size`] bytes and aligned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gyrocal_filter_start(
-    place: *mut PlatformFilter<f32>,
+    place: *mut FactorisedPlatformFilter<f32>,
     latitude_deg: f64,
 ) -> bool {
-    match PlatformFilter::new(&Settings::level_at(Site::at_latitude_deg(latitude_deg))) {
+    match FactorisedPlatformFilter::factorised(&Settings::level_at(Site::at_latitude_deg(latitude_deg))) {
         Ok(filter) => {
             // SAFETY: the caller vouches for size, alignment and validity.
             unsafe { place.write(filter) };
@@ -53,7 +53,7 @@ pub unsafe extern "C" fn gyrocal_filter_start(
 /// `filter` must come from [`gyrocal_filter_start`], `specific_force_g` and `nis` be valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gyrocal_filter_step(
-    filter: *mut PlatformFilter<f32>,
+    filter: *mut FactorisedPlatformFilter<f32>,
     interval_s: f32,
     specific_force_g: *const [f32; 3],
     nis: *mut f32,

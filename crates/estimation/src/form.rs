@@ -1,0 +1,84 @@
+//! How the error covariance is carried: as P itself or as factors.
+
+use gyrocal_scalar::Real;
+
+use crate::error::EstimationError;
+use crate::innovation::Innovation;
+
+/// A form of the covariance and the Kalman step on it. Implemented by [`crate::Covariance`] and
+/// [`crate::Factors`]; a filter is generic over it.
+///
+/// Both know that Φ is the identity on the parameters, and that H is zero but for the moving
+/// states and the first q parameters.
+pub trait Form<T: Real> {
+    /// Independent errors of the given variances.
+    fn start(numbers: &mut Numbers<'_, T>, variances: impl Iterator<Item = T>);
+
+    /// Element (i, j) of P, `moving` being the number of moving states.
+    fn element(matrix: &[T], pivots: &[T], moving: usize, i: usize, j: usize) -> T;
+
+    /// P ← Φ P Φᵀ + Γ diag(variance) Γᵀ.
+    ///
+    /// `transition` are the moving columns of Φ, `columns` its parameter columns (M × p, by rows),
+    /// `noise` is Γ.
+    ///
+    /// # Errors
+    /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::NotFinite`].
+    fn predict<const M: usize>(
+        numbers: &mut Numbers<'_, T>,
+        transition: &[[T; M]; M],
+        columns: &[T],
+        noise: &[[T; M]; M],
+        variance: &[T; M],
+    ) -> Result<(), EstimationError>;
+
+    /// The innovation alone; nothing changes but workspace.
+    ///
+    /// # Errors
+    /// As [`Self::update`].
+    fn innovation<const M: usize, const Y: usize>(
+        numbers: &mut Numbers<'_, T>,
+        observation: &Observation<'_, T, M, Y>,
+    ) -> Result<Innovation<T, Y>, EstimationError>;
+
+    /// P ← (I - K H) P, and the correction of the state: parameters are corrected in place, the
+    /// moving states' correction is returned.
+    ///
+    /// # Errors
+    /// [`EstimationError::NotPositiveDefinite`], [`EstimationError::LostPrecision`] or
+    /// [`EstimationError::NotFinite`].
+    fn update<const M: usize, const Y: usize>(
+        numbers: &mut Numbers<'_, T>,
+        parameters: &mut [T],
+        observation: &Observation<'_, T, M, Y>,
+    ) -> Result<(Innovation<T, Y>, [T; M]), EstimationError>;
+}
+
+/// The numbers of the covariance and workspace, for n states.
+#[derive(Debug)]
+pub struct Numbers<'a, T> {
+    /// P or U; n × n.
+    pub matrix: &'a mut [T],
+    /// D of the factors; n.
+    pub pivots: &'a mut [T],
+    /// Gain; Y × n.
+    pub gain: &'a mut [T],
+    /// Workspace; 2 × n × Y.
+    pub sweep: &'a mut [T],
+}
+
+/// One measurement: Jacobian of the outputs, their noise and their residuals. An output
+/// that was not observed has a zero row, unit variance and zero residual.
+#[derive(Debug)]
+pub struct Observation<'a, T, const M: usize, const Y: usize> {
+    /// Moving columns of H.
+    pub moving: [[T; M]; Y],
+    /// The columns of H of the q parameters that enter the output (Y × q, by rows).
+    pub parameters: &'a [T],
+    /// Noise variance of each output.
+    pub variance: [T; Y],
+    /// Measured minus predicted output.
+    pub residual: [T; Y],
+    /// Which outputs were observed.
+    pub observed: [bool; Y],
+}
