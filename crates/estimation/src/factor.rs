@@ -112,7 +112,7 @@ fn predict<T: Real, const M: usize>(
                 total = phi.mul_add(u, total);
             }
             if used > quads.len() {
-                for (phi, u) in phi[i][4 * quads.len()..].iter().zip(&*tail) {
+                for (phi, u) in phi[i][4 * quads.len()..].iter().zip(tail.iter()) {
                     total = phi.mul_add(*u, total);
                 }
             }

@@ -122,12 +122,12 @@ fn equals_the_dense_filter_on_a_model_with_output_parameters_and_noise_of_its_ow
             );
             assert!((innovation.nis - reference.nis).abs() < 1e-9 * (1.0 + reference.nis));
             let covariance = innovation.covariance();
-            for i in 0..2 {
-                for j in 0..2 {
+            for (i, row) in covariance.iter().enumerate() {
+                for (j, found) in row.iter().enumerate() {
                     let expected = reference.covariance[(i, j)];
                     let scale =
                         (reference.covariance[(i, i)] * reference.covariance[(j, j)]).sqrt();
-                    assert!((covariance[i][j] - expected).abs() < 1e-11 * scale);
+                    assert!((found - expected).abs() < 1e-11 * scale);
                 }
             }
         }

@@ -36,8 +36,15 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
         "target features of this build",
         timing::target_features(),
     )];
-    figures.extend(speed::figures(rounds)?);
-    figures.extend(scaling::figures(rounds)?);
+    let mut timed = speed::figures(rounds)?;
+    timed.extend(scaling::figures(rounds)?);
+    if small {
+        // Ratios of times on a machine that does other work as well say little: shown, not judged.
+        for figure in &mut timed {
+            figure.holds = None;
+        }
+    }
+    figures.extend(timed);
     figures.extend(accuracy::figures());
     figures.extend(instructions::figures()?);
     Ok(figures)
