@@ -71,13 +71,26 @@ impl<T: Real> Form<T> for Covariance {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
-    ) -> Result<(Innovation<T, Y>, [T; M]), EstimationError> {
+        correct: impl FnOnce(&[T; M]),
+    ) -> Result<Innovation<T, Y>, EstimationError> {
         let n = numbers.pivots.len();
         let projection = Projection::new(numbers.matrix, n, observation)?;
         let innovation = projection.innovation()?;
-        let correction =
-            projection.update(numbers.matrix, n, parameters, &innovation, numbers.gain)?;
-        Ok((innovation, correction))
+        let mut head = projection.moving;
+        projection.reduce(&mut head);
+        let mut correction = [T::from_f64(0.0); M];
+        for k in 0..Y {
+            correction = mul_add(head[k], innovation.weights[k], correction);
+        }
+        correct(&correction);
+        let weights = innovation.weights;
+        let pass = Pass {
+            projection: &projection,
+            weights,
+            head,
+        };
+        pass.run(numbers.matrix, n, parameters, numbers.gain)?;
+        Ok(innovation)
     }
 }
 
@@ -209,6 +222,8 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
             variance: [zero; Y],
             reciprocal: [zero; Y],
         };
+        // L diag(α), row by row: L without the division that the next pivot would wait for.
+        let mut scaled = [[zero; Y]; Y];
         for k in 0..Y {
             for l in 0..=k {
                 let mut sum = zero;
@@ -223,10 +238,10 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
                     sum = sum + observation.variance[k];
                 }
                 for earlier in 0..l {
-                    let scaled = projection.lower[k][earlier] * projection.variance[earlier];
-                    sum = sum - scaled * projection.lower[l][earlier];
+                    sum = sum - scaled[k][earlier] * projection.lower[l][earlier];
                 }
                 if l < k {
+                    scaled[k][l] = sum;
                     projection.lower[k][l] = sum * projection.reciprocal[l];
                 } else {
                     if !(sum.is_positive() && sum.is_finite()) {
@@ -272,83 +287,26 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
         )
     }
 
-    /// P ← (I - K H) P, the state's correction, and the whitened gain V (Y × n) into `gain`.
-    /// Parameters are corrected in place, the moving states' correction is returned.
+    /// L⁻¹ applied to rows.
     #[inline(always)]
-    fn update(
-        &self,
-        p: &mut [T],
-        n: usize,
-        parameters: &mut [T],
-        innovation: &Innovation<T, Y>,
-        gain: &mut [T],
-    ) -> Result<[T; M], EstimationError> {
-        let count = n - M;
-        let root = self.reciprocal.map(T::sqrt);
-        let whitened: [T; Y] = innovation.whitened(&root);
-        let mut head = self.moving;
-        self.whiten(&root, &mut head);
-        let mut correction = [T::from_f64(0.0); M];
-        for k in 0..Y {
-            store(gain, k * n, head[k]);
-            correction = mul_add(head[k], whitened[k], correction);
-        }
-        let pass = Pass {
-            projection: self,
-            root,
-            whitened,
-            head,
-        };
-        let mut column = 0;
-        while column + 4 <= count {
-            pass.columns::<4>(p, n, parameters, gain, column);
-            column += 4;
-        }
-        while column < count {
-            pass.columns::<1>(p, n, parameters, gain, column);
-            column += 1;
-        }
-        self.update_corner(p, n, &root, &pass.head);
-        for i in 0..count {
-            let weights: [[T; 1]; Y] = load_rows(gain, n, M + i);
-            let row = &mut p[(M + i) * n + M..(M + i + 1) * n];
-            let mut column = 0;
-            while column + 4 <= count {
-                downdate::<T, M, Y, 4>(row, n, gain, &weights, column);
-                column += 4;
-            }
-            while column < count {
-                downdate::<T, M, Y, 1>(row, n, gain, &weights, column);
-                column += 1;
-            }
-        }
-        check_diagonal(p, n, n)?;
-        Ok(correction)
-    }
-
-    /// diag(α)^-1/2 L⁻¹ applied to rows.
-    #[inline(always)]
-    fn whiten<const W: usize>(&self, root: &[T; Y], rows: &mut [[T; W]; Y]) {
+    fn reduce<const W: usize>(&self, rows: &mut [[T; W]; Y]) {
         for k in 0..Y {
             for earlier in 0..k {
                 rows[k] = mul_add(rows[earlier], -self.lower[k][earlier], rows[k]);
             }
         }
-        for (row, root) in rows.iter_mut().zip(root) {
-            *row = row.map(|value| value * *root);
-        }
     }
 
     /// The moving block in Joseph form: (I - K H) P (I - K H)ᵀ + K R Kᵀ.
     #[inline(always)]
-    fn update_corner(&self, p: &mut [T], n: usize, root: &[T; Y], head: &[[T; M]; Y]) {
+    fn update_corner(&self, p: &mut [T], n: usize, head: &[[T; M]; Y]) {
         let (observation, output) = (self.observation, self.observation.parameters);
         let q = output.len() / Y;
         let zero = T::from_f64(0.0);
-        // K_m = V_mᵀ diag(α)^-1/2 L⁻¹, row by row from the last output back.
+        // K_m = (L⁻¹ H P)_mᵀ diag(α)⁻¹ L⁻¹, row by row from the last output back.
         let mut gain = [[zero; M]; Y];
         for k in (0..Y).rev() {
-            gain[k] = head[k].map(|value| value * root[k]);
+            gain[k] = head[k].map(|value| value * self.reciprocal[k]);
             for later in k + 1..Y {
                 gain[k] = mul_add(gain[later], -self.lower[later][k], gain[k]);
             }
@@ -387,22 +345,65 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
     }
 }
 
-/// What the pass over the parameter columns needs.
+/// What the pass over P needs.
 struct Pass<'a, T, const M: usize, const Y: usize> {
     projection: &'a Projection<'a, T, M, Y>,
-    root: [T; Y],
-    whitened: [T; Y],
-    /// Moving columns of V.
+    /// Weights of the rows of L⁻¹ H P in the correction of the state.
+    weights: [T; Y],
+    /// Moving columns of L⁻¹ H P.
     head: [[T; M]; Y],
 }
 
 impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
+    /// P ← (I - K H) P and the parameters' correction; V (Y × n) is left in `gain`.
+    #[inline(always)]
+    fn run(
+        mut self,
+        p: &mut [T],
+        n: usize,
+        parameters: &mut [T],
+        gain: &mut [T],
+    ) -> Result<(), EstimationError> {
+        let count = n - M;
+        let root = self.projection.reciprocal.map(T::sqrt);
+        let reduced = self.head;
+        for k in 0..Y {
+            self.head[k] = self.head[k].map(|value| value * root[k]);
+            store(gain, k * n, self.head[k]);
+        }
+        let mut column = 0;
+        while column + 4 <= count {
+            self.columns::<4>(p, n, &root, parameters, gain, column);
+            column += 4;
+        }
+        while column < count {
+            self.columns::<1>(p, n, &root, parameters, gain, column);
+            column += 1;
+        }
+        self.projection.update_corner(p, n, &reduced);
+        for i in 0..count {
+            let weights: [[T; 1]; Y] = load_rows(gain, n, M + i);
+            let row = &mut p[(M + i) * n + M..(M + i + 1) * n];
+            let mut column = 0;
+            while column + 4 <= count {
+                downdate::<T, M, Y, 4>(row, n, gain, &weights, column);
+                column += 4;
+            }
+            while column < count {
+                downdate::<T, M, Y, 1>(row, n, gain, &weights, column);
+                column += 1;
+            }
+        }
+        check_diagonal(p, n, n)
+    }
+
     /// V, the cross block and the parameters, for `W` columns.
     #[inline(always)]
     fn columns<const W: usize>(
         &self,
         p: &mut [T],
         n: usize,
+        root: &[T; Y],
         parameters: &mut [T],
         gain: &mut [T],
         column: usize,
@@ -424,10 +425,11 @@ impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
                 v[k] = mul_add(row, output[k * q + i], v[k]);
             }
         }
-        self.projection.whiten(&self.root, &mut v);
+        self.projection.reduce(&mut v);
         let mut corrected: [T; W] = load(parameters, column);
         for k in 0..Y {
-            corrected = mul_add(v[k], self.whitened[k], corrected);
+            corrected = mul_add(v[k], self.weights[k], corrected);
+            v[k] = v[k].map(|value| value * root[k]);
             for i in 0..M {
                 cross[i] = mul_add(v[k], -self.head[k][i], cross[i]);
             }

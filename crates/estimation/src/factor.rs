@@ -72,8 +72,9 @@ impl<T: Real> Form<T> for Factors {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
-    ) -> Result<(Innovation<T, Y>, [T; M]), EstimationError> {
-        update(numbers, parameters, observation)
+        correct: impl FnOnce(&[T; M]),
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        update(numbers, parameters, observation, correct)
     }
 }
 
@@ -232,15 +233,15 @@ fn innovation<T: Real, const M: usize, const Y: usize>(
 /// Bierman's update of the factors for all outputs in one sweep.
 ///
 /// `gain` (Y × n) receives the unnormalised gain of each output given the ones before it.
-/// Adds the correction to `parameters` and returns that of the moving states. `sweep` is
-/// workspace of 2 × n × Y numbers. Nothing but the factors' head and the workspace has changed
+/// Adds the correction to `parameters` and hands that of the moving states to `correct`. Nothing but the factors' head and the workspace has changed
 /// when the innovation turns out not to be finite.
 #[inline(always)]
 fn update<T: Real, const M: usize, const Y: usize>(
     numbers: &mut Numbers<'_, T>,
     parameters: &mut [T],
     observation: &Observation<'_, T, M, Y>,
-) -> Result<(Innovation<T, Y>, [T; M]), EstimationError> {
+    correct: impl FnOnce(&[T; M]),
+) -> Result<Innovation<T, Y>, EstimationError> {
     let Numbers {
         matrix: factor,
         pivots,
@@ -261,6 +262,7 @@ fn update<T: Real, const M: usize, const Y: usize>(
     for k in 0..Y {
         correction = mul_add(head.gain[k], innovation.weights[k], correction);
     }
+    correct(&correction);
     for i in 0..q {
         for k in 0..Y {
             parameters[i] = gain[k * n + M + i].mul_add(innovation.weights[k], parameters[i]);
@@ -275,7 +277,7 @@ fn update<T: Real, const M: usize, const Y: usize>(
         sweep_rows::<T, M, Y, 1>(factor, gain, &sweep, &innovation.weights, parameters, row);
         row += 1;
     }
-    Ok((innovation, correction))
+    Ok(innovation)
 }
 
 /// Coefficients of the sweep for each column of U and each output.

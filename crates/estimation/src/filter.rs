@@ -259,18 +259,16 @@ where
             measured,
             noise_variance,
         );
-        let (innovation, correction) = F::update(&mut numbers!(buffers), parameters, &observation)?;
-        match self.recentring {
-            Recentring::EveryStep => {
-                self.model
-                    .correct(&mut moving, &mut self.inputs, &correction);
-            }
-            _ => {
-                for i in 0..M {
-                    moving[i] = moving[i] + correction[i];
-                }
-            }
-        }
+        let (model, inputs, recentring) = (&self.model, &mut self.inputs, self.recentring);
+        let innovation = F::update(
+            &mut numbers!(buffers),
+            parameters,
+            &observation,
+            |correction| match recentring {
+                Recentring::EveryStep => model.correct(&mut moving, inputs, correction),
+                _ => moving = add(&moving, correction),
+            },
+        )?;
         moving_slice.copy_from_slice(&moving);
         Ok(innovation)
     }
@@ -435,6 +433,15 @@ fn to_array<T: Copy + Default, const M: usize>(slice: &[T]) -> [T; M] {
     let mut array = [T::default(); M];
     array.copy_from_slice(slice);
     array
+}
+
+#[inline(always)]
+fn add<T: Real, const M: usize>(a: &[T; M], b: &[T; M]) -> [T; M] {
+    let mut sum = *a;
+    for (sum, b) in sum.iter_mut().zip(b) {
+        *sum = *sum + *b;
+    }
+    sum
 }
 
 #[inline(always)]

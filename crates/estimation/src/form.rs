@@ -41,8 +41,9 @@ pub trait Form<T: Real> {
         observation: &Observation<'_, T, M, Y>,
     ) -> Result<Innovation<T, Y>, EstimationError>;
 
-    /// P ← (I - K H) P, and the correction of the state: parameters are corrected in place, the
-    /// moving states' correction is returned.
+    /// P ← (I - K H) P, and the correction of the state: parameters are corrected in place;
+    /// `correct` is called with the moving states' correction as soon as it is known, so that
+    /// what depends on it need not wait for P.
     ///
     /// # Errors
     /// [`EstimationError::NotPositiveDefinite`], [`EstimationError::LostPrecision`] or
@@ -51,7 +52,8 @@ pub trait Form<T: Real> {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
-    ) -> Result<(Innovation<T, Y>, [T; M]), EstimationError>;
+        correct: impl FnOnce(&[T; M]),
+    ) -> Result<Innovation<T, Y>, EstimationError>;
 }
 
 /// The numbers of the covariance and workspace, for n states.

@@ -54,17 +54,6 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         }
     }
 
-    /// Residual of each output given the earlier ones, in its standard deviation;
-    /// `root` are the reciprocals of the standard deviations.
-    #[inline(always)]
-    pub(crate) fn whitened(&self, root: &[T; Y]) -> [T; Y] {
-        let mut whitened = self.weights;
-        for k in 0..Y {
-            whitened[k] = whitened[k] * (self.variance[k] * root[k]);
-        }
-        whitened
-    }
-
     /// S = H P Hᵀ + R. Rows and columns of outputs that were not observed are NaN.
     #[must_use]
     pub fn covariance(&self) -> [[T; Y]; Y] {
