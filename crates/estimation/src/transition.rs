@@ -63,7 +63,7 @@ pub(crate) struct Integrator<'a, T, D, I, const M: usize, const Y: usize> {
 enum Start {
     /// Zero: a parameter's column at the beginning of a step.
     Zero,
-    /// The unit matrix: the moving columns at the beginning of a step.
+    /// The unit matrix, without inhomogeneous term: the moving columns at the beginning of a step.
     Identity,
     /// What earlier sub-steps left.
     Given,
@@ -159,11 +159,7 @@ where
             noises[stage] = jacobian.noise;
             *moving = mul_add(rates, weights[stage], *moving);
         }
-        let scheme = Scheme {
-            jacobians: &jacobians,
-            nodes,
-            weights,
-        };
+        let scheme = Scheme::new(&jacobians, nodes, weights);
         let (moving_start, parameter_start) = if first {
             (Start::Identity, Start::Zero)
         } else {
@@ -189,11 +185,31 @@ where
 /// A Runge-Kutta scheme on one step, with the rates' Jacobian at its stages.
 struct Scheme<'a, T, const M: usize, const ORDER: usize> {
     jacobians: &'a [[[T; M]; M]; ORDER],
-    nodes: &'a [T; ORDER],
+    /// The Jacobians times the stages' nodes: what the rate of the stage before adds.
+    scaled: [[[T; M]; M]; ORDER],
     weights: &'a [T; ORDER],
 }
 
-impl<T: Scalar, const M: usize, const ORDER: usize> Scheme<'_, T, M, ORDER> {
+impl<'a, T: Scalar, const M: usize, const ORDER: usize> Scheme<'a, T, M, ORDER> {
+    #[inline(always)]
+    fn new(
+        jacobians: &'a [[[T; M]; M]; ORDER],
+        nodes: &[T; ORDER],
+        weights: &'a [T; ORDER],
+    ) -> Self {
+        let mut scaled = *jacobians;
+        for (jacobian, node) in scaled.iter_mut().zip(nodes) {
+            for element in jacobian.as_flattened_mut() {
+                *element = *element * *node;
+            }
+        }
+        Self {
+            jacobians,
+            scaled,
+            weights,
+        }
+    }
+
     /// Advances `W` columns of the sensitivity; `drive(stage, i)` is row i of the inhomogeneous
     /// term at a stage.
     #[inline(always)]
@@ -220,25 +236,22 @@ impl<T: Scalar, const M: usize, const ORDER: usize> Scheme<'_, T, M, ORDER> {
             let before = rate;
             for i in 0..M {
                 let mut sum = drive(stage, i);
-                let coefficients = &self.jacobians[stage][i];
                 match start {
-                    Start::Zero if stage == 0 => {}
-                    Start::Identity if stage == 0 => {
-                        for (sum, coefficient) in sum.iter_mut().zip(coefficients) {
-                            *sum = *coefficient;
+                    Start::Zero => {}
+                    Start::Identity => {
+                        for (sum, coefficient) in sum.iter_mut().zip(self.jacobians[stage][i]) {
+                            *sum = coefficient;
                         }
                     }
-                    _ => {
-                        for (l, coefficient) in coefficients.iter().enumerate() {
-                            let at = if stage == 0 {
-                                begin[l]
-                            } else if start == Start::Zero {
-                                before[l].map(|rate| rate * self.nodes[stage])
-                            } else {
-                                mul_add(before[l], self.nodes[stage], begin[l])
-                            };
-                            sum = mul_add(at, *coefficient, sum);
+                    Start::Given => {
+                        for (row, coefficient) in begin.iter().zip(self.jacobians[stage][i]) {
+                            sum = mul_add(*row, coefficient, sum);
                         }
+                    }
+                }
+                if stage > 0 {
+                    for (row, coefficient) in before.iter().zip(self.scaled[stage][i]) {
+                        sum = mul_add(*row, coefficient, sum);
                     }
                 }
                 rate[i] = sum;

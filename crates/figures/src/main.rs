@@ -5,6 +5,7 @@ mod figure;
 mod kernel;
 mod main_job;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
@@ -23,6 +24,9 @@ struct Arguments {
     /// runs. Targets stay as they are.
     #[arg(long)]
     small: bool,
+    /// Also write the table into this file, with the command that printed it.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
     /// instruction counts).
     #[arg(long)]
@@ -45,7 +49,14 @@ fn main() -> ExitCode {
     };
     match figures {
         Ok(figures) => {
-            println!("{}", table(&figures));
+            let table = table(&figures);
+            println!("{table}");
+            if let Some(path) = &arguments.out
+                && let Err(error) = write_page(path, &arguments, &table.to_string())
+            {
+                eprintln!("{error}");
+                return ExitCode::FAILURE;
+            }
             let failed = figures
                 .iter()
                 .filter(|figure| figure.holds == Some(false))
@@ -62,4 +73,28 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// A page of the documentation that holds what was printed.
+fn write_page(
+    path: &std::path::Path,
+    arguments: &Arguments,
+    table: &str,
+) -> Result<(), gyrocal_record::Error> {
+    let topic = arguments.topic.to_possible_value();
+    let topic = topic.as_ref().map_or("", |value| value.get_name());
+    let small = if arguments.small { " --small" } else { "" };
+    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let processor = processor
+        .lines()
+        .find_map(|line| line.strip_prefix("model name"))
+        .map_or("an unnamed processor", |name| {
+            name.trim_start_matches([' ', '\t', ':'])
+        });
+    let page = format!(
+        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{small}` on {processor}. Times and \
+         ratios of times are those of that machine; everything else is the same everywhere.\n\n\
+         {table}\n"
+    );
+    gyrocal_record::write_whole(path, page.as_bytes())
 }
