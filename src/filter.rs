@@ -12,6 +12,9 @@ use crate::site::Site;
 /// Duration over which the declared drift noise is held, s.
 const HELD_S: f64 = 60.0;
 
+/// Most parts that one interval is divided into: years of two-minute steps.
+const MOST_PARTS: f64 = 1e6;
+
 /// What a filter starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings<T> {
@@ -19,7 +22,8 @@ pub struct Settings<T> {
     pub site: Site<T>,
     /// Platform angles against East-North-Up at the first sample, rad.
     pub angles_rad: [T; 3],
-    /// Their standard deviations, rad.
+    /// Their standard deviations, rad. At theta_y = ±90° the angles leave one rotation open,
+    /// which then counts as known: start from another description of the attitude.
     pub angles_sigma_rad: [T; 3],
     /// Expected drift coefficients: deg/h, deg/h/g, deg/h/g².
     pub drift: Drift<T>,
@@ -77,7 +81,8 @@ type PlatformKernel<T, F> =
 /// Streaming filter of the nominal platform: feed it accelerometer samples, read coefficients.
 ///
 /// No call allocates. `F` is the form of the covariance: P itself for double precision, or its
-/// factors ([`FactorisedPlatformFilter`]) for single precision and priors of any width.
+/// factors ([`FactorisedPlatformFilter`]) for single precision and priors of any width. In
+/// single precision P itself soon stops with an error.
 #[derive(Clone, Debug)]
 pub struct PlatformFilter<T = f64, F = Covariance> {
     kernel: PlatformKernel<T, F>,
@@ -163,7 +168,9 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
     /// Takes a sample at the time the filter is at. Components that are NaN are skipped.
     ///
     /// # Errors
-    /// [`EstimationError::NotFinite`] if the sample is infinite; the filter is then unusable.
+    /// [`EstimationError::NotFinite`] if the sample is infinite,
+    /// [`EstimationError::LostPrecision`] if the prior is too wide for this form, and
+    /// [`EstimationError::NotPositiveDefinite`].
     #[inline]
     pub fn update(
         &mut self,
@@ -194,13 +201,17 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
     /// variants if the prediction left the numbers.
     #[inline]
     pub fn predict(&mut self, interval_s: T) -> Result<(), EstimationError> {
-        if interval_s > self.longest_step_s && interval_s.is_finite() {
-            let mut count = 2.0;
-            while interval_s / T::from_f64(count) > self.longest_step_s {
-                count += 1.0;
+        let parts = (interval_s / self.longest_step_s).to_f64();
+        if parts > 1.0 && interval_s.is_finite() {
+            if parts > MOST_PARTS {
+                return Err(EstimationError::InvalidArgument {
+                    expected: "an interval of at most a million longest steps",
+                });
             }
-            let part_s = interval_s / T::from_f64(count);
-            for _ in 1..count as u64 {
+            let whole = parts as u64;
+            let count = whole + u64::from(parts > whole as f64);
+            let part_s = interval_s / T::from_f64(count as f64);
+            for _ in 1..count {
                 self.kernel.predict(part_s, &self.drift_density)?;
             }
             return self.kernel.predict(part_s, &self.drift_density);

@@ -82,3 +82,8 @@ pub use gyrocal_estimation::{
 };
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};
+
+/// The example of the README, as it stands there.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -19,10 +19,13 @@ use crate::error::EstimationError;
 use crate::form::{Form, Numbers, Observation};
 use crate::innovation::Innovation;
 use crate::lanes4::{dot, load, load_rows, mul_add, store};
+use crate::projection::{Projection, is_variance, not_positive};
 
 /// P itself: the fast form. It needs double precision, and a prior that is not wider against
 /// the noise than that holds: what an update would cancel to nothing but rounding is
-/// [`EstimationError::LostPrecision`].
+/// [`EstimationError::LostPrecision`]. After each step every variance must be positive and
+/// finite; that P has no negative eigenvalue in between is not checked in the step, but held by
+/// tests over a year of steps and from badly scaled priors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Covariance;
 
@@ -177,174 +180,6 @@ fn predict_columns<T: Real, const M: usize, const W: usize>(
     }
 }
 
-/// H P on the moving columns, and S = H P Hᵀ + R factored.
-struct Projection<'a, T, const M: usize, const Y: usize> {
-    observation: &'a Observation<'a, T, M, Y>,
-    /// Moving columns of H P.
-    moving: [[T; M]; Y],
-    /// L, unit lower triangular.
-    lower: [[T; Y]; Y],
-    /// α.
-    variance: [T; Y],
-    /// α⁻¹.
-    reciprocal: [T; Y],
-}
-
-impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
-    /// Projects P on the outputs.
-    #[inline(always)]
-    fn new(
-        p: &[T],
-        n: usize,
-        observation: &'a Observation<'a, T, M, Y>,
-    ) -> Result<Self, EstimationError> {
-        let output = observation.parameters;
-        let q = output.len() / Y;
-        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        let h = &observation.moving;
-        let mut moving = [[zero; M]; Y];
-        for k in 0..Y {
-            for j in 0..M {
-                let mut sum = zero;
-                for i in 0..M {
-                    sum = h[k][i].mul_add(p[i * n + j], sum);
-                }
-                for i in 0..q {
-                    sum = output[k * q + i].mul_add(p[j * n + M + i], sum);
-                }
-                moving[k][j] = sum;
-            }
-        }
-        let mut projection = Self {
-            observation,
-            moving,
-            lower: [[zero; Y]; Y],
-            variance: [zero; Y],
-            reciprocal: [zero; Y],
-        };
-        // L diag(α), row by row: L without the division that the next pivot would wait for.
-        let mut scaled = [[zero; Y]; Y];
-        for k in 0..Y {
-            for l in 0..=k {
-                let mut sum = zero;
-                for j in 0..M {
-                    sum = projection.moving[k][j].mul_add(h[l][j], sum);
-                }
-                for i in 0..q {
-                    let of_parameter = Self::of_parameter(p, n, h, output, k, i);
-                    sum = of_parameter.mul_add(output[l * q + i], sum);
-                }
-                if l == k {
-                    sum = sum + observation.variance[k];
-                }
-                for earlier in 0..l {
-                    sum = sum - scaled[k][earlier] * projection.lower[l][earlier];
-                }
-                if l < k {
-                    scaled[k][l] = sum;
-                    projection.lower[k][l] = sum * projection.reciprocal[l];
-                } else {
-                    if !(sum.is_positive() && sum.is_finite()) {
-                        return Err(not_positive(sum, 0));
-                    }
-                    // More digits cancelled than there are: what is left would be rounding.
-                    if sum * T::epsilon() * T::from_f64(256.0) > observation.variance[k] {
-                        return Err(EstimationError::LostPrecision { output: k });
-                    }
-                    projection.lower[k][k] = one;
-                    projection.variance[k] = sum;
-                    projection.reciprocal[k] = one / sum;
-                }
-            }
-        }
-        Ok(projection)
-    }
-
-    /// (H P) of output `k` and parameter `i`.
-    #[inline(always)]
-    fn of_parameter(p: &[T], n: usize, h: &[[T; M]; Y], output: &[T], k: usize, i: usize) -> T {
-        let q = output.len() / Y;
-        let mut sum = T::from_f64(0.0);
-        for j in 0..M {
-            sum = h[k][j].mul_add(p[j * n + M + i], sum);
-        }
-        for j in 0..q {
-            sum = output[k * q + j].mul_add(p[(M + j) * n + M + i], sum);
-        }
-        sum
-    }
-
-    /// The innovation.
-    #[inline(always)]
-    fn innovation(&self) -> Result<Innovation<T, Y>, EstimationError> {
-        let observation = self.observation;
-        Innovation::from_factors(
-            observation.residual,
-            observation.observed,
-            self.lower,
-            self.variance,
-            &self.reciprocal,
-        )
-    }
-
-    /// L⁻¹ applied to rows.
-    #[inline(always)]
-    fn reduce<const W: usize>(&self, rows: &mut [[T; W]; Y]) {
-        for k in 0..Y {
-            for earlier in 0..k {
-                rows[k] = mul_add(rows[earlier], -self.lower[k][earlier], rows[k]);
-            }
-        }
-    }
-
-    /// The moving block in Joseph form: (I - K H) P (I - K H)ᵀ + K R Kᵀ.
-    #[inline(always)]
-    fn update_corner(&self, p: &mut [T], n: usize, head: &[[T; M]; Y]) {
-        let (observation, output) = (self.observation, self.observation.parameters);
-        let q = output.len() / Y;
-        let zero = T::from_f64(0.0);
-        // K_m = (L⁻¹ H P)_mᵀ diag(α)⁻¹ L⁻¹, row by row from the last output back.
-        let mut gain = [[zero; M]; Y];
-        for k in (0..Y).rev() {
-            gain[k] = head[k].map(|value| value * self.reciprocal[k]);
-            for later in k + 1..Y {
-                gain[k] = mul_add(gain[later], -self.lower[later][k], gain[k]);
-            }
-        }
-        let mut rest = [[zero; M]; M];
-        for i in 0..M {
-            rest[i] = load(p, i * n);
-            for k in 0..Y {
-                rest[i] = mul_add(self.moving[k], -gain[k][i], rest[i]);
-            }
-        }
-        // (I - K H) P Hᵀ - K R, which is zero but for rounding.
-        let mut excess = [[zero; M]; Y];
-        for k in 0..Y {
-            for i in 0..M {
-                let mut sum = -(gain[k][i] * observation.variance[k]);
-                for j in 0..M {
-                    sum = rest[i][j].mul_add(observation.moving[k][j], sum);
-                }
-                for j in 0..q {
-                    sum = p[i * n + M + j].mul_add(output[k * q + j], sum);
-                }
-                excess[k][i] = sum;
-            }
-        }
-        for i in 0..M {
-            for j in 0..=i {
-                let mut sum = T::from_f64(0.5) * (rest[i][j] + rest[j][i]);
-                for k in 0..Y {
-                    sum = sum - excess[k][i] * gain[k][j];
-                }
-                p[i * n + j] = sum;
-                p[j * n + i] = sum;
-            }
-        }
-    }
-}
-
 /// What the pass over P needs.
 struct Pass<'a, T, const M: usize, const Y: usize> {
     projection: &'a Projection<'a, T, M, Y>,
@@ -462,25 +297,16 @@ fn downdate<T: Real, const M: usize, const Y: usize, const W: usize>(
 #[inline(always)]
 fn check_diagonal<T: Real>(p: &[T], n: usize, count: usize) -> Result<(), EstimationError> {
     let mut bad = 0_u32;
+    let mut sum = T::from_f64(0.0);
     for i in 0..count {
-        bad |= u32::from(!p[i * n + i].is_positive());
+        let variance = p[i * n + i];
+        bad |= u32::from(!variance.is_positive());
+        sum = sum + variance;
     }
-    if bad == 0 {
+    // A sum of positive numbers is finite only if all of them are.
+    if bad == 0 && sum.is_finite() {
         return Ok(());
     }
-    let state = (0..count)
-        .find(|i| !p[i * n + i].is_positive())
-        .unwrap_or(0);
+    let state = (0..count).find(|i| !is_variance(p[i * n + i])).unwrap_or(0);
     Err(not_positive(p[state * n + state], state))
-}
-
-#[cold]
-fn not_positive<T: Real>(value: T, state: usize) -> EstimationError {
-    if value.is_finite() {
-        EstimationError::NotPositiveDefinite { state }
-    } else {
-        EstimationError::NotFinite {
-            quantity: "the covariance",
-        }
-    }
 }

@@ -3,7 +3,7 @@
 //! Extended Kalman filter with P = Φ P Φᵀ + Γ Q Γᵀ, S by Cholesky, and the update in Joseph
 //! form, (I - K H) P (I - K H)ᵀ + K R Kᵀ (Bar-Shalom, Li, Kirubarajan, *Estimation with
 //! Applications to Tracking and Navigation*, 2001, 5.2.3). Φ comes from the dense variational
-//! equation. Written from the equations, it shares nothing with the factorised filter but the
+//! equation. Written from the equations, it shares nothing with the structured filter but the
 //! model; measured as it stands by the bench `filter_step`, so it is not to be tuned.
 
 use gyrocal_scalar::{RatesJacobian, Recentre};
@@ -61,7 +61,7 @@ where
             recentring,
         };
         let mut moving = filter.moving();
-        if recentring == Recentring::EveryStep
+        if recentring.wanted(&moving)
             && let Some(map) = filter.model.recentre(&mut moving, &mut filter.inputs)
         {
             filter.set_moving(moving);
@@ -78,7 +78,7 @@ where
         let (moving, mut rows, mut noise) = self.transition(dt);
         self.set_moving(moving);
         let mut moving = moving;
-        if self.recentring == Recentring::EveryStep
+        if self.recentring.wanted(&moving)
             && let Some(map) = self.model.recentre(&mut moving, &mut self.inputs)
         {
             let map = to_matrix(&map);

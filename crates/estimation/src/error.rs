@@ -1,18 +1,24 @@
 use core::fmt;
 
-/// Why a filter could not go on. The filter's state is as it was before the call that failed
-/// only where the variant says so; otherwise start again from a known state.
+/// Why a filter could not go on. Where a variant does not say that nothing changed, the filter
+/// is unusable: start again from a known state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EstimationError {
-    /// A pivot of the covariance is not positive: prior or noise are zero, or the numbers
-    /// overflowed.
+    /// A variance or pivot of the covariance is not positive: a prior sigma is zero, or rounding
+    /// or underflow won.
     NotPositiveDefinite {
         /// Index of the state whose pivot failed.
         state: usize,
     },
+    /// The noise variance of an output is not positive and finite; a noise so small that its
+    /// square underflows counts. The filter is unchanged.
+    InvalidNoise {
+        /// Index of the output.
+        output: usize,
+    },
     /// An update would cancel more digits than the number type has: the prior is too wide
-    /// against the noise for [`crate::Covariance`]. The filter is unchanged.
+    /// against the noise for [`crate::Covariance`]. The measurement was not used.
     LostPrecision {
         /// Index of the output.
         output: usize,
@@ -36,7 +42,12 @@ impl fmt::Display for EstimationError {
             Self::NotPositiveDefinite { state } => write!(
                 f,
                 "the covariance is not positive definite at state {state}; \
-                 check that prior sigmas and noise are positive and of sensible size"
+                 check that prior sigmas are positive and of sensible size, or carry the covariance as factors"
+            ),
+            Self::InvalidNoise { output } => write!(
+                f,
+                "the noise variance of output {output} is not positive and finite; \
+                 check the declared noise"
             ),
             Self::LostPrecision { output } => write!(
                 f,

@@ -233,8 +233,8 @@ fn innovation<T: Real, const M: usize, const Y: usize>(
 /// Bierman's update of the factors for all outputs in one sweep.
 ///
 /// `gain` (Y × n) receives the unnormalised gain of each output given the ones before it.
-/// Adds the correction to `parameters` and hands that of the moving states to `correct`. Nothing but the factors' head and the workspace has changed
-/// when the innovation turns out not to be finite.
+/// Adds the correction to `parameters` and hands that of the moving states to `correct`. When the
+/// innovation turns out not to be finite, the factors' head has changed already.
 #[inline(always)]
 fn update<T: Real, const M: usize, const Y: usize>(
     numbers: &mut Numbers<'_, T>,
@@ -258,6 +258,11 @@ fn update<T: Real, const M: usize, const Y: usize>(
     };
     let head = sweep_head(factor, pivots, observation, gain, &mut sweep);
     let innovation = head.innovation(observation, gain, n)?;
+    if !head.positive {
+        // Underflow: nothing else makes a positive pivot vanish.
+        let state = (0..n).find(|j| !pivots[*j].is_positive()).unwrap_or(0);
+        return Err(EstimationError::NotPositiveDefinite { state });
+    }
     let mut correction = [T::from_f64(0.0); M];
     for k in 0..Y {
         correction = mul_add(head.gain[k], innovation.weights[k], correction);
@@ -291,6 +296,8 @@ struct Head<T, const M: usize, const Y: usize> {
     gain: [[T; M]; Y],
     variance: [T; Y],
     reciprocal: [T; Y],
+    /// Whether every pivot is still positive.
+    positive: bool,
 }
 
 #[inline(always)]
@@ -312,6 +319,7 @@ fn sweep_head<T: Real, const M: usize, const Y: usize>(
     for k in 0..Y {
         gain[k * n + M..k * n + M + q].fill(zero);
     }
+    let mut positive = true;
     let columns = factor.chunks_exact_mut(n).zip(pivots.iter_mut());
     let coefficients = sweep.v.iter_mut().zip(sweep.lambda.iter_mut());
     for ((column, pivot), (v_out, lambda_out)) in columns.zip(coefficients) {
@@ -346,6 +354,7 @@ fn sweep_head<T: Real, const M: usize, const Y: usize>(
         }
         store(column, 0, u);
         *pivot = d;
+        positive &= d.is_positive();
     }
     for (k, moving) in gains.iter().enumerate() {
         store(gain, k * n, *moving);
@@ -354,6 +363,7 @@ fn sweep_head<T: Real, const M: usize, const Y: usize>(
         gain: gains,
         variance: variances,
         reciprocal: reciprocals,
+        positive,
     }
 }
 

@@ -4,9 +4,10 @@ use gyrocal_scalar::{Real, Recentre};
 
 use crate::covariance::Covariance;
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers, Observation};
+use crate::form::{Form, Numbers};
 use crate::innovation::Innovation;
 use crate::lanes4::{load_rows, mul_add, store};
+use crate::observe::{Sensor, check_noise};
 use crate::storage::{Storage, View};
 use crate::transition::{Integration, Integrator};
 
@@ -36,7 +37,7 @@ pub enum Recentring<T> {
 
 impl<T: Real> Recentring<T> {
     #[inline(always)]
-    fn wanted<const M: usize>(self, moving: &[T; M]) -> bool {
+    pub(crate) fn wanted<const M: usize>(self, moving: &[T; M]) -> bool {
         match self {
             Self::EveryStep => true,
             Self::Beyond(limit) => moving.iter().any(|state| state.abs() > limit),
@@ -57,7 +58,6 @@ pub struct Filter<T, D, I, S, const M: usize, const Y: usize, F = Covariance> {
     recentring: Recentring<T>,
     storage: S,
     moving_transition: [[T; M]; M],
-    number: PhantomData<T>,
     form: PhantomData<F>,
 }
 
@@ -127,6 +127,9 @@ where
         }
         let buffers = storage.buffers();
         buffers.state.copy_from_slice(state);
+        // A model writes structural nonzeros only.
+        buffers.stages.fill(T::from_f64(0.0));
+        buffers.output.fill(T::from_f64(0.0));
         for (j, sigma) in sigma.iter().enumerate() {
             if !(sigma.is_positive() && (*sigma * *sigma).is_finite()) {
                 return Err(EstimationError::NotPositiveDefinite { state: j });
@@ -143,7 +146,6 @@ where
             recentring,
             storage,
             moving_transition: [[T::from_f64(0.0); M]; M],
-            number: PhantomData,
             form: PhantomData,
         };
         filter.recentre_at_start()?;
@@ -234,8 +236,9 @@ where
     /// Updates with a measurement of the outputs, NaN where a component is missing.
     ///
     /// # Errors
-    /// [`EstimationError::NotPositiveDefinite`] if a noise variance is not positive (index of
-    /// the output); [`EstimationError::NotFinite`] if the innovation is not finite.
+    /// [`EstimationError::InvalidNoise`]; [`EstimationError::LostPrecision`];
+    /// [`EstimationError::NotFinite`] if the innovation is not finite;
+    /// [`EstimationError::NotPositiveDefinite`] if a variance is not positive afterwards.
     #[inline]
     pub fn update(
         &mut self,
@@ -274,7 +277,7 @@ where
     }
 
     /// As [`Self::update`], but a measurement whose NIS exceeds `largest_nis` is not used.
-    /// Returns the innovation and whether the measurement was used.
+    /// Returns the innovation and whether the measurement was used. A NaN limit uses nothing.
     ///
     /// # Errors
     /// As [`Self::update`].
@@ -301,7 +304,7 @@ where
             noise_variance,
         );
         let innovation = F::innovation(&mut numbers!(buffers), &observation)?;
-        if innovation.nis > largest_nis {
+        if innovation.nis > largest_nis || largest_nis.is_nan() {
             return Ok((innovation, false));
         }
         self.update(measured, noise_variance)
@@ -350,7 +353,7 @@ where
         &mut self.inputs
     }
 
-    /// Numbers that persist between steps: factors, last transition and gain.
+    /// Numbers that persist between steps: covariance or factors, last transition and gain.
     #[must_use]
     pub fn view(&self) -> View<'_, T> {
         self.storage.view()
@@ -361,71 +364,6 @@ where
     pub fn moving_transition(&self) -> &[[T; M]; M] {
         &self.moving_transition
     }
-}
-
-/// What turns a measurement into an observation.
-struct Sensor<'a, D, I> {
-    model: &'a D,
-    inputs: &'a I,
-    at_origin: bool,
-}
-
-impl<D, I: Copy> Sensor<'_, D, I> {
-    /// Residual, Jacobian and noise of a measurement; components that are NaN are blanked.
-    #[inline(always)]
-    fn observe<'b, T: Real, const M: usize, const Y: usize>(
-        &self,
-        moving: &[T; M],
-        parameters: &[T],
-        output: &'b mut [T],
-        measured: &[T; Y],
-        noise_variance: &[T; Y],
-    ) -> Observation<'b, T, M, Y>
-    where
-        D: Recentre<T, M, Y, Inputs = I>,
-    {
-        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        let q = self.model.output_parameters();
-        let output = &mut output[..Y * q];
-        let mut jacobian = [[zero; M]; Y];
-        let predicted = if self.at_origin {
-            self.model
-                .output_jacobian_at_origin(parameters, self.inputs, &mut jacobian, output)
-        } else {
-            self.model
-                .output_jacobian(moving, parameters, self.inputs, &mut jacobian, output)
-        };
-        let mut residual = [zero; Y];
-        let mut variance = [one; Y];
-        let mut observed = [false; Y];
-        for k in 0..Y {
-            if measured[k].is_nan() {
-                jacobian[k] = [zero; M];
-                output[k * q..(k + 1) * q].fill(zero);
-            } else {
-                residual[k] = measured[k] - predicted[k];
-                variance[k] = noise_variance[k];
-                observed[k] = true;
-            }
-        }
-        Observation {
-            moving: jacobian,
-            parameters: output,
-            variance,
-            residual,
-            observed,
-        }
-    }
-}
-
-#[inline(always)]
-fn check_noise<T: Real, const Y: usize>(variance: &[T; Y]) -> Result<(), EstimationError> {
-    for (output, variance) in variance.iter().enumerate() {
-        if !(variance.is_positive() && variance.is_finite()) {
-            return Err(EstimationError::NotPositiveDefinite { state: output });
-        }
-    }
-    Ok(())
 }
 
 #[inline(always)]

@@ -38,7 +38,8 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
             weights[k] = own[k] * reciprocal[k];
             nis = weights[k].mul_add(own[k], nis);
         }
-        if nis.is_finite() {
+        // An infinite variance would make a weight zero and the rest NaN.
+        if nis.is_finite() && variance.iter().all(|variance| variance.is_finite()) {
             Ok(Self {
                 residual,
                 observed,

@@ -55,6 +55,8 @@ mod filter;
 pub mod form;
 mod innovation;
 mod lanes4;
+mod observe;
+mod projection;
 mod storage;
 mod transition;
 

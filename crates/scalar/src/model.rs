@@ -50,7 +50,8 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
     /// If `parameters` has not the length [`Self::parameters`].
     fn rates(&self, moving: &[T; M], parameters: &[T], inputs: &Self::Inputs) -> [T; M];
 
-    /// Rates of the moving states and their exact derivatives.
+    /// Rates of the moving states and their exact derivatives: every structural nonzero is
+    /// written at every call, nothing else is touched.
     ///
     /// # Panics
     /// If `parameters` or `jacobian.parameters` has not the right length.
@@ -63,7 +64,8 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
     ) -> [T; M];
 
     /// [`Self::rates_jacobian`] with all moving states zero. Generated models may have a shorter
-    /// form of it; a filter whose chart moves with the estimate starts every step there.
+    /// form of it; a filter whose chart moves with the estimate starts every step there. What the
+    /// full form writes is written here too, zero where it vanishes.
     ///
     /// # Panics
     /// As [`Self::rates_jacobian`].
@@ -84,7 +86,8 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
     fn output(&self, moving: &[T; M], parameters: &[T], inputs: &Self::Inputs) -> [T; Y];
 
     /// Outputs and their exact derivatives: `d_moving[i][j]`, and `d_parameters` row-major
-    /// with [`Self::output_parameters`] columns. Structural nonzeros only are written.
+    /// with [`Self::output_parameters`] columns. Every structural nonzero is written at every
+    /// call, nothing else is touched.
     ///
     /// # Panics
     /// If `parameters` or `d_parameters` has not the right length.

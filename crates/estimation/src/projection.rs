@@ -1,0 +1,194 @@
+//! P projected on the outputs: the innovation, and the moving block after the update.
+
+use gyrocal_scalar::Real;
+
+use crate::error::EstimationError;
+use crate::form::Observation;
+use crate::innovation::Innovation;
+use crate::lanes4::{load, mul_add};
+
+/// H P on the moving columns, and S = H P Hᵀ + R factored.
+pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
+    pub(crate) observation: &'a Observation<'a, T, M, Y>,
+    /// Moving columns of H P.
+    pub(crate) moving: [[T; M]; Y],
+    /// L, unit lower triangular.
+    lower: [[T; Y]; Y],
+    /// α.
+    variance: [T; Y],
+    /// α⁻¹.
+    pub(crate) reciprocal: [T; Y],
+}
+
+impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
+    /// Projects P on the outputs.
+    #[inline(always)]
+    pub(crate) fn new(
+        p: &[T],
+        n: usize,
+        observation: &'a Observation<'a, T, M, Y>,
+    ) -> Result<Self, EstimationError> {
+        let output = observation.parameters;
+        let q = output.len() / Y;
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let h = &observation.moving;
+        let mut moving = [[zero; M]; Y];
+        for k in 0..Y {
+            for j in 0..M {
+                let mut sum = zero;
+                for i in 0..M {
+                    sum = h[k][i].mul_add(p[i * n + j], sum);
+                }
+                for i in 0..q {
+                    sum = output[k * q + i].mul_add(p[j * n + M + i], sum);
+                }
+                moving[k][j] = sum;
+            }
+        }
+        let mut projection = Self {
+            observation,
+            moving,
+            lower: [[zero; Y]; Y],
+            variance: [zero; Y],
+            reciprocal: [zero; Y],
+        };
+        // L diag(α), row by row: L without the division that the next pivot would wait for.
+        let mut scaled = [[zero; Y]; Y];
+        for k in 0..Y {
+            for l in 0..=k {
+                let mut sum = zero;
+                for j in 0..M {
+                    sum = projection.moving[k][j].mul_add(h[l][j], sum);
+                }
+                for i in 0..q {
+                    let of_parameter = Self::of_parameter(p, n, h, output, k, i);
+                    sum = of_parameter.mul_add(output[l * q + i], sum);
+                }
+                if l == k {
+                    // An update takes at most 1 + Σ S/R off a variance, in relative terms. What
+                    // has more digits than the number type, less the eight bits that sums over
+                    // some dozen products lose, would leave rounding only.
+                    if sum * T::epsilon() * T::from_f64(256.0) > observation.variance[k] {
+                        return Err(EstimationError::LostPrecision { output: k });
+                    }
+                    sum = sum + observation.variance[k];
+                }
+                for earlier in 0..l {
+                    sum = sum - scaled[k][earlier] * projection.lower[l][earlier];
+                }
+                if l < k {
+                    scaled[k][l] = sum;
+                    projection.lower[k][l] = sum * projection.reciprocal[l];
+                } else {
+                    if !is_variance(sum) {
+                        return Err(not_positive(sum, 0));
+                    }
+                    projection.lower[k][k] = one;
+                    projection.variance[k] = sum;
+                    projection.reciprocal[k] = one / sum;
+                }
+            }
+        }
+        Ok(projection)
+    }
+
+    /// (H P) of output `k` and parameter `i`.
+    #[inline(always)]
+    fn of_parameter(p: &[T], n: usize, h: &[[T; M]; Y], output: &[T], k: usize, i: usize) -> T {
+        let q = output.len() / Y;
+        let mut sum = T::from_f64(0.0);
+        for j in 0..M {
+            sum = h[k][j].mul_add(p[j * n + M + i], sum);
+        }
+        for j in 0..q {
+            sum = output[k * q + j].mul_add(p[(M + j) * n + M + i], sum);
+        }
+        sum
+    }
+
+    /// The innovation.
+    #[inline(always)]
+    pub(crate) fn innovation(&self) -> Result<Innovation<T, Y>, EstimationError> {
+        let observation = self.observation;
+        Innovation::from_factors(
+            observation.residual,
+            observation.observed,
+            self.lower,
+            self.variance,
+            &self.reciprocal,
+        )
+    }
+
+    /// L⁻¹ applied to rows.
+    #[inline(always)]
+    pub(crate) fn reduce<const W: usize>(&self, rows: &mut [[T; W]; Y]) {
+        for k in 0..Y {
+            for earlier in 0..k {
+                rows[k] = mul_add(rows[earlier], -self.lower[k][earlier], rows[k]);
+            }
+        }
+    }
+
+    /// The moving block in Joseph form: (I - K H) P (I - K H)ᵀ + K R Kᵀ.
+    #[inline(always)]
+    pub(crate) fn update_corner(&self, p: &mut [T], n: usize, head: &[[T; M]; Y]) {
+        let (observation, output) = (self.observation, self.observation.parameters);
+        let q = output.len() / Y;
+        let zero = T::from_f64(0.0);
+        // K_m = (L⁻¹ H P)_mᵀ diag(α)⁻¹ L⁻¹, row by row from the last output back.
+        let mut gain = [[zero; M]; Y];
+        for k in (0..Y).rev() {
+            gain[k] = head[k].map(|value| value * self.reciprocal[k]);
+            for later in k + 1..Y {
+                gain[k] = mul_add(gain[later], -self.lower[later][k], gain[k]);
+            }
+        }
+        let mut rest = [[zero; M]; M];
+        for i in 0..M {
+            rest[i] = load(p, i * n);
+            for k in 0..Y {
+                rest[i] = mul_add(self.moving[k], -gain[k][i], rest[i]);
+            }
+        }
+        // (I - K H) P Hᵀ - K R, which is zero but for rounding.
+        let mut excess = [[zero; M]; Y];
+        for k in 0..Y {
+            for i in 0..M {
+                let mut sum = -(gain[k][i] * observation.variance[k]);
+                for j in 0..M {
+                    sum = rest[i][j].mul_add(observation.moving[k][j], sum);
+                }
+                for j in 0..q {
+                    sum = p[i * n + M + j].mul_add(output[k * q + j], sum);
+                }
+                excess[k][i] = sum;
+            }
+        }
+        for i in 0..M {
+            for j in 0..=i {
+                let mut sum = T::from_f64(0.5) * (rest[i][j] + rest[j][i]);
+                for k in 0..Y {
+                    sum = sum - excess[k][i] * gain[k][j];
+                }
+                p[i * n + j] = sum;
+                p[j * n + i] = sum;
+            }
+        }
+    }
+}
+
+#[inline(always)]
+pub(crate) fn is_variance<T: Real>(value: T) -> bool {
+    value.is_positive() && value.is_finite()
+}
+
+#[cold]
+pub(crate) fn not_positive<T: Real>(value: T, state: usize) -> EstimationError {
+    if value.is_finite() {
+        EstimationError::NotPositiveDefinite { state }
+    } else {
+        EstimationError::NotFinite {
+            quantity: "the covariance",
+        }
+    }
+}
