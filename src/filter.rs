@@ -81,7 +81,7 @@ type PlatformKernel<T, F> =
 /// Streaming filter of the nominal platform: feed it accelerometer samples, read coefficients.
 ///
 /// No call allocates. `F` is the form of the covariance: P itself for double precision, or its
-/// factors ([`FactorisedPlatformFilter`]) for single precision and priors of any width. In
+/// factors ([`FactorisedPlatformFilter`]) for single precision and wide priors. In
 /// single precision P itself soon stops with an error.
 #[derive(Clone, Debug)]
 pub struct PlatformFilter<T = f64, F = Covariance> {
@@ -197,8 +197,8 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
     /// Predicts over `interval_s` seconds.
     ///
     /// # Errors
-    /// [`EstimationError::InvalidArgument`] if the interval is not positive and finite; other
-    /// variants if the prediction left the numbers.
+    /// [`EstimationError::InvalidArgument`] if the interval is not positive and finite, or longer
+    /// than a million longest steps; other variants if the prediction left the numbers.
     #[inline]
     pub fn predict(&mut self, interval_s: T) -> Result<(), EstimationError> {
         let parts = (interval_s / self.longest_step_s).to_f64();

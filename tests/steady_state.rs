@@ -10,8 +10,9 @@ mod extended_platform;
 use std::hint::black_box;
 
 use allocation_counter::measure;
-use gyrocal::estimation::{ArrayStorage, Filter, Storage, VecStorage};
-use gyrocal::scalar::Recentre;
+use gyrocal::estimation::form::Form;
+use gyrocal::estimation::{ArrayStorage, Covariance, Factors, Filter, Storage, VecStorage};
+use gyrocal::scalar::{Real, Recentre};
 use gyrocal::{Anchored, Chart, Integration, Platform, PlatformFilter, Recentring, Settings, Site};
 
 use extended_platform::ExtendedPlatform;
@@ -39,13 +40,14 @@ fn the_counter_counts() {
     );
 }
 
-fn steps_of<D, S>(
+fn steps_of<F, D, S>(
     model: D,
     storage: S,
     integration: Integration,
     recentring: Recentring<f64>,
 ) -> u64
 where
+    F: Form<f64>,
     D: Recentre<f64, 3, 3, Inputs = Chart<f64>>,
     S: Storage<f64>,
 {
@@ -54,7 +56,7 @@ where
     sigma[..3].fill(2e-4);
     let chart = Chart::east_north_up(Site::at_latitude_deg(39.1));
     let state = vec![0.0; n];
-    let mut filter = Filter::new(
+    let mut filter = Filter::<_, _, _, _, 3, 3, F>::with_form(
         model,
         chart,
         integration,
@@ -78,26 +80,25 @@ where
     })
 }
 
-#[test]
-fn no_step_allocates() {
+fn no_step_of_the_form_allocates<F: Form<f64>>(form: &str) {
     for integration in INTEGRATIONS {
         for recentring in [
             Recentring::EveryStep,
             Recentring::Beyond(0.2),
             Recentring::Never,
         ] {
-            let what = format!("{integration:?}, {recentring:?}");
+            let what = format!("{form}, {integration:?}, {recentring:?}");
             let array = ArrayStorage::<f64, 3, 3, 12>::new();
             let nominal = Anchored(Platform);
             assert_eq!(
-                steps_of(nominal, array, integration, recentring),
+                steps_of::<F, _, _>(nominal, array, integration, recentring),
                 0,
                 "arrays, {what}"
             );
             for additional in [0, 6, 48] {
                 let model = ExtendedPlatform { additional };
                 let storage = VecStorage::new(12 + additional, 3, 3);
-                let count = steps_of(model, storage, integration, recentring);
+                let count = steps_of::<F, _, _>(model, storage, integration, recentring);
                 assert_eq!(
                     count, 0,
                     "vectors, {additional} additional parameters, {what}"
@@ -108,26 +109,42 @@ fn no_step_allocates() {
 }
 
 #[test]
+fn no_step_allocates() {
+    no_step_of_the_form_allocates::<Covariance>("covariance");
+    no_step_of_the_form_allocates::<Factors>("factors");
+}
+
+/// What every call of the filter of a platform allocates, in the number type `T`.
+fn calls_of<T: Real, F: Form<T>>(integration: Integration) -> u64 {
+    let settings = Settings {
+        integration,
+        ..Settings::level_at(Site::at_latitude_deg(39.1))
+    };
+    let samples = SAMPLES.map(|sample| sample.map(T::from_f64));
+    allocations(|| {
+        let mut filter = PlatformFilter::<T, F>::with_form(&settings).unwrap();
+        for sample in samples.iter().cycle().take(STEPS) {
+            filter.step(T::from_f64(60.0), sample).unwrap();
+            filter.predict(T::from_f64(1000.0)).unwrap();
+            filter.update_gated(sample, T::from_f64(50.0)).unwrap();
+            black_box((
+                filter.drift(),
+                filter.drift_sigma(),
+                filter.drift_covariance(),
+            ));
+            black_box((filter.angles_rad(), filter.platform_c_enu()));
+        }
+    })
+}
+
+#[test]
 fn no_call_of_the_platform_filter_allocates() {
     for integration in INTEGRATIONS {
-        let settings = Settings {
-            integration,
-            ..Settings::level_at(Site::at_latitude_deg(39.1))
-        };
-        let count = allocations(|| {
-            let mut filter = PlatformFilter::<f64>::new(&settings).unwrap();
-            for sample in SAMPLES.iter().cycle().take(STEPS) {
-                filter.step(60.0, sample).unwrap();
-                filter.predict(1000.0).unwrap();
-                filter.update_gated(sample, 50.0).unwrap();
-                black_box((
-                    filter.drift(),
-                    filter.drift_sigma(),
-                    filter.drift_covariance(),
-                ));
-                black_box((filter.angles_rad(), filter.platform_c_enu()));
-            }
-        });
-        assert_eq!(count, 0, "{integration:?}");
+        let count = calls_of::<f64, Covariance>(integration);
+        assert_eq!(count, 0, "covariance, {integration:?}");
+        let count = calls_of::<f64, Factors>(integration);
+        assert_eq!(count, 0, "factors, {integration:?}");
+        let count = calls_of::<f32, Factors>(integration);
+        assert_eq!(count, 0, "factors in single precision, {integration:?}");
     }
 }

@@ -1,5 +1,9 @@
+use std::marker::PhantomData;
+
+use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{
-    ArrayStorage, Buffers, Filter, Integration, Recentring, Storage, VecStorage, View,
+    ArrayStorage, Buffers, Covariance, Factors, Filter, Integration, Recentring, Storage,
+    VecStorage, View,
 };
 use gyrocal::scalar::Recentre;
 use gyrocal::{Anchored, Chart, Platform};
@@ -7,30 +11,57 @@ use gyrocal::{Anchored, Chart, Platform};
 use crate::extended_platform::ExtendedPlatform;
 use crate::truth::{DENSITY, STEP_S, Truth, VARIANCE, chart};
 
+const MOVING: usize = 3;
+
+/// A form whose buffers can be poisoned.
+trait Poison: Form<f64> {
+    /// Fills with NaN what this form must not read between two calls.
+    fn poison(buffers: &mut Buffers<'_, f64>);
+}
+
+impl Poison for Covariance {
+    fn poison(buffers: &mut Buffers<'_, f64>) {
+        Factors::poison(buffers);
+        buffers.pivots.fill(f64::NAN);
+        // The moving columns of the parameters' rows are not used.
+        let n = buffers.pivots.len();
+        for row in buffers.matrix[MOVING * n..].chunks_exact_mut(n) {
+            row[..MOVING].fill(f64::NAN);
+        }
+    }
+}
+
+impl Poison for Factors {
+    fn poison(buffers: &mut Buffers<'_, f64>) {
+        buffers.gain.fill(f64::NAN);
+        buffers.sweep.fill(f64::NAN);
+        buffers.transition.fill(f64::NAN);
+    }
+}
+
 /// Hands out buffers in which everything that a step must write before it reads is NaN.
 ///
 /// `stages` and `output` keep structural zeros and stay as they are.
-struct Poisoned<S> {
+struct Poisoned<S, F> {
     inner: S,
-    moving: usize,
+    form: PhantomData<F>,
 }
 
-impl<S: Storage<f64>> Storage<f64> for Poisoned<S> {
+impl<S, F> Poisoned<S, F> {
+    fn new(inner: S) -> Self {
+        let form = PhantomData;
+        Self { inner, form }
+    }
+}
+
+impl<S: Storage<f64>, F: Poison> Storage<f64> for Poisoned<S, F> {
     fn states(&self) -> usize {
         self.inner.states()
     }
 
     fn buffers(&mut self) -> Buffers<'_, f64> {
-        let (n, moving) = (self.inner.states(), self.moving);
-        let buffers = self.inner.buffers();
-        buffers.gain.fill(f64::NAN);
-        buffers.sweep.fill(f64::NAN);
-        buffers.pivots.fill(f64::NAN);
-        buffers.transition.fill(f64::NAN);
-        // The moving columns of the parameters' rows are not used.
-        for row in buffers.matrix[moving * n..].chunks_exact_mut(n) {
-            row[..moving].fill(f64::NAN);
-        }
+        let mut buffers = self.inner.buffers();
+        F::poison(&mut buffers);
         buffers
     }
 
@@ -40,13 +71,14 @@ impl<S: Storage<f64>> Storage<f64> for Poisoned<S> {
 }
 
 /// Every number that a run shows, as bits: innovations, states and covariances.
-fn trace<D, S>(
+fn trace<F, D, S>(
     model: D,
     integration: Integration,
     recentring: Recentring<f64>,
     storage: S,
 ) -> Vec<u64>
 where
+    F: Form<f64>,
     D: Recentre<f64, 3, 3, Inputs = Chart<f64>>,
     S: Storage<f64>,
 {
@@ -54,7 +86,7 @@ where
     let mut sigma = vec![1.0; n];
     sigma[..3].fill(2e-4);
     let state = vec![0.0; n];
-    let mut filter = Filter::new(
+    let mut filter = Filter::<_, _, _, _, 3, 3, F>::with_form(
         model,
         chart(),
         integration,
@@ -88,37 +120,31 @@ where
     bits
 }
 
-#[test]
-fn what_a_step_must_not_read_does_not_matter() {
+fn poisoned_and_clean_agree<F: Poison>(form: &str) {
     for integration in [
         Integration::EULER,
         Integration::RK4,
         Integration::Rk4 { substeps: 2 },
     ] {
-        for recentring in [Recentring::EveryStep, Recentring::Never] {
-            let what = format!("{integration:?}, {recentring:?}");
+        for recentring in [
+            Recentring::EveryStep,
+            Recentring::Beyond(0.05),
+            Recentring::Never,
+        ] {
+            let what = format!("{form}, {integration:?}, {recentring:?}");
             let nominal = Anchored(Platform);
             let array = ArrayStorage::<f64, 3, 3, 12>::new;
-            let clean = trace(nominal, integration, recentring, array());
-            let storage = Poisoned {
-                inner: array(),
-                moving: 3,
-            };
-            assert_eq!(
-                trace(nominal, integration, recentring, storage),
-                clean,
-                "arrays, {what}"
-            );
+            let clean = trace::<F, _, _>(nominal, integration, recentring, array());
+            let storage = Poisoned::<_, F>::new(array());
+            let poisoned = trace::<F, _, _>(nominal, integration, recentring, storage);
+            assert_eq!(poisoned, clean, "arrays, {what}");
             // Counts of parameters with every remainder of a division into blocks of four.
             for additional in 0..4 {
                 let model = ExtendedPlatform { additional };
                 let vector = || VecStorage::new(12 + additional, 3, 3);
-                let clean = trace(model, integration, recentring, vector());
-                let storage = Poisoned {
-                    inner: vector(),
-                    moving: 3,
-                };
-                let poisoned = trace(model, integration, recentring, storage);
+                let clean = trace::<F, _, _>(model, integration, recentring, vector());
+                let storage = Poisoned::<_, F>::new(vector());
+                let poisoned = trace::<F, _, _>(model, integration, recentring, storage);
                 assert_eq!(
                     poisoned, clean,
                     "{additional} additional parameters, {what}"
@@ -126,4 +152,14 @@ fn what_a_step_must_not_read_does_not_matter() {
             }
         }
     }
+}
+
+#[test]
+fn what_a_step_on_the_covariance_must_not_read_does_not_matter() {
+    poisoned_and_clean_agree::<Covariance>("covariance");
+}
+
+#[test]
+fn what_a_step_on_the_factors_must_not_read_does_not_matter() {
+    poisoned_and_clean_agree::<Factors>("factors");
 }

@@ -1,14 +1,17 @@
+use gyrocal::estimation::form::Form;
+use gyrocal::estimation::{Covariance, Factors};
 use gyrocal::generated::platform::DRIFT;
 use gyrocal::{
-    Drift, EstimationError, Innovation, Integration, Platform, PlatformFilter, Recentring,
+    Drift, EstimationError, Integration, Platform, PlatformFilter, Recentring, Settings,
 };
-
-const PARAMETERS: usize = Platform::PARAMETERS;
 use gyrocal_record::{Bench, Record};
+use nalgebra::SMatrix;
 
 use crate::error::CalibrationError;
 use crate::fit::Fit;
 use crate::settings::settings;
+
+const PARAMETERS: usize = Platform::PARAMETERS;
 
 /// A posterior sigma below this share of the prior's counts as determined by the record.
 const DETERMINED: f64 = 0.1;
@@ -22,15 +25,19 @@ pub struct Options {
     pub recentring: Recentring<f64>,
     /// Longest interval integrated in one step, s; longer ones are divided.
     pub longest_step_s: f64,
+    /// Whether the covariance is carried as its factors: slower, for priors that are too wide
+    /// otherwise.
+    pub factorised: bool,
 }
 
 impl Default for Options {
-    /// RK4, chart moved at every step, steps of at most two minutes.
+    /// RK4, chart moved at every step, steps of at most two minutes, the covariance itself.
     fn default() -> Self {
         Self {
             integration: Integration::RK4,
             recentring: Recentring::EveryStep,
             longest_step_s: 120.0,
+            factorised: false,
         }
     }
 }
@@ -43,6 +50,7 @@ impl Options {
             integration: Integration::EULER,
             recentring: Recentring::Never,
             longest_step_s: f64::INFINITY,
+            factorised: false,
         }
     }
 }
@@ -105,24 +113,53 @@ impl Calibration {
 /// `progress` is called now and then with the number of rows done.
 ///
 /// # Errors
-/// [`CalibrationError::TooShort`], or [`CalibrationError::Filter`] with the row at which the
-/// filter stopped.
+/// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`] of a record;
+/// [`CalibrationError::Filter`] with the row at which the filter stopped;
+/// [`CalibrationError::NotPositiveDefinite`] if the covariance that it found is none.
 pub fn calibrate(
     record: &Record,
     bench: &Bench,
     options: &Options,
-    mut progress: impl FnMut(usize),
+    progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    if record.len() < Platform::STATES {
+    check(record)?;
+    let settings = Settings {
+        integration: options.integration,
+        recentring: options.recentring,
+        longest_step_s: options.longest_step_s,
+        ..settings(bench)
+    };
+    if options.factorised {
+        filtered::<Factors>(record, &settings, progress)
+    } else {
+        filtered::<Covariance>(record, &settings, progress)
+    }
+}
+
+/// A row in which all accelerometers say `NaN` counts for nothing.
+fn check(record: &Record) -> Result<(), CalibrationError> {
+    if record.time_s.len() != record.accel_g.len() {
+        return Err(CalibrationError::UnequalLengths {
+            times: record.time_s.len(),
+            samples: record.accel_g.len(),
+        });
+    }
+    let measured = |row: &&[f64; 3]| row.iter().any(|component| !component.is_nan());
+    let found = record.accel_g.iter().filter(measured).count();
+    if found < Platform::STATES {
         return Err(CalibrationError::TooShort {
-            found: record.len(),
+            found,
             expected: Platform::STATES,
         });
     }
-    let mut settings = settings(bench);
-    settings.integration = options.integration;
-    settings.recentring = options.recentring;
-    settings.longest_step_s = options.longest_step_s;
+    Ok(())
+}
+
+fn filtered<F: Form<f64>>(
+    record: &Record,
+    settings: &Settings<f64>,
+    mut progress: impl FnMut(usize),
+) -> Result<Calibration, CalibrationError> {
     let at = |row: usize| {
         move |source: EstimationError| CalibrationError::Filter {
             row: row + 1,
@@ -130,13 +167,8 @@ pub fn calibrate(
             source,
         }
     };
-    let mut filter = PlatformFilter::new(&settings).map_err(at(0))?;
-    let mut fit = Fit {
-        nis_sum: 0.0,
-        values: 0,
-        rows: 0,
-        log_likelihood: 0.0,
-    };
+    let mut filter = PlatformFilter::<f64, F>::with_form(settings).map_err(at(0))?;
+    let mut fit = Fit::of_nothing();
     fit.add(&filter.update(&record.accel_g[0]).map_err(at(0))?);
     for row in 1..record.len() {
         let interval_s = record.time_s[row] - record.time_s[row - 1];
@@ -149,9 +181,13 @@ pub fn calibrate(
             progress(row);
         }
     }
+    let covariance = filter.drift_covariance();
+    if !is_positive_definite(&covariance) {
+        return Err(CalibrationError::NotPositiveDefinite);
+    }
     Ok(Calibration {
         drift: filter.drift(),
-        covariance: filter.drift_covariance(),
+        covariance,
         prior_sigma: settings.drift_sigma,
         fit,
         platform_c_enu: filter.platform_c_enu(),
@@ -159,12 +195,28 @@ pub fn calibrate(
     })
 }
 
-impl Fit {
-    fn add(&mut self, innovation: &Innovation<f64, 3>) {
-        let values = innovation.degrees_of_freedom();
-        self.nis_sum += innovation.nis;
-        self.values += values;
-        self.rows += usize::from(values > 0);
-        self.log_likelihood += innovation.log_likelihood();
+/// Cholesky's factorisation is the test; it does not depend on the units of the coefficients.
+fn is_positive_definite(covariance: &[[f64; PARAMETERS]; PARAMETERS]) -> bool {
+    SMatrix::<f64, PARAMETERS, PARAMETERS>::from(*covariance)
+        .cholesky()
+        .is_some()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_matrix_that_is_no_covariance_is_seen() {
+        let mut matrix = [[0.0; PARAMETERS]; PARAMETERS];
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[i] = 10.0_f64.powi(-2 * i as i32);
+        }
+        assert!(is_positive_definite(&matrix));
+        for correlation in [0.999_999, 1.000_001, f64::NAN] {
+            let covariance = correlation * (matrix[2][2] * matrix[7][7]).sqrt();
+            (matrix[2][7], matrix[7][2]) = (covariance, covariance);
+            assert_eq!(is_positive_definite(&matrix), correlation < 1.0);
+        }
     }
 }

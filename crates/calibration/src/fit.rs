@@ -1,19 +1,23 @@
+use gyrocal::Innovation;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Probability with which a record that fits the model is called inconsistent.
 const FALSE_ALARM: f64 = 1e-3;
 
+/// A mean NIS beyond this points at the inputs: first-order integration, the worst fault of a
+/// model seen here, gives 190.
+const GROSS: f64 = 1000.0;
+
 /// How well the innovations agree with the covariance that the filter predicted for them.
+///
+/// That of a [`crate::Calibration`] has as many rows with a value as the filter has states, or
+/// more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// Sum of the normalised innovations squared.
-    pub nis_sum: f64,
-    /// Number of accelerometer values used: the expectation of `nis_sum`.
-    pub values: usize,
-    /// Number of rows with at least one value.
-    pub rows: usize,
-    /// Logarithm of the likelihood of the record.
-    pub log_likelihood: f64,
+    nis_sum: f64,
+    values: usize,
+    rows: usize,
+    log_likelihood: f64,
 }
 
 /// What the innovations say of the fit.
@@ -28,6 +32,30 @@ pub enum Verdict {
 }
 
 impl Fit {
+    /// Sum of the normalised innovations squared.
+    #[must_use]
+    pub fn nis_sum(&self) -> f64 {
+        self.nis_sum
+    }
+
+    /// Number of accelerometer values used: the expectation of [`Self::nis_sum`].
+    #[must_use]
+    pub fn values(&self) -> usize {
+        self.values
+    }
+
+    /// Number of rows with at least one value.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Logarithm of the likelihood of the record.
+    #[must_use]
+    pub fn log_likelihood(&self) -> f64 {
+        self.log_likelihood
+    }
+
     /// Mean NIS of a row; expected is the mean number of values of a row, 3 without `nan`.
     #[must_use]
     pub fn nis_mean(&self) -> f64 {
@@ -61,16 +89,40 @@ impl Fit {
             Verdict::Consistent => {
                 format!("the record fits the model within the declared noise ({figures})")
             }
+            // Nothing that a model lacks makes it as large as a mistake in the inputs does.
+            Verdict::TooLarge if mean > GROSS => format!(
+                "the innovations are far larger than the declared noise explains ({figures}): \
+                 check that time is in seconds, that up is positive, and the latitude and initial \
+                 angles of the bench file; the coefficients mean nothing"
+            ),
             Verdict::TooLarge => format!(
                 "the innovations are larger than the declared noise explains ({figures}): the \
-                 model lacks something or the noise is larger than declared; the sigmas cannot \
-                 be trusted"
+                 model lacks something, the noise is larger than declared, or the prior is too \
+                 wide for one pass of the filter; the sigmas cannot be trusted"
             ),
             Verdict::TooSmall => format!(
                 "the innovations are smaller than the declared noise explains ({figures}): the \
                  noise is smaller than declared; the sigmas are too large"
             ),
         }
+    }
+
+    /// Before the first innovation; it has no band yet.
+    pub(crate) fn of_nothing() -> Self {
+        Self {
+            nis_sum: 0.0,
+            values: 0,
+            rows: 0,
+            log_likelihood: 0.0,
+        }
+    }
+
+    pub(crate) fn add(&mut self, innovation: &Innovation<f64, 3>) {
+        let values = innovation.degrees_of_freedom();
+        self.nis_sum += innovation.nis;
+        self.values += values;
+        self.rows += usize::from(values > 0);
+        self.log_likelihood += innovation.log_likelihood();
     }
 }
 

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
-use gyrocal::Platform;
 use gyrocal::generated::MODEL_HASH;
+use gyrocal::{EstimationError, Platform};
 use gyrocal_calibration::{Calibration, CalibrationError, Options, Verdict, calibrate};
 use gyrocal_record::{
     Bench, CalibrationReport, Coefficient, FitVerdict, Record, SCHEMA_VERSION, write_json,
@@ -37,6 +37,9 @@ pub(crate) struct CalibrateArguments {
     /// only for records that were simulated by the same rule.
     #[arg(long)]
     paper: bool,
+    /// Carry the covariance as factors: slower, for priors that are too wide otherwise.
+    #[arg(long)]
+    factorised: bool,
 }
 
 /// Runs the command; returns what is to be said on stdout.
@@ -48,15 +51,17 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
     let bench = Bench::read(&arguments.bench)?;
     let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
     tracing::info!(rows = record.len(), ?bench, "read");
-    let options = if arguments.paper {
+    let mut options = if arguments.paper {
         Options::of_the_paper()
     } else {
         Options::default()
     };
-    let stopped = |cause| FilterStopped {
+    options.factorised = arguments.factorised;
+    let stopped = |source| NotCalibrated {
         record: arguments.record.clone(),
         paper: arguments.paper,
-        cause,
+        factorised: arguments.factorised,
+        source,
     };
     let mut progress = Progress::new("calibrating", record.len());
     let calibration =
@@ -81,33 +86,43 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
 
 /// The filter could not go through the record.
 #[derive(Debug, thiserror::Error, Diagnostic)]
-#[error("{}: {cause}", record.display())]
+#[error("{}: no calibration", record.display())]
 #[diagnostic(code(gyrocal::calibrate::filter), help("{}", self.advice()))]
-struct FilterStopped {
+struct NotCalibrated {
     record: PathBuf,
     paper: bool,
-    /// Not the error's source, which would be printed again.
-    cause: CalibrationError,
+    factorised: bool,
+    source: CalibrationError,
 }
 
-impl FilterStopped {
+impl NotCalibrated {
     fn advice(&self) -> &'static str {
-        match self.cause {
-            CalibrationError::TooShort { .. } => "record for longer",
-            _ if self.paper => {
-                "the paper's filter fails where the second platform angle comes near 90 deg: \
-                 leave out --paper"
-            }
-            _ => {
-                "the numbers of the bench file are out of proportion to each other or to the \
-                 record: check [noise], [prior] and initial_angles_sigma_deg"
-            }
+        use EstimationError as Filter;
+
+        let lost = match &self.source {
+            CalibrationError::TooShort { .. } => return "record for longer",
+            CalibrationError::NotPositiveDefinite => true,
+            CalibrationError::Filter { source, .. } => matches!(
+                source,
+                Filter::LostPrecision { .. } | Filter::NotPositiveDefinite { .. }
+            ),
+            _ => false,
+        };
+        if self.paper {
+            "the paper's filter fails where the second platform angle comes near 90 deg: leave \
+             out --paper"
+        } else if lost && !self.factorised {
+            "the prior is very wide against the noise: give [prior] and initial_angles_sigma_deg \
+             the sizes that are believed, or carry the covariance as factors with --factorised"
+        } else {
+            "the numbers of the bench file are out of proportion to each other or to the record: \
+             check [noise], [prior] and initial_angles_sigma_deg"
         }
     }
 }
 
-impl From<FilterStopped> for Failure {
-    fn from(error: FilterStopped) -> Self {
+impl From<NotCalibrated> for Failure {
+    fn from(error: NotCalibrated) -> Self {
         Self::Work(error.into())
     }
 }
@@ -138,7 +153,7 @@ fn report(calibration: &Calibration, inputs: &[&Path]) -> Result<CalibrationRepo
         },
         verdict_text: fit.verdict_text(),
         iterations: 1,
-        rows: fit.rows,
+        rows: fit.rows(),
         final_angles_deg: calibration.final_angles_rad.map(f64::to_degrees),
     })
 }
@@ -152,7 +167,7 @@ fn summary(
     let mut text = format!(
         "{}: {} rows over {:.2} days\n\n{}\n\n",
         arguments.record.display(),
-        calibration.fit.rows,
+        calibration.fit.rows(),
         record.duration_s() / 86_400.0,
         table(calibration).trim_fmt()
     );

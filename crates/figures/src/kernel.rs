@@ -2,17 +2,21 @@
 //! of states, what its numbers are worth, and how many instructions it takes.
 
 mod accuracy;
+mod against_crates;
 mod instructions;
 mod scaling;
 mod speed;
 mod timing;
 
-// Test support of the library package, which has no other reader.
+// Support of the library package's tests and benches, which has no other reader.
 #[allow(clippy::expect_used)]
 #[path = "../../../tests/numerics/extended_filter.rs"]
 mod extended_filter;
 #[path = "../../../tests/numerics/extended_platform.rs"]
 mod extended_platform;
+#[allow(clippy::unwrap_used)]
+#[path = "../../../benches/filter_step/peers.rs"]
+mod peers;
 #[allow(clippy::expect_used, clippy::panic)]
 #[path = "../../../tests/numerics/reference.rs"]
 mod reference;
@@ -37,6 +41,7 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
         timing::target_features(),
     )];
     let mut timed = speed::figures(rounds)?;
+    timed.extend(against_crates::figures(rounds)?);
     timed.extend(scaling::figures(rounds)?);
     if small {
         // Ratios of times on a machine that does other work as well say little: shown, not judged.

@@ -93,8 +93,9 @@ fn write_page(
         });
     let page = format!(
         "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{small}` on {processor}. Times and \
-         ratios of times are those of that machine; everything else is the same everywhere.\n\n\
-         {table}\n"
+         ratios of times are those of that machine, and instruction counts those of its compiler. \
+         All else differs by rounding at most: where the target fuses multiplication and \
+         addition, last bits differ.\n\n{table}\n"
     );
     gyrocal_record::write_whole(path, page.as_bytes())
 }

@@ -37,7 +37,9 @@ pub unsafe extern "C" fn gyrocal_filter_start(
     place: *mut FactorisedPlatformFilter<f32>,
     latitude_deg: f64,
 ) -> bool {
-    match FactorisedPlatformFilter::factorised(&Settings::level_at(Site::at_latitude_deg(latitude_deg))) {
+    match FactorisedPlatformFilter::factorised(&Settings::level_at(Site::at_latitude_deg(
+        latitude_deg,
+    ))) {
         Ok(filter) => {
             // SAFETY: the caller vouches for size, alignment and validity.
             unsafe { place.write(filter) };

@@ -248,12 +248,41 @@ fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
         ("= 1e-5", "= 1e-200", "row 1 of the data (t = 0 s)"),
         ("= 0.002", "= 1e200", "row 2 of the data (t = 60 s)"),
     ] {
-        let errors = refused(record(20), bench().replace(right, wrong));
-        assert_says(&errors, &format!("r.csv: the filter stopped at {row}: "));
-        assert_says(
-            &errors,
-            "help: the numbers of the bench file are out of proportion",
-        );
-        assert_eq!(errors.matches("the filter stopped").count(), 1, "{errors}");
+        // --factorised is no answer to these, with or without it.
+        for option in [None, Some("--factorised")] {
+            let folder = Folder::new();
+            folder.put("r.csv", record(20));
+            folder.put("b.toml", bench().replace(right, wrong));
+            let arguments: Vec<&str> = JSON.into_iter().chain(option).collect();
+            let errors = folder.fail(&arguments);
+            assert_says(&errors, "r.csv: no calibration\n");
+            assert_says(&errors, &format!("the filter stopped at {row}\n"));
+            assert_says(
+                &errors,
+                "help: the numbers of the bench file are out of proportion",
+            );
+        }
     }
+}
+
+#[test]
+fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
+    let folder = Folder::new();
+    folder.put("r.csv", record(20));
+    let prior = "\n[prior]\nbias_sigma_deg_per_h = 1e7\n";
+    folder.put("b.toml", bench() + prior);
+    let errors = folder.fail(&JSON);
+    assert_says(&errors, "the filter stopped at row 2 of the data");
+    assert_says(
+        &errors,
+        "help: the prior is very wide against the noise: give [prior] and",
+    );
+    assert_says(&errors, "as factors with --factorised");
+    // Every cause is said once.
+    let cause = "the prior is too wide against the noise of output";
+    for said in ["the filter stopped", cause] {
+        assert_eq!(errors.matches(said).count(), 1, "{errors}");
+    }
+    let factorised: Vec<&str> = JSON.into_iter().chain(["--factorised"]).collect();
+    folder.succeed(&factorised);
 }

@@ -1,4 +1,5 @@
-//! Instructions of one step, counted by callgrind on the example `filter_steps`.
+//! Instructions of one step, counted by callgrind on the examples
+//! `filter_steps` and, not committed, `factorised_steps`.
 //!
 //! The number belongs to a compiler version and a plain build; with another one the figure is
 //! printed and not judged. `cargo figures kernel --write` renews the committed numbers.
@@ -30,9 +31,20 @@ struct Counts {
     rk4: f64,
 }
 
+/// What was counted.
+struct Counted {
+    /// Of the default form, which are committed.
+    counts: Counts,
+    /// Of an Euler and a Runge-Kutta step on the factors.
+    factors: [f64; 2],
+}
+
 /// Counts and judges; skips with the reason where that is impossible.
 pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
-    let counted = match counted()? {
+    let Counted {
+        counts: counted,
+        factors,
+    } = match counted()? {
         Ok(counted) => counted,
         Err(reason) => return Ok(vec![skipped(&reason)]),
     };
@@ -56,6 +68,10 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
             holds: same.then(|| (measured / expected - 1.0).abs() <= TOLERANCE),
         });
     }
+    for ((rule, _), count) in RULES.iter().zip(factors) {
+        let what = format!("{rule} step on the factors: instructions under callgrind");
+        figures.push(Figure::note(&what, format!("{count:.0}")));
+    }
     if !same {
         figures.push(skipped(&format!(
             "they belong to {} on {}, this is {} on {}; `cargo figures kernel --write` renews them",
@@ -67,7 +83,9 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
 
 /// Counts and writes the committed numbers.
 pub(crate) fn renewed() -> Result<Vec<Figure>, Error> {
-    let counted = counted()??;
+    let Counted {
+        counts: counted, ..
+    } = counted()??;
     let text = format!(
         "# Instructions of one filter step under callgrind, in a plain release build by this\n\
          # compiler. `cargo figures kernel --write` renews them.\n{}",
@@ -92,7 +110,7 @@ fn root() -> PathBuf {
 }
 
 /// The counts, or the reason why they cannot be had here.
-fn counted() -> Result<Result<Counts, String>, Error> {
+fn counted() -> Result<Result<Counted, String>, Error> {
     let flags = [
         "RUSTFLAGS",
         "CARGO_ENCODED_RUSTFLAGS",
@@ -112,39 +130,46 @@ fn counted() -> Result<Result<Counts, String>, Error> {
     let rustc = output(Command::new(compiler).arg("--version"))?
         .trim()
         .to_owned();
-    let program = example()?;
-    let mut counts = [0.0; 2];
+    let [euler, rk4] = counts_of("filter_steps")?;
+    let factors = counts_of("factorised_steps")?;
+    let target = format!("{} {}", std::env::consts::ARCH, std::env::consts::OS);
+    let counts = Counts {
+        rustc,
+        target,
+        euler,
+        rk4,
+    };
+    Ok(Ok(Counted { counts, factors }))
+}
+
+/// Instructions of a step of an example, by rule.
+fn counts_of(example: &str) -> Result<[f64; 2], Error> {
+    let program = built(example)?;
+    let mut counts = [0.0_f64; 2];
     for (count, (rule, _)) in counts.iter_mut().zip(RULES) {
         let [few, many] = [
             instructions(&program, rule, STEPS[0])?,
             instructions(&program, rule, STEPS[1])?,
         ];
-        *count = (many - few) / f64::from(STEPS[1] - STEPS[0]);
+        *count = ((many - few) / f64::from(STEPS[1] - STEPS[0])).round();
     }
-    let [euler, rk4] = counts.map(f64::round);
-    let target = format!("{} {}", std::env::consts::ARCH, std::env::consts::OS);
-    Ok(Ok(Counts {
-        rustc,
-        target,
-        euler,
-        rk4,
-    }))
+    Ok(counts)
 }
 
-/// Builds the example and says where it is.
-fn example() -> Result<PathBuf, Error> {
+/// Builds an example and says where it is.
+fn built(example: &str) -> Result<PathBuf, Error> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let messages = output(
         Command::new(cargo)
             .current_dir(root())
             .args(["build", "--release", "--quiet", "--package", "gyrocal"])
-            .args(["--example", "filter_steps", "--message-format", "json"]),
+            .args(["--example", example, "--message-format", "json"]),
     )?;
     let path = messages.lines().find_map(|line| {
         let (_, rest) = line.split_once("\"executable\":\"")?;
         Some(PathBuf::from(rest.split('"').next()?))
     });
-    path.ok_or_else(|| "cargo built no example filter_steps".into())
+    path.ok_or_else(|| format!("cargo built no example {example}").into())
 }
 
 /// All instructions of a run of that many steps.

@@ -1,9 +1,11 @@
-//! A step of the shipped filter against one of the textbook filter.
+//! A step of the shipped filter against one of the textbook filter, and what its other form takes.
 
 use std::hint::black_box;
 
 use gyrocal::estimation::dense::DenseFilter;
-use gyrocal::{Anchored, Chart, Platform, PlatformFilter, Recentring, Settings, Site};
+use gyrocal::{
+    Anchored, Chart, FactorisedPlatformFilter, Platform, PlatformFilter, Recentring, Settings, Site,
+};
 use nalgebra::{SMatrix, SVector};
 
 use super::extended_filter::samples;
@@ -12,10 +14,10 @@ use super::{Error, RULES};
 use crate::figure::Figure;
 
 /// Steps of one round: ten hours.
-const STEPS: usize = 600;
-const STEP_S: f64 = 60.0;
-const DENSITY: [f64; 3] = [2.4e-4; 3];
-const VARIANCE: [f64; 3] = [1e-10; 3];
+pub(super) const STEPS: usize = 600;
+pub(super) const STEP_S: f64 = 60.0;
+pub(super) const DENSITY: [f64; 3] = [2.4e-4; 3];
+pub(super) const VARIANCE: [f64; 3] = [1e-10; 3];
 
 /// How many times faster a step is than one of `dense_joseph` of the bench `filter_step`: the
 /// same interval, samples and noise, Euler angles in one chart.
@@ -29,6 +31,7 @@ pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
             ..Settings::level_at(site)
         };
         let ours = PlatformFilter::new(&settings)?;
+        let factors = FactorisedPlatformFilter::factorised(&settings)?;
         let angle = settings.angles_sigma_rad[0];
         let variances: [f64; 12] =
             core::array::from_fn(|i| if i < 3 { angle * angle } else { 1.0 });
@@ -62,7 +65,16 @@ pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
                 })
             })?;
             black_box(&dense);
-            Ok::<_, gyrocal::EstimationError>([ours_s, dense_s])
+            let mut factors = black_box(factors.clone());
+            let factors_s = seconds(|| {
+                samples.iter().try_for_each(|sample| {
+                    factors.step(STEP_S, black_box(sample)).map(|innovation| {
+                        black_box(innovation);
+                    })
+                })
+            })?;
+            black_box(&factors);
+            Ok::<_, gyrocal::EstimationError>([ours_s, dense_s, factors_s])
         })?;
         let target = match (rule, is_x86_64_v3()) {
             ("euler", true) => 7.0,
@@ -72,14 +84,12 @@ pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
         let what = format!("{rule} step: time of dense_joseph / of the kernel");
         let bounds = [target, f64::INFINITY];
         figures.push(Figure::within(&what, bounds, ratios[1]).over(rounds, ""));
-        let [ours_ns, dense_ns] = times.map(|time| time / STEPS as f64 * 1e9);
-        figures.push(
-            Figure::note(
-                &format!("{rule} step: kernel, dense_joseph"),
-                format!("{ours_ns:.0} ns, {dense_ns:.0} ns"),
-            )
-            .over(rounds, ""),
-        );
+        let what = format!("{rule}, factors / covariance: time of a step");
+        figures.push(Figure::note(&what, format!("{:.2}", ratios[2])).over(rounds, ""));
+        let [ours_ns, dense_ns, factors_ns] = times.map(|time| time / STEPS as f64 * 1e9);
+        let what = format!("{rule} step: kernel, dense_joseph, kernel on factors");
+        let measured = format!("{ours_ns:.0} ns, {dense_ns:.0} ns, {factors_ns:.0} ns");
+        figures.push(Figure::note(&what, measured).over(rounds, ""));
     }
     Ok(figures)
 }

@@ -11,15 +11,18 @@ use crate::figure::Figure;
 
 /// Seeds of the comparison, fixed beforehand.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=60;
-/// Mean NIS over the 4321 rows of one record that fits is 3 ± 0.037, so the median over seeds
-/// of a consistent filter lies in this interval but once in many thousand.
-const FITS: [f64; 2] = [2.97, 3.05];
+/// Mean NIS over the 4321 rows of one record that fits is 3 ± 0.037, so the median over 60 seeds
+/// is 3 ± 0.006 (1.25 · 0.037 / √60). The rest of the interval is for the bias of a single pass,
+/// which may have either sign.
+const FITS: [f64; 2] = [2.95, 3.05];
 /// Euler angles as states are over-confident (see the NEES): nearly 3, and at times far above.
 const NEARLY_FITS: [f64; 2] = [2.9, 3.3];
 /// Far beyond chance: what a wrong rule must be seen as.
 const DOES_NOT_FIT: [f64; 2] = [100.0, f64::INFINITY];
-/// 95 % point of chi-square with 9 degrees of freedom: a median beyond it is over-confident.
-const NEES_LIMIT: f64 = 16.92;
+/// The median of a consistent filter is 8.3. One pass of an extended filter falls short of that:
+/// 13.4 was measured after one day, aligned. The seeds are fixed, so the limit need not allow for
+/// chance; it holds that filter to what it was.
+const NEES_LIMIT: f64 = 14.0;
 
 pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
     let mut figures = rules()?;
@@ -132,7 +135,7 @@ fn coordinates() -> Result<Vec<Figure>, Error> {
             .collect::<Result<Vec<f64>, Error>>()?;
         let spread = Spread::of(nees.iter().copied());
         let mut figure = Figure::note(
-            &format!("NEES after one day (9 expected), {name}: median"),
+            &format!("NEES after one day, aligned, {name}: median (8.3 if consistent)"),
             spread.text(),
         );
         if let Some(limit) = limit {

@@ -1,0 +1,31 @@
+//! As the example `filter_steps`, with the covariance as factors:
+//! `cargo run --release --example factorised_steps -- euler|rk4 STEPS`.
+//!
+//! A program of its own, because a second form in the same one changes what the compiler
+//! inlines into the first.
+
+use gyrocal::{FactorisedPlatformFilter, Integration, Settings, Site};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [integration, steps] = arguments.as_slice() else {
+        return Err("expected two arguments: euler or rk4, and the number of steps".into());
+    };
+    let integration = match integration.as_str() {
+        "euler" => Integration::EULER,
+        "rk4" => Integration::RK4,
+        other => return Err(format!("expected euler or rk4, found {other}").into()),
+    };
+    let settings = Settings {
+        integration,
+        ..Settings::level_at(Site::at_latitude_deg(39.1))
+    };
+    let mut filter = FactorisedPlatformFilter::<f64>::factorised(&settings)?;
+    let sample = [0.0, 0.0, 1.0];
+    let mut nis_sum = 0.0;
+    for _ in 0..steps.parse::<u32>()? {
+        nis_sum += filter.step(60.0, &sample)?.nis;
+    }
+    println!("{nis_sum:e}");
+    Ok(())
+}
