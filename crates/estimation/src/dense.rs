@@ -88,10 +88,10 @@ where
         }
         let mut phi = SMatrix::<f64, N, N>::identity();
         phi.fixed_view_mut::<M, N>(0, 0).copy_from(&rows);
-        let mut gamma = SMatrix::<f64, N, M>::zeros();
-        gamma.fixed_view_mut::<M, M>(0, 0).copy_from(&noise);
         let q = SMatrix::<f64, M, M>::from_diagonal(&SVector::from(noise_density.map(|d| d / dt)));
-        self.covariance = phi * self.covariance * phi.transpose() + gamma * q * gamma.transpose();
+        self.covariance = phi * self.covariance * phi.transpose();
+        let mut corner = self.covariance.fixed_view_mut::<M, M>(0, 0);
+        corner += noise * q * noise.transpose();
     }
 
     /// Updates with a complete measurement.
@@ -128,8 +128,9 @@ where
         let covariance = h * cross + r;
         let cholesky =
             Cholesky::new(covariance).ok_or(EstimationError::NotPositiveDefinite { state: 0 })?;
-        let gain = cholesky.solve(&cross.transpose()).transpose();
-        let nis = residual.dot(&cholesky.solve(&residual));
+        let inverse = cholesky.inverse();
+        let gain = cross * inverse;
+        let nis = residual.dot(&(inverse * residual));
         let correction = gain * residual;
         let joseph = SMatrix::<f64, N, N>::identity() - gain * h;
         self.covariance =
@@ -170,7 +171,7 @@ where
         let mut moving = SVector::<f64, M>::from(self.moving());
         let mut rows = SMatrix::<f64, M, N>::identity();
         let mut noise = SMatrix::<f64, M, M>::zeros();
-        for _ in 0..substeps {
+        for substep in 0..substeps {
             let (start, start_rows, start_noise) = (moving, rows, noise);
             let mut rate = SVector::<f64, M>::zeros();
             let mut rate_rows = SMatrix::<f64, M, N>::zeros();
@@ -179,8 +180,16 @@ where
                 let node = nodes[stage] * h;
                 let (f, f_rows, f_noise);
                 (rate, f, f_rows, f_noise) = self.rates(&(start + rate * node));
-                rate_rows = f * (start_rows + rate_rows * node) + f_rows;
-                rate_noise = f * (start_noise + rate_noise * node) + f_noise;
+                if substep == 0 && stage == 0 {
+                    // The sensitivities start from the identity and from zero.
+                    rate_rows = f_rows;
+                    let mut moving_columns = rate_rows.fixed_view_mut::<M, M>(0, 0);
+                    moving_columns += f;
+                    rate_noise = f_noise;
+                } else {
+                    rate_rows = f * (start_rows + rate_rows * node) + f_rows;
+                    rate_noise = f * (start_noise + rate_noise * node) + f_noise;
+                }
                 moving += rate * (weights[stage] * h);
                 rows += rate_rows * (weights[stage] * h);
                 noise += rate_noise * (weights[stage] * h);

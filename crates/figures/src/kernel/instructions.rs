@@ -1,5 +1,5 @@
-//! Instructions of one step, counted by callgrind on the examples
-//! `filter_steps` and, not committed, `factorised_steps`.
+//! Instructions of one step, counted by callgrind on the example `filter_steps`, and on
+//! `factorised_steps` for information.
 //!
 //! The number belongs to a compiler version and a plain build; with another one the figure is
 //! printed and not judged. `cargo figures kernel --write` renews the committed numbers.
