@@ -52,6 +52,18 @@ impl<T: Real> Chart<T> {
         core::array::from_fn(|i| [east[i], self.north[i], self.up[i]])
     }
 
+    /// Unit vectors North and Up along the chart axes: all that changes when the chart moves.
+    #[must_use]
+    pub fn orientation(&self) -> [[T; 3]; 2] {
+        [self.north, self.up]
+    }
+
+    /// Lays the chart so that North and Up, orthogonal unit vectors, have these components.
+    pub fn lay(&mut self, [north, up]: &[[T; 3]; 2]) {
+        (self.north, self.up) = (*north, *up);
+        self.refresh();
+    }
+
     /// Turns the chart: `matrix` takes old components to new ones.
     #[inline(always)]
     fn turn(&mut self, matrix: &[[T; 3]; 3]) {

@@ -133,6 +133,37 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
     /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::InvalidArgument`] if a
     /// sigma or noise is not positive.
     pub fn with_form(settings: &Settings<T>) -> Result<Self, EstimationError> {
+        Self::in_chart(
+            settings,
+            Chart::east_north_up(settings.site),
+            &settings.angles_rad,
+            &settings.angles_sigma_rad,
+        )
+    }
+
+    /// As [`Self::with_form`] for any initial attitude, angles near θy = ±90° included:
+    /// components of North and Up (orthogonal unit vectors) along the platform axes, and the
+    /// standard deviations of the attitude's error as a rotation about these axes, rad. The
+    /// angles of the settings are not used.
+    ///
+    /// # Errors
+    /// As [`Self::with_form`].
+    pub fn at_attitude(
+        settings: &Settings<T>,
+        north_and_up: &[[T; 3]; 2],
+        rotation_sigma_rad: &[T; 3],
+    ) -> Result<Self, EstimationError> {
+        let mut chart = Chart::east_north_up(settings.site);
+        chart.lay(north_and_up);
+        Self::in_chart(settings, chart, &[T::from_f64(0.0); 3], rotation_sigma_rad)
+    }
+
+    fn in_chart(
+        settings: &Settings<T>,
+        chart: Chart<T>,
+        angles_rad: &[T; 3],
+        angles_sigma_rad: &[T; 3],
+    ) -> Result<Self, EstimationError> {
         let (zero, noise) = (T::from_f64(0.0), settings.drift_noise_deg_per_h);
         if !(settings.accel_noise_g.is_positive()
             && noise.is_positive()
@@ -142,20 +173,20 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
                 expected: "positive noise and a positive longest step",
             });
         }
-        let join = |moving: [T; 3], parameters: [T; Platform::PARAMETERS]| {
+        let join = |moving: &[T; 3], parameters: [T; Platform::PARAMETERS]| {
             let mut all = [zero; Platform::STATES];
-            all[..3].copy_from_slice(&moving);
+            all[..3].copy_from_slice(moving);
             all[3..].copy_from_slice(&parameters);
             all
         };
         let kernel = Filter::with_form(
             Anchored(Platform),
-            Chart::east_north_up(settings.site),
+            chart,
             settings.integration,
             settings.recentring,
             ArrayStorage::new(),
-            &join(settings.angles_rad, settings.drift.to_array()),
-            &join(settings.angles_sigma_rad, settings.drift_sigma.to_array()),
+            &join(angles_rad, settings.drift.to_array()),
+            &join(angles_sigma_rad, settings.drift_sigma.to_array()),
         )?;
         Ok(Self {
             kernel,

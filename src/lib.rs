@@ -59,6 +59,7 @@
 //!   edited; an unchanged tree builds without Python. Embedders turn default features off and
 //!   compile the committed Rust, without any generator.
 //! - `std` (default): fused multiply-add where the target has it.
+//! - `batch`: attitudes as points of a trajectory, for estimation from whole records.
 //! - `oracle`: slow, exact functions for tests.
 //!
 //! # What it does not do
@@ -73,6 +74,8 @@ mod filter;
 pub mod generated;
 mod rotation;
 mod site;
+#[cfg(feature = "batch")]
+pub mod trajectory;
 
 pub use anchor::{Anchored, Chart};
 pub use filter::{FactorisedPlatformFilter, PlatformFilter, Settings};

@@ -60,6 +60,52 @@ pub(crate) fn turned_by<T: Scalar + PartialOrd>(phi: &[T; 3]) -> [[T; 3]; 3] {
     ]
 }
 
+/// The vector φ of at most half a turn with exp(-[φ]×) = `matrix`: the inverse of [`turned_by`].
+#[cfg(any(test, feature = "batch"))]
+#[inline]
+pub(crate) fn rotation_vector<T: Scalar + PartialOrd>(matrix: &[[T; 3]; 3]) -> [T; 3] {
+    let (one, half) = (T::from_f64(1.0), T::from_f64(0.5));
+    let c = matrix;
+    // sin|φ| φ / |φ|
+    let v = [
+        half * (c[1][2] - c[2][1]),
+        half * (c[2][0] - c[0][2]),
+        half * (c[0][1] - c[1][0]),
+    ];
+    let cosine = half * (c[0][0] + c[1][1] + c[2][2] - one);
+    let square = dot(&v, &v);
+    if cosine > T::from_f64(0.0) && square < T::from_f64(1e-6) {
+        // asin(s) / s; the next term is below the last bit.
+        let scale = one + square * (T::from_f64(1.0 / 6.0) + square * T::from_f64(3.0 / 40.0));
+        return v.map(|component| component * scale);
+    }
+    let sine = square.sqrt();
+    let angle = sine.atan2(cosine);
+    if cosine > T::from_f64(-0.9) {
+        return v.map(|component| component * angle / sine);
+    }
+    // Near half a turn the antisymmetric part vanishes; the axis is in the symmetric part
+    // cos|φ| I + (1 - cos|φ|) n nᵀ, whose largest column is the safest.
+    let mut largest = 0;
+    for i in 1..3 {
+        if c[i][i] > c[largest][largest] {
+            largest = i;
+        }
+    }
+    let mut axis = [T::from_f64(0.0); 3];
+    for (i, component) in axis.iter_mut().enumerate() {
+        *component = half * (c[i][largest] + c[largest][i]);
+    }
+    axis[largest] = axis[largest] - cosine;
+    let length = dot(&axis, &axis).sqrt();
+    let direction = if dot(&axis, &v) < T::from_f64(0.0) {
+        -angle / length
+    } else {
+        angle / length
+    };
+    axis.map(|component| component * direction)
+}
+
 /// Platform angles of equation (4) from the direction cosine matrix: rotations about x, then
 /// y, then z. At theta_y = ±90° only a combination of x and z is determined.
 #[inline]
@@ -81,6 +127,23 @@ mod tests {
     fn largest_difference(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> f64 {
         let pairs = a.iter().flatten().zip(b.iter().flatten());
         pairs.fold(0.0, |worst: f64, (x, y)| worst.max((x - y).abs()))
+    }
+
+    #[test]
+    fn a_rotation_vector_comes_back_from_its_matrix() {
+        let direction = [0.36, -0.48, 0.8];
+        for angle in [0.0, 1e-9, 9e-4, 1.1e-3, 0.3, 1.5, 2.6, 2.8, 3.1, 3.141_5] {
+            let phi = direction.map(|component| component * angle);
+            let back = rotation_vector(&turned_by(&phi));
+            for (back, phi) in back.iter().zip(phi) {
+                // Near half a turn the angle comes from its sine and the axis from a column that
+                // cosines are subtracted from: some units of the last place of 3.
+                assert!(
+                    (back - phi).abs() < 4e-15 * (1.0 + angle),
+                    "{angle}: {back} {phi}"
+                );
+            }
+        }
     }
 
     #[test]

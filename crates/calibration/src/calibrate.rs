@@ -1,39 +1,48 @@
-use gyrocal::estimation::form::Form;
-use gyrocal::estimation::{Covariance, Factors};
 use gyrocal::generated::platform::DRIFT;
-use gyrocal::{
-    Drift, EstimationError, Integration, Platform, PlatformFilter, Recentring, Settings,
-};
+use gyrocal::{Drift, Integration, Platform, Recentring, Settings};
 use gyrocal_record::{Bench, Record};
 use nalgebra::SMatrix;
 
 use crate::error::CalibrationError;
 use crate::fit::Fit;
+use crate::run::Run;
 use crate::settings::settings;
-
-const PARAMETERS: usize = Platform::PARAMETERS;
+use crate::{PARAMETERS, batch, streaming};
 
 /// A posterior sigma below this share of the prior's counts as determined by the record.
 const DETERMINED: f64 = 0.1;
 
-/// How a record is filtered.
+/// How coefficients are estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// Iterated smoothing of whole records.
+    Batch,
+    /// One pass of the filter that a controller embeds.
+    Streaming,
+}
+
+/// How records are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
+    /// How coefficients are estimated.
+    pub method: Method,
     /// How the angles are integrated over a step.
     pub integration: Integration,
-    /// When the chart moves.
+    /// When the chart of the streaming filter moves; the batch estimator moves it at every step.
     pub recentring: Recentring<f64>,
     /// Longest interval integrated in one step, s; longer ones are divided.
     pub longest_step_s: f64,
-    /// Whether the covariance is carried as its factors: slower, for priors that are too wide
-    /// otherwise.
+    /// Whether the streaming filter carries the covariance as its factors: slower, for priors
+    /// that are too wide otherwise.
     pub factorised: bool,
 }
 
 impl Default for Options {
-    /// RK4, chart moved at every step, steps of at most two minutes, the covariance itself.
+    /// The batch estimator with RK4, chart moved at every step, steps of at most two minutes, the covariance itself.
     fn default() -> Self {
         Self {
+            method: Method::Batch,
             integration: Integration::RK4,
             recentring: Recentring::EveryStep,
             longest_step_s: 120.0,
@@ -43,10 +52,20 @@ impl Default for Options {
 }
 
 impl Options {
+    /// One pass of the streaming filter.
+    #[must_use]
+    pub fn streaming() -> Self {
+        Self {
+            method: Method::Streaming,
+            ..Self::default()
+        }
+    }
+
     /// The paper's own filter: Euler angles in one chart, one Euler step a sample.
     #[must_use]
     pub fn of_the_paper() -> Self {
         Self {
+            method: Method::Streaming,
             integration: Integration::EULER,
             recentring: Recentring::Never,
             longest_step_s: f64::INFINITY,
@@ -70,6 +89,8 @@ pub struct Calibration {
     pub platform_c_enu: [[f64; 3]; 3],
     /// Platform angles against East-North-Up at the last row, rad.
     pub final_angles_rad: [f64; 3],
+    /// Steps of the batch estimator; 1 of the streaming filter.
+    pub iterations: usize,
 }
 
 /// One estimated coefficient with its name and unit.
@@ -108,31 +129,43 @@ impl Calibration {
     }
 }
 
-/// Estimates the nine coefficients from a record in one pass of the streaming filter.
+/// Estimates the nine coefficients from a record.
 ///
 /// `progress` is called now and then with the number of rows done.
 ///
 /// # Errors
-/// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`] of a record;
-/// [`CalibrationError::Filter`] with the row at which the filter stopped;
-/// [`CalibrationError::NotPositiveDefinite`] if the covariance that it found is none.
+/// As [`calibrate_runs`].
 pub fn calibrate(
     record: &Record,
     bench: &Bench,
     options: &Options,
     progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    check(record)?;
-    let settings = Settings {
-        integration: options.integration,
-        recentring: options.recentring,
-        longest_step_s: options.longest_step_s,
-        ..settings(bench)
-    };
-    if options.factorised {
-        filtered::<Factors>(record, &settings, progress)
-    } else {
-        filtered::<Covariance>(record, &settings, progress)
+    calibrate_runs(&[Run { record, bench }], options, progress)
+}
+
+/// Estimates the nine coefficients from the records of several runs of one platform, each with
+/// its own initial attitude and start.
+///
+/// # Errors
+/// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`] of a record;
+/// [`CalibrationError::Filter`] with the row at which the filter stopped;
+/// [`CalibrationError::NotConverged`] and [`CalibrationError::NoDescent`] of the batch
+/// estimator; [`CalibrationError::NotPositiveDefinite`] if the covariance that was found is
+/// none; [`CalibrationError::NoAttitude`] and [`CalibrationError::OneRecord`] of the streaming
+/// filter.
+pub fn calibrate_runs(
+    runs: &[Run<'_>],
+    options: &Options,
+    mut progress: impl FnMut(usize),
+) -> Result<Calibration, CalibrationError> {
+    for run in runs {
+        check(run.record)?;
+    }
+    match (options.method, runs) {
+        (Method::Batch, _) => batch::calibrate(runs, options, &mut progress),
+        (Method::Streaming, [run]) => streaming(run, options, &mut progress),
+        (Method::Streaming, _) => Err(CalibrationError::OneRecord { found: runs.len() }),
     }
 }
 
@@ -155,43 +188,34 @@ fn check(record: &Record) -> Result<(), CalibrationError> {
     Ok(())
 }
 
-fn filtered<F: Form<f64>>(
-    record: &Record,
-    settings: &Settings<f64>,
-    mut progress: impl FnMut(usize),
+/// One pass of the streaming filter.
+fn streaming(
+    run: &Run<'_>,
+    options: &Options,
+    progress: &mut dyn FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    let at = |row: usize| {
-        move |source: EstimationError| CalibrationError::Filter {
-            row: row + 1,
-            time_s: record.time_s[row],
-            source,
-        }
+    let settings = Settings {
+        integration: options.integration,
+        recentring: options.recentring,
+        longest_step_s: options.longest_step_s,
+        ..settings(run.bench).ok_or(CalibrationError::NoAttitude)?
     };
-    let mut filter = PlatformFilter::<f64, F>::with_form(settings).map_err(at(0))?;
-    let mut fit = Fit::of_nothing();
-    fit.add(&filter.update(&record.accel_g[0]).map_err(at(0))?);
-    for row in 1..record.len() {
-        let interval_s = record.time_s[row] - record.time_s[row - 1];
-        fit.add(
-            &filter
-                .step(interval_s, &record.accel_g[row])
-                .map_err(at(row))?,
-        );
+    let filtered = streaming::filter(run.record, &settings, options.factorised, |row| {
         if row % 1024 == 0 {
             progress(row);
         }
-    }
-    let covariance = filter.drift_covariance();
-    if !is_positive_definite(&covariance) {
+    })?;
+    if !is_positive_definite(&filtered.covariance) {
         return Err(CalibrationError::NotPositiveDefinite);
     }
     Ok(Calibration {
-        drift: filter.drift(),
-        covariance,
+        drift: filtered.drift,
+        covariance: filtered.covariance,
         prior_sigma: settings.drift_sigma,
-        fit,
-        platform_c_enu: filter.platform_c_enu(),
-        final_angles_rad: filter.angles_rad(),
+        fit: filtered.fit,
+        platform_c_enu: filtered.platform_c_enu,
+        final_angles_rad: filtered.angles_rad,
+        iterations: 1,
     })
 }
 

@@ -33,6 +33,54 @@ pub enum CalibrationError {
         /// What the filter said.
         source: EstimationError,
     },
+    /// The streaming filter needs to be told how the platform lies.
+    #[error(
+        "the bench file gives no initial angles, which the streaming filter needs; give \
+         `initial_angles_deg` or use the batch estimator"
+    )]
+    NoAttitude,
+    /// The streaming filter reads one record.
+    #[error("{found} records, the streaming filter reads one; use the batch estimator")]
+    OneRecord {
+        /// Number of records.
+        found: usize,
+    },
+    /// The bench does not say how the platform lies, and no early row tells where up is.
+    #[error(
+        "the bench file gives no initial angles, and no row of the first 20 minutes has all three \
+         accelerometers, so the platform cannot be levelled; give `initial_angles_deg` or record \
+         all axes from the start"
+    )]
+    NotLevelled,
+    /// A pass over a record could not be made; the source says why.
+    #[error("the batch estimator could not pass over record {run}")]
+    Pass {
+        /// Number of the record, counted from 1.
+        run: usize,
+        /// What it said.
+        source: EstimationError,
+    },
+    /// No step lowered the cost any more, though the solution was not reached.
+    #[error(
+        "the batch estimator stopped after {iterations} steps: no shorter step fits the record \
+         better; check latitude, initial angles and units, or give priors nearer to the truth"
+    )]
+    NoDescent {
+        /// Steps that were made.
+        iterations: usize,
+    },
+    /// The estimate still moved after the last step that was allowed.
+    #[error(
+        "the batch estimator did not converge in {iterations} steps (the last one was {last_step} \
+         standard deviations long); check latitude, initial angles and units, or give priors \
+         nearer to the truth"
+    )]
+    NotConverged {
+        /// Steps that were made.
+        iterations: usize,
+        /// Length of the last one in standard deviations of the whole problem.
+        last_step: f64,
+    },
     /// Rounding left the coefficients a covariance that no errors can have: variances are
     /// positive, but that of some combination of coefficients is not.
     #[error(

@@ -1,5 +1,8 @@
 use gyrocal::Innovation;
+use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::solve::{Solution, Unknown};
 
 /// Probability with which a record that fits the model is called inconsistent.
 const FALSE_ALARM: f64 = 1e-3;
@@ -114,6 +117,31 @@ impl Fit {
             values: 0,
             rows: 0,
             log_likelihood: 0.0,
+        }
+    }
+
+    /// Of a joint solution: the least sum of squares, priors included, has as many degrees of
+    /// freedom as there are values, like the sum of a filter's NIS.
+    pub(crate) fn of_batch(
+        solution: &Solution,
+        unknowns: &[Unknown],
+        covariance: &DMatrix<f64>,
+    ) -> Self {
+        let prior: f64 = unknowns
+            .iter()
+            .filter(|unknown| !unknown.considered)
+            .map(|unknown| 2.0 * unknown.sigma.ln())
+            .sum();
+        let gained = covariance.clone().cholesky().map_or(f64::NAN, |cholesky| {
+            2.0 * cholesky.l().diagonal().map(f64::ln).sum()
+        });
+        Self {
+            nis_sum: solution.cost,
+            values: solution.values,
+            rows: solution.rows,
+            log_likelihood: -0.5
+                * (solution.cost + solution.log_variance + prior - gained
+                    + solution.values as f64 * core::f64::consts::TAU.ln()),
         }
     }
 

@@ -27,12 +27,23 @@
 //!
 //! It reads and writes no files and prints nothing.
 
+mod attitude;
+mod batch;
 mod calibrate;
 mod error;
 mod fit;
+mod layout;
+mod run;
 mod settings;
+mod solve;
+mod start;
+mod streaming;
 
-pub use calibrate::{Calibration, CoefficientEstimate, Options, calibrate};
+pub use calibrate::{Calibration, CoefficientEstimate, Method, Options, calibrate, calibrate_runs};
 pub use error::CalibrationError;
 pub use fit::{Fit, Verdict, chi_square_band};
+pub use run::Run;
 pub use settings::settings;
+
+/// Number of drift coefficients.
+const PARAMETERS: usize = gyrocal::Platform::PARAMETERS;

@@ -1,13 +1,24 @@
 use gyrocal::{Drift, Settings, Site};
 use gyrocal_record::Bench;
 
-/// What the filter starts from according to a bench description.
+/// What the streaming filter starts from according to a bench description; `None` if that does
+/// not say how the platform lies.
 #[must_use]
-pub fn settings(bench: &Bench) -> Settings<f64> {
+pub fn settings(bench: &Bench) -> Option<Settings<f64>> {
+    let angles_deg = bench.initial_angles_deg?;
+    Some(Settings {
+        angles_rad: angles_deg.map(f64::to_radians),
+        angles_sigma_rad: bench.initial_angles_sigma_deg.map(f64::to_radians),
+        ..level(bench)
+    })
+}
+
+/// The same for a platform whose attitude is still to be set.
+pub(crate) fn level(bench: &Bench) -> Settings<f64> {
     let prior = &bench.prior;
     let [x, y, z] = core::array::from_fn(|i| {
         [
-            prior.bias_sigma_deg_per_h[i],
+            prior.bias_sigma_deg_per_h[i].hypot(prior.turn_on_sigma_deg_per_h[i]),
             prior.g_sigma_deg_per_h_per_g[i],
             prior.gg_sigma_deg_per_h_per_g2[i],
         ]
@@ -17,8 +28,6 @@ pub fn settings(bench: &Bench) -> Settings<f64> {
         ..Site::at_latitude_deg(bench.latitude_deg)
     };
     Settings {
-        angles_rad: bench.initial_angles_deg.map(f64::to_radians),
-        angles_sigma_rad: bench.initial_angles_sigma_deg.map(f64::to_radians),
         drift_sigma: Drift {
             gyro_x_bias: x[0],
             gyro_x_g_x: x[1],

@@ -46,6 +46,8 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "alloc")]
+pub mod batch;
 mod covariance;
 #[cfg(feature = "nalgebra")]
 pub mod dense;
@@ -55,6 +57,7 @@ mod filter;
 pub mod form;
 mod innovation;
 mod lanes4;
+mod manifold;
 mod observe;
 mod projection;
 mod storage;
@@ -65,6 +68,7 @@ pub use error::EstimationError;
 pub use factor::Factors;
 pub use filter::{Filter, Recentring};
 pub use innovation::Innovation;
+pub use manifold::Manifold;
 #[cfg(feature = "alloc")]
 pub use storage::VecStorage;
 pub use storage::{ArrayStorage, Buffers, Storage, View};

@@ -14,9 +14,14 @@ pub struct Bench {
     pub latitude_deg: f64,
     /// Local gravity and the accelerometers' unit, when they differ.
     pub gravity: Option<Gravity>,
+    /// How well latitude, Earth rate and gravity are known.
+    pub uncertainty: SiteUncertainty,
+    /// Earth's magnetic field along local east, north, up, if it is known.
+    pub magnetic_field_gauss: Option<[f64; 3]>,
     /// Platform against local east, north, up at the first row: angles about x, then y, then z.
-    pub initial_angles_deg: [f64; 3],
-    /// Standard deviation of each of these angles.
+    /// `None` if it is not known and the record has to tell.
+    pub initial_angles_deg: Option<[f64; 3]>,
+    /// Standard deviation of each of these angles; without meaning if they are not known.
     pub initial_angles_sigma_deg: [f64; 3],
     /// Standard deviation of one sample of an accelerometer.
     pub accel_noise_g: f64,
@@ -44,6 +49,20 @@ pub struct Prior {
     pub g_sigma_deg_per_h_per_g: [f64; 3],
     /// Of the drifts proportional to its square.
     pub gg_sigma_deg_per_h_per_g2: [f64; 3],
+    /// Of the constant drift of one turn-on about the gyro's mean, which `bias_sigma_deg_per_h`
+    /// speaks of; 0 if it is the same each time.
+    pub turn_on_sigma_deg_per_h: [f64; 3],
+}
+
+/// Standard deviations of what is known of the site; `None` where the bench does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SiteUncertainty {
+    /// Of the astronomic latitude.
+    pub latitude_sigma_deg: Option<f64>,
+    /// Of the sidereal rotation rate of the Earth, relative to it.
+    pub earth_rate_relative_sigma: Option<f64>,
+    /// Of local gravity in the unit of the data, relative to it.
+    pub gravity_relative_sigma: Option<f64>,
 }
 
 impl Default for Prior {
@@ -52,6 +71,7 @@ impl Default for Prior {
             bias_sigma_deg_per_h: [1.0; 3],
             g_sigma_deg_per_h_per_g: [1.0; 3],
             gg_sigma_deg_per_h_per_g2: [1.0; 3],
+            turn_on_sigma_deg_per_h: [0.0; 3],
         }
     }
 }
@@ -111,21 +131,47 @@ impl Bench {
 
     fn from_document(document: &Document) -> Result<Self, Error> {
         document.interpret(&["site", "platform", "noise", "prior"], |root| {
+            let [latitude_sigma, rate_sigma, gravity_sigma] = SiteUncertainty::KEYS;
             let site = root.table(
                 "site",
-                &["latitude_deg", Gravity::KEYS[0], Gravity::KEYS[1]],
+                &[
+                    "latitude_deg",
+                    Gravity::KEYS[0],
+                    Gravity::KEYS[1],
+                    latitude_sigma,
+                    rate_sigma,
+                    gravity_sigma,
+                    MAGNETIC_FIELD,
+                ],
             )?;
             let platform = root.table(
                 "platform",
                 &["initial_angles_deg", "initial_angles_sigma_deg"],
             )?;
             let noise = root.table("noise", &["accel_g", "gyro_deg_per_h"])?;
+            // Angles and their sigmas are given together, or the attitude is not known.
+            let initial_angles_deg =
+                platform.optional_three_numbers("initial_angles_deg", ANGLE_DEG)?;
+            let initial_angles_sigma_deg = match initial_angles_deg {
+                Some(_) => platform.three_numbers("initial_angles_sigma_deg", Bound::Positive)?,
+                None => platform
+                    .optional_three_numbers("initial_angles_sigma_deg", Bound::Positive)?
+                    .map_or(Ok(UNKNOWN_ANGLES_SIGMA_DEG), |_| {
+                        Err(platform.error_at(
+                            "initial_angles_deg",
+                            InputErrorKind::MissingKey,
+                            "angles and their sigmas are given together or not at all",
+                            "",
+                        ))
+                    })?,
+            };
             Ok(Self {
                 latitude_deg: site.number("latitude_deg", Bound::Within(-90.0, 90.0))?,
                 gravity: Gravity::from_site(&site)?,
-                initial_angles_deg: platform.three_numbers("initial_angles_deg", ANGLE_DEG)?,
-                initial_angles_sigma_deg: platform
-                    .three_numbers("initial_angles_sigma_deg", Bound::Positive)?,
+                uncertainty: SiteUncertainty::from_site(&site)?,
+                magnetic_field_gauss: site.optional_three_numbers(MAGNETIC_FIELD, FIELD_GAUSS)?,
+                initial_angles_deg,
+                initial_angles_sigma_deg,
                 accel_noise_g: noise.number("accel_g", Bound::Positive)?,
                 gyro_noise_deg_per_h: noise.number("gyro_deg_per_h", Bound::Positive)?,
                 prior: Prior::from_root(root)?,
@@ -138,21 +184,28 @@ impl Bench {
         if let Some(gravity) = self.gravity {
             text.push_str(&gravity.to_toml());
         }
+        text.push_str(&self.uncertainty.to_toml());
+        if let Some(field_gauss) = self.magnetic_field_gauss {
+            let _ = writeln!(text, "{MAGNETIC_FIELD} = {field_gauss:?}");
+        }
+        text.push_str("\n[platform]\n");
+        if let Some(angles_deg) = self.initial_angles_deg {
+            let _ = write!(
+                text,
+                "# platform against local east, north, up at the first row\n\
+                 initial_angles_deg = {angles_deg:?}\n\
+                 initial_angles_sigma_deg = {:?}\n",
+                self.initial_angles_sigma_deg,
+            );
+        }
         let _ = write!(
             text,
-            "\n[platform]\n\
-             # platform against local east, north, up at the first row\n\
-             initial_angles_deg = {:?}\n\
-             initial_angles_sigma_deg = {:?}\n\
-             \n[noise]\n\
+            "\n[noise]\n\
              # one sigma of one sample\n\
              accel_g = {:?}\n\
              # one sigma of the white gyro noise as held over one minute\n\
              gyro_deg_per_h = {:?}\n",
-            self.initial_angles_deg,
-            self.initial_angles_sigma_deg,
-            self.accel_noise_g,
-            self.gyro_noise_deg_per_h,
+            self.accel_noise_g, self.gyro_noise_deg_per_h,
         );
         if self.prior != Prior::default() {
             text.push_str(&self.prior.to_toml());
@@ -209,13 +262,62 @@ impl Gravity {
     }
 }
 
+impl SiteUncertainty {
+    /// The keys of the table `[site]` that give it, each of them optional.
+    pub const KEYS: [&'static str; 3] = [
+        "latitude_sigma_deg",
+        "earth_rate_relative_sigma",
+        "gravity_relative_sigma",
+    ];
+
+    /// Takes it from the table `[site]` of a file.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if a value is not positive.
+    pub fn from_site(site: &Table<'_>) -> Result<Self, Error> {
+        let [latitude, rate, gravity] = Self::KEYS;
+        Ok(Self {
+            latitude_sigma_deg: site.optional_number(latitude, Bound::Positive)?,
+            earth_rate_relative_sigma: site.optional_number(rate, Bound::Positive)?,
+            gravity_relative_sigma: site.optional_number(gravity, Bound::Positive)?,
+        })
+    }
+
+    /// The lines of the table `[site]` that give it.
+    #[must_use]
+    pub fn to_toml(self) -> String {
+        let values = [
+            self.latitude_sigma_deg,
+            self.earth_rate_relative_sigma,
+            self.gravity_relative_sigma,
+        ];
+        let mut text = String::new();
+        for (key, value) in Self::KEYS.iter().zip(values) {
+            if let Some(value) = value {
+                let _ = writeln!(text, "{key} = {value:?}");
+            }
+        }
+        text
+    }
+}
+
+const MAGNETIC_FIELD: &str = "magnetic_field_gauss";
+
+/// The Earth's field is at most 0.67 gauss; tesla or nanotesla are a mistake in the unit.
+const FIELD_GAUSS: Bound = Bound::Within(-1.0, 1.0);
+
+/// What [`Bench::initial_angles_sigma_deg`] says of angles that are not known.
+const UNKNOWN_ANGLES_SIGMA_DEG: [f64; 3] = [180.0; 3];
+
 /// Angles beyond a turn are a mistake in the unit.
 const ANGLE_DEG: Bound = Bound::Within(-360.0, 360.0);
 
-const PRIOR_KEYS: [&str; 3] = [
+const PRIOR_KEYS: [&str; 4] = [
     "bias_sigma_deg_per_h",
     "g_sigma_deg_per_h_per_g",
     "gg_sigma_deg_per_h_per_g2",
+    "turn_on_sigma_deg_per_h",
 ];
 
 impl Prior {
@@ -231,9 +333,15 @@ impl Prior {
                 &mut prior.bias_sigma_deg_per_h,
                 &mut prior.g_sigma_deg_per_h_per_g,
                 &mut prior.gg_sigma_deg_per_h_per_g2,
+                &mut prior.turn_on_sigma_deg_per_h,
             ];
-            for (key, value) in PRIOR_KEYS.iter().zip(values) {
-                if let Some(sigma) = table.optional_one_or_three(key, Bound::Positive)? {
+            for (i, (key, value)) in PRIOR_KEYS.iter().zip(values).enumerate() {
+                let bound = if i == 3 {
+                    Bound::NotNegative
+                } else {
+                    Bound::Positive
+                };
+                if let Some(sigma) = table.optional_one_or_three(key, bound)? {
                     *value = sigma;
                 }
             }
@@ -248,6 +356,7 @@ impl Prior {
             self.bias_sigma_deg_per_h,
             self.g_sigma_deg_per_h_per_g,
             self.gg_sigma_deg_per_h_per_g2,
+            self.turn_on_sigma_deg_per_h,
         ];
         let mut text = "\n[prior]\n".to_owned();
         for (key, value) in PRIOR_KEYS.iter().zip(values) {

@@ -65,7 +65,7 @@ mod source;
 mod suggest;
 mod tables;
 
-pub use bench::{Bench, Gravity, Prior};
+pub use bench::{Bench, Gravity, Prior, SiteUncertainty};
 pub use error::{Error, InputError, InputErrorKind};
 pub use manifest::{Input, Manifest};
 pub use output::{Outputs, write_json, write_whole};

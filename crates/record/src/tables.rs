@@ -160,6 +160,21 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// Three numbers, for x, y and z, or nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if what is there is not three numbers, or out of bounds.
+    pub fn optional_three_numbers(
+        &self,
+        key: &str,
+        bound: Bound,
+    ) -> Result<Option<[f64; 3]>, Error> {
+        self.entry(key)
+            .map(|(_, value)| self.as_three(value, bound))
+            .transpose()
+    }
+
     /// Three numbers, or one that stands for all three, or nothing.
     ///
     /// # Errors

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use gyrocal_record::{
     Bench, CalibrationReport, Coefficient, Error, FitVerdict, Gravity, Input, Manifest, Outputs,
-    Prior, Record, SCHEMA_VERSION, write_json, write_whole,
+    Prior, Record, SCHEMA_VERSION, SiteUncertainty, write_json, write_whole,
 };
 
 fn record() -> Record {
@@ -102,7 +102,9 @@ fn bench() -> Bench {
     Bench {
         latitude_deg: -33.25,
         gravity: None,
-        initial_angles_deg: [20.0, -35.0, 1.0 / 3.0],
+        uncertainty: SiteUncertainty::default(),
+        magnetic_field_gauss: None,
+        initial_angles_deg: Some([20.0, -35.0, 1.0 / 3.0]),
         initial_angles_sigma_deg: [0.01, 1e-7, 0.5],
         accel_noise_g: 1e-5,
         gyro_noise_deg_per_h: 0.002,
@@ -119,15 +121,27 @@ fn a_bench_is_read_as_it_was_written() {
             local_m_per_s2: 9.796_1,
             unit_m_per_s2: 9.806_65,
         }),
+        uncertainty: SiteUncertainty {
+            latitude_sigma_deg: Some(0.002),
+            earth_rate_relative_sigma: Some(1e-8),
+            gravity_relative_sigma: Some(1e-6),
+        },
+        magnetic_field_gauss: Some([0.0, 0.3, -0.4]),
         prior: Prior {
             g_sigma_deg_per_h_per_g: [0.1, 0.2, 0.3],
+            turn_on_sigma_deg_per_h: [0.05, 0.0, 0.01],
             ..Prior::default()
         },
         ..bench()
     };
+    let unknown_attitude = Bench {
+        initial_angles_deg: None,
+        initial_angles_sigma_deg: [180.0; 3],
+        ..bench()
+    };
     assert_eq!(bench().specific_force_at_rest(), 1.0);
     assert_eq!(full.specific_force_at_rest(), 9.796_1 / 9.806_65);
-    for bench in [bench(), full] {
+    for bench in [bench(), full, unknown_attitude] {
         bench.write(&path).unwrap();
         assert_eq!(Bench::read(&path).unwrap(), bench);
     }

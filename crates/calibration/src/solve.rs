@@ -1,0 +1,321 @@
+//! Gauss-Newton on the trajectories of several records and the parameters they share.
+
+use gyrocal::estimation::batch::{Linearisation, Manifold, NoColumns, Reduced};
+use gyrocal::trajectory::{Orientation, turned};
+use gyrocal::{Chart, EstimationError, Integration};
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::run::Rows;
+
+/// Steps are halved at most so often when they do not lower the cost.
+const MOST_HALVINGS: usize = 12;
+
+/// The step is the last one if it is shorter than this, in standard deviations of the whole
+/// problem: what is left after it is smaller by the curvature of a chart over such a step.
+const LAST_STEP: f64 = 1e-4;
+
+/// One parameter of the joint problem.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unknown {
+    /// Mean of its prior.
+    pub(crate) prior: f64,
+    /// Standard deviation of its prior.
+    pub(crate) sigma: f64,
+    /// Whether it keeps its prior mean and only widens the covariance of the others.
+    pub(crate) considered: bool,
+}
+
+/// One record within the joint problem.
+pub(crate) struct Leg<'a> {
+    pub(crate) rows: Rows<'a>,
+    pub(crate) chart: Chart<f64>,
+    pub(crate) noise_density: [f64; 3],
+    /// Attitude that the bench declares for the first row.
+    pub(crate) prior: Orientation,
+    pub(crate) prior_covariance: [[f64; 3]; 3],
+    /// Attitude at each row.
+    pub(crate) points: Vec<Orientation>,
+    /// For each parameter of the model the unknowns whose sum it is.
+    pub(crate) sums: Vec<Vec<usize>>,
+}
+
+/// All records, and what they have in common.
+pub(crate) struct Problem<'a, D> {
+    pub(crate) model: &'a D,
+    pub(crate) integration: Integration,
+    pub(crate) longest_step_s: f64,
+    pub(crate) unknowns: Vec<Unknown>,
+    pub(crate) legs: Vec<Leg<'a>>,
+    /// Every unknown's present value.
+    pub(crate) values: Vec<f64>,
+}
+
+/// What the records say, linearised about the solution.
+pub(crate) struct Solution {
+    /// Information of the records on all unknowns, without their priors.
+    pub(crate) information: DMatrix<f64>,
+    /// Twice the cost: sum of squares of everything over its variance.
+    pub(crate) cost: f64,
+    pub(crate) values: usize,
+    pub(crate) rows: usize,
+    pub(crate) log_variance: f64,
+    /// Each record's reduced form.
+    pub(crate) legs: Vec<Reduced<3>>,
+    /// Passes that were made.
+    pub(crate) iterations: usize,
+    /// Length of the last step in standard deviations.
+    pub(crate) last_step: f64,
+}
+
+/// Why there is no solution.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// A pass could not be made over the record of this number.
+    Pass(usize, EstimationError),
+    /// No shortened step lowered the cost.
+    NoDescent { iterations: usize },
+    /// Too many steps.
+    NotConverged { iterations: usize, last_step: f64 },
+    /// Information plus prior is not positive definite.
+    Singular,
+}
+
+/// The problem linearised where it stands.
+struct Point {
+    /// Of residual and unknowns: sums over the records.
+    gram: DMatrix<f64>,
+    trajectory_cost: f64,
+    legs: Vec<Reduced<3>>,
+}
+
+/// A step from a point.
+struct Step {
+    values: DVector<f64>,
+    corrections: Vec<Vec<[f64; 3]>>,
+    length: f64,
+}
+
+impl<D> Problem<'_, D>
+where
+    D: Manifold<3, 3, Inputs = Chart<f64>, Point = Orientation>,
+{
+    /// Iterates to convergence, in at most `most_iterations` steps. `progress` is called after
+    /// each.
+    pub(crate) fn solve(
+        &mut self,
+        most_iterations: usize,
+        mut progress: impl FnMut(usize),
+    ) -> Result<Solution, Failure> {
+        let mut point = self.linearise()?;
+        let mut cost = point.trajectory_cost + self.prior_cost();
+        let mut iterations = 0;
+        loop {
+            let step = self.step(&point)?;
+            iterations += 1;
+            let last = step.length < LAST_STEP;
+            let before: Vec<_> = self.legs.iter().map(|leg| leg.points.clone()).collect();
+            let values = self.values.clone();
+            let mut share = 1.0;
+            let mut halvings = 0;
+            loop {
+                self.take(&before, &values, &step, share);
+                let moved = self.linearise();
+                // A model may leave its domain on the way: that step was too long.
+                if let Ok(moved) = moved {
+                    let moved_cost = moved.trajectory_cost + self.prior_cost();
+                    // The last step changes the cost by less than rounding does.
+                    if moved_cost <= cost || last {
+                        (point, cost) = (moved, moved_cost);
+                        break;
+                    }
+                } else if halvings == MOST_HALVINGS {
+                    return Err(moved.err().unwrap_or(Failure::Singular));
+                }
+                if halvings == MOST_HALVINGS {
+                    return Err(Failure::NoDescent { iterations });
+                }
+                halvings += 1;
+                share *= 0.5;
+            }
+            progress(iterations);
+            if last {
+                return Ok(self.solution(point, iterations, step.length));
+            }
+            if iterations == most_iterations {
+                return Err(Failure::NotConverged {
+                    iterations,
+                    last_step: step.length,
+                });
+            }
+        }
+    }
+
+    /// The parameters of the model in one record.
+    pub(crate) fn parameters(&self, leg: usize) -> Vec<f64> {
+        self.legs[leg]
+            .sums
+            .iter()
+            .map(|unknowns| unknowns.iter().map(|index| self.values[*index]).sum())
+            .collect()
+    }
+
+    fn prior_cost(&self) -> f64 {
+        self.unknowns
+            .iter()
+            .zip(&self.values)
+            .map(|(unknown, value)| ((value - unknown.prior) / unknown.sigma).powi(2))
+            .sum()
+    }
+
+    fn linearise(&self) -> Result<Point, Failure> {
+        let size = self.unknowns.len() + 1;
+        let mut point = Point {
+            gram: DMatrix::zeros(size, size),
+            trajectory_cost: 0.0,
+            legs: Vec::with_capacity(self.legs.len()),
+        };
+        for index in 0..self.legs.len() {
+            let parameters = self.parameters(index);
+            let reduced = self
+                .with_leg(index, &parameters, |pass| pass.reduce(|_| ()))
+                .map_err(|error| Failure::Pass(index, error))?;
+            point.trajectory_cost += reduced.trajectory_cost;
+            add_gram(&mut point.gram, &reduced.gram, &self.legs[index].sums);
+            point.legs.push(reduced);
+        }
+        Ok(point)
+    }
+
+    fn with_leg<R>(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, NoColumns, 3, 3>) -> R,
+    ) -> R {
+        let leg = &self.legs[index];
+        let active: Vec<usize> = (0..parameters.len()).collect();
+        pass(&Linearisation {
+            model: self.model,
+            inputs: leg.chart,
+            series: &leg.rows,
+            integration: self.integration,
+            longest_step_s: self.longest_step_s,
+            noise_density: leg.noise_density,
+            prior: leg.prior,
+            prior_covariance: leg.prior_covariance,
+            points: &leg.points,
+            parameters,
+            active: &active,
+            further: &NoColumns,
+        })
+    }
+
+    /// The Gauss-Newton step.
+    fn step(&self, point: &Point) -> Result<Step, Failure> {
+        let estimated = self.estimated();
+        let count = estimated.len();
+        let mut information = DMatrix::zeros(count, count);
+        let mut gradient = DVector::zeros(count);
+        for (i, a) in estimated.iter().enumerate() {
+            let unknown = &self.unknowns[*a];
+            let weight = unknown.sigma.powi(-2);
+            // Columns are derivatives of the innovations, hence the sign.
+            gradient[i] = -point.gram[(a + 1, 0)] + weight * (unknown.prior - self.values[*a]);
+            for (j, b) in estimated.iter().enumerate() {
+                information[(i, j)] = point.gram[(a + 1, b + 1)];
+            }
+            information[(i, i)] += weight;
+        }
+        let cholesky = Cholesky::new(information).ok_or(Failure::Singular)?;
+        let change = cholesky.solve(&gradient);
+        // Cost of the trajectory now, less the least cost of the linear problem.
+        let decrease = point.trajectory_cost - point.gram[(0, 0)] + change.dot(&gradient);
+        let mut values = DVector::zeros(self.unknowns.len());
+        for (a, change) in estimated.iter().zip(change.iter()) {
+            values[*a] = *change;
+        }
+        let corrections = (0..self.legs.len())
+            .map(|index| {
+                let parameters = self.parameters(index);
+                let change: Vec<f64> = self.legs[index]
+                    .sums
+                    .iter()
+                    .map(|unknowns| unknowns.iter().map(|unknown| values[*unknown]).sum())
+                    .collect();
+                self.with_leg(index, &parameters, |pass| pass.smooth(&change))
+                    .map(|smoothed| smoothed.corrections)
+                    .map_err(|error| Failure::Pass(index, error))
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Step {
+            values,
+            corrections,
+            length: decrease.max(0.0).sqrt(),
+        })
+    }
+
+    fn take(&mut self, before: &[Vec<Orientation>], values: &[f64], step: &Step, share: f64) {
+        for (value, (before, change)) in self
+            .values
+            .iter_mut()
+            .zip(values.iter().zip(step.values.iter()))
+        {
+            *value = before + share * change;
+        }
+        for (leg, (before, corrections)) in self
+            .legs
+            .iter_mut()
+            .zip(before.iter().zip(&step.corrections))
+        {
+            for (point, (before, correction)) in
+                leg.points.iter_mut().zip(before.iter().zip(corrections))
+            {
+                *point = turned(before, &correction.map(|angle| share * angle));
+            }
+        }
+    }
+
+    /// Indices of the unknowns that are estimated.
+    pub(crate) fn estimated(&self) -> Vec<usize> {
+        (0..self.unknowns.len())
+            .filter(|index| !self.unknowns[*index].considered)
+            .collect()
+    }
+
+    fn solution(&self, point: Point, iterations: usize, last_step: f64) -> Solution {
+        let count = self.unknowns.len();
+        let sum = |of: fn(&Reduced<3>) -> usize| point.legs.iter().map(of).sum();
+        Solution {
+            information: point.gram.view((1, 1), (count, count)).into_owned(),
+            cost: point.trajectory_cost + self.prior_cost(),
+            values: sum(|leg| leg.values),
+            rows: sum(|leg| leg.rows),
+            log_variance: point.legs.iter().map(|leg| leg.log_variance).sum(),
+            legs: point.legs,
+            iterations,
+            last_step,
+        }
+    }
+}
+
+/// Adds a record's Gram matrix, whose columns are the model's parameters, to that of the unknowns.
+fn add_gram(total: &mut DMatrix<f64>, gram: &[f64], sums: &[Vec<usize>]) {
+    let size = sums.len() + 1;
+    // Column 0 is the residual in both.
+    let targets = |column: usize| -> Vec<usize> {
+        match column.checked_sub(1) {
+            None => vec![0],
+            Some(parameter) => sums[parameter].iter().map(|unknown| unknown + 1).collect(),
+        }
+    };
+    let targets: Vec<Vec<usize>> = (0..size).map(targets).collect();
+    for i in 0..size {
+        for j in 0..size {
+            for a in &targets[i] {
+                for b in &targets[j] {
+                    total[(*a, *b)] += gram[i * size + j];
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The small Kalman filter of the moving states given the parameters, with sensitivity columns.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use gyrocal_scalar::Scalar;
+
+use super::step::{map_columns, sandwich};
+use crate::error::EstimationError;
+
+/// Mean, sensitivities and covariance of the deviation of the moving states from the
+/// linearisation trajectory. Column 0 is the mean.
+pub(crate) struct Conditional<const M: usize> {
+    /// One row of 1 + count numbers for each moving state.
+    pub(crate) columns: Vec<f64>,
+    pub(crate) stride: usize,
+    pub(crate) covariance: [[f64; M]; M],
+    /// The whitened row of the last output: residual, then columns.
+    pub(crate) whitened: Vec<f64>,
+}
+
+impl<const M: usize> Conditional<M> {
+    pub(crate) fn new(columns: usize, covariance: [[f64; M]; M]) -> Self {
+        let stride = columns + 1;
+        Self {
+            columns: vec![0.0; M * stride],
+            stride,
+            covariance,
+            whitened: vec![0.0; stride],
+        }
+    }
+
+    pub(crate) fn mean(&self) -> [f64; M] {
+        let mut mean = [0.0; M];
+        for (i, value) in mean.iter_mut().enumerate() {
+            *value = self.columns[i * self.stride];
+        }
+        mean
+    }
+
+    /// Row `i` of the columns.
+    pub(crate) fn row_mut(&mut self, i: usize) -> &mut [f64] {
+        &mut self.columns[i * self.stride..(i + 1) * self.stride]
+    }
+
+    /// Multiplies by the transition and adds its noise; what drives the columns is added by the
+    /// caller.
+    pub(crate) fn predict(&mut self, transition: &[[f64; M]; M], noise: &[[f64; M]; M]) {
+        map_columns(transition, &mut self.columns, self.stride);
+        self.covariance = sandwich(transition, &self.covariance);
+        for (sum, value) in self
+            .covariance
+            .as_flattened_mut()
+            .iter_mut()
+            .zip(noise.as_flattened())
+        {
+            *sum += value;
+        }
+    }
+
+    /// Takes one output. `whitened` holds the residual at the linearisation point and minus the
+    /// direct derivatives of the output on entry; on return it is the innovation of each column
+    /// over the returned standard deviation.
+    pub(crate) fn update(
+        &mut self,
+        jacobian: &[f64; M],
+        variance: f64,
+    ) -> Result<f64, EstimationError> {
+        let mut cross = [0.0; M];
+        for i in 0..M {
+            for j in 0..M {
+                cross[i] += self.covariance[i][j] * jacobian[j];
+            }
+        }
+        let mut total = variance;
+        for i in 0..M {
+            total += jacobian[i] * cross[i];
+        }
+        if !(total.is_finite() && total > 0.0) {
+            return Err(EstimationError::NotFinite {
+                quantity: "the variance of an innovation",
+            });
+        }
+        let deviation = Scalar::sqrt(total);
+        let reciprocal = 1.0 / deviation;
+        let stride = self.stride;
+        for i in 0..M {
+            let row = &self.columns[i * stride..(i + 1) * stride];
+            for (innovation, value) in self.whitened.iter_mut().zip(row) {
+                *innovation -= jacobian[i] * value;
+            }
+        }
+        for innovation in &mut self.whitened {
+            *innovation *= reciprocal;
+        }
+        for i in 0..M {
+            let gain = cross[i] * reciprocal;
+            let row = &mut self.columns[i * stride..(i + 1) * stride];
+            for (value, innovation) in row.iter_mut().zip(&self.whitened) {
+                *value += gain * innovation;
+            }
+        }
+        // Joseph's form: rounding cannot take more from P than there is.
+        let mut left = [[0.0; M]; M];
+        for i in 0..M {
+            let gain = cross[i] / total;
+            for j in 0..M {
+                left[i][j] = f64::from(u8::from(i == j)) - gain * jacobian[j];
+            }
+        }
+        let mut updated = sandwich(&left, &self.covariance);
+        for i in 0..M {
+            for j in 0..M {
+                updated[i][j] += cross[i] / total * variance * (cross[j] / total);
+            }
+        }
+        self.covariance = updated;
+        Ok(deviation)
+    }
+}
+
+/// Cholesky factor of a small symmetric matrix, or `None` if it is not positive definite.
+pub(crate) fn cholesky<const M: usize>(matrix: &[[f64; M]; M]) -> Option<[[f64; M]; M]> {
+    let mut lower = [[0.0; M]; M];
+    for i in 0..M {
+        for j in 0..=i {
+            let mut sum = matrix[i][j];
+            for l in 0..j {
+                sum -= lower[i][l] * lower[j][l];
+            }
+            if i == j {
+                if !(sum > 0.0 && sum.is_finite()) {
+                    return None;
+                }
+                lower[i][i] = Scalar::sqrt(sum);
+            } else {
+                lower[i][j] = sum / lower[j][j];
+            }
+        }
+    }
+    Some(lower)
+}
+
+/// L⁻¹ v.
+pub(crate) fn forward<const M: usize>(lower: &[[f64; M]; M], vector: &[f64; M]) -> [f64; M] {
+    let mut solution = [0.0; M];
+    for i in 0..M {
+        let mut sum = vector[i];
+        for l in 0..i {
+            sum -= lower[i][l] * solution[l];
+        }
+        solution[i] = sum / lower[i][i];
+    }
+    solution
+}
+
+/// L⁻ᵀ v.
+pub(crate) fn backward<const M: usize>(lower: &[[f64; M]; M], vector: &[f64; M]) -> [f64; M] {
+    let mut solution = [0.0; M];
+    for i in (0..M).rev() {
+        let mut sum = vector[i];
+        for l in i + 1..M {
+            sum -= lower[l][i] * solution[l];
+        }
+        solution[i] = sum / lower[i][i];
+    }
+    solution
+}

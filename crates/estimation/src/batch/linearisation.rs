@@ -1,0 +1,412 @@
+//! The two passes over a record: elimination of the moving states, and their smoothing.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use gyrocal_scalar::Scalar;
+
+use super::filter::{Conditional, backward, cholesky, forward};
+use super::gram::Gram;
+use super::step::Stepper;
+use super::{Columns, Manifold, Series};
+use crate::error::EstimationError;
+use crate::transition::Integration;
+
+/// Everything that a pass over a record is made from.
+pub struct Linearisation<'a, D, S, C, const M: usize, const Y: usize>
+where
+    D: Manifold<M, Y>,
+{
+    /// The model.
+    pub model: &'a D,
+    /// Its inputs; chart and held values are set row by row.
+    pub inputs: D::Inputs,
+    /// The record.
+    pub series: &'a S,
+    /// How the rates are integrated.
+    pub integration: Integration,
+    /// Longest interval integrated in one step, s; longer ones are divided.
+    pub longest_step_s: f64,
+    /// Spectral densities of the noise inputs: unit squared times seconds.
+    pub noise_density: [f64; M],
+    /// Mean of the prior of the first point.
+    pub prior: D::Point,
+    /// Covariance of its error, as a correction of that point.
+    pub prior_covariance: [[f64; M]; M],
+    /// The trajectory, one point a row.
+    pub points: &'a [D::Point],
+    /// All parameters of the model.
+    pub parameters: &'a [f64],
+    /// Indices of those that are columns.
+    pub active: &'a [usize],
+    /// Further columns, after those of the parameters.
+    pub further: &'a C,
+}
+
+/// What the first pass leaves of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reduced<const M: usize> {
+    /// [`Gram`] matrix of residual and columns, (1 + columns)² numbers by rows. The columns are
+    /// derivatives of the innovations: minus those of the predictions.
+    pub gram: Vec<f64>,
+    /// Number of output values used.
+    pub values: usize,
+    /// Number of rows with at least one of them.
+    pub rows: usize,
+    /// Sum of the natural logarithms of the innovations' variances.
+    pub log_variance: f64,
+    /// Twice the cost of the trajectory itself: squares of output residuals, of what the noise
+    /// must have done between points, and of the first point's distance from its prior, each
+    /// over its covariance.
+    pub trajectory_cost: f64,
+    /// Deviation of the last point, then its derivatives by columns: M rows of 1 + columns.
+    pub last: Vec<f64>,
+    /// Covariance of the last point given the parameters.
+    pub last_covariance: [[f64; M]; M],
+}
+
+/// One output of one row, whitened.
+#[derive(Clone, Copy, Debug)]
+pub struct Whitened<'a> {
+    /// The row.
+    pub row: usize,
+    /// Index of the output.
+    pub output: usize,
+    /// Standard deviation of the innovation given the outputs before it.
+    pub deviation: f64,
+    /// Innovation and columns over [`Self::deviation`].
+    pub columns: &'a [f64],
+}
+
+/// What the second pass gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Smoothed<const M: usize> {
+    /// Correction of every point of the trajectory.
+    pub corrections: Vec<[f64; M]>,
+}
+
+impl<D, S, C, const M: usize, const Y: usize> Linearisation<'_, D, S, C, M, Y>
+where
+    D: Manifold<M, Y>,
+    S: Series<D::Inputs, Y>,
+    C: Columns<M, Y>,
+{
+    /// Eliminates the moving states. `watch` sees every whitened output value in the order of
+    /// the filter.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidArgument`] if there is not one point for each row, times do not
+    /// rise, or the noise does not drive every moving state;
+    /// [`EstimationError::NotFinite`] if the model left the numbers.
+    pub fn reduce(
+        &self,
+        mut watch: impl FnMut(&Whitened<'_>),
+    ) -> Result<Reduced<M>, EstimationError> {
+        let count = self.active.len() + self.further.count();
+        let mut gram = Gram::new(count);
+        let mut pass = Pass::new(self, count, None)?;
+        let mut reduced = Reduced {
+            gram: Vec::new(),
+            values: 0,
+            rows: 0,
+            log_variance: 0.0,
+            trajectory_cost: pass.prior_cost,
+            last: Vec::new(),
+            last_covariance: [[0.0; M]; M],
+        };
+        for row in 0..self.points.len() {
+            let before = reduced.values;
+            pass.observe(row, |whitened, cost| {
+                gram.add(whitened.columns);
+                reduced.values += 1;
+                reduced.log_variance += 2.0 * Scalar::ln(whitened.deviation);
+                reduced.trajectory_cost += cost;
+                watch(whitened);
+            })?;
+            reduced.rows += usize::from(reduced.values > before);
+            if row + 1 < self.points.len() {
+                let (_, cost) = pass.advance(row)?;
+                reduced.trajectory_cost += cost;
+            }
+        }
+        reduced.gram = gram.finish();
+        reduced.last = pass.filter.columns;
+        reduced.last_covariance = pass.filter.covariance;
+        Ok(reduced)
+    }
+
+    /// The correction of every point when the columns change by `change`.
+    ///
+    /// # Errors
+    /// As [`Self::reduce`].
+    pub fn smooth(&self, change: &[f64]) -> Result<Smoothed<M>, EstimationError> {
+        let rows = self.points.len();
+        let mut pass = Pass::new(self, 0, Some(change))?;
+        let mut corrections = vec![[0.0; M]; rows];
+        let mut gains = vec![[[0.0; M]; M]; rows.saturating_sub(1)];
+        for row in 0..rows {
+            pass.observe(row, |_, _| ())?;
+            corrections[row] = pass.filter.mean();
+            if row + 1 < rows {
+                let filtered = pass.filter.covariance;
+                let (transition, _) = pass.advance(row)?;
+                let gain = smoother_gain(&filtered, &transition, &pass.filter.covariance)
+                    .ok_or(NOT_DRIVEN)?;
+                let predicted = pass.filter.mean();
+                for i in 0..M {
+                    for j in 0..M {
+                        corrections[row][i] -= gain[i][j] * predicted[j];
+                    }
+                }
+                gains[row] = gain;
+            }
+        }
+        for row in (0..rows.saturating_sub(1)).rev() {
+            let next = corrections[row + 1];
+            for i in 0..M {
+                for j in 0..M {
+                    corrections[row][i] += gains[row][i][j] * next[j];
+                }
+            }
+        }
+        Ok(Smoothed { corrections })
+    }
+}
+
+const NOT_DRIVEN: EstimationError = EstimationError::InvalidArgument {
+    expected: "noise that drives every moving state, and a positive definite prior",
+};
+
+/// P⁺ Φᵀ (P⁻)⁻¹.
+fn smoother_gain<const M: usize>(
+    filtered: &[[f64; M]; M],
+    transition: &[[f64; M]; M],
+    predicted: &[[f64; M]; M],
+) -> Option<[[f64; M]; M]> {
+    let lower = cholesky(predicted)?;
+    let mut gain = [[0.0; M]; M];
+    for i in 0..M {
+        let mut cross = [0.0; M];
+        for (j, value) in cross.iter_mut().enumerate() {
+            for l in 0..M {
+                *value += filtered[i][l] * transition[j][l];
+            }
+        }
+        gain[i] = backward(&lower, &forward(&lower, &cross));
+    }
+    Some(gain)
+}
+
+/// vᵀ A⁻¹ v.
+fn squared<const M: usize>(matrix: &[[f64; M]; M], vector: &[f64; M]) -> Option<f64> {
+    let lower = cholesky(matrix)?;
+    Some(forward(&lower, vector).iter().map(|x| x * x).sum())
+}
+
+/// A pass in progress.
+struct Pass<'a, D, S, C, const M: usize, const Y: usize>
+where
+    D: Manifold<M, Y>,
+{
+    of: &'a Linearisation<'a, D, S, C, M, Y>,
+    stepper: Stepper<'a, D, D::Inputs, M, Y>,
+    filter: Conditional<M>,
+    /// Inputs at the rows.
+    inputs: D::Inputs,
+    prior_cost: f64,
+    /// Change of the columns; all are then folded into column 0.
+    change: Option<&'a [f64]>,
+    d_parameters: Vec<f64>,
+    drive: Vec<f64>,
+    direct: Vec<f64>,
+}
+
+impl<'a, D, S, C, const M: usize, const Y: usize> Pass<'a, D, S, C, M, Y>
+where
+    D: Manifold<M, Y>,
+    S: Series<D::Inputs, Y>,
+    C: Columns<M, Y>,
+{
+    fn new(
+        of: &'a Linearisation<'a, D, S, C, M, Y>,
+        count: usize,
+        change: Option<&'a [f64]>,
+    ) -> Result<Self, EstimationError> {
+        let further = of.further.count();
+        if of.points.is_empty()
+            || of.points.len() != of.series.rows()
+            || of.parameters.len() != of.model.parameters()
+            || of.active.iter().any(|index| *index >= of.parameters.len())
+            || change.is_some_and(|change| change.len() != of.active.len() + further)
+        {
+            return Err(EstimationError::InvalidArgument {
+                expected: "one point a row, all parameters of the model, and one change a column",
+            });
+        }
+        let mut filter = Conditional::new(count, of.prior_covariance);
+        let mut mean = of.model.difference(&of.points[0], &of.prior);
+        for column in 0..further {
+            let amplitude = of.further.amplitude(column);
+            let start = of.further.start(column);
+            let changed = change.map_or(0.0, |change| change[of.active.len() + column]);
+            for i in 0..M {
+                mean[i] += start[i] * amplitude;
+                if count > 0 {
+                    filter.row_mut(i)[1 + of.active.len() + column] = start[i];
+                }
+                filter.row_mut(i)[0] += start[i] * changed;
+            }
+        }
+        for i in 0..M {
+            filter.row_mut(i)[0] += mean[i];
+        }
+        let prior_cost = squared(&of.prior_covariance, &mean).ok_or(NOT_DRIVEN)?;
+        Ok(Self {
+            of,
+            stepper: Stepper::new(
+                of.model,
+                of.inputs,
+                of.integration,
+                of.longest_step_s,
+                of.noise_density,
+            ),
+            filter,
+            inputs: of.inputs,
+            prior_cost,
+            change,
+            d_parameters: vec![0.0; Y * of.model.output_parameters()],
+            drive: vec![0.0; M * further],
+            direct: vec![0.0; further],
+        })
+    }
+
+    /// Takes the outputs of a row; `used` gets each of them with what it adds to the cost of the
+    /// trajectory.
+    fn observe(
+        &mut self,
+        row: usize,
+        mut used: impl FnMut(&Whitened<'_>, f64),
+    ) -> Result<(), EstimationError> {
+        let of = self.of;
+        let measured = of.series.measured(row);
+        if measured.iter().all(|value| value.is_nan()) {
+            return Ok(());
+        }
+        let mut moving = [0.0; M];
+        of.model
+            .place(&of.points[row], &mut moving, &mut self.inputs);
+        of.series.at(row, &mut self.inputs);
+        let q = of.model.output_parameters();
+        let mut d_moving = [[0.0; M]; Y];
+        let predicted = if of.model.has_chart() {
+            of.model.output_jacobian_at_origin(
+                of.parameters,
+                &self.inputs,
+                &mut d_moving,
+                &mut self.d_parameters,
+            )
+        } else {
+            of.model.output_jacobian(
+                &moving,
+                of.parameters,
+                &self.inputs,
+                &mut d_moving,
+                &mut self.d_parameters,
+            )
+        };
+        let variance = of.series.noise_variance(row);
+        let active = of.active.len();
+        for output in 0..Y {
+            if measured[output].is_nan() {
+                continue;
+            }
+            if !(variance[output] > 0.0 && variance[output].is_finite()) {
+                return Err(EstimationError::InvalidNoise { output });
+            }
+            let mut residual = measured[output] - predicted[output];
+            self.direct.fill(0.0);
+            of.further.output(row, output, &mut self.direct);
+            for (column, direct) in self.direct.iter().enumerate() {
+                residual -= direct * of.further.amplitude(column);
+            }
+            let cost = residual * residual / variance[output];
+            let direct_parameters = &self.d_parameters[output * q..(output + 1) * q];
+            let whitened = &mut self.filter.whitened;
+            whitened[0] = residual;
+            if let Some(change) = self.change {
+                for (index, change) in of.active.iter().zip(change) {
+                    whitened[0] -= direct_parameters.get(*index).unwrap_or(&0.0) * change;
+                }
+                for (direct, change) in self.direct.iter().zip(&change[active..]) {
+                    whitened[0] -= direct * change;
+                }
+            } else {
+                for (value, index) in whitened[1..].iter_mut().zip(of.active) {
+                    *value = -direct_parameters.get(*index).unwrap_or(&0.0);
+                }
+                for (value, direct) in whitened[1 + active..].iter_mut().zip(&self.direct) {
+                    *value = -direct;
+                }
+            }
+            let deviation = self.filter.update(&d_moving[output], variance[output])?;
+            let seen = Whitened {
+                row,
+                output,
+                deviation,
+                columns: &self.filter.whitened,
+            };
+            used(&seen, cost);
+        }
+        Ok(())
+    }
+
+    /// Goes on to the next row; returns the transition and what the noise's part adds to the
+    /// cost of the trajectory.
+    fn advance(&mut self, row: usize) -> Result<([[f64; M]; M], f64), EstimationError> {
+        let of = self.of;
+        let step = self
+            .stepper
+            .advance(of.series, row, &of.points[row], of.parameters)?;
+        self.filter.predict(&step.moving, &step.noise);
+        let mut jump = of.model.difference(&step.predicted, &of.points[row + 1]);
+        let p = of.parameters.len();
+        let (active, further) = (of.active.len(), of.further.count());
+        if further > 0 {
+            self.drive.fill(0.0);
+            let mut rest = self.drive.as_mut_slice();
+            let rows = core::array::from_fn(|_| {
+                let (head, tail) = core::mem::take(&mut rest).split_at_mut(further);
+                rest = tail;
+                head
+            });
+            of.further.drive(row, &self.stepper.columns, p, rows);
+        }
+        for i in 0..M {
+            let own = &self.stepper.columns[i * p..(i + 1) * p];
+            let drive = &self.drive[i * further..(i + 1) * further];
+            let mut mean = 0.0;
+            for (column, drive) in drive.iter().enumerate() {
+                jump[i] -= drive * of.further.amplitude(column);
+            }
+            let target = self.filter.row_mut(i);
+            if let Some(change) = self.change {
+                for (index, change) in of.active.iter().zip(change) {
+                    mean += own[*index] * change;
+                }
+                for (drive, change) in drive.iter().zip(&change[active..]) {
+                    mean += drive * change;
+                }
+            } else {
+                for (value, index) in target[1..].iter_mut().zip(of.active) {
+                    *value += own[*index];
+                }
+                for (value, drive) in target[1 + active..].iter_mut().zip(drive) {
+                    *value += drive;
+                }
+            }
+            target[0] += mean - jump[i];
+        }
+        let cost = squared(&step.noise, &jump).ok_or(NOT_DRIVEN)?;
+        Ok((step.moving, cost))
+    }
+}
