@@ -3,46 +3,77 @@ use gyrocal_scalar::{Model, RatesJacobian, Real, Recentre};
 use crate::generated::platform::{PlatformInputs, reanchor};
 use crate::rotation::{cross, dot, rotate, turned_by};
 use crate::site::Site;
+use crate::surroundings::{ChartInputs, Surroundings};
 
-/// A chart fixed to the Earth: Earth rate and specific force along its axes, and how it lies.
+/// A chart fixed to the Earth: how it lies, and the inputs `I` of a generated model along its
+/// axes: Earth rate, specific force, and what else the model takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chart<T> {
-    inputs: PlatformInputs<T>,
+pub struct Chart<T, I = PlatformInputs<T>> {
+    inputs: I,
     /// Unit vectors along the chart axes.
     north: [T; 3],
     up: [T; 3],
     site: Site<T>,
     /// Horizontal (north) and vertical component of Earth rate, rad/s.
     earth_rate: [T; 2],
+    /// East, North and Up component of the magnetic field, gauss.
+    field_gauss: [T; 3],
     turns: u32,
 }
 
 impl<T: Real> Chart<T> {
-    /// The chart East-North-Up at a site.
+    /// The chart East-North-Up at a site, for the nominal model.
     #[must_use]
     pub fn east_north_up(site: Site<T>) -> Self {
+        Self::for_model(site)
+    }
+}
+
+impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
+    /// The chart East-North-Up at a site, for a model that takes the inputs `I`.
+    ///
+    /// ```
+    /// use gyrocal::generated::surveyed::SurveyedInputs;
+    /// use gyrocal::{Chart, Site};
+    ///
+    /// let chart: Chart<f64, SurveyedInputs<f64>> = Chart::for_model(Site::at_latitude_deg(39.1));
+    /// assert_eq!(chart.inputs().east_0, [1.0, 0.0, 0.0]);
+    /// ```
+    #[must_use]
+    pub fn for_model(site: Site<T>) -> Self {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let (sine, cosine) = site.latitude_rad.sin_cos();
         let rate = site.earth_rate_rad_per_s;
         let mut chart = Self {
-            inputs: PlatformInputs {
-                omega_0: [zero; 3],
-                f_0: [zero; 3],
-            },
+            inputs: I::unset(),
             north: [zero, one, zero],
             up: [zero, zero, one],
             site,
             earth_rate: [rate * cosine, rate * sine],
+            field_gauss: [zero; 3],
             turns: 0,
         };
         chart.refresh();
         chart
     }
 
-    /// What the generated model takes: Earth rate in rad/s, specific force in g.
+    /// What the generated model takes: Earth rate in rad/s, specific force in g, ….
     #[must_use]
-    pub fn inputs(&self) -> &PlatformInputs<T> {
+    pub fn inputs(&self) -> &I {
         &self.inputs
+    }
+
+    /// The same, to set what no chart gives: conditions and shapes of an extended model. What
+    /// lies fixed to the Earth is set again whenever the chart moves.
+    #[must_use]
+    pub fn inputs_mut(&mut self) -> &mut I {
+        &mut self.inputs
+    }
+
+    /// Sets the magnetic field of the Earth: its East, North and Up components, gauss.
+    pub fn set_field_gauss(&mut self, east_north_up: [T; 3]) {
+        self.field_gauss = east_north_up;
+        self.refresh();
     }
 
     /// Matrix that takes components along East, North, Up to components along the chart.
@@ -80,11 +111,13 @@ impl<T: Real> Chart<T> {
 
     #[inline(always)]
     fn refresh(&mut self) {
-        let [horizontal, vertical] = self.earth_rate;
-        for i in 0..3 {
-            self.inputs.omega_0[i] = horizontal.mul_add(self.north[i], vertical * self.up[i]);
-            self.inputs.f_0[i] = self.site.gravity_g * self.up[i];
-        }
+        self.inputs.surround(&Surroundings {
+            north: &self.north,
+            up: &self.up,
+            earth_rate: &self.earth_rate,
+            gravity_g: self.site.gravity_g,
+            field_gauss: &self.field_gauss,
+        });
     }
 
     #[cold]
@@ -115,9 +148,9 @@ pub struct Anchored<D>(pub D);
 impl<T, D> Model<T, 3, 3> for Anchored<D>
 where
     T: Real,
-    D: Model<T, 3, 3, Inputs = PlatformInputs<T>>,
+    D: Model<T, 3, 3, Inputs: ChartInputs<T>>,
 {
-    type Inputs = Chart<T>;
+    type Inputs = Chart<T, D::Inputs>;
 
     #[inline(always)]
     fn parameters(&self) -> usize {
@@ -135,7 +168,7 @@ where
     }
 
     #[inline(always)]
-    fn rates(&self, moving: &[T; 3], parameters: &[T], chart: &Chart<T>) -> [T; 3] {
+    fn rates(&self, moving: &[T; 3], parameters: &[T], chart: &Self::Inputs) -> [T; 3] {
         self.0.rates(moving, parameters, &chart.inputs)
     }
 
@@ -144,7 +177,7 @@ where
         &self,
         moving: &[T; 3],
         parameters: &[T],
-        chart: &Chart<T>,
+        chart: &Self::Inputs,
         jacobian: &mut RatesJacobian<'_, T, 3>,
     ) -> [T; 3] {
         self.0
@@ -155,7 +188,7 @@ where
     fn rates_jacobian_at_origin(
         &self,
         parameters: &[T],
-        chart: &Chart<T>,
+        chart: &Self::Inputs,
         jacobian: &mut RatesJacobian<'_, T, 3>,
     ) -> [T; 3] {
         self.0
@@ -163,7 +196,7 @@ where
     }
 
     #[inline(always)]
-    fn output(&self, moving: &[T; 3], parameters: &[T], chart: &Chart<T>) -> [T; 3] {
+    fn output(&self, moving: &[T; 3], parameters: &[T], chart: &Self::Inputs) -> [T; 3] {
         self.0.output(moving, parameters, &chart.inputs)
     }
 
@@ -172,7 +205,7 @@ where
         &self,
         moving: &[T; 3],
         parameters: &[T],
-        chart: &Chart<T>,
+        chart: &Self::Inputs,
         d_moving: &mut [[T; 3]; 3],
         d_parameters: &mut [T],
     ) -> [T; 3] {
@@ -184,7 +217,7 @@ where
     fn output_jacobian_at_origin(
         &self,
         parameters: &[T],
-        chart: &Chart<T>,
+        chart: &Self::Inputs,
         d_moving: &mut [[T; 3]; 3],
         d_parameters: &mut [T],
     ) -> [T; 3] {
@@ -196,7 +229,7 @@ where
 impl<T, D> Recentre<T, 3, 3> for Anchored<D>
 where
     T: Real,
-    D: Model<T, 3, 3, Inputs = PlatformInputs<T>>,
+    D: Model<T, 3, 3, Inputs: ChartInputs<T>>,
 {
     #[inline(always)]
     fn has_chart(&self) -> bool {
@@ -204,7 +237,7 @@ where
     }
 
     #[inline(always)]
-    fn recentre(&self, moving: &mut [T; 3], chart: &mut Chart<T>) -> Option<[[T; 3]; 3]> {
+    fn recentre(&self, moving: &mut [T; 3], chart: &mut Self::Inputs) -> Option<[[T; 3]; 3]> {
         let at = reanchor(moving);
         chart.turn(&at.platform_c_chart);
         *moving = [T::from_f64(0.0); 3];
@@ -212,7 +245,7 @@ where
     }
 
     #[inline(always)]
-    fn correct(&self, _moving: &mut [T; 3], chart: &mut Chart<T>, correction: &[T; 3]) {
+    fn correct(&self, _moving: &mut [T; 3], chart: &mut Self::Inputs, correction: &[T; 3]) {
         chart.turn(&turned_by(correction));
     }
 }

@@ -14,6 +14,17 @@ pub mod platform {
     include!(concat!(env!("OUT_DIR"), "/platform.rs"));
 }
 
+/// The nominal platform with errors of latitude, Earth rate and gravity as parameters.
+#[cfg(not(gyrocal_rederived))]
+#[rustfmt::skip]
+pub mod surveyed;
+
+/// The nominal platform with errors of latitude, Earth rate and gravity as parameters.
+#[cfg(gyrocal_rederived)]
+pub mod surveyed {
+    include!(concat!(env!("OUT_DIR"), "/surveyed.rs"));
+}
+
 /// Hash of what [`platform`] was derived from, as its header says: the symbolic sources, the
 /// pinned tools and the emitter.
 #[cfg(not(gyrocal_rederived))]
@@ -42,6 +53,14 @@ pub const PLATFORM_PROGRAM: &str = include_str!("generated/platform.json");
 /// The program of [`platform`], as derived: for interpreters.
 #[cfg(all(feature = "oracle", gyrocal_rederived))]
 pub const PLATFORM_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/platform.json"));
+
+/// The program of [`surveyed`], as derived: for interpreters.
+#[cfg(all(feature = "oracle", not(gyrocal_rederived)))]
+pub const SURVEYED_PROGRAM: &str = include_str!("generated/surveyed.json");
+
+/// The program of [`surveyed`], as derived: for interpreters.
+#[cfg(all(feature = "oracle", gyrocal_rederived))]
+pub const SURVEYED_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/surveyed.json"));
 
 /// The program of [`oracle`], as derived: for interpreters.
 #[cfg(all(feature = "oracle", not(gyrocal_rederived)))]

@@ -74,17 +74,20 @@ mod filter;
 pub mod generated;
 mod rotation;
 mod site;
+mod surroundings;
 #[cfg(feature = "batch")]
 pub mod trajectory;
 
 pub use anchor::{Anchored, Chart};
 pub use filter::{FactorisedPlatformFilter, PlatformFilter, Settings};
 pub use generated::platform::{Drift, Platform};
+pub use generated::surveyed::Surveyed;
 pub use gyrocal_estimation::{
     self as estimation, EstimationError, Innovation, Integration, Recentring,
 };
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};
+pub use surroundings::{ChartInputs, Surroundings};
 
 /// The example of the README, as it stands there.
 #[cfg(doctest)]

@@ -2,22 +2,23 @@
 
 use gyrocal_estimation::Manifold;
 
-use crate::anchor::{Anchored, Chart};
-use crate::generated::platform::PlatformInputs;
-use crate::rotation::{cross, rotation_vector, turned_by};
 use gyrocal_scalar::{Model, Recentre};
+
+use crate::anchor::{Anchored, Chart};
+use crate::rotation::{cross, rotation_vector, turned_by};
+use crate::surroundings::ChartInputs;
 
 /// An attitude: unit vectors North and Up along the platform axes.
 pub type Orientation = [[f64; 3]; 2];
 
 impl<D> Manifold<3, 3> for Anchored<D>
 where
-    D: Model<f64, 3, 3, Inputs = PlatformInputs<f64>>,
+    D: Model<f64, 3, 3, Inputs: ChartInputs<f64>>,
 {
     type Point = Orientation;
 
     #[inline]
-    fn point(&self, moving: &[f64; 3], chart: &Chart<f64>) -> Orientation {
+    fn point(&self, moving: &[f64; 3], chart: &Chart<f64, D::Inputs>) -> Orientation {
         let (mut moving, mut chart) = (*moving, *chart);
         if moving != [0.0; 3] {
             self.recentre(&mut moving, &mut chart);
@@ -26,7 +27,7 @@ where
     }
 
     #[inline]
-    fn place(&self, point: &Orientation, moving: &mut [f64; 3], chart: &mut Chart<f64>) {
+    fn place(&self, point: &Orientation, moving: &mut [f64; 3], chart: &mut Chart<f64, D::Inputs>) {
         *moving = [0.0; 3];
         chart.lay(point);
     }

@@ -38,6 +38,11 @@ def angle_rates(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.SX, f_0: c
     The platform is held to its gyros, so its inertial rate is the gyro drift; what is
     left after Earth rate turns it against the chart.
     """
-    inertial_rate = DEG_PER_HOUR_IN_RAD_PER_S * drift_rate(theta, drift, noise, f_0)
+    return angle_rates_of(theta, drift_rate(theta, drift, noise, f_0), omega_0)
+
+
+def angle_rates_of(theta: ca.SX, omega_d: ca.SX, omega_0: ca.SX) -> ca.SX:
+    """W^-1 (omega_d - p_C_0 omega_0) in rad/s, for any drift omega_d in deg/h."""
+    inertial_rate = DEG_PER_HOUR_IN_RAD_PER_S * omega_d
     relative_rate = inertial_rate - platform_c_chart(theta) @ omega_0
     return rate_matrix_inverse(theta) @ relative_rate

@@ -52,3 +52,26 @@ f_0 = Group(
 )
 
 step = Group("step", "Length of one filter step.", [Element("dt", "s", "step length")])
+
+east_0 = Group(
+    "east_0",
+    "Unit vector East in chart axes; (1, 0, 0) in ENU.",
+    [Element(f"east_0_{i}", "1", f"East along chart {i}") for i in AXES],
+)
+
+field_0 = Group(
+    "field_0",
+    "Magnetic field of the Earth in chart axes.",
+    [Element(f"field_0_{i}", "gauss", f"magnetic field along chart {i}") for i in AXES],
+)
+
+conditions = Group(
+    "conditions",
+    "What changes from step to step and is known.",
+    [
+        Element("time_s", "s", "time since the first row: of the middle of the step for rates, of "
+                "the sample for outputs"),
+        Element("interval_s", "s", "length of the step, greater than zero"),
+        Element("temperature_k", "K", "temperature above its mean over the record"),
+    ],
+)

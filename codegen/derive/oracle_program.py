@@ -1,8 +1,8 @@
 """Functions that only tests run: slow, written out, and exact."""
 
 from casadi_program import Function, Output, Program, jacobian_output
+from functions import AWAY_FROM_GIMBAL_LOCK
 from layout import AXES, drift, drift_noise, f_0, omega_0, step, theta
-from platform_program import AWAY_FROM_GIMBAL_LOCK
 from rk4_step import rk4_step
 
 

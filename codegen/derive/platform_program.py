@@ -3,70 +3,14 @@
 import casadi as ca
 
 import layout
-from casadi_program import Function, Output, Program, jacobian_output
+from casadi_program import Function, Output, Program
 from drift import drift_rate
 from euler_step import euler_step
 from frames import platform_c_chart
+from functions import AWAY_FROM_GIMBAL_LOCK, at_origin, with_jacobian
 from kinematics import angle_rates, rate_matrix
 from layout import AXES, drift, drift_noise, f_0, omega_0, step, theta
 from specific_force import specific_force
-
-NO_NOISE = ca.SX.zeros(3)
-AWAY_FROM_GIMBAL_LOCK = (
-    "Angles with theta_y away from +-90 deg, where the chart is singular and values grow like "
-    "1/cos(theta_y); all other inputs finite"
-)
-
-
-def _without_noise(output: Output) -> Output:
-    """The same output at zero drift noise (the mean of the noise)."""
-    return Output(
-        output.name,
-        ca.substitute(output.expression, drift_noise.sx, NO_NOISE),
-        output.unit,
-        output.doc,
-        output.row_names,
-        output.column_names,
-    )
-
-
-def _at_origin(name: str, doc: str, function: Function) -> Function:
-    """The same outputs with all platform angles zero: where each step of a filter starts whose
-    chart moves with the platform."""
-
-    def at_zero(output: Output) -> Output:
-        expression = ca.substitute(output.expression, theta.sx, ca.SX.zeros(3))
-        if output.column_names:
-            expression = ca.sparsify(expression)
-        return Output(output.name, expression, output.unit, output.doc,
-                      output.row_names, output.column_names)
-
-    return Function(
-        name, doc, function.source, [group for group in function.inputs if group is not theta],
-        [at_zero(output) for output in function.outputs],
-    )
-
-
-def _with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
-                   domain: str) -> list[Function]:
-    """Two functions: the value alone, and the value with its Jacobians (shared terms once).
-
-    `by` lists (group, unit of the Jacobian).
-    """
-    jacobians = [
-        jacobian_output(
-            value, group, f"{value.name}_d_{group.name}",
-            f"exact Jacobian of `{value.name}` with respect to `{group.name}`", unit,
-        )
-        for group, unit in by
-    ]
-    return [
-        Function(name, doc, source, inputs, [_without_noise(value)], domain),
-        Function(
-            f"{name}_jacobian", f"{doc} With its exact Jacobians.", source, inputs,
-            [_without_noise(o) for o in (value, *jacobians)], domain,
-        ),
-    ]
 
 
 def program() -> Program:
@@ -102,25 +46,25 @@ def program() -> Program:
             "reanchor", "Direction cosine matrix and rate matrix W: what moving the chart onto "
             "the platform takes.", "equations (4) and (6)", [theta], [rotation, rate_map],
         ),
-        *_with_jacobian(
+        *with_jacobian(
             "drift_rate", "Drift of the three gyros, D_F + D_I a + D_II a^2.",
             "equations (1) and (2)", [theta, drift, f_0], drift_of_gyros,
             [(theta, "deg/h/rad"), (drift, "deg/h per unit of the coefficient")],
             "all finite inputs",
         ),
-        *_with_jacobian(
+        *with_jacobian(
             "dynamics", "Rates of the platform angles under Earth rate and gyro drift: f1-f3.",
             "equations (7) and (9)", [theta, drift, omega_0, f_0], rates,
             [(theta, "1/s"), (drift, "rad/s per unit of the coefficient"),
              (drift_noise, "rad/s per deg/h")],
             AWAY_FROM_GIMBAL_LOCK,
         ),
-        *_with_jacobian(
+        *with_jacobian(
             "specific_force", "What ideal accelerometers read: h1-h3.",
             "equations (8) and (12)", [theta, f_0], force, [(theta, "g/rad")],
             "all finite inputs",
         ),
-        *_with_jacobian(
+        *with_jacobian(
             "euler_step", "One explicit Euler step of the platform angles.",
             "equations (14) and (15)", [theta, drift, omega_0, f_0, step], euler,
             [(theta, "1"), (drift, "rad per unit of the coefficient"),
@@ -130,12 +74,12 @@ def program() -> Program:
     ]
     by_name = {function.name: function for function in functions}
     functions += [
-        _at_origin(
+        at_origin(
             "dynamics_at_origin_jacobian",
             "Rates of the platform angles, with their exact Jacobians, at zero angles.",
             by_name["dynamics_jacobian"],
         ),
-        _at_origin(
+        at_origin(
             "specific_force_at_origin_jacobian",
             "What ideal accelerometers read, with its exact Jacobian, at zero angles.",
             by_name["specific_force_jacobian"],

@@ -11,10 +11,12 @@ from pathlib import Path
 
 import casadi as ca
 
-from casadi_program import Program
+from casadi_program import Element, Group, Program
 
 POINTS = 200
 SEED = 20150101
+DAY_S = 86400
+OWN_GROUPS = ("parameters", "shapes")  # each program has its own
 EARTH_RATE_RAD_PER_S = 7.292115e-5  # WGS 84
 
 
@@ -35,18 +37,52 @@ def _point(rng: random.Random) -> dict[str, list[float]]:
         "omega_0": [EARTH_RATE_RAD_PER_S * component for component in _unit_vector(rng)],
         "f_0": _unit_vector(rng),
         "step": [rng.uniform(1, 120)],
+        "east_0": _unit_vector(rng),
+        "field_0": [rng.uniform(-0.6, 0.6) for _ in range(3)],
+        "conditions": [rng.uniform(0, 3 * DAY_S), rng.uniform(1, 120), rng.uniform(-5, 5)],
     }
+
+
+def _own(group: Group, point: dict[str, list[float]], rng: random.Random) -> list[float]:
+    """Parameters and shapes, which differ between programs. Effects are as large as drifts, so
+    that a wrong one shows, and most onsets lie inside the step or near it."""
+    time_s, interval_s, _ = point["conditions"]
+
+    def scalar(element: Element) -> float:
+        if element.name.endswith("_onset_s"):
+            return time_s + rng.uniform(-1, 1) * interval_s
+        if element.name.endswith("_time_constant_h"):
+            return rng.uniform(0.3, 36)
+        return rng.uniform(-0.5, 0.5)
+
+    if group.name != "parameters":
+        return [scalar(element) for element in group.elements]
+    return point["drift"] + [scalar(element) for element in group.elements[len(point["drift"]):]]
+
+
+def _key(program: Program, group: Group) -> str:
+    """Name of a group among all programs."""
+    return f"{program.name}::{group.name}" if group.name in OWN_GROUPS else group.name
 
 
 def write(programs: list[Program], path: Path) -> None:
     rng = random.Random(SEED)
     points = [_point(rng) for _ in range(POINTS)]
+    own = {
+        _key(program, group): group
+        for program in programs
+        for function in program.functions
+        for group in function.inputs
+        if group.name in OWN_GROUPS
+    }
+    for point in points:
+        point.update({key: _own(group, point, rng) for key, group in own.items()})
     document = {
         "casadi_version": ca.__version__,
         "inputs": points,
         "functions": {
-            function.name: [
-                [float(value) for output in _evaluate(function, point) for value in output]
+            f"{program.name}::{function.name}": [
+                [value for output in _evaluate(program, function, point) for value in output]
                 for point in points
             ]
             for program in programs
@@ -66,8 +102,10 @@ def write(programs: list[Program], path: Path) -> None:
     path.write_text("\n".join(lines), encoding="utf-8", newline="\n")
 
 
-def _evaluate(function, point):
+def _evaluate(program, function, point):
     """Structural nonzeros of every output, in the order of the program."""
     compiled = function.casadi()
-    results = compiled.call([ca.DM(point[group.name]) for group in function.inputs])
+    results = compiled.call(
+        [ca.DM(point[_key(program, group)]) for group in function.inputs]
+    )
     return [result.nonzeros() for result in results]

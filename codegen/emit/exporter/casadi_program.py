@@ -177,6 +177,7 @@ class Program:
     doc: str
     functions: list[Function] = field(default_factory=list)
     model: dict | None = None
+    tables: dict[str, list[dict]] = field(default_factory=dict)
 
     def write(self, path: Path) -> None:
         """Writes the program; the same symbols give the same bytes."""

@@ -1,0 +1,170 @@
+"""The platform with a list of effects: one constant parameter more for each of theirs."""
+
+from dataclasses import replace
+
+import casadi as ca
+
+from casadi_program import Element, ExportError, Function, Group, Output, Program
+from drift import drift_rate
+from effect import At, Effect, by_axis, rust_name
+from frames import platform_c_chart
+from functions import AWAY_FROM_GIMBAL_LOCK, at_origin, with_jacobian
+from kinematics import angle_rates_of
+from layout import AXES, conditions, drift, drift_noise, east_0, f_0, field_0, omega_0, theta
+from specific_force import specific_force
+
+
+def program(name: str, model: str, doc: str, effects: list[Effect],
+            tables: dict[str, list[dict]] | None = None) -> Program:
+    """The functions of a model, the nominal one with `effects`. Inputs are those it needs."""
+    effects = _output_first(effects)
+    parameters = _parameters(effects)
+    shapes = _shapes(effects)
+    rates, reading = _expressions(effects, parameters, shapes)
+    candidates = [omega_0, f_0, east_0, field_0, conditions, *([shapes] if shapes else [])]
+
+    def needed(expression: ca.SX) -> list[Group]:
+        return [group for group in candidates if ca.depends_on(expression, group.sx)]
+
+    value = Output("theta_dot", rates, "rad/s", "rates of the platform angles",
+                   [f"theta_dot_{i}" for i in AXES])
+    output = Output("reading", reading, "g", "what the accelerometers read, up positive",
+                    [f"e_{i}" for i in AXES])
+    of_output = [parameters] if ca.depends_on(reading, parameters.sx) else []
+    functions = [
+        *with_jacobian(
+            "dynamics", "Rates of the platform angles under Earth rate and gyro drift.",
+            "equations (7) and (9), with the terms of the catalogue",
+            [theta, parameters, *needed(rates)], value,
+            [(theta, "1/s"), (parameters, "rad/s per unit of the parameter"),
+             (drift_noise, "rad/s per deg/h")],
+            AWAY_FROM_GIMBAL_LOCK,
+        ),
+        *with_jacobian(
+            "accelerometers", "What the accelerometers read.",
+            "equations (8) and (12), with the terms of the catalogue",
+            [theta, *of_output, *needed(reading)], output,
+            [(theta, "g/rad"), *((group, "g per unit of the parameter") for group in of_output)],
+            "all finite inputs",
+        ),
+    ]
+    by_name = {function.name: function for function in functions}
+    for function, of in (("dynamics", "Rates of the platform angles"),
+                         ("accelerometers", "What the accelerometers read")):
+        functions.append(at_origin(
+            f"{function}_at_origin_jacobian", f"{of}, with exact Jacobians, at zero angles.",
+            by_name[f"{function}_jacobian"],
+        ))
+    used = {group.name for function in functions for group in function.inputs}
+    return Program(
+        name, doc, functions,
+        {
+            "name": model,
+            "doc": f"{doc} Three angles move, all else is constant.",
+            "moving": theta.name,
+            "parameters": parameters.name,
+            "noise": drift_noise.name,
+            "inputs": [group.name for group in candidates if group.name in used],
+            "rates": _forms("dynamics"),
+            "output": _forms("accelerometers"),
+        },
+        tables or {},
+    )
+
+
+def _forms(function: str) -> dict[str, str]:
+    return {
+        "value": function,
+        "jacobian": f"{function}_jacobian",
+        "jacobian_at_origin": f"{function}_at_origin_jacobian",
+    }
+
+
+def _output_first(effects: list[Effect]) -> list[Effect]:
+    """Effects that change what accelerometers read come first: filters take the leading
+    parameters as those that an output depends on."""
+    found = [effect for effect in effects if _enters_output(effect)]
+    return found + [effect for effect in effects if effect not in found]
+
+
+def _enters_output(effect: Effect) -> bool:
+    parameters, shapes = _parameters([effect]), _shapes([effect])
+    return ca.depends_on(_expressions([effect], parameters, shapes)[1], parameters.sx)
+
+
+def _parameters(effects: list[Effect]) -> Group:
+    """The nine drift coefficients, then the parameters of the effects."""
+    return Group(
+        "parameters",
+        "Constant parameters: drift coefficients, then sizes of effects.",
+        drift.elements + [
+            Element(rust_name(effect.state_id(p)), p.unit, f"{effect.name}; {p.doc}",
+                    effect.state_id(p))
+            for effect in effects for p in effect.parameters
+        ],
+    )
+
+
+def _shapes(effects: list[Effect]) -> Group | None:
+    """The given parameters of the effects."""
+    elements = [
+        Element(rust_name(effect.shape_id(p)), p.unit, f"{effect.name}; {p.doc}",
+                effect.shape_id(p))
+        for effect in effects for p in effect.shapes
+    ]
+    return Group("shapes", "Onsets and time constants of effects.", elements) if elements else None
+
+
+def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None):
+    """Rates of the angles, and what the accelerometers read."""
+    at = At(
+        a={}, drift={}, field={},
+        time_s=conditions["time_s"], interval_s=conditions["interval_s"],
+        temperature_k=conditions["temperature_k"],
+        omega_0=omega_0.sx, f_0=f_0.sx, east_0=east_0.sx,
+    )
+
+    def term(effect: Effect):
+        own = {p.name: parameters[rust_name(effect.state_id(p))] for p in effect.parameters}
+        own |= {p.name: shapes[rust_name(effect.shape_id(p))] for p in effect.shapes}
+        return effect.term(own, at)
+
+    for effect in _entering("site", effects):
+        at = replace(at, **term(effect))
+    at = replace(
+        at,
+        a=by_axis(specific_force(theta.sx, at.f_0)),
+        field=by_axis(platform_c_chart(theta.sx) @ field_0.sx),
+    )
+    nominal = parameters.sx[: len(drift.elements)]
+    omega_d = drift_rate(theta.sx, nominal, drift_noise.sx, at.f_0)
+    # Terms that take drifts take those that the others add up to.
+    others = ca.SX.sym("omega_d", 3)
+    at = replace(at, drift=by_axis(others))
+    added = _sum(term(effect) for effect in _entering("drift", effects))
+    plain = ca.vertcat(*[omega_d[n] + sum(e for e in added[i] if not ca.depends_on(e, others))
+                         for n, i in enumerate(AXES)])
+    of_others = ca.vertcat(*[sum((e for e in added[i] if ca.depends_on(e, others)), ca.SX(0))
+                             for i in AXES])
+    omega_d = plain + ca.substitute(of_others, others, plain)
+    rates = angle_rates_of(theta.sx, omega_d, at.omega_0)
+    for effect in _entering("time", effects):
+        rates = term(effect) * rates
+    read = _sum(term(effect) for effect in _entering("output", effects))
+    reading = ca.vertcat(*[at.a[i] + sum(read[i]) for i in AXES])
+    return rates, reading
+
+
+def _entering(where: str, effects: list[Effect]) -> list[Effect]:
+    return [effect for effect in effects if effect.has_term and effect.enters == where]
+
+
+def _sum(terms) -> dict[str, list[ca.SX]]:
+    """The expressions for each axis."""
+    result = {i: [] for i in AXES}
+    for term in terms:
+        for axis, expression in term.items():
+            if axis not in result:
+                raise ExportError(f"a term is for the axis `{axis}`, expected one of {AXES}")
+            result[axis].append(expression)
+    return result

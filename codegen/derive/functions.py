@@ -1,0 +1,64 @@
+"""Functions of a model in the forms that a filter needs: a value, the same with its Jacobians,
+and both at zero angles."""
+
+import casadi as ca
+
+from casadi_program import Function, Output, jacobian_output
+from layout import drift_noise, theta
+
+NO_NOISE = ca.SX.zeros(3)
+AWAY_FROM_GIMBAL_LOCK = (
+    "Angles with theta_y away from +-90 deg, where the chart is singular and values grow like "
+    "1/cos(theta_y); all other inputs finite"
+)
+
+
+def without_noise(output: Output) -> Output:
+    """The same output at zero drift noise (the mean of the noise)."""
+    return Output(
+        output.name,
+        ca.substitute(output.expression, drift_noise.sx, NO_NOISE),
+        output.unit,
+        output.doc,
+        output.row_names,
+        output.column_names,
+    )
+
+
+def at_origin(name: str, doc: str, function: Function) -> Function:
+    """The same outputs with all platform angles zero: where each step of a filter starts whose
+    chart moves with the platform."""
+
+    def at_zero(output: Output) -> Output:
+        expression = ca.substitute(output.expression, theta.sx, ca.SX.zeros(3))
+        if output.column_names:
+            expression = ca.sparsify(expression)
+        return Output(output.name, expression, output.unit, output.doc,
+                      output.row_names, output.column_names)
+
+    return Function(
+        name, doc, function.source, [group for group in function.inputs if group is not theta],
+        [at_zero(output) for output in function.outputs],
+    )
+
+
+def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
+                  domain: str) -> list[Function]:
+    """Two functions: the value alone, and the value with its Jacobians (shared terms once).
+
+    `by` lists (group, unit of the Jacobian).
+    """
+    jacobians = [
+        jacobian_output(
+            value, group, f"{value.name}_d_{group.name}",
+            f"exact Jacobian of `{value.name}` with respect to `{group.name}`", unit,
+        )
+        for group, unit in by
+    ]
+    return [
+        Function(name, doc, source, inputs, [without_noise(value)], domain),
+        Function(
+            f"{name}_jacobian", f"{doc} With its exact Jacobians.", source, inputs,
+            [without_noise(o) for o in (value, *jacobians)], domain,
+        ),
+    ]

@@ -1,0 +1,119 @@
+use gyrocal_scalar::Real;
+
+use crate::generated::platform::PlatformInputs;
+use crate::generated::surveyed::SurveyedInputs;
+use crate::rotation::cross;
+
+/// What lies fixed to the Earth, along the axes of a chart.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a, T> {
+    pub(crate) north: &'a [T; 3],
+    pub(crate) up: &'a [T; 3],
+    /// Horizontal (north) and vertical component of Earth rate, rad/s.
+    pub(crate) earth_rate: &'a [T; 2],
+    pub(crate) gravity_g: T,
+    /// East, North and Up component of the magnetic field, gauss.
+    pub(crate) field_gauss: &'a [T; 3],
+}
+
+impl<T: Real> Surroundings<'_, T> {
+    /// Earth rate, rad/s.
+    #[inline(always)]
+    #[must_use]
+    pub fn omega_0(&self) -> [T; 3] {
+        let [horizontal, vertical] = *self.earth_rate;
+        core::array::from_fn(|i| horizontal.mul_add(self.north[i], vertical * self.up[i]))
+    }
+
+    /// Specific force, up positive, g.
+    #[inline(always)]
+    #[must_use]
+    pub fn f_0(&self) -> [T; 3] {
+        self.up.map(|component| self.gravity_g * component)
+    }
+
+    /// Unit vector East.
+    #[inline(always)]
+    #[must_use]
+    pub fn east_0(&self) -> [T; 3] {
+        cross(self.north, self.up)
+    }
+
+    /// Magnetic field of the Earth, gauss.
+    #[inline(always)]
+    #[must_use]
+    pub fn field_0(&self) -> [T; 3] {
+        let (e, [east, north, up]) = (self.east_0(), *self.field_gauss);
+        core::array::from_fn(|i| east.mul_add(e[i], north.mul_add(self.north[i], up * self.up[i])))
+    }
+}
+
+/// Inputs of a generated model of the platform, as far as a [`Chart`](crate::Chart) gives them.
+///
+/// Implement it for the inputs of a model of your own, in two lines each:
+///
+/// ```
+/// use gyrocal::{ChartInputs, Real, Surroundings};
+///
+/// #[derive(Clone, Copy)]
+/// struct MyInputs<T> {
+///     omega_0: [T; 3],
+///     f_0: [T; 3],
+///     conditions: [T; 3],
+/// }
+///
+/// impl<T: Real> ChartInputs<T> for MyInputs<T> {
+///     fn unset() -> Self {
+///         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+///         Self { omega_0: [zero; 3], f_0: [zero; 3], conditions: [one; 3] }
+///     }
+///     fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
+///         self.omega_0 = surroundings.omega_0();
+///         self.f_0 = surroundings.f_0();
+///     }
+/// }
+/// ```
+pub trait ChartInputs<T>: Copy {
+    /// Inputs before a chart has set them; those that no chart sets have a harmless value.
+    #[must_use]
+    fn unset() -> Self;
+
+    /// Sets what lies fixed to the Earth. A chart calls it whenever it has moved.
+    fn surround(&mut self, surroundings: &Surroundings<'_, T>);
+}
+
+impl<T: Real> ChartInputs<T> for PlatformInputs<T> {
+    #[inline(always)]
+    fn unset() -> Self {
+        let zero = T::from_f64(0.0);
+        Self {
+            omega_0: [zero; 3],
+            f_0: [zero; 3],
+        }
+    }
+
+    #[inline(always)]
+    fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
+        self.omega_0 = surroundings.omega_0();
+        self.f_0 = surroundings.f_0();
+    }
+}
+
+impl<T: Real> ChartInputs<T> for SurveyedInputs<T> {
+    #[inline(always)]
+    fn unset() -> Self {
+        let zero = T::from_f64(0.0);
+        Self {
+            omega_0: [zero; 3],
+            f_0: [zero; 3],
+            east_0: [zero; 3],
+        }
+    }
+
+    #[inline(always)]
+    fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
+        self.omega_0 = surroundings.omega_0();
+        self.f_0 = surroundings.f_0();
+        self.east_0 = surroundings.east_0();
+    }
+}
