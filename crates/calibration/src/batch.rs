@@ -1,29 +1,28 @@
 //! The batch estimator: from filtered trajectories to the joint solution.
 
-use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
-use gyrocal::{Anchored, Chart, Drift, Platform, Recentring, Settings};
-use nalgebra::{Cholesky, DMatrix};
+use gyrocal::generated::surveyed::SurveyedInputs;
+use gyrocal::trajectory::{angles_rad, platform_c_enu};
+use gyrocal::{Anchored, Drift, Recentring, Settings, Surveyed};
 
 use crate::PARAMETERS;
-use crate::attitude::{InitialAttitude, Trial, trials};
-use crate::calibrate::{Calibration, Options};
+use crate::begin::{begin, leg};
+use crate::calibrate::Options;
 use crate::error::CalibrationError;
 use crate::fit::Fit;
-use crate::layout::Layout;
-use crate::run::{Rows, Run};
+use crate::layout::{Layout, SiteQuantity};
+use crate::noise;
+use crate::observability::undetermined;
+use crate::result::{AzimuthSearch, Calibration, RunResult, SiteInfluence};
+use crate::robust;
+use crate::run::Run;
 use crate::settings::level;
-use crate::solve::{Failure, Leg, Problem, Solution};
-use crate::start::{Start, filtered};
+use crate::solve::{Failure, Problem};
+use crate::uncertainty::Uncertainty;
 
-/// Passes after which an estimate that still moves is given up.
-const MOST_ITERATIONS: usize = 50;
+/// Steps after which an estimate that still moves is given up.
+pub(crate) const MOST_ITERATIONS: usize = 50;
 
-/// A mean NIS beyond which one pass of the filter has lost its way: three times what any model
-/// error that is not gross leaves of it, far below what a filter astray has.
-const ASTRAY: f64 = 30.0;
-
-/// Rows of the first window of a start by growing windows.
-const FIRST_WINDOW: usize = 64;
+pub(crate) type BatchProblem<'a> = Problem<'a, Anchored<Surveyed>, SurveyedInputs<f64>>;
 
 /// Calibrates on whole records.
 pub(crate) fn calibrate(
@@ -34,18 +33,15 @@ pub(crate) fn calibrate(
     let benches: Vec<_> = runs.iter().map(|run| run.bench).collect();
     let layout = Layout::new(&benches);
     let mut problem = Problem {
-        model: &Anchored(Platform),
+        model: &Anchored(Surveyed),
         integration: options.integration,
         longest_step_s: options.longest_step_s,
         unknowns: layout.unknowns.clone(),
         legs: Vec::with_capacity(runs.len()),
-        values: layout
-            .unknowns
-            .iter()
-            .map(|unknown| unknown.prior)
-            .collect(),
+        values: vec![0.0; layout.unknowns.len()],
     };
-    let mut information = vec![0.0; PARAMETERS];
+    let mut weights = [0.0; PARAMETERS];
+    let mut azimuths = Vec::with_capacity(runs.len());
     for (index, run) in runs.iter().enumerate() {
         let settings = Settings {
             integration: options.integration,
@@ -53,147 +49,133 @@ pub(crate) fn calibrate(
             longest_step_s: options.longest_step_s,
             ..level(run.bench)
         };
-        let (prior, start) = begin(run, &settings, options)?;
+        let beginning = begin(run, &settings, options)?;
+        let start = beginning.start;
         for i in 0..PARAMETERS {
             let weight = start.sigma[i].powi(-2);
-            let sum = information[i] + weight;
-            problem.values[i] += (start.drift[i] - problem.values[i]) * weight / sum;
-            information[i] = sum;
+            weights[i] += weight;
+            problem.values[i] += (start.drift[i] - problem.values[i]) * weight / weights[i];
         }
-        let mut leg = leg(run, run.record.len(), &settings, &prior, start.points);
-        leg.sums = layout.sums(index);
-        problem.legs.push(leg);
+        let prior = beginning.prior;
+        problem.legs.push(leg(
+            run,
+            run.record.len(),
+            &settings,
+            &prior,
+            start.points,
+            layout.sums(index),
+        ));
+        azimuths.push(beginning.azimuth);
         progress(run.record.len());
     }
-    let solution = problem
-        .solve(MOST_ITERATIONS, |_| ())
-        .map_err(|failure| explain(failure, runs))?;
-    report(&problem, &solution, &layout)
-}
-
-fn leg<'a>(
-    run: &Run<'a>,
-    rows: usize,
-    settings: &Settings<f64>,
-    prior: &InitialAttitude,
-    points: Vec<Orientation>,
-) -> Leg<'a> {
-    Leg {
-        rows: Rows::new(run.record, rows, [settings.accel_noise_g; 3]),
-        chart: Chart::east_north_up(settings.site),
-        noise_density: [settings.drift_noise_deg_per_h.powi(2) * 60.0; 3],
-        prior: prior.orientation,
-        prior_covariance: prior.covariance,
-        points,
-        sums: (0..PARAMETERS).map(|parameter| vec![parameter]).collect(),
+    let (solution, bounded) = match options.outlier_bound {
+        Some(bound) => robust::solve(&mut problem, bound, MOST_ITERATIONS),
+        None => problem
+            .solve(MOST_ITERATIONS, |_| ())
+            .map(|solution| (solution, vec![0; runs.len()])),
     }
-}
-
-/// A start for one run, and the attitude prior that goes with it.
-fn begin(
-    run: &Run<'_>,
-    settings: &Settings<f64>,
-    options: &Options,
-) -> Result<(InitialAttitude, Start), CalibrationError> {
-    let mut trials = trials(run.record, run.bench)?.into_iter();
-    match (trials.next(), trials.len()) {
-        (Some(only), 0) => Ok((only.prior, start(run, settings, &only, options)?)),
-        _ => todo!(),
-    }
-}
-
-/// One pass of the filter if that finds its way; else windows that double in length, each solved
-/// before the next begins, so that linearisation never reaches far beyond what is known.
-fn start(
-    run: &Run<'_>,
-    settings: &Settings<f64>,
-    trial: &Trial,
-    options: &Options,
-) -> Result<Start, CalibrationError> {
-    let all = run.record.len();
-    let first = filtered(run.record, all, settings, &trial.start);
-    match first {
-        Ok(start) if start.nis_mean < ASTRAY => return Ok(start),
-        _ => {}
-    }
-    let mut settings_now = *settings;
-    let mut attitude = trial.start;
-    let mut window = FIRST_WINDOW;
-    loop {
-        let rows = window.min(all);
-        let started = filtered(run.record, rows, &settings_now, &attitude)?;
-        if rows == all {
-            return Ok(started);
-        }
-        let mut problem = Problem {
-            model: &Anchored(Platform),
-            integration: options.integration,
-            longest_step_s: options.longest_step_s,
-            unknowns: Layout::new(&[run.bench]).unknowns,
-            legs: vec![leg(run, rows, settings, &trial.prior, started.points)],
-            values: started.drift.to_vec(),
-        };
-        // A window that does not converge leaves what it had: the next has more to go by.
-        if let Ok(solution) = problem.solve(MOST_ITERATIONS, |_| ())
-            && let Some(covariance) = covariance(&problem, &solution)
-        {
-            attitude.orientation = problem.legs[0].points[0];
-            let mut sigma = settings.drift_sigma.to_array();
-            for (i, sigma) in sigma.iter_mut().enumerate() {
-                // Three times: linearisation errors of the window are not in its covariance.
-                *sigma = sigma.min(3.0 * covariance[(i, i)].sqrt());
-            }
-            settings_now.drift = Drift::from_array(core::array::from_fn(|i| problem.values[i]));
-            settings_now.drift_sigma = Drift::from_array(sigma);
-        }
-        window *= 2;
-    }
-}
-
-/// Covariance of the unknowns that are estimated.
-fn covariance<D>(problem: &Problem<'_, D>, solution: &Solution) -> Option<DMatrix<f64>>
-where
-    D: gyrocal::estimation::Manifold<3, 3, Inputs = Chart<f64>, Point = Orientation>,
-{
-    let estimated = problem.estimated();
-    let count = estimated.len();
-    let mut information = DMatrix::from_fn(count, count, |i, j| {
-        solution.information[(estimated[i], estimated[j])]
-    });
-    for (i, index) in estimated.iter().enumerate() {
-        information[(i, i)] += problem.unknowns[*index].sigma.powi(-2);
-    }
-    Cholesky::new(information).map(|cholesky| cholesky.inverse())
-}
-
-fn report<D>(
-    problem: &Problem<'_, D>,
-    solution: &Solution,
-    layout: &Layout,
-) -> Result<Calibration, CalibrationError>
-where
-    D: gyrocal::estimation::Manifold<3, 3, Inputs = Chart<f64>, Point = Orientation>,
-{
-    let _ = layout;
-    let covariance = covariance(problem, solution).ok_or(CalibrationError::NotPositiveDefinite)?;
-    let last = problem
-        .legs
+    .map_err(explain)?;
+    let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
+        .ok_or(CalibrationError::NotPositiveDefinite)?;
+    let runs = run_results(&problem, &layout, &uncertainty, azimuths, &bounded, options)?;
+    let last = runs
         .last()
-        .and_then(|leg| leg.points.last())
-        .map_or([[0.0; 3]; 3], platform_c_enu);
+        .map_or([[0.0; 3]; 3], |run| run.last_platform_c_enu);
+    let prior_sigma: [f64; PARAMETERS] = core::array::from_fn(|i| problem.unknowns[i].sigma);
     Ok(Calibration {
         drift: Drift::from_array(core::array::from_fn(|i| problem.values[i])),
-        covariance: core::array::from_fn(|i| core::array::from_fn(|j| covariance[(i, j)])),
-        prior_sigma: Drift::from_array(core::array::from_fn(|i| problem.unknowns[i].sigma)),
-        fit: Fit::of_batch(solution, &problem.unknowns, &covariance),
+        covariance: core::array::from_fn(|i| core::array::from_fn(|j| uncertainty.total[(i, j)])),
+        prior_sigma: Drift::from_array(prior_sigma),
+        fit: Fit::of_batch(&solution, &problem.unknowns, &uncertainty),
         platform_c_enu: last,
         final_angles_rad: angles_rad(&last),
         iterations: solution.iterations,
+        runs,
+        site: site_influences(&layout, &benches, &uncertainty),
+        undetermined: undetermined(
+            &uncertainty
+                .conditional
+                .view((0, 0), (PARAMETERS, PARAMETERS))
+                .into_owned(),
+            &prior_sigma,
+        ),
     })
 }
 
-fn explain(failure: Failure, runs: &[Run<'_>]) -> CalibrationError {
-    let _ = runs;
+fn run_results(
+    problem: &BatchProblem<'_>,
+    layout: &Layout,
+    uncertainty: &Uncertainty,
+    azimuths: Vec<Option<AzimuthSearch>>,
+    bounded: &[usize],
+    options: &Options,
+) -> Result<Vec<RunResult>, CalibrationError> {
+    azimuths
+        .into_iter()
+        .enumerate()
+        .map(|(index, azimuth)| {
+            let points = &problem.legs[index].points;
+            let attitude = |point: Option<&_>| point.map_or([[0.0; 3]; 3], platform_c_enu);
+            let turn_on_deg_per_h = layout.turn_ons[index].map(|first| {
+                core::array::from_fn(|axis| {
+                    let unknown = first + axis;
+                    let place = uncertainty.estimated.iter().position(|e| *e == unknown);
+                    let variance = place.map_or(f64::NAN, |i| uncertainty.total[(i, i)]);
+                    [problem.values[unknown], variance.sqrt()]
+                })
+            });
+            let noise = if options.noise {
+                let parameters = problem.parameters(index);
+                let found = problem.with_leg(index, &parameters, |pass| {
+                    noise::estimate(|factors| pass.noise_score(factors))
+                });
+                Some(found.map_err(|error| explain(Failure::Pass(index, error)))?)
+            } else {
+                None
+            };
+            Ok(RunResult {
+                first_platform_c_enu: attitude(points.first()),
+                last_platform_c_enu: attitude(points.last()),
+                turn_on_deg_per_h,
+                azimuth,
+                noise,
+                bounded_values: bounded[index],
+            })
+        })
+        .collect()
+}
+
+fn site_influences(
+    layout: &Layout,
+    benches: &[&gyrocal_record::Bench],
+    uncertainty: &Uncertainty,
+) -> Vec<SiteInfluence> {
+    let Some(bench) = benches.first() else {
+        return Vec::new();
+    };
+    SiteQuantity::ALL
+        .into_iter()
+        .filter_map(|quantity| {
+            let unknown = layout.site_unknown(quantity);
+            let find = |(index, _): &&(usize, _)| *index == unknown;
+            let (_, taken) = uncertainty
+                .sensitivities
+                .iter()
+                .find(|(i, _)| *i == unknown)?;
+            let (_, from_record_sigma) = uncertainty.from_records.iter().find(find)?;
+            Some(SiteInfluence {
+                quantity,
+                declared_sigma: quantity.declared_sigma(bench),
+                from_record_sigma: *from_record_sigma,
+                // An error that is there and not assumed is taken for the opposite of what
+                // assuming it would change.
+                bias_per_unit: core::array::from_fn(|i| -taken[i]),
+            })
+        })
+        .collect()
+}
+
+fn explain(failure: Failure) -> CalibrationError {
     match failure {
         Failure::Pass(run, source) => CalibrationError::Pass {
             run: run + 1,

@@ -1,16 +1,12 @@
-use gyrocal::generated::platform::DRIFT;
-use gyrocal::{Drift, Integration, Platform, Recentring, Settings};
+use gyrocal::{Integration, Platform, Recentring, Settings};
 use gyrocal_record::{Bench, Record};
 use nalgebra::SMatrix;
 
 use crate::error::CalibrationError;
-use crate::fit::Fit;
+use crate::result::Calibration;
 use crate::run::Run;
 use crate::settings::settings;
 use crate::{PARAMETERS, batch, streaming};
-
-/// A posterior sigma below this share of the prior's counts as determined by the record.
-const DETERMINED: f64 = 0.1;
 
 /// How coefficients are estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +32,11 @@ pub struct Options {
     /// Whether the streaming filter carries the covariance as its factors: slower, for priors
     /// that are too wide otherwise.
     pub factorised: bool,
+    /// Whether the batch estimator also estimates the noise by maximum likelihood.
+    pub noise: bool,
+    /// Standard deviations of the noise beyond which the batch estimator bounds the influence
+    /// of a value (Huber's weights); `None` trusts every value.
+    pub outlier_bound: Option<f64>,
 }
 
 impl Default for Options {
@@ -47,6 +48,8 @@ impl Default for Options {
             recentring: Recentring::EveryStep,
             longest_step_s: 120.0,
             factorised: false,
+            noise: false,
+            outlier_bound: None,
         }
     }
 }
@@ -70,62 +73,9 @@ impl Options {
             recentring: Recentring::Never,
             longest_step_s: f64::INFINITY,
             factorised: false,
+            noise: false,
+            outlier_bound: None,
         }
-    }
-}
-
-/// What a record said of the gyros.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Calibration {
-    /// Estimated coefficients: deg/h, deg/h/g, deg/h/g².
-    pub drift: Drift<f64>,
-    /// Covariance of their errors, in the order of the fields.
-    pub covariance: [[f64; PARAMETERS]; PARAMETERS],
-    /// Standard deviations before the record.
-    pub prior_sigma: Drift<f64>,
-    /// Agreement of the innovations with their predicted covariance.
-    pub fit: Fit,
-    /// Platform components from East, North, Up components at the last row.
-    pub platform_c_enu: [[f64; 3]; 3],
-    /// Platform angles against East-North-Up at the last row, rad.
-    pub final_angles_rad: [f64; 3],
-    /// Steps of the batch estimator; 1 of the streaming filter.
-    pub iterations: usize,
-}
-
-/// One estimated coefficient with its name and unit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoefficientEstimate {
-    /// Public name, such as `gyro_x.bias`.
-    pub id: &'static str,
-    /// Unit of estimate and sigma.
-    pub unit: &'static str,
-    /// Meaning in a few words.
-    pub meaning: &'static str,
-    /// The estimate.
-    pub estimate: f64,
-    /// Standard deviation of its error.
-    pub sigma: f64,
-    /// Whether the record, and not the prior, determined it.
-    pub determined: bool,
-}
-
-impl Calibration {
-    /// The coefficients with names, in the order of [`Self::covariance`].
-    #[must_use]
-    pub fn coefficients(&self) -> [CoefficientEstimate; PARAMETERS] {
-        let (estimates, priors) = (self.drift.to_array(), self.prior_sigma.to_array());
-        core::array::from_fn(|i| {
-            let sigma = self.covariance[i][i].sqrt();
-            CoefficientEstimate {
-                id: DRIFT[i].id,
-                unit: DRIFT[i].unit,
-                meaning: DRIFT[i].doc,
-                estimate: estimates[i],
-                sigma,
-                determined: sigma < DETERMINED * priors[i],
-            }
-        })
     }
 }
 
@@ -216,6 +166,9 @@ fn streaming(
         platform_c_enu: filtered.platform_c_enu,
         final_angles_rad: filtered.angles_rad,
         iterations: 1,
+        runs: Vec::new(),
+        site: Vec::new(),
+        undetermined: Vec::new(),
     })
 }
 

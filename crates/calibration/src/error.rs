@@ -52,6 +52,15 @@ pub enum CalibrationError {
          all axes from the start"
     )]
     NotLevelled,
+    /// No azimuth that was tried led to a solution.
+    #[error(
+        "none of {starts} azimuths that were tried fits the record; give `initial_angles_deg`, or \
+         check the latitude and that up is positive"
+    )]
+    NoAzimuth {
+        /// Azimuths that were tried.
+        starts: usize,
+    },
     /// A pass over a record could not be made; the source says why.
     #[error("the batch estimator could not pass over record {run}")]
     Pass {

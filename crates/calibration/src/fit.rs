@@ -1,8 +1,8 @@
 use gyrocal::Innovation;
-use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::solve::{Solution, Unknown};
+use crate::uncertainty::Uncertainty;
 
 /// Probability with which a record that fits the model is called inconsistent.
 const FALSE_ALARM: f64 = 1e-3;
@@ -125,16 +125,14 @@ impl Fit {
     pub(crate) fn of_batch(
         solution: &Solution,
         unknowns: &[Unknown],
-        covariance: &DMatrix<f64>,
+        uncertainty: &Uncertainty,
     ) -> Self {
         let prior: f64 = unknowns
             .iter()
             .filter(|unknown| !unknown.considered)
             .map(|unknown| 2.0 * unknown.sigma.ln())
             .sum();
-        let gained = covariance.clone().cholesky().map_or(f64::NAN, |cholesky| {
-            2.0 * cholesky.l().diagonal().map(f64::ln).sum()
-        });
+        let gained = uncertainty.log_determinant();
         Self {
             nis_sum: solution.cost,
             values: solution.values,

@@ -1,6 +1,6 @@
 //! Which unknowns a joint calibration has, and in which order.
 
-use gyrocal::generated::platform::drift_index;
+use gyrocal::generated::surveyed::parameters_index as index;
 use gyrocal_record::Bench;
 
 use crate::PARAMETERS;
@@ -8,17 +8,65 @@ use crate::settings::level;
 use crate::solve::Unknown;
 
 /// Indices of the constant drifts among the coefficients.
-pub(crate) const BIASES: [usize; 3] = [
-    drift_index::GYRO_X_BIAS,
-    drift_index::GYRO_Y_BIAS,
-    drift_index::GYRO_Z_BIAS,
-];
+pub(crate) const BIASES: [usize; 3] = [index::GYRO_X_BIAS, index::GYRO_Y_BIAS, index::GYRO_Z_BIAS];
 
-/// The coefficients come first; then, for each run, what its turn-on adds to the constant
-/// drifts, if turn-ons differ.
+/// Turn-on sigma of a gyro whose turn-ons are declared equal while those of others differ.
+const SAME_DEG_PER_H: f64 = 1e-9;
+
+/// What is known of the site but for an error, in the order in which the model has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SiteQuantity {
+    /// Local gravity in the unit of the data, relative.
+    Gravity,
+    /// Astronomic latitude, deg.
+    Latitude,
+    /// Sidereal rotation rate of the Earth, relative.
+    EarthRate,
+}
+
+impl SiteQuantity {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Gravity, Self::Latitude, Self::EarthRate];
+
+    /// The standard deviation that the bench declares.
+    #[must_use]
+    pub fn declared_sigma(self, bench: &Bench) -> Option<f64> {
+        match self {
+            Self::Gravity => bench.uncertainty.gravity_relative_sigma,
+            Self::Latitude => bench.uncertainty.latitude_sigma_deg,
+            Self::EarthRate => bench.uncertainty.earth_rate_relative_sigma,
+        }
+    }
+
+    /// An error of which the effect is told where no sigma is declared: 1″ of latitude, a part in
+    /// 10⁶ of gravity (1 mGal), and of Earth rate 1e-8, its variation with the length of day.
+    #[must_use]
+    pub fn small_error(self) -> f64 {
+        match self {
+            Self::Gravity => 1e-6,
+            Self::Latitude => 1.0 / 3600.0,
+            Self::EarthRate => 1e-8,
+        }
+    }
+
+    /// Index among the model's parameters.
+    fn parameter(self) -> usize {
+        match self {
+            Self::Gravity => index::SITE_GRAVITY,
+            Self::Latitude => index::SITE_LATITUDE,
+            Self::EarthRate => index::SITE_EARTH_RATE,
+        }
+    }
+}
+
+/// The coefficients come first, then the errors of each site, then, for each run, what its
+/// turn-on adds to the constant drifts, if turn-ons differ.
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
     pub(crate) unknowns: Vec<Unknown>,
+    /// Index of the first unknown of each run's site.
+    sites: Vec<usize>,
     /// Index of the first turn-on of each run.
     pub(crate) turn_ons: Vec<Option<usize>>,
 }
@@ -26,11 +74,6 @@ pub(crate) struct Layout {
 impl Layout {
     /// For runs on these benches; the first one's prior holds for all.
     pub(crate) fn new(benches: &[&Bench]) -> Self {
-        let estimated = |sigma| Unknown {
-            prior: 0.0,
-            sigma,
-            considered: false,
-        };
         let turn_on = benches
             .first()
             .map_or([0.0; 3], |bench| bench.prior.turn_on_sigma_deg_per_h);
@@ -38,29 +81,51 @@ impl Layout {
         let mut prior = benches.first().map_or([1.0; PARAMETERS], |bench| {
             level(bench).drift_sigma.to_array()
         });
-        if differ {
-            // The prior of the mean over turn-ons; `level` gives that of one turn-on.
-            if let Some(bench) = benches.first() {
-                for (axis, index) in BIASES.into_iter().enumerate() {
-                    prior[index] = bench.prior.bias_sigma_deg_per_h[axis];
-                }
+        if let (true, Some(bench)) = (differ, benches.first()) {
+            // `level` gives the prior of one turn-on; this is that of their mean.
+            for (axis, bias) in BIASES.into_iter().enumerate() {
+                prior[bias] = bench.prior.bias_sigma_deg_per_h[axis];
             }
         }
-        let mut unknowns: Vec<Unknown> = prior.into_iter().map(estimated).collect();
+        let mut unknowns: Vec<Unknown> = prior.into_iter().map(Unknown::estimated).collect();
+        let mut sites = Vec::with_capacity(benches.len());
+        for (run, bench) in benches.iter().enumerate() {
+            let same = benches[..run].iter().position(|other| {
+                (other.latitude_deg, other.gravity) == (bench.latitude_deg, bench.gravity)
+            });
+            sites.push(match same {
+                Some(other) => sites[other],
+                None => {
+                    let first = unknowns.len();
+                    unknowns.extend(
+                        SiteQuantity::ALL
+                            .map(|quantity| Unknown::considered(quantity.declared_sigma(bench))),
+                    );
+                    first
+                }
+            });
+        }
         let mut turn_ons = vec![None; benches.len()];
         if differ {
             for first in &mut turn_ons {
                 *first = Some(unknowns.len());
-                // A gyro that does not change keeps its place with a sigma that is next to none.
-                unknowns.extend(turn_on.map(|sigma| estimated(sigma.max(SAME_DEG_PER_H))));
+                unknowns.extend(turn_on.map(|sigma| Unknown::estimated(sigma.max(SAME_DEG_PER_H))));
             }
         }
-        Self { unknowns, turn_ons }
+        Self {
+            unknowns,
+            sites,
+            turn_ons,
+        }
     }
 
     /// For each parameter of the model in a run, the unknowns whose sum it is.
     pub(crate) fn sums(&self, run: usize) -> Vec<Vec<usize>> {
-        let mut sums: Vec<Vec<usize>> = (0..PARAMETERS).map(|index| vec![index]).collect();
+        let mut sums: Vec<Vec<usize>> = (0..PARAMETERS).map(|parameter| vec![parameter]).collect();
+        sums.resize(gyrocal::Surveyed::PARAMETERS, Vec::new());
+        for (offset, quantity) in SiteQuantity::ALL.into_iter().enumerate() {
+            sums[quantity.parameter()].push(self.sites[run] + offset);
+        }
         if let Some(first) = self.turn_ons[run] {
             for (axis, bias) in BIASES.into_iter().enumerate() {
                 sums[bias].push(first + axis);
@@ -68,7 +133,13 @@ impl Layout {
         }
         sums
     }
-}
 
-/// Turn-on sigma of a gyro whose turn-ons are declared equal while others differ.
-const SAME_DEG_PER_H: f64 = 1e-9;
+    /// Index of the first site's quantity among the unknowns.
+    pub(crate) fn site_unknown(&self, quantity: SiteQuantity) -> usize {
+        self.sites[0]
+            + SiteQuantity::ALL
+                .iter()
+                .position(|q| *q == quantity)
+                .unwrap_or(0)
+    }
+}

@@ -29,19 +29,29 @@
 
 mod attitude;
 mod batch;
+mod begin;
 mod calibrate;
 mod error;
 mod fit;
 mod layout;
+mod noise;
+mod observability;
+mod result;
+mod robust;
 mod run;
 mod settings;
 mod solve;
 mod start;
 mod streaming;
+mod uncertainty;
 
-pub use calibrate::{Calibration, CoefficientEstimate, Method, Options, calibrate, calibrate_runs};
+pub use calibrate::{Method, Options, calibrate, calibrate_runs};
 pub use error::CalibrationError;
 pub use fit::{Fit, Verdict, chi_square_band};
+pub use layout::SiteQuantity;
+pub use noise::{NoiseEstimate, NoiseRatio};
+pub use observability::Undetermined;
+pub use result::{AzimuthSearch, Calibration, CoefficientEstimate, RunResult, SiteInfluence};
 pub use run::Run;
 pub use settings::settings;
 

@@ -1,7 +1,7 @@
 //! A record as the batch engine reads it.
 
-use gyrocal::Chart;
 use gyrocal::estimation::batch::Series;
+use gyrocal::{Chart, ChartInputs};
 use gyrocal_record::{Bench, Record};
 
 /// A record with the bench it was taken on: one turn-on of the platform.
@@ -34,9 +34,14 @@ impl<'a> Rows<'a> {
             weights: None,
         }
     }
+
+    /// Standard deviation of an output whose weight is 1.
+    pub(crate) fn declared_noise_g(&self) -> [f64; 3] {
+        self.variance_g2.map(f64::sqrt)
+    }
 }
 
-impl Series<Chart<f64>, 3> for Rows<'_> {
+impl<I: ChartInputs<f64>> Series<Chart<f64, I>, 3> for Rows<'_> {
     fn rows(&self) -> usize {
         self.rows
     }

@@ -2,7 +2,7 @@
 
 use gyrocal::estimation::batch::{Linearisation, Manifold, NoColumns, Reduced};
 use gyrocal::trajectory::{Orientation, turned};
-use gyrocal::{Chart, EstimationError, Integration};
+use gyrocal::{Chart, ChartInputs, EstimationError, Integration};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::run::Rows;
@@ -25,27 +25,59 @@ pub(crate) struct Unknown {
     pub(crate) considered: bool,
 }
 
+impl Unknown {
+    /// Estimated from zero.
+    pub(crate) fn estimated(sigma: f64) -> Self {
+        Self {
+            prior: 0.0,
+            sigma,
+            considered: false,
+        }
+    }
+
+    /// Held at zero; 0 is the sigma of what counts as known.
+    pub(crate) fn considered(sigma: Option<f64>) -> Self {
+        Self {
+            prior: 0.0,
+            sigma: sigma.unwrap_or(0.0),
+            considered: true,
+        }
+    }
+}
+
 /// One record within the joint problem.
-pub(crate) struct Leg<'a> {
+pub(crate) struct Leg<'a, I> {
     pub(crate) rows: Rows<'a>,
-    pub(crate) chart: Chart<f64>,
+    pub(crate) chart: Chart<f64, I>,
     pub(crate) noise_density: [f64; 3],
     /// Attitude that the bench declares for the first row.
     pub(crate) prior: Orientation,
     pub(crate) prior_covariance: [[f64; 3]; 3],
     /// Attitude at each row.
     pub(crate) points: Vec<Orientation>,
-    /// For each parameter of the model the unknowns whose sum it is.
+    /// For each parameter of the model the unknowns whose sum it is; none if it is zero for
+    /// good.
     pub(crate) sums: Vec<Vec<usize>>,
 }
 
+impl<I> Leg<'_, I> {
+    /// The sums of those parameters that are columns.
+    fn active(&self) -> Vec<&[usize]> {
+        self.sums
+            .iter()
+            .filter(|unknowns| !unknowns.is_empty())
+            .map(Vec::as_slice)
+            .collect()
+    }
+}
+
 /// All records, and what they have in common.
-pub(crate) struct Problem<'a, D> {
+pub(crate) struct Problem<'a, D, I> {
     pub(crate) model: &'a D,
     pub(crate) integration: Integration,
     pub(crate) longest_step_s: f64,
     pub(crate) unknowns: Vec<Unknown>,
-    pub(crate) legs: Vec<Leg<'a>>,
+    pub(crate) legs: Vec<Leg<'a, I>>,
     /// Every unknown's present value.
     pub(crate) values: Vec<f64>,
 }
@@ -63,8 +95,6 @@ pub(crate) struct Solution {
     pub(crate) legs: Vec<Reduced<3>>,
     /// Passes that were made.
     pub(crate) iterations: usize,
-    /// Length of the last step in standard deviations.
-    pub(crate) last_step: f64,
 }
 
 /// Why there is no solution.
@@ -95,9 +125,10 @@ struct Step {
     length: f64,
 }
 
-impl<D> Problem<'_, D>
+impl<D, I> Problem<'_, D, I>
 where
-    D: Manifold<3, 3, Inputs = Chart<f64>, Point = Orientation>,
+    D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
+    I: ChartInputs<f64>,
 {
     /// Iterates to convergence, in at most `most_iterations` steps. `progress` is called after
     /// each.
@@ -139,7 +170,7 @@ where
             }
             progress(iterations);
             if last {
-                return Ok(self.solution(point, iterations, step.length));
+                return Ok(self.solution(point, iterations));
             }
             if iterations == most_iterations {
                 return Err(Failure::NotConverged {
@@ -163,6 +194,7 @@ where
         self.unknowns
             .iter()
             .zip(&self.values)
+            .filter(|(unknown, _)| !unknown.considered)
             .map(|(unknown, value)| ((value - unknown.prior) / unknown.sigma).powi(2))
             .sum()
     }
@@ -180,20 +212,22 @@ where
                 .with_leg(index, &parameters, |pass| pass.reduce(|_| ()))
                 .map_err(|error| Failure::Pass(index, error))?;
             point.trajectory_cost += reduced.trajectory_cost;
-            add_gram(&mut point.gram, &reduced.gram, &self.legs[index].sums);
+            add_gram(&mut point.gram, &reduced.gram, &self.legs[index].active());
             point.legs.push(reduced);
         }
         Ok(point)
     }
 
-    fn with_leg<R>(
+    pub(crate) fn with_leg<R>(
         &self,
         index: usize,
         parameters: &[f64],
         pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, NoColumns, 3, 3>) -> R,
     ) -> R {
         let leg = &self.legs[index];
-        let active: Vec<usize> = (0..parameters.len()).collect();
+        let active: Vec<usize> = (0..parameters.len())
+            .filter(|parameter| !leg.sums[*parameter].is_empty())
+            .collect();
         pass(&Linearisation {
             model: self.model,
             inputs: leg.chart,
@@ -238,7 +272,7 @@ where
             .map(|index| {
                 let parameters = self.parameters(index);
                 let change: Vec<f64> = self.legs[index]
-                    .sums
+                    .active()
                     .iter()
                     .map(|unknowns| unknowns.iter().map(|unknown| values[*unknown]).sum())
                     .collect();
@@ -282,7 +316,7 @@ where
             .collect()
     }
 
-    fn solution(&self, point: Point, iterations: usize, last_step: f64) -> Solution {
+    fn solution(&self, point: Point, iterations: usize) -> Solution {
         let count = self.unknowns.len();
         let sum = |of: fn(&Reduced<3>) -> usize| point.legs.iter().map(of).sum();
         Solution {
@@ -293,13 +327,12 @@ where
             log_variance: point.legs.iter().map(|leg| leg.log_variance).sum(),
             legs: point.legs,
             iterations,
-            last_step,
         }
     }
 }
 
 /// Adds a record's Gram matrix, whose columns are the model's parameters, to that of the unknowns.
-fn add_gram(total: &mut DMatrix<f64>, gram: &[f64], sums: &[Vec<usize>]) {
+fn add_gram(total: &mut DMatrix<f64>, gram: &[f64], sums: &[&[usize]]) {
     let size = sums.len() + 1;
     // Column 0 is the residual in both.
     let targets = |column: usize| -> Vec<usize> {

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use gyrocal_scalar::Scalar;
 
-use super::step::{map_columns, sandwich};
+use super::step::{add, map_columns, sandwich};
 use crate::error::EstimationError;
 
 /// Mean, sensitivities and covariance of the deviation of the moving states from the
@@ -48,14 +48,7 @@ impl<const M: usize> Conditional<M> {
     pub(crate) fn predict(&mut self, transition: &[[f64; M]; M], noise: &[[f64; M]; M]) {
         map_columns(transition, &mut self.columns, self.stride);
         self.covariance = sandwich(transition, &self.covariance);
-        for (sum, value) in self
-            .covariance
-            .as_flattened_mut()
-            .iter_mut()
-            .zip(noise.as_flattened())
-        {
-            *sum += value;
-        }
+        add(&mut self.covariance, noise);
     }
 
     /// Takes one output. `whitened` holds the residual at the linearisation point and minus the

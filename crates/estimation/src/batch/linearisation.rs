@@ -7,7 +7,8 @@ use gyrocal_scalar::Scalar;
 
 use super::filter::{Conditional, backward, cholesky, forward};
 use super::gram::Gram;
-use super::step::Stepper;
+use super::noise::{NoiseFilter, NoiseScore};
+use super::step::{Step, Stepper};
 use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 use crate::transition::Integration;
@@ -85,6 +86,20 @@ pub struct Smoothed<const M: usize> {
     pub corrections: Vec<[f64; M]>,
 }
 
+impl<D, S, C, const M: usize, const Y: usize> Clone for Linearisation<'_, D, S, C, M, Y>
+where
+    D: Manifold<M, Y>,
+{
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<D, S, C, const M: usize, const Y: usize> Copy for Linearisation<'_, D, S, C, M, Y> where
+    D: Manifold<M, Y>
+{
+}
+
 impl<D, S, C, const M: usize, const Y: usize> Linearisation<'_, D, S, C, M, Y>
 where
     D: Manifold<M, Y>,
@@ -116,11 +131,11 @@ where
         };
         for row in 0..self.points.len() {
             let before = reduced.values;
-            pass.observe(row, |whitened, cost| {
+            pass.observe(row, |whitened, taken| {
                 gram.add(whitened.columns);
                 reduced.values += 1;
                 reduced.log_variance += 2.0 * Scalar::ln(whitened.deviation);
-                reduced.trajectory_cost += cost;
+                reduced.trajectory_cost += taken.cost;
                 watch(whitened);
             })?;
             reduced.rows += usize::from(reduced.values > before);
@@ -133,6 +148,38 @@ where
         reduced.last = pass.filter.columns;
         reduced.last_covariance = pass.filter.covariance;
         Ok(reduced)
+    }
+
+    /// What the record says of its noise: gradient and information of the likelihood, the
+    /// trajectory and all columns held where they are. `factors` multiply the declared
+    /// variances: first those of the outputs, then those of the noise inputs.
+    ///
+    /// # Errors
+    /// As [`Self::reduce`], and [`EstimationError::InvalidArgument`] if there is not one factor
+    /// for each output and each noise input.
+    pub fn noise_score(&self, factors: &[f64]) -> Result<NoiseScore, EstimationError> {
+        if factors.len() != M + Y {
+            return Err(EstimationError::InvalidArgument {
+                expected: "one factor for each output and each noise input",
+            });
+        }
+        let (outputs, inputs) = factors.split_at(Y);
+        let mut scaled = *self;
+        for (density, factor) in scaled.noise_density.iter_mut().zip(inputs) {
+            *density *= factor;
+        }
+        let none = vec![0.0; self.active.len() + self.further.count()];
+        let mut pass = Pass::new(&scaled, 0, Some(&none))?;
+        pass.factors.copy_from_slice(outputs);
+        let mut filter = NoiseFilter::<M>::new(Y);
+        for row in 0..self.points.len() {
+            pass.observe(row, |whitened, taken| filter.take(whitened, taken))?;
+            if row + 1 < self.points.len() {
+                let (step, _) = pass.advance(row)?;
+                filter.predict(&step);
+            }
+        }
+        Ok(filter.score)
     }
 
     /// The correction of every point when the columns change by `change`.
@@ -149,8 +196,8 @@ where
             corrections[row] = pass.filter.mean();
             if row + 1 < rows {
                 let filtered = pass.filter.covariance;
-                let (transition, _) = pass.advance(row)?;
-                let gain = smoother_gain(&filtered, &transition, &pass.filter.covariance)
+                let (step, _) = pass.advance(row)?;
+                let gain = smoother_gain(&filtered, &step.moving, &pass.filter.covariance)
                     .ok_or(NOT_DRIVEN)?;
                 let predicted = pass.filter.mean();
                 for i in 0..M {
@@ -203,6 +250,17 @@ fn squared<const M: usize>(matrix: &[[f64; M]; M], vector: &[f64; M]) -> Option<
     Some(forward(&lower, vector).iter().map(|x| x * x).sum())
 }
 
+/// How an output was taken: what the filter does not keep.
+pub(crate) struct Taken<const M: usize> {
+    /// Square of the residual at the linearisation point over the output's noise variance.
+    cost: f64,
+    pub(crate) jacobian: [f64; M],
+    /// Of the output's noise.
+    pub(crate) variance: f64,
+    /// Of the moving states, before.
+    pub(crate) covariance: [[f64; M]; M],
+}
+
 /// A pass in progress.
 struct Pass<'a, D, S, C, const M: usize, const Y: usize>
 where
@@ -214,6 +272,8 @@ where
     /// Inputs at the rows.
     inputs: D::Inputs,
     prior_cost: f64,
+    /// What the declared variances of the outputs are multiplied by.
+    factors: [f64; Y],
     /// Change of the columns; all are then folded into column 0.
     change: Option<&'a [f64]>,
     d_parameters: Vec<f64>,
@@ -273,6 +333,7 @@ where
             filter,
             inputs: of.inputs,
             prior_cost,
+            factors: [1.0; Y],
             change,
             d_parameters: vec![0.0; Y * of.model.output_parameters()],
             drive: vec![0.0; M * further],
@@ -280,12 +341,11 @@ where
         })
     }
 
-    /// Takes the outputs of a row; `used` gets each of them with what it adds to the cost of the
-    /// trajectory.
+    /// Takes the outputs of a row; `used` gets each of them, and how it was taken.
     fn observe(
         &mut self,
         row: usize,
-        mut used: impl FnMut(&Whitened<'_>, f64),
+        mut used: impl FnMut(&Whitened<'_>, &Taken<M>),
     ) -> Result<(), EstimationError> {
         let of = self.of;
         let measured = of.series.measured(row);
@@ -314,7 +374,10 @@ where
                 &mut self.d_parameters,
             )
         };
-        let variance = of.series.noise_variance(row);
+        let mut variance = of.series.noise_variance(row);
+        for (variance, factor) in variance.iter_mut().zip(self.factors) {
+            *variance *= factor;
+        }
         let active = of.active.len();
         for output in 0..Y {
             if measured[output].is_nan() {
@@ -329,7 +392,12 @@ where
             for (column, direct) in self.direct.iter().enumerate() {
                 residual -= direct * of.further.amplitude(column);
             }
-            let cost = residual * residual / variance[output];
+            let taken = Taken {
+                cost: residual * residual / variance[output],
+                jacobian: d_moving[output],
+                variance: variance[output],
+                covariance: self.filter.covariance,
+            };
             let direct_parameters = &self.d_parameters[output * q..(output + 1) * q];
             let whitened = &mut self.filter.whitened;
             whitened[0] = residual;
@@ -355,14 +423,14 @@ where
                 deviation,
                 columns: &self.filter.whitened,
             };
-            used(&seen, cost);
+            used(&seen, &taken);
         }
         Ok(())
     }
 
     /// Goes on to the next row; returns the transition and what the noise's part adds to the
     /// cost of the trajectory.
-    fn advance(&mut self, row: usize) -> Result<([[f64; M]; M], f64), EstimationError> {
+    fn advance(&mut self, row: usize) -> Result<(Step<D::Point, M>, f64), EstimationError> {
         let of = self.of;
         let step = self
             .stepper
@@ -407,6 +475,6 @@ where
             target[0] += mean - jump[i];
         }
         let cost = squared(&step.noise, &jump).ok_or(NOT_DRIVEN)?;
-        Ok((step.moving, cost))
+        Ok((step, cost))
     }
 }

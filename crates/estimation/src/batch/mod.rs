@@ -20,6 +20,7 @@ mod columns;
 mod filter;
 mod gram;
 mod linearisation;
+mod noise;
 
 mod step;
 
@@ -27,6 +28,7 @@ pub use crate::manifold::Manifold;
 pub use columns::{Columns, NoColumns};
 pub use gram::Gram;
 pub use linearisation::{Linearisation, Reduced, Smoothed, Whitened};
+pub use noise::NoiseScore;
 
 /// The rows of a record, and what the model's inputs are over and at them.
 pub trait Series<I, const Y: usize> {

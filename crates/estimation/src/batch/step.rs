@@ -15,6 +15,8 @@ pub(crate) struct Step<P, const M: usize> {
     pub(crate) moving: [[f64; M]; M],
     /// Covariance of what the noise adds over the step.
     pub(crate) noise: [[f64; M]; M],
+    /// The share of each noise input in it.
+    pub(crate) shares: [[[f64; M]; M]; M],
 }
 
 /// Carries points over steps; owns the numbers that a step works on.
@@ -86,6 +88,7 @@ where
             predicted: *point,
             moving: identity(),
             noise: [[0.0; M]; M],
+            shares: [[[0.0; M]; M]; M],
         };
         for index in 0..count {
             let from_s = start_s + part_s * index as f64;
@@ -121,27 +124,30 @@ where
                     }
                 }
             }
-            let variance = self.noise_density.map(|density| density / part_s);
-            let added = weighted_square(&transition.noise, &variance);
-            if index == 0 {
-                step.moving = transition.moving;
-                step.noise = added;
-            } else {
-                step.noise = sandwich(&transition.moving, &step.noise);
-                for (sum, value) in step
-                    .noise
-                    .as_flattened_mut()
-                    .iter_mut()
-                    .zip(added.as_flattened())
-                {
-                    *sum += value;
-                }
+            if index > 0 {
                 map_columns(&transition.moving, &mut self.columns, p);
                 for (sum, value) in self.columns.iter_mut().zip(&self.part) {
                     *sum += value;
                 }
                 step.moving = product(&transition.moving, &step.moving);
+                for share in &mut step.shares {
+                    *share = sandwich(&transition.moving, share);
+                }
+            } else {
+                step.moving = transition.moving;
             }
+            for (input, share) in step.shares.iter_mut().enumerate() {
+                let variance = self.noise_density[input] / part_s;
+                for i in 0..M {
+                    for j in 0..M {
+                        share[i][j] +=
+                            transition.noise[i][input] * variance * transition.noise[j][input];
+                    }
+                }
+            }
+        }
+        for share in &step.shares {
+            add(&mut step.noise, share);
         }
         step.predicted = self.model.point(&moving, &self.inputs);
         Ok(step)
@@ -187,19 +193,11 @@ pub(crate) fn sandwich<const M: usize>(a: &[[f64; M]; M], b: &[[f64; M]; M]) -> 
     result
 }
 
-/// a diag(w) aᵀ.
-fn weighted_square<const M: usize>(a: &[[f64; M]; M], w: &[f64; M]) -> [[f64; M]; M] {
-    let mut result = [[0.0; M]; M];
-    for i in 0..M {
-        for j in 0..=i {
-            let mut sum = 0.0;
-            for l in 0..M {
-                sum += a[i][l] * w[l] * a[j][l];
-            }
-            (result[i][j], result[j][i]) = (sum, sum);
-        }
+/// a += b.
+pub(crate) fn add<const M: usize>(a: &mut [[f64; M]; M], b: &[[f64; M]; M]) {
+    for (sum, value) in a.as_flattened_mut().iter_mut().zip(b.as_flattened()) {
+        *sum += value;
     }
-    result
 }
 
 /// Replaces the M rows of `columns` by their product with `map` from the left.

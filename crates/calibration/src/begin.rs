@@ -1,0 +1,210 @@
+//! Where Gauss-Newton steps begin: at a filtered trajectory near enough to the solution.
+
+use gyrocal::trajectory::{Orientation, rotation_between};
+use gyrocal::{Anchored, Chart, Drift, Settings, Surveyed};
+
+use crate::attitude::{InitialAttitude, Trial, trials};
+use crate::batch::{BatchProblem, MOST_ITERATIONS};
+use crate::calibrate::Options;
+use crate::error::CalibrationError;
+use crate::layout::Layout;
+use crate::result::AzimuthSearch;
+use crate::run::{Rows, Run};
+use crate::solve::{Leg, Problem};
+use crate::start::{Start, filtered};
+use crate::uncertainty::Uncertainty;
+
+/// A mean NIS beyond which one pass of the filter may have lost its way.
+const ASTRAY: f64 = 10.0;
+
+/// Rows of the first window of a start by growing windows.
+const FIRST_WINDOW: usize = 16;
+
+/// Rows over which azimuths are compared: two days of minutes.
+const COMPARED_ROWS: usize = 2880;
+
+/// Azimuths that are followed to their solution.
+const FOLLOWED: usize = 3;
+
+/// Solutions whose first attitudes differ by less are one, rad.
+const SAME_ATTITUDE_RAD: f64 = 0.02;
+
+/// A start for one run, the attitude prior that goes with it, and how its azimuth was found.
+pub(crate) struct Beginning {
+    pub(crate) prior: InitialAttitude,
+    pub(crate) start: Start,
+    pub(crate) azimuth: Option<AzimuthSearch>,
+}
+
+pub(crate) fn begin(
+    run: &Run<'_>,
+    settings: &Settings<f64>,
+    options: &Options,
+) -> Result<Beginning, CalibrationError> {
+    let trials = trials(run.record, run.bench)?;
+    if let [only] = trials.as_slice() {
+        return Ok(Beginning {
+            prior: only.prior,
+            start: start(run, run.record.len(), settings, only, options)?,
+            azimuth: None,
+        });
+    }
+    let (chosen, search) = search(run, settings, &trials, options)?;
+    Ok(Beginning {
+        prior: chosen.prior,
+        start: start(run, run.record.len(), settings, &chosen, options)?,
+        azimuth: Some(search),
+    })
+}
+
+pub(crate) fn leg<'a>(
+    run: &Run<'a>,
+    rows: usize,
+    settings: &Settings<f64>,
+    prior: &InitialAttitude,
+    points: Vec<Orientation>,
+    sums: Vec<Vec<usize>>,
+) -> Leg<'a, gyrocal::generated::surveyed::SurveyedInputs<f64>> {
+    Leg {
+        rows: Rows::new(run.record, rows, [settings.accel_noise_g; 3]),
+        chart: Chart::for_model(settings.site),
+        // The declared noise is held over a minute.
+        noise_density: [settings.drift_noise_deg_per_h.powi(2) * 60.0; 3],
+        prior: prior.orientation,
+        prior_covariance: prior.covariance,
+        points,
+        sums,
+    }
+}
+
+/// One run by itself, to be solved over its first rows.
+fn alone<'a>(
+    run: &Run<'a>,
+    rows: usize,
+    settings: &Settings<f64>,
+    prior: &InitialAttitude,
+    start: &Start,
+    options: &Options,
+) -> BatchProblem<'a> {
+    let layout = Layout::new(&[run.bench]);
+    let mut values = vec![0.0; layout.unknowns.len()];
+    values[..start.drift.len()].copy_from_slice(&start.drift);
+    Problem {
+        model: &Anchored(Surveyed),
+        integration: options.integration,
+        longest_step_s: options.longest_step_s,
+        legs: vec![leg(
+            run,
+            rows,
+            settings,
+            prior,
+            start.points.clone(),
+            layout.sums(0),
+        )],
+        unknowns: layout.unknowns,
+        values,
+    }
+}
+
+/// One pass of the filter if that finds its way; else windows that grow by half, each solved
+/// before the next begins, so that linearisation never reaches far beyond what is known.
+fn start(
+    run: &Run<'_>,
+    all: usize,
+    settings: &Settings<f64>,
+    trial: &Trial,
+    options: &Options,
+) -> Result<Start, CalibrationError> {
+    if let Ok(start) = filtered(run.record, all, settings, &trial.start)
+        && start.nis_mean < ASTRAY
+        && alone(run, all, settings, &trial.prior, &start, options).solve(MOST_ITERATIONS, |_| ()).is_ok()
+    {
+        return Ok(start);
+    }
+    let mut settings_now = *settings;
+    let mut attitude = trial.start;
+    let mut window = FIRST_WINDOW;
+    loop {
+        let rows = window.min(all);
+        let started = filtered(run.record, rows, &settings_now, &attitude)?;
+        if rows == all {
+            return Ok(started);
+        }
+        let mut problem = alone(run, rows, settings, &trial.prior, &started, options);
+        // A window that does not converge leaves what it had: the next has more to go by.
+        if let Ok(solution) = problem.solve(MOST_ITERATIONS, |_| ())
+            && let Some(uncertainty) = Uncertainty::new(&problem.unknowns, &solution)
+        {
+            attitude.orientation = problem.legs[0].points[0];
+            let mut sigma = settings.drift_sigma.to_array();
+            for (i, sigma) in sigma.iter_mut().enumerate() {
+                // Three times: linearisation errors of the window are not in its covariance.
+                *sigma = sigma.min(3.0 * uncertainty.conditional[(i, i)].sqrt());
+            }
+            settings_now.drift = Drift::from_array(core::array::from_fn(|i| problem.values[i]));
+            settings_now.drift_sigma = Drift::from_array(sigma);
+        }
+        // Half as long again: over twice the time a wide prior goes astray.
+        window += window / 2;
+    }
+}
+
+/// Tries azimuths on the first rows: the filter ranks them, the best are followed to their
+/// solutions, and the likeliest solution is taken.
+fn search(
+    run: &Run<'_>,
+    settings: &Settings<f64>,
+    trials: &[Trial],
+    options: &Options,
+) -> Result<(Trial, AzimuthSearch), CalibrationError> {
+    let rows = run.record.len().min(COMPARED_ROWS);
+    let mut passes: Vec<(&Trial, Start)> = trials
+        .iter()
+        .filter_map(|trial| {
+            let start = filtered(run.record, rows, settings, &trial.start).ok()?;
+            Some((trial, start))
+        })
+        .collect();
+    passes.sort_by(|a, b| a.1.nis_mean.total_cmp(&b.1.nis_mean));
+    let mut solutions: Vec<(f64, Orientation, &Trial)> = Vec::new();
+    for (trial, start) in passes.iter().take(FOLLOWED) {
+        let mut problem = alone(run, rows, settings, &trial.prior, start, options);
+        let Ok(solution) = problem.solve(MOST_ITERATIONS, |_| ()) else {
+            continue;
+        };
+        let Some(uncertainty) = Uncertainty::new(&problem.unknowns, &solution) else {
+            continue;
+        };
+        let log_likelihood =
+            -0.5 * (solution.cost + solution.log_variance - uncertainty.log_determinant());
+        solutions.push((log_likelihood, problem.legs[0].points[0], trial));
+    }
+    solutions.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let Some((best, orientation, trial)) = solutions.first() else {
+        return Err(CalibrationError::NoAzimuth {
+            starts: trials.len(),
+        });
+    };
+    let other = solutions.iter().skip(1).find_map(|(likelihood, other, _)| {
+        let turn = rotation_between(orientation, other);
+        let angle = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let about_up: f64 = turn.iter().zip(&orientation[1]).map(|(a, b)| a * b).sum();
+        (angle > SAME_ATTITUDE_RAD).then_some((best - likelihood, about_up))
+    });
+    let (margin, other_rad) = other.unwrap_or((f64::INFINITY, 0.0));
+    let at_solution = |attitude: &InitialAttitude| InitialAttitude {
+        orientation: *orientation,
+        ..*attitude
+    };
+    Ok((
+        Trial {
+            prior: at_solution(&trial.prior),
+            start: at_solution(&trial.start),
+        },
+        AzimuthSearch {
+            starts: trials.len(),
+            margin,
+            other_rad,
+        },
+    ))
+}
