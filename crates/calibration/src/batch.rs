@@ -32,49 +32,20 @@ pub(crate) fn calibrate(
 ) -> Result<Calibration, CalibrationError> {
     let benches: Vec<_> = runs.iter().map(|run| run.bench).collect();
     let layout = Layout::new(&benches);
-    let mut problem = Problem {
-        model: &Anchored(Surveyed),
-        integration: options.integration,
-        longest_step_s: options.longest_step_s,
-        unknowns: layout.unknowns.clone(),
-        legs: Vec::with_capacity(runs.len()),
-        values: vec![0.0; layout.unknowns.len()],
-    };
-    let mut weights = [0.0; PARAMETERS];
-    let mut azimuths = Vec::with_capacity(runs.len());
-    for (index, run) in runs.iter().enumerate() {
-        let settings = Settings {
-            integration: options.integration,
-            recentring: Recentring::EveryStep,
-            longest_step_s: options.longest_step_s,
-            ..level(run.bench)
-        };
-        let beginning = begin(run, &settings, options)?;
-        let start = beginning.start;
-        for i in 0..PARAMETERS {
-            let weight = start.sigma[i].powi(-2);
-            weights[i] += weight;
-            problem.values[i] += (start.drift[i] - problem.values[i]) * weight / weights[i];
+    let solve = |careful: bool, progress: &mut dyn FnMut(usize)| {
+        let (mut problem, azimuths) = problem(runs, &layout, options, careful, progress)?;
+        let (solution, bounded) = match options.outlier_bound {
+            Some(bound) => robust::solve(&mut problem, bound, MOST_ITERATIONS),
+            None => problem
+                .solve(MOST_ITERATIONS, |_| ())
+                .map(|solution| (solution, vec![0; runs.len()])),
         }
-        let prior = beginning.prior;
-        problem.legs.push(leg(
-            run,
-            run.record.len(),
-            &settings,
-            &prior,
-            start.points,
-            layout.sums(index),
-        ));
-        azimuths.push(beginning.azimuth);
-        progress(run.record.len());
-    }
-    let (solution, bounded) = match options.outlier_bound {
-        Some(bound) => robust::solve(&mut problem, bound, MOST_ITERATIONS),
-        None => problem
-            .solve(MOST_ITERATIONS, |_| ())
-            .map(|solution| (solution, vec![0; runs.len()])),
-    }
-    .map_err(explain)?;
+        .map_err(explain)?;
+        Ok::<_, CalibrationError>((problem, azimuths, solution, bounded))
+    };
+    // One pass of the filter is start enough for nearly every record.
+    let (problem, azimuths, solution, bounded) =
+        solve(false, progress).or_else(|_| solve(true, progress))?;
     let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
         .ok_or(CalibrationError::NotPositiveDefinite)?;
     let runs = run_results(&problem, &layout, &uncertainty, azimuths, &bounded, options)?;
@@ -100,6 +71,53 @@ pub(crate) fn calibrate(
             &prior_sigma,
         ),
     })
+}
+
+/// The joint problem at its start.
+fn problem<'a>(
+    runs: &[Run<'a>],
+    layout: &Layout,
+    options: &Options,
+    careful: bool,
+    progress: &mut dyn FnMut(usize),
+) -> Result<(BatchProblem<'a>, Vec<Option<AzimuthSearch>>), CalibrationError> {
+    let mut problem = Problem {
+        model: &Anchored(Surveyed),
+        integration: options.integration,
+        longest_step_s: options.longest_step_s,
+        unknowns: layout.unknowns.clone(),
+        legs: Vec::with_capacity(runs.len()),
+        values: vec![0.0; layout.unknowns.len()],
+    };
+    let mut weights = [0.0; PARAMETERS];
+    let mut azimuths = Vec::with_capacity(runs.len());
+    for (index, run) in runs.iter().enumerate() {
+        let settings = Settings {
+            integration: options.integration,
+            recentring: Recentring::EveryStep,
+            longest_step_s: options.longest_step_s,
+            ..level(run.bench)
+        };
+        let beginning = begin(run, &settings, options, careful)?;
+        let start = beginning.start;
+        for (i, sum) in weights.iter_mut().enumerate() {
+            let weight: f64 = start.sigma[i].powi(-2);
+            *sum += weight;
+            problem.values[i] += (start.drift[i] - problem.values[i]) * weight / *sum;
+        }
+        let prior = beginning.prior;
+        problem.legs.push(leg(
+            run,
+            run.record.len(),
+            &settings,
+            &prior,
+            start.points,
+            layout.sums(index),
+        ));
+        azimuths.push(beginning.azimuth);
+        progress(run.record.len());
+    }
+    Ok((problem, azimuths))
 }
 
 fn run_results(

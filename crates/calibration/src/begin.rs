@@ -36,23 +36,25 @@ pub(crate) struct Beginning {
     pub(crate) azimuth: Option<AzimuthSearch>,
 }
 
+/// Finds where to begin; `careful` goes by growing windows whatever the filter says.
 pub(crate) fn begin(
     run: &Run<'_>,
     settings: &Settings<f64>,
     options: &Options,
+    careful: bool,
 ) -> Result<Beginning, CalibrationError> {
     let trials = trials(run.record, run.bench)?;
     if let [only] = trials.as_slice() {
         return Ok(Beginning {
             prior: only.prior,
-            start: start(run, run.record.len(), settings, only, options)?,
+            start: start(run, run.record.len(), settings, only, options, careful)?,
             azimuth: None,
         });
     }
     let (chosen, search) = search(run, settings, &trials, options)?;
     Ok(Beginning {
         prior: chosen.prior,
-        start: start(run, run.record.len(), settings, &chosen, options)?,
+        start: start(run, run.record.len(), settings, &chosen, options, careful)?,
         azimuth: Some(search),
     })
 }
@@ -114,10 +116,11 @@ fn start(
     settings: &Settings<f64>,
     trial: &Trial,
     options: &Options,
+    careful: bool,
 ) -> Result<Start, CalibrationError> {
-    if let Ok(start) = filtered(run.record, all, settings, &trial.start)
+    if !careful
+        && let Ok(start) = filtered(run.record, all, settings, &trial.start)
         && start.nis_mean < ASTRAY
-        && alone(run, all, settings, &trial.prior, &start, options).solve(MOST_ITERATIONS, |_| ()).is_ok()
     {
         return Ok(start);
     }

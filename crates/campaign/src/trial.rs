@@ -1,0 +1,125 @@
+//! One simulated record, calibrated and held against its truth.
+
+use gyrocal_calibration::{Calibration, Options, Verdict, calibrate};
+use gyrocal_truth::{Scenario, Simulation, simulate};
+use nalgebra::{SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+use crate::error::CampaignError;
+
+/// What one run says of the estimator. Arrays are in the order of
+/// [`Coefficients::named`](gyrocal_truth::Coefficients::named).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// The coefficients that the gyros had.
+    pub truth: [f64; 9],
+    /// Estimate minus truth.
+    pub error: [f64; 9],
+    /// Reported standard deviations.
+    pub sigma: [f64; 9],
+    /// Whether the record, and not the prior, determined the coefficient.
+    pub determined: [bool; 9],
+    /// Standard deviations of the Cramér–Rao bound: prior included, along the true trajectory.
+    pub bound_sigma: Option<[f64; 9]>,
+    /// Normalised squared error of the nine coefficients together.
+    pub nees: f64,
+    /// That of the determined ones, with their own covariance.
+    pub nees_determined: f64,
+    /// Sum of the normalised innovations squared.
+    pub nis_sum: f64,
+    /// Accelerometer values used: the expectation of `nis_sum`.
+    pub values: usize,
+    /// Rows with a value.
+    pub rows: usize,
+    /// Whether the mean NIS lies in its own 99.9 % band.
+    pub consistent: bool,
+}
+
+impl Trial {
+    /// Simulates a scenario, calibrates its record and compares.
+    ///
+    /// # Errors
+    /// [`CampaignError::Simulation`], [`CampaignError::Calibration`], and
+    /// [`CampaignError::NotPositiveDefinite`] if the reported covariance has no inverse.
+    pub fn of(scenario: &Scenario, options: &Options) -> Result<Self, CampaignError> {
+        let simulation = simulate(scenario)?;
+        let calibration = calibrate(&simulation.record, &simulation.bench, options, |_| ())?;
+        Self::judge(&simulation, &calibration, bound_sigma(&simulation))
+    }
+
+    fn judge(
+        simulation: &Simulation,
+        calibration: &Calibration,
+        bound_sigma: Option<[f64; 9]>,
+    ) -> Result<Self, CampaignError> {
+        let named = simulation.truth.coefficients.named();
+        let truth = named.map(|(_, value, _)| value);
+        let coefficients = calibration.coefficients();
+        let error: [f64; 9] = core::array::from_fn(|i| coefficients[i].estimate - truth[i]);
+        let determined = coefficients.map(|coefficient| coefficient.determined);
+        let nees = |of: [bool; 9]| {
+            normalised_square(&error, &calibration.covariance, of)
+                .ok_or(CampaignError::NotPositiveDefinite)
+        };
+        let fit = &calibration.fit;
+        Ok(Self {
+            truth,
+            error,
+            sigma: coefficients.map(|coefficient| coefficient.sigma),
+            determined,
+            bound_sigma,
+            nees: nees([true; 9])?,
+            nees_determined: nees(determined)?,
+            nis_sum: fit.nis_sum(),
+            values: fit.values(),
+            rows: fit.rows(),
+            consistent: fit.verdict() == Verdict::Consistent,
+        })
+    }
+}
+
+/// The Cramér–Rao bound of a record, once there is a function for it.
+fn bound_sigma(_simulation: &Simulation) -> Option<[f64; 9]> {
+    None
+}
+
+/// eᵀ P⁻¹ e of some of the errors, with their own block of the covariance.
+fn normalised_square(error: &[f64; 9], covariance: &[[f64; 9]; 9], of: [bool; 9]) -> Option<f64> {
+    // The others take part with an error of 0 and a covariance of 1, which add nothing.
+    let covariance = SMatrix::<f64, 9, 9>::from_fn(|i, j| match (of[i] && of[j], i == j) {
+        (true, _) => covariance[i][j],
+        (false, true) => 1.0,
+        (false, false) => 0.0,
+    });
+    let error = SVector::<f64, 9>::from_fn(|i, _| if of[i] { error[i] } else { 0.0 });
+    Some(error.dot(&covariance.cholesky()?.solve(&error)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::normalised_square;
+
+    #[test]
+    fn the_normalised_square_of_a_part_uses_its_own_block() {
+        let mut covariance = [[0.0; 9]; 9];
+        for (i, row) in covariance.iter_mut().enumerate() {
+            row[i] = 4.0;
+        }
+        (covariance[0][1], covariance[1][0]) = (2.0, 2.0);
+        let error = [1.0; 9];
+        let mut of = [false; 9];
+        assert_eq!(normalised_square(&error, &covariance, of), Some(0.0));
+        of[0] = true;
+        assert_eq!(normalised_square(&error, &covariance, of), Some(0.25));
+        of[1] = true;
+        // The inverse of [4 2; 2 4] is [4 -2; -2 4] / 12: its elements sum to 1/3. The seven
+        // others add 1/4 each. Rounding of a handful of operations.
+        let pair = normalised_square(&error, &covariance, of);
+        assert!(pair.is_some_and(|found| (found - 1.0 / 3.0).abs() < 1e-15));
+        let all = normalised_square(&error, &covariance, [true; 9]);
+        assert!(all.is_some_and(|found| (found - 1.0 / 3.0 - 1.75).abs() < 1e-14));
+        covariance[0][1] = 4.1;
+        covariance[1][0] = 4.1;
+        assert_eq!(normalised_square(&error, &covariance, of), None);
+    }
+}

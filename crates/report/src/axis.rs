@@ -1,0 +1,343 @@
+//! Scales, and the ticks that make them readable.
+
+use crate::number::{readable_unit, superscript, with_unit};
+
+const DAY_S: f64 = 86_400.0;
+/// A time axis goes on to its next tick if no more than this share of its length is missing.
+const NEARLY: f64 = 0.01;
+
+/// One axis: what it spans, its ticks and its title.
+#[derive(Clone, Debug)]
+pub(crate) struct Axis {
+    lo: f64,
+    hi: f64,
+    logarithmic: bool,
+    /// What values are multiplied by before they are read from the labels.
+    pub factor: f64,
+    /// Where labelled ticks stand, and their labels.
+    pub ticks: Vec<(f64, String)>,
+    /// Where ticks without labels stand.
+    pub minor: Vec<f64>,
+    /// Quantity and unit.
+    pub title: String,
+}
+
+impl Axis {
+    /// An even scale with about as many ticks as asked; small or large numbers are read in
+    /// thousandths or thousands of the unit.
+    pub(crate) fn linear(span: Span, quantity: &str, unit: &str, ticks: usize) -> Self {
+        let (factor, unit) = readable_unit(unit, span.largest());
+        let title = with_unit(quantity, &unit);
+        Self::scaled(span, factor, title, ticks, &[1.0, 2.0, 5.0])
+    }
+
+    /// An even scale of time since an origin, in the unit that suits its length. Values are in
+    /// seconds.
+    pub(crate) fn time(span: Span, ticks: usize) -> Self {
+        let (unit_s, unit, steps): (f64, &str, &[f64]) = match span.length() {
+            length if length > 1.5 * DAY_S => (DAY_S, "days", &[1.0, 2.0, 5.0]),
+            length if length > 2.0 * 3600.0 => (3600.0, "hours", &[1.0, 2.0, 3.0, 6.0]),
+            length if length > 120.0 => (60.0, "minutes", &[1.0, 2.0, 5.0]),
+            _ => (1.0, "seconds", &[1.0, 2.0, 5.0]),
+        };
+        let title = format!("time from the first sample [{unit}]");
+        let step_s = unit_s * step(span.length() / unit_s / ticks.max(1) as f64, steps);
+        let next = (span.hi / step_s).ceil() * step_s;
+        // The last sample stands an interval before the full day or hour, which is to be seen.
+        let hi = if next - span.hi < NEARLY * span.length() {
+            next
+        } else {
+            span.hi
+        };
+        let span = Span { hi, ..span };
+        Self::scaled(span, unit_s.recip(), title, ticks, steps)
+    }
+
+    /// A logarithmic scale; the span must be positive.
+    pub(crate) fn logarithmic(span: Span, quantity: &str, unit: &str, ticks: usize) -> Self {
+        let (from, to) = (span.lo.log10(), span.hi.log10());
+        let decades = (from.ceil() as i32)..=(to.floor() as i32);
+        let every = (decades.clone().count() / ticks.max(1) + 1) as i32;
+        let plain = from.ceil() >= -2.0 && to.floor() <= 3.0;
+        let power = |exponent: i32| 10f64.powi(exponent);
+        let mut labelled: Vec<(f64, String)> = decades
+            .clone()
+            .filter(|exponent| exponent.rem_euclid(every) == 0)
+            .map(|exponent| (power(exponent), power_label(exponent, plain)))
+            .collect();
+        let within = |value: &f64| (span.lo..=span.hi).contains(value);
+        let mut minor: Vec<f64> = ((from.floor() as i32)..=(to.ceil() as i32))
+            .flat_map(|exponent| (1..10).map(move |digit| f64::from(digit) * power(exponent)))
+            .filter(within)
+            .collect();
+        if decades.count() > 10 {
+            minor.clear();
+        }
+        if labelled.len() < 2 {
+            // Less than two decades: multiples of powers of ten have to serve.
+            labelled = minor
+                .iter()
+                .filter(|&&value| {
+                    let digit = (value / 10f64.powf(value.log10().floor())).round() as i32;
+                    matches!(digit, 1 | 2 | 5 | 10)
+                })
+                .map(|&value| (value, crate::number::short(value, 1)))
+                .collect();
+        }
+        Self {
+            lo: span.lo,
+            hi: span.hi,
+            logarithmic: true,
+            factor: 1.0,
+            ticks: labelled,
+            minor,
+            title: with_unit(quantity, unit),
+        }
+    }
+
+    /// An even scale with ticks at given places.
+    pub(crate) fn named(span: Span, ticks: Vec<(f64, String)>, title: &str) -> Self {
+        Self {
+            lo: span.lo,
+            hi: span.hi,
+            logarithmic: false,
+            factor: 1.0,
+            ticks,
+            minor: Vec::new(),
+            title: title.to_owned(),
+        }
+    }
+
+    /// Where a value stands: 0 at the start of the axis, 1 at its end. Not a number if the value
+    /// is not one, or has no logarithm.
+    pub(crate) fn at(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            if value > 0.0 {
+                (value / self.lo).ln() / (self.hi / self.lo).ln()
+            } else {
+                f64::NAN
+            }
+        } else {
+            (value - self.lo) / (self.hi - self.lo)
+        }
+    }
+
+    fn scaled(span: Span, factor: f64, title: String, ticks: usize, steps: &[f64]) -> Self {
+        let (lo, hi) = (span.lo * factor, span.hi * factor);
+        let step = step((hi - lo) / ticks.max(1) as f64, steps);
+        let places = places(step);
+        let (first, last) = ((lo / step).ceil() as i64, (hi / step).floor() as i64);
+        let ticks = (first..=last)
+            .map(|multiple| {
+                let value = multiple as f64 * step;
+                (value / factor, label(value, places))
+            })
+            .collect();
+        Self {
+            lo: span.lo,
+            hi: span.hi,
+            logarithmic: false,
+            factor,
+            ticks,
+            minor: Vec::new(),
+            title,
+        }
+    }
+}
+
+/// What an axis spans; the lower end is below the upper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span {
+    pub lo: f64,
+    pub hi: f64,
+}
+
+impl Span {
+    /// The span of all finite values; none if there are none.
+    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        values.into_iter().filter(|value| value.is_finite()).fold(
+            None,
+            |span: Option<Self>, value| {
+                Some(span.map_or(
+                    Self {
+                        lo: value,
+                        hi: value,
+                    },
+                    |span| Self {
+                        lo: span.lo.min(value),
+                        hi: span.hi.max(value),
+                    },
+                ))
+            },
+        )
+    }
+
+    /// From minus to plus the size.
+    pub(crate) fn symmetric(size: f64) -> Self {
+        Self {
+            lo: -size,
+            hi: size,
+        }
+        .open()
+    }
+
+    /// Both together.
+    pub(crate) fn with(self, other: Self) -> Self {
+        Self {
+            lo: self.lo.min(other.lo),
+            hi: self.hi.max(other.hi),
+        }
+    }
+
+    /// A little more on either side, a fraction of the length.
+    pub(crate) fn padded(self, fraction: f64) -> Self {
+        let span = self.open();
+        let more = fraction * span.length();
+        Self {
+            lo: span.lo - more,
+            hi: span.hi + more,
+        }
+    }
+
+    /// A span that is not a single point, so that there is a scale.
+    pub(crate) fn open(self) -> Self {
+        let size = self.lo.abs().max(self.hi.abs());
+        // Below that, differences of neighbouring numbers would be the steps of the axis.
+        if self.length() > 1e-9 * size {
+            return self;
+        }
+        let more = if size > 0.0 { 0.1 * size } else { 1.0 };
+        Self {
+            lo: self.lo - more,
+            hi: self.hi + more,
+        }
+    }
+
+    pub(crate) fn length(self) -> f64 {
+        self.hi - self.lo
+    }
+
+    fn largest(self) -> f64 {
+        self.lo.abs().max(self.hi.abs())
+    }
+}
+
+/// The smallest step of the given kind (times a power of ten) that is not below the least.
+fn step(least: f64, kinds: &[f64]) -> f64 {
+    let power = 10f64.powf(least.log10().floor());
+    kinds
+        .iter()
+        .map(|kind| kind * power)
+        .find(|step| *step >= least * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
+}
+
+/// Decimal places that show a step.
+fn places(step: f64) -> usize {
+    (-(step.log10() + 1e-9).floor()).clamp(0.0, 15.0) as usize
+}
+
+fn label(value: f64, places: usize) -> String {
+    let text = format!("{value:.places$}");
+    // Rounding can leave a zero with a sign.
+    if text
+        .trim_start_matches('-')
+        .chars()
+        .all(|c| c == '0' || c == '.')
+    {
+        return "0".to_owned();
+    }
+    text.replace('-', "−")
+}
+
+/// `0.01` where all labels are short that way, `10⁻²` otherwise.
+fn power_label(exponent: i32, plain: bool) -> String {
+    match exponent {
+        0 => "1".to_owned(),
+        _ if plain => format!("{:.*}", -exponent.min(0) as usize, 10f64.powi(exponent)),
+        _ => format!("10{}", superscript(exponent)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis) -> Vec<&str> {
+        axis.ticks.iter().map(|(_, label)| label.as_str()).collect()
+    }
+
+    #[test]
+    fn ticks_are_round() {
+        let axis = Axis::linear(
+            Span {
+                lo: -0.31,
+                hi: 0.42,
+            },
+            "drift",
+            "deg/h",
+            4,
+        );
+        assert_eq!(labels(&axis), ["−0.2", "0", "0.2", "0.4"]);
+        let micro = Axis::linear(Span::symmetric(3.1e-5), "residual", "g", 4);
+        assert_eq!(labels(&micro), ["−20", "0", "20"]);
+        assert_eq!(micro.title, "residual [µg]");
+        let days = Axis::time(
+            Span {
+                lo: 0.0,
+                hi: 3.0 * DAY_S,
+            },
+            4,
+        );
+        assert_eq!(labels(&days), ["0", "1", "2", "3"]);
+        let short = Axis::time(
+            Span {
+                lo: 0.0,
+                hi: 3.0 * DAY_S - 60.0,
+            },
+            4,
+        );
+        assert_eq!(labels(&short), ["0", "1", "2", "3"]);
+        let hours = Axis::time(Span { lo: 0.0, hi: DAY_S }, 5);
+        assert_eq!(labels(&hours), ["0", "6", "12", "18", "24"]);
+    }
+
+    #[test]
+    fn powers_of_ten_or_their_multiples() {
+        let wide = Axis::logarithmic(
+            Span {
+                lo: 1e-4,
+                hi: 300.0,
+            },
+            "power",
+            "g²",
+            4,
+        );
+        assert_eq!(labels(&wide), ["10⁻⁴", "10⁻²", "1", "10²"]);
+        let plain = Axis::logarithmic(
+            Span {
+                lo: 0.07,
+                hi: 720.0,
+            },
+            "f",
+            "",
+            8,
+        );
+        assert_eq!(labels(&plain), ["0.1", "1", "10", "100"]);
+        let narrow = Axis::logarithmic(Span { lo: 1.5, hi: 60.0 }, "power", "g²", 4);
+        assert_eq!(labels(&narrow), ["2", "5", "10", "20", "50"]);
+    }
+
+    #[test]
+    fn a_single_value_has_a_scale() {
+        for value in [0.0, 3.0, -1e-9] {
+            let span = Span {
+                lo: value,
+                hi: value,
+            }
+            .padded(0.05);
+            assert!(span.lo < value && value < span.hi, "{span:?}");
+            assert!(Axis::linear(span, "", "", 4).ticks.len() >= 2);
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Numbers and units as people write them.
+
+/// A number to some significant digits: `0.00342`, `-12`, `3.1·10⁻⁶`, with a true minus sign.
+pub(crate) fn short(value: f64, digits: usize) -> String {
+    let digits = digits.max(1);
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return "not a number".to_owned();
+    }
+    let scientific = format!("{:.*e}", digits - 1, value);
+    let Some((mantissa, exponent)) = scientific.split_once('e') else {
+        return scientific;
+    };
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let text = if (-3..5).contains(&exponent) {
+        let places = digits as i32 - 1 - exponent;
+        format!("{:.*}", places.max(0) as usize, value)
+    } else {
+        format!("{mantissa}·10{}", superscript(exponent))
+    };
+    text.replace('-', "−")
+}
+
+/// A probability in percent: `1%`, `0.1%`.
+pub(crate) fn percent(probability: f64) -> String {
+    let text = format!("{:.6}", 100.0 * probability);
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    format!("{text}%")
+}
+
+/// An integer with groups of three digits set apart by thin spaces.
+pub(crate) fn count(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) && digits.len() > 4 {
+            text.push('\u{A0}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// An integer in raised digits.
+pub(crate) fn superscript(number: i32) -> String {
+    number
+        .to_string()
+        .chars()
+        .map(|letter| match letter {
+            '-' => '⁻',
+            '0' => '⁰',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            _ => '⁹',
+        })
+        .collect()
+}
+
+/// A factor and the unit that goes with it, so that the largest of the values, times the factor,
+/// is easily read: 3e-5 g is 30 µg, 3e-5 deg/h is 30 · 10⁻⁶ deg/h.
+pub(crate) fn readable_unit(unit: &str, largest: f64) -> (f64, String) {
+    if !(largest.is_finite() && largest > 0.0) || (0.01..10_000.0).contains(&largest) {
+        return (1.0, unit.to_owned());
+    }
+    let power = (largest.log10() / 3.0).floor() as i32 * 3;
+    let factor = 10f64.powi(-power);
+    let name = match (unit, power) {
+        ("g", -3) => "mg".to_owned(),
+        ("g", -6) => "µg".to_owned(),
+        ("g", -9) => "ng".to_owned(),
+        ("", _) => format!("10{}", superscript(power)),
+        _ => format!("10{} {unit}", superscript(power)),
+    };
+    (factor, name)
+}
+
+/// `quantity [unit]`, or one of them alone.
+pub(crate) fn with_unit(quantity: &str, unit: &str) -> String {
+    match (quantity, unit) {
+        ("", only) | (only, "") => only.to_owned(),
+        _ => format!("{quantity} [{unit}]"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_exact() {
+        assert_eq!(short(0.003_421, 3), "0.00342");
+        assert_eq!(short(-12.34, 2), "−12");
+        assert_eq!(short(3.14e-6, 2), "3.1·10⁻⁶");
+        assert_eq!(short(0.0, 3), "0");
+        assert_eq!(percent(0.01), "1%");
+        assert_eq!(percent(0.0005), "0.05%");
+        assert_eq!(count(4320), "4320");
+        assert_eq!(count(1_000_000), "1\u{A0}000\u{A0}000");
+    }
+
+    #[test]
+    fn units_follow_the_size() {
+        let (factor, unit) = readable_unit("g", 3e-5);
+        assert!((factor - 1e6).abs() < 1e-6);
+        assert_eq!(unit, "µg");
+        assert_eq!(readable_unit("deg/h", 0.02).1, "deg/h");
+        assert_eq!(readable_unit("deg/h", 0.002).1, "10⁻³ deg/h");
+        assert_eq!(readable_unit("deg/h", f64::NAN).1, "deg/h");
+    }
+}

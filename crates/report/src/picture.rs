@@ -1,0 +1,30 @@
+use std::path::Path;
+
+use crate::error::Error;
+
+/// Something that can be drawn.
+pub trait Picture {
+    /// The picture as SVG. The same data gives the same bytes.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::UnequalLengths`], [`Error::Value`] or [`Error::Nothing`] if the data cannot be
+    /// drawn honestly.
+    fn to_svg(&self) -> Result<String, Error>;
+}
+
+/// Writes a picture as SVG, whole or not at all.
+///
+/// # Errors
+///
+/// Those of [`Picture::to_svg`], and [`Error::Unwritable`].
+pub fn write_svg(picture: &dyn Picture, path: &Path) -> Result<(), Error> {
+    write(path, picture.to_svg()?.as_bytes())
+}
+
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    gyrocal_record::write_whole(path, bytes).map_err(|source| Error::Unwritable {
+        path: path.to_owned(),
+        source,
+    })
+}
