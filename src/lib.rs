@@ -59,6 +59,7 @@
 //!   edited; an unchanged tree builds without Python. Embedders turn default features off and
 //!   compile the committed Rust, without any generator.
 //! - `std` (default): fused multiply-add where the target has it.
+//! - `catalogue`: the platform with every effect that a diagnosis looks for, and their table.
 //! - `oracle`: slow, exact functions for tests.
 //!
 //! # What it does not do
@@ -77,6 +78,8 @@ mod surroundings;
 
 pub use anchor::{Anchored, Chart};
 pub use filter::{FactorisedPlatformFilter, PlatformFilter, Settings};
+#[cfg(feature = "catalogue")]
+pub use generated::catalogue::{Catalogue, EFFECTS, EffectRow};
 pub use generated::platform::{Drift, Platform};
 pub use generated::surveyed::Surveyed;
 pub use gyrocal_estimation::{
