@@ -25,6 +25,17 @@ pub mod surveyed {
     include!(concat!(env!("OUT_DIR"), "/surveyed.rs"));
 }
 
+/// The platform with every effect of the catalogue, and the table of effects.
+#[cfg(all(feature = "catalogue", not(gyrocal_rederived)))]
+#[rustfmt::skip]
+pub mod catalogue;
+
+/// The platform with every effect of the catalogue, and the table of effects.
+#[cfg(all(feature = "catalogue", gyrocal_rederived))]
+pub mod catalogue {
+    include!(concat!(env!("OUT_DIR"), "/catalogue.rs"));
+}
+
 /// Hash of what [`platform`] was derived from, as its header says: the symbolic sources, the
 /// pinned tools and the emitter.
 #[cfg(not(gyrocal_rederived))]
@@ -61,6 +72,14 @@ pub const SURVEYED_PROGRAM: &str = include_str!("generated/surveyed.json");
 /// The program of [`surveyed`], as derived: for interpreters.
 #[cfg(all(feature = "oracle", gyrocal_rederived))]
 pub const SURVEYED_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/surveyed.json"));
+
+/// The program of [`catalogue`], as derived: for interpreters.
+#[cfg(all(feature = "catalogue", feature = "oracle", not(gyrocal_rederived)))]
+pub const CATALOGUE_PROGRAM: &str = include_str!("generated/catalogue.json");
+
+/// The program of [`catalogue`], as derived: for interpreters.
+#[cfg(all(feature = "catalogue", feature = "oracle", gyrocal_rederived))]
+pub const CATALOGUE_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/catalogue.json"));
 
 /// The program of [`oracle`], as derived: for interpreters.
 #[cfg(all(feature = "oracle", not(gyrocal_rederived)))]

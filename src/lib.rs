@@ -60,6 +60,7 @@
 //!   compile the committed Rust, without any generator.
 //! - `std` (default): fused multiply-add where the target has it.
 //! - `batch`: attitudes as points of a trajectory, for estimation from whole records.
+//! - `catalogue`: the platform with every effect that a diagnosis looks for, and their table.
 //! - `oracle`: slow, exact functions for tests.
 //!
 //! # What it does not do
@@ -80,6 +81,8 @@ pub mod trajectory;
 
 pub use anchor::{Anchored, Chart};
 pub use filter::{FactorisedPlatformFilter, PlatformFilter, Settings};
+#[cfg(feature = "catalogue")]
+pub use generated::catalogue::{Catalogue, EFFECTS, EffectRow};
 pub use generated::platform::{Drift, Platform};
 pub use generated::surveyed::Surveyed;
 pub use gyrocal_estimation::{

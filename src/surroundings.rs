@@ -1,5 +1,7 @@
 use gyrocal_scalar::Real;
 
+#[cfg(feature = "catalogue")]
+use crate::generated::catalogue::CatalogueInputs;
 use crate::generated::platform::PlatformInputs;
 use crate::generated::surveyed::SurveyedInputs;
 use crate::rotation::cross;
@@ -115,5 +117,30 @@ impl<T: Real> ChartInputs<T> for SurveyedInputs<T> {
         self.omega_0 = surroundings.omega_0();
         self.f_0 = surroundings.f_0();
         self.east_0 = surroundings.east_0();
+    }
+}
+
+/// Conditions and shapes start at one of their unit, where no term divides by zero.
+#[cfg(feature = "catalogue")]
+impl<T: Real> ChartInputs<T> for CatalogueInputs<T> {
+    #[inline(always)]
+    fn unset() -> Self {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        Self {
+            omega_0: [zero; 3],
+            f_0: [zero; 3],
+            east_0: [zero; 3],
+            field_0: [zero; 3],
+            conditions: [one; _],
+            shapes: [one; _],
+        }
+    }
+
+    #[inline(always)]
+    fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
+        self.omega_0 = surroundings.omega_0();
+        self.f_0 = surroundings.f_0();
+        self.east_0 = surroundings.east_0();
+        self.field_0 = surroundings.field_0();
     }
 }

@@ -127,6 +127,8 @@ EFFECTS = [
                 i: p["sine"] * ca.sin(2 * math.pi / DAY_S * at.time_s)
                 + p["cosine"] * ca.cos(2 * math.pi / DAY_S * at.time_s)
             },
+            formula=f"omega_d_{i} += gyro_{i}_diurnal_sine*sin(2*pi*time_s/86400) + "
+                    f"gyro_{i}_diurnal_cosine*cos(2*pi*time_s/86400)",
         )
         for i in AXES
     ],
@@ -277,7 +279,7 @@ EFFECTS = [
             f"gyro_{i}{j}.axis_misalignment", "drift",
             f"input axis of gyro {i} turned towards platform {j}",
             _size("rad"), 3e-4, GYRO_STANDARD,
-            # The gyro feels the rate about {j} and the servo loop takes it out about {i}. Of first
+            # The gyro feels the rate about j, and the servo loop takes it out about i. Of first
             # order: the square of a milliradian is 1e-6 of a drift. Coefficients refer to
             # specific force along platform axes, as everywhere.
             lambda p, at, i=i, j=j: {i: -p["size"] * at.drift[j]},

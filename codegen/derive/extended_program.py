@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import casadi as ca
 
-from casadi_program import Element, ExportError, Function, Group, Output, Program
+from casadi_program import Element, ExportError, Function, Group, Output, Program, Table
 from drift import drift_rate
 from effect import At, Effect, by_axis, rust_name
 from frames import platform_c_chart
@@ -15,7 +15,7 @@ from specific_force import specific_force
 
 
 def program(name: str, model: str, doc: str, effects: list[Effect],
-            tables: dict[str, list[dict]] | None = None) -> Program:
+            tables: list[Table] = ()) -> Program:
     """The functions of a model, the nominal one with `effects`. Inputs are those it needs."""
     effects = _output_first(effects)
     parameters = _parameters(effects)
@@ -68,7 +68,7 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
             "rates": _forms("dynamics"),
             "output": _forms("accelerometers"),
         },
-        tables or {},
+        list(tables),
     )
 
 

@@ -5,6 +5,7 @@
 
 from pathlib import Path
 
+import catalogue_program
 import oracle_program
 import platform_program
 import reference
@@ -13,7 +14,12 @@ import surveyed_program
 
 def derive(output: Path) -> None:
     """Writes one program file for each generated Rust module, and CasADi's own numbers."""
-    programs = [platform_program.program(), oracle_program.program(), surveyed_program.program()]
+    programs = [
+        platform_program.program(),
+        oracle_program.program(),
+        surveyed_program.program(),
+        catalogue_program.program(),
+    ]
     for program in programs:
         program.write(output / f"{program.name}.json")
     reference.write(programs, output / "reference.json")

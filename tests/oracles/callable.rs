@@ -1,11 +1,16 @@
 //! Functions of flat vectors, for every scalar type that a test asks for.
 
-use gyrocal_oracle::dual::Dual;
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use gyrocal_oracle::dual::{self, Dual};
 use gyrocal_oracle::points::State;
 use gyrocal_oracle::rounding::{Bounded, ROUNDOFF_F64};
 use gyrocal_scalar::Lanes;
 
-/// Variables that dual numbers carry: enough for the longest group.
+use crate::programs;
+
+/// Variables that dual numbers carry; longer groups are differentiated in parts.
 pub(crate) const VARIABLES: usize = 9;
 
 /// A function of flat vectors.
@@ -29,7 +34,7 @@ pub(crate) struct Callable {
 
 /// A [`Callable`] from a function that is generic over its scalar.
 macro_rules! callable {
-    ($name:expr, $groups:expr, $function:ident, lanes: $lanes:expr, dual: $dual:expr) => {
+    ($name:expr, $groups:expr, $function:path, lanes: $lanes:expr, dual: $dual:expr) => {
         $crate::callable::Callable {
             name: $name,
             groups: $groups,
@@ -46,8 +51,8 @@ pub(crate) use callable;
 impl Callable {
     /// Its inputs at a state.
     pub(crate) fn inputs(&self, state: &State) -> Vec<f64> {
-        let groups = self.groups.iter().flat_map(|name| group(state, name));
-        groups.copied().collect()
+        let groups = self.groups.iter();
+        groups.flat_map(|name| group(state, name)).collect()
     }
 
     /// Places of a group in its inputs; of the first, where it takes the group twice.
@@ -67,12 +72,58 @@ impl Callable {
     }
 }
 
+/// Jacobian of a function by dual numbers, row by row, with a column for each place.
+pub(crate) fn dual_jacobian(
+    function: Flat<Dual<VARIABLES>>,
+    inputs: &[f64],
+    places: &[usize],
+) -> Vec<f64> {
+    let parts: Vec<(usize, Vec<f64>)> = places
+        .chunks(VARIABLES)
+        .map(|places| {
+            let part = dual::jacobian::<VARIABLES>(function, inputs, places);
+            (places.len(), part)
+        })
+        .collect();
+    let rows = parts
+        .first()
+        .map_or(0, |(columns, part)| part.len() / columns);
+    (0..rows)
+        .flat_map(|row| {
+            let parts = parts.iter();
+            parts.flat_map(move |(columns, part)| part[row * columns..][..*columns].to_vec())
+        })
+        .collect()
+}
+
 /// A group of a state, or `origin`: angles where a chart that moves with the platform has it.
-fn group<'a>(state: &'a State, name: &str) -> &'a [f64] {
+/// Parameters and shapes of extended models are as long as the model has them.
+fn group(state: &State, name: &str) -> Vec<f64> {
     if name == "origin" {
-        return &[0.0; 3];
+        return vec![0.0; 3];
     }
-    state.group(name).expect(name)
+    if let Some(group) = state.group(name) {
+        return group.to_vec();
+    }
+    let elements = &own_groups()[name];
+    if name.ends_with("::parameters") {
+        state.parameters(elements.len())
+    } else {
+        state.shapes(elements)
+    }
+}
+
+/// Names of the elements of groups that each program has of its own.
+fn own_groups() -> &'static BTreeMap<String, Vec<String>> {
+    static GROUPS: OnceLock<BTreeMap<String, Vec<String>>> = OnceLock::new();
+    GROUPS.get_or_init(|| {
+        let functions = programs().into_iter().flat_map(|program| program.functions);
+        functions
+            .flat_map(|function| function.inputs)
+            .filter(|group| group.name.contains("::"))
+            .map(|group| (group.name, group.elements))
+            .collect()
+    })
 }
 
 /// The next group of flat inputs.

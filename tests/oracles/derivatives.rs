@@ -31,45 +31,112 @@ pub(crate) enum By {
 
 /// function, output, what it is the derivative of, with respect to what.
 #[rustfmt::skip] // a table
-const DERIVATIVES: [(&str, &str, &str, By); 18] = [
+const NOMINAL: [(&str, &str, &str, By); 18] = [
     // C f_0 is linear in f_0, and the rate matrix turns angle rates into a rotation rate.
-    ("reanchor", "platform_c_chart", "specific_force", By::Group("f_0")),
-    ("reanchor", "rotation_d_theta", "rotation_from", By::Group("theta")),
-    ("drift_rate_jacobian", "omega_d_d_theta", "drift_rate", By::Group("theta")),
-    ("drift_rate_jacobian", "omega_d_d_drift", "drift_rate", By::Group("drift")),
-    ("dynamics_jacobian", "theta_dot_d_theta", "dynamics", By::Group("theta")),
-    ("dynamics_jacobian", "theta_dot_d_drift", "dynamics", By::Group("drift")),
-    ("dynamics_jacobian", "theta_dot_d_drift_noise", "dynamics", By::Bias),
-    ("dynamics_at_origin_jacobian", "theta_dot_d_theta", "dynamics_from_origin", By::Group("origin")),
-    ("dynamics_at_origin_jacobian", "theta_dot_d_drift", "dynamics_from_origin", By::Group("drift")),
-    ("dynamics_at_origin_jacobian", "theta_dot_d_drift_noise", "dynamics_from_origin", By::Bias),
-    ("specific_force_jacobian", "specific_force_d_theta", "specific_force", By::Group("theta")),
-    ("specific_force_at_origin_jacobian", "specific_force_d_theta", "specific_force_from_origin", By::Group("origin")),
-    ("euler_step_jacobian", "theta_next_d_theta", "euler_step", By::Group("theta")),
-    ("euler_step_jacobian", "theta_next_d_drift", "euler_step", By::Group("drift")),
-    ("euler_step_jacobian", "theta_next_d_drift_noise", "euler_step", By::Bias),
-    ("rk4_step_jacobian", "theta_next_d_theta", "rk4_step", By::Group("theta")),
-    ("rk4_step_jacobian", "theta_next_d_drift", "rk4_step", By::Group("drift")),
-    ("rk4_step_jacobian", "theta_next_d_drift_noise", "rk4_step", By::Group("drift_noise")),
+    ("platform::reanchor", "platform_c_chart", "platform::specific_force", By::Group("f_0")),
+    ("platform::reanchor", "rotation_d_theta", "rotation_from", By::Group("theta")),
+    ("platform::drift_rate_jacobian", "omega_d_d_theta", "platform::drift_rate", By::Group("theta")),
+    ("platform::drift_rate_jacobian", "omega_d_d_drift", "platform::drift_rate", By::Group("drift")),
+    ("platform::dynamics_jacobian", "theta_dot_d_theta", "platform::dynamics", By::Group("theta")),
+    ("platform::dynamics_jacobian", "theta_dot_d_drift", "platform::dynamics", By::Group("drift")),
+    ("platform::dynamics_jacobian", "theta_dot_d_drift_noise", "platform::dynamics", By::Bias),
+    ("platform::dynamics_at_origin_jacobian", "theta_dot_d_theta", "dynamics_from_origin", By::Group("origin")),
+    ("platform::dynamics_at_origin_jacobian", "theta_dot_d_drift", "dynamics_from_origin", By::Group("drift")),
+    ("platform::dynamics_at_origin_jacobian", "theta_dot_d_drift_noise", "dynamics_from_origin", By::Bias),
+    ("platform::specific_force_jacobian", "specific_force_d_theta", "platform::specific_force", By::Group("theta")),
+    ("platform::specific_force_at_origin_jacobian", "specific_force_d_theta", "specific_force_from_origin", By::Group("origin")),
+    ("platform::euler_step_jacobian", "theta_next_d_theta", "platform::euler_step", By::Group("theta")),
+    ("platform::euler_step_jacobian", "theta_next_d_drift", "platform::euler_step", By::Group("drift")),
+    ("platform::euler_step_jacobian", "theta_next_d_drift_noise", "platform::euler_step", By::Bias),
+    ("oracle::rk4_step_jacobian", "theta_next_d_theta", "rk4_step", By::Group("theta")),
+    ("oracle::rk4_step_jacobian", "theta_next_d_drift", "rk4_step", By::Group("drift")),
+    ("oracle::rk4_step_jacobian", "theta_next_d_drift_noise", "rk4_step", By::Group("drift_noise")),
 ];
 
 /// function, output, and the function whose value it repeats.
 #[rustfmt::skip] // a table
-pub(crate) const VALUES: [(&str, &str, &str); 7] = [
-    ("drift_rate_jacobian", "omega_d", "drift_rate"),
-    ("dynamics_jacobian", "theta_dot", "dynamics"),
-    ("dynamics_at_origin_jacobian", "theta_dot", "dynamics_from_origin"),
-    ("specific_force_jacobian", "specific_force", "specific_force"),
-    ("specific_force_at_origin_jacobian", "specific_force", "specific_force_from_origin"),
-    ("euler_step_jacobian", "theta_next", "euler_step"),
-    ("rk4_step_jacobian", "theta_next", "rk4_step"),
+const NOMINAL_VALUES: [(&str, &str, &str); 7] = [
+    ("platform::drift_rate_jacobian", "omega_d", "platform::drift_rate"),
+    ("platform::dynamics_jacobian", "theta_dot", "platform::dynamics"),
+    ("platform::dynamics_at_origin_jacobian", "theta_dot", "dynamics_from_origin"),
+    ("platform::specific_force_jacobian", "specific_force", "platform::specific_force"),
+    ("platform::specific_force_at_origin_jacobian", "specific_force", "specific_force_from_origin"),
+    ("platform::euler_step_jacobian", "theta_next", "platform::euler_step"),
+    ("oracle::rk4_step_jacobian", "theta_next", "rk4_step"),
 ];
+
+/// The same two tables for a module with an extended model.
+macro_rules! extended {
+    ($module:literal) => {{
+        const DYNAMICS: &str = concat!($module, "::dynamics_jacobian");
+        const AT_ORIGIN: &str = concat!($module, "::dynamics_at_origin_jacobian");
+        const READING: &str = concat!($module, "::accelerometers_jacobian");
+        const READING_AT_ORIGIN: &str = concat!($module, "::accelerometers_at_origin_jacobian");
+        const OF: &str = concat!($module, "::dynamics");
+        const OF_AT_ORIGIN: &str = concat!($module, "::dynamics_from_origin");
+        const READ: &str = concat!($module, "::accelerometers");
+        const READ_AT_ORIGIN: &str = concat!($module, "::accelerometers_from_origin");
+        const PARAMETERS: By = By::Group(concat!($module, "::parameters"));
+        (
+            [
+                (DYNAMICS, "theta_dot_d_theta", OF, By::Group("theta")),
+                (DYNAMICS, "theta_dot_d_parameters", OF, PARAMETERS),
+                (DYNAMICS, "theta_dot_d_drift_noise", OF, By::Bias),
+                (
+                    AT_ORIGIN,
+                    "theta_dot_d_theta",
+                    OF_AT_ORIGIN,
+                    By::Group("origin"),
+                ),
+                (
+                    AT_ORIGIN,
+                    "theta_dot_d_parameters",
+                    OF_AT_ORIGIN,
+                    PARAMETERS,
+                ),
+                (AT_ORIGIN, "theta_dot_d_drift_noise", OF_AT_ORIGIN, By::Bias),
+                (READING, "reading_d_theta", READ, By::Group("theta")),
+                (READING, "reading_d_parameters", READ, PARAMETERS),
+                (
+                    READING_AT_ORIGIN,
+                    "reading_d_theta",
+                    READ_AT_ORIGIN,
+                    By::Group("origin"),
+                ),
+                (
+                    READING_AT_ORIGIN,
+                    "reading_d_parameters",
+                    READ_AT_ORIGIN,
+                    PARAMETERS,
+                ),
+            ],
+            [
+                (DYNAMICS, "theta_dot", OF),
+                (AT_ORIGIN, "theta_dot", OF_AT_ORIGIN),
+                (READING, "reading", READ),
+                (READING_AT_ORIGIN, "reading", READ_AT_ORIGIN),
+            ],
+        )
+    }};
+}
+
+/// function, output, what it is the derivative of, with respect to what.
+fn table() -> Vec<(&'static str, &'static str, &'static str, By)> {
+    let extended = [extended!("surveyed").0, extended!("catalogue").0].concat();
+    [&NOMINAL[..], &extended].concat()
+}
+
+/// function, output, and the function whose value it repeats.
+pub(crate) fn values() -> Vec<(&'static str, &'static str, &'static str)> {
+    let extended = [extended!("surveyed").1, extended!("catalogue").1].concat();
+    [&NOMINAL_VALUES[..], &extended].concat()
+}
 
 /// All derivatives.
 pub(crate) fn derivatives() -> Vec<Derivative> {
-    DERIVATIVES
-        .iter()
-        .map(|&(name, output, of, by)| Derivative {
+    table()
+        .into_iter()
+        .map(|(name, output, of, by)| Derivative {
             function: function(name),
             output,
             of: value_function(of),
@@ -89,12 +156,13 @@ impl Derivative {
     pub(crate) fn places(&self, state: &State) -> Vec<usize> {
         match self.by {
             By::Group(group) => self.of.places(group, state),
-            By::Bias => self
-                .of
-                .places("drift", state)
-                .into_iter()
-                .step_by(3)
-                .collect(),
+            By::Bias => {
+                let groups = self.of.groups.iter();
+                let is_drift = |name: &&&str| **name == "drift" || name.ends_with("::parameters");
+                let drift = groups.copied().find(|name| is_drift(&name)).expect("drift");
+                let nine = self.of.places(drift, state).into_iter().take(9);
+                nine.step_by(3).collect()
+            }
         }
     }
 }
@@ -112,14 +180,14 @@ fn every_jacobian_of_every_program_is_compared() {
         .filter(|(name, output)| output.columns > 1 || name.ends_with("_jacobian"))
         .map(|(name, output)| (name, output.name))
         .collect();
-    let listed = DERIVATIVES
-        .iter()
-        .map(|&(function, output, ..)| (function, output));
+    let listed = table()
+        .into_iter()
+        .map(|(function, output, ..)| (function, output));
     let mut listed: Vec<(String, String)> = listed
         .chain(
-            VALUES
-                .iter()
-                .map(|&(function, output, _)| (function, output)),
+            values()
+                .into_iter()
+                .map(|(function, output, _)| (function, output)),
         )
         .map(|(function, output)| (function.to_owned(), output.to_owned()))
         .collect();

@@ -18,7 +18,13 @@ pub(crate) const NUMERIC: Tolerance = Tolerance {
 
 /// Step of each variable, in its unit.
 pub(crate) fn steps(derivative: &Derivative, state: &State) -> Vec<f64> {
-    vec![step(derivative, state); derivative.places(state).len()]
+    let mut steps = vec![step(derivative, state); derivative.places(state).len()];
+    if matches!(derivative.by, By::Group(name) if name.ends_with("::parameters")) {
+        // Effects: polynomials of their parameters, and for latitude in degrees sine and cosine,
+        // 1e-12 beyond the sixth order.
+        steps[9..].fill(0.5);
+    }
+    steps
 }
 
 fn step(derivative: &Derivative, state: &State) -> f64 {
@@ -36,6 +42,7 @@ fn step(derivative: &Derivative, state: &State) -> f64 {
         By::Group("theta" | "origin") => 1.0 / 1024.0,
         By::Group("f_0") => 0.25,
         By::Group("drift" | "drift_noise") | By::Bias => drift(),
+        By::Group(name) if name.ends_with("::parameters") => drift(),
         By::Group(other) => panic!("no step for {other}"),
     }
 }

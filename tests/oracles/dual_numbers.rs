@@ -1,10 +1,9 @@
 //! Generated Jacobians against dual numbers through the value functions.
 
 use gyrocal_oracle::compare::Comparison;
-use gyrocal_oracle::dual;
 use gyrocal_oracle::points::{Purpose, states};
 
-use crate::callable::VARIABLES;
+use crate::callable::dual_jacobian;
 use crate::derivatives::derivatives;
 use crate::interpreted::EXACT;
 use crate::{STATES, hold, programs};
@@ -35,7 +34,7 @@ fn generated_jacobians_agree_with_dual_numbers() {
                 .iter()
                 .map(|bound| 2.0 * bound)
                 .collect();
-            let expected = dual::jacobian::<VARIABLES>(
+            let expected = dual_jacobian(
                 derivative
                     .of
                     .dual

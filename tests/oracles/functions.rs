@@ -1,6 +1,6 @@
 //! The generated functions, and the proof that none is left out.
 
-use gyrocal::generated::{oracle, platform};
+use gyrocal::generated::{catalogue, oracle, platform, surveyed};
 use gyrocal_oracle::nonzeros::Nonzeros;
 use gyrocal_scalar::Scalar;
 
@@ -23,8 +23,8 @@ macro_rules! generated {
                     flat
                 }
                 callable!(
-                    stringify!($function),
-                    &[$(stringify!($group)),*],
+                    concat!(stringify!($module), "::", stringify!($function)),
+                    &[$(generated!(@group $module $group)),*],
                     flat,
                     lanes: generated!(@lanes $module flat),
                     dual: generated!(@dual flat $([$($output),*])?)
@@ -33,8 +33,12 @@ macro_rules! generated {
         }
     };
     (@take $rest:ident $group:ident) => { take(&mut $rest) };
-    (@lanes platform $flat:ident) => { Some($flat) };
+    (@group $module:ident parameters) => { concat!(stringify!($module), "::parameters") };
+    (@group $module:ident shapes) => { concat!(stringify!($module), "::shapes") };
+    (@group $module:ident $group:ident) => { stringify!($group) };
     (@lanes oracle $flat:ident) => { None };
+    (@lanes catalogue $flat:ident) => { None };
+    (@lanes $module:ident $flat:ident) => { Some($flat) };
     (@dual $flat:ident) => { Some($flat) };
     (@dual $flat:ident [$($output:ident),*]) => { None };
     (@append $result:ident $flat:ident) => { $result.append_to(&mut $flat) };
@@ -61,6 +65,29 @@ generated! {
     platform::specific_force_at_origin_jacobian(f_0) -> [specific_force, specific_force_d_theta];
     oracle::rk4_step_jacobian(theta, drift, drift_noise, omega_0, f_0, step)
         -> [theta_next, theta_next_d_theta, theta_next_d_drift, theta_next_d_drift_noise];
+    surveyed::dynamics(theta, parameters, omega_0, f_0, east_0);
+    surveyed::dynamics_jacobian(theta, parameters, omega_0, f_0, east_0)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
+    surveyed::accelerometers(theta, parameters, f_0);
+    surveyed::accelerometers_jacobian(theta, parameters, f_0)
+        -> [reading, reading_d_theta, reading_d_parameters];
+    surveyed::dynamics_at_origin_jacobian(parameters, omega_0, f_0, east_0)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
+    surveyed::accelerometers_at_origin_jacobian(parameters, f_0)
+        -> [reading, reading_d_theta, reading_d_parameters];
+    catalogue::dynamics(
+        theta, parameters, omega_0, f_0, east_0, field_0, conditions, shapes);
+    catalogue::dynamics_jacobian(
+        theta, parameters, omega_0, f_0, east_0, field_0, conditions, shapes)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
+    catalogue::accelerometers(theta, parameters, f_0, conditions);
+    catalogue::accelerometers_jacobian(theta, parameters, f_0, conditions)
+        -> [reading, reading_d_theta, reading_d_parameters];
+    catalogue::dynamics_at_origin_jacobian(
+        parameters, omega_0, f_0, east_0, field_0, conditions, shapes)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
+    catalogue::accelerometers_at_origin_jacobian(parameters, f_0, conditions)
+        -> [reading, reading_d_theta, reading_d_parameters];
 }
 
 /// The generated function called `name`.

@@ -1,6 +1,6 @@
 //! Functions that generated ones are derivatives of, where no generated function is.
 
-use gyrocal::generated::platform;
+use gyrocal::generated::{catalogue, platform, surveyed};
 use gyrocal_scalar::Scalar;
 
 use crate::callable::{Callable, callable, take};
@@ -8,21 +8,24 @@ use crate::callable::{Callable, callable, take};
 /// All of them.
 pub(crate) fn hand_written() -> Vec<Callable> {
     macro_rules! list {
-        ($($function:ident($($group:ident),*);)*) => {
-            vec![$(callable!(
-                stringify!($function),
-                &[$(stringify!($group)),*],
-                $function,
-                lanes: None,
-                dual: Some($function)
-            )),*]
+        ($($name:literal = $function:path, [$($group:literal),*];)*) => {
+            vec![$(callable!($name, &[$($group),*], $function, lanes: None, dual: Some($function))),*]
         };
     }
     list! {
-        rk4_step(theta, drift, drift_noise, omega_0, f_0, step);
-        rotation_from(theta, theta);
-        dynamics_from_origin(origin, drift, omega_0, f_0);
-        specific_force_from_origin(origin, f_0);
+        "rk4_step" = rk4_step, ["theta", "drift", "drift_noise", "omega_0", "f_0", "step"];
+        "rotation_from" = rotation_from, ["theta", "theta"];
+        "dynamics_from_origin" = dynamics_from_origin, ["origin", "drift", "omega_0", "f_0"];
+        "specific_force_from_origin" = specific_force_from_origin, ["origin", "f_0"];
+        "surveyed::dynamics_from_origin" = surveyed_dynamics,
+            ["origin", "surveyed::parameters", "omega_0", "f_0", "east_0"];
+        "surveyed::accelerometers_from_origin" = surveyed_accelerometers,
+            ["origin", "surveyed::parameters", "f_0"];
+        "catalogue::dynamics_from_origin" = catalogue_dynamics,
+            ["origin", "catalogue::parameters", "omega_0", "f_0", "east_0", "field_0",
+             "conditions", "catalogue::shapes"];
+        "catalogue::accelerometers_from_origin" = catalogue_accelerometers,
+            ["origin", "catalogue::parameters", "f_0", "conditions"];
     }
 }
 
@@ -76,4 +79,37 @@ fn dynamics_from_origin<T: Scalar>(inputs: &[T]) -> Vec<T> {
 fn specific_force_from_origin<T: Scalar>(inputs: &[T]) -> Vec<T> {
     let mut rest = inputs;
     platform::specific_force(take(&mut rest), take(&mut rest)).to_vec()
+}
+
+/// Rates of the surveyed platform at angles near zero.
+fn surveyed_dynamics<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let (theta, parameters) = (take(&mut rest), take(&mut rest));
+    let (omega_0, f_0, east_0) = (take(&mut rest), take(&mut rest), take(&mut rest));
+    surveyed::dynamics(theta, parameters, omega_0, f_0, east_0).to_vec()
+}
+
+/// What the accelerometers of the surveyed platform read at angles near zero.
+fn surveyed_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    surveyed::accelerometers(take(&mut rest), take(&mut rest), take(&mut rest)).to_vec()
+}
+
+/// Rates of the platform with all effects at angles near zero.
+fn catalogue_dynamics<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let (theta, parameters) = (take(&mut rest), take(&mut rest));
+    let (omega_0, f_0, east_0) = (take(&mut rest), take(&mut rest), take(&mut rest));
+    let (field_0, conditions, shapes) = (take(&mut rest), take(&mut rest), take(&mut rest));
+    catalogue::dynamics(
+        theta, parameters, omega_0, f_0, east_0, field_0, conditions, shapes,
+    )
+    .to_vec()
+}
+
+/// What the accelerometers of the platform with all effects read at angles near zero.
+fn catalogue_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let (theta, parameters) = (take(&mut rest), take(&mut rest));
+    catalogue::accelerometers(theta, parameters, take(&mut rest), take(&mut rest)).to_vec()
 }

@@ -3,7 +3,7 @@
 use gyrocal_oracle::compare::{Comparison, Tolerance};
 use gyrocal_oracle::points::{Purpose, states};
 
-use crate::derivatives::{VALUES, value_function};
+use crate::derivatives::{value_function, values};
 use crate::functions::{function, generated};
 use crate::{STATES, hold, programs};
 
@@ -54,7 +54,7 @@ fn generated_functions_agree_with_the_interpreter() {
 fn values_beside_jacobians_are_those_of_the_value_functions() {
     let states = states(Purpose::Interpreter, STATES);
     let programs = programs();
-    for (name, output, value_name) in VALUES {
+    for (name, output, value_name) in values() {
         let function = function(name);
         let value_function = value_function(value_name);
         let program = programs

@@ -1,7 +1,7 @@
 //! Where generated code says that the elements of its arrays are, against the programs.
 
-use gyrocal::generated::{oracle, platform};
-use gyrocal_oracle::points::{Purpose, states};
+use gyrocal::generated::{catalogue, oracle, platform, surveyed};
+use gyrocal_oracle::points::{Purpose, State, states};
 use gyrocal_oracle::program::Output;
 use gyrocal_scalar::Element;
 
@@ -17,40 +17,79 @@ struct Sparse {
     dense: Vec<f64>,
 }
 
+/// Parameters of an extended model.
+fn parameters<const N: usize>(state: &State) -> [f64; N] {
+    state.parameters(N).try_into().unwrap()
+}
+
 fn sparse_outputs() -> Vec<Sparse> {
     let state = &states(Purpose::ScalarTypes, 1)[0];
     let (theta, drift) = (&state.theta, &state.drift);
     let (omega_0, f_0, step) = (&state.omega_0, &state.f_0, &state.step);
+    let east_0 = &state.east_0;
+    let (field_0, conditions) = (&state.field_0, &state.conditions);
+    let (surveyed, catalogue) = (parameters(state), parameters(state));
+    let names = catalogue::SHAPES.map(|shape| shape.name.to_owned());
+    let shapes = state.shapes(&names).try_into().unwrap();
     macro_rules! sparse {
-        ($($function:ident $inputs:tt -> $type:ident:
+        ($($module:ident::$function:ident $inputs:tt -> $type:ident:
            $($output:ident, $positions:ident, $dense:ident);*.)*) => {
             vec![$($(Sparse {
-                function: stringify!($function),
+                function: concat!(stringify!($module), "::", stringify!($function)),
                 output: stringify!($output),
-                positions: platform::$type::<f64>::$positions.to_vec(),
-                dense: platform::$function $inputs.$dense().as_flattened().to_vec(),
+                positions: $module::$type::<f64>::$positions.to_vec(),
+                dense: $module::$function $inputs.$dense().as_flattened().to_vec(),
             }),*),*]
         };
     }
     sparse! {
-        reanchor(theta) -> Reanchor: rotation_d_theta, ROTATION_D_THETA, rotation_d_theta_dense.
-        drift_rate_jacobian(theta, drift, f_0) -> DriftRateJacobian:
+        platform::reanchor(theta) -> Reanchor: rotation_d_theta, ROTATION_D_THETA, rotation_d_theta_dense.
+        platform::drift_rate_jacobian(theta, drift, f_0) -> DriftRateJacobian:
             omega_d_d_theta, OMEGA_D_D_THETA, omega_d_d_theta_dense;
             omega_d_d_drift, OMEGA_D_D_DRIFT, omega_d_d_drift_dense.
-        dynamics_jacobian(theta, drift, omega_0, f_0) -> DynamicsJacobian:
+        platform::dynamics_jacobian(theta, drift, omega_0, f_0) -> DynamicsJacobian:
             theta_dot_d_drift, THETA_DOT_D_DRIFT, theta_dot_d_drift_dense;
             theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
-        specific_force_jacobian(theta, f_0) -> SpecificForceJacobian:
+        platform::specific_force_jacobian(theta, f_0) -> SpecificForceJacobian:
             specific_force_d_theta, SPECIFIC_FORCE_D_THETA, specific_force_d_theta_dense.
-        euler_step_jacobian(theta, drift, omega_0, f_0, step) -> EulerStepJacobian:
+        platform::euler_step_jacobian(theta, drift, omega_0, f_0, step) -> EulerStepJacobian:
             theta_next_d_drift, THETA_NEXT_D_DRIFT, theta_next_d_drift_dense;
             theta_next_d_drift_noise, THETA_NEXT_D_DRIFT_NOISE, theta_next_d_drift_noise_dense.
-        dynamics_at_origin_jacobian(drift, omega_0, f_0) -> DynamicsAtOriginJacobian:
+        platform::dynamics_at_origin_jacobian(drift, omega_0, f_0) -> DynamicsAtOriginJacobian:
             theta_dot_d_theta, THETA_DOT_D_THETA, theta_dot_d_theta_dense;
             theta_dot_d_drift, THETA_DOT_D_DRIFT, theta_dot_d_drift_dense;
             theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
-        specific_force_at_origin_jacobian(f_0) -> SpecificForceAtOriginJacobian:
+        platform::specific_force_at_origin_jacobian(f_0) -> SpecificForceAtOriginJacobian:
             specific_force_d_theta, SPECIFIC_FORCE_D_THETA, specific_force_d_theta_dense.
+        surveyed::dynamics_jacobian(theta, &surveyed, omega_0, f_0, east_0) -> DynamicsJacobian:
+            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense;
+            theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
+        surveyed::accelerometers_jacobian(theta, &surveyed, f_0) -> AccelerometersJacobian:
+            reading_d_theta, READING_D_THETA, reading_d_theta_dense;
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        surveyed::dynamics_at_origin_jacobian(&surveyed, omega_0, f_0, east_0)
+            -> DynamicsAtOriginJacobian:
+            theta_dot_d_theta, THETA_DOT_D_THETA, theta_dot_d_theta_dense;
+            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense;
+            theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
+        surveyed::accelerometers_at_origin_jacobian(&surveyed, f_0)
+            -> AccelerometersAtOriginJacobian:
+            reading_d_theta, READING_D_THETA, reading_d_theta_dense;
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        catalogue::dynamics_jacobian(
+            theta, &catalogue, omega_0, f_0, east_0, field_0, conditions, &shapes)
+            -> DynamicsJacobian:
+            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense.
+        catalogue::accelerometers_jacobian(theta, &catalogue, f_0, conditions)
+            -> AccelerometersJacobian:
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        catalogue::dynamics_at_origin_jacobian(
+            &catalogue, omega_0, f_0, east_0, field_0, conditions, &shapes)
+            -> DynamicsAtOriginJacobian:
+            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense.
+        catalogue::accelerometers_at_origin_jacobian(&catalogue, f_0, conditions)
+            -> AccelerometersAtOriginJacobian:
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
     }
 }
 
@@ -100,7 +139,7 @@ fn sparse_outputs_stand_where_the_program_has_them() {
 
 #[test]
 fn groups_have_the_elements_of_the_program() {
-    let generated: [(&str, &[Element]); 11] = [
+    let generated: [(&str, &[Element]); 24] = [
         ("theta", &platform::THETA),
         ("drift", &platform::DRIFT),
         ("omega_0", &platform::OMEGA_0),
@@ -112,6 +151,19 @@ fn groups_have_the_elements_of_the_program() {
         ("omega_0", &oracle::OMEGA_0),
         ("f_0", &oracle::F_0),
         ("step", &oracle::STEP),
+        ("theta", &surveyed::THETA),
+        ("surveyed::parameters", &surveyed::PARAMETERS),
+        ("omega_0", &surveyed::OMEGA_0),
+        ("f_0", &surveyed::F_0),
+        ("east_0", &surveyed::EAST_0),
+        ("theta", &catalogue::THETA),
+        ("catalogue::parameters", &catalogue::PARAMETERS),
+        ("omega_0", &catalogue::OMEGA_0),
+        ("f_0", &catalogue::F_0),
+        ("east_0", &catalogue::EAST_0),
+        ("field_0", &catalogue::FIELD_0),
+        ("conditions", &catalogue::CONDITIONS),
+        ("catalogue::shapes", &catalogue::SHAPES),
     ];
     let programs = programs();
     let mut seen = Vec::new();

@@ -6,8 +6,8 @@
 //! compared, and fail when a program has something that they do not list. CasADi's numbers
 //! are the committed ones: after an edit of the derivation they differ until they are
 //! written again with the generated code.
-// The written-out RK4 step and the programs are behind this feature.
-#![cfg(feature = "oracle")]
+// The written-out RK4 step, the programs and the catalogue are behind features.
+#![cfg(all(feature = "oracle", feature = "catalogue"))]
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod callable;
@@ -24,18 +24,39 @@ mod model;
 mod mutation;
 mod scalar_types;
 
-use gyrocal::generated::{ORACLE_PROGRAM, PLATFORM_PROGRAM};
+use gyrocal::generated::{CATALOGUE_PROGRAM, ORACLE_PROGRAM, PLATFORM_PROGRAM, SURVEYED_PROGRAM};
 use gyrocal_oracle::compare::{Comparison, Mismatch};
 use gyrocal_oracle::program::Program;
 
 /// States at which a function is compared with an oracle.
 const STATES: usize = 10_000;
 
-/// The programs that the generated modules were made from.
+/// Groups that each extended program has of its own.
+const OWN_GROUPS: [&str; 2] = ["parameters", "shapes"];
+
+/// The programs that the generated modules were made from. Functions, and groups that differ
+/// between programs, are called by the name of the program and their own: `platform::dynamics`.
 fn programs() -> Vec<Program> {
-    [PLATFORM_PROGRAM, ORACLE_PROGRAM]
-        .map(|text| Program::from_json(text).unwrap())
+    let texts = [
+        PLATFORM_PROGRAM,
+        ORACLE_PROGRAM,
+        SURVEYED_PROGRAM,
+        CATALOGUE_PROGRAM,
+    ];
+    texts
+        .map(|text| qualified(Program::from_json(text).unwrap()))
         .into()
+}
+
+fn qualified(mut program: Program) -> Program {
+    for function in &mut program.functions {
+        function.name = format!("{}::{}", program.name, function.name);
+        let groups = function.inputs.iter_mut();
+        for group in groups.filter(|group| OWN_GROUPS.contains(&group.name.as_str())) {
+            group.name = format!("{}::{}", program.name, group.name);
+        }
+    }
+    program
 }
 
 /// Ends all comparisons, and fails with a line for each that does not hold.

@@ -14,6 +14,8 @@ Schema version 1
                                  "row_names", "column_names",
                                  "nonzeros": [[row, column]]}],
                     "work_size", "instructions": [[op, ...]]}],
+     "tables":    [{"name", "row", "doc", "fields": [{"name", "doc"}],
+                    "rows": [[value, ...]]}],          (may be left out)
      "model": null or
         {"name", "doc", "moving", "parameters", "noise", "inputs": [group],
          "rates":  {"value", "jacobian", "jacobian_at_origin"},
@@ -22,6 +24,9 @@ Schema version 1
 A *group* is a named vector of scalar inputs (a state, a set of parameters, a
 physical vector). `nonzeros` are the structural nonzeros of an output in the order
 in which `output` instructions number them.
+
+A *table* holds facts about a program: one record a row, one value for each field. All values
+of a field are strings, numbers, booleans or lists of strings. `row` is the name of a Rust type.
 
 A *model* says which groups and functions play which part. `name` is that of a Rust
 type. `moving` (states with rates), `parameters` (constant states, or null), `noise`
@@ -164,6 +169,63 @@ class Function:
         )
 
 
+class Table:
+    """Facts for the Rust that uses a program: a constant array of records.
+
+    `name` is that of the array, `row` that of its type; `fields` gives the meaning of each
+    field by its name; `rows` hold a value for every field: strings, numbers, booleans or lists
+    of strings, of one kind in a field.
+    """
+
+    def __init__(self, name: str, row: str, doc: str, fields: dict[str, str], rows: list[dict]):
+        self.name, self.row, self.doc, self.fields, self.rows = name, row, doc, fields, rows
+
+    def to_dict(self) -> dict:
+        for number, row in enumerate(self.rows):
+            if set(row) != set(self.fields):
+                raise ExportError(
+                    f"row {number} of table `{self.name}` has the fields {sorted(row)}, "
+                    f"expected {sorted(self.fields)}"
+                )
+        kinds = {field: {_kind(self.name, field, row[field]) for row in self.rows}
+                 for field in self.fields}
+        for name, found in kinds.items():
+            if len(found) > 1:
+                raise ExportError(
+                    f"field `{name}` of table `{self.name}` holds {', '.join(sorted(found))}, "
+                    "expected values of one kind"
+                )
+        return {
+            "name": self.name,
+            "row": self.row,
+            "doc": self.doc,
+            "fields": [{"name": name, "doc": doc} for name, doc in self.fields.items()],
+            "rows": [[_value(row[name]) for name in self.fields] for row in self.rows],
+        }
+
+
+def _kind(table: str, name: str, value) -> str:
+    if isinstance(value, bool):
+        return "booleans"
+    if isinstance(value, (int, float)) and math.isfinite(value):
+        return "numbers"
+    if isinstance(value, str):
+        return "strings"
+    if isinstance(value, (list, tuple)) and all(isinstance(item, str) for item in value):
+        return "lists"
+    raise ExportError(
+        f"field `{name}` of table `{table}` holds {value!r}, expected a string, a finite number, "
+        "a boolean or a list of strings"
+    )
+
+
+def _value(value):
+    """As it stands in the file: numbers are floats, so that a field has one type."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return list(value) if isinstance(value, tuple) else value
+    return float(value)
+
+
 @dataclass
 class Program:
     """A set of functions that become one Rust module.
@@ -177,7 +239,7 @@ class Program:
     doc: str
     functions: list[Function] = field(default_factory=list)
     model: dict | None = None
-    tables: dict[str, list[dict]] = field(default_factory=dict)
+    tables: list[Table] = field(default_factory=list)
 
     def write(self, path: Path) -> None:
         """Writes the program; the same symbols give the same bytes."""
@@ -218,6 +280,8 @@ class Program:
             "functions": [_function_to_dict(function) for function in self.functions],
             "model": model,
         }
+        if self.tables:
+            document["tables"] = [table.to_dict() for table in self.tables]
         return _dump(document) + "\n"
 
 

@@ -14,6 +14,7 @@ mod model;
 mod noise;
 mod output;
 mod plan;
+mod table;
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -90,6 +91,9 @@ pub fn emit_module_with(
     }
     if let Some(model) = &program.model {
         tokens.extend(model::emit(program, model, &lowered, &mut items)?);
+    }
+    for table in &program.tables {
+        tokens.extend(table::emit(table, &mut items)?);
     }
     for item in std::iter::once(imports(program, options)?).chain(tokens) {
         let file = syn::parse2::<syn::File>(item.clone()).map_err(|error| Error::Emission {

@@ -9,9 +9,11 @@ mod model;
 mod names;
 mod operation;
 mod schema;
+mod table;
 
 pub(crate) use names::{pascal_case, screaming_case};
 pub use operation::{BinaryOperation, UnaryOperation};
+pub use table::{Field, Kind, Table, Value};
 
 use crate::Error;
 
@@ -36,6 +38,8 @@ pub struct Program {
     pub functions: Vec<Function>,
     /// The model that the functions make up, if they do.
     pub model: Option<Model>,
+    /// Facts for the code that uses the program.
+    pub tables: Vec<Table>,
 }
 
 /// A named vector of scalar inputs.

@@ -44,6 +44,15 @@ pub struct State {
     pub f_0: [f64; 3],
     /// Length of a step, s: 1 to 120.
     pub step: [f64; 1],
+    /// Unit vector East in chart axes.
+    pub east_0: [f64; 3],
+    /// Magnetic field in chart axes, gauss: to ±0.6 along East, North and Up.
+    pub field_0: [f64; 3],
+    /// Time since the first row in s, to three days; length of the step in s; temperature
+    /// above its mean in K, to ±5.
+    pub conditions: [f64; 3],
+    /// Numbers within ±1 that parameters and shapes of extended models are made of.
+    pub free: [f64; 128],
 }
 
 impl State {
@@ -57,8 +66,50 @@ impl State {
             "omega_0" => &self.omega_0,
             "f_0" => &self.f_0,
             "step" => &self.step,
+            "east_0" => &self.east_0,
+            "field_0" => &self.field_0,
+            "conditions" => &self.conditions,
             _ => return None,
         })
+    }
+
+    /// Parameters of an extended model: the drift coefficients, then those of effects, to ±0.5 of
+    /// their unit: as large as drifts, so that a wrong one shows.
+    ///
+    /// # Panics
+    /// If there are fewer than nine.
+    #[must_use]
+    pub fn parameters(&self, count: usize) -> Vec<f64> {
+        let of_effects = count.checked_sub(9).expect("nine drift coefficients");
+        let effects = self.free.iter().cycle().map(|free| 0.5 * free);
+        self.drift
+            .into_iter()
+            .chain(effects.take(of_effects))
+            .collect()
+    }
+
+    /// Shapes of an extended model by their names: onsets in s near the step, most of them
+    /// within it, and time constants in h, to 36.
+    ///
+    /// # Panics
+    /// If a name ends otherwise than those of shapes do.
+    #[must_use]
+    pub fn shapes(&self, names: &[String]) -> Vec<f64> {
+        let [time_s, interval_s, _] = self.conditions;
+        let numbers = self.free.iter().rev().cycle();
+        names
+            .iter()
+            .zip(numbers)
+            .map(|(name, free)| {
+                if name.ends_with("_onset_s") {
+                    time_s + 0.7 * free * interval_s
+                } else if name.ends_with("_time_constant_h") {
+                    18.2 + 17.8 * free
+                } else {
+                    panic!("no range for the shape `{name}`")
+                }
+            })
+            .collect()
     }
 }
 
@@ -92,6 +143,14 @@ fn state(rng: &mut ChaCha8Rng, turned: bool) -> State {
         omega_0: rotate(turn, [0.0, omega_y, omega_z]).map(|part| EARTH_RATE_RAD_PER_S * part),
         f_0: rotate(turn, [0.0, 0.0, 1.0]),
         step: [rng.random_range(1.0..=120.0)],
+        east_0: rotate(turn, [1.0, 0.0, 0.0]),
+        field_0: rotate(turn, core::array::from_fn(|_| within(rng, 0.6))),
+        conditions: [
+            rng.random_range(0.0..=3.0 * 86_400.0),
+            rng.random_range(1.0..=120.0),
+            within(rng, 5.0),
+        ],
+        free: core::array::from_fn(|_| within(rng, 1.0)),
     }
 }
 

@@ -20,6 +20,9 @@ const USED_TYPES: &[&str] = &[
     "PartialEq",
     "Option",
     "TryFrom",
+    "bool",
+    "f64",
+    "str",
 ];
 const USED_VALUES: &[&str] = &["Some", "None", "Ok", "T"];
 

@@ -6,7 +6,7 @@ use std::fmt::Display;
 use super::names::is_snake_case;
 use super::operation::Instructions;
 use super::schema::{RawFunction, RawGroup, RawOutput, RawProgram};
-use super::{Element, Function, Group, Output, Program, model};
+use super::{Element, Function, Group, Output, Program, model, table};
 use crate::Error;
 
 /// What to do about a program that the exporter cannot have written.
@@ -44,7 +44,11 @@ impl Context<'_> {
     }
 
     /// Names that are fit for Rust and differ.
-    fn names<'n>(&self, place: &str, names: impl Iterator<Item = &'n str>) -> Result<(), Error> {
+    pub(super) fn names<'n>(
+        &self,
+        place: &str,
+        names: impl Iterator<Item = &'n str>,
+    ) -> Result<(), Error> {
         let mut seen = BTreeSet::new();
         for name in names {
             if !is_snake_case(name) {
@@ -84,6 +88,12 @@ pub(super) fn program(raw: RawProgram, origin: &str) -> Result<Program, Error> {
         .model
         .map(|raw| model::check(&context, raw, &groups, &functions))
         .transpose()?;
+    context.names("tables", raw.tables.iter().map(|table| table.name.as_str()))?;
+    let tables = raw
+        .tables
+        .into_iter()
+        .map(|raw| table::table(&context, raw))
+        .collect::<Result<_, _>>()?;
     Ok(Program {
         origin: origin.to_owned(),
         name: raw.name,
@@ -92,6 +102,7 @@ pub(super) fn program(raw: RawProgram, origin: &str) -> Result<Program, Error> {
         groups,
         functions,
         model,
+        tables,
     })
 }
 

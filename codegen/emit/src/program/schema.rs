@@ -17,6 +17,25 @@ pub(super) struct RawProgram {
     pub(super) groups: Vec<RawGroup>,
     pub(super) functions: Vec<RawFunction>,
     pub(super) model: Option<RawModel>,
+    #[serde(default)]
+    pub(super) tables: Vec<RawTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawTable {
+    pub(super) name: String,
+    pub(super) row: String,
+    pub(super) doc: String,
+    pub(super) fields: Vec<RawField>,
+    pub(super) rows: Vec<Vec<Value>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawField {
+    pub(super) name: String,
+    pub(super) doc: String,
 }
 
 #[derive(Deserialize)]
