@@ -30,6 +30,7 @@
 mod attitude;
 mod batch;
 mod begin;
+mod bound;
 mod calibrate;
 mod error;
 mod fit;
@@ -45,6 +46,7 @@ mod start;
 mod streaming;
 mod uncertainty;
 
+pub use bound::bound;
 pub use calibrate::{Method, Options, calibrate, calibrate_runs};
 pub use error::CalibrationError;
 pub use fit::{Fit, Verdict, chi_square_band};

@@ -332,7 +332,7 @@ where
 }
 
 /// Adds a record's Gram matrix, whose columns are the model's parameters, to that of the unknowns.
-fn add_gram(total: &mut DMatrix<f64>, gram: &[f64], sums: &[&[usize]]) {
+fn add_gram(total: &mut DMatrix<f64>, gram: &DMatrix<f64>, sums: &[&[usize]]) {
     let size = sums.len() + 1;
     // Column 0 is the residual in both.
     let targets = |column: usize| -> Vec<usize> {
@@ -346,7 +346,7 @@ fn add_gram(total: &mut DMatrix<f64>, gram: &[f64], sums: &[&[usize]]) {
         for j in 0..size {
             for a in &targets[i] {
                 for b in &targets[j] {
-                    total[(*a, *b)] += gram[i * size + j];
+                    total[(*a, *b)] += gram[(i, j)];
                 }
             }
         }

@@ -2,8 +2,12 @@
 
 use clap::{ArgAction, Parser, Subcommand};
 
+use crate::allan::AllanArguments;
 use crate::calibrate::CalibrateArguments;
+use crate::import::ImportArguments;
+use crate::monte_carlo::MonteCarloArguments;
 use crate::simulate::SimulateArguments;
+use crate::tumble::TumbleArguments;
 
 /// Gyro drift calibration of inertially stabilised platforms.
 #[derive(Debug, Parser)]
@@ -24,6 +28,10 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    Allan(AllanArguments),
     Calibrate(CalibrateArguments),
+    Import(ImportArguments),
+    MonteCarlo(MonteCarloArguments),
     Simulate(SimulateArguments),
+    Tumble(TumbleArguments),
 }

@@ -3,13 +3,18 @@
 //! Exit codes: 0 when the answer was written, 1 when an input or the work failed, 2 when the
 //! command line is wrong.
 
+mod allan;
 mod calibrate;
 mod command;
+mod import;
 mod latitude;
+mod measured;
+mod monte_carlo;
 mod outputs;
 mod progress;
 mod rounding;
 mod simulate;
+mod tumble;
 
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
@@ -24,8 +29,12 @@ fn main() -> ExitCode {
     start_logging(cli.verbose);
     show_errors_plainly();
     let outcome = match &cli.command {
+        Command::Allan(arguments) => allan::run(arguments),
         Command::Calibrate(arguments) => calibrate::run(arguments),
+        Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
+        Command::Import(arguments) => import::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
+        Command::Tumble(arguments) => tumble::run(arguments),
     };
     match outcome {
         Ok(summary) => {

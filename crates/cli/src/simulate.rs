@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_record::{Outputs, SCHEMA_VERSION, SimulationReport, TrueCoefficient};
-use gyrocal_truth::{Scenario, Simulation, simulate_watched};
+use gyrocal_truth::{Hidden, HiddenReport, Scenario, Simulation, TruthReport, simulate_watched};
 use miette::miette;
 
 use crate::Failure;
@@ -13,6 +13,9 @@ use crate::outputs::{manifest, refuse_overlap};
 use crate::progress::Progress;
 
 /// Simulate a record from a scenario: known coefficients, bench and sampling.
+///
+/// Tables [[hidden]] of the scenario hide effects in the record that the bench description does
+/// not tell of; docs/formats.md lists them.
 ///
 /// The simulator is independent of the model that `calibrate` uses. Same scenario and seed,
 /// same record, bit for bit.
@@ -84,23 +87,26 @@ fn report(
     path: &Path,
     scenario: &Scenario,
     simulation: &Simulation,
-) -> Result<SimulationReport, Failure> {
+) -> Result<TruthReport, Failure> {
     let truth = &simulation.truth;
     let coefficients = truth.coefficients.named();
-    Ok(SimulationReport {
-        schema_version: SCHEMA_VERSION,
-        manifest: manifest("", scenario.seed, &[path])?,
-        coefficients: coefficients
-            .into_iter()
-            .map(|(name, value, unit)| TrueCoefficient {
-                name: name.to_owned(),
-                value,
-                unit: unit.to_owned(),
-            })
-            .collect(),
-        rows: simulation.record.len(),
-        initial_angles_deg: truth.platform_c_enu_first().angles_deg(),
-        final_angles_deg: truth.platform_c_enu_last().angles_deg(),
+    Ok(TruthReport {
+        simulation: SimulationReport {
+            schema_version: SCHEMA_VERSION,
+            manifest: manifest("", scenario.seed, &[path])?,
+            coefficients: coefficients
+                .into_iter()
+                .map(|(name, value, unit)| TrueCoefficient {
+                    name: name.to_owned(),
+                    value,
+                    unit: unit.to_owned(),
+                })
+                .collect(),
+            rows: simulation.record.len(),
+            initial_angles_deg: truth.platform_c_enu_first().angles_deg(),
+            final_angles_deg: truth.platform_c_enu_last().angles_deg(),
+        },
+        hidden: truth.hidden.iter().map(HiddenReport::from).collect(),
     })
 }
 
@@ -112,6 +118,10 @@ fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simu
         simulation.record.duration_s() / 86_400.0,
         scenario.seed
     );
+    if !simulation.truth.hidden.is_empty() {
+        let ids: Vec<&str> = simulation.truth.hidden.iter().map(Hidden::id).collect();
+        let _ = writeln!(text, "hidden in it: {}", ids.join(", "));
+    }
     if let Some(path) = &arguments.bench_out {
         let _ = writeln!(text, "{}: its bench description", path.display());
     }

@@ -31,6 +31,7 @@
 //!
 //! - `std` (default): fused multiply-add where the target has it. Nothing else needs it.
 //! - `alloc`: [`VecStorage`], for a number of states known at run time.
+//! - `batch`: estimation from whole records; matrix products then use the standard library.
 //! - `nalgebra`: `dense`, the textbook filter on dense matrices, as a reference.
 //!
 //! # What it does not do
@@ -46,7 +47,7 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
-#[cfg(feature = "alloc")]
+#[cfg(feature = "batch")]
 pub mod batch;
 mod covariance;
 #[cfg(feature = "nalgebra")]

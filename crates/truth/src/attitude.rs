@@ -30,6 +30,15 @@ impl Attitude {
         }
     }
 
+    /// The frame that `s` becomes when it is turned about a unit axis by an angle, given by cosine
+    /// and sine of its half.
+    pub(crate) fn from_axis(axis: [f64; 3], cos_half: f64, sin_half: f64) -> Self {
+        Self {
+            w: cos_half,
+            vector: axis.map(|component| component * sin_half),
+        }
+    }
+
     /// From the angles about x, then y, then z: the frame is turned about its own x axis
     /// first, about the y axis that results, and about the z axis that results from both.
     #[must_use]

@@ -4,6 +4,7 @@ use libm::{cos, sin};
 
 use crate::attitude::Attitude;
 use crate::error::Error;
+use crate::gyro_noise::GyroNoise;
 use crate::sampling::Sampling;
 use crate::scenario::Scenario;
 use crate::simulation::{Simulation, Truth};
@@ -20,22 +21,33 @@ const RAD_PER_S_PER_DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
 ///
 /// # Errors
 ///
-/// [`Error::InvalidScenario`] if a value of the scenario makes no sense.
+/// [`Error::InvalidScenario`] if a value of the scenario makes no sense, or if it hides
+/// anything, which only the exact simulation can do.
 pub fn euler_rule(scenario: &Scenario) -> Result<Simulation, Error> {
     scenario.check()?;
+    if let Some(hidden) = scenario.hidden.first() {
+        return Err(Error::InvalidScenario {
+            name: "hidden",
+            found: hidden.id().to_owned(),
+            expected: "nothing: the Euler rule knows no hidden effects".to_owned(),
+        });
+    }
     let platform = scenario.platform();
     let earth_rate_enu = platform.earth_rate_enu_rad_per_s();
     let up_enu_g = [0.0, 0.0, platform.specific_force_at_rest_g];
     let mut angles_rad = platform.initial_platform_c_enu.angles_rad();
-    let mut sampling = Sampling::new(scenario, &[]);
+    let mut gyro_noise = GyroNoise::new(scenario);
+    let mut sampling = Sampling::new(scenario, &[], scenario.temperature_course_c());
     let mut truth = Truth {
         coefficients: scenario.coefficients,
+        hidden: Vec::new(),
         platform_c_enu: Vec::new(),
         drift_deg_per_h: Vec::new(),
+        outliers: Vec::new(),
     };
-    for (row, clock_s) in sampling.grid_s().enumerate() {
+    for (row, clock_s) in scenario.grid_s().enumerate() {
         if row > 0 {
-            let noise = sampling.held_gyro_noise_deg_per_h();
+            let noise = gyro_noise.next_deg_per_h(scenario.interval_s);
             let platform_c_enu = Attitude::from_angles_rad(angles_rad);
             let drift = scenario
                 .coefficients
@@ -55,8 +67,10 @@ pub fn euler_rule(scenario: &Scenario) -> Result<Simulation, Error> {
             truth.drift_deg_per_h.push(drift);
         }
     }
+    let (record, outliers) = sampling.into_record();
+    truth.outliers = outliers;
     Ok(Simulation {
-        record: sampling.into_record(),
+        record,
         bench: scenario.bench(),
         truth,
     })

@@ -13,8 +13,9 @@
 //! The state is one unit quaternion, the platform against an inertial frame that is local
 //! east, north, up at the first row. Its rate is the drift, nothing else. The Earth's turn is
 //! applied exactly, by one rotation about its axis; gravity is fixed to the turned frame. The
-//! quaternion is carried by a Runge–Kutta rule of fourth order in steps of at most ten seconds.
-//! There is no Euler angle in it and none of the generated model, whose equations in Euler
+//! quaternion is carried by a Runge–Kutta rule of fourth order in steps of at most a minute,
+//! shorter where something changes fast, exact to 1e-12 rad over days. Where the drift jumps,
+//! a step ends. There is no Euler angle in it and none of the generated model, whose equations in Euler
 //! angles against an Earth-fixed chart it is there to check.
 //!
 //! # Example
@@ -40,39 +41,53 @@
 //!
 //! # Entry points
 //!
-//! - [`simulate`]: a [`Scenario`] in, a record, its bench description and the [`Truth`] out;
-//!   [`simulate_with`] adds hidden [`Term`]s.
+//! - [`simulate`]: a [`Scenario`] in, a record, its bench description and the [`Truth`] out.
+//! - [`Hidden`]: an effect by its id and parameters, which a scenario hides in the record;
+//!   [`simulate_with`] adds [`Term`]s of the caller's own.
 //! - [`euler_rule`]: the same by the paper's own rule, explicit Euler steps on the three angles.
 //! - [`Platform::specific_force_g`]: what ideal accelerometers read at given times.
 //! - [`Population`]: random scenarios by the hundred.
 //!
 //! Same scenario, same record, bit for bit: random numbers are ChaCha with one stream for each
-//! seed and purpose, and sine, cosine and logarithm are those of `libm` on every machine.
+//! seed and purpose, so that hiding an effect leaves all other random numbers as they are; sine, cosine and logarithm are those of `libm` on every machine.
 //!
 //! # What it does not do
 //!
 //! It estimates nothing and knows no filter.
 
 mod attitude;
+mod check;
 mod coefficients;
+mod drift;
+mod effect;
 mod error;
 mod euler_rule;
+mod gyro_noise;
+mod hidden;
+mod hidden_file;
 mod motion;
 mod platform;
 mod population;
 mod random;
+mod report;
 mod sampling;
 mod scenario;
 mod scenario_file;
+mod sensing;
 mod simulation;
+mod sky;
+mod temperature;
 mod term;
 
 pub use attitude::Attitude;
 pub use coefficients::Coefficients;
 pub use error::Error;
 pub use euler_rule::euler_rule;
+pub use hidden::Hidden;
 pub use platform::{EARTH_RATE_RAD_PER_S, Platform};
 pub use population::Population;
+pub use report::{HiddenReport, ParameterReport, TruthReport};
 pub use scenario::{InitialAttitude, Scenario};
 pub use simulation::{Simulation, Truth, simulate, simulate_watched, simulate_with};
+pub use temperature::Temperature;
 pub use term::{Moment, Term};

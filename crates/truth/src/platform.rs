@@ -28,7 +28,7 @@ impl Platform {
     /// Times that rise are simulated in one pass; a time that goes back starts another.
     #[must_use]
     pub fn specific_force_g(&self, times_s: &[f64]) -> Vec<[f64; 3]> {
-        self.at_times(times_s, |motion| motion.specific_force_g())
+        self.at_times(times_s, |motion| motion.moment().accel_g)
     }
 
     /// The platform against local east, north, up at times since time zero.
@@ -51,12 +51,12 @@ impl Platform {
     }
 
     fn at_times<T>(&self, times_s: &[f64], see: impl Fn(&Motion<'_>) -> T) -> Vec<T> {
-        let mut motion = Motion::new(self, &[]);
+        let mut motion = Motion::new(self);
         let advance = |time_s: &f64| {
-            if *time_s < motion.time_s() {
-                motion = Motion::new(self, &[]);
+            if *time_s < motion.moment().time_s {
+                motion = Motion::new(self);
             }
-            motion.advance_to(*time_s, [0.0; 3]);
+            motion.advance_to(*time_s, [0.0; 3], 0.0);
             see(&motion)
         };
         times_s.iter().map(advance).collect()

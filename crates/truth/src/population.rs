@@ -19,6 +19,12 @@ pub struct Population {
     pub largest_gg_deg_per_h_per_g2: f64,
     /// Shortest and longest record.
     pub duration_days: [f64; 2],
+    /// Times between rows, of which each scenario has one; that of `common` if there are none.
+    pub intervals_s: Vec<f64>,
+    /// Most gaps in a record; any number from none has the same probability.
+    pub most_gaps: u32,
+    /// Shortest and longest gap.
+    pub gap_s: [f64; 2],
     /// What scenarios have in common: noise, interval, prior, sigma of the initial angles.
     pub common: Scenario,
 }
@@ -35,7 +41,22 @@ impl Population {
             largest_g_deg_per_h_per_g: 0.3,
             largest_gg_deg_per_h_per_g2: 0.15,
             duration_days: [1.0, 14.0],
+            intervals_s: Vec::new(),
+            most_gaps: 0,
+            gap_s: [600.0, 21_600.0],
             common: Scenario::default(),
+        }
+    }
+
+    /// What benches differ in: the usual population, but two to seven days, sampled each 10, 30,
+    /// 60 or 120 s, with up to three gaps of ten minutes to six hours.
+    #[must_use]
+    pub fn varied(seed: u64) -> Self {
+        Self {
+            duration_days: [2.0, 7.0],
+            intervals_s: vec![10.0, 30.0, 60.0, 120.0],
+            most_gaps: 3,
+            ..Self::new(seed)
         }
     }
 
@@ -53,14 +74,34 @@ impl Population {
         };
         let latitude_deg = stream.between(-self.largest_latitude_deg, self.largest_latitude_deg);
         let days = stream.between(self.duration_days[0], self.duration_days[1]);
-        let interval_s = self.common.interval_s;
+        let seed = stream.whole();
+        let interval_s = *stream
+            .one_of(&self.intervals_s)
+            .unwrap_or(&self.common.interval_s);
+        let duration_s = (days * 86_400.0 / interval_s).floor() * interval_s;
+        let mut gaps_s = self.common.gaps_s.clone();
+        gaps_s.extend(self.gaps_s(&mut stream, duration_s));
         Scenario {
-            seed: stream.whole(),
+            seed,
             latitude_deg,
             coefficients,
             initial: InitialAttitude::Random,
-            duration_s: (days * 86_400.0 / interval_s).floor() * interval_s,
+            interval_s,
+            duration_s,
+            gaps_s,
             ..self.common.clone()
         }
+    }
+
+    /// Gaps anywhere after the first row and before the last.
+    fn gaps_s(&self, stream: &mut Stream, duration_s: f64) -> Vec<[f64; 2]> {
+        let count = (stream.uniform() * f64::from(self.most_gaps + 1)).floor() as u32;
+        let gap = |_| {
+            let length_s = stream.between(self.gap_s[0], self.gap_s[1]);
+            let from_s = stream.between(0.0, duration_s - length_s);
+            [from_s, from_s + length_s]
+        };
+        let gaps = (0..count).map(gap);
+        gaps.filter(|gap: &[f64; 2]| gap[0] > 0.0).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! Random numbers: one ChaCha stream for each seed and purpose.
 
-use libm::{cos, log, sin, sqrt};
+use libm::{log, sincos, sqrt};
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -19,6 +19,12 @@ pub(crate) enum Purpose {
     AccelNoise,
     /// Which components are missing.
     Missing,
+    /// A rate random walk of the gyros.
+    RandomWalk,
+    /// Which samples are outliers, and of which sign.
+    Outliers,
+    /// The course of the temperature.
+    Temperature,
     /// A scenario of a population, by its number.
     Scenario(u64),
 }
@@ -41,6 +47,9 @@ impl Stream {
             Purpose::GyroNoise => 2,
             Purpose::AccelNoise => 3,
             Purpose::Missing => 4,
+            Purpose::RandomWalk => 5,
+            Purpose::Outliers => 6,
+            Purpose::Temperature => 7,
             Purpose::Scenario(number) => FIRST_OF_POPULATION.wrapping_add(number),
         });
         Self {
@@ -65,6 +74,12 @@ impl Stream {
         low + (high - low) * self.uniform()
     }
 
+    /// One of some things, each with the same probability; none of none.
+    pub(crate) fn one_of<'a, T>(&mut self, things: &'a [T]) -> Option<&'a T> {
+        // The uniform number is less than 1, so the product is less than the length.
+        things.get((self.uniform() * things.len() as f64) as usize)
+    }
+
     /// Normal with mean 0 and standard deviation 1, by Box and Muller with `libm`, so that the
     /// bits are the same on every machine.
     pub(crate) fn normal(&mut self) -> f64 {
@@ -73,8 +88,9 @@ impl Stream {
         }
         let radius = sqrt(-2.0 * log(self.uniform()));
         let angle = core::f64::consts::TAU * self.uniform();
-        self.second = Some(radius * sin(angle));
-        radius * cos(angle)
+        let (sine, cosine) = sincos(angle);
+        self.second = Some(radius * sine);
+        radius * cosine
     }
 
     /// Three of them.

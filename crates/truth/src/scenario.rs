@@ -1,12 +1,14 @@
 //! What is to be simulated.
 
-use gyrocal_record::{Bench, Bound, Gravity, Prior};
+use gyrocal_record::{Bench, Gravity, Prior, SiteUncertainty};
 
 use crate::attitude::Attitude;
 use crate::coefficients::Coefficients;
-use crate::error::Error;
+use crate::effect::Effect;
+use crate::hidden::Hidden;
 use crate::platform::Platform;
 use crate::random::{Purpose, Stream};
+use crate::temperature::Temperature;
 
 /// A platform, its bench, and how it is recorded.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +42,12 @@ pub struct Scenario {
     pub gaps_s: Vec<[f64; 2]>,
     /// Fraction of the accelerometer components that are missing.
     pub missing_fraction: f64,
+    /// The temperature that is logged with the record, if one is.
+    pub temperature: Option<Temperature>,
+    /// The Earth's magnetic field in local east, north, up, if the bench file gives it.
+    pub magnetic_field_gauss: Option<[f64; 3]>,
+    /// What is otherwise than the bench file says.
+    pub hidden: Vec<Hidden>,
 }
 
 /// An initial attitude.
@@ -71,6 +79,9 @@ impl Default for Scenario {
             duration_s: 3.0 * 86_400.0,
             gaps_s: Vec::new(),
             missing_fraction: 0.0,
+            temperature: None,
+            magnetic_field_gauss: None,
+            hidden: Vec::new(),
         }
     }
 }
@@ -85,7 +96,9 @@ impl Scenario {
         Bench {
             latitude_deg: self.latitude_deg,
             gravity: self.gravity,
-            initial_angles_deg: self.declared_angles_deg(),
+            uncertainty: SiteUncertainty::default(),
+            magnetic_field_gauss: self.magnetic_field_gauss,
+            initial_angles_deg: Some(self.declared_angles_deg()),
             initial_angles_sigma_deg: self.initial_angles_sigma_deg,
             accel_noise_g: self.accel_noise_g,
             gyro_noise_deg_per_h: self.gyro_noise_deg_per_h,
@@ -93,19 +106,32 @@ impl Scenario {
         }
     }
 
-    /// The platform as it truly is: declared angles and their error.
+    /// The platform as it truly is at its site: declared angles and their error, and what is
+    /// hidden in latitude, gravity and initial attitude.
     #[must_use]
     pub fn platform(&self) -> Platform {
         let error = Stream::new(self.seed, Purpose::InitialAngles).three_normals();
         let declared = self.declared_angles_deg();
         let angles_deg = [0, 1, 2]
             .map(|axis| declared[axis] + self.initial_angles_sigma_deg[axis] * error[axis]);
-        Platform {
+        let mut platform = Platform {
             latitude_deg: self.latitude_deg,
             specific_force_at_rest_g: self.bench_gravity(),
             coefficients: self.coefficients,
             initial_platform_c_enu: Attitude::from_angles_rad(angles_deg.map(f64::to_radians)),
+        };
+        for hidden in &self.hidden {
+            match hidden.effect() {
+                Effect::Latitude => platform.latitude_deg += hidden.value(0),
+                Effect::Gravity => platform.specific_force_at_rest_g *= 1.0 + hidden.value(0),
+                Effect::InitialAttitude => {
+                    let turn = Attitude::turned_by(hidden.three().map(f64::to_radians));
+                    platform.initial_platform_c_enu = turn.after(platform.initial_platform_c_enu);
+                }
+                _ => {}
+            }
         }
+        platform
     }
 
     /// Standard deviation of the gyro noise as it is held over one interval.
@@ -121,6 +147,20 @@ impl Scenario {
         (self.duration_s / self.interval_s + 1e-9).floor() as usize + 1
     }
 
+    /// Time since the first row of each row of the regular grid, by the record's clock.
+    pub(crate) fn grid_s(&self) -> impl Iterator<Item = f64> + use<> {
+        let interval_s = self.interval_s;
+        (0..self.grid_rows()).map(move |row| row as f64 * interval_s)
+    }
+
+    /// Whether the logger writes a row at this time since the first.
+    pub(crate) fn logs(&self, since_first_s: f64) -> bool {
+        !self
+            .gaps_s
+            .iter()
+            .any(|gap| (gap[0]..gap[1]).contains(&since_first_s))
+    }
+
     /// The angles that the bench file declares, which a random attitude gets from the seed.
     #[must_use]
     pub fn declared_angles_deg(&self) -> [f64; 3] {
@@ -132,91 +172,8 @@ impl Scenario {
         }
     }
 
-    /// Says what is wrong with the values, if something is.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::InvalidScenario`] for the first value that makes no sense.
-    pub fn check(&self) -> Result<(), Error> {
-        let coefficients = self.coefficients;
-        let single = [
-            (
-                "latitude_deg",
-                self.latitude_deg,
-                Bound::Within(-90.0, 90.0),
-            ),
-            ("accel_noise_g", self.accel_noise_g, Bound::NotNegative),
-            (
-                "gyro_noise_deg_per_h",
-                self.gyro_noise_deg_per_h,
-                Bound::NotNegative,
-            ),
-            ("gravity", self.bench_gravity(), Bound::Positive),
-            ("start_s", self.start_s, Bound::Finite),
-            ("interval_s", self.interval_s, Bound::Positive),
-            ("duration_s", self.duration_s, Bound::NotNegative),
-            (
-                "duration_s / interval_s",
-                self.duration_s / self.interval_s,
-                Bound::Within(0.0, MOST_ROWS),
-            ),
-            (
-                "missing_fraction",
-                self.missing_fraction,
-                Bound::Within(0.0, 1.0),
-            ),
-        ];
-        let three = [
-            (
-                "initial_angles_sigma_deg",
-                self.initial_angles_sigma_deg,
-                Bound::NotNegative,
-            ),
-            ("initial", self.declared_angles_deg(), Bound::Finite),
-            (
-                "coefficients.bias_deg_per_h",
-                coefficients.bias_deg_per_h,
-                Bound::Finite,
-            ),
-            (
-                "coefficients.g_deg_per_h_per_g",
-                coefficients.g_deg_per_h_per_g,
-                Bound::Finite,
-            ),
-            (
-                "coefficients.gg_deg_per_h_per_g2",
-                coefficients.gg_deg_per_h_per_g2,
-                Bound::Finite,
-            ),
-        ];
-        let all = three
-            .into_iter()
-            .flat_map(|(name, values, bound)| values.map(|value| (name, value, bound)))
-            .chain(single);
-        for (name, value, bound) in all {
-            if !bound.holds(value) {
-                return Err(Error::InvalidScenario {
-                    name,
-                    found: value.to_string(),
-                    expected: bound.describe(),
-                });
-            }
-        }
-        match self
-            .gaps_s
-            .iter()
-            .find(|gap| !(gap[0] > 0.0 && gap[1] > gap[0]))
-        {
-            Some(gap) => Err(Error::InvalidScenario {
-                name: "gaps_s",
-                found: format!("{gap:?}"),
-                expected: "0 < from < to (the first row has the initial attitude)".to_owned(),
-            }),
-            None => Ok(()),
-        }
-    }
-
-    fn bench_gravity(&self) -> f64 {
+    /// Specific force at rest as the bench file states it.
+    pub(crate) fn bench_gravity(&self) -> f64 {
         self.gravity.map_or(1.0, Gravity::ratio)
     }
 }

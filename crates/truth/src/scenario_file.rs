@@ -6,14 +6,26 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use gyrocal_record::{Bound, Document, Error, Gravity, InputErrorKind, Prior, Table};
+use gyrocal_record::{Bound, Document, Error, Gravity, InputErrorKind, Prior, SourceText, Table};
 
 use crate::coefficients::Coefficients;
+use crate::hidden_file::{self, HIDDEN, read_hidden};
 use crate::scenario::{InitialAttitude, MOST_ROWS, Scenario};
+use crate::temperature::Temperature;
 
-const ROOT_KEYS: [&str; 7] = [
-    "seed", "site", "platform", "gyros", "noise", "sampling", "prior",
+const ROOT_KEYS: [&str; 9] = [
+    "seed",
+    "site",
+    "platform",
+    "gyros",
+    "noise",
+    "sampling",
+    "prior",
+    "temperature",
+    HIDDEN,
 ];
+const MAGNETIC_FIELD: &str = "magnetic_field_gauss";
+const TEMPERATURE_KEYS: [&str; 3] = ["mean_c", "daily_k", "wander_k"];
 const GYRO_KEYS: [&str; 3] = ["bias_deg_per_h", "g_deg_per_h_per_g", "gg_deg_per_h_per_g2"];
 const SAMPLING_KEYS: [&str; 5] = [
     "duration_s",
@@ -30,7 +42,7 @@ impl Scenario {
     ///
     /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Self::from_document(&Document::read(path)?)
+        Self::from_source(&SourceText::read(path)?)
     }
 
     /// Parses the text of a scenario file; errors call it `name`.
@@ -39,7 +51,7 @@ impl Scenario {
     ///
     /// [`Error::Input`] for whatever is wrong in it.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
-        Self::from_document(&Document::new(text, name)?)
+        Self::from_source(&SourceText::new(text, name)?)
     }
 
     /// The text of a scenario file that [`Scenario::parse`] reads as the same scenario.
@@ -51,6 +63,9 @@ impl Scenario {
         );
         if let Some(gravity) = self.gravity {
             text.push_str(&gravity.to_toml());
+        }
+        if let Some(field_gauss) = self.magnetic_field_gauss {
+            let _ = writeln!(text, "{MAGNETIC_FIELD} = {field_gauss:?}");
         }
         text.push_str("\n[platform]\ninitial_angles_deg = ");
         let _ = match self.initial {
@@ -86,14 +101,48 @@ impl Scenario {
         if self.prior != Prior::default() {
             text.push_str(&self.prior.to_toml());
         }
+        if let Some(temperature) = self.temperature {
+            let _ = writeln!(
+                text,
+                "\n[temperature]\nmean_c = {:?}\ndaily_k = {:?}\nwander_k = {:?}",
+                temperature.mean_c, temperature.daily_k, temperature.wander_k
+            );
+        }
+        text.extend(self.hidden.iter().map(hidden_file::to_toml));
         text
+    }
+
+    fn from_source(source: &SourceText) -> Result<Self, Error> {
+        let document = Document::new(source.text(), source.name())?;
+        let scenario = Self::from_document(&document)?;
+        let located = read_hidden(source)?;
+        let spans: Vec<_> = located.iter().map(|located| located.span.clone()).collect();
+        let scenario = Self {
+            hidden: located.into_iter().map(|located| located.hidden).collect(),
+            ..scenario
+        };
+        match scenario.lack() {
+            Some(lack) => Err(source.error(
+                InputErrorKind::OutOfRange,
+                spans.get(lack.index).cloned().unwrap_or_default(),
+                lack.found,
+                lack.expected,
+                "change the effect or what it needs",
+            )),
+            None => Ok(scenario),
+        }
     }
 
     fn from_document(document: &Document) -> Result<Self, Error> {
         document.interpret(&ROOT_KEYS, |root| {
             let site = root.table(
                 "site",
-                &["latitude_deg", Gravity::KEYS[0], Gravity::KEYS[1]],
+                &[
+                    "latitude_deg",
+                    Gravity::KEYS[0],
+                    Gravity::KEYS[1],
+                    MAGNETIC_FIELD,
+                ],
             )?;
             let platform = root.table(
                 "platform",
@@ -112,6 +161,10 @@ impl Scenario {
                 accel_noise_g: noise.number("accel_g", Bound::Positive)?,
                 gyro_noise_deg_per_h: noise.number("gyro_deg_per_h", Bound::Positive)?,
                 prior: Prior::from_root(root)?,
+                // As in a bench file: the Earth's field is at most 0.67 gauss.
+                magnetic_field_gauss: site
+                    .optional_three_numbers(MAGNETIC_FIELD, Bound::Within(-1.0, 1.0))?,
+                temperature: read_temperature(root)?,
                 ..Self::default()
             };
             with_sampling(scenario, &root.table("sampling", &SAMPLING_KEYS)?)
@@ -136,6 +189,27 @@ fn read_initial(platform: &Table<'_>) -> Result<InitialAttitude, Error> {
     platform
         .three_numbers(KEY, Bound::Within(-360.0, 360.0))
         .map(InitialAttitude::AnglesDeg)
+}
+
+fn read_temperature(root: &Table<'_>) -> Result<Option<Temperature>, Error> {
+    let Some(table) = root.optional_table("temperature", &TEMPERATURE_KEYS)? else {
+        return Ok(None);
+    };
+    let usual = Temperature::default();
+    let number = |key, bound, usual| {
+        table
+            .optional_number(key, bound)
+            .map(|number| number.unwrap_or(usual))
+    };
+    Ok(Some(Temperature {
+        mean_c: number(
+            TEMPERATURE_KEYS[0],
+            Bound::Within(-100.0, 100.0),
+            usual.mean_c,
+        )?,
+        daily_k: number(TEMPERATURE_KEYS[1], Bound::Finite, usual.daily_k)?,
+        wander_k: number(TEMPERATURE_KEYS[2], Bound::NotNegative, usual.wander_k)?,
+    }))
 }
 
 fn with_sampling(scenario: Scenario, sampling: &Table<'_>) -> Result<Scenario, Error> {

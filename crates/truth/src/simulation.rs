@@ -4,10 +4,14 @@ use gyrocal_record::{Bench, Record};
 
 use crate::attitude::Attitude;
 use crate::coefficients::Coefficients;
+use crate::effect::Effect;
 use crate::error::Error;
+use crate::gyro_noise::GyroNoise;
+use crate::hidden::Hidden;
 use crate::motion::Motion;
 use crate::sampling::Sampling;
 use crate::scenario::Scenario;
+use crate::sensing::Sensing;
 use crate::term::Term;
 
 /// A record and all that is behind it.
@@ -21,15 +25,20 @@ pub struct Simulation {
     pub truth: Truth,
 }
 
-/// The truth behind a record; the vectors have one element for each of its rows.
+/// The truth behind a record; the vectors but `hidden` have one element for each of its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// What the gyros do.
     pub coefficients: Coefficients,
+    /// What is hidden in the record.
+    pub hidden: Vec<Hidden>,
     /// Platform against local east, north, up.
     pub platform_c_enu: Vec<Attitude>,
-    /// Drift of the gyros without noise, hidden terms included.
+    /// Inertial rate of the platform in its own axes without white noise, which is the drift of
+    /// its gyros; hidden effects and a random walk included.
     pub drift_deg_per_h: Vec<[f64; 3]>,
+    /// Which components are outliers, whether they are missing or not.
+    pub outliers: Vec<[bool; 3]>,
 }
 
 impl Truth {
@@ -61,7 +70,7 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, Error> {
     simulate_with(scenario, &[])
 }
 
-/// Simulates a scenario with hidden effects.
+/// Simulates a scenario with terms of the caller's own beside its hidden effects.
 ///
 /// # Errors
 ///
@@ -70,8 +79,8 @@ pub fn simulate_with(scenario: &Scenario, terms: &[Term]) -> Result<Simulation, 
     simulate_watched(scenario, terms, |_| ())
 }
 
-/// Simulates a scenario with hidden effects and tells after each row of the regular grid, whose
-/// number is [`Scenario::grid_rows`], how many are done.
+/// The same; tells after each row of the regular grid, whose number is
+/// [`Scenario::grid_rows`], how many are done.
 ///
 /// # Errors
 ///
@@ -82,43 +91,83 @@ pub fn simulate_watched(
     mut rows_done: impl FnMut(usize),
 ) -> Result<Simulation, Error> {
     scenario.check()?;
-    let platform = scenario.platform();
-    let mut motion = Motion::new(&platform, terms);
-    let mut sampling = Sampling::new(scenario, terms);
-    let mut truth = Truth {
-        coefficients: scenario.coefficients,
-        platform_c_enu: Vec::new(),
-        drift_deg_per_h: Vec::new(),
-    };
-    for (row, clock_s) in sampling.grid_s().enumerate() {
+    let temperature_c = scenario.temperature_course_c();
+    let temperature_k = about_mean(scenario, temperature_c.as_deref());
+    let temperature_at = |row: usize| temperature_k.get(row).copied().unwrap_or(0.0);
+    let clock = Clock::new(scenario, terms);
+
+    let mut motion = Motion::of(scenario, terms, temperature_at(0));
+    let mut gyro_noise = GyroNoise::new(scenario);
+    let sensing = Sensing::new(&scenario.hidden, terms);
+    let mut sampling = Sampling::new(scenario, terms, temperature_c);
+    let rows = scenario.grid_rows();
+    let mut platform_c_enu = Vec::with_capacity(rows);
+    let mut drift_deg_per_h = Vec::with_capacity(rows);
+    for (row, clock_s) in scenario.grid_s().enumerate() {
         if row > 0 {
-            let noise = sampling.held_gyro_noise_deg_per_h();
-            motion.advance_to(true_time_s(clock_s, terms), noise);
+            let noise = gyro_noise.next_deg_per_h(scenario.interval_s);
+            motion.advance_to(clock.true_time_s(clock_s), noise, temperature_at(row));
         }
-        let moment = motion.moment();
-        let mut accel_g = moment.accel_g;
-        for term in terms {
-            if let Term::Output(error) = term {
-                let error = error(&moment);
-                accel_g = [0, 1, 2].map(|axis| accel_g[axis] + error[axis]);
-            }
-        }
-        if sampling.log(row, clock_s, accel_g) {
-            truth.platform_c_enu.push(motion.platform_c_enu());
-            truth.drift_deg_per_h.push(motion.drift_deg_per_h(&moment));
+        if sampling.log(row, clock_s, sensing.output_g(motion.moment())) {
+            platform_c_enu.push(motion.platform_c_enu());
+            drift_deg_per_h.push(motion.rate_deg_per_h(gyro_noise.walk_deg_per_h()));
         }
         rows_done(row + 1);
     }
+    let (record, outliers) = sampling.into_record();
     Ok(Simulation {
-        record: sampling.into_record(),
+        record,
         bench: scenario.bench(),
-        truth,
+        truth: Truth {
+            coefficients: scenario.coefficients,
+            hidden: scenario.hidden.clone(),
+            platform_c_enu,
+            drift_deg_per_h,
+            outliers,
+        },
     })
 }
 
-fn true_time_s(clock_s: f64, terms: &[Term]) -> f64 {
-    terms.iter().fold(clock_s, |time_s, term| match term {
-        Term::Time(true_time_s) => true_time_s(time_s),
-        _ => time_s,
-    })
+/// The temperature of each row of the grid about its mean over the rows that are logged.
+fn about_mean(scenario: &Scenario, temperature_c: Option<&[f64]>) -> Vec<f64> {
+    let Some(course_c) = temperature_c else {
+        return Vec::new();
+    };
+    let logged = scenario.grid_s().zip(course_c);
+    let (sum, count) = logged
+        .filter(|(time_s, _)| scenario.logs(*time_s))
+        .fold((0.0, 0_u32), |(sum, count), (_, value)| {
+            (sum + value, count + 1)
+        });
+    let mean_c = sum / f64::from(count.max(1));
+    course_c.iter().map(|value| value - mean_c).collect()
+}
+
+/// From the record's clock to true time.
+struct Clock<'a> {
+    seconds_per_second: f64,
+    terms: &'a [Term],
+}
+
+impl<'a> Clock<'a> {
+    fn new(scenario: &Scenario, terms: &'a [Term]) -> Self {
+        let rates = scenario.hidden.iter().map(|hidden| match hidden.effect() {
+            Effect::ClockRate => 1.0 + hidden.value(0),
+            _ => 1.0,
+        });
+        Self {
+            seconds_per_second: rates.product(),
+            terms,
+        }
+    }
+
+    fn true_time_s(&self, clock_s: f64) -> f64 {
+        let true_time_s = clock_s / self.seconds_per_second;
+        self.terms
+            .iter()
+            .fold(true_time_s, |time_s, term| match term {
+                Term::Time(true_time_s) => true_time_s(time_s),
+                _ => time_s,
+            })
+    }
 }

@@ -1,19 +1,23 @@
-//! Where a hidden effect can enter.
+//! Where a hidden effect of the caller's own can enter.
 
 /// What a hidden effect may depend on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Moment {
     /// True time since the first row.
     pub time_s: f64,
     /// True specific force in platform axes \[g\].
     pub accel_g: [f64; 3],
+    /// Temperature about its mean over the rows of the record; 0 if none is logged.
+    pub temperature_k: f64,
+    /// The Earth's magnetic field in platform axes \[gauss\]; 0 if the scenario has none.
+    pub field_gauss: [f64; 3],
 }
 
 /// The point of a term that works on the drift or on the output at a moment.
 pub(crate) type AtMoment = dyn Fn(&Moment) -> [f64; 3] + Send + Sync;
 
-/// One hidden effect: something that the platform does and the nominal model does not know.
+/// A hidden effect of the caller's own; [`Hidden`](crate::Hidden) has those that have names.
 #[non_exhaustive]
 pub enum Term {
     /// Drift to be added to that of the three gyros \[deg/h\].

@@ -22,7 +22,7 @@ fn the_record_s11_is_followed_over_five_days() {
     let record = Record::read(&folder.join("S11.csv")).unwrap();
     let bench = Bench::read(&folder.join("S11.toml")).unwrap();
     assert_eq!(bench.latitude_deg, 39.1);
-    assert_eq!(bench.initial_angles_deg, [0.0; 3]);
+    assert_eq!(bench.initial_angles_deg, Some([0.0; 3]));
     let ideal = paper_like().specific_force_g(&record.time_s);
     let worst = record
         .accel_g

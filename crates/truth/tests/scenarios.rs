@@ -29,7 +29,7 @@ fn a_record_is_the_same_to_the_last_bit_on_every_machine() {
         .collect();
     assert_eq!(
         digest,
-        "b9fc83be54382afd02ef3c9bb8a955a557c28e3aa960c828fb13287ecd80f339"
+        "d9f687adff1e6f732e7c2d71a26ab1c5acbbeb0267b1a93765f7f4e3c9b20494"
     );
 }
 
@@ -204,6 +204,37 @@ fn a_population_fills_its_ranges() {
         population.scenario(17).seed,
         Population::new(4).scenario(17).seed
     );
+}
+
+#[test]
+fn a_varied_population_has_every_interval_gaps_and_both_hemispheres() {
+    let population = Population::varied(5);
+    let scenarios: Vec<Scenario> = (0..400).map(|number| population.scenario(number)).collect();
+    let share = |of: &dyn Fn(&Scenario) -> bool| {
+        scenarios.iter().filter(|scenario| of(scenario)).count() as f64 / 400.0
+    };
+    // A share of 1/4 has a sigma of 0.022, a share of 1/2 one of 0.025.
+    for interval_s in [10.0, 30.0, 60.0, 120.0] {
+        assert!((share(&|s| s.interval_s == interval_s) - 0.25).abs() < 0.09);
+    }
+    for gaps in 0..=3 {
+        assert!((share(&|s| s.gaps_s.len() == gaps) - 0.25).abs() < 0.09);
+    }
+    assert!((share(&|s| s.latitude_deg < 0.0) - 0.5).abs() < 0.1);
+    for scenario in &scenarios {
+        assert_eq!(scenario.check(), Ok(()));
+        assert!((1.99..=7.0).contains(&(scenario.duration_s / 86_400.0)));
+        for gap in &scenario.gaps_s {
+            assert!((600.0..21_600.1).contains(&(gap[1] - gap[0])));
+            assert!(gap[1] <= scenario.duration_s);
+        }
+    }
+    // Variety is drawn after the rest, which is that of the usual population.
+    let mut usual = Population::new(5);
+    usual.duration_days = population.duration_days;
+    let [varied, usual] = [population, usual].map(|population| population.scenario(3));
+    assert_eq!(varied.coefficients, usual.coefficients);
+    assert_eq!(varied.seed, usual.seed);
 }
 
 #[test]

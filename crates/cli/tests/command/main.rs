@@ -5,4 +5,5 @@
 mod bad_input;
 mod calibrate;
 mod folder;
+mod monte_carlo;
 mod simulate;

@@ -61,6 +61,59 @@ fn record_bench_and_truth_are_written() {
 }
 
 #[test]
+fn what_is_hidden_is_in_the_record_and_in_the_truth_but_not_in_the_bench() {
+    let hidden = "\
+[temperature]
+[[hidden]]
+effect = \"gyro_y.g_z\"
+size = 0.35
+[[hidden]]
+effect = \"accel_x.temperature\"
+size = 1e-4
+";
+    let outputs = ["--bench-out", "b.toml", "--json", "t.json"];
+    let simulate = |scenario: String| {
+        let folder = Folder::new();
+        folder.put("s.toml", scenario);
+        let said = folder.succeed(&[&PLAIN[..], &outputs].concat());
+        (folder, said)
+    };
+    let (clean, said_clean) = simulate(format!("{SCENARIO}[temperature]\n"));
+    let (faulty, said_faulty) = simulate(format!("{SCENARIO}{hidden}"));
+    assert!(!said_clean.contains("hidden"), "{said_clean}");
+    let line = "\nhidden in it: gyro_y.g_z, accel_x.temperature\n";
+    assert!(said_faulty.contains(line), "{said_faulty}");
+    assert_eq!(faulty.text("b.toml"), clean.text("b.toml"));
+    let (record, other) = (faulty.text("r.csv"), clean.text("r.csv"));
+    assert_ne!(record, other);
+    assert!(record.starts_with("time_s,accel_x_g,accel_y_g,accel_z_g,temperature_c\n"));
+    let truth: serde_json::Value = serde_json::from_str(&faulty.text("t.json")).unwrap();
+    assert_eq!(truth["rows"], 61);
+    assert_eq!(truth["hidden"][0]["effect"], "gyro_y.g_z");
+    assert_eq!(
+        truth["hidden"][0]["parameters"],
+        serde_json::json!([{ "name": "size", "value": 0.35, "unit": "deg/h/g" }])
+    );
+    let truth: serde_json::Value = serde_json::from_str(&clean.text("t.json")).unwrap();
+    assert_eq!(truth["hidden"], serde_json::json!([]));
+}
+
+#[test]
+fn a_mistake_in_a_hidden_effect_is_shown_where_it_is() {
+    let folder = Folder::new();
+    let hidden = "[[hidden]]\neffect = \"gyro_y.gz\"\nsize = 1\n";
+    folder.put("s.toml", format!("{SCENARIO}{hidden}"));
+    let errors = folder.fail(&PLAIN);
+    for part in [
+        "s.toml:18:10: found the unknown effect `\"gyro_y.gz\"`",
+        "here",
+        "did you mean `gyro_y.g_z`",
+    ] {
+        assert!(errors.contains(part), "{part}\nis not in\n{errors}");
+    }
+}
+
+#[test]
 fn the_seed_decides_and_nothing_else() {
     let folder = folder();
     folder.succeed(&PLAIN);

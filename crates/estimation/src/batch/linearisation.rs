@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use gyrocal_scalar::Scalar;
+use nalgebra::DMatrix;
 
 use super::filter::{Conditional, backward, cholesky, forward};
 use super::gram::Gram;
@@ -47,9 +48,9 @@ where
 /// What the first pass leaves of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduced<const M: usize> {
-    /// [`Gram`] matrix of residual and columns, (1 + columns)² numbers by rows. The columns are
-    /// derivatives of the innovations: minus those of the predictions.
-    pub gram: Vec<f64>,
+    /// [`Gram`] matrix of residual and columns. The columns are derivatives of the innovations:
+    /// minus those of the predictions.
+    pub gram: DMatrix<f64>,
     /// Number of output values used.
     pub values: usize,
     /// Number of rows with at least one of them.
@@ -121,7 +122,7 @@ where
         let mut gram = Gram::new(count);
         let mut pass = Pass::new(self, count, None)?;
         let mut reduced = Reduced {
-            gram: Vec::new(),
+            gram: DMatrix::zeros(0, 0),
             values: 0,
             rows: 0,
             log_variance: 0.0,

@@ -1,0 +1,100 @@
+//! What no estimator can do better than: the Cramér-Rao bound.
+
+use gyrocal::trajectory::orientation;
+use gyrocal::{Anchored, Settings, Surveyed};
+use nalgebra::{Cholesky, DMatrix};
+
+use crate::PARAMETERS;
+use crate::attitude::trials;
+use crate::begin::leg;
+use crate::calibrate::Options;
+use crate::error::CalibrationError;
+use crate::layout::Layout;
+use crate::run::Run;
+use crate::settings::level;
+use crate::solve::Problem;
+
+/// Cramér-Rao bound of the nine coefficients: the covariance that no estimator of them falls
+/// below, if noise and prior are what the bench declares.
+///
+/// It is the inverse of the information of the record, linearised along the true trajectory and
+/// with the true coefficients, plus that of the prior (Van Trees, *Detection, Estimation, and
+/// Modulation Theory* I, 1968, section 2.4); the attitudes at all rows are eliminated. Latitude,
+/// Earth rate and gravity are unknowns with the sigmas that the bench declares; without a sigma
+/// they count as known.
+///
+/// `platform_c_enu` is the attitude at each row, platform components from East, North, Up
+/// components, and `drift` the true coefficients in the order of the result. The samples do not
+/// matter, but for which of them are missing.
+///
+/// # Errors
+/// [`CalibrationError::UnequalLengths`] of the record; [`CalibrationError::NotLevelled`] if the
+/// bench gives no attitude and the record neither; [`CalibrationError::Pass`] if there is not one
+/// attitude for each row, or the record cannot be passed over;
+/// [`CalibrationError::NotPositiveDefinite`] if the information has no inverse.
+pub fn bound(
+    run: &Run<'_>,
+    platform_c_enu: &[[[f64; 3]; 3]],
+    drift: &[f64; PARAMETERS],
+) -> Result<[[f64; PARAMETERS]; PARAMETERS], CalibrationError> {
+    if run.record.time_s.len() != run.record.accel_g.len() {
+        return Err(CalibrationError::UnequalLengths {
+            times: run.record.time_s.len(),
+            samples: run.record.accel_g.len(),
+        });
+    }
+    let layout = Layout::new(&[run.bench]);
+    // The truth does not depend on how an estimator integrates.
+    let options = Options::default();
+    let settings = Settings {
+        integration: options.integration,
+        longest_step_s: options.longest_step_s,
+        ..level(run.bench)
+    };
+    // All trials have the same covariance: it does not depend on azimuth.
+    let prior = trials(run.record, run.bench)?
+        .first()
+        .map(|trial| trial.prior)
+        .ok_or(CalibrationError::NotLevelled)?;
+    let points = platform_c_enu.iter().map(orientation).collect();
+    let mut values = vec![0.0; layout.unknowns.len()];
+    values[..PARAMETERS].copy_from_slice(drift);
+    let sums = layout.sums(0);
+    let problem = Problem {
+        model: &Anchored(Surveyed),
+        integration: options.integration,
+        longest_step_s: options.longest_step_s,
+        legs: vec![leg(
+            run,
+            run.record.len(),
+            &settings,
+            &prior,
+            points,
+            sums.clone(),
+        )],
+        unknowns: layout.unknowns,
+        values,
+    };
+    let reduced = problem
+        .with_leg(0, &problem.parameters(0), |pass| pass.reduce(|_| ()))
+        .map_err(|source| CalibrationError::Pass { run: 1, source })?;
+    // Columns are the parameters of the model; of one run each is one unknown.
+    let size = sums.len() + 1;
+    let sigma: Vec<f64> = sums
+        .iter()
+        .map(|unknowns| unknowns.iter().map(|i| problem.unknowns[*i].sigma).sum())
+        .collect();
+    let unknown: Vec<usize> = (0..sums.len()).filter(|i| sigma[*i] > 0.0).collect();
+    let information = DMatrix::from_fn(unknown.len(), unknown.len(), |i, j| {
+        let (a, b) = (unknown[i], unknown[j]);
+        let own = if i == j { sigma[a].powi(-2) } else { 0.0 };
+        reduced.gram[(a + 1) * size + b + 1] + own
+    });
+    let covariance = Cholesky::new(information)
+        .ok_or(CalibrationError::NotPositiveDefinite)?
+        .inverse();
+    // The coefficients come first, and each of them has a prior.
+    Ok(core::array::from_fn(|i| {
+        core::array::from_fn(|j| covariance[(i, j)])
+    }))
+}

@@ -1,0 +1,152 @@
+//! `gyrocal allan`: columns of a log in, Allan deviations with confidence intervals out.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use gyrocal_measured::allan::{
+    AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
+};
+use gyrocal_measured::{MeasuredError, ResultFile, read_columns};
+use gyrocal_record::{SourceText, write_json};
+use serde_json::json;
+
+use crate::Failure;
+use crate::measured::{positive, probability, unusable};
+use crate::outputs::{manifest, refuse_overlap};
+
+/// Overlapping Allan deviation of columns of a log.
+///
+/// Each column is a rate sampled at equal intervals. Confidence intervals are those of NIST SP
+/// 1065, by the degrees of freedom of the noise that dominates at each averaging time.
+#[derive(Debug, Args)]
+pub(crate) struct AllanArguments {
+    /// The log (CSV) with a header row.
+    log: PathBuf,
+    /// The columns.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
+    columns: Vec<String>,
+    /// Samples a second.
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    rate_hz: f64,
+    /// What a value is multiplied by, as 206264.8 for deg/h from rad/s.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
+    scale: f64,
+    /// The unit of the scaled values, for the output.
+    #[arg(long, value_name = "UNIT", default_value = "units of the column")]
+    unit: String,
+    /// Probability that an interval holds the deviation.
+    #[arg(long, value_name = "P", default_value_t = 0.683, value_parser = probability)]
+    confidence: f64,
+    /// The result to write for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+}
+
+/// One column's result.
+struct Column<'a> {
+    name: &'a str,
+    points: Vec<AllanPoint>,
+    noise: NoiseCoefficients,
+}
+
+/// Runs the command; returns what is to be said on stdout.
+pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
+    refuse_overlap(&[&arguments.log], &[("--json", arguments.json.as_deref())])?;
+    let columns = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    if let Some(path) = &arguments.json {
+        let result = json!({
+            "unit": arguments.unit,
+            "confidence": arguments.confidence,
+            "columns": columns.iter().map(document).collect::<Vec<_>>(),
+        });
+        write_json(
+            path,
+            &ResultFile::new(manifest("", 0, &[&arguments.log])?, result),
+        )?;
+    }
+    Ok(summary(arguments, &columns))
+}
+
+fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, MeasuredError> {
+    let source = SourceText::read(&arguments.log)?;
+    let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
+    let columns = read_columns(&source, &names)?;
+    let interval_s = 1.0 / arguments.rate_hz;
+    names
+        .into_iter()
+        .zip(columns)
+        .map(|(name, values)| {
+            let values: Vec<f64> = values.iter().map(|value| value * arguments.scale).collect();
+            let averaging = octaves(values.len().max(3));
+            let points = allan_deviation(&values, interval_s, &averaging, arguments.confidence)?;
+            let noise = noise_coefficients(&points);
+            Ok(Column {
+                name,
+                points,
+                noise,
+            })
+        })
+        .collect()
+}
+
+fn document(column: &Column<'_>) -> serde_json::Value {
+    let points: Vec<_> = column
+        .points
+        .iter()
+        .map(|point| {
+            json!({
+                "tau_s": point.tau_s,
+                "deviation": point.deviation,
+                "low": point.interval[0],
+                "high": point.interval[1],
+                "degrees_of_freedom": point.degrees_of_freedom,
+                "noise": point.noise.description(),
+            })
+        })
+        .collect();
+    json!({ "name": column.name, "points": points, "noise": column.noise })
+}
+
+fn summary(arguments: &AllanArguments, columns: &[Column<'_>]) -> String {
+    let rule = LineStyle::none().fill('─').junction('─');
+    let mut text = String::new();
+    for column in columns {
+        let mut table = Table::new();
+        table
+            .load_style(TableStyle::new().header_separator(rule))
+            .set_content_arrangement(ContentArrangement::Dynamic)
+            .set_header(["tau [s]", "deviation", "low", "high", "freedom", "noise"]);
+        for point in &column.points {
+            let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
+            table.add_row([
+                right(format!("{:.4}", point.tau_s)),
+                right(format!("{:.4e}", point.deviation)),
+                right(format!("{:.4e}", point.interval[0])),
+                right(format!("{:.4e}", point.interval[1])),
+                right(format!("{:.1}", point.degrees_of_freedom)),
+                Cell::new(point.noise.description()),
+            ]);
+        }
+        let noise = &column.noise;
+        let _ = writeln!(
+            text,
+            "{}: overlapping Allan deviation [{}], confidence {}\n\n{}\n\nParts by slope: \
+             quantisation {:.3e} × s, random walk {:.3e} × √s, bias instability {:.3e},\nrate \
+             random walk {:.3e} / √s (0: does not show).\n",
+            column.name,
+            arguments.unit,
+            arguments.confidence,
+            table.trim_fmt(),
+            noise.quantisation,
+            noise.random_walk,
+            noise.bias_instability,
+            noise.rate_random_walk,
+        );
+    }
+    if let Some(path) = &arguments.json {
+        let _ = writeln!(text, "{}: the result for programs", path.display());
+    }
+    text
+}

@@ -1,0 +1,236 @@
+//! `gyrocal import strapdown`: a log of a strapdown unit at rest in, a record of the space-stable
+//! platform that it can be computed to be, and its bench description, out.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use gyrocal_measured::strapdown::{ImportReport, ImportSettings, Imported, import};
+use gyrocal_measured::{Description, Log, MeasuredError, ResultFile};
+use gyrocal_record::Outputs;
+
+use crate::Failure;
+use crate::measured::{positive, unusable};
+use crate::outputs::{manifest, refuse_overlap};
+
+/// Make a record from a recording of another kind.
+#[derive(Debug, Args)]
+pub(crate) struct ImportArguments {
+    #[command(subcommand)]
+    kind: Kind,
+}
+
+#[derive(Debug, Subcommand)]
+enum Kind {
+    Strapdown(StrapdownArguments),
+}
+
+/// A strapdown unit on a static base, as an analytic space-stable platform.
+///
+/// Integrates the gyros' increments with a coning correction and turns the accelerometers'
+/// outputs into the axes that the gyros hold in inertial space. Says which rows are disturbed,
+/// at what rate gravity turns against what the Earth makes it, and what one attitude determines.
+#[derive(Debug, Args)]
+struct StrapdownArguments {
+    /// The log (CSV) with a header row.
+    log: PathBuf,
+    /// What its columns mean (TOML); docs/measured-data.md has every key.
+    #[arg(long, value_name = "LOG.toml")]
+    log_description: PathBuf,
+    /// The record to write (CSV).
+    #[arg(long, value_name = "RECORD.csv")]
+    out: PathBuf,
+    /// The bench description to write (TOML), which `calibrate` wants beside the record.
+    #[arg(long, value_name = "BENCH.toml")]
+    bench_out: Option<PathBuf>,
+    /// Interval over which specific force is averaged into one row.
+    #[arg(long, value_name = "S", default_value_t = ImportSettings::default().averaging_s, value_parser = positive)]
+    averaging_s: f64,
+    /// A row is disturbed if it scatters more than this many times as much as the median row.
+    #[arg(long, value_name = "FACTOR", default_value_t = ImportSettings::default().quiet_factor, value_parser = positive)]
+    quiet_factor: f64,
+    /// Keep the values of disturbed rows instead of writing `nan`.
+    #[arg(long)]
+    keep_disturbed: bool,
+    /// Heading of body y, clockwise from north, where it is known by other means.
+    #[arg(
+        long,
+        value_name = "DEG",
+        requires = "heading_sigma_deg",
+        allow_negative_numbers = true
+    )]
+    heading_deg: Option<f64>,
+    /// Standard deviation of that heading.
+    #[arg(long, value_name = "DEG", requires = "heading_deg", value_parser = positive)]
+    heading_sigma_deg: Option<f64>,
+    /// Standard deviation of a gyro's constant error, before the record.
+    #[arg(long, value_name = "DEG_PER_H", default_value_t = ImportSettings::default().bias_sigma_deg_per_h, value_parser = positive)]
+    bias_sigma_deg_per_h: f64,
+    /// Standard deviation of the level, which the accelerometers' own errors set.
+    #[arg(long, value_name = "DEG", default_value_t = ImportSettings::default().level_sigma_deg, value_parser = positive)]
+    level_sigma_deg: f64,
+    /// What was seen, to write for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+}
+
+/// Runs the command; returns what is to be said on stdout.
+pub(crate) fn run(arguments: &ImportArguments) -> Result<String, Failure> {
+    match &arguments.kind {
+        Kind::Strapdown(arguments) => strapdown(arguments),
+    }
+}
+
+fn strapdown(arguments: &StrapdownArguments) -> Result<String, Failure> {
+    let inputs = [&*arguments.log, &*arguments.log_description];
+    refuse_overlap(
+        &inputs,
+        &[
+            ("--out", Some(&arguments.out)),
+            ("--bench-out", arguments.bench_out.as_deref()),
+            ("--json", arguments.json.as_deref()),
+        ],
+    )?;
+    let imported = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    let mut outputs = Outputs::new();
+    outputs.stage(
+        &arguments.out,
+        imported.record.to_csv(&arguments.out)?.as_bytes(),
+    )?;
+    if let Some(path) = &arguments.bench_out {
+        outputs.stage(path, imported.bench.to_toml(path)?.as_bytes())?;
+    }
+    if let Some(path) = &arguments.json {
+        let manifest = manifest("", 0, &inputs)?;
+        outputs.stage_json(path, &ResultFile::new(manifest, &imported.report))?;
+    }
+    outputs.commit()?;
+    Ok(summary(arguments, &imported.report))
+}
+
+fn work(arguments: &StrapdownArguments) -> Result<Imported, MeasuredError> {
+    let description = Description::read(&arguments.log_description)?;
+    let log = Log::read(&arguments.log, &description)?;
+    let settings = ImportSettings {
+        averaging_s: arguments.averaging_s,
+        quiet_factor: arguments.quiet_factor,
+        keep_disturbed: arguments.keep_disturbed,
+        heading_deg: arguments
+            .heading_deg
+            .zip(arguments.heading_sigma_deg)
+            .map(<[f64; 2]>::from),
+        bias_sigma_deg_per_h: arguments.bias_sigma_deg_per_h,
+        level_sigma_deg: arguments.level_sigma_deg,
+    };
+    import(&log, &description, &settings)
+}
+
+fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
+    let disturbed: f64 = report
+        .disturbed_s
+        .iter()
+        .map(|[from_s, to_s]| to_s - from_s)
+        .sum();
+    let mut text = format!(
+        "{}: {} samples over {:.1} s into {} rows of {} s\n\n",
+        arguments.log.display(),
+        report.samples,
+        report.duration_s,
+        report.rows,
+        arguments.averaging_s
+    );
+    let _ = writeln!(
+        text,
+        "Median row: samples scatter by {:.1} deg/h and {:.2e} g. Disturbed, more than {} times \
+         that: {disturbed:.0} s,\n{}",
+        report.gyro_scatter_deg_per_h,
+        report.accel_scatter_g,
+        arguments.quiet_factor,
+        if arguments.keep_disturbed {
+            "kept:"
+        } else {
+            "written as missing:"
+        },
+    );
+    let windows: Vec<String> = report
+        .disturbed_s
+        .iter()
+        .map(|[from_s, to_s]| format!("{:.0} to {:.0}", from_s.round() + 0.0, to_s.round() + 0.0))
+        .collect();
+    for line in windows.chunks(8) {
+        let _ = writeln!(text, "  {}", line.join(", "));
+    }
+    let _ = writeln!(
+        text,
+        "Norm of specific force: {:.6} of the log's unit; the record is in units of it, since the \
+         accelerometers'\ncommon scale and gravity cannot be told apart.",
+        report.norm_g
+    );
+    rates(&mut text, report);
+    let _ = writeln!(
+        text,
+        "\nNoise: {:.2e} g a row (successive rows correlate by {:.2}), gyros at most {:.4} deg/h \
+         over one minute.",
+        report.accel_noise_g, report.accel_noise_correlation, report.gyro_noise_deg_per_h
+    );
+    determined(&mut text, report);
+    let _ = writeln!(text, "\n{}: the record", arguments.out.display());
+    if let Some(path) = &arguments.bench_out {
+        let _ = writeln!(text, "{}: its bench description", path.display());
+    }
+    if let Some(path) = &arguments.json {
+        let _ = writeln!(text, "{}: what was seen, for programs", path.display());
+    }
+    text
+}
+
+fn rates(text: &mut String, report: &ImportReport) {
+    text.push_str("\nRate at which gravity turns in the virtual platform [deg/h]:\n");
+    let lines = [
+        (
+            "horizontal",
+            report.horizontal_rate_deg_per_h,
+            report.expected_horizontal_rate_deg_per_h,
+        ),
+        (
+            "vertical",
+            report.vertical_rate_deg_per_h,
+            report.expected_vertical_rate_deg_per_h,
+        ),
+    ];
+    for (name, [rate, sigma], expected) in lines {
+        let _ = writeln!(
+            text,
+            "  {name:<10} {rate:.4} ± {sigma:.4}, Earth {expected:.4}, difference {:.4}",
+            rate - expected
+        );
+    }
+    let _ = writeln!(
+        text,
+        "Heading of body y by the gyros: {:.3} deg from north",
+        report.heading_deg
+    );
+}
+
+fn determined(text: &mut String, report: &ImportReport) {
+    let c = &report.body_c_enu;
+    let combination = |column: usize| {
+        let parts = ["x", "y", "z"].iter().zip(c);
+        let parts: Vec<String> = parts
+            .map(|(axis, row)| format!("{:+.4} e_{axis}", row[column]))
+            .collect();
+        parts.join(" ")
+    };
+    let east_per_heading = report.horizontal_rate_deg_per_h[0].to_radians();
+    let _ = writeln!(
+        text,
+        "\nOne attitude determines three numbers of the gyros' errors e_x, e_y, e_z, each of them \
+         bias and all terms in\nspecific force together:\n  north  {}\n  up     {}\n  east   {}\n\
+         North and up are the differences above. East cannot be told from the heading: one \
+         degree of heading is\n{east_per_heading:.4} deg/h. Bias, g_i and g_ii of a gyro cannot \
+         be told apart.",
+        combination(1),
+        combination(2),
+        combination(0),
+    );
+}

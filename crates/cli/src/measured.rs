@@ -1,0 +1,65 @@
+//! What commands on recordings of real sensors have in common.
+
+use std::path::{Path, PathBuf};
+
+use gyrocal_measured::MeasuredError;
+use miette::Diagnostic;
+
+use crate::Failure;
+
+/// An error of a log as the command tells it.
+pub(crate) fn unusable(log: &Path, error: MeasuredError) -> Failure {
+    match error {
+        MeasuredError::File(error) => error.into(),
+        MeasuredError::Unfit {
+            found,
+            expected,
+            advice,
+            ..
+        } => Failure::Work(
+            Unusable {
+                log: log.to_owned(),
+                found,
+                expected,
+                advice,
+            }
+            .into(),
+        ),
+        other => Failure::Work(miette::miette!("{}: {other}", log.display())),
+    }
+}
+
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[error("{}: found {found}, expected {expected}", log.display())]
+#[diagnostic(code(gyrocal::measured::unfit), help("{advice}"))]
+struct Unusable {
+    log: PathBuf,
+    found: String,
+    expected: String,
+    advice: String,
+}
+
+/// Parses `FROM:TO`.
+pub(crate) fn interval(text: &str) -> Result<[f64; 2], String> {
+    let ends = text
+        .split_once(':')
+        .and_then(|(from, to)| Some([from.parse::<f64>().ok()?, to.parse::<f64>().ok()?]));
+    ends.filter(|[from, to]| from < to)
+        .ok_or_else(|| "expected two times in seconds, FROM:TO, FROM before TO".to_owned())
+}
+
+/// Parses a number between 0 and 1.
+pub(crate) fn probability(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    value
+        .filter(|value| *value > 0.0 && *value < 1.0)
+        .ok_or_else(|| "expected a number between 0 and 1".to_owned())
+}
+
+/// Parses a number greater than 0.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    value
+        .filter(|value| *value > 0.0 && value.is_finite())
+        .ok_or_else(|| "expected a number greater than 0".to_owned())
+}

@@ -1,0 +1,177 @@
+//! `gyrocal monte-carlo`: a scenario over many seeds in, the quality of the calibration out.
+
+mod progress;
+mod summary;
+
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::path::PathBuf;
+
+use clap::Args;
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_calibration::Options;
+use gyrocal_campaign::{Campaign, Fingerprint, MonteCarloReport, Outcome, Summary, Trial};
+use gyrocal_record::{Outputs, SCHEMA_VERSION, write_json};
+use gyrocal_truth::{Population, Scenario};
+use miette::miette;
+
+use crate::Failure;
+use crate::outputs::{manifest, refuse_overlap};
+use progress::SeedProgress;
+
+/// Judge the calibration by many simulated records.
+///
+/// Simulates the scenario with each seed, calibrates each record, and prints bias, errors against
+/// sigmas, NEES and NIS with their bands, and how often 95 % intervals hold the truth. The result
+/// depends on the scenario and the seeds alone. With --results, a run that was stopped goes on
+/// where it was.
+#[derive(Debug, Args)]
+pub(crate) struct MonteCarloArguments {
+    /// The scenario (TOML); examples/data/three_days.scenario.toml is one. Its seed is replaced.
+    scenario: PathBuf,
+    /// The seeds, from A to before B: 0..2000 are two thousand.
+    #[arg(long, value_name = "A..B", value_parser = seeds)]
+    seeds: Range<u64>,
+    /// Keep each finished run in this file and go on from those that are in it (JSON lines).
+    #[arg(long, value_name = "FILE.jsonl")]
+    results: Option<PathBuf>,
+    /// Use this many threads instead of one for each core.
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+    /// The result to write for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+    /// Draw latitude to 80 deg, coefficients, initial attitude and one to fourteen days at
+    /// random; all else stays that of the scenario. Its seed is that of the population, and
+    /// --seeds are numbers in it.
+    #[arg(long)]
+    population: bool,
+    /// Judge one pass of the streaming filter, which a controller embeds.
+    #[arg(long)]
+    streaming: bool,
+}
+
+/// More are a mistake: results are held in memory.
+const MOST_SEEDS: u64 = 10_000_000;
+
+/// Runs the command; returns what is to be said on stdout.
+pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
+    refuse_overlap(
+        &[&arguments.scenario],
+        &[
+            ("--results", arguments.results.as_deref()),
+            ("--json", arguments.json.as_deref()),
+        ],
+    )?;
+    let scenario = Scenario::read(&arguments.scenario)?;
+    if let Some(path) = &arguments.json {
+        // Hours of work are not to end at a folder that is not there; this leaves nothing.
+        Outputs::new().stage(path, b"")?;
+    }
+    let seed = scenario.seed;
+    let outcome = outcome(arguments, scenario)?;
+    tracing::info!(resumed = outcome.resumed(), "all seeds done");
+    let summary = Summary::of(&outcome);
+    if let (0, Some(failure)) = (summary.runs, summary.failures.first()) {
+        return Err(Failure::Work(miette!(
+            "{}: no run gave a calibration; seed {}: {}",
+            arguments.scenario.display(),
+            failure.seed,
+            failure.message
+        )));
+    }
+    let text = summary::text(arguments, &summary);
+    if let Some(path) = &arguments.json {
+        let report = MonteCarloReport {
+            schema_version: SCHEMA_VERSION,
+            manifest: manifest(MODEL_HASH, seed, &[&arguments.scenario])?,
+            seeds: [arguments.seeds.start, arguments.seeds.end],
+            population: arguments.population,
+            summary,
+        };
+        write_json(path, &report)?;
+    }
+    Ok(text)
+}
+
+fn outcome(arguments: &MonteCarloArguments, scenario: Scenario) -> Result<Outcome<Trial>, Failure> {
+    let options = if arguments.streaming {
+        Options::streaming()
+    } else {
+        Options::default()
+    };
+    let fingerprint = Fingerprint::new("gyrocal monte-carlo")
+        .with("model", MODEL_HASH)
+        .with("options", format!("{options:#?}"))
+        .with("population", arguments.population);
+    let population = Population {
+        common: scenario.clone(),
+        ..Population::new(scenario.seed)
+    };
+    // The seed of the file is replaced, unless it is that of the population.
+    let file = Scenario {
+        seed: 0,
+        ..scenario
+    };
+    let fingerprint = if arguments.population {
+        fingerprint.with("scenario", format!("{population:#?}"))
+    } else {
+        fingerprint.with("scenario", format!("{file:#?}"))
+    };
+    let mut campaign = Campaign::new(arguments.seeds.clone(), fingerprint);
+    if let Some(path) = &arguments.results {
+        campaign = campaign.results(path);
+    }
+    if let Some(threads) = arguments.threads {
+        campaign = campaign.threads(threads);
+    }
+    let mut progress = SeedProgress::new();
+    let job = |seed| {
+        let scenario = if arguments.population {
+            population.scenario(seed)
+        } else {
+            Scenario {
+                seed,
+                ..file.clone()
+            }
+        };
+        Trial::of(&scenario, &options)
+    };
+    campaign
+        .run(job, |state| progress.reach(state))
+        .map_err(|error| Failure::Work(miette!("{error}")))
+}
+
+fn seeds(text: &str) -> Result<Range<u64>, String> {
+    let range = text.split_once("..").and_then(|(from, to)| {
+        let seeds = from.parse::<u64>().ok()?..to.parse::<u64>().ok()?;
+        // Seeds fit a TOML integer, so that each run can be simulated by itself.
+        (!seeds.is_empty() && i64::try_from(seeds.end).is_ok()).then_some(seeds)
+    });
+    match range {
+        None => Err("expected two whole numbers A..B with A less than B".to_owned()),
+        Some(seeds) if seeds.end - seeds.start > MOST_SEEDS => {
+            Err(format!("expected at most {MOST_SEEDS} seeds"))
+        }
+        Some(seeds) => Ok(seeds),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::seeds;
+
+    #[test]
+    fn seeds_are_two_numbers_in_order() {
+        assert_eq!(seeds("3..8"), Ok(3..8));
+        for wrong in [
+            "", "8", "3..", "..8", "3...8", "3..=8", "8..8", "8..3", "-1..8", "a..b",
+        ] {
+            assert!(seeds(wrong).is_err(), "{wrong}");
+        }
+        assert!(seeds("0..10000000").is_ok());
+        assert!(seeds("0..10000001").is_err());
+        assert!(seeds("9223372036854775806..9223372036854775807").is_ok());
+        assert!(seeds("9223372036854775807..9223372036854775808").is_err());
+    }
+}

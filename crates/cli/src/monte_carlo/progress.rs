@@ -1,0 +1,80 @@
+//! The progress bar of a campaign.
+
+use std::io::IsTerminal as _;
+use std::time::Duration;
+
+use gyrocal_campaign::Progress;
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// A bar with the time left, if stderr is a terminal; it goes when it is dropped.
+#[derive(Debug)]
+pub(super) struct SeedProgress {
+    bar: ProgressBar,
+}
+
+impl SeedProgress {
+    pub(super) fn new() -> Self {
+        let bar = if std::io::stderr().is_terminal() {
+            ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
+        } else {
+            ProgressBar::hidden()
+        };
+        let style = ProgressStyle::with_template("{pos} of {len} runs {wide_bar} {msg}");
+        let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self { bar }
+    }
+
+    pub(super) fn reach(&mut self, state: Progress) {
+        self.bar.set_length(state.total);
+        self.bar.set_position(state.done);
+        self.bar.set_message(said(state));
+    }
+}
+
+impl Drop for SeedProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+fn said(state: Progress) -> String {
+    let failed = match state.failed {
+        0 => String::new(),
+        failed => format!("{failed} failed, "),
+    };
+    let left = state.left.map_or_else(
+        || "estimating time left".to_owned(),
+        // Whole seconds: a bar that flickers says no more.
+        |left| {
+            format!(
+                "{} left",
+                HumanDuration(Duration::from_secs(left.as_secs()))
+            )
+        },
+    );
+    failed + &left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_left_and_failures_are_said() {
+        let state = Progress {
+            done: 4,
+            total: 10,
+            resumed: 3,
+            failed: 0,
+            left: None,
+        };
+        assert_eq!(said(state), "estimating time left");
+        let left = Some(Duration::from_millis(125_700));
+        let state = Progress {
+            failed: 2,
+            left,
+            ..state
+        };
+        assert_eq!(said(state), "2 failed, 2 minutes left");
+    }
+}

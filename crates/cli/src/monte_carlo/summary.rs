@@ -1,0 +1,240 @@
+//! What `gyrocal monte-carlo` prints.
+
+use std::fmt::Write as _;
+
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use gyrocal_campaign::{Banded, CoefficientSummary, Failure, Measured, Summary};
+
+use super::MonteCarloArguments;
+use crate::rounding::rounded;
+
+/// Failed runs that are shown; the JSON has all.
+const FAILURES_SHOWN: usize = 5;
+
+pub(super) fn text(arguments: &MonteCarloArguments, summary: &Summary) -> String {
+    let mut text = format!(
+        "{}: {} {} to {}, {} calibrated, {} failed\n",
+        arguments.scenario.display(),
+        if arguments.population {
+            "population around it, numbers"
+        } else {
+            "seeds"
+        },
+        arguments.seeds.start,
+        arguments.seeds.end - 1,
+        summary.runs,
+        summary.failures.len()
+    );
+    for Failure { seed, message } in summary.failures.iter().take(FAILURES_SHOWN) {
+        let _ = writeln!(text, "  {seed}: {message}");
+    }
+    if summary.failures.len() > FAILURES_SHOWN {
+        let more = summary.failures.len() - FAILURES_SHOWN;
+        let _ = writeln!(text, "  and {more} more");
+    }
+    let _ = writeln!(text, "\n{}\n", table(summary).trim_fmt());
+    text.push_str(
+        "Each coefficient over the runs that determined it: sigma below a tenth of the prior's.\n\
+         In parentheses 95 % intervals.\n\n",
+    );
+    let lines = [
+        (
+            "NEES of the determined coefficients",
+            summary.nees_determined,
+        ),
+        // The same, if all are determined in all runs.
+        (
+            "NEES of all nine, for a truth drawn from the prior",
+            nine(summary),
+        ),
+        ("NIS of a row", summary.nis),
+    ];
+    for (name, banded) in lines {
+        if let Some(banded) = banded {
+            let _ = writeln!(text, "{name}: {}.", banded_text(&banded));
+        }
+    }
+    if let Some(share) = summary.consistent {
+        let _ = writeln!(
+            text,
+            "Runs whose own NIS lies in its 99.9 % band: {} %.",
+            measured_text(share, 100.0, 1)
+        );
+    }
+    if let Some(path) = &arguments.results {
+        let _ = writeln!(text, "{}: every run", path.display());
+    }
+    if let Some(path) = &arguments.json {
+        let _ = writeln!(text, "{}: the result for programs", path.display());
+    }
+    text
+}
+
+fn nine(summary: &Summary) -> Option<Banded> {
+    let all = |coefficient: &CoefficientSummary| coefficient.determined == summary.runs;
+    summary
+        .nees
+        .filter(|_| !summary.coefficients.iter().all(all))
+}
+
+fn table(summary: &Summary) -> Table {
+    let rule = LineStyle::none().fill('─').junction('─');
+    let bounded = summary
+        .coefficients
+        .iter()
+        .any(|coefficient| coefficient.rmse_over_bound.is_some());
+    let mut header = vec![
+        "coefficient",
+        "unit",
+        "determined",
+        "bias",
+        "its error",
+        "RMSE",
+        "RMSE / sigma",
+    ];
+    if bounded {
+        header.push("RMSE / bound");
+    }
+    header.push("95 % interval holds, %");
+    let mut table = Table::new();
+    table
+        .load_style(TableStyle::new().header_separator(rule))
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_header(header);
+    for coefficient in &summary.coefficients {
+        let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
+        let ratio = |ratio: Option<Measured>| {
+            right(ratio.map_or_else(String::new, |ratio| measured_text(ratio, 1.0, 3)))
+        };
+        let [bias, bias_error] = match (coefficient.bias, coefficient.bias_standard_error) {
+            (Some(bias), Some(error)) => rounded(bias, error),
+            (Some(bias), None) => [format!("{bias:.1e}"), String::new()],
+            (None, _) => [String::new(), String::new()],
+        };
+        let rmse = coefficient.rmse.map(|rmse| rounded(0.0, rmse));
+        let mut row = vec![
+            Cell::new(&coefficient.name),
+            Cell::new(&coefficient.unit),
+            right(coefficient.determined.to_string()),
+            right(bias),
+            right(bias_error),
+            right(rmse.map_or_else(String::new, |[_, rmse]| rmse)),
+            ratio(coefficient.rmse_over_sigma),
+        ];
+        if bounded {
+            row.push(ratio(coefficient.rmse_over_bound));
+        }
+        row.push(right(
+            coefficient
+                .coverage
+                .map_or_else(String::new, |coverage| measured_text(coverage, 100.0, 1)),
+        ));
+        table.add_row(row);
+    }
+    table
+}
+
+fn measured_text(measured: Measured, scale: f64, decimals: usize) -> String {
+    let [low, high] = measured.interval.map(|bound| scale * bound);
+    let value = scale * measured.value;
+    format!("{value:.decimals$} ({low:.decimals$} to {high:.decimals$})")
+}
+
+fn banded_text(banded: &Banded) -> String {
+    let [low, high] = banded.band;
+    format!(
+        "mean {:.3}, {:.3} expected, 99.9 % band {low:.3} to {high:.3}: {}; median {:.3}",
+        banded.mean,
+        banded.expected,
+        if banded.holds() { "inside" } else { "outside" },
+        banded.median
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn summary(rmse_over_bound: Option<Measured>) -> Summary {
+        let share = Measured {
+            value: 0.95,
+            interval: [0.94, 0.959_6],
+        };
+        let coefficient = CoefficientSummary {
+            name: "gyro_x.bias".to_owned(),
+            unit: "deg/h".to_owned(),
+            determined: 7,
+            bias: Some(-0.001_234),
+            bias_standard_error: Some(0.000_56),
+            rmse: Some(0.017_8),
+            sigma_median: Some(0.018),
+            rmse_over_sigma: Some(share),
+            rmse_over_bound,
+            coverage: Some(share),
+        };
+        Summary {
+            runs: 9,
+            failures: (0..7)
+                .map(|seed| Failure {
+                    seed,
+                    message: "lost".to_owned(),
+                })
+                .collect(),
+            nees_determined: None,
+            nees: None,
+            nis: Some(Banded {
+                mean: 3.2,
+                expected: 3.0,
+                band: [2.9, 3.1],
+                median: 3.0,
+            }),
+            consistent: None,
+            coefficients: vec![coefficient],
+        }
+    }
+
+    fn said(summary: &Summary) -> String {
+        let arguments = MonteCarloArguments {
+            scenario: "s.toml".into(),
+            seeds: 0..16,
+            results: None,
+            threads: None,
+            json: None,
+            population: false,
+            streaming: false,
+        };
+        text(&arguments, summary)
+    }
+
+    #[test]
+    fn the_bound_has_a_column_if_it_is_known() {
+        let without = said(&summary(None));
+        assert!(!without.contains("bound"), "{without}");
+        let cells = "7   -0.00123     0.00056   0.018   0.950 (0.940 to 0.960)";
+        assert!(without.contains(cells), "{without}");
+        assert!(without.contains("95.0 (94.0 to 96.0)"), "{without}");
+        let with = said(&summary(Some(Measured {
+            value: 1.02,
+            interval: [0.99, 1.05],
+        })));
+        assert!(with.contains("RMSE / bound"), "{with}");
+        assert!(with.contains("1.020 (0.990 to 1.050)"), "{with}");
+    }
+
+    #[test]
+    fn failures_and_bands_are_said() {
+        let said = said(&summary(None));
+        assert!(
+            said.starts_with("s.toml: seeds 0 to 15, 9 calibrated, 7 failed\n  0: lost\n"),
+            "{said}"
+        );
+        assert!(said.contains("  4: lost\n  and 2 more\n"), "{said}");
+        assert!(
+            said.contains(
+                "NIS of a row: mean 3.200, 3.000 expected, 99.9 % band 2.900 to 3.100: outside"
+            ),
+            "{said}"
+        );
+        assert!(!said.contains("NEES"), "{said}");
+    }
+}

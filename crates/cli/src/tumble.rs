@@ -1,0 +1,332 @@
+//! `gyrocal tumble`: a log with static stops in many attitudes in, the drift law and what it
+//! leaves out of it out.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_measured::tumble::{
+    Finding, Prepared, SearchSettings, TumbleReport, TumbleSettings, prepare, tumble,
+};
+use gyrocal_measured::{
+    Description, Log, MeasuredError, ResultFile, StopSettings, find_stops, given_stops,
+};
+use gyrocal_record::write_json;
+
+use crate::Failure;
+use crate::measured::{interval, unusable};
+use crate::outputs::{manifest, refuse_overlap};
+use crate::rounding::rounded;
+
+/// Test gyros in many static attitudes: fit the drift law and say what it leaves out.
+///
+/// Stops are found in the log or given, gyro outputs are fitted to specific force, and terms of
+/// the catalogue are added while they are better than chance. Says what could be taken for each
+/// of them, what the extended law is worth at stops that were not used, and what is found in
+/// shuffled stops.
+#[derive(Debug, Args)]
+pub(crate) struct TumbleArguments {
+    /// The log (CSV) with a header row.
+    log: PathBuf,
+    /// What its columns mean (TOML); docs/measured-data.md has every key.
+    #[arg(long, value_name = "LOG.toml")]
+    log_description: PathBuf,
+    /// A stop, in place of those that are found; may be repeated.
+    #[arg(long, value_name = "FROM_S:TO_S", value_parser = interval)]
+    stop: Vec<[f64; 2]>,
+    /// Stops shorter than this do not count.
+    #[arg(long, value_name = "S", default_value_t = StopSettings::default().shortest_s)]
+    shortest_stop_s: f64,
+    /// How many times the variance of the quietest windows a window at rest may have.
+    #[arg(long, value_name = "FACTOR", default_value_t = StopSettings::default().accel_factor)]
+    quiet_factor: f64,
+    /// Probability of finding something in data without effects.
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = crate::measured::probability)]
+    false_alarm: f64,
+    /// Stops in a row that are left out together when the gain is measured.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
+    left_out: u32,
+    /// Seed of the permutations.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// The result to write for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+}
+
+/// Runs the command; returns what is to be said on stdout.
+pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
+    let inputs = [&*arguments.log, &*arguments.log_description];
+    refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    let (prepared, report) = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    tracing::info!(?report, "tested");
+    if let Some(path) = &arguments.json {
+        let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
+        let result = serde_json::json!({ "sensors": prepared.sensors(), "test": report });
+        write_json(path, &ResultFile::new(manifest, result))?;
+    }
+    Ok(summary(arguments, &prepared, &report))
+}
+
+fn work(arguments: &TumbleArguments) -> Result<(Prepared, TumbleReport), MeasuredError> {
+    let description = Description::read(&arguments.log_description)?;
+    let log = Log::read(&arguments.log, &description)?;
+    let stops = match &arguments.stop[..] {
+        [] => {
+            let default = StopSettings::default();
+            let settings = StopSettings {
+                shortest_s: arguments.shortest_stop_s,
+                accel_factor: arguments.quiet_factor,
+                gyro_factor: default.gyro_factor * arguments.quiet_factor / default.accel_factor,
+                ..default
+            };
+            find_stops(&log, &settings)?
+        }
+        given => given_stops(&log, given)?,
+    };
+    let prepared = prepare(&log, &description, &stops)?;
+    let settings = TumbleSettings {
+        search: SearchSettings {
+            false_alarm_probability: arguments.false_alarm,
+            seed: arguments.seed,
+            ..SearchSettings::default()
+        },
+        left_out: arguments.left_out as usize,
+        ..TumbleSettings::default()
+    };
+    let report = tumble(&prepared.positions, &settings)?;
+    Ok((prepared, report))
+}
+
+fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleReport) -> String {
+    let mut text = format!(
+        "{}: {} static stops\n\n",
+        arguments.log.display(),
+        report.stops
+    );
+    sensors(&mut text, prepared);
+    let _ = writeln!(text, "{}\n", laws(report).trim_fmt());
+    for gyro in &report.gyros {
+        let (nominal, extended) = (&gyro.nominal, &gyro.extended);
+        let test = &gyro.nominal_against_catalogue;
+        let _ = writeln!(
+            text,
+            "{}: the nominal law leaves chi-square {:.0} of {} degrees of freedom, the extended \
+             {:.1} of {}\n  (p {:.1e}; scatter beyond the standard errors of the stops: {:.0} \
+             deg/h, with the nominal law {:.0}).\n  All terms of the catalogue against the \
+             nominal law: F({}, {}) = {:.1}, p {:.1e}; against the extended law: F = {:.1}, p \
+             {:.2}.",
+            gyro.gyro,
+            nominal.chi_square,
+            nominal.degrees_of_freedom,
+            extended.chi_square,
+            extended.degrees_of_freedom,
+            extended.p_value,
+            extended.excess_deg_per_h,
+            nominal.excess_deg_per_h,
+            test.degrees_of_freedom[0],
+            test.degrees_of_freedom[1],
+            test.f,
+            test.p_value,
+            gyro.extended_against_catalogue.f,
+            gyro.extended_against_catalogue.p_value,
+        );
+        if !gyro.undetermined.is_empty() {
+            let names = gyro.undetermined.join(", ");
+            let _ = writeln!(text, "  These attitudes do not determine {names} beside the others.");
+        }
+    }
+    if report.findings.is_empty() {
+        text.push_str("\nNothing found that the nominal law leaves out.\n");
+    } else {
+        text.push_str("\nThe nominal law leaves out, in the order of finding:\n");
+    }
+    for finding in &report.findings {
+        describe(&mut text, finding);
+    }
+    worth(&mut text, report);
+    cannot_tell(&mut text, prepared);
+    if let Some(path) = &arguments.json {
+        let _ = writeln!(text, "\n{}: the result for programs", path.display());
+    }
+    text
+}
+
+fn sensors(text: &mut String, prepared: &Prepared) {
+    let sensors = prepared.sensors();
+    if let Some(outputs) = sensors.accel_outputs_per_g {
+        let [x, y, z] = outputs;
+        let _ = writeln!(
+            text,
+            "Accelerometers, by the norm at the stops: {x:.1}, {y:.1}, {z:.1} counts per g."
+        );
+    }
+    let _ = writeln!(
+        text,
+        "Norm of specific force: 1 g within {:.1e} g rms.",
+        sensors.norm_rms_g
+    );
+    if let (Some(outputs), Some(angles), Some(rms), Some(turns)) = (
+        sensors.gyro_outputs_per_rad_per_s,
+        sensors.gyro_misalignment_rad,
+        sensors.turn_rms_g,
+        &prepared.turns,
+    ) {
+        let [x, y, z] = outputs;
+        let [ax, ay, az] = angles;
+        let _ = writeln!(
+            text,
+            "Gyros, by {} turns between stops: {x:.5}, {y:.5}, {z:.5} outputs per rad/s, input \
+             axes {ax:.3}, {ay:.3}, {az:.3} rad\nfrom those of the accelerometers; gravity \
+             carried over within {rms:.1e} g rms.",
+            turns.turns,
+        );
+    }
+    text.push('\n');
+}
+
+fn laws(report: &TumbleReport) -> Table {
+    let rule = LineStyle::none().fill('─').junction('─');
+    let mut table = Table::new();
+    table
+        .load_style(TableStyle::new().header_separator(rule))
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_header([
+            "coefficient",
+            "nominal",
+            "sigma",
+            "extended",
+            "sigma",
+            "unit",
+        ]);
+    let right = |text: &str| Cell::new(text).set_alignment(CellAlignment::Right);
+    for gyro in &report.gyros {
+        for coefficient in &gyro.extended.coefficients {
+            let mut nominal = gyro.nominal.coefficients.iter();
+            let [before, before_sigma] = nominal
+                .find(|other| other.name == coefficient.name)
+                .map_or([const { String::new() }; 2], |other| {
+                    rounded(other.estimate, other.sigma)
+                });
+            let [estimate, sigma] = rounded(coefficient.estimate, coefficient.sigma);
+            table.add_row([
+                Cell::new(&coefficient.name),
+                right(&before),
+                right(&before_sigma),
+                right(&estimate),
+                right(&sigma),
+                Cell::new(&coefficient.unit),
+            ]);
+        }
+    }
+    table
+}
+
+fn describe(text: &mut String, finding: &Finding) {
+    let [estimate, sigma] = rounded(finding.estimate, finding.sigma);
+    let _ = writeln!(
+        text,
+        "  {}  {estimate} ± {sigma} {}  (F {:.0}, p {:.3} for the whole search)",
+        finding.effect, finding.unit, finding.f, finding.p_value
+    );
+    let rivals: Vec<String> = finding
+        .rivals
+        .iter()
+        .map(|rival| {
+            format!(
+                "{} ({:.1} nats)",
+                rival.effect, rival.log_likelihood_deficit
+            )
+        })
+        .collect();
+    if rivals.is_empty() {
+        text.push_str("    no other term of the catalogue could stand for it");
+    } else {
+        let _ = write!(text, "    could also be {}", rivals.join(", "));
+    }
+    if let Some(nearest) = &finding.nearest_ruled_out {
+        let _ = write!(
+            text,
+            "; ruled out at least by {:.1} nats ({})",
+            nearest.log_likelihood_deficit, nearest.effect
+        );
+    }
+    text.push('\n');
+    if !finding.equivalents.is_empty() {
+        let _ = writeln!(
+            text,
+            "    the same as {} with the opposite sign, in any attitude",
+            finding.equivalents.join(", ")
+        );
+    }
+    if let Some(angle) = finding.misalignment_needed_rad {
+        let _ = writeln!(
+            text,
+            "    as a misalignment of the accelerometers it would have to be {angle:.1} rad"
+        );
+    }
+}
+
+fn worth(text: &mut String, report: &TumbleReport) {
+    if let Some(gain) = &report.gain {
+        let list = |values: [f64; 3]| values.map(|value| format!("{value:.0}")).join(", ");
+        let _ = writeln!(
+            text,
+            "\nAt stops that were not used ({} blocks of up to {}, searched and fitted without \
+             them), the extended law gains\n{:.1} ± {:.1} nats of log score; errors rms of \
+             gyros x, y, z: {} deg/h, before {},\nstandard errors of the stops {}.",
+            gain.blocks,
+            gain.left_out,
+            gain.cross_validated_log_score_nats,
+            gain.standard_error_nats,
+            list(gain.rms_after_deg_per_h),
+            list(gain.rms_before_deg_per_h),
+            list(gain.noise_deg_per_h),
+        );
+        let found: Vec<String> = gain
+            .found_in_blocks
+            .iter()
+            .map(|(name, blocks)| format!("{name} in {blocks}"))
+            .collect();
+        let _ = writeln!(text, "Found again without a block: {}.", found.join(", "));
+    }
+    let controls = &report.controls;
+    let names = |names: &[String]| match names {
+        [] => "nothing".to_owned(),
+        names => names.join(", "),
+    };
+    let _ = writeln!(
+        text,
+        "\nControls: something found in {} of {} data sets with the stops shuffled; with the \
+         axes renamed,\nthe findings are {} under their new names; with the axes of the \
+         accelerometers alone renamed,\n{} that is not there.",
+        controls.shuffles_with_findings,
+        controls.shuffles,
+        if controls.renamed_as_expected {
+            "the same"
+        } else {
+            "NOT the same"
+        },
+        names(&controls.forces_renamed_unexpected),
+    );
+}
+
+fn cannot_tell(text: &mut String, prepared: &Prepared) {
+    text.push_str(
+        "\nCannot be told: squares along all three axes from the bias (they sum to 1 g²); what \
+         else depends on the\nattitude to gravity alone, such as convection in the unit, from \
+         its specific force.\n",
+    );
+    match prepared.instrument.latitude_deg {
+        Some(_) => text.push_str(
+            "Earth rate: its vertical part is taken off; its horizontal part counts as scatter, \
+             the heading being unknown.\n",
+        ),
+        None => text.push_str(
+            "Earth rate is not taken off, no latitude being given: each g_i holds up to 15.04 \
+             deg/h/g of it, and the\nscatter up to as much.\n",
+        ),
+    }
+}

@@ -1,0 +1,78 @@
+//! What is random in the drift.
+
+use libm::sqrt;
+
+use crate::effect::Effect;
+use crate::random::{Purpose, Stream};
+use crate::scenario::Scenario;
+
+/// White noise and rate random walk of the three gyros, interval by interval.
+pub(crate) struct GyroNoise {
+    white: Stream,
+    held_deg_per_h: [f64; 3],
+    walk: Option<Walk>,
+}
+
+/// A Brownian motion of the drift itself, 0 at the first row.
+struct Walk {
+    steps: Stream,
+    size_deg_per_h_per_sqrt_h: [f64; 3],
+    now_deg_per_h: [f64; 3],
+}
+
+impl GyroNoise {
+    pub(crate) fn new(scenario: &Scenario) -> Self {
+        let mut held_deg_per_h = [scenario.held_gyro_noise_deg_per_h(); 3];
+        let mut size_deg_per_h_per_sqrt_h = [0.0; 3];
+        for hidden in &scenario.hidden {
+            match hidden.effect() {
+                Effect::GyroNoise(gyro) => held_deg_per_h[gyro] *= hidden.value(0),
+                Effect::GyroRandomWalk(gyro) => size_deg_per_h_per_sqrt_h[gyro] = hidden.value(0),
+                _ => {}
+            }
+        }
+        let walks = size_deg_per_h_per_sqrt_h != [0.0; 3];
+        Self {
+            white: Stream::new(scenario.seed, Purpose::GyroNoise),
+            held_deg_per_h,
+            walk: walks.then(|| Walk {
+                steps: Stream::new(scenario.seed, Purpose::RandomWalk),
+                size_deg_per_h_per_sqrt_h,
+                now_deg_per_h: [0.0; 3],
+            }),
+        }
+    }
+
+    /// The mean of the noise over the next interval \[deg/h\].
+    pub(crate) fn next_deg_per_h(&mut self, interval_s: f64) -> [f64; 3] {
+        let normals = self.white.three_normals();
+        let mut mean = [0, 1, 2].map(|gyro| self.held_deg_per_h[gyro] * normals[gyro]);
+        if let Some(walk) = &mut self.walk {
+            let drift = walk.next_deg_per_h(interval_s);
+            mean = [0, 1, 2].map(|gyro| mean[gyro] + drift[gyro]);
+        }
+        mean
+    }
+
+    /// Where the random walk is now \[deg/h\].
+    pub(crate) fn walk_deg_per_h(&self) -> [f64; 3] {
+        self.walk
+            .as_ref()
+            .map_or([0.0; 3], |walk| walk.now_deg_per_h)
+    }
+}
+
+impl Walk {
+    /// Goes on by an interval; returns the mean over it, jointly with the new end as a Brownian
+    /// motion has them: half of the increment and an independent part of variance Δt/12.
+    fn next_deg_per_h(&mut self, interval_s: f64) -> [f64; 3] {
+        let root_h = sqrt(interval_s / 3600.0);
+        let (increments, bridges) = (self.steps.three_normals(), self.steps.three_normals());
+        core::array::from_fn(|gyro| {
+            let sigma = self.size_deg_per_h_per_sqrt_h[gyro] * root_h;
+            let before = self.now_deg_per_h[gyro];
+            self.now_deg_per_h[gyro] += sigma * increments[gyro];
+            before + sigma * (0.5 * increments[gyro] + bridges[gyro] / sqrt(12.0))
+        })
+    }
+}
