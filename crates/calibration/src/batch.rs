@@ -40,7 +40,7 @@ pub(crate) fn calibrate(
                 .solve(MOST_ITERATIONS, |_| ())
                 .map(|solution| (solution, vec![0; runs.len()])),
         }
-        .map_err(explain)?;
+        .map_err(CalibrationError::from)?;
         Ok::<_, CalibrationError>((problem, azimuths, solution, bounded))
     };
     // One pass of the filter is start enough for nearly every record.
@@ -147,7 +147,7 @@ fn run_results(
                 let found = problem.with_leg(index, &parameters, |pass| {
                     noise::estimate(|factors| pass.noise_score(factors))
                 });
-                Some(found.map_err(|error| explain(Failure::Pass(index, error)))?)
+                Some(found.map_err(|error| CalibrationError::from(Failure::Pass(index, error)))?)
             } else {
                 None
             };
@@ -191,22 +191,4 @@ fn site_influences(
             })
         })
         .collect()
-}
-
-fn explain(failure: Failure) -> CalibrationError {
-    match failure {
-        Failure::Pass(run, source) => CalibrationError::Pass {
-            run: run + 1,
-            source,
-        },
-        Failure::NoDescent { iterations } => CalibrationError::NoDescent { iterations },
-        Failure::NotConverged {
-            iterations,
-            last_step,
-        } => CalibrationError::NotConverged {
-            iterations,
-            last_step,
-        },
-        Failure::Singular => CalibrationError::NotPositiveDefinite,
-    }
 }

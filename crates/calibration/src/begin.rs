@@ -7,6 +7,7 @@ use crate::attitude::{InitialAttitude, Trial, trials};
 use crate::batch::{BatchProblem, MOST_ITERATIONS};
 use crate::calibrate::Options;
 use crate::error::CalibrationError;
+use crate::further::Further;
 use crate::layout::Layout;
 use crate::result::AzimuthSearch;
 use crate::run::{Rows, Run};
@@ -76,6 +77,8 @@ pub(crate) fn leg<'a>(
         prior_covariance: prior.covariance,
         points,
         sums,
+        further: Further::default(),
+        amplitudes: Vec::new(),
     }
 }
 

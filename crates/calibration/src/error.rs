@@ -1,5 +1,7 @@
 use gyrocal::EstimationError;
 
+use crate::solve::Failure;
+
 /// Why a record could not be calibrated.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -98,4 +100,24 @@ pub enum CalibrationError {
          covariance as factors"
     )]
     NotPositiveDefinite,
+}
+
+impl From<Failure> for CalibrationError {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Pass(run, source) => Self::Pass {
+                run: run + 1,
+                source,
+            },
+            Failure::NoDescent { iterations } => Self::NoDescent { iterations },
+            Failure::NotConverged {
+                iterations,
+                last_step,
+            } => Self::NotConverged {
+                iterations,
+                last_step,
+            },
+            Failure::Singular => Self::NotPositiveDefinite,
+        }
+    }
 }

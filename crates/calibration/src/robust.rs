@@ -1,10 +1,11 @@
 //! Bounded influence of outliers: Huber's weights.
 
+use gyrocal::Chart;
 use gyrocal::estimation::Manifold;
 use gyrocal::estimation::batch::Series;
 use gyrocal::trajectory::Orientation;
-use gyrocal::{Chart, ChartInputs};
 
+use crate::run::Conditions;
 use crate::solve::{Failure, Problem, Solution};
 
 /// Rounds of weighting; weights of a record with a few outliers settle in three or four.
@@ -25,7 +26,7 @@ pub(crate) fn solve<D, I>(
 ) -> Result<(Solution, Vec<usize>), Failure>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
-    I: ChartInputs<f64>,
+    I: Conditions,
 {
     let mut solution = problem.solve(most_iterations, |_| ())?;
     let mut passes = solution.iterations;
@@ -73,7 +74,7 @@ fn weights<D, I>(
 ) -> Vec<[f64; 3]>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
-    I: ChartInputs<f64>,
+    I: Conditions,
 {
     let leg = &problem.legs[index];
     let mut chart = leg.chart;

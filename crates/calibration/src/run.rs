@@ -1,8 +1,29 @@
 //! A record as the batch engine reads it.
 
 use gyrocal::estimation::batch::Series;
+use gyrocal::generated::catalogue::{CatalogueInputs, conditions_index};
+use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::{Chart, ChartInputs};
 use gyrocal_record::{Bench, Record};
+
+/// Inputs that may depend on time and temperature.
+pub(crate) trait Conditions: ChartInputs<f64> {
+    /// Sets time since the first row (of the middle of an interval, or of a row), the length of
+    /// the interval, and temperature about its mean.
+    fn set_conditions(&mut self, time_s: f64, interval_s: f64, temperature_k: f64);
+}
+
+impl Conditions for SurveyedInputs<f64> {
+    fn set_conditions(&mut self, _: f64, _: f64, _: f64) {}
+}
+
+impl Conditions for CatalogueInputs<f64> {
+    fn set_conditions(&mut self, time_s: f64, interval_s: f64, temperature_k: f64) {
+        self.conditions[conditions_index::TIME_S] = time_s;
+        self.conditions[conditions_index::INTERVAL_S] = interval_s;
+        self.conditions[conditions_index::TEMPERATURE_K] = temperature_k;
+    }
+}
 
 /// A record with the bench it was taken on: one turn-on of the platform.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +42,8 @@ pub(crate) struct Rows<'a> {
     rows: usize,
     /// Variance of an output whose weight is 1.
     variance_g2: [f64; 3],
+    /// Mean temperature over the record, if it was logged.
+    mean_temperature_c: f64,
     /// Weight of each row's outputs, if some are not trusted.
     pub(crate) weights: Option<Vec<[f64; 3]>>,
 }
@@ -31,8 +54,33 @@ impl<'a> Rows<'a> {
             record,
             rows,
             variance_g2: noise_g.map(|sigma| sigma * sigma),
+            mean_temperature_c: record.temperature_c.as_ref().map_or(0.0, |temperature| {
+                temperature.iter().sum::<f64>() / temperature.len().max(1) as f64
+            }),
             weights: None,
         }
+    }
+
+    /// Temperature at a row about its mean; zero if it was not logged.
+    fn temperature_k(&self, row: usize) -> f64 {
+        self.record
+            .temperature_c
+            .as_ref()
+            .map_or(0.0, |temperature| {
+                temperature[row] - self.mean_temperature_c
+            })
+    }
+
+    /// The same rows once more.
+    pub(crate) fn again(&self) -> Self {
+        Self {
+            weights: self.weights.clone(),
+            ..*self
+        }
+    }
+
+    pub(crate) fn set_noise(&mut self, noise_g: [f64; 3]) {
+        self.variance_g2 = noise_g.map(|sigma| sigma * sigma);
     }
 
     /// Standard deviation of an output whose weight is 1.
@@ -41,7 +89,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-impl<I: ChartInputs<f64>> Series<Chart<f64, I>, 3> for Rows<'_> {
+impl<I: Conditions> Series<Chart<f64, I>, 3> for Rows<'_> {
     fn rows(&self) -> usize {
         self.rows
     }
@@ -51,7 +99,15 @@ impl<I: ChartInputs<f64>> Series<Chart<f64, I>, 3> for Rows<'_> {
     }
 
     fn measured(&self, row: usize) -> [f64; 3] {
-        self.record.accel_g[row]
+        let mut measured = self.record.accel_g[row];
+        if let Some(weights) = &self.weights {
+            for (value, weight) in measured.iter_mut().zip(weights[row]) {
+                if weight == 0.0 {
+                    *value = f64::NAN;
+                }
+            }
+        }
+        measured
     }
 
     fn noise_variance(&self, row: usize) -> [f64; 3] {
@@ -61,5 +117,26 @@ impl<I: ChartInputs<f64>> Series<Chart<f64, I>, 3> for Rows<'_> {
                 core::array::from_fn(|axis| self.variance_g2[axis] / weights[row][axis])
             }
         }
+    }
+
+    fn over(&self, row: usize, from_s: f64, to_s: f64, inputs: &mut Chart<f64, I>) {
+        let first_s = self.record.time_s[0];
+        // Temperature between rows lies on the straight line; the middle stands for the mean.
+        let (before_s, after_s) = (self.record.time_s[row], self.record.time_s[row + 1]);
+        let middle_s = 0.5 * (from_s + to_s);
+        let share = (middle_s - before_s) / (after_s - before_s);
+        let temperature_k =
+            (1.0 - share) * self.temperature_k(row) + share * self.temperature_k(row + 1);
+        inputs
+            .inputs_mut()
+            .set_conditions(middle_s - first_s, to_s - from_s, temperature_k);
+    }
+
+    fn at(&self, row: usize, inputs: &mut Chart<f64, I>) {
+        let time_s = self.record.time_s[row] - self.record.time_s[0];
+        // No output depends on the length of an interval.
+        inputs
+            .inputs_mut()
+            .set_conditions(time_s, 1.0, self.temperature_k(row));
     }
 }

@@ -1,11 +1,12 @@
 //! Gauss-Newton on the trajectories of several records and the parameters they share.
 
-use gyrocal::estimation::batch::{Linearisation, Manifold, NoColumns, Reduced};
+use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Reduced, Series};
 use gyrocal::trajectory::{Orientation, turned};
-use gyrocal::{Chart, ChartInputs, EstimationError, Integration};
+use gyrocal::{Chart, EstimationError, Integration};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::run::Rows;
+use crate::further::Further;
+use crate::run::{Conditions, Rows};
 
 /// Steps are halved at most so often when they do not lower the cost.
 const MOST_HALVINGS: usize = 12;
@@ -58,15 +59,18 @@ pub(crate) struct Leg<'a, I> {
     /// For each parameter of the model the unknowns whose sum it is; none if it is zero for
     /// good.
     pub(crate) sums: Vec<Vec<usize>>,
+    /// Columns beside the model's parameters, and the unknown that is the amplitude of each.
+    pub(crate) further: Further,
+    pub(crate) amplitudes: Vec<usize>,
 }
 
 impl<I> Leg<'_, I> {
-    /// The sums of those parameters that are columns.
-    fn active(&self) -> Vec<&[usize]> {
-        self.sums
-            .iter()
-            .filter(|unknowns| !unknowns.is_empty())
+    /// For each column the unknowns whose sum it is.
+    fn columns(&self) -> Vec<&[usize]> {
+        let parameters = self.sums.iter().filter(|unknowns| !unknowns.is_empty());
+        parameters
             .map(Vec::as_slice)
+            .chain(self.amplitudes.iter().map(core::slice::from_ref))
             .collect()
     }
 }
@@ -83,6 +87,7 @@ pub(crate) struct Problem<'a, D, I> {
 }
 
 /// What the records say, linearised about the solution.
+#[derive(Clone)]
 pub(crate) struct Solution {
     /// Information of the records on all unknowns, without their priors.
     pub(crate) information: DMatrix<f64>,
@@ -91,8 +96,6 @@ pub(crate) struct Solution {
     pub(crate) values: usize,
     pub(crate) rows: usize,
     pub(crate) log_variance: f64,
-    /// Each record's reduced form.
-    pub(crate) legs: Vec<Reduced<3>>,
     /// Passes that were made.
     pub(crate) iterations: usize,
 }
@@ -128,7 +131,7 @@ struct Step {
 impl<D, I> Problem<'_, D, I>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
-    I: ChartInputs<f64>,
+    I: Conditions,
 {
     /// Iterates to convergence, in at most `most_iterations` steps. `progress` is called after
     /// each.
@@ -190,6 +193,22 @@ where
             .collect()
     }
 
+    /// Outputs that the model gives at each row of a record for the attitudes as they are.
+    pub(crate) fn predicted(&self, leg: usize) -> Vec<[f64; 3]> {
+        let parameters = self.parameters(leg);
+        let leg = &self.legs[leg];
+        let (mut chart, mut moving) = (leg.chart, [0.0; 3]);
+        leg.points
+            .iter()
+            .enumerate()
+            .map(|(row, point)| {
+                self.model.place(point, &mut moving, &mut chart);
+                Series::<Chart<f64, I>, 3>::at(&leg.rows, row, &mut chart);
+                self.model.output(&moving, &parameters, &chart)
+            })
+            .collect()
+    }
+
     fn prior_cost(&self) -> f64 {
         self.unknowns
             .iter()
@@ -212,7 +231,7 @@ where
                 .with_leg(index, &parameters, |pass| pass.reduce(|_| ()))
                 .map_err(|error| Failure::Pass(index, error))?;
             point.trajectory_cost += reduced.trajectory_cost;
-            add_gram(&mut point.gram, &reduced.gram, &self.legs[index].active());
+            add_gram(&mut point.gram, &reduced.gram, &self.legs[index].columns());
             point.legs.push(reduced);
         }
         Ok(point)
@@ -222,12 +241,35 @@ where
         &self,
         index: usize,
         parameters: &[f64],
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, NoColumns, 3, 3>) -> R,
+        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, Further, 3, 3>) -> R,
+    ) -> R {
+        self.with_columns(index, parameters, &self.legs[index].further, pass)
+    }
+
+    /// A pass over a record with these columns beside those of its parameters.
+    pub(crate) fn with_columns<R, C: Columns<3, 3>>(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        further: &C,
+        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, C, 3, 3>) -> R,
+    ) -> R {
+        let active: Vec<usize> = (0..parameters.len())
+            .filter(|parameter| !self.legs[index].sums[*parameter].is_empty())
+            .collect();
+        self.with_active(index, parameters, &active, further, pass)
+    }
+
+    /// A pass over a record with any parameters as columns.
+    pub(crate) fn with_active<R, C: Columns<3, 3>>(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        active: &[usize],
+        further: &C,
+        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, C, 3, 3>) -> R,
     ) -> R {
         let leg = &self.legs[index];
-        let active: Vec<usize> = (0..parameters.len())
-            .filter(|parameter| !leg.sums[*parameter].is_empty())
-            .collect();
         pass(&Linearisation {
             model: self.model,
             inputs: leg.chart,
@@ -239,8 +281,8 @@ where
             prior_covariance: leg.prior_covariance,
             points: &leg.points,
             parameters,
-            active: &active,
-            further: &NoColumns,
+            active,
+            further,
         })
     }
 
@@ -272,7 +314,7 @@ where
             .map(|index| {
                 let parameters = self.parameters(index);
                 let change: Vec<f64> = self.legs[index]
-                    .active()
+                    .columns()
                     .iter()
                     .map(|unknowns| unknowns.iter().map(|unknown| values[*unknown]).sum())
                     .collect();
@@ -295,6 +337,10 @@ where
             .zip(values.iter().zip(step.values.iter()))
         {
             *value = before + share * change;
+        }
+        for leg in &mut self.legs {
+            let amplitudes = leg.amplitudes.iter().map(|unknown| self.values[*unknown]);
+            leg.further.set_amplitudes(amplitudes);
         }
         for (leg, (before, corrections)) in self
             .legs
@@ -325,7 +371,6 @@ where
             values: sum(|leg| leg.values),
             rows: sum(|leg| leg.rows),
             log_variance: point.legs.iter().map(|leg| leg.log_variance).sum(),
-            legs: point.legs,
             iterations,
         }
     }

@@ -8,6 +8,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use crate::solve::{Solution, Unknown};
 
 /// Covariances of the joint solution.
+#[derive(Clone)]
 pub(crate) struct Uncertainty {
     /// Indices of the unknowns that are estimated, in the order of the matrices.
     pub(crate) estimated: Vec<usize>,

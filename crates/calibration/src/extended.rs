@@ -1,0 +1,350 @@
+//! The nominal model with effects of the catalogue, fitted to one record.
+
+use gyrocal::estimation::EstimationError;
+use gyrocal::estimation::batch::{Reduced, Whitened};
+use gyrocal::generated::catalogue::{self, CatalogueInputs};
+use gyrocal::trajectory::Orientation;
+use gyrocal::{Anchored, Catalogue, Chart, Recentring, Settings};
+use nalgebra::DMatrix;
+
+use crate::PARAMETERS;
+use crate::batch::MOST_ITERATIONS;
+use crate::begin::begin;
+use crate::calibrate::Options;
+use crate::error::CalibrationError;
+use crate::further::Further;
+use crate::noise::{self, NoiseEstimate};
+use crate::run::{Rows, Run};
+use crate::settings::level;
+use crate::solve::{Failure, Leg, Problem, Solution, Unknown};
+use crate::uncertainty::Uncertainty;
+
+/// What a model has beyond the nine coefficients.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extension {
+    /// Indices of parameters of [`Catalogue`] that are estimated, all beyond the nine, with a
+    /// standard deviation of each before the record; infinite if nothing is known.
+    pub parameters: Vec<(usize, f64)>,
+    /// Onsets and time constants, as [`Catalogue`] takes them.
+    pub shapes: [f64; SHAPES],
+    /// Further columns that are estimated.
+    pub further: Further,
+}
+
+const SHAPES: usize = catalogue::SHAPES.len();
+
+impl Default for Extension {
+    fn default() -> Self {
+        Self {
+            parameters: Vec::new(),
+            shapes: [1.0; SHAPES],
+            further: Further::default(),
+        }
+    }
+}
+
+/// The noise that is believed of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseModel {
+    /// Standard deviation of the accelerometers over the declared one.
+    pub accel_ratio: [f64; 3],
+    /// Standard deviation of the gyros' white noise over the declared one.
+    pub gyro_ratio: [f64; 3],
+    /// Weight of each value, if some are not trusted: 0 leaves a value out.
+    pub weights: Option<Vec<[f64; 3]>>,
+}
+
+impl Default for NoiseModel {
+    /// As declared.
+    fn default() -> Self {
+        Self {
+            accel_ratio: [1.0; 3],
+            gyro_ratio: [1.0; 3],
+            weights: None,
+        }
+    }
+}
+
+/// An extended model at its best fit to a record.
+pub struct Extended<'a> {
+    problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
+    solution: Solution,
+    uncertainty: Uncertainty,
+    extension: Extension,
+}
+
+impl<'a> Extended<'a> {
+    /// Fits the nominal model.
+    ///
+    /// # Errors
+    /// As [`crate::calibrate`].
+    pub fn nominal(
+        run: &Run<'a>,
+        options: &Options,
+        noise: &NoiseModel,
+    ) -> Result<Self, CalibrationError> {
+        let settings = Settings {
+            integration: options.integration,
+            recentring: Recentring::EveryStep,
+            longest_step_s: options.longest_step_s,
+            ..level(run.bench)
+        };
+        let fit = |careful| {
+            let beginning = begin(run, &settings, options, careful)?;
+            let mut values = vec![0.0; Catalogue::PARAMETERS];
+            values[..PARAMETERS].copy_from_slice(&beginning.start.drift);
+            let accel_noise_g = noise
+                .accel_ratio
+                .map(|ratio| ratio * settings.accel_noise_g);
+            let mut rows = Rows::new(run.record, run.record.len(), accel_noise_g);
+            rows.weights.clone_from(&noise.weights);
+            let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
+            if let Some(field_gauss) = run.bench.magnetic_field_gauss {
+                chart.set_field_gauss(field_gauss);
+            }
+            let density = settings.drift_noise_deg_per_h.powi(2) * 60.0;
+            let leg = Leg {
+                rows,
+                chart,
+                noise_density: noise.gyro_ratio.map(|ratio| ratio * ratio * density),
+                prior: beginning.prior.orientation,
+                prior_covariance: beginning.prior.covariance,
+                points: beginning.start.points,
+                sums: Vec::new(),
+                further: Further::default(),
+                amplitudes: Vec::new(),
+            };
+            let problem = Problem {
+                model: &Anchored(Catalogue),
+                integration: options.integration,
+                longest_step_s: options.longest_step_s,
+                unknowns: settings
+                    .drift_sigma
+                    .to_array()
+                    .into_iter()
+                    .map(Unknown::estimated)
+                    .collect(),
+                legs: vec![leg],
+                values,
+            };
+            Self::solved(problem, Extension::default())
+        };
+        fit(false).or_else(|_| fit(true))
+    }
+
+    /// Fits another extension, from where this one is.
+    ///
+    /// # Errors
+    /// [`CalibrationError::NotConverged`], [`CalibrationError::NoDescent`],
+    /// [`CalibrationError::NotPositiveDefinite`], [`CalibrationError::Pass`].
+    pub fn refitted(&self, extension: &Extension) -> Result<Self, CalibrationError> {
+        self.refitted_with(extension, |_| ())
+    }
+
+    fn refitted_with(
+        &self,
+        extension: &Extension,
+        change: impl FnOnce(&mut Leg<'a, CatalogueInputs<f64>>),
+    ) -> Result<Self, CalibrationError> {
+        let before = self.parameters();
+        let leg = &self.problem.legs[0];
+        let mut unknowns = self.problem.unknowns[..PARAMETERS].to_vec();
+        let mut values = self.problem.values[..PARAMETERS].to_vec();
+        for (parameter, sigma) in &extension.parameters {
+            unknowns.push(Unknown::estimated(*sigma));
+            values.push(before[*parameter]);
+        }
+        for column in extension.further.columns() {
+            unknowns.push(Unknown::estimated(f64::INFINITY));
+            let same = self
+                .extension
+                .further
+                .columns()
+                .iter()
+                .position(|c| c == column);
+            values.push(same.map_or(0.0, |same| self.problem.values[leg.amplitudes[same]]));
+        }
+        let mut chart = leg.chart;
+        chart.inputs_mut().shapes = extension.shapes;
+        let mut problem = Problem {
+            model: self.problem.model,
+            integration: self.problem.integration,
+            longest_step_s: self.problem.longest_step_s,
+            unknowns,
+            legs: vec![Leg {
+                rows: leg.rows.again(),
+                chart,
+                noise_density: leg.noise_density,
+                prior: leg.prior,
+                prior_covariance: leg.prior_covariance,
+                points: leg.points.clone(),
+                sums: Vec::new(),
+                further: Further::default(),
+                amplitudes: Vec::new(),
+            }],
+            values,
+        };
+        change(&mut problem.legs[0]);
+        Self::solved(problem, extension.clone())
+    }
+
+    /// The same extension fitted with another noise.
+    ///
+    /// # Errors
+    /// As [`Self::refitted`].
+    pub fn with_noise(
+        &self,
+        bench: &gyrocal_record::Bench,
+        noise: &NoiseModel,
+    ) -> Result<Self, CalibrationError> {
+        let density = bench.gyro_noise_deg_per_h.powi(2) * 60.0;
+        self.refitted_with(&self.extension, |leg| {
+            leg.rows
+                .set_noise(noise.accel_ratio.map(|ratio| ratio * bench.accel_noise_g));
+            leg.rows.weights.clone_from(&noise.weights);
+            leg.noise_density = noise.gyro_ratio.map(|ratio| ratio * ratio * density);
+        })
+    }
+
+    fn solved(
+        mut problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
+        extension: Extension,
+    ) -> Result<Self, CalibrationError> {
+        let mut sums = vec![Vec::new(); Catalogue::PARAMETERS];
+        for (parameter, sum) in sums.iter_mut().enumerate().take(PARAMETERS) {
+            sum.push(parameter);
+        }
+        for (offset, (parameter, _)) in extension.parameters.iter().enumerate() {
+            sums[*parameter].push(PARAMETERS + offset);
+        }
+        let first = PARAMETERS + extension.parameters.len();
+        let last = first + extension.further.columns().len();
+        problem.values.resize(last, 0.0);
+        let leg = &mut problem.legs[0];
+        leg.sums = sums;
+        leg.further = extension.further.clone();
+        leg.amplitudes = (first..last).collect();
+        leg.further
+            .set_amplitudes(problem.values[first..].iter().copied());
+        let solution = problem
+            .solve(MOST_ITERATIONS, |_| ())
+            .map_err(CalibrationError::from)?;
+        let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
+            .ok_or(CalibrationError::NotPositiveDefinite)?;
+        Ok(Self {
+            problem,
+            solution,
+            uncertainty,
+            extension,
+        })
+    }
+
+    /// What the model has beyond the nine coefficients.
+    #[must_use]
+    pub fn extension(&self) -> &Extension {
+        &self.extension
+    }
+
+    /// Estimates: the nine coefficients, then the extension's parameters, then its further
+    /// columns.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.problem.values
+    }
+
+    /// Covariance of their errors.
+    #[must_use]
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.uncertainty.total
+    }
+
+    /// Standard deviations before the record, in the order of [`Self::values`].
+    #[must_use]
+    pub fn prior_sigma(&self) -> Vec<f64> {
+        self.problem
+            .unknowns
+            .iter()
+            .map(|unknown| unknown.sigma)
+            .collect()
+    }
+
+    /// Twice the cost: squares of all residuals, of the noise between rows and of distances from
+    /// priors, over their variances. As many are expected as there are values.
+    #[must_use]
+    pub fn cost(&self) -> f64 {
+        self.solution.cost
+    }
+
+    /// Number of values used.
+    #[must_use]
+    pub fn value_count(&self) -> usize {
+        self.solution.values
+    }
+
+    /// Steps that the fit took.
+    #[must_use]
+    pub fn iterations(&self) -> usize {
+        self.solution.iterations
+    }
+
+    /// Smoothed attitude at each row.
+    #[must_use]
+    pub fn points(&self) -> &[Orientation] {
+        &self.problem.legs[0].points
+    }
+
+    /// All parameters of [`Catalogue`]: those that are not estimated are zero.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<f64> {
+        self.problem.parameters(0)
+    }
+
+    /// Specific force that the model gives at each row for the smoothed attitude, g.
+    #[must_use]
+    pub fn predicted_g(&self) -> Vec<[f64; 3]> {
+        self.problem.predicted(0)
+    }
+
+    /// Passes over the record with all parameters of [`Catalogue`] as columns (all but those in
+    /// the extension are zero at the linearisation point), then `further` columns. The
+    /// extension's own further columns are not among them unless they are in `further`, but
+    /// their amplitudes are taken into account. `watch` sees every whitened value.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn signatures(
+        &self,
+        further: &[crate::Column],
+        watch: impl FnMut(&Whitened<'_>),
+    ) -> Result<Reduced<3>, CalibrationError> {
+        let leg = &self.problem.legs[0];
+        let own = self.extension.further.columns().len();
+        let mut columns = self.extension.further.columns().to_vec();
+        columns.extend_from_slice(further);
+        let mut all = Further::new(columns);
+        let amplitudes = leg
+            .amplitudes
+            .iter()
+            .map(|unknown| self.problem.values[*unknown]);
+        all.set_amplitudes(amplitudes);
+        debug_assert_eq!(own, leg.amplitudes.len());
+        let parameters = self.parameters();
+        let active: Vec<usize> = (0..parameters.len()).collect();
+        self.problem
+            .with_active(0, &parameters, &active, &all, |pass| pass.reduce(watch))
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))
+    }
+
+    /// Noise by maximum likelihood, over what the fit believes.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn noise(&self) -> Result<NoiseEstimate, CalibrationError> {
+        let parameters = self.parameters();
+        self.problem
+            .with_leg(0, &parameters, |pass| {
+                noise::estimate(|factors| pass.noise_score(factors))
+            })
+            .map_err(|error: EstimationError| CalibrationError::from(Failure::Pass(0, error)))
+    }
+}

@@ -1,0 +1,104 @@
+//! Columns that are no parameters of the model: jumps of the attitude, and shares of a drift.
+
+use gyrocal::estimation::batch::Columns;
+
+/// One such column.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Column {
+    /// The attitude at the first row, turned about a platform axis, rad: outside its prior.
+    Start {
+        /// 0, 1, 2 for x, y, z.
+        axis: usize,
+    },
+    /// A sudden turn about a platform axis, rad, in the step after a row.
+    Jump {
+        /// The row before it.
+        row: usize,
+        /// 0, 1, 2 for x, y, z.
+        axis: usize,
+    },
+    /// A drift that follows a course in time: what a parameter of the model does, times a number
+    /// for each step.
+    Course {
+        /// Index of the parameter.
+        parameter: usize,
+        /// The first step at which it is not zero.
+        begin: usize,
+        /// One number for each step from there on.
+        steps: Vec<f64>,
+    },
+}
+
+/// A list of columns with their present amplitudes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Further {
+    columns: Vec<Column>,
+    amplitudes: Vec<f64>,
+}
+
+impl Further {
+    /// These columns, all with amplitude zero.
+    #[must_use]
+    pub fn new(columns: Vec<Column>) -> Self {
+        Self {
+            amplitudes: vec![0.0; columns.len()],
+            columns,
+        }
+    }
+
+    /// The columns.
+    #[must_use]
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    pub(crate) fn set_amplitudes(&mut self, amplitudes: impl Iterator<Item = f64>) {
+        for (target, amplitude) in self.amplitudes.iter_mut().zip(amplitudes) {
+            *target = amplitude;
+        }
+    }
+}
+
+impl Columns<3, 3> for Further {
+    fn count(&self) -> usize {
+        self.columns.len()
+    }
+
+    fn amplitude(&self, column: usize) -> f64 {
+        self.amplitudes[column]
+    }
+
+    fn start(&self, column: usize) -> [f64; 3] {
+        let mut turn = [0.0; 3];
+        if let Column::Start { axis } = self.columns[column] {
+            turn[axis] = 1.0;
+        }
+        turn
+    }
+
+    fn drive(&self, row: usize, parameters: &[f64], stride: usize, drive: [&mut [f64]; 3]) {
+        for (index, column) in self.columns.iter().enumerate() {
+            match column {
+                Column::Start { .. } => {}
+                Column::Jump { row: at, axis } => {
+                    if *at == row {
+                        drive[*axis][index] = 1.0;
+                    }
+                }
+                Column::Course {
+                    parameter,
+                    begin,
+                    steps,
+                } => {
+                    let Some(share) = row.checked_sub(*begin).and_then(|step| steps.get(step))
+                    else {
+                        continue;
+                    };
+                    for i in 0..3 {
+                        drive[i][index] = share * parameters[i * stride + parameter];
+                    }
+                }
+            }
+        }
+    }
+}
