@@ -92,6 +92,19 @@ pub enum CalibrationError {
         /// Length of the last one in standard deviations of the whole problem.
         last_step: f64,
     },
+    /// Rows cannot be averaged over such intervals.
+    #[error(
+        "means over {found_s} s were asked for, expected from {least_s} s, two rows of the record, \
+         to {most_s} s"
+    )]
+    AveragingInterval {
+        /// The interval that was asked for, s.
+        found_s: f64,
+        /// The shortest, s.
+        least_s: f64,
+        /// The longest, s.
+        most_s: f64,
+    },
     /// Rounding left the coefficients a covariance that no errors can have: variances are
     /// positive, but that of some combination of coefficients is not.
     #[error(

@@ -17,14 +17,20 @@ pub enum Column {
         /// 0, 1, 2 for x, y, z.
         axis: usize,
     },
+    /// A drift that sets in with the step after a row and stays: what a parameter of the model
+    /// does, from there on.
+    Onset {
+        /// Index of the parameter.
+        parameter: usize,
+        /// The row.
+        row: usize,
+    },
     /// A drift that follows a course in time: what a parameter of the model does, times a number
     /// for each step.
     Course {
         /// Index of the parameter.
         parameter: usize,
-        /// The first step at which it is not zero.
-        begin: usize,
-        /// One number for each step from there on.
+        /// One number for each step.
         steps: Vec<f64>,
     },
 }
@@ -85,15 +91,15 @@ impl Columns<3, 3> for Further {
                         drive[*axis][index] = 1.0;
                     }
                 }
-                Column::Course {
-                    parameter,
-                    begin,
-                    steps,
-                } => {
-                    let Some(share) = row.checked_sub(*begin).and_then(|step| steps.get(step))
-                    else {
-                        continue;
-                    };
+                Column::Onset { parameter, row: at } => {
+                    if row >= *at {
+                        for i in 0..3 {
+                            drive[i][index] = parameters[i * stride + parameter];
+                        }
+                    }
+                }
+                Column::Course { parameter, steps } => {
+                    let share = steps.get(row).copied().unwrap_or(0.0);
                     for i in 0..3 {
                         drive[i][index] = share * parameters[i * stride + parameter];
                     }

@@ -28,6 +28,7 @@
 //! It reads and writes no files and prints nothing.
 
 mod attitude;
+mod averaging;
 mod batch;
 mod begin;
 mod bound;
@@ -49,6 +50,7 @@ mod streaming;
 mod uncertainty;
 
 pub use bound::bound;
+pub use averaging::{Averaged, average, walk_share};
 pub use calibrate::{Method, Options, calibrate, calibrate_runs};
 pub use error::CalibrationError;
 pub use extended::{Extended, Extension, NoiseModel};

@@ -1,0 +1,236 @@
+//! Families of signatures: which columns stand for which effect.
+
+use gyrocal::EffectRow;
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, SHAPES, parameters_index};
+use gyrocal_calibration::{Column, Extension};
+use gyrocal_record::{Bench, Record};
+
+/// Onsets that a step is looked for at: two and a half percent of the record apart, across
+/// which its statistic falls by a few percent.
+const ONSETS: usize = 40;
+
+/// Time constants that a warm-up is looked for at.
+const TIME_CONSTANTS: usize = 10;
+
+/// The shortest of them, h.
+const SHORTEST_TIME_CONSTANT_H: f64 = 0.3;
+
+/// The constant drifts, which steps and warm-ups are shares of.
+const BIASES: [usize; 3] = [
+    parameters_index::GYRO_X_BIAS,
+    parameters_index::GYRO_Y_BIAS,
+    parameters_index::GYRO_Z_BIAS,
+];
+
+/// One signature, or several that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// Its columns in the bank.
+    pub(crate) columns: Vec<usize>,
+    /// Onset in s or time constant in h, if the family has one.
+    pub(crate) shape: Option<f64>,
+}
+
+/// An effect with all its candidates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Family {
+    /// The effect.
+    pub(crate) effect: &'static EffectRow,
+    pub(crate) candidates: Vec<Candidate>,
+}
+
+impl Family {
+    /// Public id of the effect.
+    #[must_use]
+    pub fn id(&self) -> &'static str {
+        self.effect.id
+    }
+}
+
+/// An effect that cannot be looked for in a record, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unavailable {
+    /// Public id of the effect.
+    pub effect: &'static str,
+    /// What is missing.
+    pub why: String,
+}
+
+/// What is looked for in a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    pub(crate) families: Vec<Family>,
+    /// Columns beside the catalogue's own parameters. Their place in the bank follows these.
+    pub(crate) further: Vec<Column>,
+    /// What cannot be looked for.
+    pub(crate) unavailable: Vec<Unavailable>,
+    /// For each gyro the columns of its steps, in the order of their onsets.
+    pub(crate) steps: [Vec<usize>; 3],
+    /// Rows of these onsets.
+    pub(crate) onset_rows: Vec<usize>,
+}
+
+impl Plan {
+    /// For a record: effects of the default search and those that `also` names.
+    #[must_use]
+    pub fn new(record: &Record, bench: &Bench, also: &[&str]) -> Self {
+        let rows = record.len();
+        let first_s = record.time_s.first().copied().unwrap_or(0.0);
+        let last_s = record.time_s.last().copied().unwrap_or(0.0);
+        let mut plan = Self {
+            families: Vec::new(),
+            further: Vec::new(),
+            unavailable: Vec::new(),
+            steps: Default::default(),
+            onset_rows: (1..=ONSETS)
+                .map(|index| index * (rows - 1) / (ONSETS + 1))
+                .filter(|row| *row > 0)
+                .collect(),
+        };
+        plan.onset_rows.dedup();
+        let base = PARAMETERS.len();
+        for effect in &EFFECTS {
+            if !(effect.default_search || also.contains(&effect.id)) {
+                continue;
+            }
+            if let Some(why) = missing(effect, record, bench) {
+                plan.unavailable.push(Unavailable {
+                    effect: effect.id,
+                    why,
+                });
+                continue;
+            }
+            let axis = axis_of(effect.id);
+            let candidates = if effect.id == "platform.initial_attitude" {
+                let first = base + plan.further.len();
+                plan.further.extend([0, 1, 2].map(|axis| Column::Start { axis }));
+                vec![Candidate {
+                    columns: (first..first + 3).collect(),
+                    shape: None,
+                }]
+            } else if effect.kind != "term" {
+                continue;
+            } else if let (true, Some(axis)) = (effect.id.ends_with(".step"), axis) {
+                let onsets = plan.onset_rows.clone();
+                onsets
+                    .into_iter()
+                    .map(|row| {
+                        let column = base + plan.further.len();
+                        plan.further.push(Column::Onset {
+                            parameter: BIASES[axis],
+                            row,
+                        });
+                        plan.steps[axis].push(column);
+                        Candidate {
+                            columns: vec![column],
+                            shape: Some(record.time_s[row] - first_s),
+                        }
+                    })
+                    .collect()
+            } else if let (true, Some(axis)) = (effect.id.ends_with(".warmup"), axis) {
+                time_constants_h(last_s - first_s)
+                    .into_iter()
+                    .map(|time_constant_h| {
+                        let column = base + plan.further.len();
+                        plan.further
+                            .push(warm_up(record, BIASES[axis], time_constant_h));
+                        Candidate {
+                            columns: vec![column],
+                            shape: Some(time_constant_h),
+                        }
+                    })
+                    .collect()
+            } else {
+                vec![Candidate {
+                    columns: effect.states.iter().filter_map(|id| parameter(id)).collect(),
+                    shape: None,
+                }]
+            };
+            plan.families.push(Family { effect, candidates });
+        }
+        plan
+    }
+
+    /// Number of columns of the bank.
+    pub(crate) fn columns(&self) -> usize {
+        PARAMETERS.len() + self.further.len()
+    }
+}
+
+/// What a candidate adds to a model.
+pub(crate) fn extend(extension: &mut Extension, family: &Family, shape: Option<f64>) {
+    let effect = family.effect;
+    if effect.id == "platform.initial_attitude" {
+        let mut columns = extension.further.columns().to_vec();
+        columns.extend([0, 1, 2].map(|axis| Column::Start { axis }));
+        extension.further = gyrocal_calibration::Further::new(columns);
+        return;
+    }
+    for id in effect.states {
+        if let Some(parameter) = parameter(id) {
+            extension.parameters.push((parameter, f64::INFINITY));
+        }
+    }
+    for id in effect.shapes {
+        let place = SHAPES.iter().position(|element| element.id == *id);
+        if let (Some(place), Some(shape)) = (place, shape) {
+            extension.shapes[place] = shape;
+        }
+    }
+}
+
+/// Index of a parameter of the catalogue's model by its public id.
+pub(crate) fn parameter(id: &str) -> Option<usize> {
+    PARAMETERS.iter().position(|element| element.id == id)
+}
+
+/// 0, 1, 2 of `gyro_x.…`, `gyro_y.…`, `gyro_z.…`.
+pub(crate) fn axis_of(id: &str) -> Option<usize> {
+    ["gyro_x.", "gyro_y.", "gyro_z."]
+        .iter()
+        .position(|prefix| id.starts_with(prefix))
+}
+
+fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Option<String> {
+    for need in effect.needs {
+        match *need {
+            "temperature" if record.temperature_c.is_none() => {
+                return Some("the record has no column `temperature_c`".to_owned());
+            }
+            "field" if bench.magnetic_field_gauss.is_none() => {
+                return Some(
+                    "the bench file has no `magnetic_field_gauss` in `[site]`".to_owned(),
+                );
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+/// From the shortest to half the record, in equal ratios.
+fn time_constants_h(duration_s: f64) -> Vec<f64> {
+    let longest_h = (0.5 * duration_s / 3600.0).max(2.0 * SHORTEST_TIME_CONSTANT_H);
+    let ratio = longest_h / SHORTEST_TIME_CONSTANT_H;
+    (0..TIME_CONSTANTS)
+        .map(|index| {
+            SHORTEST_TIME_CONSTANT_H * ratio.powf(index as f64 / (TIME_CONSTANTS - 1) as f64)
+        })
+        .collect()
+}
+
+/// The course of a warm-up, taken in the middle of each step as the model does.
+pub(crate) fn warm_up(record: &Record, parameter: usize, time_constant_h: f64) -> Column {
+    let first_s = record.time_s.first().copied().unwrap_or(0.0);
+    Column::Course {
+        parameter,
+        steps: record
+            .time_s
+            .windows(2)
+            .map(|pair| {
+                let middle_s = 0.5 * (pair[0] + pair[1]) - first_s;
+                (-middle_s / (3600.0 * time_constant_h)).exp()
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,485 @@
+//! The search for causes: forward, with a full fit after each that is found.
+
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS};
+use gyrocal_calibration::{CalibrationError, Column, Extended, Extension, Further};
+use gyrocal_record::{Bench, Record};
+
+use super::bank::{Bank, Joint};
+use super::family::{Candidate, Family, Plan, Unavailable, extend, parameter};
+use super::null::Null;
+
+/// How causes are looked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SearchOptions {
+    /// Probability that a record of the nominal model shows anything.
+    pub false_alarm_probability: f64,
+    /// Probability that the named set holds the cause.
+    pub coverage: f64,
+    /// Effects beside those of the default search.
+    pub also: Vec<String>,
+    /// Seed of the draws that thresholds come from.
+    pub seed: u64,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self {
+            false_alarm_probability: 0.01,
+            coverage: 0.95,
+            also: Vec::new(),
+            seed: 0,
+        }
+    }
+}
+
+/// More causes than this in one record mean that the catalogue does not hold the one there is.
+const MOST_EFFECTS: usize = 6;
+
+/// Rivals within this difference of penalised statistics belong to the named set: twice a
+/// log-likelihood ratio, calibrated on simulated records for a coverage of 95 %
+/// (`cargo figures naming`).
+const SET_CONSTANT: f64 = 6.0;
+
+/// A richer effect than one that it contains must be better by the 5 % point of chi-square with
+/// one degree of freedom.
+const RICHER: f64 = 3.84;
+
+/// Onsets and time constants are refined on so many points between the neighbours of the best.
+const REFINED: usize = 9;
+
+/// One parameter of a cause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundParameter {
+    /// Its name: `size`, `onset_s`, `sine`, ….
+    pub name: &'static str,
+    /// The estimate.
+    pub estimate: f64,
+    /// Its standard deviation; `None` for onsets and time constants, which were searched.
+    pub sigma: Option<f64>,
+    /// Unit of both.
+    pub unit: &'static str,
+}
+
+/// An effect that explains nearly as much.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rival {
+    /// Its public id.
+    pub effect: &'static str,
+    /// How much less likely it makes the record, after the families' searching is allowed for.
+    pub log_likelihood_deficit: f64,
+}
+
+/// A cause that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The effect that is named.
+    pub effect: &'static str,
+    /// Its parameters.
+    pub parameters: Vec<FoundParameter>,
+    /// Its statistic as a number of standard deviations.
+    pub z: f64,
+    /// Probability that the largest statistic of the whole search is as large by chance.
+    pub p_value: f64,
+    /// The rest of the named set, nearest first.
+    pub rivals: Vec<Rival>,
+    /// Effects that no record can tell from it, with the sizes that they would need.
+    pub equivalents: Vec<(&'static str, Vec<FoundParameter>)>,
+}
+
+/// One family in the first search.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranked {
+    /// Public id of the effect.
+    pub effect: &'static str,
+    /// Its largest statistic less what searching alone reaches.
+    pub statistic: f64,
+}
+
+/// What a search found.
+pub struct Searched<'a> {
+    /// The model with all that was found, at its best fit.
+    pub fitted: Extended<'a>,
+    /// The causes, strongest first.
+    pub findings: Vec<Finding>,
+    /// All families in the first search, largest first.
+    pub ranking: Vec<Ranked>,
+    /// What their largest statistic must exceed.
+    pub threshold: f64,
+    /// What could not be looked for.
+    pub unavailable: Vec<Unavailable>,
+}
+
+/// An effect in the model.
+#[derive(Clone, Debug)]
+struct Accepted {
+    family: usize,
+    shape: Option<f64>,
+    p_value: f64,
+}
+
+/// Looks for causes in a record, from the nominal model at its best fit.
+///
+/// # Errors
+/// As [`Extended::refitted`].
+pub fn search<'a>(
+    nominal: Extended<'a>,
+    record: &Record,
+    bench: &Bench,
+    options: &SearchOptions,
+) -> Result<Searched<'a>, CalibrationError> {
+    let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
+    let plan = Plan::new(record, bench, &also);
+    let mut fitted = nominal;
+    let mut accepted: Vec<Accepted> = Vec::new();
+    let mut first: Option<(Vec<Ranked>, f64)> = None;
+    loop {
+        let bank = Bank::new(&fitted, &plan.further, &[])?;
+        let taken: Vec<usize> = accepted.iter().map(|accepted| accepted.family).collect();
+        let families: Vec<Family> = plan
+            .families
+            .iter()
+            .enumerate()
+            .map(|(index, family)| Family {
+                effect: family.effect,
+                candidates: if taken.contains(&index) || equivalent_to(&plan, index, &taken) {
+                    Vec::new()
+                } else {
+                    family.candidates.clone()
+                },
+            })
+            .collect();
+        let null = Null::draw(&bank, &families, options.seed);
+        let scores = Scores::of(&bank, &families, &null);
+        let threshold = null.threshold(options.false_alarm_probability);
+        first.get_or_insert_with(|| (scores.ranking(&families), threshold));
+        let Some(best) = scores.named(&families) else { break };
+        let statistic = scores.penalised(best.family);
+        if statistic <= threshold || accepted.len() == MOST_EFFECTS {
+            break;
+        }
+        let shape = refined(&fitted, record, &plan, &best)?;
+        accepted.push(Accepted {
+            family: best.family,
+            shape,
+            p_value: null.probability(statistic),
+        });
+        fitted = fitted.refitted(&extension(&plan, &accepted))?;
+    }
+    let mut findings = Vec::with_capacity(accepted.len());
+    for index in 0..accepted.len() {
+        findings.push(finding(&fitted, &plan, &accepted, index, options)?);
+    }
+    let (ranking, threshold) = first.unwrap_or_default();
+    Ok(Searched {
+        fitted,
+        findings,
+        ranking,
+        threshold,
+        unavailable: plan.unavailable,
+    })
+}
+
+/// The model that all accepted effects make up.
+fn extension(plan: &Plan, accepted: &[Accepted]) -> Extension {
+    let mut extension = Extension::default();
+    for accepted in accepted {
+        extend(&mut extension, &plan.families[accepted.family], accepted.shape);
+    }
+    extension
+}
+
+/// Whether a family cannot be told from one that is in the model.
+fn equivalent_to(plan: &Plan, family: usize, taken: &[usize]) -> bool {
+    let id = plan.families[family].effect.id;
+    taken
+        .iter()
+        .any(|other| plan.families[*other].effect.equivalents.contains(&id))
+}
+
+/// The best candidate of a family.
+#[derive(Clone, Copy, Debug)]
+struct Best {
+    family: usize,
+    candidate: usize,
+    statistic: f64,
+}
+
+/// The best candidate of every family, and what searching alone reaches.
+struct Scores<'a> {
+    best: Vec<Option<Best>>,
+    penalties: &'a [f64],
+}
+
+impl<'a> Scores<'a> {
+    fn of(bank: &Bank, families: &[Family], null: &'a Null) -> Self {
+        let best = families
+            .iter()
+            .enumerate()
+            .map(|(family, content)| {
+                content
+                    .candidates
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(candidate, columns)| {
+                        bank.joint(&columns.columns).map(|joint| Best {
+                            family,
+                            candidate,
+                            statistic: joint.statistic,
+                        })
+                    })
+                    .max_by(|a, b| a.statistic.total_cmp(&b.statistic))
+            })
+            .collect();
+        Self {
+            best,
+            penalties: &null.penalties,
+        }
+    }
+
+    fn penalised(&self, family: usize) -> f64 {
+        self.best[family].map_or(f64::NEG_INFINITY, |best| {
+            best.statistic - self.penalties[family]
+        })
+    }
+
+    /// The family to be named: the best, or a simpler one that it contains if it is not
+    /// significantly better than that; of equivalents the first.
+    fn named(&self, families: &[Family]) -> Option<Best> {
+        let best = (0..families.len())
+            .filter(|family| self.best[*family].is_some())
+            // The first of equals: equivalents tie to rounding.
+            .fold(None::<usize>, |best, family| match best {
+                Some(best) if self.penalised(family) <= self.penalised(best) + 1e-6 => Some(best),
+                _ => Some(family),
+            })?;
+        let gyro = families[best].id().split('.').next().unwrap_or("");
+        if families[best].id().ends_with(".warmup") {
+            let simpler = [format!("{gyro}.ramp"), "platform.initial_attitude".to_owned()];
+            let found = families.iter().position(|family| {
+                simpler.iter().any(|id| id == family.id())
+            });
+            let richer = self.best[best].map_or(0.0, |best| best.statistic);
+            if let Some(simple) = found
+                && let Some(simple) = self.best[simple]
+                && richer - simple.statistic < RICHER
+            {
+                return Some(simple);
+            }
+        }
+        self.best[best]
+    }
+
+    fn ranking(&self, families: &[Family]) -> Vec<Ranked> {
+        let mut ranking: Vec<Ranked> = families
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| self.best[*index].is_some())
+            .map(|(index, family)| Ranked {
+                effect: family.id(),
+                statistic: self.penalised(index),
+            })
+            .collect();
+        ranking.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
+        ranking
+    }
+}
+
+/// The onset or time constant of the best candidate, on a finer grid between its neighbours.
+fn refined(
+    fitted: &Extended<'_>,
+    record: &Record,
+    plan: &Plan,
+    best: &Best,
+) -> Result<Option<f64>, CalibrationError> {
+    let candidates = &plan.families[best.family].candidates;
+    let candidate = &candidates[best.candidate];
+    let Some(shape) = candidate.shape else {
+        return Ok(None);
+    };
+    let neighbour = |offset: isize| {
+        best.candidate
+            .checked_add_signed(offset)
+            .and_then(|index| candidates.get(index))
+            .and_then(|candidate| candidate.shape)
+            .unwrap_or(shape)
+    };
+    let (low, high) = (neighbour(-1), neighbour(1));
+    let first_s = record.time_s.first().copied().unwrap_or(0.0);
+    let Some(column) = candidate.columns.first() else {
+        return Ok(Some(shape));
+    };
+    let around = &plan.further[column - PARAMETERS.len()];
+    let mut shapes = Vec::with_capacity(REFINED);
+    let mut columns = Vec::with_capacity(REFINED);
+    for index in 0..REFINED {
+        let share = index as f64 / (REFINED - 1) as f64;
+        match around {
+            Column::Onset { parameter, .. } => {
+                let time_s = low + share * (high - low);
+                let row = record.time_s.partition_point(|t| t - first_s < time_s);
+                shapes.push(record.time_s[row.min(record.len() - 1)] - first_s);
+                columns.push(Column::Onset {
+                    parameter: *parameter,
+                    row,
+                });
+            }
+            Column::Course { parameter, .. } => {
+                let time_constant_h = low * (high / low).powf(share);
+                shapes.push(time_constant_h);
+                columns.push(super::family::warm_up(record, *parameter, time_constant_h));
+            }
+            _ => return Ok(Some(shape)),
+        }
+    }
+    let bank = Bank::new(fitted, &columns, &[])?;
+    let finest = (0..columns.len())
+        .filter_map(|index| {
+            let joint = bank.joint(&[PARAMETERS.len() + index])?;
+            Some((shapes[index], joint.statistic))
+        })
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(Some(finest.map_or(shape, |(shape, _)| shape)))
+}
+
+/// What is to be said of one accepted effect, the others being in the model.
+fn finding(
+    fitted: &Extended<'_>,
+    plan: &Plan,
+    accepted: &[Accepted],
+    index: usize,
+    options: &SearchOptions,
+) -> Result<Finding, CalibrationError> {
+    let own = &accepted[index];
+    let family = &plan.families[own.family];
+    let places = places(fitted, family);
+    let bank = Bank::new(fitted, &plan.further, &places)?;
+    let others: Vec<usize> = accepted
+        .iter()
+        .enumerate()
+        .filter(|(other, _)| *other != index)
+        .map(|(_, accepted)| accepted.family)
+        .collect();
+    let families: Vec<Family> = plan
+        .families
+        .iter()
+        .enumerate()
+        .map(|(family, content)| Family {
+            effect: content.effect,
+            candidates: if others.contains(&family) || equivalent_to(plan, family, &others) {
+                Vec::new()
+            } else {
+                content.candidates.clone()
+            },
+        })
+        .collect();
+    let null = Null::draw(&bank, &families, options.seed);
+    let scores = Scores::of(&bank, &families, &null);
+    let best = scores.penalised(own.family);
+    let mut rivals: Vec<Rival> = (0..families.len())
+        .filter(|other| {
+            *other != own.family
+                && scores.best[*other].is_some()
+                && !family.effect.equivalents.contains(&families[*other].id())
+        })
+        .map(|other| Rival {
+            effect: families[other].id(),
+            log_likelihood_deficit: 0.5 * (best - scores.penalised(other)),
+        })
+        .filter(|rival| rival.log_likelihood_deficit < 0.5 * SET_CONSTANT)
+        .collect();
+    rivals.sort_by(|a, b| a.log_likelihood_deficit.total_cmp(&b.log_likelihood_deficit));
+    let equivalents = family
+        .effect
+        .equivalents
+        .iter()
+        .filter_map(|id| {
+            let columns: Option<Vec<usize>> = EFFECTS
+                .iter()
+                .find(|effect| effect.id == *id)?
+                .states
+                .iter()
+                .map(|id| parameter(id))
+                .collect();
+            let row = EFFECTS.iter().find(|effect| effect.id == *id)?;
+            let joint = bank.joint(&columns?)?;
+            Some((row.id, from_joint(row, &joint)))
+        })
+        .collect();
+    let statistic = scores.best[own.family].map_or(0.0, |best| best.statistic);
+    Ok(Finding {
+        effect: family.id(),
+        parameters: estimates(fitted, family, &places, own.shape),
+        z: statistic.max(0.0).sqrt(),
+        p_value: own.p_value,
+        rivals,
+        equivalents,
+    })
+}
+
+fn from_joint(effect: &'static gyrocal::EffectRow, joint: &Joint) -> Vec<FoundParameter> {
+    (0..joint.estimate.len())
+        .map(|i| FoundParameter {
+            name: effect.parameters[i],
+            estimate: joint.estimate[i],
+            sigma: Some(joint.covariance[(i, i)].sqrt()),
+            unit: effect.units[i],
+        })
+        .collect()
+}
+
+/// Where an effect's values are among those of the fit.
+fn places(fitted: &Extended<'_>, family: &Family) -> Vec<usize> {
+    let extension = fitted.extension();
+    let first = crate::COEFFICIENTS;
+    if family.effect.id == "platform.initial_attitude" {
+        let base = first + extension.parameters.len();
+        return extension
+            .further
+            .columns()
+            .iter()
+            .enumerate()
+            .filter(|(_, column)| matches!(column, Column::Start { .. }))
+            .map(|(index, _)| base + index)
+            .collect();
+    }
+    let states: Vec<Option<usize>> =
+        family.effect.states.iter().map(|id| parameter(id)).collect();
+    extension
+        .parameters
+        .iter()
+        .enumerate()
+        .filter(|(_, (parameter, _))| states.contains(&Some(*parameter)))
+        .map(|(index, _)| first + index)
+        .collect()
+}
+
+fn estimates(
+    fitted: &Extended<'_>,
+    family: &Family,
+    places: &[usize],
+    shape: Option<f64>,
+) -> Vec<FoundParameter> {
+    let effect = family.effect;
+    // Attitudes are estimated in radians.
+    let to_unit = |unit: &str| if unit == "deg" && effect.kind == "state" { 180.0 / core::f64::consts::PI } else { 1.0 };
+    effect
+        .parameters
+        .iter()
+        .zip(effect.units)
+        .enumerate()
+        .map(|(index, (name, unit))| match places.get(index) {
+            Some(place) => FoundParameter {
+                name,
+                estimate: fitted.values()[*place] * to_unit(unit),
+                sigma: Some(fitted.covariance()[(*place, *place)].sqrt() * to_unit(unit)),
+                unit,
+            },
+            None => FoundParameter {
+                name,
+                estimate: shape.unwrap_or(f64::NAN),
+                sigma: None,
+                unit,
+            },
+        })
+        .collect()
+}

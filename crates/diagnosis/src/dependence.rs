@@ -1,0 +1,134 @@
+//! Residuals against what they may depend on: specific force, time, temperature.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::error::DiagnosisError;
+
+/// A mean of the residuals of a bin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bin {
+    /// Mean of the abscissa.
+    pub at: f64,
+    /// Mean of the residuals.
+    pub mean: f64,
+    /// Its standard deviation if residuals are independent and of the variance stated.
+    pub sigma: f64,
+    /// Number of residuals.
+    pub values: usize,
+}
+
+/// Binned means over an abscissa, and the test that all are zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dependence {
+    /// Bins of equal numbers of values, in rising order.
+    pub bins: Vec<Bin>,
+    /// Sum of squared means over their variances.
+    pub chi_square: f64,
+    /// Probability of as large a sum if all means are zero.
+    pub p_value: f64,
+}
+
+/// Means of residuals in `bins` bins of equal numbers over an abscissa, such as a component of
+/// specific force, time, or temperature. Each residual has standard deviation `sigma`; `NaN` in
+/// either series is missing.
+///
+/// # Errors
+///
+/// [`DiagnosisError::UnequalLengths`], [`DiagnosisError::TooShort`] with fewer than two values a
+/// bin, and [`DiagnosisError::InvalidArgument`] without a bin or for a sigma that is not positive.
+pub fn dependence(
+    abscissa: &[f64],
+    residuals: &[f64],
+    sigma: f64,
+    bins: usize,
+) -> Result<Dependence, DiagnosisError> {
+    if abscissa.len() != residuals.len() {
+        return Err(DiagnosisError::UnequalLengths {
+            what: "residuals",
+            found: residuals.len(),
+            expected: abscissa.len(),
+        });
+    }
+    if !(sigma > 0.0 && sigma.is_finite()) {
+        return Err(DiagnosisError::InvalidArgument {
+            what: "the standard deviation of a residual",
+            found: sigma,
+            expected: "a positive number",
+        });
+    }
+    let degrees = ChiSquared::new(bins as f64).map_err(|_| DiagnosisError::InvalidArgument {
+        what: "the number of bins",
+        found: bins as f64,
+        expected: "one or more",
+    })?;
+    let mut points: Vec<(f64, f64)> = abscissa
+        .iter()
+        .copied()
+        .zip(residuals.iter().copied())
+        .filter(|(at, value)| !at.is_nan() && !value.is_nan())
+        .collect();
+    if points.len() < 2 * bins {
+        return Err(DiagnosisError::TooShort {
+            test: "the dependence of residuals",
+            found: points.len(),
+            expected: 2 * bins,
+        });
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let edge = |bin: usize| bin * points.len() / bins;
+    let bins: Vec<Bin> = (0..bins)
+        .map(|bin| {
+            let within = &points[edge(bin)..edge(bin + 1)];
+            let count = within.len() as f64;
+            Bin {
+                at: within.iter().map(|(at, _)| at).sum::<f64>() / count,
+                mean: within.iter().map(|(_, value)| value).sum::<f64>() / count,
+                sigma: sigma / count.sqrt(),
+                values: within.len(),
+            }
+        })
+        .collect();
+    let chi_square = bins.iter().map(|bin| (bin.mean / bin.sigma).powi(2)).sum();
+    Ok(Dependence {
+        p_value: degrees.sf(chi_square),
+        chi_square,
+        bins,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bins_hold_equal_numbers_and_sum_to_chi_square() -> Result<(), DiagnosisError> {
+        // Residuals alternate about 0.5 above and -0.5 below the middle of the abscissa, given
+        // in falling order and with one missing value.
+        let abscissa: Vec<f64> = (0..401).rev().map(f64::from).collect();
+        let mut residuals: Vec<f64> = abscissa
+            .iter()
+            .map(|at| {
+                let mean = if *at > 200.0 { 0.5 } else { -0.5 };
+                mean + if *at as i64 % 2 == 0 { 1.0 } else { -1.0 }
+            })
+            .collect();
+        residuals[200] = f64::NAN;
+        let found = dependence(&abscissa, &residuals, 1.0, 4)?;
+        assert!(
+            found
+                .bins
+                .iter()
+                .all(|bin| bin.values == 100 && bin.sigma == 0.1)
+        );
+        assert_eq!(
+            found.bins.iter().map(|bin| bin.mean).collect::<Vec<_>>(),
+            [-0.5, -0.5, 0.5, 0.5]
+        );
+        assert_eq!(found.bins[0].at, 49.5);
+        // Four means, each five of their sigmas off.
+        assert!((found.chi_square - 100.0).abs() < 1e-9);
+        assert!(found.p_value < 1e-18);
+        assert!(dependence(&abscissa, &residuals, 1.0, 300).is_err());
+        Ok(())
+    }
+}

@@ -1,0 +1,47 @@
+//! What a calibrated record says against its model.
+//!
+//! # What it is
+//!
+//! Statistics of residuals and an audit of the noise, as pure functions of plain data: a record
+//! ([`gyrocal_record::Record`]) and the [`Innovations`] that a filter made of it.
+//!
+//! - [`nis`], [`autocorrelation`], [`periodogram`], [`dependence`]: the usual tests.
+//! - [`norm_channel`]: |E|², which sees accelerometer errors only, without any filter.
+//! - [`audit_noise`]: is the noise as declared? Robust, with one false-alarm probability for all.
+//!
+//! # The audit
+//!
+//! Physical causes are slow: hours and days. The audit looks at what is fast, so that neither
+//! takes the other for itself: at the values themselves (a lattice is the converter's), at
+//! samples against their neighbours (outliers), and at the spectrum within an hour (variance,
+//! correlation). It undoes the filter's feedback first, so that the noise of a sample stands at
+//! that sample alone. The gyros' noise, a random walk there, is left free and blamed on nobody.
+//!
+//! # What it does not do
+//!
+//! It runs no filter, reads and writes no files and prints nothing.
+
+pub mod cause;
+mod dependence;
+mod error;
+mod noise;
+mod norm;
+mod series;
+mod significance;
+mod spectrum;
+mod whiteness;
+
+pub use dependence::{Bin, Dependence, dependence};
+pub use error::DiagnosisError;
+pub use noise::{
+    AuditOptions, Cleaned, DeclaredNoise, Estimate, Gaps, NoiseAudit, NoiseFinding, Outlier,
+    Shares, audit_noise,
+};
+pub use norm::{NormChannel, norm_channel};
+pub use series::Innovations;
+pub use significance::{two_sided_p, z_of_two_sided_p};
+pub use spectrum::{Line, Periodogram, periodogram, strongest};
+pub use whiteness::{Autocorrelation, Nis, autocorrelation, nis};
+
+/// Number of drift coefficients of the nominal model.
+const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;

@@ -1,0 +1,313 @@
+//! The audit in its order: lattice, outliers, spectrum.
+
+use gyrocal_record::Record;
+
+use super::decision::{decide, ratio};
+use super::finding::{Cleaned, Estimate, Gaps, NoiseAudit, NoiseFinding, Shares};
+use super::lattice::{self, Lattice};
+use super::likelihood::{CORRELATION, WALK};
+use super::open_loop::{median_interval_s, open_loop, runs};
+use super::outlier::{self, Outlier};
+use super::spectrum::Spectrum;
+use crate::error::DiagnosisError;
+use crate::series::Innovations;
+use crate::significance::{two_sided_p, z_of_two_sided_p};
+
+/// A step below this part of the noise changes its variance by 2 % or less, its size by 1 %.
+const LEAST_STEP: f64 = 0.5;
+/// Rows at the start in which the filter's prediction jumps from sample to sample: a row for each
+/// twelve seconds of the interval, within these limits. At long intervals an unknown drift moves
+/// the platform by hundreds of standard deviations from row to row.
+const FIRST_ROW: [usize; 2] = [16, 48];
+
+/// With fewer blocks in all there is no spectrum to speak of.
+const LEAST_BLOCKS: usize = 6;
+const QUANTISATION: [&str; 3] = [
+    "accel_x.quantisation",
+    "accel_y.quantisation",
+    "accel_z.quantisation",
+];
+
+/// The noise that the bench file declares and the filter used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeclaredNoise {
+    /// Standard deviation of one sample of each accelerometer.
+    pub accel_g: [f64; 3],
+    /// Standard deviation of the white gyro noise as held over one minute.
+    pub gyro_deg_per_h: f64,
+}
+
+/// What the audit may do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AuditOptions {
+    /// Probability of any finding on a record whose noise is as declared.
+    pub false_alarm: f64,
+}
+
+impl Default for AuditOptions {
+    /// One record in four hundred: with the remainder of one in a hundred left to the physical
+    /// search.
+    fn default() -> Self {
+        Self {
+            false_alarm: 0.0025,
+        }
+    }
+}
+
+/// Looks at the noise of a record of which a filter has made innovations with the noise declared.
+///
+/// # Errors
+///
+/// [`DiagnosisError::UnequalLengths`] of record and innovations and
+/// [`DiagnosisError::InvalidArgument`] for noise that is not positive or a probability that is
+/// none. A record too short for a test is no error: the audit says `None` there.
+pub fn audit_noise(
+    record: &Record,
+    innovations: &Innovations,
+    declared: &DeclaredNoise,
+    options: &AuditOptions,
+) -> Result<NoiseAudit, DiagnosisError> {
+    check(record, innovations, declared, options)?;
+    let shares = Shares::of(options.false_alarm);
+    let runs = runs(&record.time_s);
+    let interval_s = median_interval_s(&record.time_s);
+    let lattices: [Option<Lattice>; 3] = core::array::from_fn(|axis| {
+        let values = record.accel_g.iter().map(|row| row[axis]);
+        lattice::find(values, LEAST_STEP * declared.accel_g[axis])
+    });
+    let mut findings: Vec<NoiseFinding> = (0..3)
+        .filter_map(|axis| lattices[axis].map(|l| quantised(axis, &l)))
+        .collect();
+
+    let mut open = open_loop(innovations, &declared.accel_g);
+    let first = ((interval_s / 12.0) as usize).clamp(FIRST_ROW[0], FIRST_ROW[1]);
+    let (outliers, finding) = outliers(&open, &runs, first, declared, shares.outliers);
+    findings.extend(finding);
+    for outlier in &outliers {
+        open[outlier.row][outlier.axis] = f64::NAN;
+    }
+
+    let walk =
+        |row: usize, axis: usize| walk_variance(innovations, declared, interval_s, row, axis);
+    let spectrum = Spectrum::new(&open, walk, &runs, interval_s);
+    let quantisation = core::array::from_fn(|axis| {
+        lattices[axis].map_or(0.0, |l| (l.step / declared.accel_g[axis]).powi(2) / 12.0)
+    });
+    let decided =
+        (spectrum.blocks() >= LEAST_BLOCKS).then(|| decide(&spectrum, quantisation, &shares));
+    let mut keep: Vec<[bool; 3]> = record
+        .accel_g
+        .iter()
+        .map(|row| row.map(|value| !value.is_nan()))
+        .collect();
+    for outlier in &outliers {
+        keep[outlier.row][outlier.axis] = false;
+    }
+    let (variance, correlation) = decided
+        .as_ref()
+        .map_or(([1.0; 3], 0.0), |d| (d.variance, d.correlation));
+    let slow = (1.0 + correlation) / (1.0 - correlation);
+    let cleaned = Cleaned {
+        keep,
+        sample_ratio: core::array::from_fn(|axis| (variance[axis] + quantisation[axis]).sqrt()),
+        correlation,
+        slow_ratio: core::array::from_fn(|axis| {
+            (variance[axis] * slow + quantisation[axis]).sqrt()
+        }),
+    };
+    let fit = decided.map(|decided| {
+        findings.extend(decided.findings);
+        decided.fit
+    });
+    findings.sort_by(|a, b| b.z.abs().total_cmp(&a.z.abs()));
+    Ok(NoiseAudit {
+        findings,
+        accel_ratio: fit
+            .as_ref()
+            .map(|fit| [0, 1, 2].map(|axis| ratio(fit, axis))),
+        correlation: fit.as_ref().map(|fit| Estimate {
+            name: "correlation",
+            estimate: fit.model.values[CORRELATION],
+            sigma: fit.sigma[CORRELATION],
+            unit: "1",
+        }),
+        gyro_ratio: fit.as_ref().map(|fit| ratio(fit, WALK)),
+        quantisation_g: lattices.map(|lattice| lattice.map(|lattice| lattice.step)),
+        outliers,
+        gaps: gaps(record, interval_s, runs.len()),
+        cleaned,
+    })
+}
+
+fn check(
+    record: &Record,
+    innovations: &Innovations,
+    declared: &DeclaredNoise,
+    options: &AuditOptions,
+) -> Result<(), DiagnosisError> {
+    let rows = record.time_s.len();
+    if record.accel_g.len() != rows {
+        return Err(DiagnosisError::UnequalLengths {
+            what: "accelerometer samples",
+            found: record.accel_g.len(),
+            expected: rows,
+        });
+    }
+    innovations.check(rows)?;
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    let [x, y, z] = declared.accel_g;
+    for (what, found) in [
+        ("the declared noise of accelerometer x", x),
+        ("the declared noise of accelerometer y", y),
+        ("the declared noise of accelerometer z", z),
+        ("the declared noise of the gyros", declared.gyro_deg_per_h),
+    ] {
+        if !positive(found) {
+            let expected = "a positive number";
+            return Err(DiagnosisError::InvalidArgument {
+                what,
+                found,
+                expected,
+            });
+        }
+    }
+    if options.false_alarm > 0.0 && options.false_alarm < 1.0 {
+        Ok(())
+    } else {
+        Err(DiagnosisError::InvalidArgument {
+            what: "the false-alarm probability",
+            found: options.false_alarm,
+            expected: "a number between 0 and 1",
+        })
+    }
+}
+
+/// Variance that the gyros' noise adds to the open-loop residual over one interval, in declared
+/// variances: an angle across specific force moves an output, one about it does not.
+fn walk_variance(
+    innovations: &Innovations,
+    declared: &DeclaredNoise,
+    interval_s: f64,
+    row: usize,
+    axis: usize,
+) -> f64 {
+    let noise_rad_per_s = (declared.gyro_deg_per_h / 3600.0).to_radians();
+    let angle_variance = noise_rad_per_s * noise_rad_per_s * 60.0 * interval_s;
+    let force = innovations.specific_force_g[row];
+    let across: f64 = (0..3)
+        .filter(|other| *other != axis)
+        .map(|other| force[other].powi(2))
+        .sum();
+    angle_variance * across / declared.accel_g[axis].powi(2)
+}
+
+fn quantised(axis: usize, lattice: &Lattice) -> NoiseFinding {
+    NoiseFinding {
+        effect: QUANTISATION[axis],
+        parameters: vec![Estimate {
+            name: "size",
+            estimate: lattice.step,
+            sigma: lattice.sigma,
+            unit: "g",
+        }],
+        z: lattice.z,
+        p_value: two_sided_p(lattice.z),
+    }
+}
+
+fn outliers(
+    open: &[[f64; 3]],
+    runs: &[core::ops::Range<usize>],
+    first: usize,
+    declared: &DeclaredNoise,
+    share: f64,
+) -> (Vec<Outlier>, Option<NoiseFinding>) {
+    let mut found = Vec::new();
+    let (mut samples, mut single_p) = (0, 1.0_f64);
+    for axis in 0..3 {
+        let series: Vec<f64> = open.iter().map(|row| row[axis]).collect();
+        let search = outlier::search(&series, runs, first);
+        samples += search.samples;
+        let sizes = search
+            .outliers
+            .iter()
+            .map(|(_, _, deviation)| deviation.abs());
+        single_p = single_p.min(search.single_p(sizes.fold(0.0, f64::max)));
+        let sigma_g = declared.accel_g[axis];
+        found.extend(
+            search
+                .outliers
+                .iter()
+                .map(|(row, value, deviation)| Outlier {
+                    row: *row,
+                    axis,
+                    size_g: value * sigma_g,
+                    deviation: *deviation,
+                }),
+        );
+    }
+    // The probability that any of the samples of mere noise is as far out.
+    let p_value = (samples as f64 * single_p).min(1.0);
+    if found.is_empty() || p_value > share {
+        return (Vec::new(), None);
+    }
+    found.sort_by_key(|outlier| (outlier.row, outlier.axis));
+    let count = found.len() as f64;
+    let mean = found
+        .iter()
+        .map(|outlier| outlier.size_g.abs())
+        .sum::<f64>()
+        / count;
+    let scatter = found
+        .iter()
+        .map(|outlier| (outlier.size_g.abs() - mean).powi(2))
+        .sum::<f64>();
+    let fraction = count / samples as f64;
+    // One sample has no scatter of its own: that of the noise.
+    let noise_g = declared.accel_g.iter().sum::<f64>() / 3.0;
+    let spread = if found.len() > 1 {
+        (scatter / (count - 1.0)).sqrt()
+    } else {
+        noise_g
+    };
+    let finding = NoiseFinding {
+        effect: "accel.outliers",
+        parameters: vec![
+            Estimate {
+                name: "fraction",
+                estimate: fraction,
+                sigma: (fraction * (1.0 - fraction) / samples as f64).sqrt(),
+                unit: "1",
+            },
+            Estimate {
+                name: "size",
+                estimate: mean,
+                sigma: spread / count.sqrt(),
+                unit: "g",
+            },
+        ],
+        z: z_of_two_sided_p(p_value),
+        p_value,
+    };
+    (found, Some(finding))
+}
+
+fn gaps(record: &Record, interval_s: f64, runs: usize) -> Gaps {
+    let intervals = record.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    let missing = record
+        .accel_g
+        .iter()
+        .flatten()
+        .filter(|value| value.is_nan())
+        .count();
+    Gaps {
+        count: runs.saturating_sub(1),
+        missing_s: intervals
+            .clone()
+            .filter(|i| *i > 1.5 * interval_s)
+            .map(|i| i - interval_s)
+            .sum(),
+        longest_s: intervals.fold(0.0, f64::max),
+        missing_values: missing as f64 / (3 * record.accel_g.len()).max(1) as f64,
+    }
+}

@@ -1,0 +1,116 @@
+//! The least significant bit, found from the values themselves.
+
+/// Values are on a lattice if their distance from it is below this part of its step.
+const NEAR: f64 = 0.05;
+/// Part of the steps between neighbouring values that must be whole.
+const MOST: f64 = 0.98;
+/// Fewer steps than this prove nothing.
+const LEAST_STEPS: usize = 20;
+
+/// A lattice that values lie on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lattice {
+    /// Its step.
+    pub(crate) step: f64,
+    /// Standard deviation of that.
+    pub(crate) sigma: f64,
+    /// How many standard deviations of chance the steps between values are whole.
+    pub(crate) z: f64,
+}
+
+/// The widest lattice on which values lie, if its step is `least` or more.
+///
+/// Sorted, values are apart by whole multiples of the step. The smallest distances give the step,
+/// larger ones refine it. Values of continuous distribution have distances of any size, and the
+/// smallest are far below what matters.
+pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Lattice> {
+    let mut sorted: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    // Below this, two values are the same one with rounding of a printed decimal.
+    let same = NEAR * least;
+    let mut steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.retain(|step| *step > same);
+    steps.sort_unstable_by(f64::total_cmp);
+    if steps.len() < LEAST_STEPS || steps[0] < least * (1.0 - NEAR) {
+        return None;
+    }
+    let step = common_divisor(&steps)?;
+    let off = |distance: &&f64| ((**distance / step) - (**distance / step).round()).abs();
+    let near = steps.iter().filter(|distance| off(distance) < NEAR).count();
+    if (near as f64) < MOST * steps.len() as f64 {
+        return None;
+    }
+    let squares: f64 = steps
+        .iter()
+        .map(|distance| (off(&distance) * step).powi(2))
+        .sum();
+    let weight: f64 = steps
+        .iter()
+        .map(|distance| (distance / step).round().powi(2))
+        .sum();
+    // By chance a step is near a whole one with probability 2 NEAR.
+    let count = steps.len() as f64;
+    let chance = 2.0 * NEAR;
+    Some(Lattice {
+        step,
+        // Neighbouring distances share a value; that they do is within this factor.
+        sigma: (2.0 * squares / count / weight).sqrt(),
+        z: (near as f64 - count * chance) / (count * chance * (1.0 - chance)).sqrt(),
+    })
+}
+
+/// The step that the smallest distances suggest, refined with larger ones in turn.
+fn common_divisor(steps: &[f64]) -> Option<f64> {
+    let candidates = [1.0, 2.0, 3.0, 4.0].map(|part| steps[0] / part);
+    // The smallest distance is one step in all but tiny records; else it is a few.
+    candidates.into_iter().find_map(|candidate| {
+        let (mut products, mut squares, mut step) = (0.0, 0.0, candidate);
+        let mut whole = 0;
+        for distance in steps {
+            let count = (distance / step).round();
+            // As long as the count is certain.
+            if (distance / step - count).abs() < 0.2 {
+                whole += 1;
+                products += distance * count;
+                squares += count * count;
+                step = products / squares;
+            }
+        }
+        (whole as f64 >= MOST * steps.len() as f64).then_some(step)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sweep(count: u32) -> impl Iterator<Item = f64> {
+        (0..count).map(|k| (f64::from(k) * 0.0437).sin() + 1e-5 * (f64::from(k * k) * 1.3).sin())
+    }
+
+    #[test]
+    fn a_lattice_is_found_with_its_step() {
+        // Of a converter that divides 2 g into 2^16, printed with all and with 7 decimals.
+        let step = 2.0 / 65536.0;
+        for decimals in [17, 7] {
+            let ten = 10.0_f64.powi(decimals);
+            let lattice = find(
+                sweep(2000).map(|v| ((v / step).round() * step * ten).round() / ten),
+                5e-6,
+            );
+            let found = lattice.map_or(0.0, |lattice| lattice.step);
+            // Printing to 1e-7 moves each value by less than a hundredth of a step.
+            assert!((found / step - 1.0).abs() < 1e-3, "{found}");
+        }
+    }
+
+    #[test]
+    fn continuous_values_and_fine_decimals_are_none() {
+        assert_eq!(find(sweep(2000), 5e-6), None);
+        assert_eq!(
+            find(sweep(2000).map(|v| (v * 1e6).round() / 1e6), 5e-6),
+            None
+        );
+        assert_eq!(find(sweep(10).map(|v| (v * 1e4).round() / 1e4), 5e-6), None);
+    }
+}

@@ -1,0 +1,100 @@
+//! Residuals as they would be had the filter not corrected itself.
+
+use crate::series::Innovations;
+
+/// Measured specific force against a prediction into which no single sample was fed back, in
+/// declared standard deviations: the accelerometer noise, plus a random walk from the gyros'
+/// noise, plus whatever is smooth. `NaN` where a component is missing.
+///
+/// An update moves the predicted output by (S − R) S⁻¹ e. Adding these corrections up again
+/// gives a residual in which the noise of a sample stands at that sample alone, where innovations
+/// carry it on with the opposite sign. Corrections are held while the platform turns: carried
+/// along with it they would sweep round, and those from the first rows, when the drift is not
+/// known, are large. What is left by holding them, and by what an update changes of the drift, is
+/// smooth once the filter has settled.
+pub(crate) fn open_loop(innovations: &Innovations, accel_noise_g: &[f64; 3]) -> Vec<[f64; 3]> {
+    let mut corrections_g = [0.0; 3];
+    let rows = innovations.residual_g.iter();
+    rows.zip(&innovations.weighted_per_g)
+        .map(|(residual_g, weighted_per_g)| {
+            core::array::from_fn(|axis| {
+                let sigma = accel_noise_g[axis];
+                if residual_g[axis].is_nan() {
+                    return f64::NAN;
+                }
+                let open = residual_g[axis] + corrections_g[axis];
+                corrections_g[axis] += residual_g[axis] - sigma * sigma * weighted_per_g[axis];
+                open / sigma
+            })
+        })
+        .collect()
+}
+
+/// Ranges of rows without a gap: intervals between rows are below 1.5 times their median.
+pub(crate) fn runs(time_s: &[f64]) -> Vec<core::ops::Range<usize>> {
+    let longest = 1.5 * median_interval_s(time_s);
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for row in 1..=time_s.len() {
+        if row == time_s.len() || time_s[row] - time_s[row - 1] > longest {
+            runs.push(start..row);
+            start = row;
+        }
+    }
+    runs
+}
+
+/// Median of the intervals between rows; infinite without any.
+pub(crate) fn median_interval_s(time_s: &[f64]) -> f64 {
+    let mut intervals: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    median(&mut intervals).unwrap_or(f64::INFINITY)
+}
+
+/// Median of some values, which are reordered; the upper one of an even number.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outlier_stands_at_its_own_sample_alone() {
+        // A filter of constant gain K on a constant: innovations fall off by 1 - K a row.
+        let (sigma, gain) = (1e-5, 0.1);
+        let innovation_variance = sigma * sigma / (1.0 - gain);
+        let covariance = core::array::from_fn(|i| {
+            core::array::from_fn(|j| if i == j { innovation_variance } else { 0.0 })
+        });
+        let mut innovations = Innovations::default();
+        let mut estimate = 0.0;
+        for row in 0..20 {
+            let measured = if row == 5 { 8.0 * sigma } else { 0.0 };
+            let residual = measured - estimate;
+            estimate += gain * residual;
+            let row = innovations.push(
+                row as f64,
+                [residual, 0.0, 0.0],
+                &covariance,
+                [0.0, 0.0, 1.0],
+            );
+            assert!(row.is_ok());
+        }
+        assert!((innovations.residual_g[6][0] / sigma + 0.8).abs() < 1e-12);
+        for (row, open) in open_loop(&innovations, &[sigma; 3]).iter().enumerate() {
+            let expected = if row == 5 { 8.0 } else { 0.0 };
+            // Rounding alone.
+            assert!((open[0] - expected).abs() < 1e-12, "row {row}: {}", open[0]);
+        }
+    }
+
+    #[test]
+    fn a_gap_begins_a_run() {
+        let time_s = [0.0, 60.0, 121.0, 181.0, 400.0, 460.0, 520.0];
+        assert_eq!(runs(&time_s), [0..4, 4..7]);
+        assert!(runs(&[]).is_empty());
+        assert_eq!(runs(&[5.0]).len(), 1);
+    }
+}

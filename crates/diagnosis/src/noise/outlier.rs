@@ -1,0 +1,263 @@
+//! Isolated samples far outside the noise.
+
+use core::ops::Range;
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::open_loop::median;
+
+/// Rows on either side that a sample is compared with.
+const REACH: usize = 8;
+/// Values on each side for a comparison with that side alone.
+const SIDE: usize = 8;
+/// Fewer on a side than this: a quadratic cannot be trusted at its end.
+const LEAST_SIDE: usize = 3;
+/// A sample is isolated if it stands this many standard deviations from the line through either
+/// side alone. The first sample after a step or a kink does not: one in four hundred of them.
+const ISOLATED: f64 = 3.0;
+/// Beyond this many standard deviations a sample is rather an outlier than noise, once there are
+/// outliers: with half a percent of them at 8 sigma the probabilities meet at 4.7, with fewer or
+/// smaller ones elsewhere, and at 4.5 noise alone is taken for one once in 150 000 samples.
+const LIKELY: f64 = 4.5;
+/// Median absolute deviation of normal noise of unit variance.
+const NORMAL_MAD: f64 = 0.674_489_750_196_081_7;
+
+/// An outlier.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlier {
+    /// Row of the record, counted from 0.
+    pub row: usize,
+    /// Axis: 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// How far the sample is from its neighbours.
+    pub size_g: f64,
+    /// The same in standard deviations of the noise as it was found to be.
+    pub deviation: f64,
+}
+
+/// Outliers of an axis, its robust standard deviation and the number of samples judged.
+pub(crate) struct Search {
+    pub(crate) outliers: Vec<(usize, f64, f64)>,
+    pub(crate) samples: usize,
+}
+
+impl Search {
+    /// Probability that a sample of mere noise is as far out as this: Student's, for the scale
+    /// comes from the samples themselves. Neighbouring residuals share samples, and count half.
+    pub(crate) fn single_p(&self, deviation: f64) -> f64 {
+        let degrees = (0.5 * self.samples as f64).max(1.0);
+        StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |student| 2.0 * student.sf(deviation.abs()))
+    }
+}
+
+/// Searches a series (unit: declared standard deviation; `NaN` is missing), run by run, from row
+/// `first` on. An outlier is a row, its residual and that over its standard deviation.
+#[allow(clippy::needless_range_loop)] // rows index several series
+pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Search {
+    let mut masked = series.to_vec();
+    let mut residuals = vec![None; series.len()];
+    let judge = |masked: &[f64], row: usize, run: &Range<usize>| {
+        against_neighbours(series[row], masked, row, run)
+    };
+    for run in runs {
+        for row in run.start.max(first)..run.end {
+            residuals[row] = judge(&masked, row, run);
+        }
+    }
+    let mut sizes: Vec<f64> = residuals
+        .iter()
+        .flatten()
+        .map(|r| r.deviation(1.0))
+        .collect();
+    let samples = sizes.len();
+    let scale = robust_scale(&mut sizes);
+    let mut flagged: Vec<(usize, usize)> = Vec::new();
+    if scale > 0.0 {
+        // The largest of a neighbourhood first: it spoils the fit of the others.
+        loop {
+            let mut found = Vec::new();
+            for (index, run) in runs.iter().enumerate() {
+                for row in run.start.max(first)..run.end {
+                    let suspect = |row: usize| -> f64 {
+                        if masked[row].is_nan() {
+                            0.0
+                        } else {
+                            residuals[row].as_ref().map_or(0.0, |r| r.deviation(scale))
+                        }
+                    };
+                    let own = suspect(row);
+                    let neighbours =
+                        row.saturating_sub(REACH).max(run.start)..(row + REACH + 1).min(run.end);
+                    let largest = own > LIKELY
+                        && neighbours
+                            .clone()
+                            .all(|other| other == row || suspect(other) <= own);
+                    if largest && is_isolated(series[row], &masked, row, run, scale) {
+                        found.push((row, index));
+                    }
+                }
+            }
+            if found.is_empty() {
+                break;
+            }
+            for (row, _) in &found {
+                masked[*row] = f64::NAN;
+            }
+            for (row, index) in &found {
+                let run = &runs[*index];
+                for other in row.saturating_sub(REACH).max(run.start.max(first))
+                    ..(row + REACH + 1).min(run.end)
+                {
+                    residuals[other] = judge(&masked, other, run);
+                }
+            }
+            flagged.extend(found);
+        }
+    }
+    flagged.sort_unstable();
+    let outliers = flagged
+        .iter()
+        .filter_map(|(row, _)| {
+            residuals[*row]
+                .as_ref()
+                .map(|r| (*row, r.value, r.value / (r.spread * scale)))
+        })
+        .filter(|(_, _, deviation)| deviation.abs() > LIKELY)
+        .collect();
+    Search { outliers, samples }
+}
+
+#[derive(Clone, Debug)]
+struct Residual {
+    value: f64,
+    /// Its standard deviation if that of a sample is one.
+    spread: f64,
+}
+
+impl Residual {
+    fn deviation(&self, scale: f64) -> f64 {
+        (self.value / (self.spread * scale)).abs()
+    }
+}
+
+/// A value against the quadratic through its neighbours on both sides, itself left out.
+fn against_neighbours(
+    value: f64,
+    masked: &[f64],
+    row: usize,
+    run: &Range<usize>,
+) -> Option<Residual> {
+    if value.is_nan() {
+        return None;
+    }
+    let from = row.saturating_sub(REACH).max(run.start);
+    let to = (row + REACH + 1).min(run.end);
+    let mut moments = [0.0; 5];
+    let mut sums = [0.0; 3];
+    let mut sides = [0; 2];
+    for other in (from..to).filter(|other| *other != row && !masked[*other].is_nan()) {
+        let at = (other as f64 - row as f64) / REACH as f64;
+        sides[usize::from(other > row)] += 1;
+        let mut power = 1.0;
+        for (i, moment) in moments.iter_mut().enumerate() {
+            *moment += power;
+            if i < 3 {
+                sums[i] += power * masked[other];
+            }
+            power *= at;
+        }
+    }
+    if sides[0] < LEAST_SIDE || sides[1] < LEAST_SIDE {
+        return at_an_end(value, masked, row, run);
+    }
+    // Value of the quadratic in the middle: the first row of the inverse of the moments.
+    let [m0, m1, m2, m3, m4] = moments;
+    let cofactors = [m2 * m4 - m3 * m3, m2 * m3 - m1 * m4, m1 * m3 - m2 * m2];
+    let determinant = m0 * cofactors[0] + m1 * cofactors[1] + m2 * cofactors[2];
+    let weights = cofactors.map(|cofactor| cofactor / determinant);
+    let middle: f64 = weights.iter().zip(&sums).map(|(w, s)| w * s).sum();
+    Some(Residual {
+        value: value - middle,
+        spread: (1.0 + weights[0]).sqrt(),
+    })
+}
+
+/// At the end of a run there is one side only: its mean.
+fn at_an_end(value: f64, masked: &[f64], row: usize, run: &Range<usize>) -> Option<Residual> {
+    let mut near: Vec<f64> = Vec::new();
+    for one_side in [
+        side(masked, (run.start..row).rev(), row),
+        side(masked, row + 1..run.end, row),
+    ] {
+        near.extend(one_side.iter().map(|(_, value)| value));
+    }
+    if near.len() < SIDE {
+        return None;
+    }
+    let count = near.len() as f64;
+    Some(Residual {
+        value: value - near.iter().sum::<f64>() / count,
+        spread: (1.0 + 1.0 / count).sqrt(),
+    })
+}
+
+/// Standard deviation of absolute values that are normal but for a few: the median says which
+/// are, and their root mean square is less uncertain by half.
+fn robust_scale(sizes: &mut [f64]) -> f64 {
+    /// Variance of a standard normal variable that is known to lie within 4.
+    const WITHIN_FOUR: f64 = 0.998_929;
+    let rough = median(sizes).unwrap_or(0.0) / NORMAL_MAD;
+    let (count, sum) = sizes
+        .iter()
+        .filter(|size| **size <= 4.0 * rough)
+        .fold((0.0, 0.0), |(count, sum), size| {
+            (count + 1.0, sum + size * size)
+        });
+    if count > 0.0 {
+        (sum / (count * WITHIN_FOUR)).sqrt()
+    } else {
+        0.0
+    }
+}
+
+fn is_isolated(value: f64, masked: &[f64], row: usize, run: &Range<usize>, scale: f64) -> bool {
+    let far = |near: &[(f64, f64)]| {
+        robust_line(near)
+            .is_none_or(|(line, spread)| (value - line).abs() > ISOLATED * spread * scale)
+    };
+    let before = (run.start..row).rev();
+    far(&side(masked, before, row)) && far(&side(masked, row + 1..run.end, row))
+}
+
+/// The line through the medians of Theil and Sen at zero, and the standard deviation there of a
+/// sample against it; two wild values of eight move it little. `None` if there are too few.
+fn robust_line(near: &[(f64, f64)]) -> Option<(f64, f64)> {
+    if near.len() < LEAST_SIDE {
+        return None;
+    }
+    let later = |i: usize| near[i + 1..].iter();
+    let pairs = near
+        .iter()
+        .enumerate()
+        .flat_map(|(i, a)| later(i).map(move |b| (b.1 - a.1) / (b.0 - a.0)));
+    let slope = median(&mut pairs.collect::<Vec<f64>>())?;
+    let line = median(
+        &mut near
+            .iter()
+            .map(|(at, value)| value - slope * at)
+            .collect::<Vec<f64>>(),
+    )?;
+    let count = near.len() as f64;
+    let middle = near.iter().map(|(at, _)| at).sum::<f64>() / count;
+    let width: f64 = near.iter().map(|(at, _)| (at - middle).powi(2)).sum();
+    Some((line, (1.0 + 1.0 / count + middle * middle / width).sqrt()))
+}
+
+/// The nearest values on one side, with their distance in rows.
+fn side(masked: &[f64], rows: impl Iterator<Item = usize>, from: usize) -> Vec<(f64, f64)> {
+    rows.take(2 * SIDE)
+        .map(|row| (row as f64 - from as f64, masked[row]))
+        .filter(|(_, value)| !value.is_nan())
+        .take(SIDE)
+        .collect()
+}

@@ -1,0 +1,152 @@
+//! NIS, autocorrelation and Ljung–Box: the usual tests of innovations.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::error::DiagnosisError;
+use crate::significance::normal_quantile;
+
+/// Normalised innovations squared, over a record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nis {
+    /// Sum of squares.
+    pub sum: f64,
+    /// Number of values: the expectation of the sum.
+    pub values: usize,
+    /// Sum over number of values; 1 expected.
+    pub mean: f64,
+    /// Interval that holds the mean with probability `1 - false_alarm`.
+    pub band: [f64; 2],
+    /// Probability of a mean as far from one or farther, on either side.
+    pub p_value: f64,
+}
+
+/// Autocorrelation of innovations, and the portmanteau test of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Autocorrelation {
+    /// Correlation of each axis with itself, `[lag - 1][axis]`.
+    pub correlation: Vec<[f64; 3]>,
+    /// Standard deviation of each of these if there is none.
+    pub sigma: Vec<[f64; 3]>,
+    /// Half width of the band that holds all correlations with probability `1 - false_alarm`, in
+    /// their standard deviations.
+    pub band: f64,
+    /// The statistic of Ljung and Box, all pairs of axes, Hosking's form for several series.
+    pub ljung_box: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// Probability of as large a statistic from white innovations.
+    pub p_value: f64,
+}
+
+/// The mean of squared normalised innovations with its band.
+///
+/// # Errors
+///
+/// [`DiagnosisError::TooShort`] without a value.
+pub fn nis(normalised: &[[f64; 3]], false_alarm: f64) -> Result<Nis, DiagnosisError> {
+    check_probability(false_alarm)?;
+    let values = normalised.iter().flatten().filter(|w| !w.is_nan());
+    let (count, sum) = values.fold((0, 0.0), |(count, sum), w| (count + 1, sum + w * w));
+    let distribution = chi_squared(count, "NIS")?;
+    let tail = distribution.cdf(sum).min(distribution.sf(sum));
+    let quantile = |p| distribution.inverse_cdf(p) / count as f64;
+    Ok(Nis {
+        sum,
+        values: count,
+        mean: sum / count as f64,
+        band: [
+            quantile(false_alarm / 2.0),
+            quantile(1.0 - false_alarm / 2.0),
+        ],
+        p_value: (2.0 * tail).min(1.0),
+    })
+}
+
+/// Correlations at the lags 1 to `lags`, and the test that there are none.
+///
+/// Rows count by number, not by time. Where a value is missing its products are missing, and each
+/// correlation has the standard deviation of the products that exist.
+///
+/// # Errors
+///
+/// [`DiagnosisError::TooShort`] with fewer than four times as many rows as lags.
+pub fn autocorrelation(
+    normalised: &[[f64; 3]],
+    lags: usize,
+    false_alarm: f64,
+) -> Result<Autocorrelation, DiagnosisError> {
+    check_probability(false_alarm)?;
+    let expected = 4 * lags.max(1);
+    if normalised.len() < expected {
+        return Err(DiagnosisError::TooShort {
+            test: "the autocorrelation",
+            found: normalised.len(),
+            expected,
+        });
+    }
+    let power: [f64; 3] = core::array::from_fn(|axis| {
+        let squares = normalised
+            .iter()
+            .map(|row| row[axis])
+            .filter(|w| !w.is_nan())
+            .map(|w| w * w);
+        let count = squares.clone().count().max(1);
+        (squares.sum::<f64>() / count as f64).max(f64::MIN_POSITIVE)
+    });
+    let mut correlation = Vec::with_capacity(lags);
+    let mut sigma = Vec::with_capacity(lags);
+    let (mut ljung_box, mut degrees_of_freedom) = (0.0, 0);
+    for lag in 1..=lags {
+        let mut own = [[0.0; 3]; 2];
+        for i in 0..3 {
+            for j in 0..3 {
+                let pairs = normalised.iter().zip(&normalised[lag..]);
+                let products = pairs
+                    .map(|(early, late)| early[j] * late[i])
+                    .filter(|p| !p.is_nan());
+                let (count, sum) = products.fold((0, 0.0), |(count, sum), p| (count + 1, sum + p));
+                if count == 0 {
+                    continue;
+                }
+                // Its variance is the number of products: the factor of Ljung and Box.
+                let standard = sum / (f64::from(count) * power[i] * power[j]).sqrt();
+                ljung_box += standard * standard;
+                degrees_of_freedom += 1;
+                if i == j {
+                    own[1][i] = 1.0 / f64::from(count).sqrt();
+                    own[0][i] = standard * own[1][i];
+                }
+            }
+        }
+        correlation.push(own[0]);
+        sigma.push(own[1]);
+    }
+    let shown = (3 * lags).max(1) as f64;
+    Ok(Autocorrelation {
+        correlation,
+        sigma,
+        band: normal_quantile(1.0 - false_alarm / (2.0 * shown)),
+        ljung_box,
+        degrees_of_freedom,
+        p_value: chi_squared(degrees_of_freedom, "the autocorrelation")?.sf(ljung_box),
+    })
+}
+
+fn chi_squared(degrees: usize, test: &'static str) -> Result<ChiSquared, DiagnosisError> {
+    ChiSquared::new(degrees as f64).map_err(|_| DiagnosisError::TooShort {
+        test,
+        found: degrees,
+        expected: 1,
+    })
+}
+
+pub(crate) fn check_probability(false_alarm: f64) -> Result<(), DiagnosisError> {
+    if false_alarm > 0.0 && false_alarm < 1.0 {
+        return Ok(());
+    }
+    Err(DiagnosisError::InvalidArgument {
+        what: "the false-alarm probability",
+        found: false_alarm,
+        expected: "a number between 0 and 1",
+    })
+}
