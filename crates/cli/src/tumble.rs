@@ -135,7 +135,10 @@ fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleRepo
         );
         if !gyro.undetermined.is_empty() {
             let names = gyro.undetermined.join(", ");
-            let _ = writeln!(text, "  These attitudes do not determine {names} beside the others.");
+            let _ = writeln!(
+                text,
+                "  These attitudes do not determine {names} beside the others."
+            );
         }
     }
     if report.findings.is_empty() {

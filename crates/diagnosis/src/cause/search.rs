@@ -1,11 +1,11 @@
 //! The search for causes: forward, with a full fit after each that is found.
 
 use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS};
-use gyrocal_calibration::{CalibrationError, Column, Extended, Extension, Further};
+use gyrocal_calibration::{CalibrationError, Column, Extended, Extension};
 use gyrocal_record::{Bench, Record};
 
 use super::bank::{Bank, Joint};
-use super::family::{Candidate, Family, Plan, Unavailable, extend, parameter};
+use super::family::{Family, Plan, Unavailable, extend, parameter};
 use super::null::Null;
 
 /// How causes are looked for.

@@ -1,0 +1,61 @@
+//! `gyrocal allan`.
+
+use crate::folder::Folder;
+
+/// The thousand numbers of NIST SP 1065, section 12.4.
+fn log() -> String {
+    let numbers = std::iter::successors(Some(1_234_567_890_u64), |n| {
+        Some(16_807 * n % 2_147_483_647)
+    });
+    let rows = numbers
+        .take(1000)
+        .map(|n| format!("{:?},1\n", n as f64 / 2_147_483_647.0));
+    "rate,other\n".to_owned() + &rows.collect::<String>()
+}
+
+#[test]
+fn deviations_are_printed_and_written() {
+    let folder = Folder::new();
+    folder.put("l.csv", log());
+    let text = folder.succeed(&[
+        "allan",
+        "l.csv",
+        "--columns",
+        "rate",
+        "--rate-hz",
+        "10",
+        "--scale",
+        "2",
+        "--unit",
+        "deg/h",
+        "--json",
+        "o.json",
+    ]);
+    // The handbook prints 2.922319e-1 for the first.
+    assert!(text.contains("5.8446e-1"), "{text}");
+    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let point = &json["columns"][0]["points"][0];
+    assert!((point["deviation"].as_f64().unwrap() / 0.584_463_8 - 1.0).abs() < 1e-6);
+    assert!(point["low"].as_f64().unwrap() < 0.5844 && point["high"].as_f64().unwrap() > 0.5845);
+    assert_eq!(json["unit"], "deg/h");
+}
+
+#[test]
+fn bad_input_is_told() {
+    let folder = Folder::new();
+    folder.put("l.csv", log());
+    let errors = folder.fail(&["allan", "l.csv", "--columns", "rates", "--rate-hz", "10"]);
+    assert!(errors.contains("expected a column `rates`"), "{errors}");
+    assert!(errors.contains("the columns are rate, other"), "{errors}");
+    folder.put("n.csv", "rate\n1\nx\n");
+    let errors = folder.fail(&["allan", "n.csv", "--columns", "rate", "--rate-hz", "10"]);
+    assert!(
+        errors.contains("n.csv:3:1: found `x`, expected a finite number"),
+        "{errors}"
+    );
+    folder.put("s.csv", "rate\n1\n2\n");
+    let errors = folder.fail(&["allan", "s.csv", "--columns", "rate", "--rate-hz", "10"]);
+    assert!(errors.contains("found 2 samples"), "{errors}");
+    let output = folder.run(&["allan", "l.csv", "--columns", "rate", "--rate-hz", "0"]);
+    assert_eq!(output.status.code(), Some(2));
+}

@@ -1,0 +1,174 @@
+//! `gyrocal import` on the recording that ships with the repository.
+
+use crate::folder::{Folder, repository};
+
+const LOG: &str = "tests/data/measured/ring_laser_static/imu.csv";
+const DESCRIPTION: &str = "tests/data/measured/ring_laser_static/log.toml";
+
+fn arguments<'a>(log: &'a str, description: &'a str) -> [&'a str; 11] {
+    [
+        "import",
+        "strapdown",
+        log,
+        "--log-description",
+        description,
+        "--out",
+        "r.csv",
+        "--bench-out",
+        "b.toml",
+        "--json",
+        "o.json",
+    ]
+}
+
+fn path(name: &str) -> String {
+    repository(name).display().to_string()
+}
+
+#[test]
+fn the_recorded_unit_feels_the_earth_turn() {
+    let folder = Folder::new();
+    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let text = folder.succeed(&arguments(&log, &description));
+    assert!(
+        text.contains("One attitude determines three numbers"),
+        "{text}"
+    );
+    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let rate = |name: &str| {
+        let value = |index: usize| {
+            json[format!("{name}_rate_deg_per_h")][index]
+                .as_f64()
+                .unwrap()
+        };
+        let expected = json[format!("expected_{name}_rate_deg_per_h")]
+            .as_f64()
+            .unwrap();
+        (value(0) - expected, value(1))
+    };
+    // Earth rate at latitude 34.246048 deg: 15.041067 deg/h times cosine and sine.
+    let expected = json["expected_horizontal_rate_deg_per_h"].as_f64().unwrap();
+    assert!((expected - 12.4334).abs() < 1e-4);
+    // Gyros of this grade err by hundredths of a degree an hour.
+    let (horizontal, sigma) = rate("horizontal");
+    assert!(
+        horizontal.abs() < 0.03 && sigma < 0.01,
+        "{horizontal} {sigma}"
+    );
+    let (vertical, sigma) = rate("vertical");
+    assert!(
+        vertical.abs() < 4.0 * sigma && sigma < 0.1,
+        "{vertical} {sigma}"
+    );
+    // The vehicle rocks, and not all the time.
+    let disturbed: f64 = json["disturbed_s"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|ends| ends[1].as_f64().unwrap() - ends[0].as_f64().unwrap())
+        .sum();
+    assert!((200.0..900.0).contains(&disturbed), "{disturbed}");
+}
+
+#[test]
+fn the_record_can_be_calibrated_and_determines_what_one_attitude_determines() {
+    let folder = Folder::new();
+    let (log, description) = (path(LOG), path(DESCRIPTION));
+    folder.succeed(&arguments(&log, &description));
+    folder.succeed(&[
+        "calibrate",
+        "r.csv",
+        "--bench",
+        "b.toml",
+        "--json",
+        "c.json",
+    ]);
+    let json: serde_json::Value = serde_json::from_str(&folder.text("c.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let coefficients = json["coefficients"].as_array().unwrap();
+    let find = |name: &str| {
+        let found = coefficients
+            .iter()
+            .find(|coefficient| coefficient["name"] == name)
+            .unwrap();
+        (
+            found["estimate"].as_f64().unwrap(),
+            found["sigma"].as_f64().unwrap(),
+        )
+    };
+    // Body x points south, so that its gyro's drift in the platform, minus its error, is the
+    // north component of the errors: what the horizontal rate shows.
+    let (bias, sigma) = find("gyro_x.bias");
+    let north = report["horizontal_rate_deg_per_h"][0].as_f64().unwrap()
+        - report["expected_horizontal_rate_deg_per_h"]
+            .as_f64()
+            .unwrap();
+    assert!((bias - north).abs() < 4.0 * sigma, "{bias} {sigma} {north}");
+    assert!(sigma < 0.05, "{sigma}");
+    // A bias and its gyro's terms along the vertical are one number: the prior of 1 shared.
+    for name in ["gyro_z.bias", "gyro_z.g_z", "gyro_z.g_zz"] {
+        assert!(find(name).1 > 0.5, "{name}");
+    }
+}
+
+#[test]
+fn bad_input_is_told() {
+    let log = std::fs::read_to_string(repository(LOG)).unwrap();
+    let description = std::fs::read_to_string(repository(DESCRIPTION)).unwrap();
+    let refused = |log: &str, description: &str| {
+        let folder = Folder::new();
+        folder.put("l.csv", log);
+        folder.put("l.toml", description);
+        folder.fail(&arguments("l.csv", "l.toml"))
+    };
+    let with = |from: &str, to: &str| refused(&log, &description.replace(from, to));
+    let gap: String = log
+        .lines()
+        .enumerate()
+        .filter(|(row, _)| !(5000..5050).contains(row))
+        .map(|(_, line)| line.to_owned() + "\n")
+        .collect();
+    let cases = [
+        (
+            with("\"rad/s\"", "\"deg/s\""),
+            "expected Earth rate, 15.041",
+        ),
+        (
+            with("\"m/s2\"", "\"g\""),
+            "found a norm of specific force at rest of 9.79",
+        ),
+        (
+            with(
+                "unit = \"rad/s\"",
+                "unit = \"rad/s\"\naxes = [\"x\", \"y\", \"-z\"]",
+            ),
+            "found a vertical rate of -8.",
+        ),
+        (
+            with("latitude_deg = 34.246048", ""),
+            "a description without latitude",
+        ),
+        (
+            with("latitude_deg = 34.246048", "latitude_deg = -34.246048"),
+            "found a vertical rate of 8.4",
+        ),
+        (
+            with(
+                "unit = \"rad/s\"",
+                "unit = \"counts\"\ncounts_per_rad_per_s = \"from-turns\"",
+            ),
+            "counts whose scale is to be estimated",
+        ),
+        (refused(&gap, &description), "1 gap(s) in the time stamps"),
+        (
+            refused(
+                &log.lines().take(1000).collect::<Vec<_>>().join("\n"),
+                &description,
+            ),
+            "found 3 intervals of 30 s",
+        ),
+    ];
+    for (errors, message) in cases {
+        assert!(errors.contains(message), "{message}\nis not in\n{errors}");
+    }
+}

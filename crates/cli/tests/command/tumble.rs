@@ -1,0 +1,204 @@
+//! `gyrocal tumble` on the recording that ships with the repository.
+
+use crate::folder::{Folder, repository};
+
+const LOG: &str = "tests/data/measured/xsens_38_positions/imu_counts.csv";
+const DESCRIPTION: &str = "tests/data/measured/xsens_38_positions/log.toml";
+
+fn arguments<'a>(log: &'a str, description: &'a str) -> [&'a str; 6] {
+    [
+        "tumble",
+        log,
+        "--log-description",
+        description,
+        "--json",
+        "o.json",
+    ]
+}
+
+fn path(name: &str) -> String {
+    repository(name).display().to_string()
+}
+
+#[test]
+fn the_nominal_law_of_the_recorded_instrument_is_wrong_and_cross_axis_terms_are_why() {
+    let folder = Folder::new();
+    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let text = folder.succeed(&arguments(&log, &description));
+    assert!(text.contains("38 static stops"), "{text}");
+    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let sensors = &json["sensors"];
+    for gyro in 0..3 {
+        // What came with the recording: about 4770; half a percent is its accuracy.
+        let outputs = sensors["gyro_outputs_per_rad_per_s"][gyro]
+            .as_f64()
+            .unwrap();
+        assert!((outputs / 4770.0 - 1.0).abs() < 5e-3, "{outputs}");
+    }
+    let test = &json["test"];
+    let mut found: Vec<&str> = test["findings"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|finding| finding["effect"].as_str().unwrap())
+        .collect();
+    found.sort_unstable();
+    let cross_axis = [
+        "gyro_x.g_y",
+        "gyro_x.g_z",
+        "gyro_y.g_x",
+        "gyro_y.g_z",
+        "gyro_z.g_x",
+        "gyro_z.g_y",
+    ];
+    assert_eq!(found, cross_axis);
+    for gyro in test["gyros"].as_array().unwrap() {
+        let p_value = gyro["nominal_against_catalogue"]["p_value"]
+            .as_f64()
+            .unwrap();
+        // By far: an F of 45 or more with 8 and 27 degrees of freedom.
+        assert!(p_value < 1e-10, "{p_value}");
+        // What the stops scatter beyond their standard errors is at most as large as these.
+        let excess = gyro["extended"]["excess_deg_per_h"].as_f64().unwrap();
+        assert!(excess < 60.0, "{excess}");
+    }
+    // The same terms by another least-squares program, in counts per g: 6.61, 2.94, -13.16,
+    // 8.19, -7.98, -6.89, times 43.2 deg/h a count. Other weights, one sigma at the most.
+    let another = [
+        ("gyro_x.g_z", 286.0),
+        ("gyro_x.g_y", 127.0),
+        ("gyro_y.g_x", -569.0),
+        ("gyro_y.g_z", 354.0),
+        ("gyro_z.g_y", -345.0),
+        ("gyro_z.g_x", -298.0),
+    ];
+    for finding in test["findings"].as_array().unwrap() {
+        let name = finding["effect"].as_str().unwrap();
+        let (_, expected) = another.iter().find(|(other, _)| *other == name).unwrap();
+        let (estimate, sigma) = (
+            finding["estimate"].as_f64().unwrap(),
+            finding["sigma"].as_f64().unwrap(),
+        );
+        assert!(
+            (estimate - expected).abs() < sigma,
+            "{name}: {estimate} {sigma}"
+        );
+        assert!(finding["p_value"].as_f64().unwrap() <= 0.01);
+    }
+    let gain = &test["gain"];
+    let nats = gain["cross_validated_log_score_nats"].as_f64().unwrap();
+    let error = gain["standard_error_nats"].as_f64().unwrap();
+    assert!(nats > 5.0 * error, "{nats} {error}");
+    let controls = &test["controls"];
+    // A hundred draws of a hundredth: more than five have a probability of 0.05 %.
+    assert!(controls["shuffles_with_findings"].as_u64().unwrap() <= 5);
+    assert_eq!(controls["renamed_as_expected"], true);
+    assert_eq!(controls["forces_renamed_unexpected"], serde_json::json!([]));
+}
+
+#[test]
+fn bad_input_is_told() {
+    let log = std::fs::read_to_string(repository(LOG)).unwrap();
+    let description = std::fs::read_to_string(repository(DESCRIPTION)).unwrap();
+    let refused = |log: &str, description: &str| {
+        let folder = Folder::new();
+        folder.put("l.csv", log);
+        folder.put("l.toml", description);
+        folder.fail(&arguments("l.csv", "l.toml"))
+    };
+    let without_scale = description.replace("counts_per_g = \"from-stops\"\n", "");
+    let cases = [
+        (
+            refused(&log, &without_scale),
+            "`[accel]` in counts without `counts_per_g`",
+        ),
+        (
+            // A y axis that points the other way, in gyros and accelerometers.
+            refused(
+                &log,
+                &description.replace(
+                    "unit = \"counts\"",
+                    "unit = \"counts\"\naxes = [\"x\", \"-y\", \"z\"]",
+                ),
+            ),
+            "left-handed axes",
+        ),
+        (
+            refused(
+                &log,
+                &description.replace("gyro_x_counts\", \"gyro_y", "gyro_y_counts\", \"gyro_x"),
+            ),
+            "gyros x, y, z turn about y, x, z",
+        ),
+        (
+            refused(
+                &log,
+                &description.replace("counts_per_g = \"from-stops\"", "counts_per_g = 2000"),
+            ),
+            "a norm of specific force at rest of",
+        ),
+        (
+            refused(
+                &log,
+                &description.replace(
+                    "counts_per_rad_per_s = \"from-turns\"",
+                    "counts_per_rad_per_s = 83",
+                ),
+            ),
+            "gyros that read",
+        ),
+        (
+            // The first thousand rows and those after two thousand.
+            refused(
+                &log.lines()
+                    .enumerate()
+                    .filter(|(row, _)| !(1000..2000).contains(row))
+                    .map(|(_, line)| line.to_owned() + "\n")
+                    .collect::<String>(),
+                &description,
+            ),
+            "gap(s) in the time stamps",
+        ),
+        (
+            // The stop at the start alone.
+            refused(
+                &log.lines().take(4000).collect::<Vec<_>>().join("\n"),
+                &description,
+            ),
+            "1 static stops",
+        ),
+        (
+            refused(&log.replace("accel_z_counts", "accel_up"), &description),
+            "l.csv:1:1: found a header without it, expected a column `accel_z_counts`",
+        ),
+    ];
+    for (errors, message) in cases {
+        assert!(errors.contains(message), "{message}\nis not in\n{errors}");
+    }
+}
+
+#[test]
+fn stops_can_be_given_and_too_few_are_told() {
+    let folder = Folder::new();
+    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let errors = folder.fail(&[
+        "tumble",
+        &log,
+        "--log-description",
+        &description,
+        "--stop",
+        "1:50",
+        "--stop",
+        "56:63",
+    ]);
+    assert!(errors.contains("found 2 static stops"), "{errors}");
+    let output = folder.run(&[
+        "tumble",
+        &log,
+        "--log-description",
+        &description,
+        "--stop",
+        "5",
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+}

@@ -1,0 +1,124 @@
+//! Which power law a noise follows, and what that means for the degrees of freedom.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Fewer decimated points than these tell nothing of the noise.
+const FEWEST_POINTS: usize = 30;
+
+/// Noise of a rate by its power law, in the words of gyros; the exponent is that of the power
+/// spectral density of the rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NoiseType {
+    /// f²: quantisation, or any white error of the angle.
+    WhiteAngle,
+    /// f: flicker of the angle.
+    FlickerAngle,
+    /// f⁰: angle random walk.
+    WhiteRate,
+    /// f⁻¹: bias instability.
+    FlickerRate,
+    /// f⁻²: rate random walk. Ramps look like it.
+    RandomWalkRate,
+}
+
+impl NoiseType {
+    /// The noise in words.
+    #[must_use]
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::WhiteAngle => "white angle (quantisation)",
+            Self::FlickerAngle => "flicker of the angle",
+            Self::WhiteRate => "white rate (angle random walk)",
+            Self::FlickerRate => "flicker of the rate (bias instability)",
+            Self::RandomWalkRate => "rate random walk",
+        }
+    }
+
+    fn of_exponent(exponent: i32) -> Self {
+        match exponent {
+            ..=-2 => Self::RandomWalkRate,
+            -1 => Self::FlickerRate,
+            0 => Self::WhiteRate,
+            1 => Self::FlickerAngle,
+            2.. => Self::WhiteAngle,
+        }
+    }
+
+    /// Table 5 of NIST SP 1065, for `phase_points` values of the angle.
+    pub(crate) fn degrees_of_freedom(self, phase_points: usize, averaging: usize) -> f64 {
+        let (n, m) = (phase_points as f64, averaging as f64);
+        let edf = match self {
+            Self::WhiteAngle => (n + 1.0) * (n - 2.0 * m) / (2.0 * (n - m)),
+            Self::FlickerAngle => {
+                let product =
+                    ((n - 1.0) / (2.0 * m)).ln() * ((2.0 * m + 1.0) * (n - 1.0) / 4.0).ln();
+                product.max(0.0).sqrt().exp()
+            }
+            Self::WhiteRate => {
+                (1.5 * (n - 1.0) / m - 2.0 * (n - 2.0) / n) * (4.0 * m * m / (4.0 * m * m + 5.0))
+            }
+            // The table prints the numerator without its square, which would leave less than one
+            // degree of freedom whatever the length.
+            Self::FlickerRate if averaging == 1 => 2.0 * (n - 2.0).powi(2) / (2.3 * n - 4.9),
+            Self::FlickerRate => 1.25 * n * n / (m * (n + 3.0 * m)),
+            Self::RandomWalkRate => {
+                (n - 2.0) / (m * (n - 3.0).powi(2))
+                    * ((n - 1.0).powi(2) - 3.0 * m * (n - 1.0) + 4.0 * m * m)
+            }
+        };
+        // The approximations fall below one difference near the longest averaging times.
+        edf.max(1.0)
+    }
+}
+
+/// The lag 1 autocorrelation of the decimated angle tells the power law: W. J. Riley and
+/// C. A. Greenhall, "Power law noise identification using the lag 1 autocorrelation", 18th
+/// European Frequency and Time Forum, 2004. `None` if there are too few points.
+pub(crate) fn identify(phase: &[f64], averaging: usize) -> Option<NoiseType> {
+    const MOST_DIFFERENCES: i32 = 2;
+    let mut values: Vec<f64> = phase.iter().step_by(averaging).copied().collect();
+    if values.len() < FEWEST_POINTS {
+        return None;
+    }
+    remove_parabola(&mut values)?;
+    for differences in 0..=MOST_DIFFERENCES {
+        let lag1 = lag1_autocorrelation(&values);
+        let delta = lag1 / (1.0 + lag1);
+        if delta < 0.25 || differences == MOST_DIFFERENCES {
+            // Twice, rounded, and from the exponent of the angle to that of the rate.
+            let exponent = -(2.0 * delta).round() as i32 - 2 * differences + 2;
+            return Some(NoiseType::of_exponent(exponent));
+        }
+        values = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    }
+    None
+}
+
+fn lag1_autocorrelation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let products = values.windows(2).map(|w| (w[0] - mean) * (w[1] - mean));
+    let squares = values.iter().map(|value| (value - mean).powi(2));
+    products.sum::<f64>() / squares.sum::<f64>()
+}
+
+/// A mean rate and a ramp are no noise.
+fn remove_parabola(values: &mut [f64]) -> Option<()> {
+    let last = (values.len() - 1) as f64;
+    let powers = |index: usize| {
+        let u = 2.0 * index as f64 / last - 1.0;
+        Vector3::new(1.0, u, u * u)
+    };
+    let mut normal = Matrix3::zeros();
+    let mut right = Vector3::zeros();
+    for (index, value) in values.iter().enumerate() {
+        let row = powers(index);
+        normal += row * row.transpose();
+        right += row * *value;
+    }
+    let fit = normal.cholesky()?.solve(&right);
+    for (index, value) in values.iter_mut().enumerate() {
+        *value -= fit.dot(&powers(index));
+    }
+    Some(())
+}

@@ -1,0 +1,105 @@
+//! Means over stops, with standard errors that hold for coloured noise.
+
+use core::ops::Range;
+
+use crate::log::Log;
+
+/// The means of one stop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stop {
+    /// Which samples of the log.
+    pub samples: Range<usize>,
+    /// Middle of the stop.
+    pub time_s: f64,
+    /// Mean output of the gyros, in the unit of the log.
+    pub gyro: [f64; 3],
+    /// Standard errors of these means.
+    pub gyro_sigma: [f64; 3],
+    /// Mean output of the accelerometers, in the unit of the log.
+    pub accel: [f64; 3],
+    /// Standard errors of these means.
+    pub accel_sigma: [f64; 3],
+}
+
+/// Block lengths that are compared, in seconds.
+const BLOCKS_S: [f64; 3] = [0.25, 0.5, 1.0];
+
+/// Fewer differences than these tell nothing of the variance of blocks.
+const FEWEST_BLOCKS: f64 = 30.0;
+
+/// Averages each stop.
+///
+/// The standard error of a mean is that of white noise, from the scatter within the stop (which
+/// depends on the attitude where something vibrates), times an inflation for coloured noise,
+/// pooled over all stops: the largest ratio that the variance of block means, times the length
+/// of the blocks, has to the variance of samples, over blocks of a quarter of a second to one
+/// second. Noise slower than that shows in the residuals of the fit.
+#[must_use]
+pub fn average(log: &Log, stops: &[Range<usize>]) -> Vec<Stop> {
+    let gyro_inflation = inflation(&log.gyro, log.interval_s, stops);
+    let accel_inflation = inflation(&log.accel, log.interval_s, stops);
+    stops
+        .iter()
+        .map(|samples| {
+            let times = &log.time_s[samples.clone()];
+            let (gyro, gyro_sigma) = moments(&log.gyro[samples.clone()], gyro_inflation);
+            let (accel, accel_sigma) = moments(&log.accel[samples.clone()], accel_inflation);
+            Stop {
+                samples: samples.clone(),
+                time_s: 0.5 * (times[0] + times[times.len() - 1]),
+                gyro,
+                gyro_sigma,
+                accel,
+                accel_sigma,
+            }
+        })
+        .collect()
+}
+
+fn moments(samples: &[[f64; 3]], inflation: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let mean: [f64; 3] = core::array::from_fn(|axis| mean(samples, axis));
+    let sigma = core::array::from_fn(|axis| {
+        let variance = variance(samples, axis);
+        (variance * inflation[axis] / samples.len() as f64).sqrt()
+    });
+    (mean, sigma)
+}
+
+/// How many times larger the variance of a mean is than white noise would make it.
+fn inflation(samples: &[[f64; 3]], interval_s: f64, stops: &[Range<usize>]) -> [f64; 3] {
+    core::array::from_fn(|axis| {
+        let mut largest = 1.0_f64;
+        for block_s in BLOCKS_S {
+            let block = (block_s / interval_s).round() as usize;
+            let (mut between, mut within, mut freedom) = (0.0, 0.0, 0.0);
+            for stop in stops
+                .iter()
+                .filter(|stop| block > 1 && stop.len() >= 2 * block)
+            {
+                let stop = &samples[stop.clone()];
+                let means: Vec<[f64; 3]> = stop
+                    .chunks_exact(block)
+                    .map(|chunk| core::array::from_fn(|axis| mean(chunk, axis)))
+                    .collect();
+                let weight = (means.len() - 1) as f64;
+                between += weight * variance(&means, axis) * block as f64;
+                within += weight * variance(stop, axis);
+                freedom += weight;
+            }
+            if freedom >= FEWEST_BLOCKS && within > 0.0 {
+                largest = largest.max(between / within);
+            }
+        }
+        largest
+    })
+}
+
+fn mean(samples: &[[f64; 3]], axis: usize) -> f64 {
+    samples.iter().map(|sample| sample[axis]).sum::<f64>() / samples.len() as f64
+}
+
+fn variance(samples: &[[f64; 3]], axis: usize) -> f64 {
+    let mean = mean(samples, axis);
+    let squares = samples.iter().map(|sample| (sample[axis] - mean).powi(2));
+    squares.sum::<f64>() / (samples.len() - 1) as f64
+}

@@ -1,0 +1,103 @@
+//! What an extended law is worth at stops that were not used.
+
+use nalgebra::DVector;
+use serde::Serialize;
+
+use super::Positions;
+use super::basis::Term;
+use super::regression::{Fit, Whitened};
+use super::search::{SearchSettings, search, terms_of};
+
+/// Gain of the extended over the nominal law at stops that were not used.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Gain {
+    /// Stops in a row that were left out together.
+    pub left_out: usize,
+    /// Number of such blocks.
+    pub blocks: usize,
+    /// Sum over all stops and gyros of the log density of the extended law less that of the
+    /// nominal one.
+    pub cross_validated_log_score_nats: f64,
+    /// Its standard error, from the scatter between blocks.
+    pub standard_error_nats: f64,
+    /// Prediction errors rms for each gyro by the nominal law \[deg/h\].
+    pub rms_before_deg_per_h: [f64; 3],
+    /// The same by the extended law.
+    pub rms_after_deg_per_h: [f64; 3],
+    /// Standard errors of the stops, rms.
+    pub noise_deg_per_h: [f64; 3],
+    /// In how many blocks each term was found without them.
+    pub found_in_blocks: Vec<(String, usize)>,
+}
+
+/// Leaves out one block of stops after the other, searches and fits without it, and predicts it.
+/// `None` if the stops are too few for that.
+#[must_use]
+pub fn gain(positions: &Positions, left_out: usize, settings: &SearchSettings) -> Option<Gain> {
+    let stops = positions.time_s.len();
+    let all: Vec<usize> = (0..stops).collect();
+    let mut scores = Vec::new();
+    let mut squares = [[0.0; 2]; 3];
+    let mut found = std::collections::BTreeMap::new();
+    for block in all.chunks(left_out) {
+        let rest: Vec<usize> = all
+            .iter()
+            .copied()
+            .filter(|stop| !block.contains(stop))
+            .collect();
+        let steps = search(positions, &rest, settings);
+        for step in &steps {
+            *found.entry(step.term.id(step.gyro)).or_insert(0) += 1;
+        }
+        let mut score = 0.0;
+        for (gyro, squares) in squares.iter_mut().enumerate() {
+            let laws = [Term::NOMINAL.to_vec(), terms_of(&steps, gyro)];
+            for (which, law) in laws.iter().enumerate() {
+                let used = Whitened::of(positions, gyro, &rest).with_excess_of(law);
+                let unused = Whitened::of(positions, gyro, block).like(&used);
+                let fit = used.fit(law)?;
+                let sign = if which == 0 { -1.0 } else { 1.0 };
+                score += sign * predict(&fit, law, &unused, &mut squares[which]);
+            }
+        }
+        scores.push(score);
+    }
+    let blocks = scores.len() as f64;
+    let total: f64 = scores.iter().sum();
+    let scatter = scores
+        .iter()
+        .map(|score| (score - total / blocks).powi(2))
+        .sum::<f64>();
+    let rms = |which: usize| squares.map(|squares| (squares[which] / stops as f64).sqrt());
+    let noise = |gyro: usize| {
+        let variances = positions
+            .sigma_deg_per_h
+            .iter()
+            .map(|sigma| sigma[gyro].powi(2));
+        (variances.sum::<f64>() / stops as f64).sqrt()
+    };
+    Some(Gain {
+        left_out,
+        blocks: scores.len(),
+        cross_validated_log_score_nats: total,
+        standard_error_nats: (scatter * blocks / (blocks - 1.0)).sqrt(),
+        rms_before_deg_per_h: rms(0),
+        rms_after_deg_per_h: rms(1),
+        noise_deg_per_h: [noise(0), noise(1), noise(2)],
+        found_in_blocks: found.into_iter().collect(),
+    })
+}
+
+/// Log density of the stops that were not used; adds squares of the errors in deg/h.
+fn predict(fit: &Fit, law: &[Term], unused: &Whitened, squares: &mut f64) -> f64 {
+    let columns = unused.columns(law);
+    (0..unused.len())
+        .map(|stop| {
+            let row: DVector<f64> = columns.row(stop).transpose();
+            let prediction = fit.predict(&row, unused.rates[stop]);
+            *squares += (prediction.error * unused.sigma[stop]).powi(2);
+            // From the density of the whitened rate to that of the rate.
+            prediction.log_score - unused.sigma[stop].ln()
+        })
+        .sum()
+}

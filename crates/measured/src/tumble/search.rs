@@ -1,0 +1,178 @@
+//! Forward search through the catalogue, with the search itself accounted for.
+
+use nalgebra::{DMatrix, DVector};
+use rand_chacha::ChaCha12Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::Positions;
+use super::basis::Term;
+use super::regression::Whitened;
+
+/// How findings are tested.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchSettings {
+    /// Probability that a search through data without effects finds something.
+    pub false_alarm_probability: f64,
+    /// Permutations that the probability is counted over.
+    pub permutations: usize,
+    /// Seed of the permutations.
+    pub seed: u64,
+}
+
+impl Default for SearchSettings {
+    fn default() -> Self {
+        Self {
+            false_alarm_probability: 0.01,
+            permutations: 999,
+            seed: 1,
+        }
+    }
+}
+
+/// One step of a search that found something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// The gyro.
+    pub gyro: usize,
+    /// The term that was added.
+    pub term: Term,
+    /// F statistic of the term at this step.
+    pub f: f64,
+    /// Probability that the largest F of the whole search is as large by chance.
+    pub p_value: f64,
+}
+
+/// The law of one gyro as the search has it so far.
+struct Law {
+    data: Whitened,
+    terms: Vec<Term>,
+    /// Orthonormal columns that span the terms.
+    span: DMatrix<f64>,
+    /// What the terms leave of the rates.
+    residuals: DVector<f64>,
+    /// Directions of the other terms, without what the law has already.
+    candidates: Vec<(Term, DVector<f64>)>,
+}
+
+/// A term of which less than this share is outside the law cannot be told from it.
+const SMALLEST_SHARE: f64 = 0.03;
+
+impl Law {
+    fn new(data: &Whitened, terms: Vec<Term>) -> Self {
+        let data = data.with_excess_of(&terms);
+        let span = data.columns(&terms).qr().q();
+        let outside = |column: DVector<f64>| &column - &span * (span.transpose() * &column);
+        let residuals = outside(data.rates.clone());
+        let candidates = Term::catalogue(data.gyro)
+            .into_iter()
+            .filter(|term| !terms.contains(term))
+            .filter_map(|term| {
+                let column = data.column(term);
+                let length = column.norm();
+                let rest = outside(column);
+                let share = rest.norm() / length;
+                (share > SMALLEST_SHARE).then(|| (term, rest.normalize()))
+            })
+            .collect();
+        Self {
+            terms,
+            residuals,
+            candidates,
+            span,
+            data,
+        }
+    }
+
+    /// The term with the largest F against these residuals of the law.
+    fn best(&self, residuals: &DVector<f64>) -> Option<(Term, f64)> {
+        let freedom = self.data.len() as f64 - self.terms.len() as f64 - 1.0;
+        if freedom < 1.0 {
+            return None;
+        }
+        let total = residuals.norm_squared();
+        self.candidates
+            .iter()
+            .map(|(term, direction)| {
+                let explained = direction.dot(residuals).powi(2);
+                (*term, explained * freedom / (total - explained))
+            })
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The law's residuals in another order, as a fit of the law would leave them.
+    fn permuted(&self, order: &[usize]) -> DVector<f64> {
+        let moved = DVector::from_iterator(order.len(), order.iter().map(|i| self.residuals[*i]));
+        &moved - &self.span * (self.span.transpose() * &moved)
+    }
+}
+
+/// Adds terms to the nominal law of the gyros while the best of all is better than chance.
+///
+/// The statistic of a step is the largest F over all gyros and terms; its distribution by chance
+/// is that of the same maximum after the residuals of the present law were permuted among the
+/// stops, the same for all gyros (Freedman and Lane 1983), so it includes the search. `which`
+/// are the stops that are used. Their weights are those that the present law leaves: with the
+/// standard errors alone a long stop would stand out by its weight where the law is wrong.
+#[must_use]
+pub fn search(positions: &Positions, which: &[usize], settings: &SearchSettings) -> Vec<Step> {
+    let mut generator = ChaCha12Rng::seed_from_u64(settings.seed);
+    let mut laws: Vec<Law> = (0..3)
+        .map(|gyro| {
+            Law::new(
+                &Whitened::of(positions, gyro, which),
+                Term::NOMINAL.to_vec(),
+            )
+        })
+        .collect();
+    let mut steps = Vec::new();
+    loop {
+        let best = laws
+            .iter()
+            .filter_map(|law| Some((law.data.gyro, law.best(&law.residuals)?)))
+            .max_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let Some((gyro, (term, f))) = best else {
+            return steps;
+        };
+        let mut order: Vec<usize> = (0..which.len()).collect();
+        let mut as_large = 0;
+        for _ in 0..settings.permutations {
+            shuffle(&mut order, &mut generator);
+            let largest = laws
+                .iter()
+                .filter_map(|law| law.best(&law.permuted(&order)))
+                .fold(0.0, |largest: f64, (_, f)| largest.max(f));
+            as_large += usize::from(largest >= f);
+        }
+        let p_value = (1 + as_large) as f64 / (1 + settings.permutations) as f64;
+        if p_value > settings.false_alarm_probability {
+            return steps;
+        }
+        steps.push(Step {
+            gyro,
+            term,
+            f,
+            p_value,
+        });
+        let mut terms = laws[gyro].terms.clone();
+        terms.push(term);
+        laws[gyro] = Law::new(&laws[gyro].data, terms);
+    }
+}
+
+/// The terms of one gyro after a search.
+pub(crate) fn terms_of(steps: &[Step], gyro: usize) -> Vec<Term> {
+    let found = steps.iter().filter(|step| step.gyro == gyro);
+    Term::NOMINAL
+        .into_iter()
+        .chain(found.map(|step| step.term))
+        .collect()
+}
+
+/// Fisher's and Yates' shuffle.
+pub(crate) fn shuffle(order: &mut [usize], generator: &mut ChaCha12Rng) {
+    for last in (1..order.len()).rev() {
+        // The bias of the remainder is below 1e-17 for as few as there are stops.
+        let other = (generator.next_u64() % (last as u64 + 1)) as usize;
+        order.swap(last, other);
+    }
+}

@@ -1,0 +1,108 @@
+//! Allan deviations against those of another library, and against noise of known density.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
+
+use gyrocal_measured::Unfit;
+use gyrocal_measured::allan::{NoiseType, allan_deviation, octaves};
+
+/// Made by tests/data/allan_reference.py.
+const REFERENCE: &str = include_str!("data/allan_reference.csv");
+
+const ONE_SIGMA: f64 = 0.682_689_492_137_085_9;
+
+/// The 1000 numbers of NIST SP 1065, section 12.4.
+fn nist_series() -> Vec<f64> {
+    const MODULUS: u64 = 2_147_483_647;
+    let numbers = std::iter::successors(Some(1_234_567_890_u64), |n| Some(16_807 * n % MODULUS));
+    numbers
+        .take(1000)
+        .map(|n| n as f64 / MODULUS as f64)
+        .collect()
+}
+
+fn series(name: &str) -> Vec<f64> {
+    let white = nist_series();
+    match name {
+        "white" => white,
+        "difference" => white.windows(2).map(|pair| pair[1] - pair[0]).collect(),
+        _ => white
+            .iter()
+            .scan(0.0, |sum, value| {
+                *sum += value - 0.5;
+                Some(*sum)
+            })
+            .collect(),
+    }
+}
+
+#[test]
+fn every_value_of_the_other_library_is_found() {
+    let mut rows = 0;
+    for line in REFERENCE.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let number = |field: usize| fields[field].parse::<f64>().unwrap();
+        let averaging = number(1) as usize;
+        let point = allan_deviation(&series(fields[0]), 1.0, &[averaging], ONE_SIGMA).unwrap()[0];
+        let exponent = match point.noise {
+            NoiseType::WhiteAngle => 2,
+            NoiseType::FlickerAngle => 1,
+            NoiseType::WhiteRate => 0,
+            NoiseType::FlickerRate => -1,
+            NoiseType::RandomWalkRate => -2,
+            _ => unreachable!(),
+        };
+        assert_eq!(exponent, number(3) as i32, "{line}");
+        // A thousand sums of numbers of order one.
+        assert!((point.deviation / number(2) - 1.0).abs() < 1e-11, "{line}");
+        assert!(
+            (point.degrees_of_freedom / number(4) - 1.0).abs() < 1e-12,
+            "{line}"
+        );
+        // The quantiles of both libraries are iterated to about nine digits.
+        assert!((point.interval[0] / number(5) - 1.0).abs() < 1e-7, "{line}");
+        assert!((point.interval[1] / number(6) - 1.0).abs() < 1e-7, "{line}");
+        rows += 1;
+    }
+    assert_eq!(rows, 18);
+}
+
+#[test]
+fn the_printed_table_of_the_handbook_is_found() {
+    // NIST SP 1065, table 31: overlapping Allan deviation, printed to seven digits.
+    let points = allan_deviation(&nist_series(), 1.0, &[1, 10, 100], ONE_SIGMA).unwrap();
+    for (point, printed) in points
+        .iter()
+        .zip([2.922_319e-1, 9.159_953e-2, 3.241_343e-2])
+    {
+        assert!((point.deviation / printed - 1.0).abs() < 2e-7);
+    }
+}
+
+#[test]
+fn the_unit_of_time_is_that_of_the_interval() {
+    // White noise: the deviation at one averaging time in samples does not depend on the interval.
+    let slow = allan_deviation(&nist_series(), 60.0, &[4], ONE_SIGMA).unwrap()[0];
+    let fast = allan_deviation(&nist_series(), 0.01, &[4], ONE_SIGMA).unwrap()[0];
+    assert!((slow.deviation / fast.deviation - 1.0).abs() < 1e-12);
+    assert_eq!((slow.tau_s, fast.tau_s), (240.0, 0.04));
+}
+
+#[test]
+fn octaves_end_at_a_third() {
+    assert_eq!(octaves(100), [1, 2, 4, 8, 16, 32]);
+    assert!(octaves(2).is_empty());
+}
+
+#[test]
+fn what_cannot_be_computed_is_refused() {
+    let rate = nist_series();
+    let kind = |rate: &[f64], interval_s: f64, averaging: &[usize], confidence: f64| {
+        let outcome = allan_deviation(rate, interval_s, averaging, confidence);
+        outcome.unwrap_err().kind().unwrap()
+    };
+    assert_eq!(kind(&rate, 1.0, &[334], 0.9), Unfit::TooShort);
+    assert_eq!(kind(&rate, 0.0, &[1], 0.9), Unfit::Setting);
+    assert_eq!(kind(&rate, 1.0, &[0], 0.9), Unfit::Setting);
+    assert_eq!(kind(&rate, 1.0, &[1], 1.0), Unfit::Setting);
+    assert_eq!(kind(&[0.0, f64::NAN, 1.0], 1.0, &[1], 0.9), Unfit::Gap);
+}
