@@ -80,12 +80,9 @@ impl State {
     /// If there are fewer than nine.
     #[must_use]
     pub fn parameters(&self, count: usize) -> Vec<f64> {
-        let of_effects = count.checked_sub(9).expect("nine drift coefficients");
+        assert!(count >= 9, "{count} parameters, of which nine are drift");
         let effects = self.free.iter().cycle().map(|free| 0.5 * free);
-        self.drift
-            .into_iter()
-            .chain(effects.take(of_effects))
-            .collect()
+        self.drift.into_iter().chain(effects).take(count).collect()
     }
 
     /// Shapes of an extended model by their names: onsets in s near the step, most of them
