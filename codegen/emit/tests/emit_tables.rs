@@ -20,7 +20,7 @@ const FIELDS: &str = r#"{"name":"id","doc":"its name"},{"name":"mass","doc":"of 
     {"name":"has_air","doc":""},{"name":"moons","doc":"by name"}"#;
 
 #[test]
-fn a_table_becomes_a_struct_and_a_constant_array() {
+fn a_table_becomes_a_struct_and_a_static_array() {
     let rows = r#"["earth",1.0,true,["moon"]],["mars",0.107,true,["phobos","deimos"]],
         ["mercury",-0.5,false,[]]"#;
     let program = Program::from_json(&program("Planet", FIELDS, rows), "test.json").unwrap();
@@ -31,7 +31,7 @@ fn a_table_becomes_a_struct_and_a_constant_array() {
         "pub mass: f64,",
         "pub has_air: bool,",
         "pub moons: &'static [&'static str],",
-        "/// Planets with \"seas\".\npub const PLANETS: [Planet; 3] = [",
+        "/// Planets with \"seas\".\npub static PLANETS: [Planet; 3] = [",
         "id: \"mars\",\n        mass: 1.07e-1,\n        has_air: true,\n        \
          moons: &[\"phobos\", \"deimos\"],",
         "mass: -5e-1,",
