@@ -72,7 +72,7 @@ EFFECTS = [
             f"anisoelasticity of gyro {i}: product of specific forces along {pair[0]} and "
             f"{pair[1]} (D_IO, D_IS, D_OS, D_OO or D_SS)",
             _size("deg/h/g^2"), 0.02, GYRO_STANDARD,
-            lambda p, at, i=i, pair=pair: {i: p["size"] * at.a[pair[0]] * at.a[pair[1]]},
+            lambda p, at, i=i, pair=pair: {i: p["size"] * (at.a[pair[0]] * at.a[pair[1]])},
             equivalents=_product_twin(i, pair),
         )
         for i in AXES for pair in _products(i)
@@ -91,7 +91,7 @@ EFFECTS = [
         Effect(
             f"gyro_{i}.ramp", "drift", f"linear ageing of gyro {i}: drift rate ramp (R)",
             _size("deg/h/day"), 0.005, NOISE_STANDARD,
-            lambda p, at, i=i: {i: p["size"] * at.time_s / DAY_S},
+            lambda p, at, i=i: {i: p["size"] * (at.time_s / DAY_S)},
         )
         for i in AXES
     ],
@@ -218,7 +218,7 @@ EFFECTS = [
         Effect(
             f"accel_{i}.ramp", "output", f"linear ageing of the bias of accelerometer {i}",
             _size("g/day"), 1e-6, ACCELEROMETER_STANDARD,
-            lambda p, at, i=i: {i: p["size"] * at.time_s / DAY_S},
+            lambda p, at, i=i: {i: p["size"] * (at.time_s / DAY_S)},
             near_twins=(f"accel_{i}.temperature",),
         )
         for i in AXES

@@ -38,7 +38,7 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
             [theta, parameters, *needed(rates)], value,
             [(theta, "1/s"), (parameters, "rad/s per unit of the parameter"),
              (drift_noise, "rad/s per deg/h")],
-            AWAY_FROM_GIMBAL_LOCK,
+            AWAY_FROM_GIMBAL_LOCK, together=(parameters, drift_noise),
         ),
         *with_jacobian(
             "accelerometers", "What the accelerometers read.",

@@ -1,6 +1,8 @@
 """Functions of a model in the forms that a filter needs: a value, the same with its Jacobians,
 and both at zero angles."""
 
+from dataclasses import replace
+
 import casadi as ca
 
 from casadi_program import Function, Output, jacobian_output
@@ -43,10 +45,12 @@ def at_origin(name: str, doc: str, function: Function) -> Function:
 
 
 def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
-                  domain: str) -> list[Function]:
+                  domain: str, together: tuple = ()) -> list[Function]:
     """Two functions: the value alone, and the value with its Jacobians (shared terms once).
 
-    `by` lists (group, unit of the Jacobian).
+    `by` lists (group, unit of the Jacobian). By the groups in `together` the value is
+    differentiated in one pass, so that equal columns, such as those of biases and noise, are the
+    same expressions; they are in the order of `by`.
     """
     jacobians = [
         jacobian_output(
@@ -55,6 +59,13 @@ def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
         )
         for group, unit in by
     ]
+    whole = ca.jacobian(value.expression, ca.vertcat(*[group.sx for group in together]))
+    end = 0
+    for place, (group, _) in enumerate(by):
+        if group in together:
+            start, end = end, end + len(group.elements)
+            columns = ca.sparsify(whole[:, start:end])
+            jacobians[place] = replace(jacobians[place], expression=columns)
     return [
         Function(name, doc, source, inputs, [without_noise(value)], domain),
         Function(

@@ -10,10 +10,10 @@ use gyrocal_oracle::points::{Purpose, states};
 
 use crate::STATES;
 
-type Vector = [f64; 3];
-type Matrix = [Vector; 3];
+pub(crate) type Vector = [f64; 3];
+pub(crate) type Matrix = [Vector; 3];
 
-const RAD_PER_S_IN_DEG_PER_H: f64 = 180.0 * 3600.0 / PI;
+pub(crate) const RAD_PER_S_IN_DEG_PER_H: f64 = 180.0 * 3600.0 / PI;
 
 fn times(a: &Matrix, b: &Matrix) -> Matrix {
     core::array::from_fn(|i| {
@@ -21,12 +21,12 @@ fn times(a: &Matrix, b: &Matrix) -> Matrix {
     })
 }
 
-fn apply(a: &Matrix, v: &Vector) -> Vector {
+pub(crate) fn apply(a: &Matrix, v: &Vector) -> Vector {
     a.map(|row| (0..3).map(|j| row[j] * v[j]).sum())
 }
 
 /// Equation (4): Rz Ry Rx of passive elementary rotations.
-fn platform_c_chart(&[x, y, z]: &Vector) -> Matrix {
+pub(crate) fn platform_c_chart(&[x, y, z]: &Vector) -> Matrix {
     let rx = [
         [1.0, 0.0, 0.0],
         [0.0, x.cos(), x.sin()],
@@ -46,7 +46,7 @@ fn platform_c_chart(&[x, y, z]: &Vector) -> Matrix {
 }
 
 /// Equation (6).
-fn rate_matrix(&[_, y, z]: &Vector) -> Matrix {
+pub(crate) fn rate_matrix(&[_, y, z]: &Vector) -> Matrix {
     [
         [y.cos() * z.cos(), z.sin(), 0.0],
         [-y.cos() * z.sin(), z.cos(), 0.0],

@@ -15,12 +15,14 @@ mod casadi;
 mod derivatives;
 mod differences;
 mod dual_numbers;
+mod effects;
 mod equations;
 mod functions;
 mod hand_written;
 mod interpreted;
 mod layout;
 mod model;
+mod model_extended;
 mod mutation;
 mod scalar_types;
 

@@ -170,7 +170,7 @@ class Function:
 
 
 class Table:
-    """Facts for the Rust that uses a program: a constant array of records.
+    """Facts for the Rust that uses a program: an array of records.
 
     `name` is that of the array, `row` that of its type; `fields` gives the meaning of each
     field by its name; `rows` hold a value for every field: strings, numbers, booleans or lists

@@ -97,11 +97,12 @@ impl Case {
             let mut all_found = BTreeMap::new();
             for function in &self.program.functions {
                 let found = next();
-                compare(
-                    function,
-                    &found,
-                    &self.reference.functions[&function.name][point],
-                );
+                // Where several programs share a file, functions bear the name of theirs.
+                let qualified = format!("{}::{}", self.program.name, function.name);
+                let functions = &self.reference.functions;
+                let rows = functions.get(&qualified);
+                let rows = rows.unwrap_or_else(|| &functions[&function.name]);
+                compare(function, &found, &rows[point]);
                 all_found.insert(function.name.clone(), found);
             }
             assert_eq!(

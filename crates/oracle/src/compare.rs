@@ -104,7 +104,8 @@ impl<'a> Comparison<'a> {
     /// Compares dense matrices, row by row, at one point.
     ///
     /// `rounding` bounds, element by element, how far apart the two may be by rounding alone.
-    /// A column of zeros must be met exactly; what is not a number agrees with nothing.
+    /// A column of zeros must be met exactly where the bound is zero; what is not a number agrees
+    /// with nothing.
     ///
     /// # Panics
     /// If a matrix has not the shape of the output.
@@ -125,6 +126,11 @@ impl<'a> Comparison<'a> {
                 .fold(0.0, f64::max);
             for place in places() {
                 let difference = (value[place] - expected[place]).abs();
+                if scale == 0.0 && difference > 0.0 && difference <= rounding[place] {
+                    self.summary.elements += 1;
+                    self.summary.ill_conditioned += 1;
+                    continue;
+                }
                 let relative = if difference == 0.0 {
                     0.0
                 } else {

@@ -80,16 +80,13 @@ impl State {
     /// If there are fewer than nine.
     #[must_use]
     pub fn parameters(&self, count: usize) -> Vec<f64> {
-        let of_effects = count.checked_sub(9).expect("nine drift coefficients");
+        assert!(count >= 9, "{count} parameters, of which nine are drift");
         let effects = self.free.iter().cycle().map(|free| 0.5 * free);
-        self.drift
-            .into_iter()
-            .chain(effects.take(of_effects))
-            .collect()
+        self.drift.into_iter().chain(effects).take(count).collect()
     }
 
     /// Shapes of an extended model by their names: onsets in s near the step, most of them
-    /// within it, and time constants in h, to 36.
+    /// within it, and time constants in h, from 12 to 36.
     ///
     /// # Panics
     /// If a name ends otherwise than those of shapes do.
@@ -104,7 +101,7 @@ impl State {
                 if name.ends_with("_onset_s") {
                     time_s + 0.7 * free * interval_s
                 } else if name.ends_with("_time_constant_h") {
-                    18.2 + 17.8 * free
+                    24.0 + 12.0 * free
                 } else {
                     panic!("no range for the shape `{name}`")
                 }

@@ -1,7 +1,7 @@
-//! `f32` and `f64` as [`Scalar`]: `libm` for everything but sine and cosine, so that bits
+//! `f32` and `f64` as [`Scalar`]: `libm` for everything but sine, cosine and exponential, so that bits
 //! are the same on every machine, with and without the standard library.
 
-use crate::{Real, Scalar, sin_cos_f32, sin_cos_f64};
+use crate::{Real, Scalar, exp_f32, exp_f64, sin_cos_f32, sin_cos_f64};
 
 macro_rules! impl_float {
     ($float:ident, $sin_cos:path, $($method:ident => $function:path),* ; $atan2:path, $pow:path) => {
@@ -91,10 +91,10 @@ macro_rules! impl_float {
 impl_float!(f64, sin_cos_f64,
     tan => libm::tan, asin => libm::asin, acos => libm::acos, atan => libm::atan,
     sinh => libm::sinh, cosh => libm::cosh, tanh => libm::tanh,
-    exp => libm::exp, ln => libm::log, sqrt => libm::sqrt;
+    exp => exp_f64, ln => libm::log, sqrt => libm::sqrt;
     libm::atan2, libm::pow);
 impl_float!(f32, sin_cos_f32,
     tan => libm::tanf, asin => libm::asinf, acos => libm::acosf, atan => libm::atanf,
     sinh => libm::sinhf, cosh => libm::coshf, tanh => libm::tanhf,
-    exp => libm::expf, ln => libm::logf, sqrt => libm::sqrtf;
+    exp => exp_f32, ln => libm::logf, sqrt => libm::sqrtf;
     libm::atan2f, libm::powf);

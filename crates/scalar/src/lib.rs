@@ -4,20 +4,23 @@
 //! several filters side by side ([`Lanes`]) and dual numbers. A generated model implements
 //! [`Model`], which is all that the filters of `gyrocal-estimation` know of it.
 //!
-//! Nothing here allocates or needs the standard library. Sine and cosine are computed by
-//! this crate ([`sin_cos_f64`]), so their bits do not depend on the machine.
+//! Nothing here allocates or needs the standard library. Sine, cosine and exponential are
+//! computed by this crate ([`sin_cos_f64`], [`exp_f64`]), so their bits do not depend on the
+//! machine.
 
 #![no_std]
 
 #[cfg(feature = "std")]
 extern crate std;
 
+mod exponential;
 mod float;
 mod lanes;
 mod model;
 mod scalar;
 mod trigonometry;
 
+pub use exponential::{exp_f32, exp_f64};
 pub use lanes::Lanes;
 pub use model::{Element, Model, RatesJacobian, Recentre};
 pub use scalar::{Real, Scalar};

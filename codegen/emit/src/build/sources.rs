@@ -33,6 +33,7 @@ const EMITTER: &[(&str, &str)] = embedded![
     "src/emit/noise.rs",
     "src/emit/output.rs",
     "src/emit/plan.rs",
+    "src/emit/table.rs",
     "src/error.rs",
     "src/ir.rs",
     "src/ir/evaluate.rs",
@@ -44,6 +45,7 @@ const EMITTER: &[(&str, &str)] = embedded![
     "src/program/names.rs",
     "src/program/operation.rs",
     "src/program/schema.rs",
+    "src/program/table.rs",
     "src/simplify.rs",
     "src/simplify/rules.rs",
 ];

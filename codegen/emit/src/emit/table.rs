@@ -1,4 +1,4 @@
-//! A table: the type of its records, and the records as a constant array.
+//! A table: the type of its records, and the records as a static array.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -39,7 +39,7 @@ pub(super) fn emit(table: &Table, items: &mut Items<'_>) -> Result<Vec<TokenStre
         },
         quote! {
             #doc
-            pub const #name: [#row; #count] = [#(#rows),*];
+            pub static #name: [#row; #count] = [#(#rows),*];
         },
     ])
 }

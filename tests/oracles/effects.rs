@@ -1,0 +1,258 @@
+//! Every effect of the catalogue against its equation, written out, and the table of effects.
+//!
+//! A new entry of the catalogue is told here too; until then the first test names it.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
+use gyrocal::generated::{catalogue, platform};
+use gyrocal_oracle::points::{Purpose, State, states};
+use gyrocal_scalar::Element;
+
+use crate::equations::{RAD_PER_S_IN_DEG_PER_H, Vector, apply, platform_c_chart, rate_matrix};
+
+const STATES: usize = 1000;
+const AXES: [&str; 3] = ["x", "y", "z"];
+const PARAMETERS: usize = catalogue::PARAMETERS.len();
+
+/// Values by their public ids, and which of them were asked for.
+struct Named<'a> {
+    elements: &'a [Element],
+    values: &'a [f64],
+    asked: RefCell<BTreeSet<String>>,
+}
+
+impl<'a> Named<'a> {
+    fn new(elements: &'a [Element], values: &'a [f64]) -> Self {
+        Self {
+            elements,
+            values,
+            asked: RefCell::default(),
+        }
+    }
+
+    fn get(&self, id: &str) -> f64 {
+        self.asked.borrow_mut().insert(id.to_owned());
+        let place = self.elements.iter().position(|element| element.id == id);
+        self.values[place.unwrap_or_else(|| panic!("there is no `{id}`"))]
+    }
+
+    /// Ids that nothing asked for.
+    fn forgotten(&self) -> Vec<&str> {
+        let asked = self.asked.borrow();
+        let ids = self.elements.iter().map(|element| element.id);
+        ids.filter(|id| !asked.contains(*id)).collect()
+    }
+}
+
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// What the equations say: inertial rate minus Earth rate in platform axes, deg/h, and what
+/// the accelerometers read.
+fn by_hand(state: &State, p: &Named<'_>, shapes: &Named<'_>) -> [Vector; 2] {
+    let [time_s, interval_s, temperature_k] = state.conditions;
+    let (sine, cosine) = p.get("site.latitude").to_radians().sin_cos();
+    let turned = cross(&state.east_0, &state.omega_0);
+    let earth_rate: Vector = core::array::from_fn(|i| {
+        (1.0 + p.get("site.earth_rate")) * (cosine * state.omega_0[i] + sine * turned[i])
+    });
+    let c = platform_c_chart(&state.theta);
+    let gravity = 1.0 + p.get("site.gravity");
+    let a = apply(&c, &state.f_0.map(|component| gravity * component));
+    let field = apply(&c, &state.field_0);
+    let days = time_s / 86_400.0;
+    let drift: Vector = core::array::from_fn(|i| {
+        let of = |name: &str| p.get(&format!("gyro_{}.{name}", AXES[i]));
+        let shape = |name: &str| shapes.get(&format!("gyro_{}.{name}", AXES[i]));
+        let mut drift = of("bias") + of("ramp") * days + of("temperature") * temperature_k;
+        for j in 0..3 {
+            drift += of(&format!("g_{}", AXES[j])) * a[j];
+            for k in j..3 {
+                drift += of(&format!("g_{}{}", AXES[j], AXES[k])) * a[j] * a[k];
+            }
+        }
+        drift += of(&format!("g_{0}{0}{0}", AXES[i])) * a[i].powi(3);
+        // The mean over the step of what is there from the onset on.
+        let end_s = time_s + 0.5 * interval_s;
+        let after_s = (end_s - shape("step.onset_s")).max(0.0).min(interval_s);
+        drift += of("step") * after_s / interval_s;
+        drift += of("warmup") / (time_s / 3600.0 / shape("warmup.time_constant_h")).exp();
+        let phase = core::f64::consts::TAU * days;
+        drift += of("diurnal.sine") * phase.sin() + of("diurnal.cosine") * phase.cos();
+        drift + of("magnetic") * field[i]
+    });
+    let sidereal = apply(&c, &earth_rate);
+    let rates = core::array::from_fn(|i| {
+        let others = (0..3)
+            .filter(|&j| j != i)
+            .map(|j| p.get(&format!("gyro_{}{}.axis_misalignment", AXES[i], AXES[j])) * drift[j]);
+        let inertial = drift[i] - others.sum::<f64>();
+        (1.0 + p.get("clock.rate")) * (inertial - RAD_PER_S_IN_DEG_PER_H * sidereal[i])
+    });
+    let reading = core::array::from_fn(|i| {
+        let of = |name: &str| p.get(&format!("accel_{}.{name}", AXES[i]));
+        let others = (0..3).filter(|&j| j != i).map(|j| {
+            let pair = [AXES[i.min(j)], AXES[i.max(j)]].concat();
+            p.get(&format!("accel_{pair}.nonorthogonality")) * a[j]
+        });
+        a[i] + of("bias")
+            + of("scale") * a[i]
+            + of("quadratic") * a[i] * a[i]
+            + of("temperature") * temperature_k
+            + of("ramp") * days
+            + others.sum::<f64>()
+    });
+    [rates, reading]
+}
+
+fn shape_values(state: &State) -> Vec<f64> {
+    state.shapes(&catalogue::SHAPES.map(|shape| shape.name.to_owned()))
+}
+
+#[test]
+fn the_catalogue_says_what_its_equations_say() {
+    for (point, state) in states(Purpose::Equations, STATES).iter().enumerate() {
+        let parameters: [f64; PARAMETERS] = state.parameters(PARAMETERS).try_into().unwrap();
+        let shapes = shape_values(state);
+        let named = Named::new(&catalogue::PARAMETERS, &parameters);
+        let named_shapes = Named::new(&catalogue::SHAPES, &shapes);
+        let [rates, reading] = by_hand(state, &named, &named_shapes);
+        assert_eq!(named.forgotten(), [""; 0], "write out the new effects here");
+        assert_eq!(named_shapes.forgotten(), [""; 0]);
+        let theta_dot = catalogue::dynamics(
+            &state.theta,
+            &parameters,
+            &state.omega_0,
+            &state.f_0,
+            &state.east_0,
+            &state.field_0,
+            &state.conditions,
+            &shapes.try_into().unwrap(),
+        );
+        // Equation (5): no matrix is inverted here.
+        let relative = apply(&rate_matrix(&state.theta), &theta_dot);
+        let read =
+            catalogue::accelerometers(&state.theta, &parameters, &state.f_0, &state.conditions);
+        // Sixty terms of up to 5 deg/h each, 6 times as large where cos theta_y is 1/6 and cancels
+        // again, some roundings of 1.1e-16 in each.
+        let allowed = 4e-12;
+        for i in 0..3 {
+            let error = (RAD_PER_S_IN_DEG_PER_H * relative[i] - rates[i]).abs();
+            assert!(error <= allowed, "{point}: {error:e}");
+            // A dozen terms, the largest 0.5 g/K times 5 K.
+            assert!(
+                (read[i] - reading[i]).abs() <= 1e-14,
+                "{point}: {} {}",
+                read[i],
+                reading[i]
+            );
+        }
+    }
+}
+
+#[test]
+fn a_wrong_entry_would_show_in_that_comparison() {
+    let states = states(Purpose::Equations, 20);
+    for place in 0..PARAMETERS {
+        let shows = states.iter().any(|state| {
+            let mut parameters = state.parameters(PARAMETERS);
+            let shapes = shape_values(state);
+            let evaluate = |parameters: &[f64]| {
+                by_hand(
+                    state,
+                    &Named::new(&catalogue::PARAMETERS, parameters),
+                    &Named::new(&catalogue::SHAPES, &shapes),
+                )
+            };
+            let right = evaluate(&parameters);
+            parameters[place] *= 1.0 + 1e-6;
+            let wrong = evaluate(&parameters);
+            let pairs = right.as_flattened().iter().zip(wrong.as_flattened());
+            // Beyond the tolerances above, with rates of some 100 deg/h.
+            pairs
+                .into_iter()
+                .any(|(right, wrong)| (right - wrong).abs() > 1e-11)
+        });
+        assert!(shows, "{} does not show", catalogue::PARAMETERS[place].id);
+    }
+}
+
+#[test]
+fn without_effects_the_catalogue_is_the_nominal_platform() {
+    for (point, state) in states(Purpose::Equations, STATES).iter().enumerate() {
+        let mut parameters = [0.0; PARAMETERS];
+        parameters[..9].copy_from_slice(&state.drift);
+        let rates = catalogue::dynamics(
+            &state.theta,
+            &parameters,
+            &state.omega_0,
+            &state.f_0,
+            &state.east_0,
+            &state.field_0,
+            &state.conditions,
+            &shape_values(state).try_into().unwrap(),
+        );
+        let nominal = platform::dynamics(&state.theta, &state.drift, &state.omega_0, &state.f_0);
+        let scale = nominal
+            .iter()
+            .fold(1e-4, |largest: f64, rate| largest.max(rate.abs()));
+        let read =
+            catalogue::accelerometers(&state.theta, &parameters, &state.f_0, &state.conditions);
+        let force = platform::specific_force(&state.theta, &state.f_0);
+        for i in 0..3 {
+            // Additions of zeros and products with one do not round; sums come in another order.
+            assert!((rates[i] - nominal[i]).abs() <= 4e-15 * scale, "{point}");
+            assert!((read[i] - force[i]).abs() <= 5e-16, "{point}");
+        }
+    }
+}
+
+#[test]
+fn the_table_of_effects_is_complete_and_names_what_is_there() {
+    let ids: Vec<&str> = catalogue::EFFECTS.iter().map(|effect| effect.id).collect();
+    let states = catalogue::EFFECTS.iter().flat_map(|effect| effect.states);
+    let mut states: Vec<&str> = states.copied().collect();
+    let mut parameters: Vec<&str> = catalogue::PARAMETERS.iter().map(|p| p.id).collect();
+    states.sort_unstable();
+    parameters.sort_unstable();
+    assert_eq!(states, parameters, "each parameter belongs to one effect");
+    for effect in &catalogue::EFFECTS {
+        let is_term = ["nominal", "term"].contains(&effect.kind);
+        assert_eq!(is_term, !effect.formula.is_empty(), "{}", effect.id);
+        assert_eq!(effect.parameters.len(), effect.units.len(), "{}", effect.id);
+        if is_term {
+            let given = effect.states.len() + effect.shapes.len();
+            assert_eq!(effect.parameters.len(), given, "{}", effect.id);
+        }
+        for shape in effect.shapes {
+            assert!(catalogue::SHAPES.iter().any(|element| element.id == *shape));
+        }
+        for other in effect.equivalents.iter().chain(effect.near_twins) {
+            assert!(ids.contains(other), "{}: {other}", effect.id);
+        }
+        for equivalent in effect.equivalents {
+            let other = ids.iter().position(|id| id == equivalent).unwrap();
+            let back = catalogue::EFFECTS[other].equivalents;
+            assert!(back.contains(&effect.id), "{}: {equivalent}", effect.id);
+        }
+    }
+    for id in [
+        "gyro_x.random_walk",
+        "accel.outliers",
+        "platform.knock",
+        "platform.initial_attitude",
+        "filter.discretisation",
+    ] {
+        assert!(ids.contains(&id), "{id}");
+    }
+    let needs = |id: &str| catalogue::EFFECTS[ids.iter().position(|x| *x == id).unwrap()].needs;
+    assert_eq!(needs("gyro_y.temperature"), ["temperature"]);
+    assert_eq!(needs("gyro_z.magnetic"), ["field"]);
+    assert_eq!(needs("gyro_z.ramp"), [""; 0]);
+}
