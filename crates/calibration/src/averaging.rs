@@ -111,7 +111,11 @@ pub fn average(record: &Record, interval_s: f64) -> Result<Averaged, Calibration
 
 /// The median interval between rows.
 fn usual_step_s(record: &Record) -> f64 {
-    let mut steps: Vec<f64> = record.time_s.windows(2).map(|two| two[1] - two[0]).collect();
+    let mut steps: Vec<f64> = record
+        .time_s
+        .windows(2)
+        .map(|two| two[1] - two[0])
+        .collect();
     if steps.is_empty() {
         return 0.0;
     }
@@ -213,14 +217,20 @@ fn leave_out_thin(means: &mut [Mean]) -> usize {
 /// The values at the times of the rows.
 fn correct(means: &[Mean], interval_s: f64) -> Vec<[f64; 3]> {
     let half_s = (WINDOW_INTERVALS * interval_s).min(LONGEST_WINDOW_S);
+    let (Some(first), Some(last)) = (means.first(), means.last()) else {
+        return Vec::new();
+    };
+    // A window at an end of the record reaches further in.
+    let (earliest_s, latest_s) = (first.time_s + half_s, last.time_s - half_s);
     let (mut from, mut to) = (0, 0);
     means
         .iter()
         .map(|row| {
-            while means[from].time_s < row.time_s - half_s {
+            let middle_s = row.time_s.min(latest_s).max(earliest_s);
+            while means[from].time_s < middle_s - half_s {
                 from += 1;
             }
-            while to < means.len() && means[to].time_s <= row.time_s + half_s {
+            while to < means.len() && means[to].time_s <= middle_s + half_s {
                 to += 1;
             }
             core::array::from_fn(|axis| {
@@ -264,8 +274,7 @@ fn assemble(
     let mut time_s: Vec<f64> = means.iter().map(|mean| mean.time_s).collect();
     let mut values: Vec<[usize; 3]> = means.iter().map(|mean| mean.count).collect();
     let mut accel_g = corrected;
-    let mut temperature_c: Option<Vec<f64>> =
-        means.iter().map(|mean| mean.temperature_c).collect();
+    let mut temperature_c: Option<Vec<f64>> = means.iter().map(|mean| mean.temperature_c).collect();
     let inverse = mean(
         values
             .as_flattened()
@@ -281,7 +290,10 @@ fn assemble(
         time_s.insert(0, *start_s);
         values.insert(0, [0; 3]);
         accel_g.insert(0, [f64::NAN; 3]);
-        let at_start = record.temperature_c.as_ref().and_then(|column| column.first());
+        let at_start = record
+            .temperature_c
+            .as_ref()
+            .and_then(|column| column.first());
         if let (Some(column), Some(first)) = (&mut temperature_c, at_start) {
             column.insert(0, *first);
         }
@@ -294,7 +306,11 @@ fn assemble(
         },
         values,
         // A record without values has no noise either.
-        noise_ratio: if inverse.is_nan() { 1.0 } else { inverse.sqrt() },
+        noise_ratio: if inverse.is_nan() {
+            1.0
+        } else {
+            inverse.sqrt()
+        },
         left_out,
     }
 }

@@ -5,7 +5,7 @@ use gyrocal::estimation::batch::{Reduced, Whitened};
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Chart, Recentring, Settings};
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::PARAMETERS;
 use crate::batch::MOST_ITERATIONS;
@@ -188,6 +188,14 @@ impl<'a> Extended<'a> {
         Self::solved(problem, extension.clone())
     }
 
+    /// The same fit once more.
+    ///
+    /// # Errors
+    /// As [`Self::refitted`].
+    pub fn again(&self) -> Result<Self, CalibrationError> {
+        self.refitted(&self.extension)
+    }
+
     /// The same extension fitted with another noise.
     ///
     /// # Errors
@@ -302,7 +310,59 @@ impl<'a> Extended<'a> {
     /// Specific force that the model gives at each row for the smoothed attitude, g.
     #[must_use]
     pub fn predicted_g(&self) -> Vec<[f64; 3]> {
-        self.problem.predicted(0)
+        self.problem.outputs(0, self.points())
+    }
+
+    /// Specific force that the model gives when it runs by itself from the first attitude, with
+    /// the estimated parameters and without the record, g.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn free_run_g(&self) -> Result<Vec<[f64; 3]>, CalibrationError> {
+        let parameters = self.parameters();
+        let points = self
+            .problem
+            .with_leg(0, &parameters, |pass| pass.free_run())
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+        Ok(self.problem.outputs(0, &points))
+    }
+
+    /// Logarithm of the density of the record without the rows of a range, all unknowns integrated
+    /// out over their priors (flat ones count as of unit density), linearised about this fit.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`] and [`CalibrationError::NotPositiveDefinite`].
+    pub fn log_evidence_without(
+        &self,
+        left_out: core::ops::Range<usize>,
+    ) -> Result<f64, CalibrationError> {
+        let parameters = self.parameters();
+        let reduced = self
+            .problem
+            .without_rows(0, &parameters, left_out, |pass| pass.reduce(|_| ()))
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+        let unknowns = &self.problem.unknowns;
+        let count = unknowns.len();
+        let mut information = reduced.gram.view((1, 1), (count, count)).into_owned();
+        let mut gradient = DVector::zeros(count);
+        let mut prior = 0.0;
+        for (i, unknown) in unknowns.iter().enumerate() {
+            let weight = unknown.sigma.powi(-2);
+            information[(i, i)] += weight;
+            gradient[i] = -reduced.gram[(0, i + 1)] - weight * self.problem.values[i];
+            prior += weight * self.problem.values[i].powi(2);
+            if weight > 0.0 {
+                prior -= weight.ln();
+            }
+        }
+        let cholesky = Cholesky::new(information).ok_or(CalibrationError::NotPositiveDefinite)?;
+        let gained = cholesky.solve(&gradient).dot(&gradient);
+        let determinant = 2.0 * cholesky.l().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        Ok(-0.5
+            * (reduced.gram[(0, 0)] + prior - gained
+                + reduced.log_variance
+                + determinant
+                + reduced.values as f64 * core::f64::consts::TAU.ln()))
     }
 
     /// Passes over the record with all parameters of [`Catalogue`] as columns (all but those in

@@ -49,8 +49,8 @@ mod start;
 mod streaming;
 mod uncertainty;
 
-pub use bound::bound;
 pub use averaging::{Averaged, average, walk_share};
+pub use bound::bound;
 pub use calibrate::{Method, Options, calibrate, calibrate_runs};
 pub use error::CalibrationError;
 pub use extended::{Extended, Extension, NoiseModel};

@@ -79,6 +79,15 @@ impl<'a> Rows<'a> {
         }
     }
 
+    /// Gives the values of some rows no weight.
+    pub(crate) fn leave_out(&mut self, rows: core::ops::Range<usize>) {
+        let count = self.rows;
+        let weights = self.weights.get_or_insert_with(|| vec![[1.0; 3]; count]);
+        for weight in &mut weights[rows] {
+            *weight = [0.0; 3];
+        }
+    }
+
     pub(crate) fn set_noise(&mut self, noise_g: [f64; 3]) {
         self.variance_g2 = noise_g.map(|sigma| sigma * sigma);
     }

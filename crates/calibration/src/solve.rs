@@ -193,12 +193,12 @@ where
             .collect()
     }
 
-    /// Outputs that the model gives at each row of a record for the attitudes as they are.
-    pub(crate) fn predicted(&self, leg: usize) -> Vec<[f64; 3]> {
+    /// Outputs that the model gives at each row of a record for these attitudes.
+    pub(crate) fn outputs(&self, leg: usize, points: &[Orientation]) -> Vec<[f64; 3]> {
         let parameters = self.parameters(leg);
         let leg = &self.legs[leg];
         let (mut chart, mut moving) = (leg.chart, [0.0; 3]);
-        leg.points
+        points
             .iter()
             .enumerate()
             .map(|(row, point)| {
@@ -258,6 +258,28 @@ where
             .filter(|parameter| !self.legs[index].sums[*parameter].is_empty())
             .collect();
         self.with_active(index, parameters, &active, further, pass)
+    }
+
+    /// A pass over a record as if some of its rows had no value.
+    pub(crate) fn without_rows<R>(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        left_out: core::ops::Range<usize>,
+        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, Further, 3, 3>) -> R,
+    ) -> R {
+        let mut rows = self.legs[index].rows.again();
+        rows.leave_out(left_out);
+        let active: Vec<usize> = (0..parameters.len())
+            .filter(|parameter| !self.legs[index].sums[*parameter].is_empty())
+            .collect();
+        let further = &self.legs[index].further;
+        self.with_active(index, parameters, &active, further, |all| {
+            pass(&Linearisation {
+                series: &rows,
+                ..*all
+            })
+        })
     }
 
     /// A pass over a record with any parameters as columns.

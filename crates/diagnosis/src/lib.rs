@@ -23,21 +23,27 @@
 
 pub mod cause;
 mod dependence;
+mod diagnose;
 mod error;
+mod gain;
 mod noise;
 mod norm;
+mod remainder;
 mod series;
 mod significance;
 mod spectrum;
 mod whiteness;
 
 pub use dependence::{Bin, Dependence, dependence};
+pub use diagnose::{DiagnoseError, DiagnoseOptions, Diagnosis, Verdict, diagnose};
 pub use error::DiagnosisError;
+pub use gain::{CoefficientShift, Gain, gain};
 pub use noise::{
     AuditOptions, Cleaned, DeclaredNoise, Estimate, Gaps, NoiseAudit, NoiseFinding, Outlier,
     Shares, audit_noise,
 };
 pub use norm::{NormChannel, norm_channel};
+pub use remainder::{Remainder, remainder};
 pub use series::Innovations;
 pub use significance::{two_sided_p, z_of_two_sided_p};
 pub use spectrum::{Line, Periodogram, periodogram, strongest};

@@ -69,7 +69,7 @@ pub use error::EstimationError;
 pub use factor::Factors;
 pub use filter::{Filter, Recentring};
 pub use innovation::Innovation;
-pub use manifold::Manifold;
+pub use manifold::{Corrected, Manifold};
 #[cfg(feature = "alloc")]
 pub use storage::VecStorage;
 pub use storage::{ArrayStorage, Buffers, Storage, View};

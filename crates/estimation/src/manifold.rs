@@ -15,4 +15,20 @@ pub trait Manifold<const M: usize, const Y: usize>: Recentre<f64, M, Y> {
 
     /// The correction that [`Recentre::correct`] needs to get from one point to the other.
     fn difference(&self, from: &Self::Point, to: &Self::Point) -> [f64; M];
+
+    /// How errors go through a correction; `None` if they stay what they are, as in a flat state
+    /// space.
+    fn corrected(&self, correction: &[f64; M]) -> Option<Corrected<M>> {
+        let _ = correction;
+        None
+    }
+}
+
+/// Derivatives of a corrected point, as corrections of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corrected<const M: usize> {
+    /// With respect to a correction of the point that was corrected.
+    pub point: [[f64; M]; M],
+    /// With respect to the correction; the correction itself is mapped to itself.
+    pub correction: [[f64; M]; M],
 }

@@ -43,8 +43,10 @@ impl Bank {
         };
         let values = fitted.values();
         let prior_sigma = fitted.prior_sigma();
-        let dropped: Vec<(usize, f64)> =
-            without.iter().map(|index| (nuisance[*index] + 1, values[*index])).collect();
+        let dropped: Vec<(usize, f64)> = without
+            .iter()
+            .map(|index| (nuisance[*index] + 1, values[*index]))
+            .collect();
         // Score of a column of the Gram matrix, in the model without what was dropped. Columns
         // are derivatives of the innovations, hence the sign.
         let score_of = |column: usize| {
@@ -67,17 +69,15 @@ impl Bank {
         }
         let nuisance = kept;
         let count = nuisance.len();
-        let mut inner =
-            DMatrix::from_fn(count, count, |i, j| reduced.gram[(nuisance[i], nuisance[j])]);
+        let mut inner = DMatrix::from_fn(count, count, |i, j| {
+            reduced.gram[(nuisance[i], nuisance[j])]
+        });
         for (i, precision) in precision.iter().enumerate() {
             inner[(i, i)] += precision;
         }
-        let cholesky =
-            Cholesky::new(inner).ok_or(CalibrationError::NotPositiveDefinite)?;
+        let cholesky = Cholesky::new(inner).ok_or(CalibrationError::NotPositiveDefinite)?;
         let columns = parameters + further.len();
-        let cross = DMatrix::from_fn(count, columns, |i, j| {
-            reduced.gram[(nuisance[i], place(j))]
-        });
+        let cross = DMatrix::from_fn(count, columns, |i, j| reduced.gram[(nuisance[i], place(j))]);
         // L⁻¹ of the cross terms: what is projected out is its own product.
         let mut taken = cross;
         let lower = cholesky.l();
@@ -110,8 +110,9 @@ impl Bank {
             return None;
         }
         let count = columns.len();
-        let information =
-            DMatrix::from_fn(count, count, |i, j| self.information[(columns[i], columns[j])]);
+        let information = DMatrix::from_fn(count, count, |i, j| {
+            self.information[(columns[i], columns[j])]
+        });
         let score = DVector::from_fn(count, |i, _| self.score[columns[i]]);
         let cholesky = Cholesky::new(information)?;
         let estimate = cholesky.solve(&score);

@@ -103,7 +103,8 @@ impl Plan {
             let axis = axis_of(effect.id);
             let candidates = if effect.id == "platform.initial_attitude" {
                 let first = base + plan.further.len();
-                plan.further.extend([0, 1, 2].map(|axis| Column::Start { axis }));
+                plan.further
+                    .extend([0, 1, 2].map(|axis| Column::Start { axis }));
                 vec![Candidate {
                     columns: (first..first + 3).collect(),
                     shape: None,
@@ -142,18 +143,17 @@ impl Plan {
                     .collect()
             } else {
                 vec![Candidate {
-                    columns: effect.states.iter().filter_map(|id| parameter(id)).collect(),
+                    columns: effect
+                        .states
+                        .iter()
+                        .filter_map(|id| parameter(id))
+                        .collect(),
                     shape: None,
                 }]
             };
             plan.families.push(Family { effect, candidates });
         }
         plan
-    }
-
-    /// Number of columns of the bank.
-    pub(crate) fn columns(&self) -> usize {
-        PARAMETERS.len() + self.further.len()
     }
 }
 
@@ -198,9 +198,7 @@ fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Option<String>
                 return Some("the record has no column `temperature_c`".to_owned());
             }
             "field" if bench.magnetic_field_gauss.is_none() => {
-                return Some(
-                    "the bench file has no `magnetic_field_gauss` in `[site]`".to_owned(),
-                );
+                return Some("the bench file has no `magnetic_field_gauss` in `[site]`".to_owned());
             }
             _ => {}
         }

@@ -20,6 +20,4 @@ mod null;
 mod search;
 
 pub use family::{Candidate, Family, Plan, Unavailable};
-pub use search::{
-    Finding, FoundParameter, Rival, SearchOptions, Searched, search,
-};
+pub use search::{Finding, FoundParameter, Ranked, Rival, SearchOptions, Searched, search};

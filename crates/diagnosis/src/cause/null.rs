@@ -64,12 +64,17 @@ impl Null {
         let mut reached = DMatrix::from_element(families.len(), DRAWS, f64::NEG_INFINITY);
         for (index, family) in families.iter().enumerate() {
             for candidate in &family.candidates {
-                let places: Option<Vec<usize>> =
-                    candidate.columns.iter().map(|column| place(*column)).collect();
+                let places: Option<Vec<usize>> = candidate
+                    .columns
+                    .iter()
+                    .map(|column| place(*column))
+                    .collect();
                 let Some(places) = places else { continue };
                 let size = places.len();
                 let own = DMatrix::from_fn(size, size, |i, j| correlation[(places[i], places[j])]);
-                let Some(own) = Cholesky::new(own) else { continue };
+                let Some(own) = Cholesky::new(own) else {
+                    continue;
+                };
                 let inverse = own.inverse();
                 for draw in 0..DRAWS {
                     let mut statistic = 0.0;

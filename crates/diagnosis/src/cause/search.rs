@@ -152,7 +152,9 @@ pub fn search<'a>(
         let scores = Scores::of(&bank, &families, &null);
         let threshold = null.threshold(options.false_alarm_probability);
         first.get_or_insert_with(|| (scores.ranking(&families), threshold));
-        let Some(best) = scores.named(&families) else { break };
+        let Some(best) = scores.named(&families) else {
+            break;
+        };
         let statistic = scores.penalised(best.family);
         if statistic <= threshold || accepted.len() == MOST_EFFECTS {
             break;
@@ -183,7 +185,11 @@ pub fn search<'a>(
 fn extension(plan: &Plan, accepted: &[Accepted]) -> Extension {
     let mut extension = Extension::default();
     for accepted in accepted {
-        extend(&mut extension, &plan.families[accepted.family], accepted.shape);
+        extend(
+            &mut extension,
+            &plan.families[accepted.family],
+            accepted.shape,
+        );
     }
     extension
 }
@@ -247,17 +253,23 @@ impl<'a> Scores<'a> {
     fn named(&self, families: &[Family]) -> Option<Best> {
         let best = (0..families.len())
             .filter(|family| self.best[*family].is_some())
-            // The first of equals: equivalents tie to rounding.
-            .fold(None::<usize>, |best, family| match best {
-                Some(best) if self.penalised(family) <= self.penalised(best) + 1e-6 => Some(best),
-                _ => Some(family),
-            })?;
+            .max_by(|a, b| self.penalised(*a).total_cmp(&self.penalised(*b)))?;
+        // Of equivalents the first in the table, which the families follow.
+        let equivalents = families[best].effect.equivalents;
+        let best = (0..best)
+            .find(|other| {
+                self.best[*other].is_some() && equivalents.contains(&families[*other].id())
+            })
+            .unwrap_or(best);
         let gyro = families[best].id().split('.').next().unwrap_or("");
         if families[best].id().ends_with(".warmup") {
-            let simpler = [format!("{gyro}.ramp"), "platform.initial_attitude".to_owned()];
-            let found = families.iter().position(|family| {
-                simpler.iter().any(|id| id == family.id())
-            });
+            let simpler = [
+                format!("{gyro}.ramp"),
+                "platform.initial_attitude".to_owned(),
+            ];
+            let found = families
+                .iter()
+                .position(|family| simpler.iter().any(|id| id == family.id()));
             let richer = self.best[best].map_or(0.0, |best| best.statistic);
             if let Some(simple) = found
                 && let Some(simple) = self.best[simple]
@@ -387,7 +399,10 @@ fn finding(
         })
         .filter(|rival| rival.log_likelihood_deficit < 0.5 * SET_CONSTANT)
         .collect();
-    rivals.sort_by(|a, b| a.log_likelihood_deficit.total_cmp(&b.log_likelihood_deficit));
+    rivals.sort_by(|a, b| {
+        a.log_likelihood_deficit
+            .total_cmp(&b.log_likelihood_deficit)
+    });
     let equivalents = family
         .effect
         .equivalents
@@ -442,8 +457,12 @@ fn places(fitted: &Extended<'_>, family: &Family) -> Vec<usize> {
             .map(|(index, _)| base + index)
             .collect();
     }
-    let states: Vec<Option<usize>> =
-        family.effect.states.iter().map(|id| parameter(id)).collect();
+    let states: Vec<Option<usize>> = family
+        .effect
+        .states
+        .iter()
+        .map(|id| parameter(id))
+        .collect();
     extension
         .parameters
         .iter()
@@ -461,7 +480,13 @@ fn estimates(
 ) -> Vec<FoundParameter> {
     let effect = family.effect;
     // Attitudes are estimated in radians.
-    let to_unit = |unit: &str| if unit == "deg" && effect.kind == "state" { 180.0 / core::f64::consts::PI } else { 1.0 };
+    let to_unit = |unit: &str| {
+        if unit == "deg" && effect.kind == "state" {
+            180.0 / core::f64::consts::PI
+        } else {
+            1.0
+        }
+    };
     effect
         .parameters
         .iter()

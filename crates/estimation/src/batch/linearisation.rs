@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use super::filter::{Conditional, backward, cholesky, forward};
 use super::gram::Gram;
 use super::noise::{NoiseFilter, NoiseScore};
-use super::step::{Step, Stepper};
+use super::step::{Step, Stepper, map_columns, sandwich};
 use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 use crate::transition::Integration;
@@ -149,6 +149,39 @@ where
         reduced.last = pass.filter.columns;
         reduced.last_covariance = pass.filter.covariance;
         Ok(reduced)
+    }
+
+    /// Where the model goes by itself from the first point: the trajectory without measurements
+    /// and without noise, further columns with their amplitudes included.
+    ///
+    /// # Errors
+    /// As [`Self::reduce`].
+    pub fn free_run(&self) -> Result<Vec<D::Point>, EstimationError> {
+        let none = vec![0.0; self.active.len() + self.further.count()];
+        let mut pass = Pass::new(self, 0, Some(&none))?;
+        let mut points = Vec::with_capacity(self.points.len());
+        let mut point = self.points[0];
+        points.push(point);
+        let further = self.further.count();
+        for row in 0..self.points.len() - 1 {
+            let step = pass
+                .stepper
+                .advance(self.series, row, &point, self.parameters)?;
+            let mut turn = [0.0; M];
+            let jump = pass.drive(row);
+            for i in 0..M {
+                for (column, drive) in jump[i * further..(i + 1) * further].iter().enumerate() {
+                    turn[i] += drive * self.further.amplitude(column);
+                }
+            }
+            let mut moving = [0.0; M];
+            self.model
+                .place(&step.predicted, &mut moving, &mut pass.inputs);
+            self.model.correct(&mut moving, &mut pass.inputs, &turn);
+            point = self.model.point(&moving, &pass.inputs);
+            points.push(point);
+        }
+        Ok(points)
     }
 
     /// What the record says of its noise: gradient and information of the likelihood, the
@@ -304,8 +337,13 @@ where
                 expected: "one point a row, all parameters of the model, and one change a column",
             });
         }
-        let mut filter = Conditional::new(count, of.prior_covariance);
         let mut mean = of.model.difference(&of.points[0], &of.prior);
+        // The prior is of a correction of its own mean; here it counts as one of the first point.
+        let covariance = match of.model.corrected(&mean.map(|component| -component)) {
+            Some(corrected) => sandwich(&corrected.correction, &of.prior_covariance),
+            None => of.prior_covariance,
+        };
+        let mut filter = Conditional::new(count, covariance);
         for column in 0..further {
             let amplitude = of.further.amplitude(column);
             let start = of.further.start(column);
@@ -429,17 +467,9 @@ where
         Ok(())
     }
 
-    /// Goes on to the next row; returns the transition and what the noise's part adds to the
-    /// cost of the trajectory.
-    fn advance(&mut self, row: usize) -> Result<(Step<D::Point, M>, f64), EstimationError> {
-        let of = self.of;
-        let step = self
-            .stepper
-            .advance(of.series, row, &of.points[row], of.parameters)?;
-        self.filter.predict(&step.moving, &step.noise);
-        let mut jump = of.model.difference(&step.predicted, &of.points[row + 1]);
-        let p = of.parameters.len();
-        let (active, further) = (of.active.len(), of.further.count());
+    /// What a unit of each further column does over the step just made.
+    fn drive(&mut self, row: usize) -> &[f64] {
+        let further = self.of.further.count();
         if further > 0 {
             self.drive.fill(0.0);
             let mut rest = self.drive.as_mut_slice();
@@ -448,8 +478,30 @@ where
                 rest = tail;
                 head
             });
-            of.further.drive(row, &self.stepper.columns, p, rows);
+            let stride = self.of.parameters.len();
+            self.of
+                .further
+                .drive(row, &self.stepper.columns, stride, rows);
         }
+        &self.drive
+    }
+
+    /// Goes on to the next row; returns the transition and what the noise's part adds to the
+    /// cost of the trajectory.
+    fn advance(&mut self, row: usize) -> Result<(Step<D::Point, M>, f64), EstimationError> {
+        let of = self.of;
+        let mut step = self
+            .stepper
+            .advance(of.series, row, &of.points[row], of.parameters)?;
+        let mut jump = of.model.difference(&step.predicted, &of.points[row + 1]);
+        let p = of.parameters.len();
+        if let Some(corrected) = of.model.corrected(&jump) {
+            step.correct(&corrected);
+            map_columns(&corrected.point, &mut self.stepper.columns, p);
+        }
+        self.filter.predict(&step.moving, &step.noise);
+        let (active, further) = (of.active.len(), of.further.count());
+        self.drive(row);
         for i in 0..M {
             let own = &self.stepper.columns[i * p..(i + 1) * p];
             let drive = &self.drive[i * further..(i + 1) * further];

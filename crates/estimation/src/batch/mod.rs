@@ -24,7 +24,7 @@ mod noise;
 
 mod step;
 
-pub use crate::manifold::Manifold;
+pub use crate::manifold::{Corrected, Manifold};
 pub use columns::{Columns, NoColumns};
 pub use gram::Gram;
 pub use linearisation::{Linearisation, Reduced, Smoothed, Whitened};

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Manifold, Series};
+use super::{Corrected, Manifold, Series};
 use crate::error::EstimationError;
 use crate::transition::{Integration, Integrator};
 
@@ -17,6 +17,17 @@ pub(crate) struct Step<P, const M: usize> {
     pub(crate) noise: [[f64; M]; M],
     /// The share of each noise input in it.
     pub(crate) shares: [[[f64; M]; M]; M],
+}
+
+impl<P, const M: usize> Step<P, M> {
+    /// What was predicted as corrections of another point: the one that a correction of the
+    /// prediction, which the noise made, leads to.
+    pub(crate) fn correct(&mut self, corrected: &Corrected<M>) {
+        self.moving = product(&corrected.point, &self.moving);
+        for covariance in self.shares.iter_mut().chain([&mut self.noise]) {
+            *covariance = sandwich(&corrected.correction, covariance);
+        }
+    }
 }
 
 /// Carries points over steps; owns the numbers that a step works on.

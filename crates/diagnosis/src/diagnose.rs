@@ -1,0 +1,343 @@
+//! The whole diagnosis of one record.
+
+use gyrocal::{PlatformFilter, Settings};
+use gyrocal_calibration::{
+    CalibrationError, Extended, NoiseEstimate, NoiseModel, Options, Run, settings,
+};
+use gyrocal_record::{Bench, Record};
+
+use crate::cause::{Finding, Ranked, SearchOptions, Searched, Unavailable, search};
+use crate::error::DiagnosisError;
+use crate::gain::{Gain, gain};
+use crate::noise::{AuditOptions, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, audit_noise};
+use crate::remainder::{Remainder, remainder};
+use crate::series::Innovations;
+use crate::significance::two_sided_p;
+
+/// How a record is diagnosed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DiagnoseOptions {
+    /// Probability that a record of the nominal model with the declared noise shows anything.
+    pub false_alarm_probability: f64,
+    /// Effects beside those of the default search.
+    pub also: Vec<String>,
+    /// Seed of the draws that thresholds come from.
+    pub seed: u64,
+    /// How the model is integrated.
+    pub calibration: Options,
+}
+
+impl Default for DiagnoseOptions {
+    fn default() -> Self {
+        Self {
+            false_alarm_probability: 0.01,
+            also: Vec::new(),
+            seed: 0,
+            calibration: Options::default(),
+        }
+    }
+}
+
+/// Shares of the probability of a false alarm: noise audit, gyro noise, search, remainder.
+const SHARES: [f64; 4] = [0.2, 0.1, 0.5, 0.2];
+
+/// Gyro noise that differs from the declared one by so many sigmas is reckoned with in the
+/// search, so that it makes no causes of itself; it is named only if it still differs when the
+/// causes are in the model.
+const RECKONED: f64 = 3.0;
+
+/// Rounds of noise and search: noise that a cause had raised falls when the cause is in the model.
+const MOST_ROUNDS: usize = 3;
+
+/// What a diagnosis says in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing is wrong.
+    Clean,
+    /// Something is wrong, and it has a name.
+    EffectsFound,
+    /// Something is wrong, and the catalogue does not hold it.
+    Unexplained,
+}
+
+/// What was found in a record.
+pub struct Diagnosis<'a> {
+    /// In one word.
+    pub verdict: Verdict,
+    /// Probability of any finding on a sound record, as asked for.
+    pub false_alarm_probability: f64,
+    /// What is wrong with the noise.
+    pub noise_findings: Vec<NoiseFinding>,
+    /// The noise audit with all its figures.
+    pub audit: NoiseAudit,
+    /// Noise of accelerometers and gyros by maximum likelihood, over the declared one, with all
+    /// causes in the model.
+    pub noise: NoiseEstimate,
+    /// The noise that the search believed.
+    pub noise_model: NoiseModel,
+    /// The causes.
+    pub findings: Vec<Finding>,
+    /// All families in the first search, largest first.
+    pub ranking: Vec<Ranked>,
+    /// What the largest of them must exceed.
+    pub threshold: f64,
+    /// What could not be looked for.
+    pub unavailable: Vec<Unavailable>,
+    /// What the extended model gains; `None` without a physical cause.
+    pub gain: Option<Gain>,
+    /// What is left.
+    pub remainder: Remainder,
+    /// The nominal model at its best fit.
+    pub nominal: Extended<'a>,
+    /// The model with all causes, if there are any.
+    pub extended: Option<Extended<'a>>,
+    /// Innovations of the nominal model as the streaming filter makes them.
+    pub innovations: Innovations,
+}
+
+/// Why a record could not be diagnosed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiagnoseError {
+    /// The nominal model could not be fitted.
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
+    /// The residuals could not be examined.
+    #[error(transparent)]
+    Residuals(#[from] DiagnosisError),
+    /// An effect was asked for that the catalogue does not hold.
+    #[error("there is no effect `{id}` in the catalogue{nearest}")]
+    UnknownEffect {
+        /// What was asked for.
+        id: String,
+        /// The nearest ones, as the end of the sentence.
+        nearest: String,
+    },
+}
+
+/// Diagnoses a record.
+///
+/// # Errors
+/// [`DiagnoseError`].
+pub fn diagnose<'a>(
+    record: &'a Record,
+    bench: &'a Bench,
+    options: &DiagnoseOptions,
+) -> Result<Diagnosis<'a>, DiagnoseError> {
+    let run = Run { record, bench };
+    let [audit_share, gyro_share, search_share, remainder_share] =
+        SHARES.map(|share| share * options.false_alarm_probability);
+    let declared = NoiseModel::default();
+    let first = Extended::nominal(&run, &options.calibration, &declared)?;
+    let innovations = innovations(record, bench, &first)?;
+    let audit = audit_noise(
+        record,
+        &innovations,
+        &DeclaredNoise {
+            accel_g: [bench.accel_noise_g; 3],
+            gyro_deg_per_h: bench.gyro_noise_deg_per_h,
+        },
+        &AuditOptions {
+            false_alarm: audit_share,
+        },
+    )?;
+    let mut noise_model = believed(&audit, record);
+    let mut nominal = if noise_model == declared {
+        first
+    } else {
+        first.with_noise(bench, &noise_model)?
+    };
+    let search_options = SearchOptions {
+        false_alarm_probability: search_share,
+        also: options.also.clone(),
+        seed: options.seed,
+        ..SearchOptions::default()
+    };
+    let mut estimate = nominal.noise()?;
+    let mut searched: Option<Searched<'a>> = None;
+    for _ in 0..MOST_ROUNDS {
+        let ratios = reckoned(&estimate, &noise_model);
+        let changed = ratios
+            .iter()
+            .zip(noise_model.gyro_ratio)
+            .any(|(new, old)| (new / old).ln().abs() > 0.05);
+        if changed {
+            noise_model.gyro_ratio = ratios;
+            nominal = nominal.with_noise(bench, &noise_model)?;
+        } else if searched.is_some() {
+            break;
+        }
+        let found = search(nominal.again()?, record, bench, &search_options)?;
+        estimate = found.fitted.noise()?;
+        // With the noise that was believed as the unit.
+        let done = found.findings.is_empty();
+        searched = Some(found);
+        if done {
+            break;
+        }
+    }
+    let searched = match searched {
+        Some(searched) => searched,
+        None => search(nominal.again()?, record, bench, &search_options)?,
+    };
+    let mut noise_findings = audit.findings.clone();
+    noise_findings.extend(gyro_noise(&estimate, &noise_model, gyro_share));
+    let remainder = remainder(&searched.fitted, record, remainder_share)?;
+    let found = !searched.findings.is_empty();
+    let gain = if found {
+        let noise_g = noise_model
+            .accel_ratio
+            .map(|ratio| ratio * bench.accel_noise_g);
+        Some(gain(&nominal, &searched.fitted, record, noise_g)?)
+    } else {
+        None
+    };
+    let verdict = if found || !noise_findings.is_empty() {
+        Verdict::EffectsFound
+    } else if remainder.unexplained {
+        Verdict::Unexplained
+    } else {
+        Verdict::Clean
+    };
+    Ok(Diagnosis {
+        verdict,
+        false_alarm_probability: options.false_alarm_probability,
+        noise_findings,
+        audit,
+        noise: estimate,
+        noise_model,
+        ranking: searched.ranking,
+        threshold: searched.threshold,
+        unavailable: searched.unavailable,
+        findings: searched.findings,
+        gain,
+        remainder,
+        nominal,
+        extended: found.then_some(searched.fitted),
+        innovations,
+    })
+}
+
+/// The noise of the accelerometers as the audit left it.
+fn believed(audit: &NoiseAudit, record: &Record) -> NoiseModel {
+    let cleaned = &audit.cleaned;
+    let dropped = cleaned
+        .keep
+        .iter()
+        .zip(&record.accel_g)
+        .any(|(keep, row)| (0..3).any(|axis| !keep[axis] && !row[axis].is_nan()));
+    NoiseModel {
+        accel_ratio: cleaned.slow_ratio,
+        gyro_ratio: [1.0; 3],
+        weights: dropped.then(|| {
+            cleaned
+                .keep
+                .iter()
+                .map(|keep| keep.map(|keep| f64::from(u8::from(keep))))
+                .collect()
+        }),
+    }
+}
+
+/// Logarithm of a ratio and its standard deviation.
+fn logarithm(ratio: &gyrocal_calibration::NoiseRatio) -> (f64, f64) {
+    let [low, high] = ratio.interval;
+    (
+        ratio.ratio.ln(),
+        (high / low).ln() / (2.0 * 1.959_963_984_540_054),
+    )
+}
+
+/// Gyro noise over the declared one that the search should believe; the estimate is over what
+/// was believed before.
+fn reckoned(estimate: &NoiseEstimate, believed: &NoiseModel) -> [f64; 3] {
+    core::array::from_fn(|axis| {
+        let (value, sigma) = logarithm(&estimate.gyro[axis]);
+        let total = value + believed.gyro_ratio[axis].ln();
+        if total.abs() > RECKONED * sigma {
+            total.exp()
+        } else {
+            1.0
+        }
+    })
+}
+
+/// Gyro noise that differs from the declared one, with a share of the false alarms for all three.
+fn gyro_noise(estimate: &NoiseEstimate, believed: &NoiseModel, share: f64) -> Vec<NoiseFinding> {
+    const EFFECTS: [&str; 3] = ["gyro_x.noise", "gyro_y.noise", "gyro_z.noise"];
+    (0..3)
+        .filter_map(|axis| {
+            let (value, sigma) = logarithm(&estimate.gyro[axis]);
+            let total = value + believed.gyro_ratio[axis].ln();
+            let z = total / sigma;
+            let p_value = (3.0 * two_sided_p(z)).min(1.0);
+            (p_value < share).then(|| NoiseFinding {
+                effect: EFFECTS[axis],
+                parameters: vec![Estimate {
+                    name: "ratio",
+                    estimate: total.exp(),
+                    sigma: total.exp() * sigma,
+                    unit: "1",
+                }],
+                z,
+                p_value,
+            })
+        })
+        .collect()
+}
+
+/// Innovations of the streaming filter from the fitted first attitude.
+fn innovations(
+    record: &Record,
+    bench: &Bench,
+    fitted: &Extended<'_>,
+) -> Result<Innovations, DiagnoseError> {
+    let base = settings(&Bench {
+        initial_angles_deg: Some([0.0; 3]),
+        initial_angles_sigma_deg: [0.01; 3],
+        ..bench.clone()
+    });
+    let Some(base) = base else {
+        return Ok(Innovations::default());
+    };
+    let settings = Settings {
+        drift: gyrocal::Drift::from_array(core::array::from_fn(|i| fitted.values()[i])),
+        ..base
+    };
+    let stopped = |row: usize| {
+        move |source| CalibrationError::Filter {
+            row: row + 1,
+            time_s: record.time_s[row],
+            source,
+        }
+    };
+    let mut filter = PlatformFilter::<f64>::at_attitude(
+        &settings,
+        &fitted.points()[0],
+        &settings.angles_sigma_rad,
+    )
+    .map_err(stopped(0))?;
+    let mut innovations = Innovations::default();
+    for row in 0..record.len() {
+        if row > 0 {
+            let interval_s = record.time_s[row] - record.time_s[row - 1];
+            filter.predict(interval_s).map_err(stopped(row))?;
+        }
+        let force_g = filter.kernel().inputs().inputs().f_0;
+        let innovation = filter.update(&record.accel_g[row]).map_err(stopped(row))?;
+        let residual_g: [f64; 3] = core::array::from_fn(|axis| {
+            if innovation.observed[axis] {
+                innovation.residual[axis]
+            } else {
+                f64::NAN
+            }
+        });
+        innovations.push(
+            record.time_s[row],
+            residual_g,
+            &innovation.covariance(),
+            force_g,
+        )?;
+    }
+    Ok(innovations)
+}
