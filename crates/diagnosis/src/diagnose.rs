@@ -11,6 +11,7 @@ use crate::error::DiagnosisError;
 use crate::gain::{Gain, gain};
 use crate::noise::{AuditOptions, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, audit_noise};
 use crate::remainder::{Remainder, remainder};
+use crate::request;
 use crate::series::Innovations;
 use crate::significance::two_sided_p;
 
@@ -113,6 +114,14 @@ pub enum DiagnoseError {
         /// The nearest ones, as the end of the sentence.
         nearest: String,
     },
+    /// An effect was asked for that this record and its bench cannot show.
+    #[error("`{effect}` cannot be looked for: {why}")]
+    Unavailable {
+        /// What was asked for.
+        effect: &'static str,
+        /// What is missing.
+        why: String,
+    },
 }
 
 /// Diagnoses a record.
@@ -124,6 +133,7 @@ pub fn diagnose<'a>(
     bench: &'a Bench,
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis<'a>, DiagnoseError> {
+    request::check(&options.also, record, bench)?;
     let run = Run { record, bench };
     let [audit_share, gyro_share, search_share, remainder_share] =
         SHARES.map(|share| share * options.false_alarm_probability);

@@ -191,7 +191,8 @@ pub(crate) fn axis_of(id: &str) -> Option<usize> {
         .position(|prefix| id.starts_with(prefix))
 }
 
-fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Option<String> {
+/// What an effect needs and the record or its bench does not have.
+pub(crate) fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Option<String> {
     for need in effect.needs {
         match *need {
             "temperature" if record.temperature_c.is_none() => {

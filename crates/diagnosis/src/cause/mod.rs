@@ -15,9 +15,12 @@
 //! the search goes on ([`search`]).
 
 mod bank;
+mod bound;
 mod family;
 mod null;
 mod search;
 
+pub use bound::information;
+pub(crate) use family::missing;
 pub use family::{Candidate, Family, Plan, Unavailable};
 pub use search::{Finding, FoundParameter, Ranked, Rival, SearchOptions, Searched, search};
