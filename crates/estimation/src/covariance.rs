@@ -86,12 +86,7 @@ impl<T: Real> Form<T> for Covariance {
             correction = mul_add(head[k], innovation.weights[k], correction);
         }
         correct(&correction);
-        let weights = innovation.weights;
-        let pass = Pass {
-            projection: &projection,
-            weights,
-            head,
-        };
+        let pass = Pass::new(&projection, &innovation, head, numbers.sweep);
         pass.run(numbers.matrix, n, parameters, numbers.gain)?;
         Ok(innovation)
     }
@@ -183,39 +178,77 @@ fn predict_columns<T: Real, const M: usize, const W: usize>(
 /// What the pass over P needs.
 struct Pass<'a, T, const M: usize, const Y: usize> {
     projection: &'a Projection<'a, T, M, Y>,
-    /// Weights of the rows of L⁻¹ H P in the correction of the state.
+    /// Moving columns of diag(α)^-1/2 L⁻¹ H.
+    output: [[T; M]; Y],
+    /// Its columns of the q parameters that enter the output (Y × q, by rows).
+    output_parameters: &'a [T],
+    /// The innovation made independent and of unit variance.
     weights: [T; Y],
-    /// Moving columns of L⁻¹ H P.
+    /// Moving columns of V.
     head: [[T; M]; Y],
 }
 
-impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
+impl<'a, T: Real, const M: usize, const Y: usize> Pass<'a, T, M, Y> {
+    /// `head` are the moving columns of L⁻¹ H P.
+    #[inline(always)]
+    fn new(
+        projection: &'a Projection<'a, T, M, Y>,
+        innovation: &Innovation<T, Y>,
+        mut head: [[T; M]; Y],
+        workspace: &'a mut [T],
+    ) -> Self {
+        let observation = projection.observation;
+        let q = observation.parameters.len() / Y;
+        let root = projection.reciprocal.map(T::sqrt);
+        let mut output = observation.moving;
+        projection.reduce(&mut output);
+        let mut weights = innovation.weights;
+        for k in 0..Y {
+            head[k] = head[k].map(|value| value * root[k]);
+            output[k] = output[k].map(|value| value * root[k]);
+            weights[k] = weights[k] * (innovation.variance[k] * root[k]);
+        }
+        let output_parameters = &mut workspace[..Y * q];
+        output_parameters.copy_from_slice(observation.parameters);
+        for i in 0..q {
+            let mut column: [[T; 1]; Y] = load_rows(output_parameters, q, i);
+            projection.reduce(&mut column);
+            for k in 0..Y {
+                output_parameters[k * q + i] = column[k][0] * root[k];
+            }
+        }
+        Self {
+            projection,
+            output,
+            output_parameters,
+            weights,
+            head,
+        }
+    }
+
     /// P ← (I - K H) P and the parameters' correction; V (Y × n) is left in `gain`.
     #[inline(always)]
     fn run(
-        mut self,
+        &self,
         p: &mut [T],
         n: usize,
         parameters: &mut [T],
         gain: &mut [T],
     ) -> Result<(), EstimationError> {
         let count = n - M;
-        let root = self.projection.reciprocal.map(T::sqrt);
-        let reduced = self.head;
-        for k in 0..Y {
-            self.head[k] = self.head[k].map(|value| value * root[k]);
-            store(gain, k * n, self.head[k]);
+        for (k, head) in self.head.iter().enumerate() {
+            store(gain, k * n, *head);
         }
         let mut column = 0;
         while column + 4 <= count {
-            self.columns::<4>(p, n, &root, parameters, gain, column);
+            self.columns::<4>(p, n, parameters, gain, column);
             column += 4;
         }
         while column < count {
-            self.columns::<1>(p, n, &root, parameters, gain, column);
+            self.columns::<1>(p, n, parameters, gain, column);
             column += 1;
         }
-        self.projection.update_corner(p, n, &reduced);
+        self.projection.update_corner(p, n, &self.head);
         for i in 0..count {
             let weights: [[T; 1]; Y] = load_rows(gain, n, M + i);
             let row = &mut p[(M + i) * n + M..(M + i + 1) * n];
@@ -238,33 +271,28 @@ impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
         &self,
         p: &mut [T],
         n: usize,
-        root: &[T; Y],
         parameters: &mut [T],
         gain: &mut [T],
         column: usize,
     ) {
-        let observation = self.projection.observation;
-        let (h, output) = (&observation.moving, observation.parameters);
-        let q = output.len() / Y;
+        let q = self.output_parameters.len() / Y;
         let at = M + column;
         let mut cross: [[T; W]; M] = load_rows(p, n, at);
         let mut v = [[T::from_f64(0.0); W]; Y];
         for k in 0..Y {
-            for (row, h) in cross.iter().zip(&h[k]) {
+            for (row, h) in cross.iter().zip(&self.output[k]) {
                 v[k] = mul_add(*row, *h, v[k]);
             }
         }
         for i in 0..q {
             let row: [T; W] = load(p, (M + i) * n + at);
             for k in 0..Y {
-                v[k] = mul_add(row, output[k * q + i], v[k]);
+                v[k] = mul_add(row, self.output_parameters[k * q + i], v[k]);
             }
         }
-        self.projection.reduce(&mut v);
         let mut corrected: [T; W] = load(parameters, column);
         for k in 0..Y {
             corrected = mul_add(v[k], self.weights[k], corrected);
-            v[k] = v[k].map(|value| value * root[k]);
             for i in 0..M {
                 cross[i] = mul_add(v[k], -self.head[k][i], cross[i]);
             }

@@ -5,7 +5,11 @@ use gyrocal_scalar::Real;
 use crate::error::EstimationError;
 use crate::form::Observation;
 use crate::innovation::Innovation;
-use crate::lanes4::{load, mul_add};
+use crate::lanes4::{load, mul_add, store};
+
+/// Largest ratio of H P Hᵀ to R, output by output, up to which the moving block is updated by
+/// subtraction: that costs a variance at most two bits more than the binary logarithm of this.
+const NARROW: f64 = 256.0;
 
 /// H P on the moving columns, and S = H P Hᵀ + R factored.
 pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
@@ -18,6 +22,8 @@ pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
     variance: [T; Y],
     /// α⁻¹.
     pub(crate) reciprocal: [T; Y],
+    /// Whether an output says so much more than was known that subtraction would cost digits.
+    wide: bool,
 }
 
 impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
@@ -51,9 +57,13 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
             lower: [[zero; Y]; Y],
             variance: [zero; Y],
             reciprocal: [zero; Y],
+            wide: false,
         };
         // L diag(α), row by row: L without the division that the next pivot would wait for.
         let mut scaled = [[zero; Y]; Y];
+        let mut projected = [zero; Y];
+        let mut total = zero;
+        let (mut wide, mut bad) = (0_u32, 0_u32);
         for k in 0..Y {
             for l in 0..=k {
                 let mut sum = zero;
@@ -65,12 +75,8 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
                     sum = of_parameter.mul_add(output[l * q + i], sum);
                 }
                 if l == k {
-                    // An update takes at most 1 + Σ S/R off a variance, in relative terms. What
-                    // has more digits than the number type, less the eight bits that sums over
-                    // some dozen products lose, would leave rounding only.
-                    if sum * T::epsilon() * T::from_f64(256.0) > observation.variance[k] {
-                        return Err(EstimationError::LostPrecision { output: k });
-                    }
+                    projected[k] = sum;
+                    wide |= u32::from(sum > observation.variance[k] * T::from_f64(NARROW));
                     sum = sum + observation.variance[k];
                 }
                 for earlier in 0..l {
@@ -80,14 +86,23 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
                     scaled[k][l] = sum;
                     projection.lower[k][l] = sum * projection.reciprocal[l];
                 } else {
-                    if !is_variance(sum) {
-                        return Err(not_positive(sum, 0));
-                    }
+                    bad |= u32::from(!sum.is_positive());
+                    total = total + sum;
                     projection.lower[k][k] = one;
                     projection.variance[k] = sum;
                     projection.reciprocal[k] = one / sum;
                 }
             }
+        }
+        projection.wide = wide != 0;
+        if projection.wide {
+            check_digits(&projected, &observation.variance)?;
+        }
+        // A sum of positive numbers is finite only if all of them are.
+        if bad != 0 || !total.is_finite() {
+            let pivots = projection.variance.iter();
+            let found = pivots.copied().find(|pivot| !is_variance(*pivot));
+            return Err(not_positive(found.unwrap_or(total), 0));
         }
         Ok(projection)
     }
@@ -129,16 +144,37 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
         }
     }
 
-    /// The moving block in Joseph form: (I - K H) P (I - K H)ᵀ + K R Kᵀ.
+    /// The moving block after the update, `whitened` being the moving columns of V.
     #[inline(always)]
-    pub(crate) fn update_corner(&self, p: &mut [T], n: usize, head: &[[T; M]; Y]) {
+    pub(crate) fn update_corner(&self, p: &mut [T], n: usize, whitened: &[[T; M]; Y]) {
+        if self.wide {
+            return self.update_corner_in_joseph_form(p, n);
+        }
+        let mut rest = [[T::from_f64(0.0); M]; M];
+        for i in 0..M {
+            rest[i] = load(p, i * n);
+            for k in 0..Y {
+                rest[i] = mul_add(whitened[k], -whitened[k][i], rest[i]);
+            }
+        }
+        for (i, row) in rest.iter().enumerate() {
+            store(p, i * n, *row);
+        }
+    }
+
+    /// (I - K H) P (I - K H)ᵀ + K R Kᵀ.
+    #[cold]
+    #[inline(never)]
+    fn update_corner_in_joseph_form(&self, p: &mut [T], n: usize) {
         let (observation, output) = (self.observation, self.observation.parameters);
         let q = output.len() / Y;
         let zero = T::from_f64(0.0);
+        let mut reduced = self.moving;
+        self.reduce(&mut reduced);
         // K_m = (L⁻¹ H P)_mᵀ diag(α)⁻¹ L⁻¹, row by row from the last output back.
         let mut gain = [[zero; M]; Y];
         for k in (0..Y).rev() {
-            gain[k] = head[k].map(|value| value * self.reciprocal[k]);
+            gain[k] = reduced[k].map(|value| value * self.reciprocal[k]);
             for later in k + 1..Y {
                 gain[k] = mul_add(gain[later], -self.lower[later][k], gain[k]);
             }
@@ -175,6 +211,23 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
             }
         }
     }
+}
+
+/// An update takes at most 1 + Σ S/R off a variance, in relative terms. What has more digits than
+/// the number type, less the eight bits that sums over some dozen products lose, would leave
+/// rounding only.
+#[cold]
+#[inline(never)]
+fn check_digits<T: Real, const Y: usize>(
+    projected: &[T; Y],
+    noise: &[T; Y],
+) -> Result<(), EstimationError> {
+    for output in 0..Y {
+        if projected[output] * T::epsilon() * T::from_f64(256.0) > noise[output] {
+            return Err(EstimationError::LostPrecision { output });
+        }
+    }
+    Ok(())
 }
 
 #[inline(always)]
