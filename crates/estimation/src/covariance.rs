@@ -16,9 +16,9 @@
 use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers, Observation};
+use crate::form::{Form, Numbers, Observation, Transition};
 use crate::innovation::Innovation;
-use crate::lanes4::{dot, load, load_rows, mul_add, store};
+use crate::lanes4::{load, load_rows, mul_add, multiply_add, small_product, store};
 use crate::projection::{Projection, is_variance, not_positive};
 
 /// P itself: the fast form. It needs double precision, and a prior that is not wider against
@@ -50,15 +50,13 @@ impl<T: Real> Form<T> for Covariance {
     }
 
     #[inline(always)]
-    fn predict<const M: usize>(
+    fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,
-        transition: &[[T; M]; M],
-        columns: &[T],
-        noise: &[[T; M]; M],
-        variance: &[T; M],
+        transition: &Transition<'_, T, M>,
+        enters: impl Fn(usize, usize) -> bool,
     ) -> Result<(), EstimationError> {
         let n = numbers.pivots.len();
-        predict(numbers.matrix, n, transition, columns, noise, variance)
+        predict::<T, M, SPARSE>(numbers.matrix, n, transition, numbers.cross, enters)
     }
 
     #[inline(always)]
@@ -92,87 +90,152 @@ impl<T: Real> Form<T> for Covariance {
     }
 }
 
-/// P ← Φ P Φᵀ + Γ diag(variance) Γᵀ.
-///
-/// `transition` are the moving columns of Φ, `columns` its parameter columns (M × p, by rows),
-/// `noise` is Γ.
+/// P ← W (Φ P Φᵀ + Γ diag(variance) Γᵀ) Wᵀ. W, which waits for the end of the step and for its
+/// sines and cosines, comes last.
 #[inline(always)]
-fn predict<T: Real, const M: usize>(
+fn predict<T: Real, const M: usize, const SPARSE: bool>(
     p: &mut [T],
     n: usize,
-    transition: &[[T; M]; M],
-    columns: &[T],
-    noise: &[[T; M]; M],
-    variance: &[T; M],
+    transition: &Transition<'_, T, M>,
+    workspace: &mut [T],
+    enters: impl Fn(usize, usize) -> bool,
 ) -> Result<(), EstimationError> {
     let count = n - M;
     let half = T::from_f64(0.5);
-    // C Φ_mpᵀ with C = Φ_mp P_pp + 2 Φ_mm P_mp: its symmetric part is all that the parameters
-    // add to the moving block.
-    let mut added = [[T::from_f64(0.0); M]; M];
+    let Transition {
+        moving,
+        noise,
+        variance,
+        map,
+        ..
+    } = transition;
     let mut column = 0;
     while column + 4 <= count {
-        predict_columns::<T, M, 4>(p, n, transition, columns, column, &mut added);
+        predict_columns::<T, M, 4, SPARSE>(p, n, transition, &enters, workspace, column);
         column += 4;
     }
     while column < count {
-        predict_columns::<T, M, 1>(p, n, transition, columns, column, &mut added);
+        predict_columns::<T, M, 1, SPARSE>(p, n, transition, &enters, workspace, column);
         column += 1;
     }
-    let corner: [[T; M]; M] = load_rows(p, n, 0);
-    let mut mapped = [[T::from_f64(0.0); M]; M];
-    for i in 0..M {
-        for (row, coefficient) in corner.iter().zip(&transition[i]) {
-            mapped[i] = mul_add(*row, *coefficient, mapped[i]);
-        }
-    }
+    let added = added::<T, M, SPARSE>(transition.parameters, count, workspace, enters);
+    let mapped = small_product(moving, &load_rows(p, n, 0));
+    let mut corner = [[T::from_f64(0.0); M]; M];
     for i in 0..M {
         for j in 0..=i {
             let mut sum = half * (added[i][j] + added[j][i]);
             for k in 0..M {
-                sum = mapped[i][k].mul_add(transition[j][k], sum);
+                sum = mapped[i][k].mul_add(moving[j][k], sum);
                 sum = (noise[i][k] * variance[k]).mul_add(noise[j][k], sum);
             }
-            p[i * n + j] = sum;
-            p[j * n + i] = sum;
+            corner[i][j] = sum;
+            corner[j][i] = sum;
         }
+    }
+    if let Some(map) = map {
+        let rows = small_product(map, &corner);
+        for i in 0..M {
+            for j in 0..=i {
+                let mut sum = T::from_f64(0.0);
+                for k in 0..M {
+                    sum = rows[i][k].mul_add(map[j][k], sum);
+                }
+                corner[i][j] = sum;
+                corner[j][i] = sum;
+            }
+        }
+    }
+    for (i, row) in corner.iter().enumerate() {
+        store(p, i * n, *row);
     }
     check_diagonal(p, n, M)
 }
 
-/// The moving rows Φ_mm P_mp + Φ_mp P_pp, for `W` columns, and what those columns add to C Φ_mpᵀ.
+/// The moving rows W (Φ_mm P_mp + Φ_mp P_pp), for `W` columns. C = Φ_mp P_pp + 2 Φ_mm P_mp is left
+/// in `workspace`.
 #[inline(always)]
-fn predict_columns<T: Real, const M: usize, const W: usize>(
+fn predict_columns<T: Real, const M: usize, const W: usize, const SPARSE: bool>(
     p: &mut [T],
     n: usize,
-    transition: &[[T; M]; M],
-    columns: &[T],
+    transition: &Transition<'_, T, M>,
+    enters: &impl Fn(usize, usize) -> bool,
+    workspace: &mut [T],
     column: usize,
-    added: &mut [[T; M]; M],
 ) {
     let (count, at) = (n - M, M + column);
+    let columns = transition.parameters;
     let old: [[T; W]; M] = load_rows(p, n, at);
     let mut mapped = [[T::from_f64(0.0); W]; M];
     for i in 0..M {
-        for (row, coefficient) in old.iter().zip(&transition[i]) {
-            mapped[i] = mul_add(*row, *coefficient, mapped[i]);
+        for j in 0..M {
+            mapped[i] = mul_add(old[j], transition.moving[i][j], mapped[i]);
         }
     }
     let mut sums = mapped;
     for l in 0..count {
         let row: [T; W] = load(p, (M + l) * n + at);
         for i in 0..M {
-            sums[i] = mul_add(row, columns[i * count + l], sums[i]);
+            if !SPARSE || enters(i, l) {
+                sums[i] = mul_add(row, columns[i * count + l], sums[i]);
+            }
         }
     }
-    let phi: [[T; W]; M] = load_rows(columns, count, column);
     for i in 0..M {
-        store(p, i * n + at, sums[i]);
         let both = mul_add(mapped[i], T::from_f64(1.0), sums[i]);
-        for j in 0..M {
-            added[i][j] = added[i][j] + dot(both, phi[j]);
+        store(workspace, i * count + column, both);
+    }
+    if let Some(map) = &transition.map {
+        let before = sums;
+        for i in 0..M {
+            sums[i] = before[0].map(|value| value * map[i][0]);
+            for j in 1..M {
+                sums[i] = mul_add(before[j], map[i][j], sums[i]);
+            }
         }
     }
+    for (i, row) in sums.iter().enumerate() {
+        store(p, i * n + at, *row);
+    }
+}
+
+/// C Φ_mpᵀ, whose symmetric part is all that the parameters add to the moving block. C (M × p, by
+/// rows) is in `workspace`.
+#[inline(always)]
+fn added<T: Real, const M: usize, const SPARSE: bool>(
+    columns: &[T],
+    count: usize,
+    workspace: &[T],
+    enters: impl Fn(usize, usize) -> bool,
+) -> [[T; M]; M] {
+    let mut added = [[T::from_f64(0.0); M]; M];
+    let mut rest = 0;
+    if !SPARSE {
+        rest = count / 4 * 4;
+        for i in 0..M {
+            let mut lanes = [[T::from_f64(0.0); 4]; M];
+            for column in (0..rest).step_by(4) {
+                let row: [T; 4] = load(workspace, i * count + column);
+                for j in 0..M {
+                    lanes[j] = multiply_add(row, load(columns, j * count + column), lanes[j]);
+                }
+            }
+            for j in 0..M {
+                let [a, b, c, d] = lanes[j];
+                added[i][j] = (a + b) + (c + d);
+            }
+        }
+    }
+    for l in rest..count {
+        for j in 0..M {
+            if !SPARSE || enters(j, l) {
+                let phi = columns[j * count + l];
+                for i in 0..M {
+                    added[i][j] = workspace[i * count + l].mul_add(phi, added[i][j]);
+                }
+            }
+        }
+    }
+    added
 }
 
 /// What the pass over P needs.

@@ -23,6 +23,8 @@ pub struct Buffers<'a, T> {
     pub gain: &'a mut [T],
     /// Workspace of an update; 2 × n × Y.
     pub sweep: &'a mut [T],
+    /// Workspace of a prediction; M × n.
+    pub cross: &'a mut [T],
 }
 
 /// What can be read of a filter's numbers between steps.
@@ -61,6 +63,7 @@ pub struct ArrayStorage<T, const M: usize, const Y: usize, const N: usize> {
     output: [[T; N]; Y],
     gain: [[T; N]; Y],
     sweep: [[[T; Y]; N]; 2],
+    cross: [[T; N]; M],
 }
 
 impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M, Y, N> {
@@ -83,6 +86,7 @@ impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArraySto
             output: [[zero; N]; Y],
             gain: [[zero; N]; Y],
             sweep: [[[zero; Y]; N]; 2],
+            cross: [[zero; N]; M],
         }
     }
 }
@@ -112,6 +116,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
             output: self.output.as_flattened_mut(),
             gain: self.gain.as_flattened_mut(),
             sweep: self.sweep.as_flattened_mut().as_flattened_mut(),
+            cross: self.cross.as_flattened_mut(),
         }
     }
 
@@ -132,7 +137,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
 #[derive(Clone, Debug)]
 pub struct VecStorage<T> {
     states: usize,
-    numbers: [alloc::vec::Vec<T>; 8],
+    numbers: [alloc::vec::Vec<T>; 9],
 }
 
 #[cfg(feature = "alloc")]
@@ -149,6 +154,7 @@ impl<T: Copy + Default> VecStorage<T> {
             outputs * states,
             outputs * states,
             2 * outputs * states,
+            moving * states,
         ];
         Self {
             states,
@@ -173,6 +179,7 @@ impl<T> Storage<T> for VecStorage<T> {
             output,
             gain,
             sweep,
+            cross,
         ] = self.numbers.each_mut();
         Buffers {
             state,
@@ -183,11 +190,12 @@ impl<T> Storage<T> for VecStorage<T> {
             output,
             gain,
             sweep,
+            cross,
         }
     }
 
     fn view(&self) -> View<'_, T> {
-        let [state, matrix, pivots, transition, _, _, gain, _] = self.numbers.each_ref();
+        let [state, matrix, pivots, transition, _, _, gain, _, _] = self.numbers.each_ref();
         View {
             state,
             matrix,
