@@ -64,7 +64,11 @@ impl<T: Real> Form<T> for Covariance {
         numbers: &mut Numbers<'_, T>,
         observation: &Observation<'_, T, M, Y>,
     ) -> Result<Innovation<T, Y>, EstimationError> {
-        Projection::new(numbers.matrix, numbers.pivots.len(), observation)?.innovation()
+        let projection = Projection::new(numbers.matrix, numbers.pivots.len(), observation);
+        projection.check()?;
+        let innovation = projection.innovation();
+        innovation.check()?;
+        Ok(innovation)
     }
 
     #[inline(always)]
@@ -75,8 +79,10 @@ impl<T: Real> Form<T> for Covariance {
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError> {
         let n = numbers.pivots.len();
-        let projection = Projection::new(numbers.matrix, n, observation)?;
-        let innovation = projection.innovation()?;
+        let projection = Projection::new(numbers.matrix, n, observation);
+        projection.check()?;
+        let innovation = projection.innovation();
+        innovation.check()?;
         let mut head = projection.moving;
         projection.reduce(&mut head);
         let mut correction = [T::from_f64(0.0); M];

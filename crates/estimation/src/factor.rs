@@ -226,7 +226,9 @@ fn innovation<T: Real, const M: usize, const Y: usize>(
     let Observation {
         residual, observed, ..
     } = *observation;
-    Innovation::from_factors(residual, observed, lower, variance, &reciprocal)
+    let innovation = Innovation::from_factors(residual, observed, lower, variance, &reciprocal);
+    innovation.check()?;
+    Ok(innovation)
 }
 
 /// Bierman's update of the factors for all outputs in one sweep.
@@ -424,12 +426,14 @@ impl<T: Real, const M: usize, const Y: usize> Head<T, M, Y> {
             }
             lower[k][k] = T::from_f64(1.0);
         }
-        Innovation::from_factors(
+        let innovation = Innovation::from_factors(
             observation.residual,
             observation.observed,
             lower,
             self.variance,
             &self.reciprocal,
-        )
+        );
+        innovation.check()?;
+        Ok(innovation)
     }
 }
