@@ -79,6 +79,9 @@ impl<T: Real> Form<T> for Covariance {
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError> {
         let n = numbers.pivots.len();
+        // Needs nothing of S, and fills the time in which the divisions of its factors wait for
+        // each other.
+        project_parameters(numbers.matrix, n, observation, numbers.gain);
         let projection = Projection::new(numbers.matrix, n, observation);
         projection.check()?;
         let innovation = projection.innovation();
@@ -90,7 +93,7 @@ impl<T: Real> Form<T> for Covariance {
             correction = mul_add(head[k], innovation.weights[k], correction);
         }
         correct(&correction);
-        let pass = Pass::new(&projection, &innovation, head, numbers.sweep);
+        let pass = Pass::new(&projection, &innovation, head);
         pass.run(numbers.matrix, n, parameters, numbers.gain)?;
         Ok(innovation)
     }
@@ -247,11 +250,9 @@ fn added<T: Real, const M: usize, const SPARSE: bool>(
 /// What the pass over P needs.
 struct Pass<'a, T, const M: usize, const Y: usize> {
     projection: &'a Projection<'a, T, M, Y>,
-    /// Moving columns of diag(α)^-1/2 L⁻¹ H.
-    output: [[T; M]; Y],
-    /// Its columns of the q parameters that enter the output (Y × q, by rows).
-    output_parameters: &'a [T],
-    /// The innovation made independent and of unit variance.
+    /// diag(α)^-1/2.
+    root: [T; Y],
+    /// Weights of the rows of L⁻¹ H P in the correction of the state.
     weights: [T; Y],
     /// Moving columns of V.
     head: [[T; M]; Y],
@@ -264,33 +265,15 @@ impl<'a, T: Real, const M: usize, const Y: usize> Pass<'a, T, M, Y> {
         projection: &'a Projection<'a, T, M, Y>,
         innovation: &Innovation<T, Y>,
         mut head: [[T; M]; Y],
-        workspace: &'a mut [T],
     ) -> Self {
-        let observation = projection.observation;
-        let q = observation.parameters.len() / Y;
         let root = projection.reciprocal.map(T::sqrt);
-        let mut output = observation.moving;
-        projection.reduce(&mut output);
-        let mut weights = innovation.weights;
         for k in 0..Y {
             head[k] = head[k].map(|value| value * root[k]);
-            output[k] = output[k].map(|value| value * root[k]);
-            weights[k] = weights[k] * (innovation.variance[k] * root[k]);
-        }
-        let output_parameters = &mut workspace[..Y * q];
-        output_parameters.copy_from_slice(observation.parameters);
-        for i in 0..q {
-            let mut column: [[T; 1]; Y] = load_rows(output_parameters, q, i);
-            projection.reduce(&mut column);
-            for k in 0..Y {
-                output_parameters[k * q + i] = column[k][0] * root[k];
-            }
         }
         Self {
             projection,
-            output,
-            output_parameters,
-            weights,
+            root,
+            weights: innovation.weights,
             head,
         }
     }
@@ -344,24 +327,14 @@ impl<'a, T: Real, const M: usize, const Y: usize> Pass<'a, T, M, Y> {
         gain: &mut [T],
         column: usize,
     ) {
-        let q = self.output_parameters.len() / Y;
         let at = M + column;
         let mut cross: [[T; W]; M] = load_rows(p, n, at);
-        let mut v = [[T::from_f64(0.0); W]; Y];
-        for k in 0..Y {
-            for (row, h) in cross.iter().zip(&self.output[k]) {
-                v[k] = mul_add(*row, *h, v[k]);
-            }
-        }
-        for i in 0..q {
-            let row: [T; W] = load(p, (M + i) * n + at);
-            for k in 0..Y {
-                v[k] = mul_add(row, self.output_parameters[k * q + i], v[k]);
-            }
-        }
+        let mut v: [[T; W]; Y] = load_rows(gain, n, at);
+        self.projection.reduce(&mut v);
         let mut corrected: [T; W] = load(parameters, column);
         for k in 0..Y {
             corrected = mul_add(v[k], self.weights[k], corrected);
+            v[k] = v[k].map(|value| value * self.root[k]);
             for i in 0..M {
                 cross[i] = mul_add(v[k], -self.head[k][i], cross[i]);
             }
@@ -371,6 +344,52 @@ impl<'a, T: Real, const M: usize, const Y: usize> Pass<'a, T, M, Y> {
         for (i, row) in cross.iter().enumerate() {
             store(p, i * n + at, *row);
         }
+    }
+}
+
+/// Leaves the parameter columns of H P in `products` (Y × n).
+#[inline(always)]
+fn project_parameters<T: Real, const M: usize, const Y: usize>(
+    p: &[T],
+    n: usize,
+    observation: &Observation<'_, T, M, Y>,
+    products: &mut [T],
+) {
+    let count = n - M;
+    let mut column = 0;
+    while column + 4 <= count {
+        project_columns::<T, M, Y, 4>(p, n, observation, products, M + column);
+        column += 4;
+    }
+    while column < count {
+        project_columns::<T, M, Y, 1>(p, n, observation, products, M + column);
+        column += 1;
+    }
+}
+
+#[inline(always)]
+fn project_columns<T: Real, const M: usize, const Y: usize, const W: usize>(
+    p: &[T],
+    n: usize,
+    observation: &Observation<'_, T, M, Y>,
+    products: &mut [T],
+    at: usize,
+) {
+    let q = observation.parameters.len() / Y;
+    let mut sums = [[T::from_f64(0.0); W]; Y];
+    for i in 0..M + q {
+        let row: [T; W] = load(p, i * n + at);
+        for k in 0..Y {
+            let h = if i < M {
+                observation.moving[k][i]
+            } else {
+                observation.parameters[k * q + i - M]
+            };
+            sums[k] = mul_add(row, h, sums[k]);
+        }
+    }
+    for (k, sum) in sums.iter().enumerate() {
+        store(products, k * n + at, *sum);
     }
 }
 
