@@ -6,10 +6,11 @@
 //! it is symmetric to the last bit without being made so.
 //!
 //! - Prediction: Φ is the identity on the parameters, so the parameter block does not change;
-//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp.
+//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp. A step that starts at the origin of its chart
+//!   and has one stage takes of Φ_mp what the model says is not zero.
 //! - Update: with S = L diag(α) Lᵀ the whitened gain is V = diag(α)^-1/2 L⁻¹ H P, and
-//!   P_pp ← P_pp - Vᵀ V. The moving block, where a measurement removes nearly all of a wide
-//!   prior, is updated in Joseph form, which cannot lose definiteness by cancellation.
+//!   P ← P - Vᵀ V. Where a measurement removes nearly all of a wide prior, the moving block is
+//!   updated in Joseph form, which cannot lose definiteness by cancellation.
 //!
 //! A variance that is not positive afterwards is an error; nothing is repaired.
 
@@ -30,6 +31,8 @@ use crate::projection::{Projection, is_variance, not_positive};
 pub struct Covariance;
 
 impl<T: Real> Form<T> for Covariance {
+    const USES_ZEROS: bool = true;
+
     #[inline]
     fn start(numbers: &mut Numbers<'_, T>, variances: impl Iterator<Item = T>) {
         let n = numbers.pivots.len();

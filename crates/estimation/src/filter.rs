@@ -236,7 +236,7 @@ where
             map,
         };
         let numbers = &mut numbers!(buffers);
-        if at_origin && self.integration == Integration::EULER {
+        if F::USES_ZEROS && at_origin && self.integration == Integration::EULER {
             let enters = |i, j| self.model.enters_at_origin(i, j);
             F::predict::<M, true>(numbers, &transition, enters)
         } else {

@@ -11,6 +11,9 @@ use crate::innovation::Innovation;
 /// Both know that Φ is the identity on the parameters, and that H is zero but for the moving
 /// states and the first q parameters.
 pub trait Form<T: Real> {
+    /// Whether a prediction gains from knowing which elements of Φ are zero.
+    const USES_ZEROS: bool;
+
     /// Independent errors of the given variances.
     fn start(numbers: &mut Numbers<'_, T>, variances: impl Iterator<Item = T>);
 

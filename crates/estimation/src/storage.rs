@@ -12,7 +12,7 @@ pub struct Buffers<'a, T> {
     pub matrix: &'a mut [T],
     /// D of the factors; n.
     pub pivots: &'a mut [T],
-    /// Parameter columns of Φ by rows; M × (n - M).
+    /// Parameter columns of Φ by rows, in the chart that the step began in; M × (n - M).
     pub transition: &'a mut [T],
     /// Parameter columns of the rates' Jacobian at each of up to four stages, by rows;
     /// 4 × M × (n - M). Structural zeros stay zero.
@@ -36,7 +36,8 @@ pub struct View<'a, T> {
     pub matrix: &'a [T],
     /// D of the factors; n.
     pub pivots: &'a [T],
-    /// Parameter columns of the last Φ by rows.
+    /// Parameter columns of the last Φ by rows, in the chart that its step began in: see
+    /// [`crate::Filter::chart_map`].
     pub transition: &'a [T],
     /// Gain of the last update, whitened ([`crate::Covariance`]) or unnormalised; Y × n.
     pub gain: &'a [T],
