@@ -105,10 +105,28 @@ where
             noise: zero,
         };
         self.substep(true, nodes, weights, moving, &mut transition);
-        for _ in 1..count {
-            self.substep(false, nodes, weights, moving, &mut transition);
+        if count > 1 {
+            (*moving, transition) =
+                self.further_substeps(count - 1, nodes, weights, *moving, transition);
         }
         transition
+    }
+
+    /// The substeps after the first. Arrays go by value: with their addresses taken here, the
+    /// caller would keep them in memory for steps of one part too.
+    #[inline(never)]
+    fn further_substeps<const ORDER: usize>(
+        &mut self,
+        count: u32,
+        nodes: &[T; ORDER],
+        weights: &[T; ORDER],
+        mut moving: [T; M],
+        mut transition: Transition<T, M>,
+    ) -> ([T; M], Transition<T, M>) {
+        for _ in 0..count {
+            self.substep(false, nodes, weights, &mut moving, &mut transition);
+        }
+        (moving, transition)
     }
 
     /// One Runge-Kutta step of `ORDER` stages. The stage points do not depend on the
