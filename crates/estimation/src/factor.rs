@@ -14,7 +14,7 @@ use gyrocal_scalar::Real;
 use crate::error::EstimationError;
 use crate::form::{Form, Numbers, Observation, Transition};
 use crate::innovation::Innovation;
-use crate::lanes4::{load, load_rows, mul_add, multiply_add, small_product, store};
+use crate::lanes4::{load, mul_add, multiply_add, small_product, store};
 
 /// The factors U and D: P is symmetric and positive definite whatever rounding does, in single
 /// precision and from wide priors. `cargo figures kernel` prints how much longer a step takes than
@@ -49,7 +49,7 @@ impl<T: Real> Form<T> for Factors {
         transition: &Transition<'_, T, M>,
         _enters: impl Fn(usize, usize) -> bool,
     ) -> Result<(), EstimationError> {
-        predict(numbers.matrix, numbers.pivots, transition, numbers.cross)
+        predict(numbers.matrix, numbers.pivots, transition)
     }
 
     #[inline(always)]
@@ -77,19 +77,15 @@ fn predict<T: Real, const M: usize>(
     factor: &mut [T],
     pivots: &mut [T],
     transition: &Transition<'_, T, M>,
-    workspace: &mut [T],
 ) -> Result<(), EstimationError> {
     let n = pivots.len();
     let p = n - M;
     let (mut moving, mut noise) = (transition.moving, transition.noise);
-    let parameters = &mut workspace[..M * p];
     if let Some(map) = &transition.map {
         moving = small_product(map, &moving);
         noise = small_product(map, &noise);
-        map_rows(map, transition.parameters, parameters, p);
-    } else {
-        parameters.copy_from_slice(transition.parameters);
     }
+    let parameters = transition.parameters;
     let phi: [&[T]; M] = core::array::from_fn(|i| &parameters[i * p..(i + 1) * p]);
     let blocks: [&[[T; 4]]; M] = core::array::from_fn(|i| phi[i].as_chunks().0);
     for (k, column) in factor[M * n..].chunks_exact_mut(n).enumerate() {
@@ -106,7 +102,7 @@ fn predict<T: Real, const M: usize>(
         let old: [T; M] = core::array::from_fn(|l| head[l]);
         for i in 0..M {
             let mut total = (sums[i][0] + sums[i][1]) + (sums[i][2] + sums[i][3]);
-            for (phi, u) in moving[i].iter().zip(old) {
+            for (phi, u) in transition.moving[i].iter().zip(old) {
                 total = phi.mul_add(u, total);
             }
             if used > quads.len() {
@@ -116,40 +112,18 @@ fn predict<T: Real, const M: usize>(
             }
             head[i] = total;
         }
+        if let Some(map) = &transition.map {
+            let old: [T; M] = load(head, 0);
+            for i in 0..M {
+                let mut total = T::from_f64(0.0);
+                for j in 0..M {
+                    total = map[i][j].mul_add(old[j], total);
+                }
+                head[i] = total;
+            }
+        }
     }
     predict_corner(factor, pivots, &moving, &noise, &transition.variance)
-}
-
-/// Writes the product of `map` with the M rows of `rows` (stride p).
-#[inline(always)]
-fn map_rows<T: Real, const M: usize>(map: &[[T; M]; M], rows: &[T], product: &mut [T], p: usize) {
-    let mut column = 0;
-    while column + 4 <= p {
-        map_columns::<T, M, 4>(map, rows, product, p, column);
-        column += 4;
-    }
-    while column < p {
-        map_columns::<T, M, 1>(map, rows, product, p, column);
-        column += 1;
-    }
-}
-
-#[inline(always)]
-fn map_columns<T: Real, const M: usize, const W: usize>(
-    map: &[[T; M]; M],
-    rows: &[T],
-    product: &mut [T],
-    p: usize,
-    column: usize,
-) {
-    let old: [[T; W]; M] = load_rows(rows, p, column);
-    for (i, weights) in map.iter().enumerate() {
-        let mut sum = [T::from_f64(0.0); W];
-        for (row, weight) in old.iter().zip(weights) {
-            sum = mul_add(*row, *weight, sum);
-        }
-        store(product, i * p + column, sum);
-    }
 }
 
 /// The M × M corner: weighted Gram-Schmidt on the rows of [Φ_mm U_mm, Γ] with the weights
