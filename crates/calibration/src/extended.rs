@@ -1,7 +1,7 @@
 //! The nominal model with effects of the catalogue, fitted to one record.
 
 use gyrocal::estimation::EstimationError;
-use gyrocal::estimation::batch::{Reduced, Whitened};
+use gyrocal::estimation::batch::{Linearisation, Reduced, Whitened};
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Chart, Recentring, Settings};
@@ -66,6 +66,7 @@ impl Default for NoiseModel {
 }
 
 /// An extended model at its best fit to a record.
+#[derive(Clone)]
 pub struct Extended<'a> {
     problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
     solution: Solution,
@@ -186,14 +187,6 @@ impl<'a> Extended<'a> {
         };
         change(&mut problem.legs[0]);
         Self::solved(problem, extension.clone())
-    }
-
-    /// The same fit once more.
-    ///
-    /// # Errors
-    /// As [`Self::refitted`].
-    pub fn again(&self) -> Result<Self, CalibrationError> {
-        self.refitted(&self.extension)
     }
 
     /// The same extension fitted with another noise.
@@ -339,7 +332,10 @@ impl<'a> Extended<'a> {
         let parameters = self.parameters();
         let reduced = self
             .problem
-            .without_rows(0, &parameters, left_out, |pass| pass.reduce(|_| ()))
+            .without_rows(0, &parameters, left_out, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                Linearisation { tape, ..*pass }.reduce(|_| ())
+            })
             .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
         let unknowns = &self.problem.unknowns;
         let count = unknowns.len();
@@ -363,6 +359,23 @@ impl<'a> Extended<'a> {
                 + reduced.log_variance
                 + determinant
                 + reduced.values as f64 * core::f64::consts::TAU.ln()))
+    }
+
+    /// Whitened innovations of the fit, row by row; NaN where there is no value.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn whitened(&self) -> Result<Vec<[f64; 3]>, CalibrationError> {
+        let parameters = self.parameters();
+        let mut whitened = vec![[f64::NAN; 3]; self.points().len()];
+        self.problem
+            .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                Linearisation { tape, ..*pass }
+                    .reduce(|value| whitened[value.row][value.output] = value.columns[0])
+            })
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+        Ok(whitened)
     }
 
     /// Passes over the record with all parameters of [`Catalogue`] as columns (all but those in
@@ -403,6 +416,8 @@ impl<'a> Extended<'a> {
         let parameters = self.parameters();
         self.problem
             .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                let pass = Linearisation { tape, ..*pass };
                 noise::estimate(|factors| pass.noise_score(factors))
             })
             .map_err(|error: EstimationError| CalibrationError::from(Failure::Pass(0, error)))

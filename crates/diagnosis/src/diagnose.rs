@@ -177,7 +177,7 @@ pub fn diagnose<'a>(
         } else if searched.is_some() {
             break;
         }
-        let found = search(nominal.again()?, record, bench, &search_options)?;
+        let found = search(nominal.clone(), record, bench, &search_options)?;
         estimate = found.fitted.noise()?;
         // With the noise that was believed as the unit.
         let done = found.findings.is_empty();
@@ -188,7 +188,7 @@ pub fn diagnose<'a>(
     }
     let searched = match searched {
         Some(searched) => searched,
-        None => search(nominal.again()?, record, bench, &search_options)?,
+        None => search(nominal.clone(), record, bench, &search_options)?,
     };
     let mut noise_findings = audit.findings.clone();
     noise_findings.extend(gyro_noise(&estimate, &noise_model, gyro_share));

@@ -90,7 +90,8 @@ mod tests {
     fn what_cannot_be_looked_for_is_refused_with_its_reason() {
         let unknown = refused("gyro_y.gz");
         assert!(
-            unknown.starts_with("there is no effect `gyro_y.gz`") && unknown.contains("`gyro_y.g_z`"),
+            unknown.starts_with("there is no effect `gyro_y.gz`")
+                && unknown.contains("`gyro_y.g_z`"),
             "{unknown}"
         );
         assert!(refused("gyro_x.temperature").contains("no column `temperature_c`"));
@@ -107,10 +108,15 @@ mod tests {
             "[site]\nlatitude_deg = 39.1\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n",
             "bench",
         );
-        let error = bench.ok().and_then(|bench| check(&[], &short, &bench).err());
+        let error = bench
+            .ok()
+            .and_then(|bench| check(&[], &short, &bench).err());
         assert!(matches!(
             error,
-            Some(DiagnoseError::Calibration(CalibrationError::TooShort { found: 11, .. }))
+            Some(DiagnoseError::Calibration(CalibrationError::TooShort {
+                found: 11,
+                ..
+            }))
         ));
     }
 }

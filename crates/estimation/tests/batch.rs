@@ -83,7 +83,7 @@ fn the_likelihood_is_that_of_the_joint_gaussian() {
     let square = residuals.dot(&cholesky.solve(&residuals));
     let log_determinant = 2.0 * cholesky.l().diagonal().map(f64::ln).sum();
     // Rounding, and covariances by differences.
-    assert!((reduced.gram[0] / square - 1.0).abs() < 1e-8);
+    assert!((reduced.gram[(0, 0)] / square - 1.0).abs() < 1e-8);
     assert!((reduced.log_variance - log_determinant).abs() < 1e-7);
     let score = chain
         .linearised(&trajectory, &chain.parameters(), &[], &NoColumns)
@@ -232,10 +232,10 @@ fn results_are_symmetric_to_the_last_bit() {
         .reduce(|_| ())
         .unwrap();
     let size = 1 + 4 + 3;
-    assert_eq!(reduced.gram.len(), size * size);
+    assert_eq!(reduced.gram.shape(), (size, size));
     for i in 0..size {
         for j in 0..size {
-            assert_eq!(reduced.gram[i * size + j], reduced.gram[j * size + i]);
+            assert_eq!(reduced.gram[(i, j)], reduced.gram[(j, i)]);
         }
     }
     let [[_, upper], [lower, _]] = reduced.last_covariance;
@@ -263,7 +263,7 @@ fn the_gram_matrix_is_the_sum_over_what_is_watched() {
     for i in 0..3 {
         for j in 0..3 {
             let sum: f64 = seen.iter().map(|(_, _, row)| row[i] * row[j]).sum();
-            let found = reduced.gram[i * 3 + j];
+            let found = reduced.gram[(i, j)];
             // The order of summation is the same but for blocks.
             assert!((found - sum).abs() <= 1e-12 * found.abs().max(1.0));
         }

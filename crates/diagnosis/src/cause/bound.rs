@@ -38,9 +38,11 @@ pub fn information(
     } else {
         1.0
     };
-    Ok(Some(DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
-        scale * scale * bank.information[(columns[i], columns[j])]
-    })))
+    Ok(Some(DMatrix::from_fn(
+        columns.len(),
+        columns.len(),
+        |i, j| scale * scale * bank.information[(columns[i], columns[j])],
+    )))
 }
 
 fn columns(

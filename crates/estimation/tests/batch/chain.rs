@@ -301,13 +301,12 @@ pub(crate) fn solve<C: Estimated>(chain: &Chain, columns: &C, sigma: &[f64]) -> 
         let parameters = values[..4].to_vec();
         let pass = chain.linearised(&points, &parameters, &active, &columns);
         let reduced = pass.reduce(|_| ()).unwrap();
-        let gram = |i: usize, j: usize| reduced.gram[i * (count + 1) + j];
         let information = DMatrix::from_fn(count, count, |i, j| {
             let own = if i == j { sigma[i].powi(-2) } else { 0.0 };
-            gram(i + 1, j + 1) + own
+            reduced.gram[(i + 1, j + 1)] + own
         });
         let gradient = DVector::from_fn(count, |i, _| {
-            (prior[i] - values[i]) / sigma[i].powi(2) - gram(i + 1, 0)
+            (prior[i] - values[i]) / sigma[i].powi(2) - reduced.gram[(i + 1, 0)]
         });
         let cholesky = Cholesky::new(information).unwrap();
         let change = cholesky.solve(&gradient);
