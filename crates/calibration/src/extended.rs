@@ -155,8 +155,9 @@ impl<'a> Extended<'a> {
             unknowns.push(Unknown::estimated(*sigma));
             values.push(before[*parameter]);
         }
-        for column in extension.further.columns() {
-            unknowns.push(Unknown::estimated(f64::INFINITY));
+        let further = &extension.further;
+        for (column, sigma) in further.columns().iter().zip(further.sigmas()) {
+            unknowns.push(Unknown::estimated(*sigma));
             let same = self
                 .extension
                 .further

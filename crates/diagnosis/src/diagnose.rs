@@ -6,7 +6,7 @@ use gyrocal_calibration::{
 };
 use gyrocal_record::{Bench, Record};
 
-use crate::cause::{Finding, Ranked, SearchOptions, Searched, Unavailable, search};
+use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, search};
 use crate::error::DiagnosisError;
 use crate::gain::{Gain, gain};
 use crate::noise::{AuditOptions, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, audit_noise};
@@ -46,6 +46,9 @@ const SHARES: [f64; 4] = [0.2, 0.1, 0.5, 0.2];
 /// search, so that it makes no causes of itself; it is named only if it still differs when the
 /// causes are in the model.
 const RECKONED: f64 = 3.0;
+
+/// Logarithms of noise that differ by less are one noise: a tenth of what three days tell.
+const SAME_NOISE: f64 = 0.02;
 
 /// Rounds of noise and search: noise that a cause had raised falls when the cause is in the model.
 const MOST_ROUNDS: usize = 3;
@@ -163,33 +166,22 @@ pub fn diagnose<'a>(
         seed: options.seed,
         ..SearchOptions::default()
     };
-    let mut estimate = nominal.noise()?;
-    let mut searched: Option<Searched<'a>> = None;
-    for _ in 0..MOST_ROUNDS {
+    let mut searched = search(nominal.clone(), record, bench, &search_options)?;
+    let mut estimate = searched.fitted.noise()?;
+    for _ in 1..MOST_ROUNDS {
         let ratios = reckoned(&estimate, &noise_model);
         let changed = ratios
             .iter()
             .zip(noise_model.gyro_ratio)
-            .any(|(new, old)| (new / old).ln().abs() > 0.05);
-        if changed {
-            noise_model.gyro_ratio = ratios;
-            nominal = nominal.with_noise(bench, &noise_model)?;
-        } else if searched.is_some() {
+            .any(|(new, old)| (new / old).ln().abs() > SAME_NOISE);
+        if !changed {
             break;
         }
-        let found = search(nominal.clone(), record, bench, &search_options)?;
-        estimate = found.fitted.noise()?;
-        // With the noise that was believed as the unit.
-        let done = found.findings.is_empty();
-        searched = Some(found);
-        if done {
-            break;
-        }
+        noise_model.gyro_ratio = ratios;
+        nominal = nominal.with_noise(bench, &noise_model)?;
+        searched = search(nominal.clone(), record, bench, &search_options)?;
+        estimate = searched.fitted.noise()?;
     }
-    let searched = match searched {
-        Some(searched) => searched,
-        None => search(nominal.clone(), record, bench, &search_options)?,
-    };
     let mut noise_findings = audit.findings.clone();
     noise_findings.extend(gyro_noise(&estimate, &noise_model, gyro_share));
     let remainder = remainder(&searched.fitted, record, remainder_share)?;

@@ -37,9 +37,24 @@ pub struct Family {
     /// The effect.
     pub(crate) effect: &'static EffectRow,
     pub(crate) candidates: Vec<Candidate>,
+    /// Of a random walk the columns of steps that it is made up from.
+    pub(crate) walk: Option<Vec<usize>>,
 }
 
 impl Family {
+    /// The same family, or with nothing to look for.
+    pub(crate) fn unless(&self, taken: bool) -> Self {
+        Self {
+            effect: self.effect,
+            candidates: if taken {
+                Vec::new()
+            } else {
+                self.candidates.clone()
+            },
+            walk: if taken { None } else { self.walk.clone() },
+        }
+    }
+
     /// Public id of the effect.
     #[must_use]
     pub fn id(&self) -> &'static str {
@@ -89,6 +104,7 @@ impl Plan {
         };
         plan.onset_rows.dedup();
         let base = PARAMETERS.len();
+        let mut walks = Vec::new();
         for effect in &EFFECTS {
             if !(effect.default_search || also.contains(&effect.id)) {
                 continue;
@@ -109,6 +125,9 @@ impl Plan {
                     columns: (first..first + 3).collect(),
                     shape: None,
                 }]
+            } else if effect.id.ends_with(".random_walk") {
+                walks.push(effect);
+                continue;
             } else if effect.kind != "term" {
                 continue;
             } else if let (true, Some(axis)) = (effect.id.ends_with(".step"), axis) {
@@ -151,19 +170,55 @@ impl Plan {
                     shape: None,
                 }]
             };
-            plan.families.push(Family { effect, candidates });
+            plan.families.push(Family {
+                effect,
+                candidates,
+                walk: None,
+            });
+        }
+        // Last, as what every slow cause looks like.
+        for effect in walks {
+            let Some(axis) = axis_of(effect.id) else {
+                continue;
+            };
+            plan.families.push(Family {
+                effect,
+                candidates: Vec::new(),
+                walk: Some(plan.steps[axis].clone()),
+            });
         }
         plan
     }
+
+    /// Time between the onsets that a random walk is made up from, h.
+    pub(crate) fn onset_interval_h(&self, record: &Record) -> f64 {
+        match self.onset_rows.as_slice() {
+            [first, .., last] => {
+                (record.time_s[*last] - record.time_s[*first])
+                    / (3600.0 * (self.onset_rows.len() - 1) as f64)
+            }
+            _ => 1.0,
+        }
+    }
 }
 
-/// What a candidate adds to a model.
-pub(crate) fn extend(extension: &mut Extension, family: &Family, shape: Option<f64>) {
-    let effect = family.effect;
+/// What a family adds to a model: at an onset or with a time constant, or, for a random walk,
+/// with the variance of its increments from onset to onset.
+pub(crate) fn extend(plan: &Plan, extension: &mut Extension, family: usize, shape: Option<f64>) {
+    let effect = plan.families[family].effect;
     if effect.id == "platform.initial_attitude" {
-        let mut columns = extension.further.columns().to_vec();
-        columns.extend([0, 1, 2].map(|axis| Column::Start { axis }));
-        extension.further = gyrocal_calibration::Further::new(columns);
+        let columns = [0, 1, 2].map(|axis| Column::Start { axis });
+        extension.further.extend(columns, f64::INFINITY);
+        return;
+    }
+    if let (true, Some(axis), Some(variance)) = (
+        effect.id.ends_with(".random_walk"),
+        axis_of(effect.id),
+        shape,
+    ) {
+        let steps = plan.steps[axis].iter();
+        let columns = steps.map(|column| plan.further[column - PARAMETERS.len()].clone());
+        extension.further.extend(columns, variance.sqrt());
         return;
     }
     for id in effect.states {

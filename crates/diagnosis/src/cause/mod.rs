@@ -19,6 +19,7 @@ mod bound;
 mod family;
 mod null;
 mod search;
+mod walk;
 
 pub use bound::information;
 pub(crate) use family::missing;

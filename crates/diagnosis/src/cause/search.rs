@@ -7,6 +7,7 @@ use gyrocal_record::{Bench, Record};
 use super::bank::{Bank, Joint};
 use super::family::{Family, Plan, Unavailable, extend, parameter};
 use super::null::Null;
+use super::walk::Walk;
 
 /// How causes are looked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -139,13 +140,8 @@ pub fn search<'a>(
             .families
             .iter()
             .enumerate()
-            .map(|(index, family)| Family {
-                effect: family.effect,
-                candidates: if taken.contains(&index) || equivalent_to(&plan, index, &taken) {
-                    Vec::new()
-                } else {
-                    family.candidates.clone()
-                },
+            .map(|(index, family)| {
+                family.unless(taken.contains(&index) || equivalent_to(&plan, index, &taken))
             })
             .collect();
         let null = Null::draw(&bank, &families, options.seed);
@@ -169,7 +165,7 @@ pub fn search<'a>(
     }
     let mut findings = Vec::with_capacity(accepted.len());
     for index in 0..accepted.len() {
-        findings.push(finding(&fitted, &plan, &accepted, index, options)?);
+        findings.push(finding(&fitted, &plan, record, &accepted, index, options)?);
     }
     let (ranking, threshold) = first.unwrap_or_default();
     Ok(Searched {
@@ -185,11 +181,7 @@ pub fn search<'a>(
 fn extension(plan: &Plan, accepted: &[Accepted]) -> Extension {
     let mut extension = Extension::default();
     for accepted in accepted {
-        extend(
-            &mut extension,
-            &plan.families[accepted.family],
-            accepted.shape,
-        );
+        extend(plan, &mut extension, accepted.family, accepted.shape);
     }
     extension
 }
@@ -208,6 +200,8 @@ struct Best {
     family: usize,
     candidate: usize,
     statistic: f64,
+    /// Of the increments of a random walk.
+    variance: f64,
 }
 
 /// The best candidate of every family, and what searching alone reaches.
@@ -222,6 +216,16 @@ impl<'a> Scores<'a> {
             .iter()
             .enumerate()
             .map(|(family, content)| {
+                if let Some(steps) = &content.walk {
+                    let (information, score) = bank.part(steps);
+                    let (statistic, variance) = Walk::new(information).best(&score);
+                    return Some(Best {
+                        family,
+                        candidate: 0,
+                        statistic,
+                        variance,
+                    });
+                }
                 content
                     .candidates
                     .iter()
@@ -231,6 +235,7 @@ impl<'a> Scores<'a> {
                             family,
                             candidate,
                             statistic: joint.statistic,
+                            variance: 0.0,
                         })
                     })
                     .max_by(|a, b| a.statistic.total_cmp(&b.statistic))
@@ -248,12 +253,21 @@ impl<'a> Scores<'a> {
         })
     }
 
+    /// The penalised statistic, a random walk behind what follows a law.
+    fn preferred(&self, families: &[Family], family: usize) -> f64 {
+        let walk = families[family].walk.is_some();
+        self.penalised(family) - if walk { RICHER } else { 0.0 }
+    }
+
     /// The family to be named: the best, or a simpler one that it contains if it is not
     /// significantly better than that; of equivalents the first.
     fn named(&self, families: &[Family]) -> Option<Best> {
         let best = (0..families.len())
             .filter(|family| self.best[*family].is_some())
-            .max_by(|a, b| self.penalised(*a).total_cmp(&self.penalised(*b)))?;
+            .max_by(|a, b| {
+                self.preferred(families, *a)
+                    .total_cmp(&self.preferred(families, *b))
+            })?;
         // Of equivalents the first in the table, which the families follow.
         let equivalents = families[best].effect.equivalents;
         let best = (0..best)
@@ -303,6 +317,9 @@ fn refined(
     plan: &Plan,
     best: &Best,
 ) -> Result<Option<f64>, CalibrationError> {
+    if plan.families[best.family].walk.is_some() {
+        return Ok(Some(best.variance));
+    }
     let candidates = &plan.families[best.family].candidates;
     let candidate = &candidates[best.candidate];
     let Some(shape) = candidate.shape else {
@@ -357,13 +374,14 @@ fn refined(
 fn finding(
     fitted: &Extended<'_>,
     plan: &Plan,
+    record: &Record,
     accepted: &[Accepted],
     index: usize,
     options: &SearchOptions,
 ) -> Result<Finding, CalibrationError> {
     let own = &accepted[index];
     let family = &plan.families[own.family];
-    let places = places(fitted, family);
+    let places = places(fitted, plan, family);
     let bank = Bank::new(fitted, &plan.further, &places)?;
     let others: Vec<usize> = accepted
         .iter()
@@ -375,13 +393,8 @@ fn finding(
         .families
         .iter()
         .enumerate()
-        .map(|(family, content)| Family {
-            effect: content.effect,
-            candidates: if others.contains(&family) || equivalent_to(plan, family, &others) {
-                Vec::new()
-            } else {
-                content.candidates.clone()
-            },
+        .map(|(family, content)| {
+            content.unless(others.contains(&family) || equivalent_to(plan, family, &others))
         })
         .collect();
     let null = Null::draw(&bank, &families, options.seed);
@@ -423,7 +436,15 @@ fn finding(
     let statistic = scores.best[own.family].map_or(0.0, |best| best.statistic);
     Ok(Finding {
         effect: family.id(),
-        parameters: estimates(fitted, family, &places, own.shape),
+        parameters: match (&family.walk, own.shape) {
+            (Some(_), Some(variance)) => vec![FoundParameter {
+                name: "size",
+                estimate: (variance / plan.onset_interval_h(record)).sqrt(),
+                sigma: None,
+                unit: "deg/h/sqrt(h)",
+            }],
+            _ => estimates(fitted, family, &places, own.shape),
+        },
         z: statistic.max(0.0).sqrt(),
         p_value: own.p_value,
         rivals,
@@ -443,9 +464,21 @@ fn from_joint(effect: &'static gyrocal::EffectRow, joint: &Joint) -> Vec<FoundPa
 }
 
 /// Where an effect's values are among those of the fit.
-fn places(fitted: &Extended<'_>, family: &Family) -> Vec<usize> {
+fn places(fitted: &Extended<'_>, plan: &Plan, family: &Family) -> Vec<usize> {
     let extension = fitted.extension();
     let first = crate::COEFFICIENTS;
+    if let Some(steps) = &family.walk {
+        let base = first + extension.parameters.len();
+        let own: Vec<&Column> = steps
+            .iter()
+            .map(|column| &plan.further[column - PARAMETERS.len()])
+            .collect();
+        let columns = extension.further.columns().iter().enumerate();
+        return columns
+            .filter(|(_, column)| own.contains(column))
+            .map(|(index, _)| base + index)
+            .collect();
+    }
     if family.effect.id == "platform.initial_attitude" {
         let base = first + extension.parameters.len();
         return extension

@@ -526,6 +526,13 @@ where
             let first = row * M * active;
             self.own
                 .copy_from_slice(&tape.columns[first..first + M * active]);
+            // Further columns may follow a parameter that is active.
+            let p = of.parameters.len();
+            for i in 0..M {
+                for (own, index) in self.own[i * active..].iter().zip(of.active) {
+                    self.stepper.columns[i * p + index] = *own;
+                }
+            }
             return Ok(tape.steps[row]);
         }
         let mut step = self

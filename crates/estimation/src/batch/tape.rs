@@ -5,8 +5,7 @@ use alloc::vec::Vec;
 use super::step::Step;
 
 /// What the model gave along a trajectory, so that further passes about the same trajectory with
-/// the same parameters need not ask it again. Holds for columns that are parameters of the model
-/// and for further ones that do not follow a parameter.
+/// the same parameters need not ask it again. Further columns may follow active parameters only.
 #[derive(Clone)]
 pub struct Tape<P, const M: usize> {
     pub(crate) steps: Vec<Step<P, M>>,
