@@ -43,6 +43,15 @@ impl Default for Extension {
     }
 }
 
+/// Score and information of a sudden turn of the platform in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// Score of the turn about each platform axis, 1/rad.
+    pub score: [f64; 3],
+    /// Information on it, 1/rad².
+    pub information: [[f64; 3]; 3],
+}
+
 /// The noise that is believed of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseModel {
@@ -377,6 +386,41 @@ impl<'a> Extended<'a> {
             })
             .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
         Ok(whitened)
+    }
+
+    /// What a sudden change of attitude would explain in each step, with the unknowns of the fit
+    /// free to take it up: score and information of a turn about the platform axes, rad, by the
+    /// row that ends the step; `None` for the first row.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn jumps(&self) -> Result<Vec<Option<Jump>>, CalibrationError> {
+        let parameters = self.parameters();
+        let covariance = &self.uncertainty.conditional;
+        let count = covariance.nrows();
+        let mut jumps: Vec<Option<Jump>> = vec![None; self.points().len()];
+        self.problem
+            .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                Linearisation { tape, ..*pass }.jumps(|row, found| {
+                    let mut jump = Jump {
+                        // Columns are derivatives of the innovations: those of a jump too.
+                        score: found.columns[0],
+                        information: found.information,
+                    };
+                    let taken = DMatrix::from_fn(count, 3, |i, j| found.columns[i + 1][j]);
+                    let share = covariance * &taken;
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            let product = taken.column(i).dot(&share.column(j));
+                            jump.information[i][j] -= product;
+                        }
+                    }
+                    jumps[row] = Some(jump);
+                })
+            })
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+        Ok(jumps)
     }
 
     /// Passes over the record with all parameters of [`Catalogue`] as columns (all but those in

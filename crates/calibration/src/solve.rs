@@ -18,6 +18,10 @@ const MOST_HALVINGS: usize = 12;
 /// problem: what is left after it is smaller by the curvature of a chart over such a step.
 const LAST_STEP: f64 = 1e-4;
 
+/// The same for records that the model does not fit, as a share of the root of the cost: a
+/// shorter step lowers the cost by less than rounding of its sum does.
+const LAST_SHARE: f64 = 1e-6;
+
 /// One parameter of the joint problem.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unknown {
@@ -156,7 +160,7 @@ where
         loop {
             let step = self.step(&point)?;
             iterations += 1;
-            let last = step.length < LAST_STEP;
+            let last = step.length < LAST_STEP.max(LAST_SHARE * cost.sqrt());
             let before: Vec<_> = self.legs.iter().map(|leg| leg.points.clone()).collect();
             let values = self.values.clone();
             let mut share = 1.0;

@@ -2,6 +2,10 @@
 //! and direct Gaussian densities.
 // Failing here is what tests are for.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over several matrices by one index read like the equations"
+)]
 
 #[path = "batch/chain.rs"]
 mod chain;
@@ -267,6 +271,50 @@ fn the_gram_matrix_is_the_sum_over_what_is_watched() {
             // The order of summation is the same but for blocks.
             assert!((found - sum).abs() <= 1e-12 * found.abs().max(1.0));
         }
+    }
+}
+
+#[test]
+fn passes_on_a_tape_are_the_same() {
+    let chain = Chain::measured(8);
+    let trajectory = chain.trajectory();
+    let (parameters, all) = (chain.parameters(), [0, 1, 2, 3]);
+    let columns = Disturbances {
+        sizes: [0.1, -0.2, 0.05],
+    };
+    let pass = chain.linearised(&trajectory, &parameters, &all, &columns);
+    let (reduced, tape) = pass.reduce_and_keep(|_| ()).unwrap();
+    let on_tape = Linearisation {
+        tape: Some(&tape),
+        ..pass
+    };
+    assert_eq!(pass.reduce(|_| ()).unwrap(), reduced);
+    assert_eq!(on_tape.reduce(|_| ()).unwrap(), reduced);
+    let change = [0.01, -0.02, 0.3, 0.02, 0.1, -0.1, 0.03];
+    assert_eq!(
+        on_tape.smooth(&change).unwrap(),
+        pass.smooth(&change).unwrap()
+    );
+    let factors = [1.5, 0.5, 2.0, 1.0];
+    assert_eq!(
+        on_tape.noise_score(&factors).unwrap(),
+        pass.noise_score(&factors).unwrap()
+    );
+    // One of another trajectory or of other parameters is refused.
+    for other in [
+        Linearisation {
+            active: &all[1..],
+            ..on_tape
+        },
+        Linearisation {
+            points: &trajectory[1..],
+            ..on_tape
+        },
+    ] {
+        assert!(matches!(
+            other.reduce(|_| ()),
+            Err(EstimationError::InvalidArgument { .. })
+        ));
     }
 }
 

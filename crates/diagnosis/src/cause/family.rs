@@ -15,6 +15,9 @@ const TIME_CONSTANTS: usize = 10;
 /// The shortest of them, h.
 const SHORTEST_TIME_CONSTANT_H: f64 = 0.3;
 
+/// The one effect that is a jump of the attitude.
+pub(crate) const KNOCK: &str = "platform.knock";
+
 /// The constant drifts, which steps and warm-ups are shares of.
 const BIASES: [usize; 3] = [
     parameters_index::GYRO_X_BIAS,
@@ -39,6 +42,8 @@ pub struct Family {
     pub(crate) candidates: Vec<Candidate>,
     /// Of a random walk the columns of steps that it is made up from.
     pub(crate) walk: Option<Vec<usize>>,
+    /// Whether it is a knock, which is looked for in every step by itself.
+    pub(crate) knock: bool,
 }
 
 impl Family {
@@ -52,6 +57,7 @@ impl Family {
                 self.candidates.clone()
             },
             walk: if taken { None } else { self.walk.clone() },
+            knock: self.knock && !taken,
         }
     }
 
@@ -128,6 +134,8 @@ impl Plan {
             } else if effect.id.ends_with(".random_walk") {
                 walks.push(effect);
                 continue;
+            } else if effect.id == KNOCK {
+                Vec::new()
             } else if effect.kind != "term" {
                 continue;
             } else if let (true, Some(axis)) = (effect.id.ends_with(".step"), axis) {
@@ -174,6 +182,7 @@ impl Plan {
                 effect,
                 candidates,
                 walk: None,
+                knock: effect.id == KNOCK,
             });
         }
         // Last, as what every slow cause looks like.
@@ -185,6 +194,7 @@ impl Plan {
                 effect,
                 candidates: Vec::new(),
                 walk: Some(plan.steps[axis].clone()),
+                knock: false,
             });
         }
         plan
@@ -204,8 +214,20 @@ impl Plan {
 
 /// What a family adds to a model: at an onset or with a time constant, or, for a random walk,
 /// with the variance of its increments from onset to onset.
-pub(crate) fn extend(plan: &Plan, extension: &mut Extension, family: usize, shape: Option<f64>) {
+pub(crate) fn extend(
+    plan: &Plan,
+    record: &Record,
+    extension: &mut Extension,
+    family: usize,
+    shape: Option<f64>,
+) {
     let effect = plan.families[family].effect;
+    if let (KNOCK, Some(onset_s)) = (effect.id, shape) {
+        extension
+            .further
+            .extend(jump(record, onset_s), f64::INFINITY);
+        return;
+    }
     if effect.id == "platform.initial_attitude" {
         let columns = [0, 1, 2].map(|axis| Column::Start { axis });
         extension.further.extend(columns, f64::INFINITY);
@@ -232,6 +254,16 @@ pub(crate) fn extend(plan: &Plan, extension: &mut Extension, family: usize, shap
             extension.shapes[place] = shape;
         }
     }
+}
+
+/// A turn in the step that ends at an onset, about each axis.
+pub(crate) fn jump(record: &Record, onset_s: f64) -> [Column; 3] {
+    let first_s = record.time_s.first().copied().unwrap_or(0.0);
+    let end = record
+        .time_s
+        .partition_point(|time_s| time_s - first_s < onset_s);
+    let row = end.saturating_sub(1).min(record.len().saturating_sub(2));
+    [0, 1, 2].map(|axis| Column::Jump { row, axis })
 }
 
 /// Index of a parameter of the catalogue's model by its public id.

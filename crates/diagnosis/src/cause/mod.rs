@@ -17,6 +17,7 @@
 mod bank;
 mod bound;
 mod family;
+mod knock;
 mod null;
 mod search;
 mod walk;

@@ -134,6 +134,14 @@ impl Null {
                     .map(|index| reached[(index, draw)] - penalties[index])
                     .fold(f64::NEG_INFINITY, f64::max)
             })
+            // A knock comes with its own probability, as one more signature.
+            .map(|maximum: f64| {
+                if families.iter().any(|family| family.knock) {
+                    maximum.max(normal(&mut generator).powi(2))
+                } else {
+                    maximum
+                }
+            })
             .collect();
         maxima.sort_unstable_by(f64::total_cmp);
         Self { penalties, maxima }

@@ -5,7 +5,8 @@ use gyrocal_calibration::{CalibrationError, Column, Extended, Extension};
 use gyrocal_record::{Bench, Record};
 
 use super::bank::{Bank, Joint};
-use super::family::{Family, Plan, Unavailable, extend, parameter};
+use super::family::{Candidate, Family, Plan, Unavailable, extend, jump, parameter};
+use super::knock::{self, Knock};
 use super::null::Null;
 use super::walk::Walk;
 
@@ -116,6 +117,8 @@ struct Accepted {
     family: usize,
     shape: Option<f64>,
     p_value: f64,
+    /// What its statistic loses for having been looked for in every step.
+    searched: f64,
 }
 
 /// Looks for causes in a record, from the nominal model at its best fit.
@@ -132,10 +135,15 @@ pub fn search<'a>(
     let plan = Plan::new(record, bench, &also);
     let mut fitted = nominal;
     let mut accepted: Vec<Accepted> = Vec::new();
+    let mut inseparable: Vec<usize> = Vec::new();
     let mut first: Option<(Vec<Ranked>, f64)> = None;
     loop {
         let bank = Bank::new(&fitted, &plan.further, &[])?;
-        let taken: Vec<usize> = accepted.iter().map(|accepted| accepted.family).collect();
+        let taken: Vec<usize> = accepted
+            .iter()
+            .map(|accepted| accepted.family)
+            .chain(inseparable.iter().copied())
+            .collect();
         let families: Vec<Family> = plan
             .families
             .iter()
@@ -145,7 +153,7 @@ pub fn search<'a>(
             })
             .collect();
         let null = Null::draw(&bank, &families, options.seed);
-        let scores = Scores::of(&bank, &families, &null);
+        let scores = Scores::of(&bank, &families, &null, knock::best(&fitted, record)?);
         let threshold = null.threshold(options.false_alarm_probability);
         first.get_or_insert_with(|| (scores.ranking(&families), threshold));
         let Some(best) = scores.named(&families) else {
@@ -160,8 +168,16 @@ pub fn search<'a>(
             family: best.family,
             shape,
             p_value: null.probability(statistic),
+            searched: best.searched,
         });
-        fitted = fitted.refitted(&extension(&plan, &accepted))?;
+        match fitted.refitted(&extension(&plan, record, &accepted)) {
+            Ok(refitted) => fitted = refitted,
+            // What cannot be fitted beside the others cannot be told from them.
+            Err(_) => {
+                accepted.pop();
+                inseparable.push(best.family);
+            }
+        }
     }
     let mut findings = Vec::with_capacity(accepted.len());
     for index in 0..accepted.len() {
@@ -178,10 +194,16 @@ pub fn search<'a>(
 }
 
 /// The model that all accepted effects make up.
-fn extension(plan: &Plan, accepted: &[Accepted]) -> Extension {
+fn extension(plan: &Plan, record: &Record, accepted: &[Accepted]) -> Extension {
     let mut extension = Extension::default();
     for accepted in accepted {
-        extend(plan, &mut extension, accepted.family, accepted.shape);
+        extend(
+            plan,
+            record,
+            &mut extension,
+            accepted.family,
+            accepted.shape,
+        );
     }
     extension
 }
@@ -200,8 +222,10 @@ struct Best {
     family: usize,
     candidate: usize,
     statistic: f64,
-    /// Of the increments of a random walk.
-    variance: f64,
+    /// Variance of the increments of a random walk; onset of a knock, s.
+    shape: f64,
+    /// What a knock's statistic loses for having been looked for in every step.
+    searched: f64,
 }
 
 /// The best candidate of every family, and what searching alone reaches.
@@ -211,11 +235,20 @@ struct Scores<'a> {
 }
 
 impl<'a> Scores<'a> {
-    fn of(bank: &Bank, families: &[Family], null: &'a Null) -> Self {
+    fn of(bank: &Bank, families: &[Family], null: &'a Null, knock: Option<Knock>) -> Self {
         let best = families
             .iter()
             .enumerate()
             .map(|(family, content)| {
+                if content.knock && content.candidates.is_empty() {
+                    return knock.map(|knock| Best {
+                        family,
+                        candidate: 0,
+                        statistic: knock.equivalent,
+                        shape: knock.onset_s,
+                        searched: knock.statistic - knock.equivalent,
+                    });
+                }
                 if let Some(steps) = &content.walk {
                     let (information, score) = bank.part(steps);
                     let (statistic, variance) = Walk::new(information).best(&score);
@@ -223,7 +256,8 @@ impl<'a> Scores<'a> {
                         family,
                         candidate: 0,
                         statistic,
-                        variance,
+                        shape: variance,
+                        searched: 0.0,
                     });
                 }
                 content
@@ -235,7 +269,8 @@ impl<'a> Scores<'a> {
                             family,
                             candidate,
                             statistic: joint.statistic,
-                            variance: 0.0,
+                            shape: 0.0,
+                            searched: 0.0,
                         })
                     })
                     .max_by(|a, b| a.statistic.total_cmp(&b.statistic))
@@ -317,8 +352,9 @@ fn refined(
     plan: &Plan,
     best: &Best,
 ) -> Result<Option<f64>, CalibrationError> {
-    if plan.families[best.family].walk.is_some() {
-        return Ok(Some(best.variance));
+    let family = &plan.families[best.family];
+    if family.walk.is_some() || family.knock {
+        return Ok(Some(best.shape));
     }
     let candidates = &plan.families[best.family].candidates;
     let candidate = &candidates[best.candidate];
@@ -382,14 +418,18 @@ fn finding(
     let own = &accepted[index];
     let family = &plan.families[own.family];
     let places = places(fitted, plan, family);
-    let bank = Bank::new(fitted, &plan.further, &places)?;
+    let mut further = plan.further.clone();
+    if let (true, Some(onset_s)) = (family.knock, own.shape) {
+        further.extend(jump(record, onset_s));
+    }
+    let bank = Bank::new(fitted, &further, &places)?;
     let others: Vec<usize> = accepted
         .iter()
         .enumerate()
         .filter(|(other, _)| *other != index)
         .map(|(_, accepted)| accepted.family)
         .collect();
-    let families: Vec<Family> = plan
+    let mut families: Vec<Family> = plan
         .families
         .iter()
         .enumerate()
@@ -397,9 +437,16 @@ fn finding(
             content.unless(others.contains(&family) || equivalent_to(plan, family, &others))
         })
         .collect();
+    if family.knock {
+        let first = PARAMETERS.len() + plan.further.len();
+        families[own.family].candidates = vec![Candidate {
+            columns: (first..first + 3).collect(),
+            shape: None,
+        }];
+    }
     let null = Null::draw(&bank, &families, options.seed);
-    let scores = Scores::of(&bank, &families, &null);
-    let best = scores.penalised(own.family);
+    let scores = Scores::of(&bank, &families, &null, None);
+    let best = scores.penalised(own.family) - own.searched;
     let mut rivals: Vec<Rival> = (0..families.len())
         .filter(|other| {
             *other != own.family
@@ -479,14 +526,18 @@ fn places(fitted: &Extended<'_>, plan: &Plan, family: &Family) -> Vec<usize> {
             .map(|(index, _)| base + index)
             .collect();
     }
-    if family.effect.id == "platform.initial_attitude" {
+    if family.effect.kind == "state" {
         let base = first + extension.parameters.len();
         return extension
             .further
             .columns()
             .iter()
             .enumerate()
-            .filter(|(_, column)| matches!(column, Column::Start { .. }))
+            .filter(|(_, column)| match column {
+                Column::Start { .. } => !family.knock,
+                Column::Jump { .. } => family.knock,
+                _ => false,
+            })
             .map(|(index, _)| base + index)
             .collect();
     }

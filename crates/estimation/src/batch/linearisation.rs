@@ -176,6 +176,33 @@ where
         Ok(reduced)
     }
 
+    /// A pass that tells of each output its Jacobian and its covariance with the moving states,
+    /// and of each step its transition.
+    pub(crate) fn forward(
+        &self,
+        mut output: impl FnMut(&Whitened<'_>, &[f64; M], [f64; M]),
+        mut step: impl FnMut(&[[f64; M]; M]),
+    ) -> Result<(), EstimationError> {
+        let count = self.active.len() + self.further.count();
+        let mut pass = Pass::new(self, count, None)?;
+        for row in 0..self.points.len() {
+            pass.observe(row, |whitened, taken| {
+                let mut cross = [0.0; M];
+                for i in 0..M {
+                    for j in 0..M {
+                        cross[i] += taken.covariance[i][j] * taken.jacobian[j];
+                    }
+                }
+                output(whitened, &taken.jacobian, cross);
+            })?;
+            if row + 1 < self.points.len() {
+                let (advanced, _) = pass.advance(row)?;
+                step(&advanced.moving);
+            }
+        }
+        Ok(())
+    }
+
     /// Where the model goes by itself from the first point: the trajectory without measurements
     /// and without noise, further columns with their amplitudes included.
     ///
@@ -357,9 +384,10 @@ where
             || of.points.len() != of.series.rows()
             || of.parameters.len() != of.model.parameters()
             || of.active.iter().any(|index| *index >= of.parameters.len())
-            || of
-                .tape
-                .is_some_and(|tape| tape.steps.len() + 1 != of.points.len())
+            || of.tape.is_some_and(|tape| {
+                tape.steps.len() + 1 != of.points.len()
+                    || tape.columns.len() != tape.steps.len() * M * of.active.len()
+            })
             || change.is_some_and(|change| change.len() != of.active.len() + further)
         {
             return Err(EstimationError::InvalidArgument {

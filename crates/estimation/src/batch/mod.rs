@@ -19,6 +19,7 @@
 mod columns;
 mod filter;
 mod gram;
+mod jumps;
 mod linearisation;
 mod noise;
 
@@ -28,6 +29,7 @@ mod tape;
 pub use crate::manifold::{Corrected, Manifold};
 pub use columns::{Columns, NoColumns};
 pub use gram::Gram;
+pub use jumps::JumpScore;
 pub use linearisation::{Linearisation, Reduced, Smoothed, Whitened};
 pub use noise::NoiseScore;
 pub use tape::Tape;

@@ -221,6 +221,7 @@ impl Chain {
             prior: PRIOR_POINT,
             prior_covariance: PRIOR_COVARIANCE,
             points,
+            tape: None,
             parameters,
             active,
             further,
