@@ -223,7 +223,12 @@ mod tests {
     #[test]
     fn turning_by_a_sum_is_turning_by_the_first_and_then_by_the_mean_turn_of_the_other() {
         let change = [3e-6, -2e-6, 5e-6];
-        for phi in [[0.0; 3], [2e-3, 9e-3, -3e-3], [2e-3, 1e-2, -3e-3], [0.4, -1.3, 0.8]] {
+        for phi in [
+            [0.0; 3],
+            [2e-3, 9e-3, -3e-3],
+            [2e-3, 1e-2, -3e-3],
+            [0.4, -1.3, 0.8],
+        ] {
             let sum = core::array::from_fn(|i| phi[i] + change[i]);
             let after = rotate(&mean_turn(&phi), &change);
             let columns: [[f64; 3]; 3] = core::array::from_fn(|j| {
