@@ -87,6 +87,8 @@ pub struct Diagnosis<'a> {
     pub ranking: Vec<Ranked>,
     /// What the largest of them must exceed.
     pub threshold: f64,
+    /// Probability that any of them does on a sound record: the search's share of all.
+    pub search_false_alarm_probability: f64,
     /// What could not be looked for.
     pub unavailable: Vec<Unavailable>,
     /// What the extended model gains; `None` without a physical cause.
@@ -219,6 +221,7 @@ pub fn diagnose<'a>(
         noise_model,
         ranking: searched.ranking,
         threshold: searched.threshold,
+        search_false_alarm_probability: search_share,
         unavailable: searched.unavailable,
         findings: searched.findings,
         gain,

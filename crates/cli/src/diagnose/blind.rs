@@ -53,7 +53,7 @@ pub(super) fn blind(
 /// An onset in the middle, a time constant of a quarter of the record.
 fn shape(effect: &EffectRow, record: &Record) -> Option<f64> {
     let duration_s = record.duration_s();
-    if effect.id.ends_with(".step") {
+    if effect.id.ends_with(".step") || effect.id == "platform.knock" {
         Some(0.5 * duration_s)
     } else if effect.id.ends_with(".warmup") {
         Some(0.25 * duration_s / 3600.0)

@@ -187,8 +187,6 @@ fn not_searched(diagnosis: &Diagnosis<'_>) -> Vec<NotSearchedReport> {
                 return None;
             } else if id == super::filter::EFFECT {
                 "an error of a filter: --filter euler".to_owned()
-            } else if id.ends_with(".random_walk") || id == "platform.knock" {
-                "not part of the search".to_owned()
             } else if noise && (audited || effect.enters == "drift" || tested_value_by_value(id)) {
                 return None;
             } else if noise {

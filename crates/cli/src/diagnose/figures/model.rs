@@ -93,8 +93,7 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
         ),
         statistic: "chi-square less what searching alone reaches".to_owned(),
         threshold,
-        // The share that the search has of all false alarms.
-        false_alarm_probability: 0.5 * report.false_alarm_probability,
+        false_alarm_probability: found.diagnosis.search_false_alarm_probability,
         tested: report.ranking.len(),
         groups,
         omitted: rest.get(OTHERS_SHOWN).map(|next| Omitted {
