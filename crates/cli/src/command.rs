@@ -4,6 +4,7 @@ use clap::{ArgAction, Parser, Subcommand};
 
 use crate::allan::AllanArguments;
 use crate::calibrate::CalibrateArguments;
+use crate::extend::ExtendArguments;
 use crate::import::ImportArguments;
 use crate::monte_carlo::MonteCarloArguments;
 use crate::simulate::SimulateArguments;
@@ -30,6 +31,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     Allan(AllanArguments),
     Calibrate(CalibrateArguments),
+    Extend(ExtendArguments),
     Import(ImportArguments),
     MonteCarlo(MonteCarloArguments),
     Simulate(SimulateArguments),

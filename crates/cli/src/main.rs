@@ -6,6 +6,7 @@
 mod allan;
 mod calibrate;
 mod command;
+mod extend;
 mod import;
 mod latitude;
 mod measured;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Allan(arguments) => allan::run(arguments),
         Command::Calibrate(arguments) => calibrate::run(arguments),
+        Command::Extend(arguments) => extend::run(arguments),
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
         Command::Import(arguments) => import::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),

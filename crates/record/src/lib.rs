@@ -57,6 +57,7 @@ mod error;
 mod fields;
 mod header;
 mod manifest;
+mod model_file;
 mod output;
 mod record;
 mod report;
@@ -68,10 +69,12 @@ mod tables;
 pub use bench::{Bench, Gravity, Prior, SiteUncertainty};
 pub use error::{Error, InputError, InputErrorKind};
 pub use manifest::{Input, Manifest};
+pub use model_file::{KnownEffect, ModelFile, ParameterEstimate};
 pub use output::{Outputs, write_json, write_whole};
 pub use record::Record;
 pub use report::{
     CalibrationReport, Coefficient, FitVerdict, SCHEMA_VERSION, SimulationReport, TrueCoefficient,
 };
 pub use source::SourceText;
+pub use suggest::nearest_few;
 pub use tables::{Bound, Document, Table};

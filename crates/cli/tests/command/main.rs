@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod calibrate;
+mod extend;
 mod folder;
 mod monte_carlo;
 mod simulate;
