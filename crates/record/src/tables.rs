@@ -271,7 +271,7 @@ impl<'a> Table<'a> {
         let Some((_, value)) = self.entry(key) else {
             return Err(self.missing(&format!("`{key} = ` {expected}"), &[]));
         };
-        let items = value.get_ref().as_array().filter(|items| items.len() > 0);
+        let items = value.get_ref().as_array().filter(|items| !items.is_empty());
         let items = items.ok_or_else(|| self.wrong_type(value, expected))?;
         let text = |item: &'a Spanned<DeValue<'a>>| match item.get_ref().as_str() {
             Some(text) => Ok(Text {

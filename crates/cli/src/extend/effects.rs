@@ -45,7 +45,7 @@ pub(super) fn of_diagnosis(diagnosis: &Diagnosis, name: &str) -> Result<Extensio
             continue;
         }
         let model = &mut extension.model;
-        if model.effects.iter().any(|other| *other == finding.effect) {
+        if model.effects.contains(&finding.effect) {
             let again = "was found once more, and a model has it once";
             extension
                 .left_out
