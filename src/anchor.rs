@@ -196,6 +196,11 @@ where
     }
 
     #[inline(always)]
+    fn enters_at_origin(&self, i: usize, j: usize) -> bool {
+        self.0.enters_at_origin(i, j)
+    }
+
+    #[inline(always)]
     fn output(&self, moving: &[T; 3], parameters: &[T], chart: &Self::Inputs) -> [T; 3] {
         self.0.output(moving, parameters, &chart.inputs)
     }

@@ -60,6 +60,47 @@ pub(crate) fn turned_by<T: Scalar + PartialOrd>(phi: &[T; 3]) -> [[T; 3]; 3] {
     ]
 }
 
+/// The mean of exp(-s [φ]×) over s from 0 to 1: to first order, turning by φ + δ is turning by φ
+/// and then by this times δ (the left Jacobian of the rotation group at -φ).
+#[cfg(any(test, feature = "batch"))]
+#[inline]
+pub(crate) fn mean_turn<T: Scalar + PartialOrd>(phi: &[T; 3]) -> [[T; 3]; 3] {
+    let one = T::from_f64(1.0);
+    let square = dot(phi, phi);
+    // (1 - cos|φ|) / |φ|² and (|φ| - sin|φ|) / |φ|³; below a hundredth of a radian their series,
+    // to the last bit.
+    let (b, c) = if square < T::from_f64(1e-4) {
+        let constant = T::from_f64;
+        let b = constant(0.5) - square * (constant(1.0 / 24.0) - square * constant(1.0 / 720.0));
+        let c = constant(1.0 / 6.0)
+            - square * (constant(1.0 / 120.0) - square * constant(1.0 / 5040.0));
+        (b, c)
+    } else {
+        let angle = square.sqrt();
+        let (sine, cosine) = angle.sin_cos();
+        ((one - cosine) / square, (angle - sine) / (square * angle))
+    };
+    let [x, y, z] = *phi;
+    // I - b [φ]× + c [φ]×²
+    [
+        [
+            one - c * (y * y + z * z),
+            b * z + c * x * y,
+            c * x * z - b * y,
+        ],
+        [
+            c * x * y - b * z,
+            one - c * (x * x + z * z),
+            b * x + c * y * z,
+        ],
+        [
+            b * y + c * x * z,
+            c * y * z - b * x,
+            one - c * (x * x + y * y),
+        ],
+    ]
+}
+
 /// The vector φ of at most half a turn with exp(-[φ]×) = `matrix`: the inverse of [`turned_by`].
 #[cfg(any(test, feature = "batch"))]
 #[inline]
@@ -175,6 +216,35 @@ mod tests {
             let direct = rotate(&whole, &vector);
             for i in 0..3 {
                 assert!((stepwise[i] - direct[i]).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn turning_by_a_sum_is_turning_by_the_first_and_then_by_the_mean_turn_of_the_other() {
+        let change = [3e-6, -2e-6, 5e-6];
+        for phi in [
+            [0.0; 3],
+            [2e-3, 9e-3, -3e-3],
+            [2e-3, 1e-2, -3e-3],
+            [0.4, -1.3, 0.8],
+        ] {
+            let sum = core::array::from_fn(|i| phi[i] + change[i]);
+            let after = rotate(&mean_turn(&phi), &change);
+            let columns: [[f64; 3]; 3] = core::array::from_fn(|j| {
+                let first = turned_by(&phi);
+                rotate(&turned_by(&after), &core::array::from_fn(|i| first[i][j]))
+            });
+            let expected = turned_by(&sum);
+            for i in 0..3 {
+                for j in 0..3 {
+                    // The square of the change.
+                    assert!((columns[j][i] - expected[i][j]).abs() < 4e-11, "{phi:?}");
+                }
+            }
+            // The vector itself is mapped to itself.
+            for (own, phi) in rotate(&mean_turn(&phi), &phi).iter().zip(phi) {
+                assert!((own - phi).abs() < 1e-15);
             }
         }
     }

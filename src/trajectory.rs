@@ -1,11 +1,11 @@
 //! Attitudes as points of a trajectory, for batch estimation.
 
-use gyrocal_estimation::Manifold;
+use gyrocal_estimation::{Corrected, Manifold};
 
 use gyrocal_scalar::{Model, Recentre};
 
 use crate::anchor::{Anchored, Chart};
-use crate::rotation::{cross, rotation_vector, turned_by};
+use crate::rotation::{cross, mean_turn, rotation_vector, turned_by};
 use crate::surroundings::ChartInputs;
 
 /// An attitude: unit vectors North and Up along the platform axes.
@@ -35,6 +35,14 @@ where
     #[inline]
     fn difference(&self, from: &Orientation, to: &Orientation) -> [f64; 3] {
         rotation_vector(&between(from, to))
+    }
+
+    #[inline]
+    fn corrected(&self, correction: &[f64; 3]) -> Option<Corrected<3>> {
+        Some(Corrected {
+            point: turned_by(correction),
+            correction: mean_turn(correction),
+        })
     }
 }
 

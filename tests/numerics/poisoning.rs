@@ -35,6 +35,7 @@ impl Poison for Factors {
     fn poison(buffers: &mut Buffers<'_, f64>) {
         buffers.gain.fill(f64::NAN);
         buffers.sweep.fill(f64::NAN);
+        buffers.cross.fill(f64::NAN);
         buffers.transition.fill(f64::NAN);
     }
 }

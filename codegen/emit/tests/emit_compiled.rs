@@ -243,6 +243,10 @@ fn main() {
     use emitted::{pendulum::{Pendulum, PendulumInputs}, platform::Platform};
     let platform: &dyn Model<f64, 3, 3, Inputs = emitted::platform::PlatformInputs<f64>> = &Platform;
     assert_eq!(platform.noise_parameters(), Some([0, 3, 6]));
+    // At the origin each gyro's coefficients turn its own angle only.
+    for (i, j) in (0..3).flat_map(|i| (0..9).map(move |j| (i, j))) {
+        assert_eq!(platform.enters_at_origin(i, j), j / 3 == i, "{i}, {j}");
+    }
     assert_eq!((platform.parameters(), platform.output_parameters()), (9, 0));
     assert_eq!(Model::<f64, 2, 2>::noise_parameters(&Pendulum), None);
     // One source serves lanes and f32.

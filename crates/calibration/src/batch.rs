@@ -1,5 +1,6 @@
 //! The batch estimator: from filtered trajectories to the joint solution.
 
+use gyrocal::estimation::batch::Linearisation;
 use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::trajectory::{angles_rad, platform_c_enu};
 use gyrocal::{Anchored, Drift, Recentring, Settings, Surveyed};
@@ -16,7 +17,7 @@ use crate::result::{AzimuthSearch, Calibration, RunResult, SiteInfluence};
 use crate::robust;
 use crate::run::Run;
 use crate::settings::level;
-use crate::solve::{Failure, Problem};
+use crate::solve::{Failure, Problem, Solution};
 use crate::uncertainty::Uncertainty;
 
 /// Steps after which an estimate that still moves is given up.
@@ -48,7 +49,15 @@ pub(crate) fn calibrate(
         solve(false, progress).or_else(|_| solve(true, progress))?;
     let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
         .ok_or(CalibrationError::NotPositiveDefinite)?;
-    let runs = run_results(&problem, &layout, &uncertainty, azimuths, &bounded, options)?;
+    let runs = run_results(
+        &problem,
+        &solution,
+        &layout,
+        &uncertainty,
+        azimuths,
+        &bounded,
+        options,
+    )?;
     let last = runs
         .last()
         .map_or([[0.0; 3]; 3], |run| run.last_platform_c_enu);
@@ -122,6 +131,7 @@ fn problem<'a>(
 
 fn run_results(
     problem: &BatchProblem<'_>,
+    solution: &Solution,
     layout: &Layout,
     uncertainty: &Uncertainty,
     azimuths: Vec<Option<AzimuthSearch>>,
@@ -145,6 +155,8 @@ fn run_results(
             let noise = if options.noise {
                 let parameters = problem.parameters(index);
                 let found = problem.with_leg(index, &parameters, |pass| {
+                    let tape = solution.tapes[index].as_ref();
+                    let pass = Linearisation { tape, ..*pass };
                     noise::estimate(|factors| pass.noise_score(factors))
                 });
                 Some(found.map_err(|error| CalibrationError::from(Failure::Pass(index, error)))?)

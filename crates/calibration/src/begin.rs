@@ -155,6 +155,34 @@ fn start(
     }
 }
 
+/// Where a trial leads.
+struct Followed {
+    log_likelihood: f64,
+    orientation: Orientation,
+    /// Whether residuals are about as large as the noise.
+    fits: bool,
+}
+
+/// A trial's solution over the first rows; `None` if it has none.
+fn follow(
+    run: &Run<'_>,
+    rows: usize,
+    settings: &Settings<f64>,
+    trial: &Trial,
+    start: &Start,
+    options: &Options,
+) -> Option<Followed> {
+    let mut problem = alone(run, rows, settings, &trial.prior, start, options);
+    let solution = problem.solve(MOST_ITERATIONS, |_| ()).ok()?;
+    let uncertainty = Uncertainty::new(&problem.unknowns, &solution)?;
+    Some(Followed {
+        log_likelihood: -0.5
+            * (solution.cost + solution.log_variance - uncertainty.log_determinant()),
+        orientation: problem.legs[0].points[0],
+        fits: solution.cost < ASTRAY * solution.values as f64,
+    })
+}
+
 /// Tries azimuths on the first rows: the filter ranks them, the best are followed to their
 /// solutions, and the likeliest solution is taken.
 fn search(
@@ -173,17 +201,26 @@ fn search(
         .collect();
     passes.sort_by(|a, b| a.1.nis_mean.total_cmp(&b.1.nis_mean));
     let mut solutions: Vec<(f64, Orientation, &Trial)> = Vec::new();
-    for (trial, start) in passes.iter().take(FOLLOWED) {
-        let mut problem = alone(run, rows, settings, &trial.prior, start, options);
-        let Ok(solution) = problem.solve(MOST_ITERATIONS, |_| ()) else {
-            continue;
-        };
-        let Some(uncertainty) = Uncertainty::new(&problem.unknowns, &solution) else {
-            continue;
-        };
-        let log_likelihood =
-            -0.5 * (solution.cost + solution.log_variance - uncertainty.log_determinant());
-        solutions.push((log_likelihood, problem.legs[0].points[0], trial));
+    let mut fits = false;
+    for (index, (trial, start)) in passes.iter().enumerate() {
+        // A start may end in a valley of its own: go on until one fits the record.
+        if fits && index >= FOLLOWED {
+            break;
+        }
+        if let Some(followed) = follow(run, rows, settings, trial, start, options) {
+            fits |= followed.fits;
+            solutions.push((followed.log_likelihood, followed.orientation, trial));
+        }
+    }
+    if !fits {
+        for trial in trials {
+            let Ok(start) = start(run, rows, settings, trial, options, true) else {
+                continue;
+            };
+            if let Some(followed) = follow(run, rows, settings, trial, &start, options) {
+                solutions.push((followed.log_likelihood, followed.orientation, trial));
+            }
+        }
     }
     solutions.sort_by(|a, b| b.0.total_cmp(&a.0));
     let Some((best, orientation, trial)) = solutions.first() else {

@@ -79,7 +79,6 @@ pub fn bound(
         .with_leg(0, &problem.parameters(0), |pass| pass.reduce(|_| ()))
         .map_err(|source| CalibrationError::Pass { run: 1, source })?;
     // Columns are the parameters of the model; of one run each is one unknown.
-    let size = sums.len() + 1;
     let sigma: Vec<f64> = sums
         .iter()
         .map(|unknowns| unknowns.iter().map(|i| problem.unknowns[*i].sigma).sum())
@@ -88,13 +87,14 @@ pub fn bound(
     let information = DMatrix::from_fn(unknown.len(), unknown.len(), |i, j| {
         let (a, b) = (unknown[i], unknown[j]);
         let own = if i == j { sigma[a].powi(-2) } else { 0.0 };
-        reduced.gram[(a + 1) * size + b + 1] + own
+        reduced.gram[(a + 1, b + 1)] + own
     });
     let covariance = Cholesky::new(information)
         .ok_or(CalibrationError::NotPositiveDefinite)?
         .inverse();
     // The coefficients come first, and each of them has a prior.
     Ok(core::array::from_fn(|i| {
-        core::array::from_fn(|j| covariance[(i, j)])
+        // Rounding of the inverse differs on the two sides of its diagonal.
+        core::array::from_fn(|j| covariance[(i.max(j), i.min(j))])
     }))
 }

@@ -1,7 +1,7 @@
 //! The nominal model with effects of the catalogue, fitted to one record.
 
 use gyrocal::estimation::EstimationError;
-use gyrocal::estimation::batch::{Reduced, Whitened};
+use gyrocal::estimation::batch::{Linearisation, Reduced, Whitened};
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Chart, Recentring, Settings};
@@ -43,6 +43,15 @@ impl Default for Extension {
     }
 }
 
+/// Score and information of a sudden turn of the platform in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// Score of the turn about each platform axis, 1/rad.
+    pub score: [f64; 3],
+    /// Information on it, 1/rad².
+    pub information: [[f64; 3]; 3],
+}
+
 /// The noise that is believed of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseModel {
@@ -66,6 +75,7 @@ impl Default for NoiseModel {
 }
 
 /// An extended model at its best fit to a record.
+#[derive(Clone)]
 pub struct Extended<'a> {
     problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
     solution: Solution,
@@ -154,8 +164,9 @@ impl<'a> Extended<'a> {
             unknowns.push(Unknown::estimated(*sigma));
             values.push(before[*parameter]);
         }
-        for column in extension.further.columns() {
-            unknowns.push(Unknown::estimated(f64::INFINITY));
+        let further = &extension.further;
+        for (column, sigma) in further.columns().iter().zip(further.sigmas()) {
+            unknowns.push(Unknown::estimated(*sigma));
             let same = self
                 .extension
                 .further
@@ -186,14 +197,6 @@ impl<'a> Extended<'a> {
         };
         change(&mut problem.legs[0]);
         Self::solved(problem, extension.clone())
-    }
-
-    /// The same fit once more.
-    ///
-    /// # Errors
-    /// As [`Self::refitted`].
-    pub fn again(&self) -> Result<Self, CalibrationError> {
-        self.refitted(&self.extension)
     }
 
     /// The same extension fitted with another noise.
@@ -339,7 +342,10 @@ impl<'a> Extended<'a> {
         let parameters = self.parameters();
         let reduced = self
             .problem
-            .without_rows(0, &parameters, left_out, |pass| pass.reduce(|_| ()))
+            .without_rows(0, &parameters, left_out, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                Linearisation { tape, ..*pass }.reduce(|_| ())
+            })
             .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
         let unknowns = &self.problem.unknowns;
         let count = unknowns.len();
@@ -363,6 +369,58 @@ impl<'a> Extended<'a> {
                 + reduced.log_variance
                 + determinant
                 + reduced.values as f64 * core::f64::consts::TAU.ln()))
+    }
+
+    /// Whitened innovations of the fit, row by row; NaN where there is no value.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn whitened(&self) -> Result<Vec<[f64; 3]>, CalibrationError> {
+        let parameters = self.parameters();
+        let mut whitened = vec![[f64::NAN; 3]; self.points().len()];
+        self.problem
+            .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                Linearisation { tape, ..*pass }
+                    .reduce(|value| whitened[value.row][value.output] = value.columns[0])
+            })
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+        Ok(whitened)
+    }
+
+    /// What a sudden change of attitude would explain in each step, with the unknowns of the fit
+    /// free to take it up: score and information of a turn about the platform axes, rad, by the
+    /// row that ends the step; `None` for the first row.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn jumps(&self) -> Result<Vec<Option<Jump>>, CalibrationError> {
+        let parameters = self.parameters();
+        let covariance = &self.uncertainty.conditional;
+        let count = covariance.nrows();
+        let mut jumps: Vec<Option<Jump>> = vec![None; self.points().len()];
+        self.problem
+            .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                Linearisation { tape, ..*pass }.jumps(|row, found| {
+                    let mut jump = Jump {
+                        // Columns are derivatives of the innovations: those of a jump too.
+                        score: found.columns[0],
+                        information: found.information,
+                    };
+                    let taken = DMatrix::from_fn(count, 3, |i, j| found.columns[i + 1][j]);
+                    let share = covariance * &taken;
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            let product = taken.column(i).dot(&share.column(j));
+                            jump.information[i][j] -= product;
+                        }
+                    }
+                    jumps[row] = Some(jump);
+                })
+            })
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+        Ok(jumps)
     }
 
     /// Passes over the record with all parameters of [`Catalogue`] as columns (all but those in
@@ -403,6 +461,8 @@ impl<'a> Extended<'a> {
         let parameters = self.parameters();
         self.problem
             .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                let pass = Linearisation { tape, ..*pass };
                 noise::estimate(|factors| pass.noise_score(factors))
             })
             .map_err(|error: EstimationError| CalibrationError::from(Failure::Pass(0, error)))

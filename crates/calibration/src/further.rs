@@ -39,17 +39,30 @@ pub enum Column {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Further {
     columns: Vec<Column>,
+    sigmas: Vec<f64>,
     amplitudes: Vec<f64>,
 }
 
 impl Further {
-    /// These columns, all with amplitude zero.
+    /// These columns, all with amplitude zero, of which nothing is known beforehand.
     #[must_use]
     pub fn new(columns: Vec<Column>) -> Self {
-        Self {
-            amplitudes: vec![0.0; columns.len()],
-            columns,
-        }
+        let mut further = Self::default();
+        further.extend(columns, f64::INFINITY);
+        further
+    }
+
+    /// Adds columns whose amplitudes have this standard deviation before the record.
+    pub fn extend(&mut self, columns: impl IntoIterator<Item = Column>, sigma: f64) {
+        self.columns.extend(columns);
+        self.sigmas.resize(self.columns.len(), sigma);
+        self.amplitudes.resize(self.columns.len(), 0.0);
+    }
+
+    /// Standard deviation of each amplitude before the record.
+    #[must_use]
+    pub fn sigmas(&self) -> &[f64] {
+        &self.sigmas
     }
 
     /// The columns.

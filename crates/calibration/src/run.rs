@@ -35,7 +35,7 @@ pub struct Run<'a> {
 }
 
 /// The rows of a record with the noise that is believed of them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Rows<'a> {
     record: &'a Record,
     /// How many rows, from the first, are looked at.

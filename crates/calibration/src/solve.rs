@@ -1,6 +1,6 @@
 //! Gauss-Newton on the trajectories of several records and the parameters they share.
 
-use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Reduced, Series};
+use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series, Tape};
 use gyrocal::trajectory::{Orientation, turned};
 use gyrocal::{Chart, EstimationError, Integration};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -8,12 +8,19 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use crate::further::Further;
 use crate::run::{Conditions, Rows};
 
+/// Rows of a record whose steps are kept between passes, some 700 bytes each.
+const LONGEST_TAPE: usize = 100_000;
+
 /// Steps are halved at most so often when they do not lower the cost.
 const MOST_HALVINGS: usize = 12;
 
 /// The step is the last one if it is shorter than this, in standard deviations of the whole
 /// problem: what is left after it is smaller by the curvature of a chart over such a step.
 const LAST_STEP: f64 = 1e-4;
+
+/// The same for records that the model does not fit, as a share of the root of the cost: a
+/// shorter step lowers the cost by less than rounding of its sum does.
+const LAST_SHARE: f64 = 1e-6;
 
 /// One parameter of the joint problem.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +54,7 @@ impl Unknown {
 }
 
 /// One record within the joint problem.
+#[derive(Clone)]
 pub(crate) struct Leg<'a, I> {
     pub(crate) rows: Rows<'a>,
     pub(crate) chart: Chart<f64, I>,
@@ -76,6 +84,7 @@ impl<I> Leg<'_, I> {
 }
 
 /// All records, and what they have in common.
+#[derive(Clone)]
 pub(crate) struct Problem<'a, D, I> {
     pub(crate) model: &'a D,
     pub(crate) integration: Integration,
@@ -96,6 +105,8 @@ pub(crate) struct Solution {
     pub(crate) values: usize,
     pub(crate) rows: usize,
     pub(crate) log_variance: f64,
+    /// What the model gave in the last pass over each record, if it was short enough to keep.
+    pub(crate) tapes: Vec<Option<Tape<Orientation, 3>>>,
     /// Passes that were made.
     pub(crate) iterations: usize,
 }
@@ -118,7 +129,10 @@ struct Point {
     /// Of residual and unknowns: sums over the records.
     gram: DMatrix<f64>,
     trajectory_cost: f64,
-    legs: Vec<Reduced<3>>,
+    values: usize,
+    rows: usize,
+    log_variance: f64,
+    tapes: Vec<Option<Tape<Orientation, 3>>>,
 }
 
 /// A step from a point.
@@ -146,7 +160,7 @@ where
         loop {
             let step = self.step(&point)?;
             iterations += 1;
-            let last = step.length < LAST_STEP;
+            let last = step.length < LAST_STEP.max(LAST_SHARE * cost.sqrt());
             let before: Vec<_> = self.legs.iter().map(|leg| leg.points.clone()).collect();
             let values = self.values.clone();
             let mut share = 1.0;
@@ -223,16 +237,28 @@ where
         let mut point = Point {
             gram: DMatrix::zeros(size, size),
             trajectory_cost: 0.0,
-            legs: Vec::with_capacity(self.legs.len()),
+            values: 0,
+            rows: 0,
+            log_variance: 0.0,
+            tapes: Vec::with_capacity(self.legs.len()),
         };
-        for index in 0..self.legs.len() {
+        for (index, leg) in self.legs.iter().enumerate() {
             let parameters = self.parameters(index);
-            let reduced = self
-                .with_leg(index, &parameters, |pass| pass.reduce(|_| ()))
+            let (reduced, tape) = self
+                .with_leg(index, &parameters, |pass| {
+                    if leg.points.len() > LONGEST_TAPE {
+                        return pass.reduce(|_| ()).map(|reduced| (reduced, None));
+                    }
+                    pass.reduce_and_keep(|_| ())
+                        .map(|(reduced, tape)| (reduced, Some(tape)))
+                })
                 .map_err(|error| Failure::Pass(index, error))?;
             point.trajectory_cost += reduced.trajectory_cost;
-            add_gram(&mut point.gram, &reduced.gram, &self.legs[index].columns());
-            point.legs.push(reduced);
+            point.values += reduced.values;
+            point.rows += reduced.rows;
+            point.log_variance += reduced.log_variance;
+            add_gram(&mut point.gram, &reduced.gram, &leg.columns());
+            point.tapes.push(tape);
         }
         Ok(point)
     }
@@ -305,6 +331,7 @@ where
             parameters,
             active,
             further,
+            tape: None,
         })
     }
 
@@ -340,9 +367,12 @@ where
                     .iter()
                     .map(|unknowns| unknowns.iter().map(|unknown| values[*unknown]).sum())
                     .collect();
-                self.with_leg(index, &parameters, |pass| pass.smooth(&change))
-                    .map(|smoothed| smoothed.corrections)
-                    .map_err(|error| Failure::Pass(index, error))
+                self.with_leg(index, &parameters, |pass| {
+                    let tape = point.tapes[index].as_ref();
+                    Linearisation { tape, ..*pass }.smooth(&change)
+                })
+                .map(|smoothed| smoothed.corrections)
+                .map_err(|error| Failure::Pass(index, error))
             })
             .collect::<Result<_, _>>()?;
         Ok(Step {
@@ -386,13 +416,13 @@ where
 
     fn solution(&self, point: Point, iterations: usize) -> Solution {
         let count = self.unknowns.len();
-        let sum = |of: fn(&Reduced<3>) -> usize| point.legs.iter().map(of).sum();
         Solution {
             information: point.gram.view((1, 1), (count, count)).into_owned(),
             cost: point.trajectory_cost + self.prior_cost(),
-            values: sum(|leg| leg.values),
-            rows: sum(|leg| leg.rows),
-            log_variance: point.legs.iter().map(|leg| leg.log_variance).sum(),
+            values: point.values,
+            rows: point.rows,
+            log_variance: point.log_variance,
+            tapes: point.tapes,
             iterations,
         }
     }

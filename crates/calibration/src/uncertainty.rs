@@ -37,7 +37,9 @@ impl Uncertainty {
             information[(i, i)] += unknowns[*index].sigma.powi(-2);
         }
         let cholesky = Cholesky::new(information)?;
-        let conditional = cholesky.inverse();
+        // Rounding of the inverse differs on the two sides of its diagonal.
+        let mut conditional = cholesky.inverse();
+        conditional.fill_upper_triangle_with_lower_triangle();
         let mut total = conditional.clone();
         let mut sensitivities = Vec::with_capacity(considered.len());
         let mut from_records = Vec::with_capacity(considered.len());
@@ -61,6 +63,7 @@ impl Uncertainty {
             total += sigma * sigma * &taken * taken.transpose();
             sensitivities.push((index, taken));
         }
+        total.fill_upper_triangle_with_lower_triangle();
         Some(Self {
             estimated,
             conditional,

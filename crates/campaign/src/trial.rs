@@ -1,6 +1,6 @@
 //! One simulated record, calibrated and held against its truth.
 
-use gyrocal_calibration::{Calibration, Options, Verdict, calibrate};
+use gyrocal_calibration::{Calibration, Options, Run, Verdict, bound, calibrate};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -44,7 +44,7 @@ impl Trial {
     pub fn of(scenario: &Scenario, options: &Options) -> Result<Self, CampaignError> {
         let simulation = simulate(scenario)?;
         let calibration = calibrate(&simulation.record, &simulation.bench, options, |_| ())?;
-        Self::judge(&simulation, &calibration, bound_sigma(&simulation))
+        Self::judge(&simulation, &calibration, bound_sigma(&simulation)?)
     }
 
     fn judge(
@@ -78,9 +78,25 @@ impl Trial {
     }
 }
 
-/// The Cramér–Rao bound of a record, once there is a function for it.
-fn bound_sigma(_simulation: &Simulation) -> Option<[f64; 9]> {
-    None
+/// Standard deviations of the Cramér–Rao bound of a record; `None` if something is hidden in it,
+/// which the model, and so the bound, knows nothing of.
+fn bound_sigma(simulation: &Simulation) -> Result<Option<[f64; 9]>, CampaignError> {
+    let truth = &simulation.truth;
+    if !truth.hidden.is_empty() {
+        return Ok(None);
+    }
+    let platform_c_enu: Vec<_> = truth
+        .platform_c_enu
+        .iter()
+        .map(|attitude| attitude.matrix())
+        .collect();
+    let drift = truth.coefficients.named().map(|(_, value, _)| value);
+    let run = Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    };
+    let covariance = bound(&run, &platform_c_enu, &drift)?;
+    Ok(Some(core::array::from_fn(|i| covariance[i][i].sqrt())))
 }
 
 /// eᵀ P⁻¹ e of some of the errors, with their own block of the covariance.

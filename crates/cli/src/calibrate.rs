@@ -1,225 +1,217 @@
-//! `gyrocal calibrate`: a record and its bench description in, nine drift coefficients out.
+//! `gyrocal calibrate`: records and their bench descriptions in, nine drift coefficients out.
 
-use std::fmt::Write as _;
+mod failed;
+mod inputs;
+mod json;
+mod paragraph;
+mod tables;
+mod words;
+
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
-use gyrocal::generated::MODEL_HASH;
-use gyrocal::{EstimationError, Platform};
-use gyrocal_calibration::{Calibration, CalibrationError, Options, Verdict, calibrate};
-use gyrocal_record::{
-    Bench, CalibrationReport, Coefficient, FitVerdict, Record, SCHEMA_VERSION, write_json,
-};
-use miette::Diagnostic;
+use clap::{ArgAction, Args};
+use gyrocal_calibration::{Calibration, CalibrationError, Options, Run, calibrate_runs};
+use gyrocal_record::{CalibrationMethod, write_json};
 
 use crate::Failure;
-use crate::latitude::LatitudeEffect;
-use crate::outputs::{manifest, refuse_overlap};
+use crate::outputs::refuse_overlap;
 use crate::progress::Progress;
-use crate::rounding::rounded;
+use failed::NotCalibrated;
+use inputs::Measurement;
 
-/// Estimate the nine drift coefficients from a record.
+/// Estimate the nine drift coefficients from one record or several.
 ///
-/// Prints each coefficient with its standard deviation, and whether the record fits the model
-/// within the noise that the bench file declares.
+/// Says whether the records fit the model, what they determine and what they do not, how large
+/// the noise is, and what errors of latitude, Earth rate and gravity would do; prints each
+/// coefficient with its standard deviation.
+///
+/// Several records are several turn-ons of one platform, each with its own initial attitude and
+/// clock.
 #[derive(Debug, Args)]
 pub(crate) struct CalibrateArguments {
-    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g.
-    record: PathBuf,
-    /// The bench description (TOML); examples/data/three_days.bench.toml is one.
-    #[arg(long, value_name = "BENCH.toml")]
-    bench: PathBuf,
+    /// The records (CSV): time_s,accel_x_g,accel_y_g,accel_z_g.
+    #[arg(required = true, value_name = "RECORD.csv")]
+    records: Vec<PathBuf>,
+    /// The bench description (TOML), one for all records or one for each, in their order;
+    /// examples/data/three_days.bench.toml is one.
+    #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
+    benches: Vec<PathBuf>,
     /// The result to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+    /// Average fast records over intervals of so many seconds, 600 at most: quicker, and nothing
+    /// is lost as long as the noise is white.
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    average: Option<f64>,
+    /// Bound the influence of values that are so many sigmas of the noise off; 3 if no number is
+    /// given.
+    #[arg(long, value_name = "SIGMAS", num_args = 0..=1, default_missing_value = "3",
+          value_parser = sigmas)]
+    robust: Option<f64>,
+    /// Leave out the estimate of the noise.
+    #[arg(long)]
+    no_noise: bool,
+    /// One pass of the filter that a controller embeds, instead of the batch estimator.
+    #[arg(long)]
+    streaming: bool,
     /// Filter as the paper does: Euler angles as states, one Euler step a sample. It is right
     /// only for records that were simulated by the same rule.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "streaming")]
     paper: bool,
-    /// Carry the covariance as factors: slower, for priors that are too wide otherwise.
+    /// Carry the filter's covariance as factors: slower, for priors that are too wide otherwise;
+    /// with --streaming or --paper.
     #[arg(long)]
     factorised: bool,
+}
+
+impl CalibrateArguments {
+    fn method(&self) -> CalibrationMethod {
+        match (self.streaming, self.paper) {
+            (true, _) => CalibrationMethod::Streaming,
+            (_, true) => CalibrationMethod::Paper,
+            _ => CalibrationMethod::Batch,
+        }
+    }
+
+    fn options(&self) -> Options {
+        let options = match self.method() {
+            CalibrationMethod::Streaming => Options::streaming(),
+            CalibrationMethod::Paper => Options::of_the_paper(),
+            _ => Options::default(),
+        };
+        Options {
+            factorised: self.factorised,
+            noise: self.method() == CalibrationMethod::Batch && !self.no_noise,
+            outlier_bound: self.robust,
+            ..options
+        }
+    }
+
+    /// What clap cannot see.
+    fn check(&self) -> Result<(), Failure> {
+        let usage = |message: String| Err(Failure::Usage(message));
+        let (records, benches) = (self.records.len(), self.benches.len());
+        if benches != 1 && benches != records {
+            return usage(format!(
+                "{benches} bench files for {records} {}: give --bench once for all records, or \
+                 once for each in their order",
+                if records == 1 { "record" } else { "records" }
+            ));
+        }
+        let filter = match self.method() {
+            CalibrationMethod::Batch if self.factorised => {
+                return usage(
+                    "--factorised is a form of the filter: it goes with --streaming or --paper"
+                        .to_owned(),
+                );
+            }
+            CalibrationMethod::Batch => return Ok(()),
+            CalibrationMethod::Paper => "--paper",
+            _ => "--streaming",
+        };
+        if records > 1 {
+            return usage(format!(
+                "{filter} reads one record, {records} are given: leave it out, or calibrate them \
+                 one by one"
+            ));
+        }
+        if self.robust.is_some() {
+            return usage(format!(
+                "--robust goes with the batch estimator, not with {filter}"
+            ));
+        }
+        if self.no_noise {
+            return usage(format!(
+                "--no-noise goes with the batch estimator; {filter} does not estimate the noise"
+            ));
+        }
+        Ok(())
+    }
 }
 
 /// Runs the command; returns what is to be said on stdout.
 pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
-    refuse_overlap(
-        &[&arguments.record, &arguments.bench],
-        &[("--json", arguments.json.as_deref())],
-    )?;
-    let bench = Bench::read(&arguments.bench)?;
-    let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
-    tracing::info!(rows = record.len(), ?bench, "read");
-    let mut options = if arguments.paper {
-        Options::of_the_paper()
-    } else {
-        Options::default()
+    arguments.check()?;
+    let inputs: Vec<&Path> = arguments
+        .records
+        .iter()
+        .chain(&arguments.benches)
+        .map(PathBuf::as_path)
+        .collect();
+    refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    let measurements = inputs::read(&arguments.records, &arguments.benches, arguments.average)?;
+    let rows = measurements.iter().map(|m| m.record.len()).sum();
+    tracing::info!(records = measurements.len(), rows, "read");
+    let options = arguments.options();
+    let runs: Vec<Run<'_>> = measurements.iter().map(Measurement::run).collect();
+    let calibration = calibrate(&runs, rows, &options, arguments.method())
+        .map_err(|source| NotCalibrated::new(arguments, source))?;
+    tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
+    let found = Found {
+        method: arguments.method(),
+        first_alone: first_alone(&runs, &options),
+        calibration,
+        measurements,
     };
-    options.factorised = arguments.factorised;
-    let stopped = |source| NotCalibrated {
-        record: arguments.record.clone(),
-        paper: arguments.paper,
-        factorised: arguments.factorised,
-        source,
-    };
-    let mut progress = Progress::new("calibrating", record.len());
-    let calibration =
-        calibrate(&record, &bench, &options, |row| progress.reach(row)).map_err(stopped)?;
-    drop(progress);
-    // A fit that is wrong says nothing of such small things.
-    let effect = if calibration.fit.verdict() == Verdict::TooLarge {
-        None
-    } else {
-        let mut progress = Progress::new("moving latitude", record.len());
-        let reach = |row| progress.reach(row);
-        let effect = LatitudeEffect::of(&calibration, &record, &bench, &options, reach);
-        Some(effect.map_err(stopped)?)
-    };
-    tracing::info!(fit = ?calibration.fit, ?effect, "calibrated");
     if let Some(path) = &arguments.json {
-        let inputs = [&*arguments.record, &*arguments.bench];
-        write_json(path, &report(&calibration, &inputs)?)?;
+        write_json(path, &json::report(&found, &inputs)?)?;
     }
-    Ok(summary(arguments, &record, &calibration, effect))
+    let mut text = words::summary(&found);
+    if let Some(path) = &arguments.json {
+        text.push_str(&format!("\n{}: the result for programs\n", path.display()));
+    }
+    Ok(text)
 }
 
-/// The filter could not go through the record.
-#[derive(Debug, thiserror::Error, Diagnostic)]
-#[error("{}: no calibration", record.display())]
-#[diagnostic(code(gyrocal::calibrate::filter), help("{}", self.advice()))]
-struct NotCalibrated {
-    record: PathBuf,
-    paper: bool,
-    factorised: bool,
-    source: CalibrationError,
+/// What there is to tell.
+struct Found {
+    method: CalibrationMethod,
+    measurements: Vec<Measurement>,
+    calibration: Calibration,
+    /// Sigmas of the coefficients from the first record alone, if there are several and it can
+    /// be calibrated alone.
+    first_alone: Option<Vec<f64>>,
 }
 
-impl NotCalibrated {
-    fn advice(&self) -> &'static str {
-        use EstimationError as Filter;
+fn calibrate(
+    runs: &[Run<'_>],
+    rows: usize,
+    options: &Options,
+    method: CalibrationMethod,
+) -> Result<Calibration, CalibrationError> {
+    if method == CalibrationMethod::Batch {
+        // Passes are not counted beforehand.
+        let _progress = Progress::waiting("calibrating", rows);
+        return calibrate_runs(runs, options, |_| ());
+    }
+    let mut progress = Progress::new("calibrating", rows);
+    calibrate_runs(runs, options, |row| progress.reach(row))
+}
 
-        let lost = match &self.source {
-            CalibrationError::TooShort { .. } => return "record for longer",
-            CalibrationError::NotPositiveDefinite => true,
-            CalibrationError::Filter { source, .. } => matches!(
-                source,
-                Filter::LostPrecision { .. } | Filter::NotPositiveDefinite { .. }
-            ),
-            _ => false,
-        };
-        if self.paper {
-            "the paper's filter fails where the second platform angle comes near 90 deg: leave \
-             out --paper"
-        } else if lost && !self.factorised {
-            "the prior is very wide against the noise: give [prior] and initial_angles_sigma_deg \
-             the sizes that are believed, or carry the covariance as factors with --factorised"
-        } else {
-            "the numbers of the bench file are out of proportion to each other or to the record: \
-             check [noise], [prior] and initial_angles_sigma_deg"
+/// A record that says too little by itself is no failure of all together.
+fn first_alone(runs: &[Run<'_>], options: &Options) -> Option<Vec<f64>> {
+    let [first, _, ..] = runs else { return None };
+    let options = Options {
+        noise: false,
+        ..*options
+    };
+    match calibrate_runs(&[*first], &options, |_| ()) {
+        Ok(alone) => Some(alone.coefficients().map(|found| found.sigma).to_vec()),
+        Err(error) => {
+            tracing::warn!(%error, "the first record alone could not be calibrated");
+            None
         }
     }
 }
 
-impl From<NotCalibrated> for Failure {
-    fn from(error: NotCalibrated) -> Self {
-        Self::Work(error.into())
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a number greater than 0".to_owned()),
     }
 }
 
-fn report(calibration: &Calibration, inputs: &[&Path]) -> Result<CalibrationReport, Failure> {
-    let fit = &calibration.fit;
-    Ok(CalibrationReport {
-        schema_version: SCHEMA_VERSION,
-        manifest: manifest(MODEL_HASH, 0, inputs)?,
-        coefficients: calibration
-            .coefficients()
-            .into_iter()
-            .map(|coefficient| Coefficient {
-                name: coefficient.id.to_owned(),
-                estimate: coefficient.estimate,
-                sigma: coefficient.sigma,
-                unit: coefficient.unit.to_owned(),
-                determined: coefficient.determined,
-            })
-            .collect(),
-        covariance: calibration.covariance.map(Vec::from).to_vec(),
-        nis_mean: fit.nis_mean(),
-        nis_band: fit.nis_band(),
-        verdict: match fit.verdict() {
-            Verdict::Consistent => FitVerdict::Consistent,
-            Verdict::TooLarge => FitVerdict::TooLarge,
-            Verdict::TooSmall => FitVerdict::TooSmall,
-        },
-        verdict_text: fit.verdict_text(),
-        iterations: 1,
-        rows: fit.rows(),
-        final_angles_deg: calibration.final_angles_rad.map(f64::to_degrees),
-    })
-}
-
-fn summary(
-    arguments: &CalibrateArguments,
-    record: &Record,
-    calibration: &Calibration,
-    effect: Option<LatitudeEffect>,
-) -> String {
-    let mut text = format!(
-        "{}: {} rows over {:.2} days\n\n{}\n\n",
-        arguments.record.display(),
-        calibration.fit.rows(),
-        record.duration_s() / 86_400.0,
-        table(calibration).trim_fmt()
-    );
-    let _ = writeln!(text, "Fit: {}.", calibration.fit.verdict_text());
-    let [x, y, z] = calibration.final_angles_rad.map(f64::to_degrees);
-    let _ = writeln!(
-        text,
-        "Platform against east, north, up at the last row: {x:.4}, {y:.4}, {z:.4} deg \
-         about x, y, z."
-    );
-    text.push_str("Latitude is taken as exactly known, and it must be the astronomic one");
-    if let Some(effect) = effect {
-        let _ = write!(
-            text,
-            ": an error of 1 arc second moves the\n\
-             mean of the three D_I by {:.1e} deg/h/g and a single one by up to {:.1e}, which no \
-             sigma includes",
-            effect.mean_d_i_deg_per_h_per_g, effect.largest_d_i_deg_per_h_per_g,
-        );
-    }
-    text.push_str(".\n");
-    if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "{}: the result for programs", path.display());
-    }
-    text
-}
-
-fn table(calibration: &Calibration) -> Table {
-    let rule = LineStyle::none().fill('─').junction('─');
-    let mut table = Table::new();
-    table
-        .load_style(TableStyle::new().header_separator(rule))
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header([
-            "coefficient",
-            "estimate",
-            "sigma",
-            "unit",
-            "determined",
-            "meaning",
-        ]);
-    for coefficient in calibration.coefficients() {
-        let [estimate, sigma] = rounded(coefficient.estimate, coefficient.sigma);
-        let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
-        table.add_row([
-            Cell::new(coefficient.id),
-            right(estimate),
-            right(sigma),
-            Cell::new(coefficient.unit),
-            Cell::new(if coefficient.determined { "yes" } else { "no" }),
-            Cell::new(coefficient.meaning),
-        ]);
-    }
-    table
+fn sigmas(text: &str) -> Result<f64, String> {
+    positive(text)
+        .map_err(|expected| format!("{expected}; put records before --robust, or write --robust=3"))
 }

@@ -4,6 +4,7 @@ use clap::{ArgAction, Parser, Subcommand};
 
 use crate::allan::AllanArguments;
 use crate::calibrate::CalibrateArguments;
+use crate::diagnose::DiagnoseArguments;
 use crate::extend::ExtendArguments;
 use crate::import::ImportArguments;
 use crate::monte_carlo::MonteCarloArguments;
@@ -31,6 +32,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     Allan(AllanArguments),
     Calibrate(CalibrateArguments),
+    Diagnose(DiagnoseArguments),
     Extend(ExtendArguments),
     Import(ImportArguments),
     MonteCarlo(MonteCarloArguments),

@@ -6,9 +6,9 @@
 mod allan;
 mod calibrate;
 mod command;
+mod diagnose;
 mod extend;
 mod import;
-mod latitude;
 mod measured;
 mod monte_carlo;
 mod outputs;
@@ -30,19 +30,20 @@ fn main() -> ExitCode {
     start_logging(cli.verbose);
     show_errors_plainly();
     let outcome = match &cli.command {
-        Command::Allan(arguments) => allan::run(arguments),
-        Command::Calibrate(arguments) => calibrate::run(arguments),
-        Command::Extend(arguments) => extend::run(arguments),
-        Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
-        Command::Import(arguments) => import::run(arguments),
-        Command::Simulate(arguments) => simulate::run(arguments),
-        Command::Tumble(arguments) => tumble::run(arguments),
+        Command::Allan(arguments) => allan::run(arguments).map(Answer::from),
+        Command::Calibrate(arguments) => calibrate::run(arguments).map(Answer::from),
+        Command::Diagnose(arguments) => diagnose::run(arguments),
+        Command::Extend(arguments) => extend::run(arguments).map(Answer::from),
+        Command::MonteCarlo(arguments) => monte_carlo::run(arguments).map(Answer::from),
+        Command::Import(arguments) => import::run(arguments).map(Answer::from),
+        Command::Simulate(arguments) => simulate::run(arguments).map(Answer::from),
+        Command::Tumble(arguments) => tumble::run(arguments).map(Answer::from),
     };
     match outcome {
-        Ok(summary) => {
+        Ok(answer) => {
             // A reader that has gone away, as in `| head`, is no failure of the work.
-            let _ = std::io::stdout().write_all(summary.as_bytes());
-            ExitCode::SUCCESS
+            let _ = std::io::stdout().write_all(answer.text.as_bytes());
+            ExitCode::from(answer.exit_code)
         }
         Err(Failure::Usage(message)) => {
             use clap::CommandFactory as _;
@@ -54,6 +55,21 @@ fn main() -> ExitCode {
             let _ = writeln!(std::io::stderr(), "{report:?}");
             ExitCode::from(1)
         }
+    }
+}
+
+/// What a command has to say.
+#[derive(Debug)]
+struct Answer {
+    /// What goes to stdout.
+    text: String,
+    /// 0 unless the command was asked to speak to scripts.
+    exit_code: u8,
+}
+
+impl From<String> for Answer {
+    fn from(text: String) -> Self {
+        Self { text, exit_code: 0 }
     }
 }
 

@@ -8,6 +8,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// How long the work must take before the bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Rows that take a second or two.
+const MANY_ROWS: usize = 20_000;
+
+/// How often the time that has passed is renewed.
+const TICK: Duration = Duration::from_millis(200);
+
 /// A bar that appears after a second if stderr is a terminal, and goes when it is dropped.
 #[derive(Debug)]
 pub(crate) struct Progress {
@@ -27,6 +33,21 @@ impl Progress {
             wanted: std::io::stderr().is_terminal(),
             bar: None,
         }
+    }
+
+    /// Of work on so many rows that does not tell how far it is: shows the time that has passed,
+    /// from the start if the rows are many.
+    pub(crate) fn waiting(label: &'static str, rows: usize) -> Self {
+        let mut progress = Self::new(label, rows);
+        if progress.wanted && rows >= MANY_ROWS {
+            let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
+            let bar = ProgressBar::new_spinner()
+                .with_message(format!("{label} {rows} rows"))
+                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+            bar.enable_steady_tick(TICK);
+            progress.bar = Some(bar);
+        }
+        progress
     }
 
     /// Tells how much is done.

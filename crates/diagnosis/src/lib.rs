@@ -29,6 +29,7 @@ mod gain;
 mod noise;
 mod norm;
 mod remainder;
+mod request;
 mod series;
 mod significance;
 mod spectrum;

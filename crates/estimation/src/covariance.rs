@@ -6,19 +6,20 @@
 //! it is symmetric to the last bit without being made so.
 //!
 //! - Prediction: Φ is the identity on the parameters, so the parameter block does not change;
-//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp.
+//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp. A step that starts at the origin of its chart
+//!   and has one stage takes of Φ_mp what the model says is not zero.
 //! - Update: with S = L diag(α) Lᵀ the whitened gain is V = diag(α)^-1/2 L⁻¹ H P, and
-//!   P_pp ← P_pp - Vᵀ V. The moving block, where a measurement removes nearly all of a wide
-//!   prior, is updated in Joseph form, which cannot lose definiteness by cancellation.
+//!   P ← P - Vᵀ V. Where a measurement removes nearly all of a wide prior, the moving block is
+//!   updated in Joseph form, which cannot lose definiteness by cancellation.
 //!
 //! A variance that is not positive afterwards is an error; nothing is repaired.
 
 use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers, Observation};
+use crate::form::{Form, Numbers, Observation, Transition};
 use crate::innovation::Innovation;
-use crate::lanes4::{dot, load, load_rows, mul_add, store};
+use crate::lanes4::{load, load_rows, mul_add, multiply_add, small_product, store};
 use crate::projection::{Projection, is_variance, not_positive};
 
 /// P itself: the fast form. It needs double precision, and a prior that is not wider against
@@ -30,6 +31,8 @@ use crate::projection::{Projection, is_variance, not_positive};
 pub struct Covariance;
 
 impl<T: Real> Form<T> for Covariance {
+    const USES_ZEROS: bool = true;
+
     #[inline]
     fn start(numbers: &mut Numbers<'_, T>, variances: impl Iterator<Item = T>) {
         let n = numbers.pivots.len();
@@ -50,15 +53,13 @@ impl<T: Real> Form<T> for Covariance {
     }
 
     #[inline(always)]
-    fn predict<const M: usize>(
+    fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,
-        transition: &[[T; M]; M],
-        columns: &[T],
-        noise: &[[T; M]; M],
-        variance: &[T; M],
+        transition: &Transition<'_, T, M>,
+        enters: impl Fn(usize, usize) -> bool,
     ) -> Result<(), EstimationError> {
         let n = numbers.pivots.len();
-        predict(numbers.matrix, n, transition, columns, noise, variance)
+        predict::<T, M, SPARSE>(numbers.matrix, n, transition, numbers.cross, enters)
     }
 
     #[inline(always)]
@@ -66,7 +67,11 @@ impl<T: Real> Form<T> for Covariance {
         numbers: &mut Numbers<'_, T>,
         observation: &Observation<'_, T, M, Y>,
     ) -> Result<Innovation<T, Y>, EstimationError> {
-        Projection::new(numbers.matrix, numbers.pivots.len(), observation)?.innovation()
+        let projection = Projection::new(numbers.matrix, numbers.pivots.len(), observation);
+        projection.check()?;
+        let innovation = projection.innovation();
+        innovation.check()?;
+        Ok(innovation)
     }
 
     #[inline(always)]
@@ -77,8 +82,13 @@ impl<T: Real> Form<T> for Covariance {
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError> {
         let n = numbers.pivots.len();
-        let projection = Projection::new(numbers.matrix, n, observation)?;
-        let innovation = projection.innovation()?;
+        // Needs nothing of S, and fills the time in which the divisions of its factors wait for
+        // each other.
+        project_parameters(numbers.matrix, n, observation, numbers.gain);
+        let projection = Projection::new(numbers.matrix, n, observation);
+        projection.check()?;
+        let innovation = projection.innovation();
+        innovation.check()?;
         let mut head = projection.moving;
         projection.reduce(&mut head);
         let mut correction = [T::from_f64(0.0); M];
@@ -86,136 +96,214 @@ impl<T: Real> Form<T> for Covariance {
             correction = mul_add(head[k], innovation.weights[k], correction);
         }
         correct(&correction);
-        let weights = innovation.weights;
-        let pass = Pass {
-            projection: &projection,
-            weights,
-            head,
-        };
+        let pass = Pass::new(&projection, &innovation, head);
         pass.run(numbers.matrix, n, parameters, numbers.gain)?;
         Ok(innovation)
     }
 }
 
-/// P ← Φ P Φᵀ + Γ diag(variance) Γᵀ.
-///
-/// `transition` are the moving columns of Φ, `columns` its parameter columns (M × p, by rows),
-/// `noise` is Γ.
+/// P ← W (Φ P Φᵀ + Γ diag(variance) Γᵀ) Wᵀ. W, which waits for the end of the step and for its
+/// sines and cosines, comes last.
 #[inline(always)]
-fn predict<T: Real, const M: usize>(
+fn predict<T: Real, const M: usize, const SPARSE: bool>(
     p: &mut [T],
     n: usize,
-    transition: &[[T; M]; M],
-    columns: &[T],
-    noise: &[[T; M]; M],
-    variance: &[T; M],
+    transition: &Transition<'_, T, M>,
+    workspace: &mut [T],
+    enters: impl Fn(usize, usize) -> bool,
 ) -> Result<(), EstimationError> {
     let count = n - M;
     let half = T::from_f64(0.5);
-    // C Φ_mpᵀ with C = Φ_mp P_pp + 2 Φ_mm P_mp: its symmetric part is all that the parameters
-    // add to the moving block.
-    let mut added = [[T::from_f64(0.0); M]; M];
+    let Transition {
+        moving,
+        noise,
+        variance,
+        map,
+        ..
+    } = transition;
     let mut column = 0;
     while column + 4 <= count {
-        predict_columns::<T, M, 4>(p, n, transition, columns, column, &mut added);
+        predict_columns::<T, M, 4, SPARSE>(p, n, transition, &enters, workspace, column);
         column += 4;
     }
     while column < count {
-        predict_columns::<T, M, 1>(p, n, transition, columns, column, &mut added);
+        predict_columns::<T, M, 1, SPARSE>(p, n, transition, &enters, workspace, column);
         column += 1;
     }
-    let corner: [[T; M]; M] = load_rows(p, n, 0);
-    let mut mapped = [[T::from_f64(0.0); M]; M];
-    for i in 0..M {
-        for (row, coefficient) in corner.iter().zip(&transition[i]) {
-            mapped[i] = mul_add(*row, *coefficient, mapped[i]);
-        }
-    }
+    let added = added::<T, M, SPARSE>(transition.parameters, count, workspace, enters);
+    let mapped = small_product(moving, &load_rows(p, n, 0));
+    let mut corner = [[T::from_f64(0.0); M]; M];
     for i in 0..M {
         for j in 0..=i {
             let mut sum = half * (added[i][j] + added[j][i]);
             for k in 0..M {
-                sum = mapped[i][k].mul_add(transition[j][k], sum);
+                sum = mapped[i][k].mul_add(moving[j][k], sum);
                 sum = (noise[i][k] * variance[k]).mul_add(noise[j][k], sum);
             }
-            p[i * n + j] = sum;
-            p[j * n + i] = sum;
+            corner[i][j] = sum;
+            corner[j][i] = sum;
         }
+    }
+    if let Some(map) = map {
+        let rows = small_product(map, &corner);
+        for i in 0..M {
+            for j in 0..=i {
+                let mut sum = T::from_f64(0.0);
+                for k in 0..M {
+                    sum = rows[i][k].mul_add(map[j][k], sum);
+                }
+                corner[i][j] = sum;
+                corner[j][i] = sum;
+            }
+        }
+    }
+    for (i, row) in corner.iter().enumerate() {
+        store(p, i * n, *row);
     }
     check_diagonal(p, n, M)
 }
 
-/// The moving rows Φ_mm P_mp + Φ_mp P_pp, for `W` columns, and what those columns add to C Φ_mpᵀ.
+/// The moving rows W (Φ_mm P_mp + Φ_mp P_pp), for `W` columns. C = Φ_mp P_pp + 2 Φ_mm P_mp is left
+/// in `workspace`.
 #[inline(always)]
-fn predict_columns<T: Real, const M: usize, const W: usize>(
+fn predict_columns<T: Real, const M: usize, const W: usize, const SPARSE: bool>(
     p: &mut [T],
     n: usize,
-    transition: &[[T; M]; M],
-    columns: &[T],
+    transition: &Transition<'_, T, M>,
+    enters: &impl Fn(usize, usize) -> bool,
+    workspace: &mut [T],
     column: usize,
-    added: &mut [[T; M]; M],
 ) {
     let (count, at) = (n - M, M + column);
+    let columns = transition.parameters;
     let old: [[T; W]; M] = load_rows(p, n, at);
     let mut mapped = [[T::from_f64(0.0); W]; M];
     for i in 0..M {
-        for (row, coefficient) in old.iter().zip(&transition[i]) {
-            mapped[i] = mul_add(*row, *coefficient, mapped[i]);
+        for j in 0..M {
+            mapped[i] = mul_add(old[j], transition.moving[i][j], mapped[i]);
         }
     }
     let mut sums = mapped;
     for l in 0..count {
         let row: [T; W] = load(p, (M + l) * n + at);
         for i in 0..M {
-            sums[i] = mul_add(row, columns[i * count + l], sums[i]);
+            if !SPARSE || enters(i, l) {
+                sums[i] = mul_add(row, columns[i * count + l], sums[i]);
+            }
         }
     }
-    let phi: [[T; W]; M] = load_rows(columns, count, column);
     for i in 0..M {
-        store(p, i * n + at, sums[i]);
         let both = mul_add(mapped[i], T::from_f64(1.0), sums[i]);
-        for j in 0..M {
-            added[i][j] = added[i][j] + dot(both, phi[j]);
+        store(workspace, i * count + column, both);
+    }
+    if let Some(map) = &transition.map {
+        let before = sums;
+        for i in 0..M {
+            sums[i] = before[0].map(|value| value * map[i][0]);
+            for j in 1..M {
+                sums[i] = mul_add(before[j], map[i][j], sums[i]);
+            }
         }
     }
+    for (i, row) in sums.iter().enumerate() {
+        store(p, i * n + at, *row);
+    }
+}
+
+/// C Φ_mpᵀ, whose symmetric part is all that the parameters add to the moving block. C (M × p, by
+/// rows) is in `workspace`.
+#[inline(always)]
+fn added<T: Real, const M: usize, const SPARSE: bool>(
+    columns: &[T],
+    count: usize,
+    workspace: &[T],
+    enters: impl Fn(usize, usize) -> bool,
+) -> [[T; M]; M] {
+    let mut added = [[T::from_f64(0.0); M]; M];
+    let mut rest = 0;
+    if !SPARSE {
+        rest = count / 4 * 4;
+        for i in 0..M {
+            let mut lanes = [[T::from_f64(0.0); 4]; M];
+            for column in (0..rest).step_by(4) {
+                let row: [T; 4] = load(workspace, i * count + column);
+                for j in 0..M {
+                    lanes[j] = multiply_add(row, load(columns, j * count + column), lanes[j]);
+                }
+            }
+            for j in 0..M {
+                let [a, b, c, d] = lanes[j];
+                added[i][j] = (a + b) + (c + d);
+            }
+        }
+    }
+    for l in rest..count {
+        for j in 0..M {
+            if !SPARSE || enters(j, l) {
+                let phi = columns[j * count + l];
+                for i in 0..M {
+                    added[i][j] = workspace[i * count + l].mul_add(phi, added[i][j]);
+                }
+            }
+        }
+    }
+    added
 }
 
 /// What the pass over P needs.
 struct Pass<'a, T, const M: usize, const Y: usize> {
     projection: &'a Projection<'a, T, M, Y>,
+    /// diag(α)^-1/2.
+    root: [T; Y],
     /// Weights of the rows of L⁻¹ H P in the correction of the state.
     weights: [T; Y],
-    /// Moving columns of L⁻¹ H P.
+    /// Moving columns of V.
     head: [[T; M]; Y],
 }
 
-impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
+impl<'a, T: Real, const M: usize, const Y: usize> Pass<'a, T, M, Y> {
+    /// `head` are the moving columns of L⁻¹ H P.
+    #[inline(always)]
+    fn new(
+        projection: &'a Projection<'a, T, M, Y>,
+        innovation: &Innovation<T, Y>,
+        mut head: [[T; M]; Y],
+    ) -> Self {
+        let root = projection.reciprocal.map(T::sqrt);
+        for k in 0..Y {
+            head[k] = head[k].map(|value| value * root[k]);
+        }
+        Self {
+            projection,
+            root,
+            weights: innovation.weights,
+            head,
+        }
+    }
+
     /// P ← (I - K H) P and the parameters' correction; V (Y × n) is left in `gain`.
     #[inline(always)]
     fn run(
-        mut self,
+        &self,
         p: &mut [T],
         n: usize,
         parameters: &mut [T],
         gain: &mut [T],
     ) -> Result<(), EstimationError> {
         let count = n - M;
-        let root = self.projection.reciprocal.map(T::sqrt);
-        let reduced = self.head;
-        for k in 0..Y {
-            self.head[k] = self.head[k].map(|value| value * root[k]);
-            store(gain, k * n, self.head[k]);
+        for (k, head) in self.head.iter().enumerate() {
+            store(gain, k * n, *head);
         }
         let mut column = 0;
         while column + 4 <= count {
-            self.columns::<4>(p, n, &root, parameters, gain, column);
+            self.columns::<4>(p, n, parameters, gain, column);
             column += 4;
         }
         while column < count {
-            self.columns::<1>(p, n, &root, parameters, gain, column);
+            self.columns::<1>(p, n, parameters, gain, column);
             column += 1;
         }
-        self.projection.update_corner(p, n, &reduced);
+        self.projection.update_corner(p, n, &self.head);
         for i in 0..count {
             let weights: [[T; 1]; Y] = load_rows(gain, n, M + i);
             let row = &mut p[(M + i) * n + M..(M + i + 1) * n];
@@ -238,33 +326,18 @@ impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
         &self,
         p: &mut [T],
         n: usize,
-        root: &[T; Y],
         parameters: &mut [T],
         gain: &mut [T],
         column: usize,
     ) {
-        let observation = self.projection.observation;
-        let (h, output) = (&observation.moving, observation.parameters);
-        let q = output.len() / Y;
         let at = M + column;
         let mut cross: [[T; W]; M] = load_rows(p, n, at);
-        let mut v = [[T::from_f64(0.0); W]; Y];
-        for k in 0..Y {
-            for (row, h) in cross.iter().zip(&h[k]) {
-                v[k] = mul_add(*row, *h, v[k]);
-            }
-        }
-        for i in 0..q {
-            let row: [T; W] = load(p, (M + i) * n + at);
-            for k in 0..Y {
-                v[k] = mul_add(row, output[k * q + i], v[k]);
-            }
-        }
+        let mut v: [[T; W]; Y] = load_rows(gain, n, at);
         self.projection.reduce(&mut v);
         let mut corrected: [T; W] = load(parameters, column);
         for k in 0..Y {
             corrected = mul_add(v[k], self.weights[k], corrected);
-            v[k] = v[k].map(|value| value * root[k]);
+            v[k] = v[k].map(|value| value * self.root[k]);
             for i in 0..M {
                 cross[i] = mul_add(v[k], -self.head[k][i], cross[i]);
             }
@@ -274,6 +347,52 @@ impl<T: Real, const M: usize, const Y: usize> Pass<'_, T, M, Y> {
         for (i, row) in cross.iter().enumerate() {
             store(p, i * n + at, *row);
         }
+    }
+}
+
+/// Leaves the parameter columns of H P in `products` (Y × n).
+#[inline(always)]
+fn project_parameters<T: Real, const M: usize, const Y: usize>(
+    p: &[T],
+    n: usize,
+    observation: &Observation<'_, T, M, Y>,
+    products: &mut [T],
+) {
+    let count = n - M;
+    let mut column = 0;
+    while column + 4 <= count {
+        project_columns::<T, M, Y, 4>(p, n, observation, products, M + column);
+        column += 4;
+    }
+    while column < count {
+        project_columns::<T, M, Y, 1>(p, n, observation, products, M + column);
+        column += 1;
+    }
+}
+
+#[inline(always)]
+fn project_columns<T: Real, const M: usize, const Y: usize, const W: usize>(
+    p: &[T],
+    n: usize,
+    observation: &Observation<'_, T, M, Y>,
+    products: &mut [T],
+    at: usize,
+) {
+    let q = observation.parameters.len() / Y;
+    let mut sums = [[T::from_f64(0.0); W]; Y];
+    for i in 0..M + q {
+        let row: [T; W] = load(p, i * n + at);
+        for k in 0..Y {
+            let h = if i < M {
+                observation.moving[k][i]
+            } else {
+                observation.parameters[k * q + i - M]
+            };
+            sums[k] = mul_add(row, h, sums[k]);
+        }
+    }
+    for (k, sum) in sums.iter().enumerate() {
+        store(products, k * n + at, *sum);
     }
 }
 

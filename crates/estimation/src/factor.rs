@@ -12,9 +12,9 @@
 use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers, Observation};
+use crate::form::{Form, Numbers, Observation, Transition};
 use crate::innovation::Innovation;
-use crate::lanes4::{load, mul_add, multiply_add, store};
+use crate::lanes4::{load, mul_add, multiply_add, small_product, store};
 
 /// The factors U and D: P is symmetric and positive definite whatever rounding does, in single
 /// precision and from wide priors. `cargo figures kernel` prints how much longer a step takes than
@@ -23,6 +23,8 @@ use crate::lanes4::{load, mul_add, multiply_add, store};
 pub struct Factors;
 
 impl<T: Real> Form<T> for Factors {
+    const USES_ZEROS: bool = false;
+
     #[inline]
     fn start(numbers: &mut Numbers<'_, T>, variances: impl Iterator<Item = T>) {
         let n = numbers.pivots.len();
@@ -42,21 +44,12 @@ impl<T: Real> Form<T> for Factors {
     }
 
     #[inline(always)]
-    fn predict<const M: usize>(
+    fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,
-        transition: &[[T; M]; M],
-        columns: &[T],
-        noise: &[[T; M]; M],
-        variance: &[T; M],
+        transition: &Transition<'_, T, M>,
+        _enters: impl Fn(usize, usize) -> bool,
     ) -> Result<(), EstimationError> {
-        predict(
-            numbers.matrix,
-            numbers.pivots,
-            transition,
-            columns,
-            noise,
-            variance,
-        )
+        predict(numbers.matrix, numbers.pivots, transition)
     }
 
     #[inline(always)]
@@ -78,22 +71,22 @@ impl<T: Real> Form<T> for Factors {
     }
 }
 
-/// Carries the factors through Φ and adds held noise of the given variances.
-///
-/// `transition` are the moving, `parameter_columns` (M × p, by rows) the parameter columns of
-/// Φ, `noise` is Γ.
+/// Carries the factors through Φ, adds held noise of the given variances, and moves the chart.
 #[inline(always)]
 fn predict<T: Real, const M: usize>(
     factor: &mut [T],
     pivots: &mut [T],
-    transition: &[[T; M]; M],
-    parameter_columns: &[T],
-    noise: &[[T; M]; M],
-    variance: &[T; M],
+    transition: &Transition<'_, T, M>,
 ) -> Result<(), EstimationError> {
     let n = pivots.len();
     let p = n - M;
-    let phi: [&[T]; M] = core::array::from_fn(|i| &parameter_columns[i * p..(i + 1) * p]);
+    let (mut moving, mut noise) = (transition.moving, transition.noise);
+    if let Some(map) = &transition.map {
+        moving = small_product(map, &moving);
+        noise = small_product(map, &noise);
+    }
+    let parameters = transition.parameters;
+    let phi: [&[T]; M] = core::array::from_fn(|i| &parameters[i * p..(i + 1) * p]);
     let blocks: [&[[T; 4]]; M] = core::array::from_fn(|i| phi[i].as_chunks().0);
     for (k, column) in factor[M * n..].chunks_exact_mut(n).enumerate() {
         let (head, rest) = column.split_at_mut(M);
@@ -109,7 +102,7 @@ fn predict<T: Real, const M: usize>(
         let old: [T; M] = core::array::from_fn(|l| head[l]);
         for i in 0..M {
             let mut total = (sums[i][0] + sums[i][1]) + (sums[i][2] + sums[i][3]);
-            for (phi, u) in transition[i].iter().zip(old) {
+            for (phi, u) in transition.moving[i].iter().zip(old) {
                 total = phi.mul_add(u, total);
             }
             if used > quads.len() {
@@ -119,8 +112,18 @@ fn predict<T: Real, const M: usize>(
             }
             head[i] = total;
         }
+        if let Some(map) = &transition.map {
+            let old: [T; M] = load(head, 0);
+            for i in 0..M {
+                let mut total = T::from_f64(0.0);
+                for j in 0..M {
+                    total = map[i][j].mul_add(old[j], total);
+                }
+                head[i] = total;
+            }
+        }
     }
-    predict_corner(factor, pivots, transition, noise, variance)
+    predict_corner(factor, pivots, &moving, &noise, &transition.variance)
 }
 
 /// The M × M corner: weighted Gram-Schmidt on the rows of [Φ_mm U_mm, Γ] with the weights
@@ -227,7 +230,9 @@ fn innovation<T: Real, const M: usize, const Y: usize>(
     let Observation {
         residual, observed, ..
     } = *observation;
-    Innovation::from_factors(residual, observed, lower, variance, &reciprocal)
+    let innovation = Innovation::from_factors(residual, observed, lower, variance, &reciprocal);
+    innovation.check()?;
+    Ok(innovation)
 }
 
 /// Bierman's update of the factors for all outputs in one sweep.
@@ -247,6 +252,7 @@ fn update<T: Real, const M: usize, const Y: usize>(
         pivots,
         gain,
         sweep,
+        ..
     } = numbers;
     let output = observation.parameters;
     let n = pivots.len();
@@ -424,12 +430,14 @@ impl<T: Real, const M: usize, const Y: usize> Head<T, M, Y> {
             }
             lower[k][k] = T::from_f64(1.0);
         }
-        Innovation::from_factors(
+        let innovation = Innovation::from_factors(
             observation.residual,
             observation.observed,
             lower,
             self.variance,
             &self.reciprocal,
-        )
+        );
+        innovation.check()?;
+        Ok(innovation)
     }
 }

@@ -4,9 +4,8 @@ use gyrocal_scalar::{Real, Recentre};
 
 use crate::covariance::Covariance;
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers};
+use crate::form::{Form, Numbers, Transition};
 use crate::innovation::Innovation;
-use crate::lanes4::{load_rows, mul_add, store};
 use crate::observe::{Sensor, check_noise};
 use crate::storage::{Storage, View};
 use crate::transition::{Integration, Integrator};
@@ -19,6 +18,7 @@ macro_rules! numbers {
             pivots: $buffers.pivots,
             gain: $buffers.gain,
             sweep: $buffers.sweep,
+            cross: $buffers.cross,
         }
     };
 }
@@ -58,6 +58,7 @@ pub struct Filter<T, D, I, S, const M: usize, const Y: usize, F = Covariance> {
     recentring: Recentring<T>,
     storage: S,
     moving_transition: [[T; M]; M],
+    map: Option<[[T; M]; M]>,
     form: PhantomData<F>,
 }
 
@@ -146,6 +147,7 @@ where
             recentring,
             storage,
             moving_transition: [[T::from_f64(0.0); M]; M],
+            map: None,
             form: PhantomData,
         };
         filter.recentre_at_start()?;
@@ -167,8 +169,14 @@ where
         buffers.state[..M].copy_from_slice(&moving);
         let zero = [T::from_f64(0.0); M];
         buffers.transition.fill(T::from_f64(0.0));
-        let columns = &buffers.transition[..M * (n - M)];
-        F::predict(&mut numbers!(buffers), &map, columns, &[zero; M], &zero)
+        let transition = Transition {
+            moving: map,
+            parameters: &buffers.transition[..M * (n - M)],
+            noise: [zero; M],
+            variance: zero,
+            map: None,
+        };
+        F::predict::<M, false>(&mut numbers!(buffers), &transition, |_, _| true)
     }
 
     /// Predicts over `dt` seconds with noise of the given spectral densities (unit of the
@@ -191,7 +199,7 @@ where
         let buffers = self.storage.buffers();
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
         let mut moving = to_array(moving_slice);
-        let mut transition = Integrator {
+        let derivatives = Integrator {
             model: &self.model,
             inputs: &self.inputs,
             parameters,
@@ -205,32 +213,35 @@ where
                 quantity: "a predicted moving state",
             });
         }
-        if self.recentring.wanted(&moving)
-            && let Some(map) = self.model.recentre(&mut moving, &mut self.inputs)
-        {
-            transition.moving = small_product(&map, &transition.moving);
-            if self.model.noise_parameters().is_none() {
-                transition.noise = small_product(&map, &transition.noise);
-            }
-            map_rows(&map, buffers.transition, n - M);
+        let mut map = None;
+        if self.recentring.wanted(&moving) {
+            map = self.model.recentre(&mut moving, &mut self.inputs);
         }
+        let mut noise = derivatives.noise;
         if let Some(same) = self.model.noise_parameters() {
-            for (i, row) in transition.noise.iter_mut().enumerate() {
+            for (i, row) in noise.iter_mut().enumerate() {
                 for (noise, parameter) in row.iter_mut().zip(same) {
                     *noise = buffers.transition[i * (n - M) + parameter];
                 }
             }
         }
         moving_slice.copy_from_slice(&moving);
-        self.moving_transition = transition.moving;
-        let variance = noise_density.map(|density| density / dt);
-        F::predict(
-            &mut numbers!(buffers),
-            &transition.moving,
-            &buffers.transition[..M * (n - M)],
-            &transition.noise,
-            &variance,
-        )
+        self.moving_transition = derivatives.moving;
+        self.map = map;
+        let transition = Transition {
+            moving: derivatives.moving,
+            parameters: &buffers.transition[..M * (n - M)],
+            noise,
+            variance: noise_density.map(|density| density / dt),
+            map,
+        };
+        let numbers = &mut numbers!(buffers);
+        if F::USES_ZEROS && at_origin && self.integration == Integration::EULER {
+            let enters = |i, j| self.model.enters_at_origin(i, j);
+            F::predict::<M, true>(numbers, &transition, enters)
+        } else {
+            F::predict::<M, false>(numbers, &transition, |_, _| true)
+        }
     }
 
     /// Updates with a measurement of the outputs, NaN where a component is missing.
@@ -359,10 +370,17 @@ where
         self.storage.view()
     }
 
-    /// Moving columns of the last transition.
+    /// Moving columns of the last transition, in the chart that its step began in.
     #[must_use]
     pub fn moving_transition(&self) -> &[[T; M]; M] {
         &self.moving_transition
+    }
+
+    /// What moving the chart after the last step did to errors of the moving states: it
+    /// multiplies the moving rows of the transition from the left. `None` where it did not move.
+    #[must_use]
+    pub fn chart_map(&self) -> Option<&[[T; M]; M]> {
+        self.map.as_ref()
     }
 }
 
@@ -380,44 +398,4 @@ fn add<T: Real, const M: usize>(a: &[T; M], b: &[T; M]) -> [T; M] {
         *sum = *sum + *b;
     }
     sum
-}
-
-#[inline(always)]
-fn small_product<T: Real, const M: usize>(a: &[[T; M]; M], b: &[[T; M]; M]) -> [[T; M]; M] {
-    core::array::from_fn(|i| {
-        core::array::from_fn(|j| {
-            (0..M).fold(T::from_f64(0.0), |sum, l| a[i][l].mul_add(b[l][j], sum))
-        })
-    })
-}
-
-/// Replaces the M rows of `rows` (stride p) by their product with `map` from the left.
-#[inline(always)]
-fn map_rows<T: Real, const M: usize>(map: &[[T; M]; M], rows: &mut [T], p: usize) {
-    let mut column = 0;
-    while column + 4 <= p {
-        map_columns::<T, M, 4>(map, rows, p, column);
-        column += 4;
-    }
-    while column < p {
-        map_columns::<T, M, 1>(map, rows, p, column);
-        column += 1;
-    }
-}
-
-#[inline(always)]
-fn map_columns<T: Real, const M: usize, const W: usize>(
-    map: &[[T; M]; M],
-    rows: &mut [T],
-    p: usize,
-    column: usize,
-) {
-    let old: [[T; W]; M] = load_rows(rows, p, column);
-    for (i, weights) in map.iter().enumerate() {
-        let mut sum = [T::from_f64(0.0); W];
-        for (row, weight) in old.iter().zip(weights) {
-            sum = mul_add(*row, *weight, sum);
-        }
-        store(rows, i * p + column, sum);
-    }
 }

@@ -11,25 +11,26 @@ use crate::innovation::Innovation;
 /// Both know that Φ is the identity on the parameters, and that H is zero but for the moving
 /// states and the first q parameters.
 pub trait Form<T: Real> {
+    /// Whether a prediction gains from knowing which elements of Φ are zero.
+    const USES_ZEROS: bool;
+
     /// Independent errors of the given variances.
     fn start(numbers: &mut Numbers<'_, T>, variances: impl Iterator<Item = T>);
 
     /// Element (i, j) of P, `moving` being the number of moving states.
     fn element(matrix: &[T], pivots: &[T], moving: usize, i: usize, j: usize) -> T;
 
-    /// P ← Φ P Φᵀ + Γ diag(variance) Γᵀ.
+    /// P ← W (Φ P Φᵀ + Γ diag(variance) Γᵀ) Wᵀ, W being the map on the moving states.
     ///
-    /// `transition` are the moving columns of Φ, `columns` its parameter columns (M × p, by rows),
-    /// `noise` is Γ.
+    /// With `SPARSE`, the parameter columns of Φ are taken to be zero where `enters(i, j)` is not
+    /// true for moving state i and parameter j.
     ///
     /// # Errors
     /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::NotFinite`].
-    fn predict<const M: usize>(
+    fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,
-        transition: &[[T; M]; M],
-        columns: &[T],
-        noise: &[[T; M]; M],
-        variance: &[T; M],
+        transition: &Transition<'_, T, M>,
+        enters: impl Fn(usize, usize) -> bool,
     ) -> Result<(), EstimationError>;
 
     /// The innovation alone; nothing changes but workspace.
@@ -65,8 +66,25 @@ pub struct Numbers<'a, T> {
     pub pivots: &'a mut [T],
     /// Gain; Y × n.
     pub gain: &'a mut [T],
-    /// Workspace; 2 × n × Y.
+    /// Workspace of an update; 2 × n × Y.
     pub sweep: &'a mut [T],
+    /// Workspace of a prediction; M × n.
+    pub cross: &'a mut [T],
+}
+
+/// A step of the state, linearised.
+#[derive(Debug)]
+pub struct Transition<'a, T, const M: usize> {
+    /// Moving columns of Φ.
+    pub moving: [[T; M]; M],
+    /// Parameter columns of Φ; M × p, by rows.
+    pub parameters: &'a [T],
+    /// Γ: effect of the noise held over the step.
+    pub noise: [[T; M]; M],
+    /// Variance of each noise input.
+    pub variance: [T; M],
+    /// W: what moving the chart after the step does to errors of the moving states.
+    pub map: Option<[[T; M]; M]>,
 }
 
 /// One measurement: Jacobian of the outputs, their noise and their residuals. An output

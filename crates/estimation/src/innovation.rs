@@ -20,7 +20,7 @@ pub struct Innovation<T, const Y: usize> {
 }
 
 impl<T: Real, const Y: usize> Innovation<T, Y> {
-    /// From L, α and 1 / α of S = L diag(α) Lᵀ.
+    /// From L, α and 1 / α of S = L diag(α) Lᵀ; [`Self::check`] says whether it is finite.
     #[inline(always)]
     pub(crate) fn from_factors(
         residual: [T; Y],
@@ -28,31 +28,43 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         lower: [[T; Y]; Y],
         variance: [T; Y],
         reciprocal: &[T; Y],
-    ) -> Result<Self, EstimationError> {
+    ) -> Self {
         let zero = T::from_f64(0.0);
-        let mut own = [zero; Y];
+        let mut own = residual;
         let mut weights = [zero; Y];
         let mut nis = zero;
         for k in 0..Y {
-            own[k] = (0..k).fold(residual[k], |rest, l| rest - lower[k][l] * own[l]);
+            for l in 0..Y {
+                if l < k {
+                    own[k] = own[k] - lower[k][l] * own[l];
+                }
+            }
             weights[k] = own[k] * reciprocal[k];
             nis = weights[k].mul_add(own[k], nis);
         }
-        // An infinite variance would make a weight zero and the rest NaN.
-        if nis.is_finite() && variance.iter().all(|variance| variance.is_finite()) {
-            Ok(Self {
-                residual,
-                observed,
-                nis,
-                weights,
-                lower,
-                variance,
-            })
-        } else {
-            Err(EstimationError::NotFinite {
-                quantity: "the normalised innovation",
-            })
+        Self {
+            residual,
+            observed,
+            nis,
+            weights,
+            lower,
+            variance,
         }
+    }
+
+    /// That it is finite. An infinite variance would make a weight zero and the rest NaN.
+    #[inline(always)]
+    pub(crate) fn check(&self) -> Result<(), EstimationError> {
+        let mut total = self.nis;
+        for k in 0..Y {
+            total = total + self.variance[k];
+        }
+        if total.is_finite() {
+            return Ok(());
+        }
+        Err(EstimationError::NotFinite {
+            quantity: "the normalised innovation",
+        })
     }
 
     /// S = H P Hᵀ + R. Rows and columns of outputs that were not observed are NaN.

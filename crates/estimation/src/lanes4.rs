@@ -53,14 +53,17 @@ pub(crate) fn multiply_add<T: Scalar, const W: usize>(a: [T; W], b: [T; W], c: [
     result
 }
 
-/// Inner product.
+/// Product of two small matrices.
 #[inline(always)]
-pub(crate) fn dot<T: Scalar, const W: usize>(a: [T; W], b: [T; W]) -> T {
-    let products = multiply_add(a, b, [T::from_f64(0.0); W]);
-    match products.as_slice() {
-        [a, b, c, d] => (*a + *b) + (*c + *d),
-        other => other
-            .iter()
-            .fold(T::from_f64(0.0), |sum, value| sum + *value),
+pub(crate) fn small_product<T: Scalar, const M: usize>(
+    a: &[[T; M]; M],
+    b: &[[T; M]; M],
+) -> [[T; M]; M] {
+    let mut product = [[T::from_f64(0.0); M]; M];
+    for i in 0..M {
+        for j in 0..M {
+            product[i] = mul_add(b[j], a[i][j], product[i]);
+        }
     }
+    product
 }

@@ -9,8 +9,8 @@
 //! non-trivial in the moving rows only.
 //!
 //! The covariance is carried in one of two forms ([`form`]). [`Covariance`], the default, is P
-//! itself: symmetric to the last bit by the order of operations, the moving block, where a
-//! measurement removes nearly all of a wide prior, in Joseph form. [`Factors`] are U and D of
+//! itself: symmetric to the last bit by the order of operations, the moving block in Joseph form
+//! where a measurement removes nearly all of a wide prior. [`Factors`] are U and D of
 //! P = U D Uᵀ (Bierman, *Factorization Methods for Discrete Sequential Estimation*, 1977), which
 //! rounding cannot make indefinite: the form for single precision and for wide priors.
 //! A variance that is not positive, digits that would cancel, or a number that is not finite is

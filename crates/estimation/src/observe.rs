@@ -64,10 +64,18 @@ impl<D, I: Copy> Sensor<'_, D, I> {
 pub(crate) fn check_noise<T: Real, const Y: usize>(
     variance: &[T; Y],
 ) -> Result<(), EstimationError> {
-    for (output, variance) in variance.iter().enumerate() {
-        if !(variance.is_positive() && variance.is_finite()) {
-            return Err(EstimationError::InvalidNoise { output });
-        }
+    let (mut bad, mut sum) = (0_u32, T::from_f64(0.0));
+    for variance in variance {
+        bad |= u32::from(!variance.is_positive());
+        sum = sum + *variance;
     }
-    Ok(())
+    // A sum of positive numbers is finite only if all of them are.
+    if bad == 0 && sum.is_finite() {
+        return Ok(());
+    }
+    let mut variances = variance.iter();
+    let output = variances.position(|variance| !(variance.is_positive() && variance.is_finite()));
+    Err(EstimationError::InvalidNoise {
+        output: output.unwrap_or(0),
+    })
 }

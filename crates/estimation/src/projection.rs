@@ -5,13 +5,19 @@ use gyrocal_scalar::Real;
 use crate::error::EstimationError;
 use crate::form::Observation;
 use crate::innovation::Innovation;
-use crate::lanes4::{load, mul_add};
+use crate::lanes4::{load, mul_add, store};
+
+/// Largest ratio of H P Hᵀ to R, output by output, up to which the moving block is updated by
+/// subtraction: that costs a variance at most two bits more than the binary logarithm of this.
+const NARROW: f64 = 256.0;
 
 /// H P on the moving columns, and S = H P Hᵀ + R factored.
 pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
     pub(crate) observation: &'a Observation<'a, T, M, Y>,
     /// Moving columns of H P.
     pub(crate) moving: [[T; M]; Y],
+    /// Diagonal of H P Hᵀ.
+    projected: [T; Y],
     /// L, unit lower triangular.
     lower: [[T; Y]; Y],
     /// α.
@@ -21,13 +27,12 @@ pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
 }
 
 impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
-    /// Projects P on the outputs.
+    /// Projects P on the outputs; [`Self::check`] says whether that came out well.
+    ///
+    /// Loops run over all outputs with conditions inside: bounds that depend on another index keep
+    /// the compiler from unrolling them, and small matrices would then live in memory.
     #[inline(always)]
-    pub(crate) fn new(
-        p: &[T],
-        n: usize,
-        observation: &'a Observation<'a, T, M, Y>,
-    ) -> Result<Self, EstimationError> {
+    pub(crate) fn new(p: &[T], n: usize, observation: &'a Observation<'a, T, M, Y>) -> Self {
         let output = observation.parameters;
         let q = output.len() / Y;
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
@@ -45,51 +50,84 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
                 moving[k][j] = sum;
             }
         }
-        let mut projection = Self {
-            observation,
-            moving,
-            lower: [[zero; Y]; Y],
-            variance: [zero; Y],
-            reciprocal: [zero; Y],
-        };
-        // L diag(α), row by row: L without the division that the next pivot would wait for.
+        // H P Hᵀ, then L diag(α), row by row: L without the division that the next pivot would
+        // wait for.
         let mut scaled = [[zero; Y]; Y];
         for k in 0..Y {
-            for l in 0..=k {
-                let mut sum = zero;
-                for j in 0..M {
-                    sum = projection.moving[k][j].mul_add(h[l][j], sum);
-                }
-                for i in 0..q {
-                    let of_parameter = Self::of_parameter(p, n, h, output, k, i);
-                    sum = of_parameter.mul_add(output[l * q + i], sum);
-                }
-                if l == k {
-                    // An update takes at most 1 + Σ S/R off a variance, in relative terms. What
-                    // has more digits than the number type, less the eight bits that sums over
-                    // some dozen products lose, would leave rounding only.
-                    if sum * T::epsilon() * T::from_f64(256.0) > observation.variance[k] {
-                        return Err(EstimationError::LostPrecision { output: k });
+            for l in 0..Y {
+                if l <= k {
+                    for j in 0..M {
+                        scaled[k][l] = moving[k][j].mul_add(h[l][j], scaled[k][l]);
                     }
-                    sum = sum + observation.variance[k];
-                }
-                for earlier in 0..l {
-                    sum = sum - scaled[k][earlier] * projection.lower[l][earlier];
-                }
-                if l < k {
-                    scaled[k][l] = sum;
-                    projection.lower[k][l] = sum * projection.reciprocal[l];
-                } else {
-                    if !is_variance(sum) {
-                        return Err(not_positive(sum, 0));
+                    for i in 0..q {
+                        let of_parameter = Self::of_parameter(p, n, h, output, k, i);
+                        scaled[k][l] = of_parameter.mul_add(output[l * q + i], scaled[k][l]);
                     }
-                    projection.lower[k][k] = one;
-                    projection.variance[k] = sum;
-                    projection.reciprocal[k] = one / sum;
                 }
             }
         }
-        Ok(projection)
+        let mut projected = [zero; Y];
+        let mut lower = [[zero; Y]; Y];
+        let mut variance = [zero; Y];
+        let mut reciprocal = [zero; Y];
+        for k in 0..Y {
+            projected[k] = scaled[k][k];
+            scaled[k][k] = scaled[k][k] + observation.variance[k];
+            for l in 0..Y {
+                if l <= k {
+                    for earlier in 0..Y {
+                        if earlier < l {
+                            let known = scaled[k][earlier] * lower[l][earlier];
+                            scaled[k][l] = scaled[k][l] - known;
+                        }
+                    }
+                    if l < k {
+                        lower[k][l] = scaled[k][l] * reciprocal[l];
+                    }
+                }
+            }
+            variance[k] = scaled[k][k];
+            reciprocal[k] = one / variance[k];
+            lower[k][k] = one;
+        }
+        Self {
+            observation,
+            moving,
+            projected,
+            lower,
+            variance,
+            reciprocal,
+        }
+    }
+
+    /// Whether an output says so much more than was known that subtraction would cost digits.
+    #[inline(always)]
+    fn is_wide(&self) -> bool {
+        let mut wide = false;
+        for k in 0..Y {
+            let bound = self.observation.variance[k] * T::from_f64(NARROW);
+            wide |= self.projected[k] > bound;
+        }
+        wide
+    }
+
+    /// That S has digits, and is positive definite and finite.
+    #[inline(always)]
+    pub(crate) fn check(&self) -> Result<(), EstimationError> {
+        if self.is_wide() {
+            check_digits(&self.projected, &self.observation.variance)?;
+        }
+        let mut bad = false;
+        let mut total = T::from_f64(0.0);
+        for k in 0..Y {
+            bad |= !self.variance[k].is_positive();
+            total = total + self.variance[k];
+        }
+        // A sum of positive numbers is finite only if all of them are.
+        if bad || !total.is_finite() {
+            return Err(bad_pivot(&self.variance));
+        }
+        Ok(())
     }
 
     /// (H P) of output `k` and parameter `i`.
@@ -108,7 +146,7 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
 
     /// The innovation.
     #[inline(always)]
-    pub(crate) fn innovation(&self) -> Result<Innovation<T, Y>, EstimationError> {
+    pub(crate) fn innovation(&self) -> Innovation<T, Y> {
         let observation = self.observation;
         Innovation::from_factors(
             observation.residual,
@@ -123,22 +161,45 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
     #[inline(always)]
     pub(crate) fn reduce<const W: usize>(&self, rows: &mut [[T; W]; Y]) {
         for k in 0..Y {
-            for earlier in 0..k {
-                rows[k] = mul_add(rows[earlier], -self.lower[k][earlier], rows[k]);
+            for earlier in 0..Y {
+                if earlier < k {
+                    rows[k] = mul_add(rows[earlier], -self.lower[k][earlier], rows[k]);
+                }
             }
         }
     }
 
-    /// The moving block in Joseph form: (I - K H) P (I - K H)ᵀ + K R Kᵀ.
+    /// The moving block after the update, `whitened` being the moving columns of V.
     #[inline(always)]
-    pub(crate) fn update_corner(&self, p: &mut [T], n: usize, head: &[[T; M]; Y]) {
+    pub(crate) fn update_corner(&self, p: &mut [T], n: usize, whitened: &[[T; M]; Y]) {
+        if self.is_wide() {
+            return self.update_corner_in_joseph_form(p, n);
+        }
+        let mut rest = [[T::from_f64(0.0); M]; M];
+        for i in 0..M {
+            rest[i] = load(p, i * n);
+            for k in 0..Y {
+                rest[i] = mul_add(whitened[k], -whitened[k][i], rest[i]);
+            }
+        }
+        for (i, row) in rest.iter().enumerate() {
+            store(p, i * n, *row);
+        }
+    }
+
+    /// (I - K H) P (I - K H)ᵀ + K R Kᵀ.
+    #[cold]
+    #[inline(never)]
+    fn update_corner_in_joseph_form(&self, p: &mut [T], n: usize) {
         let (observation, output) = (self.observation, self.observation.parameters);
         let q = output.len() / Y;
         let zero = T::from_f64(0.0);
+        let mut reduced = self.moving;
+        self.reduce(&mut reduced);
         // K_m = (L⁻¹ H P)_mᵀ diag(α)⁻¹ L⁻¹, row by row from the last output back.
         let mut gain = [[zero; M]; Y];
         for k in (0..Y).rev() {
-            gain[k] = head[k].map(|value| value * self.reciprocal[k]);
+            gain[k] = reduced[k].map(|value| value * self.reciprocal[k]);
             for later in k + 1..Y {
                 gain[k] = mul_add(gain[later], -self.lower[later][k], gain[k]);
             }
@@ -175,6 +236,30 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
             }
         }
     }
+}
+
+/// An update takes at most 1 + Σ S/R off a variance, in relative terms. What has more digits than
+/// the number type, less the eight bits that sums over some dozen products lose, would leave
+/// rounding only.
+#[cold]
+#[inline(never)]
+fn check_digits<T: Real, const Y: usize>(
+    projected: &[T; Y],
+    noise: &[T; Y],
+) -> Result<(), EstimationError> {
+    for output in 0..Y {
+        if projected[output] * T::epsilon() * T::from_f64(256.0) > noise[output] {
+            return Err(EstimationError::LostPrecision { output });
+        }
+    }
+    Ok(())
+}
+
+#[cold]
+#[inline(never)]
+fn bad_pivot<T: Real, const Y: usize>(pivots: &[T; Y]) -> EstimationError {
+    let found = pivots.iter().find(|pivot| !is_variance(**pivot));
+    not_positive(found.copied().unwrap_or(T::from_f64(f64::INFINITY)), 0)
 }
 
 #[inline(always)]

@@ -12,7 +12,7 @@ pub struct Buffers<'a, T> {
     pub matrix: &'a mut [T],
     /// D of the factors; n.
     pub pivots: &'a mut [T],
-    /// Parameter columns of Φ by rows; M × (n - M).
+    /// Parameter columns of Φ by rows, in the chart that the step began in; M × (n - M).
     pub transition: &'a mut [T],
     /// Parameter columns of the rates' Jacobian at each of up to four stages, by rows;
     /// 4 × M × (n - M). Structural zeros stay zero.
@@ -23,6 +23,8 @@ pub struct Buffers<'a, T> {
     pub gain: &'a mut [T],
     /// Workspace of an update; 2 × n × Y.
     pub sweep: &'a mut [T],
+    /// Workspace of a prediction; M × n.
+    pub cross: &'a mut [T],
 }
 
 /// What can be read of a filter's numbers between steps.
@@ -34,7 +36,8 @@ pub struct View<'a, T> {
     pub matrix: &'a [T],
     /// D of the factors; n.
     pub pivots: &'a [T],
-    /// Parameter columns of the last Φ by rows.
+    /// Parameter columns of the last Φ by rows, in the chart that its step began in: see
+    /// [`crate::Filter::chart_map`].
     pub transition: &'a [T],
     /// Gain of the last update, whitened ([`crate::Covariance`]) or unnormalised; Y × n.
     pub gain: &'a [T],
@@ -61,6 +64,7 @@ pub struct ArrayStorage<T, const M: usize, const Y: usize, const N: usize> {
     output: [[T; N]; Y],
     gain: [[T; N]; Y],
     sweep: [[[T; Y]; N]; 2],
+    cross: [[T; N]; M],
 }
 
 impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M, Y, N> {
@@ -83,6 +87,7 @@ impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArraySto
             output: [[zero; N]; Y],
             gain: [[zero; N]; Y],
             sweep: [[[zero; Y]; N]; 2],
+            cross: [[zero; N]; M],
         }
     }
 }
@@ -112,6 +117,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
             output: self.output.as_flattened_mut(),
             gain: self.gain.as_flattened_mut(),
             sweep: self.sweep.as_flattened_mut().as_flattened_mut(),
+            cross: self.cross.as_flattened_mut(),
         }
     }
 
@@ -132,7 +138,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
 #[derive(Clone, Debug)]
 pub struct VecStorage<T> {
     states: usize,
-    numbers: [alloc::vec::Vec<T>; 8],
+    numbers: [alloc::vec::Vec<T>; 9],
 }
 
 #[cfg(feature = "alloc")]
@@ -149,6 +155,7 @@ impl<T: Copy + Default> VecStorage<T> {
             outputs * states,
             outputs * states,
             2 * outputs * states,
+            moving * states,
         ];
         Self {
             states,
@@ -173,6 +180,7 @@ impl<T> Storage<T> for VecStorage<T> {
             output,
             gain,
             sweep,
+            cross,
         ] = self.numbers.each_mut();
         Buffers {
             state,
@@ -183,11 +191,12 @@ impl<T> Storage<T> for VecStorage<T> {
             output,
             gain,
             sweep,
+            cross,
         }
     }
 
     fn view(&self) -> View<'_, T> {
-        let [state, matrix, pivots, transition, _, _, gain, _] = self.numbers.each_ref();
+        let [state, matrix, pivots, transition, _, _, gain, _, _] = self.numbers.each_ref();
         View {
             state,
             matrix,

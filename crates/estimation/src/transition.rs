@@ -1,9 +1,10 @@
 //! From rates to a discrete transition: Φ and Γ are the exact derivatives of the discrete
-//! map, integrated beside the state by the variational equation Ṡ = F S + F_p.
+//! map: the variational equation Ṡ = F S + F_p under the same Runge-Kutta scheme, summed from the
+//! last stage back, so that each stage costs one product a column.
 
 use gyrocal_scalar::{Model, RatesJacobian, Scalar};
 
-use crate::lanes4::{load, mul_add, store};
+use crate::lanes4::{load, load_rows, mul_add, small_product, store};
 
 /// How the rates are integrated over a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,17 +59,6 @@ pub(crate) struct Integrator<'a, T, D, I, const M: usize, const Y: usize> {
     pub(crate) at_origin: bool,
 }
 
-/// Where a column of the sensitivity starts from.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Start {
-    /// Zero: a parameter's column at the beginning of a step.
-    Zero,
-    /// The unit matrix, without inhomogeneous term: the moving columns at the beginning of a step.
-    Identity,
-    /// What earlier sub-steps left.
-    Given,
-}
-
 impl<T, D, const M: usize, const Y: usize> Integrator<'_, T, D, D::Inputs, M, Y>
 where
     T: Scalar,
@@ -115,10 +105,28 @@ where
             noise: zero,
         };
         self.substep(true, nodes, weights, moving, &mut transition);
-        for _ in 1..count {
-            self.substep(false, nodes, weights, moving, &mut transition);
+        if count > 1 {
+            (*moving, transition) =
+                self.further_substeps(count - 1, nodes, weights, *moving, transition);
         }
         transition
+    }
+
+    /// The substeps after the first. Arrays go by value: with their addresses taken here, the
+    /// caller would keep them in memory for steps of one part too.
+    #[inline(never)]
+    fn further_substeps<const ORDER: usize>(
+        &mut self,
+        count: u32,
+        nodes: &[T; ORDER],
+        weights: &[T; ORDER],
+        mut moving: [T; M],
+        mut transition: Transition<T, M>,
+    ) -> ([T; M], Transition<T, M>) {
+        for _ in 0..count {
+            self.substep(false, nodes, weights, &mut moving, &mut transition);
+        }
+        (moving, transition)
     }
 
     /// One Runge-Kutta step of `ORDER` stages. The stage points do not depend on the
@@ -159,132 +167,110 @@ where
             noises[stage] = jacobian.noise;
             *moving = mul_add(rates, weights[stage], *moving);
         }
-        let scheme = Scheme::new(&jacobians, nodes, weights);
-        let (moving_start, parameter_start) = if first {
-            (Start::Identity, Start::Zero)
-        } else {
-            (Start::Given, Start::Given)
-        };
-        scheme.advance(moving_start, &mut transition.moving, |_, _| [zero; M]);
+        let adjoint = Adjoint::new(&jacobians, nodes, weights);
+        let before = (!first).then_some(&adjoint.moving);
         if self.model.noise_parameters().is_none() {
-            let drive = |stage: usize, i: usize| noises[stage][i];
-            scheme.advance(parameter_start, &mut transition.noise, drive);
+            let noises = noises.as_flattened().as_flattened();
+            let columns = transition.noise.as_flattened_mut();
+            adjoint.advance::<M>(before, noises, columns, M, 0);
         }
         let mut column = 0;
         while column + 4 <= p {
-            scheme.advance_columns::<4>(parameter_start, self.stages, self.columns, p, column);
+            adjoint.advance::<4>(before, self.stages, self.columns, p, column);
             column += 4;
         }
         while column < p {
-            scheme.advance_columns::<1>(parameter_start, self.stages, self.columns, p, column);
+            adjoint.advance::<1>(before, self.stages, self.columns, p, column);
             column += 1;
         }
+        transition.moving = if first {
+            adjoint.moving
+        } else {
+            small_product(&adjoint.moving, &transition.moving)
+        };
     }
 }
 
-/// A Runge-Kutta scheme on one step, with the rates' Jacobian at its stages.
-struct Scheme<'a, T, const M: usize, const ORDER: usize> {
-    jacobians: &'a [[[T; M]; M]; ORDER],
-    /// The Jacobians times the stages' nodes: what the rate of the stage before adds.
-    scaled: [[[T; M]; M]; ORDER],
-    weights: &'a [T; ORDER],
+/// A Runge-Kutta scheme on one step, differentiated from its end: what a change of the rates at
+/// a stage does to the state at the end of the step.
+struct Adjoint<T, const M: usize, const ORDER: usize> {
+    /// Derivative of the step with respect to the state that it starts from.
+    moving: [[T; M]; M],
+    /// Derivative with respect to the rates of each stage.
+    stages: [[[T; M]; M]; ORDER],
+    /// Weight of the last stage, whose derivative is that times the unit matrix.
+    last: T,
 }
 
-impl<'a, T: Scalar, const M: usize, const ORDER: usize> Scheme<'a, T, M, ORDER> {
+impl<T: Scalar, const M: usize, const ORDER: usize> Adjoint<T, M, ORDER> {
     #[inline(always)]
-    fn new(
-        jacobians: &'a [[[T; M]; M]; ORDER],
-        nodes: &[T; ORDER],
-        weights: &'a [T; ORDER],
-    ) -> Self {
-        let mut scaled = *jacobians;
-        for (jacobian, node) in scaled.iter_mut().zip(nodes) {
-            for element in jacobian.as_flattened_mut() {
-                *element = *element * *node;
+    fn new(jacobians: &[[[T; M]; M]; ORDER], nodes: &[T; ORDER], weights: &[T; ORDER]) -> Self {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let mut stages = [[[zero; M]; M]; ORDER];
+        let mut through = [[zero; M]; M];
+        let mut moving = [[zero; M]; M];
+        for stage in (0..ORDER).rev() {
+            if stage + 1 == ORDER {
+                for i in 0..M {
+                    through[i] = jacobians[stage][i].map(|element| element * weights[stage]);
+                    moving[i] = through[i];
+                }
+            } else {
+                let mut derivative = [[zero; M]; M];
+                for i in 0..M {
+                    derivative[i] = through[i].map(|element| element * nodes[stage + 1]);
+                    derivative[i][i] = derivative[i][i] + weights[stage];
+                }
+                through = small_product(&derivative, &jacobians[stage]);
+                for i in 0..M {
+                    moving[i] = mul_add(through[i], one, moving[i]);
+                }
+                stages[stage] = derivative;
             }
         }
+        for (i, row) in moving.iter_mut().enumerate() {
+            row[i] = row[i] + one;
+        }
         Self {
-            jacobians,
-            scaled,
-            weights,
+            moving,
+            stages,
+            last: weights[ORDER - 1],
         }
     }
 
-    /// Advances `W` columns of the sensitivity; `drive(stage, i)` is row i of the inhomogeneous
-    /// term at a stage.
+    /// Advances `W` columns of the sensitivity, from zero or with what they were `before`.
+    /// `stages` are the derivatives of the rates, M rows a stage.
     #[inline(always)]
     fn advance<const W: usize>(
         &self,
-        start: Start,
-        sensitivity: &mut [[T; W]; M],
-        drive: impl Fn(usize, usize) -> [T; W],
-    ) {
-        let zero = T::from_f64(0.0);
-        match start {
-            Start::Zero => *sensitivity = [[zero; W]; M],
-            Start::Identity => {
-                *sensitivity = [[zero; W]; M];
-                for (i, row) in sensitivity.iter_mut().enumerate() {
-                    row[i] = T::from_f64(1.0);
-                }
-            }
-            Start::Given => {}
-        }
-        let begin = *sensitivity;
-        let mut rate = [[zero; W]; M];
-        for stage in 0..ORDER {
-            let before = rate;
-            for i in 0..M {
-                let mut sum = drive(stage, i);
-                match start {
-                    Start::Zero => {}
-                    Start::Identity => {
-                        for (sum, coefficient) in sum.iter_mut().zip(self.jacobians[stage][i]) {
-                            *sum = coefficient;
-                        }
-                    }
-                    Start::Given => {
-                        for (row, coefficient) in begin.iter().zip(self.jacobians[stage][i]) {
-                            sum = mul_add(*row, coefficient, sum);
-                        }
-                    }
-                }
-                if stage > 0 {
-                    for (row, coefficient) in before.iter().zip(self.scaled[stage][i]) {
-                        sum = mul_add(*row, coefficient, sum);
-                    }
-                }
-                rate[i] = sum;
-            }
-            for i in 0..M {
-                sensitivity[i] = if start == Start::Zero && stage == 0 {
-                    rate[i].map(|rate| rate * self.weights[stage])
-                } else {
-                    mul_add(rate[i], self.weights[stage], sensitivity[i])
-                };
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn advance_columns<const W: usize>(
-        &self,
-        start: Start,
+        before: Option<&[[T; M]; M]>,
         stages: &[T],
         columns: &mut [T],
         stride: usize,
         column: usize,
     ) {
-        let mut sensitivity = [[T::from_f64(0.0); W]; M];
-        if start == Start::Given {
-            for (i, row) in sensitivity.iter_mut().enumerate() {
-                *row = load(columns, i * stride + column);
+        let mut sums = [[T::from_f64(0.0); W]; M];
+        if let Some(before) = before {
+            let old: [[T; W]; M] = load_rows(columns, stride, column);
+            for i in 0..M {
+                for j in 0..M {
+                    sums[i] = mul_add(old[j], before[i][j], sums[i]);
+                }
             }
         }
-        self.advance(start, &mut sensitivity, |stage, i| {
-            load(stages, (stage * M + i) * stride + column)
-        });
-        for (i, row) in sensitivity.iter().enumerate() {
+        for stage in 0..ORDER {
+            for j in 0..M {
+                let rate: [T; W] = load(stages, (stage * M + j) * stride + column);
+                if stage + 1 == ORDER {
+                    sums[j] = mul_add(rate, self.last, sums[j]);
+                } else {
+                    for i in 0..M {
+                        sums[i] = mul_add(rate, self.stages[stage][i][j], sums[i]);
+                    }
+                }
+            }
+        }
+        for (i, row) in sums.iter().enumerate() {
             store(columns, i * stride + column, *row);
         }
     }

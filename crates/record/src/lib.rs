@@ -53,6 +53,7 @@
 //! are written whole or not at all ([`Outputs`]).
 
 mod bench;
+mod diagnosis_report;
 mod error;
 mod fields;
 mod header;
@@ -67,13 +68,20 @@ mod suggest;
 mod tables;
 
 pub use bench::{Bench, Gravity, Prior, SiteUncertainty};
+pub use diagnosis_report::{
+    CannotTellReport, DiagnosisReport, DiagnosisVerdict, EquivalentReport, FilterReport,
+    FindingReport, FreeRunReport, GainReport, NotSearchedReport, ParameterReport, RankedReport,
+    RemainderReport, RemainderVerdict, RivalReport, ShiftReport,
+};
 pub use error::{Error, InputError, InputErrorKind};
 pub use manifest::{Input, Manifest};
 pub use model_file::{KnownEffect, ModelFile, ParameterEstimate};
 pub use output::{Outputs, write_json, write_whole};
 pub use record::Record;
 pub use report::{
-    CalibrationReport, Coefficient, FitVerdict, SCHEMA_VERSION, SimulationReport, TrueCoefficient,
+    AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, FitVerdict,
+    NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport,
+    SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
 };
 pub use source::SourceText;
 pub use suggest::nearest_few;

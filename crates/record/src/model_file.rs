@@ -53,7 +53,9 @@ impl KnownEffect<'_> {
         match self.kind {
             "term" => None,
             "nominal" => Some("is one of the nine coefficients that every model has"),
-            "noise" => Some("is noise and no term: the table `[noise]` of the bench file has it"),
+            "noise" => {
+                Some("is noise and no term: tell filters of it by `[noise]` of the bench file")
+            }
             "state" => Some(
                 "is a matter of the attitude and no term: every filter estimates the attitude, \
                  so begin the record after it or widen the prior of the angles",

@@ -101,7 +101,7 @@ fn each_mistake_is_shown_where_it_is() {
             "accel_x.noise\", ",
             Kind::OutOfRange,
             "2:12: found `accel_x.noise`, expected an effect that is a term of the model",
-            "the table `[noise]` of the bench file",
+            "`[noise]` of the bench file",
         ),
         (
             "gyro_y.g_z\", ",

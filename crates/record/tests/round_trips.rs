@@ -6,8 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use gyrocal_record::{
-    Bench, CalibrationReport, Coefficient, Error, FitVerdict, Gravity, Input, Manifest, Outputs,
-    Prior, Record, SCHEMA_VERSION, SiteUncertainty, write_json, write_whole,
+    AveragedReport, AzimuthReport, Bench, CalibrationMethod, CalibrationReport, Coefficient, Error,
+    FitVerdict, Gravity, Input, Manifest, NoiseRatioReport, NoiseReport, OtherAzimuth, Outputs,
+    Prior, Record, RunReport, SCHEMA_VERSION, SiteReport, SiteUncertainty, TurnOn,
+    UndeterminedReport, write_json, write_whole,
 };
 
 fn record() -> Record {
@@ -179,6 +181,59 @@ fn report() -> CalibrationReport {
         iterations: 2,
         rows: 4321,
         final_angles_deg: [1.0, 2.0, 3.0],
+        method: CalibrationMethod::Batch,
+        undetermined: vec![UndeterminedReport {
+            text: "1.00 gyro_x.bias".to_owned(),
+            weights: vec![1.0],
+            share_of_prior: 0.3,
+        }],
+        runs: vec![run_report()],
+        site: vec![SiteReport {
+            quantity: "latitude".to_owned(),
+            unit: "deg".to_owned(),
+            declared_sigma: None,
+            from_record_sigma: Some(1e-3),
+            bias_per_unit: vec![-0.3],
+        }],
+        first_record_sigmas: Some(vec![2e-5]),
+    }
+}
+
+fn run_report() -> RunReport {
+    let noise = NoiseRatioReport {
+        ratio: 1.01,
+        interval: [0.98, 1.04],
+    };
+    let turn_on = TurnOn {
+        estimate: -0.02,
+        sigma: 1e-3,
+    };
+    RunReport {
+        record: "r.csv".to_owned(),
+        bench: "b.toml".to_owned(),
+        rows: 4321,
+        averaged: Some(AveragedReport {
+            interval_s: 60.0,
+            rows_read: 259_201,
+            left_out: 2,
+            noise_ratio: 0.129,
+        }),
+        initial_angles_deg: [0.5, 0.25, -1.0],
+        final_angles_deg: [1.0, 2.0, 3.0],
+        turn_on: Some([turn_on; 3]),
+        azimuth: Some(AzimuthReport {
+            starts: 12,
+            ambiguous: false,
+            other: Some(OtherAzimuth {
+                relative_deg: 179.5,
+                log_likelihood_deficit: 31.0,
+            }),
+        }),
+        noise: Some(NoiseReport {
+            accel: [noise; 3],
+            gyro: [noise; 3],
+        }),
+        bounded_values: 7,
     }
 }
 

@@ -79,6 +79,14 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
         self.rates_jacobian(&[T::from_f64(0.0); M], parameters, inputs, jacobian)
     }
 
+    /// Whether the derivative of moving state `i`'s rate with respect to parameter `j` is other
+    /// than structurally zero in [`Self::rates_jacobian_at_origin`].
+    #[inline(always)]
+    fn enters_at_origin(&self, i: usize, j: usize) -> bool {
+        let _ = (i, j);
+        true
+    }
+
     /// Outputs: what the sensors would read without noise.
     ///
     /// # Panics

@@ -1,18 +1,18 @@
 //! Least squares on all of a short record at once, on dense matrices: what the batch estimator
 //! must agree with.
 //!
-//! It shares nothing with it. Unknown are the first attitude, the coefficients and the noise of
-//! the gyros over every part of every interval; attitudes follow from them by integrating the
-//! direction cosines, derivatives are central differences of fourth order, and the normal
-//! equations are never formed.
+//! It shares nothing with it. Unknown are the attitude at every row and the coefficients;
+//! residuals are those of the samples, of what the gyro noise must have done between rows, and of
+//! the priors. Attitudes are direction cosines, derivatives are differences of fourth order, and
+//! the normal equations are never formed.
 
 use gyrocal_calibration::Run;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// Coefficients.
 const COEFFICIENTS: usize = 9;
-/// Unknowns before the noise: a rotation and the coefficients.
-const FIRST_NOISE: usize = 3 + COEFFICIENTS;
+/// Unit of a rotation among the unknowns, rad: the size of the noise of a sample.
+const ROTATION_RAD: f64 = 1e-5;
 /// Sub-steps of a Runge-Kutta rule in a part.
 const SUBSTEPS: u32 = 2;
 const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;
@@ -26,8 +26,10 @@ pub(crate) struct DenseSolution {
     /// Their covariance.
     pub(crate) covariance: DMatrix<f64>,
     /// Platform from East, North, Up at the first row and the last.
+    #[allow(dead_code, reason = "the figures do not look at it")]
     pub(crate) ends: [Matrix3<f64>; 2],
     /// Least sum of squares, priors included.
+    #[allow(dead_code, reason = "the figures do not look at it")]
     pub(crate) cost: f64,
 }
 
@@ -46,8 +48,8 @@ impl<'a> Dense<'a> {
     /// The bench has to declare the initial angles.
     pub(crate) fn new(run: Run<'a>, longest_step_s: f64) -> Self {
         let bench = run.bench;
-        let angles = Vector3::from(bench.initial_angles_deg.expect("initial angles"))
-            .map(f64::to_radians);
+        let angles =
+            Vector3::from(bench.initial_angles_deg.expect("initial angles")).map(f64::to_radians);
         let sigma = Vector3::from(bench.initial_angles_sigma_deg).map(f64::to_radians);
         // Equation (6) of the model: the rates of the angles as a rotation in platform axes.
         let ((sy, cy), (sz, cz)) = (angles.y.sin_cos(), angles.z.sin_cos());
@@ -70,128 +72,190 @@ impl<'a> Dense<'a> {
 
     /// Gauss-Newton steps to convergence.
     pub(crate) fn solve(&self) -> DenseSolution {
-        let count = FIRST_NOISE + 3 * self.parts().iter().sum::<usize>();
-        let mut unknowns = DVector::<f64>::zeros(count);
-        let mut factor = None;
-        for _ in 0..15 {
-            let residuals = self.residuals(&unknowns);
-            let qr = self.jacobian(&unknowns).qr();
-            let right = -(qr.q().transpose() * residuals);
+        let mut drift = [0.0; COEFFICIENTS];
+        let mut attitudes = vec![self.first];
+        for row in 0..self.run.record.len() - 1 {
+            attitudes.push(self.ahead(row, &attitudes[row], &drift, &[]));
+        }
+        let count = COEFFICIENTS + 3 * attitudes.len();
+        loop {
+            let here = Linearised {
+                noise_roots: (0..attitudes.len() - 1)
+                    .map(|row| self.noise_root(row, &attitudes[row], &drift))
+                    .collect(),
+                problem: self,
+                attitudes: &attitudes,
+                drift: &drift,
+            };
+            let residuals = here.residuals(&DVector::zeros(count));
+            let cost = residuals.norm_squared();
+            let qr = here.jacobian(count).qr();
             let root = qr.r();
             let step = root
-                .solve_upper_triangular(&right)
+                .solve_upper_triangular(&-(qr.q().transpose() * residuals))
                 .expect("priors make every unknown determined");
-            unknowns += &step;
-            factor = Some(root);
-            // In sigmas of the priors; quadratic convergence leaves less.
-            if step.amax() < 1e-11 {
-                break;
+            (attitudes, drift) = here.moved(&step);
+            // In sigmas of priors and samples; quadratic convergence leaves less.
+            if step.amax() > 1e-8 {
+                continue;
+            }
+            let inverse = root
+                .solve_upper_triangular(&DMatrix::identity(count, count))
+                .expect("priors make every unknown determined");
+            let covariance = &inverse * inverse.transpose();
+            return DenseSolution {
+                drift,
+                covariance: DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| {
+                    covariance[(i, j)] * self.drift_sigma[i] * self.drift_sigma[j]
+                }),
+                ends: [attitudes[0], attitudes[attitudes.len() - 1]],
+                cost,
+            };
+        }
+    }
+
+    /// Number and length of the parts of the step after a row.
+    fn parts(&self, row: usize) -> (usize, f64) {
+        let times_s = &self.run.record.time_s;
+        let interval_s = times_s[row + 1] - times_s[row];
+        let parts = (interval_s / self.longest_step_s).ceil().max(1.0);
+        (parts as usize, interval_s / parts)
+    }
+
+    /// Attitude at the next row, with a noise in each part in deg/h, if there is some.
+    fn ahead(
+        &self,
+        row: usize,
+        from: &Matrix3<f64>,
+        drift: &[f64; COEFFICIENTS],
+        noise: &[Vector3<f64>],
+    ) -> Matrix3<f64> {
+        let bench = self.run.bench;
+        let (sine, cosine) = bench.latitude_deg.to_radians().sin_cos();
+        let earth_rate = Vector3::new(0.0, cosine, sine) * EARTH_RATE_RAD_PER_S;
+        let gravity_g = bench.specific_force_at_rest();
+        let (parts, part_s) = self.parts(row);
+        let step_s = part_s / f64::from(SUBSTEPS);
+        let mut attitude = *from;
+        for part in 0..parts {
+            let noise = noise.get(part).copied().unwrap_or_default();
+            let rate = |attitude: &Matrix3<f64>| {
+                let own = Vector3::from_fn(|axis, _| {
+                    let a = gravity_g * attitude[(axis, 2)];
+                    let [bias, first, second] = [0, 1, 2].map(|k| drift[3 * axis + k]);
+                    (bias + first * a + second * a * a + noise[axis]) * DEG_PER_H
+                });
+                -(own - attitude * earth_rate).cross_matrix() * attitude
+            };
+            for _ in 0..SUBSTEPS {
+                let k1 = rate(&attitude);
+                let k2 = rate(&(attitude + k1 * (0.5 * step_s)));
+                let k3 = rate(&(attitude + k2 * (0.5 * step_s)));
+                let k4 = rate(&(attitude + k3 * step_s));
+                attitude += (k1 + (k2 + k3) * 2.0 + k4) * (step_s / 6.0);
             }
         }
-        let inverse = factor
-            .and_then(|root| root.solve_upper_triangular(&DMatrix::identity(count, count)))
-            .expect("priors make every unknown determined");
-        let covariance = &inverse * inverse.transpose();
-        let attitudes = self.attitudes(&unknowns);
-        DenseSolution {
-            drift: self.drift(&unknowns),
-            covariance: DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| {
-                covariance[(3 + i, 3 + j)] * self.drift_sigma[i] * self.drift_sigma[j]
-            }),
-            ends: [attitudes[0], attitudes[attitudes.len() - 1]],
-            cost: self.residuals(&unknowns).norm_squared(),
+        attitude
+    }
+
+    /// Root of the covariance of what the noise adds over the step after a row. It is held over
+    /// each part, as white as the noise that is declared as held over a minute.
+    fn noise_root(
+        &self,
+        row: usize,
+        from: &Matrix3<f64>,
+        drift: &[f64; COEFFICIENTS],
+    ) -> Matrix3<f64> {
+        let (parts, part_s) = self.parts(row);
+        let sigma = self.run.bench.gyro_noise_deg_per_h * (60.0 / part_s).sqrt();
+        let without = self.ahead(row, from, drift, &[]);
+        let mut covariance = Matrix3::zeros();
+        for part in 0..parts {
+            for axis in 0..3 {
+                // A hundredth of a deg/h: differences of 1e-6 rad, exact to its square.
+                let at = |size: f64| {
+                    let mut noise = vec![Vector3::zeros(); parts];
+                    noise[part][axis] = size;
+                    rotation(&without, &self.ahead(row, from, drift, &noise))
+                };
+                let slope = (at(0.01) - at(-0.01)) / 0.02 * sigma;
+                covariance += slope * slope.transpose();
+            }
         }
+        covariance.cholesky().expect("noise on every axis").l()
+    }
+}
+
+/// The problem where it stands; unknowns are changes from there: coefficients in units of their
+/// prior sigmas, then rotations.
+struct Linearised<'a> {
+    problem: &'a Dense<'a>,
+    attitudes: &'a [Matrix3<f64>],
+    drift: &'a [f64; COEFFICIENTS],
+    noise_roots: Vec<Matrix3<f64>>,
+}
+
+impl Linearised<'_> {
+    fn moved(&self, unknowns: &DVector<f64>) -> (Vec<Matrix3<f64>>, [f64; COEFFICIENTS]) {
+        let of = self.problem;
+        let drift = core::array::from_fn(|i| self.drift[i] + of.drift_sigma[i] * unknowns[i]);
+        let attitudes = self.attitudes.iter().enumerate();
+        let attitudes = attitudes
+            .map(|(row, attitude)| {
+                let first = COEFFICIENTS + 3 * row;
+                let rotation = unknowns.fixed_rows::<3>(first) * ROTATION_RAD;
+                turn(&rotation) * attitude
+            })
+            .collect();
+        (attitudes, drift)
     }
 
-    /// Number of parts of each interval.
-    fn parts(&self) -> Vec<usize> {
-        let times = self.run.record.time_s.windows(2);
-        times
-            .map(|pair| ((pair[1] - pair[0]) / self.longest_step_s).ceil().max(1.0) as usize)
-            .collect()
-    }
-
-    fn drift(&self, unknowns: &DVector<f64>) -> [f64; COEFFICIENTS] {
-        core::array::from_fn(|i| self.drift_sigma[i] * unknowns[3 + i])
-    }
-
-    /// Outputs over their noise, then the unknowns themselves, which are in units of their
-    /// sigmas.
     fn residuals(&self, unknowns: &DVector<f64>) -> DVector<f64> {
-        let bench = self.run.bench;
-        let gravity_g = bench.specific_force_at_rest();
-        let mut residuals = Vec::new();
-        for (attitude, sample) in self.attitudes(unknowns).iter().zip(&self.run.record.accel_g) {
+        let of = self.problem;
+        let bench = of.run.bench;
+        let (attitudes, drift) = self.moved(unknowns);
+        let mut residuals: Vec<f64> = (0..COEFFICIENTS)
+            .map(|i| drift[i] / of.drift_sigma[i])
+            .collect();
+        let whitened = |root: &Matrix3<f64>, rotation: Vector3<f64>| {
+            root.lu().solve(&rotation).expect("a root of a covariance")
+        };
+        let first = whitened(&of.first_root, rotation(&of.first, &attitudes[0]));
+        residuals.extend(first.iter());
+        for (row, sample) in of.run.record.accel_g.iter().enumerate() {
             for axis in 0..3 {
                 if !sample[axis].is_nan() {
-                    let predicted = gravity_g * attitude[(axis, 2)];
+                    let predicted = bench.specific_force_at_rest() * attitudes[row][(axis, 2)];
                     residuals.push((predicted - sample[axis]) / bench.accel_noise_g);
                 }
             }
         }
-        residuals.extend(unknowns.iter());
+        for (row, root) in self.noise_roots.iter().enumerate() {
+            let predicted = of.ahead(row, &attitudes[row], &drift, &[]);
+            residuals.extend(whitened(root, rotation(&predicted, &attitudes[row + 1])).iter());
+        }
         DVector::from_vec(residuals)
     }
 
-    fn jacobian(&self, unknowns: &DVector<f64>) -> DMatrix<f64> {
-        let columns: Vec<DVector<f64>> = (0..unknowns.len())
+    fn jacobian(&self, count: usize) -> DMatrix<f64> {
+        let columns: Vec<DVector<f64>> = (0..count)
             .map(|column| {
-                // A coefficient of a fiftieth of a deg/h bends a record of an hour by 3e-4; of
-                // the rest a whole sigma is tiny. The rule is exact to the fourth power.
-                let step = if (3..FIRST_NOISE).contains(&column) {
-                    0.02 / self.drift_sigma[column - 3]
+                // A coefficient of a fiftieth of a deg/h, or 1e-5 rad: small enough for a rule
+                // that is exact to the fourth power, and far above rounding.
+                let step = if column < COEFFICIENTS {
+                    0.02 / self.problem.drift_sigma[column]
                 } else {
                     1.0
                 };
                 let at = |steps: f64| {
-                    let mut moved = unknowns.clone();
-                    moved[column] += steps * step;
+                    let mut moved = DVector::zeros(count);
+                    moved[column] = steps * step;
                     self.residuals(&moved)
                 };
                 ((at(1.0) - at(-1.0)) * 8.0 - (at(2.0) - at(-2.0))) / (12.0 * step)
             })
             .collect();
         DMatrix::from_columns(&columns)
-    }
-
-    /// Platform from East, North, Up at each row.
-    fn attitudes(&self, unknowns: &DVector<f64>) -> Vec<Matrix3<f64>> {
-        let bench = self.run.bench;
-        let (sine, cosine) = bench.latitude_deg.to_radians().sin_cos();
-        let earth_rate = Vector3::new(0.0, cosine, sine) * EARTH_RATE_RAD_PER_S;
-        let gravity_g = bench.specific_force_at_rest();
-        let drift = self.drift(unknowns);
-        let rotation = self.first_root * Vector3::new(unknowns[0], unknowns[1], unknowns[2]);
-        let mut attitude = turn(&rotation) * self.first;
-        let mut attitudes = vec![attitude];
-        let mut next = FIRST_NOISE;
-        for (pair, parts) in self.run.record.time_s.windows(2).zip(self.parts()) {
-            let part_s = (pair[1] - pair[0]) / parts as f64;
-            // Held over the part, as white as the noise that is declared as held over a minute.
-            let sigma = bench.gyro_noise_deg_per_h * (60.0 / part_s).sqrt();
-            for _ in 0..parts {
-                let noise: [f64; 3] = core::array::from_fn(|axis| sigma * unknowns[next + axis]);
-                next += 3;
-                let rate = |attitude: &Matrix3<f64>| {
-                    let own = Vector3::from_fn(|axis, _| {
-                        let a = gravity_g * attitude[(axis, 2)];
-                        let [bias, first, second] = [0, 1, 2].map(|k| drift[3 * axis + k]);
-                        (bias + first * a + second * a * a + noise[axis]) * DEG_PER_H
-                    });
-                    -(own - attitude * earth_rate).cross_matrix() * attitude
-                };
-                let step_s = part_s / f64::from(SUBSTEPS);
-                for _ in 0..SUBSTEPS {
-                    let k1 = rate(&attitude);
-                    let k2 = rate(&(attitude + k1 * (0.5 * step_s)));
-                    let k3 = rate(&(attitude + k2 * (0.5 * step_s)));
-                    let k4 = rate(&(attitude + k3 * step_s));
-                    attitude += (k1 + (k2 + k3) * 2.0 + k4) * (step_s / 6.0);
-                }
-            }
-            attitudes.push(attitude);
-        }
-        attitudes
     }
 }
 
@@ -205,4 +269,17 @@ fn about(axis: usize, angle: f64) -> Matrix3<f64> {
 /// Components in axes that are turned by a rotation vector.
 fn turn(rotation: &Vector3<f64>) -> Matrix3<f64> {
     nalgebra::Rotation3::from_scaled_axis(-rotation).into_inner()
+}
+
+/// The small rotation vector from one attitude to another, in platform axes.
+fn rotation(from: &Matrix3<f64>, to: &Matrix3<f64>) -> Vector3<f64> {
+    let m = to * from.transpose();
+    // sin|φ| φ / |φ|; asin(s) / s = 1 + s² / 6 to 1e-12 for angles below 1e-3.
+    let sine = 0.5
+        * Vector3::new(
+            m[(1, 2)] - m[(2, 1)],
+            m[(2, 0)] - m[(0, 2)],
+            m[(0, 1)] - m[(1, 0)],
+        );
+    sine * (1.0 + sine.norm_squared() / 6.0)
 }

@@ -1,6 +1,8 @@
 //! `gyrocal calibrate` on bad input: exit code 1, one message that says where, what was found
 //! and what was expected, no output, no panic.
 
+mod several;
+
 use std::fs;
 
 use crate::folder::{Folder, repository};
@@ -242,6 +244,14 @@ fn a_refused_input_leaves_an_older_output_as_it_was() {
     assert_eq!(folder.text("o.json"), "old");
 }
 
+/// Arguments of one pass, in either form.
+fn one_pass(form: Option<&'static str>) -> Vec<&'static str> {
+    JSON.into_iter()
+        .chain(["--streaming"])
+        .chain(form)
+        .collect()
+}
+
 #[test]
 fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
     for (right, wrong, row) in [
@@ -249,12 +259,11 @@ fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
         ("= 0.002", "= 1e200", "row 2 of the data (t = 60 s)"),
     ] {
         // --factorised is no answer to these, with or without it.
-        for option in [None, Some("--factorised")] {
+        for form in [None, Some("--factorised")] {
             let folder = Folder::new();
             folder.put("r.csv", record(20));
             folder.put("b.toml", bench().replace(right, wrong));
-            let arguments: Vec<&str> = JSON.into_iter().chain(option).collect();
-            let errors = folder.fail(&arguments);
+            let errors = folder.fail(&one_pass(form));
             assert_says(&errors, "r.csv: no calibration\n");
             assert_says(&errors, &format!("the filter stopped at {row}\n"));
             assert_says(
@@ -262,6 +271,11 @@ fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
                 "help: the numbers of the bench file are out of proportion",
             );
         }
+        let folder = Folder::new();
+        folder.put("r.csv", record(20));
+        folder.put("b.toml", bench().replace(right, wrong));
+        let errors = folder.fail(&JSON);
+        assert_says(&errors, "r.csv: no calibration\n");
     }
 }
 
@@ -271,7 +285,7 @@ fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
     folder.put("r.csv", record(20));
     let prior = "\n[prior]\nbias_sigma_deg_per_h = 1e7\n";
     folder.put("b.toml", bench() + prior);
-    let errors = folder.fail(&JSON);
+    let errors = folder.fail(&one_pass(None));
     assert_says(&errors, "the filter stopped at row 2 of the data");
     assert_says(
         &errors,
@@ -283,6 +297,39 @@ fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
     for said in ["the filter stopped", cause] {
         assert_eq!(errors.matches(said).count(), 1, "{errors}");
     }
-    let factorised: Vec<&str> = JSON.into_iter().chain(["--factorised"]).collect();
-    folder.succeed(&factorised);
+    folder.succeed(&one_pass(Some("--factorised")));
+}
+
+#[test]
+fn one_pass_needs_an_attitude() {
+    let folder = Folder::new();
+    folder.put("r.csv", record(20));
+    let good = bench();
+    let free: Vec<&str> = good
+        .lines()
+        .filter(|line| !line.contains("initial"))
+        .collect();
+    folder.put("b.toml", free.join("\n"));
+    for option in ["--streaming", "--paper"] {
+        let arguments: Vec<&str> = JSON.into_iter().chain([option]).collect();
+        let errors = folder.fail(&arguments);
+        assert_says(&errors, "the bench file gives no initial angles");
+        assert_says(&errors, "help: leave out --streaming or --paper");
+    }
+    // The batch estimator levels the platform by an early row that is whole.
+    let blank: Vec<String> = record(40)
+        .lines()
+        .enumerate()
+        .map(|(index, line)| match (index, line.rsplit_once(',')) {
+            (1.., Some((rest, _))) => format!("{rest},nan"),
+            _ => line.to_owned(),
+        })
+        .collect();
+    folder.put("r.csv", blank.join("\n"));
+    let errors = folder.fail(&JSON);
+    assert_says(&errors, "so the platform cannot be levelled");
+    assert_says(
+        &errors,
+        "help: give initial_angles_deg and initial_angles_sigma_deg",
+    );
 }

@@ -1,5 +1,7 @@
 //! `gyrocal calibrate` as a user runs it.
 
+mod findings;
+
 use std::fs;
 
 use gyrocal_record::{Bench, CalibrationReport, Record};
@@ -79,10 +81,7 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
     for coefficient in report.coefficients {
         let row = said
             .lines()
-            .find(|line| {
-                line.trim_start()
-                    .starts_with(&format!("{} ", coefficient.name))
-            })
+            .find(|line| line.starts_with(&format!(" {} ", coefficient.name)))
             .unwrap_or_else(|| panic!("no {} in {said}", coefficient.name));
         let cells: Vec<&str> = row.split_whitespace().collect();
         let [estimate, sigma] = [cells[1], cells[2]].map(|cell| cell.parse::<f64>().unwrap());
@@ -102,7 +101,13 @@ fn the_json_has_every_field_of_its_contract() {
     folder.succeed(&JSON);
     let json: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(json["schema_version"], 1);
-    assert_eq!(json["iterations"], 1);
+    assert_eq!(json["method"], "batch");
+    // One pass of the filter is a good start; each further step squares what is left.
+    assert!(
+        (2..8).contains(&json["iterations"].as_u64().unwrap()),
+        "{}",
+        json["iterations"]
+    );
     assert_eq!(json["rows"], 4321);
     assert_eq!(json["verdict"], "consistent");
     assert!(json["verdict_text"].as_str().unwrap().contains("mean NIS"));
@@ -200,9 +205,14 @@ fn final_angles_are_those_of_the_simulated_platform() {
     }
 }
 
+/// What the words say, whatever the lines.
+fn unwrapped(said: &str) -> String {
+    said.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 #[test]
 fn the_effect_of_latitude_is_that_of_the_symmetry() {
-    let said = folder().succeed(&PLAIN);
+    let said = unwrapped(&folder().succeed(&PLAIN));
     let (_, rest) = said.split_once("mean of the three D_I by ").unwrap();
     let shift: f64 = rest.split(' ').next().unwrap().parse().unwrap();
     // Turning the meridian by 1 arc second is lowering all D_I by rate / cos(latitude) times it,
@@ -210,6 +220,11 @@ fn the_effect_of_latitude_is_that_of_the_symmetry() {
     let rate_deg_per_h = 15.041_07;
     let full = rate_deg_per_h * (1.0_f64 / 3600.0).to_radians() / 48.2_f64.to_radians().cos();
     assert!((0.5..1.05).contains(&(shift / full)), "{shift} of {full}");
+    assert!(said.contains("gives no latitude_sigma_deg"), "{said}");
+}
+
+fn report(folder: &Folder) -> CalibrationReport {
+    serde_json::from_str(&folder.text("o.json")).unwrap()
 }
 
 #[test]
@@ -265,29 +280,64 @@ fn verbose_tells_more_on_stderr_only() {
 #[test]
 fn a_wrong_command_line_is_a_usage_error() {
     let folder = folder();
-    let cases: [&[&str]; 4] = [
-        &["calibrate"],
-        &["calibrate", "r.csv"],
-        &[
-            "calibrate",
-            "r.csv",
-            "--bench",
-            "b.toml",
-            "--json",
-            "./r.csv",
-        ],
-        &[
-            "calibrate",
-            "r.csv",
-            "--bench",
-            "b.toml",
-            "--json",
-            "b.toml",
-        ],
+    let cases: [(&str, &str); 14] = [
+        ("calibrate", "required"),
+        ("calibrate r.csv", "required"),
+        (
+            "calibrate r.csv --bench b.toml --json ./r.csv",
+            "would overwrite",
+        ),
+        (
+            "calibrate r.csv --bench b.toml --json b.toml",
+            "would overwrite",
+        ),
+        (
+            "calibrate r.csv --bench b.toml --bench b.toml",
+            "2 bench files for 1 record:",
+        ),
+        (
+            "calibrate a.csv b.csv c.csv --bench b.toml --bench b.toml",
+            "2 bench files for 3 records",
+        ),
+        (
+            "calibrate r.csv ./r.csv --bench b.toml",
+            "r.csv and ./r.csv are the same file",
+        ),
+        (
+            "calibrate a.csv b.csv --bench b.toml --streaming",
+            "--streaming reads one record, 2",
+        ),
+        (
+            "calibrate r.csv --bench b.toml --paper --streaming",
+            "cannot be used with",
+        ),
+        (
+            "calibrate r.csv --bench b.toml --factorised",
+            "--streaming or --paper",
+        ),
+        (
+            "calibrate r.csv --bench b.toml --paper --robust",
+            "--robust goes with the batch",
+        ),
+        (
+            "calibrate r.csv --bench b.toml --streaming --no-noise",
+            "--no-noise goes with the batch",
+        ),
+        (
+            "calibrate --robust r.csv --bench b.toml",
+            "put records before --robust",
+        ),
+        (
+            "calibrate r.csv --bench b.toml --average 0",
+            "a number greater than 0",
+        ),
     ];
-    for arguments in cases {
-        let output = folder.run(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    for (line, message) in cases {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let output = folder.run(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(message), "{line}: {said}");
         assert_eq!(folder.names(), ["b.toml", "r.csv"]);
     }
     assert_eq!(folder.text("r.csv"), shipped("three_days.csv"));

@@ -149,7 +149,7 @@ fn lists_that_no_model_can_have_are_refused() {
             "gyro_x.g_yy,gyro_x.g_zz",
             "no record whatever tells `gyro_x.g_zz` from `gyro_x.g_yy`",
         ),
-        ("accel.outliers", "the table `[noise]` of the bench file"),
+        ("accel.outliers", "`[noise]` of the bench file"),
     ];
     for (effects, message) in cases {
         let folder = Folder::new();

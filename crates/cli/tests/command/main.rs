@@ -2,9 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod allan;
 mod bad_input;
 mod calibrate;
+mod diagnose;
 mod extend;
 mod folder;
+mod import;
 mod monte_carlo;
 mod simulate;
+mod tumble;

@@ -102,6 +102,17 @@ impl Bank {
         self.information[(column, column)] > VISIBLE * self.raw[column] && self.raw[column] > 0.0
     }
 
+    /// Information and scores of some columns.
+    pub(crate) fn part(&self, columns: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
+        let count = columns.len();
+        (
+            DMatrix::from_fn(count, count, |i, j| {
+                self.information[(columns[i], columns[j])]
+            }),
+            DVector::from_fn(count, |i, _| self.score[columns[i]]),
+        )
+    }
+
     /// Estimate and covariance of some columns jointly, and their statistic: chi-square with as
     /// many degrees of freedom as there are columns if the effect is absent. `None` if the fit
     /// leaves too little of them.
@@ -109,11 +120,7 @@ impl Bank {
         if !columns.iter().all(|column| self.visible(*column)) {
             return None;
         }
-        let count = columns.len();
-        let information = DMatrix::from_fn(count, count, |i, j| {
-            self.information[(columns[i], columns[j])]
-        });
-        let score = DVector::from_fn(count, |i, _| self.score[columns[i]]);
+        let (information, score) = self.part(columns);
         let cholesky = Cholesky::new(information)?;
         let estimate = cholesky.solve(&score);
         Some(Joint {

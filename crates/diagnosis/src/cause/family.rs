@@ -15,6 +15,9 @@ const TIME_CONSTANTS: usize = 10;
 /// The shortest of them, h.
 const SHORTEST_TIME_CONSTANT_H: f64 = 0.3;
 
+/// The one effect that is a jump of the attitude.
+pub(crate) const KNOCK: &str = "platform.knock";
+
 /// The constant drifts, which steps and warm-ups are shares of.
 const BIASES: [usize; 3] = [
     parameters_index::GYRO_X_BIAS,
@@ -37,9 +40,27 @@ pub struct Family {
     /// The effect.
     pub(crate) effect: &'static EffectRow,
     pub(crate) candidates: Vec<Candidate>,
+    /// Of a random walk the columns of steps that it is made up from.
+    pub(crate) walk: Option<Vec<usize>>,
+    /// Whether it is a knock, which is looked for in every step by itself.
+    pub(crate) knock: bool,
 }
 
 impl Family {
+    /// The same family, or with nothing to look for.
+    pub(crate) fn unless(&self, taken: bool) -> Self {
+        Self {
+            effect: self.effect,
+            candidates: if taken {
+                Vec::new()
+            } else {
+                self.candidates.clone()
+            },
+            walk: if taken { None } else { self.walk.clone() },
+            knock: self.knock && !taken,
+        }
+    }
+
     /// Public id of the effect.
     #[must_use]
     pub fn id(&self) -> &'static str {
@@ -89,6 +110,7 @@ impl Plan {
         };
         plan.onset_rows.dedup();
         let base = PARAMETERS.len();
+        let mut walks = Vec::new();
         for effect in &EFFECTS {
             if !(effect.default_search || also.contains(&effect.id)) {
                 continue;
@@ -109,6 +131,11 @@ impl Plan {
                     columns: (first..first + 3).collect(),
                     shape: None,
                 }]
+            } else if effect.id.ends_with(".random_walk") {
+                walks.push(effect);
+                continue;
+            } else if effect.id == KNOCK {
+                Vec::new()
             } else if effect.kind != "term" {
                 continue;
             } else if let (true, Some(axis)) = (effect.id.ends_with(".step"), axis) {
@@ -151,19 +178,69 @@ impl Plan {
                     shape: None,
                 }]
             };
-            plan.families.push(Family { effect, candidates });
+            plan.families.push(Family {
+                effect,
+                candidates,
+                walk: None,
+                knock: effect.id == KNOCK,
+            });
+        }
+        // Last, as what every slow cause looks like.
+        for effect in walks {
+            let Some(axis) = axis_of(effect.id) else {
+                continue;
+            };
+            plan.families.push(Family {
+                effect,
+                candidates: Vec::new(),
+                walk: Some(plan.steps[axis].clone()),
+                knock: false,
+            });
         }
         plan
     }
+
+    /// Time between the onsets that a random walk is made up from, h.
+    pub(crate) fn onset_interval_h(&self, record: &Record) -> f64 {
+        match self.onset_rows.as_slice() {
+            [first, .., last] => {
+                (record.time_s[*last] - record.time_s[*first])
+                    / (3600.0 * (self.onset_rows.len() - 1) as f64)
+            }
+            _ => 1.0,
+        }
+    }
 }
 
-/// What a candidate adds to a model.
-pub(crate) fn extend(extension: &mut Extension, family: &Family, shape: Option<f64>) {
-    let effect = family.effect;
+/// What a family adds to a model: at an onset or with a time constant, or, for a random walk,
+/// with the variance of its increments from onset to onset.
+pub(crate) fn extend(
+    plan: &Plan,
+    record: &Record,
+    extension: &mut Extension,
+    family: usize,
+    shape: Option<f64>,
+) {
+    let effect = plan.families[family].effect;
+    if let (KNOCK, Some(onset_s)) = (effect.id, shape) {
+        extension
+            .further
+            .extend(jump(record, onset_s), f64::INFINITY);
+        return;
+    }
     if effect.id == "platform.initial_attitude" {
-        let mut columns = extension.further.columns().to_vec();
-        columns.extend([0, 1, 2].map(|axis| Column::Start { axis }));
-        extension.further = gyrocal_calibration::Further::new(columns);
+        let columns = [0, 1, 2].map(|axis| Column::Start { axis });
+        extension.further.extend(columns, f64::INFINITY);
+        return;
+    }
+    if let (true, Some(axis), Some(variance)) = (
+        effect.id.ends_with(".random_walk"),
+        axis_of(effect.id),
+        shape,
+    ) {
+        let steps = plan.steps[axis].iter();
+        let columns = steps.map(|column| plan.further[column - PARAMETERS.len()].clone());
+        extension.further.extend(columns, variance.sqrt());
         return;
     }
     for id in effect.states {
@@ -179,6 +256,16 @@ pub(crate) fn extend(extension: &mut Extension, family: &Family, shape: Option<f
     }
 }
 
+/// A turn in the step that ends at an onset, about each axis.
+pub(crate) fn jump(record: &Record, onset_s: f64) -> [Column; 3] {
+    let first_s = record.time_s.first().copied().unwrap_or(0.0);
+    let end = record
+        .time_s
+        .partition_point(|time_s| time_s - first_s < onset_s);
+    let row = end.saturating_sub(1).min(record.len().saturating_sub(2));
+    [0, 1, 2].map(|axis| Column::Jump { row, axis })
+}
+
 /// Index of a parameter of the catalogue's model by its public id.
 pub(crate) fn parameter(id: &str) -> Option<usize> {
     PARAMETERS.iter().position(|element| element.id == id)
@@ -191,7 +278,8 @@ pub(crate) fn axis_of(id: &str) -> Option<usize> {
         .position(|prefix| id.starts_with(prefix))
 }
 
-fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Option<String> {
+/// What an effect needs and the record or its bench does not have.
+pub(crate) fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Option<String> {
     for need in effect.needs {
         match *need {
             "temperature" if record.temperature_c.is_none() => {

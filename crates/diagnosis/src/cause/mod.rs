@@ -15,9 +15,14 @@
 //! the search goes on ([`search`]).
 
 mod bank;
+mod bound;
 mod family;
+mod knock;
 mod null;
 mod search;
+mod walk;
 
+pub use bound::information;
+pub(crate) use family::missing;
 pub use family::{Candidate, Family, Plan, Unavailable};
 pub use search::{Finding, FoundParameter, Ranked, Rival, SearchOptions, Searched, search};

@@ -1,11 +1,12 @@
 //! What the statistics reach if the model is right: drawn from their joint distribution.
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::{Cholesky, DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::bank::Bank;
 use super::family::Family;
+use super::walk::Walk;
 
 /// Draws from the joint distribution: the 1 % point of the largest statistic then rests on 40.
 const DRAWS: usize = 4096;
@@ -33,7 +34,10 @@ impl Null {
     pub(crate) fn draw(bank: &Bank, families: &[Family], seed: u64) -> Self {
         let mut columns: Vec<usize> = families
             .iter()
-            .flat_map(|family| family.candidates.iter().flat_map(|c| c.columns.iter()))
+            .flat_map(|family| {
+                let candidates = family.candidates.iter().flat_map(|c| c.columns.iter());
+                candidates.chain(family.walk.iter().flatten())
+            })
             .copied()
             .filter(|column| bank.visible(*column))
             .collect();
@@ -63,6 +67,19 @@ impl Null {
         // For each candidate, what turns its scores into its statistic.
         let mut reached = DMatrix::from_element(families.len(), DRAWS, f64::NEG_INFINITY);
         for (index, family) in families.iter().enumerate() {
+            if let Some(steps) = &family.walk {
+                let places: Option<Vec<usize>> =
+                    steps.iter().map(|column| place(*column)).collect();
+                let Some(places) = places else { continue };
+                let walk = Walk::new(bank.part(steps).0);
+                for draw in 0..DRAWS {
+                    let score = DVector::from_fn(places.len(), |i, _| {
+                        scores[(places[i], draw)] / scale[places[i]]
+                    });
+                    reached[(index, draw)] = walk.best(&score).0;
+                }
+                continue;
+            }
             for candidate in &family.candidates {
                 let places: Option<Vec<usize>> = candidate
                     .columns
@@ -93,17 +110,19 @@ impl Null {
         let mut penalties = Vec::with_capacity(families.len());
         for index in 0..families.len() {
             let mut row: Vec<f64> = reached.row(index).iter().copied().collect();
+            row.retain(|statistic| statistic.is_finite());
             row.sort_unstable_by(f64::total_cmp);
-            let quantile = row[((DRAWS as f64) * EQUAL_LEVEL) as usize];
+            let at = ((row.len() as f64) * EQUAL_LEVEL) as usize;
+            let quantile = row.get(at).copied().unwrap_or(f64::NEG_INFINITY);
             penalties.push(if quantile.is_finite() {
-                (quantile - EQUAL_SINGLE).max(0.0)
+                quantile - EQUAL_SINGLE
             } else {
                 0.0
             });
         }
         // One signature needs no draws to know its distribution.
         for (penalty, family) in penalties.iter_mut().zip(families) {
-            if let [only] = family.candidates.as_slice()
+            if let ([only], None) = (family.candidates.as_slice(), &family.walk)
                 && only.columns.len() == 1
             {
                 *penalty = 0.0;
@@ -114,6 +133,14 @@ impl Null {
                 (0..families.len())
                     .map(|index| reached[(index, draw)] - penalties[index])
                     .fold(f64::NEG_INFINITY, f64::max)
+            })
+            // A knock comes with its own probability, as one more signature.
+            .map(|maximum: f64| {
+                if families.iter().any(|family| family.knock) {
+                    maximum.max(normal(&mut generator).powi(2))
+                } else {
+                    maximum
+                }
             })
             .collect();
         maxima.sort_unstable_by(f64::total_cmp);

@@ -5,8 +5,10 @@ use gyrocal_calibration::{CalibrationError, Column, Extended, Extension};
 use gyrocal_record::{Bench, Record};
 
 use super::bank::{Bank, Joint};
-use super::family::{Family, Plan, Unavailable, extend, parameter};
+use super::family::{Candidate, Family, Plan, Unavailable, extend, jump, parameter};
+use super::knock::{self, Knock};
 use super::null::Null;
+use super::walk::Walk;
 
 /// How causes are looked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +117,8 @@ struct Accepted {
     family: usize,
     shape: Option<f64>,
     p_value: f64,
+    /// What its statistic loses for having been looked for in every step.
+    searched: f64,
 }
 
 /// Looks for causes in a record, from the nominal model at its best fit.
@@ -131,25 +135,25 @@ pub fn search<'a>(
     let plan = Plan::new(record, bench, &also);
     let mut fitted = nominal;
     let mut accepted: Vec<Accepted> = Vec::new();
+    let mut inseparable: Vec<usize> = Vec::new();
     let mut first: Option<(Vec<Ranked>, f64)> = None;
     loop {
         let bank = Bank::new(&fitted, &plan.further, &[])?;
-        let taken: Vec<usize> = accepted.iter().map(|accepted| accepted.family).collect();
+        let taken: Vec<usize> = accepted
+            .iter()
+            .map(|accepted| accepted.family)
+            .chain(inseparable.iter().copied())
+            .collect();
         let families: Vec<Family> = plan
             .families
             .iter()
             .enumerate()
-            .map(|(index, family)| Family {
-                effect: family.effect,
-                candidates: if taken.contains(&index) || equivalent_to(&plan, index, &taken) {
-                    Vec::new()
-                } else {
-                    family.candidates.clone()
-                },
+            .map(|(index, family)| {
+                family.unless(taken.contains(&index) || equivalent_to(&plan, index, &taken))
             })
             .collect();
         let null = Null::draw(&bank, &families, options.seed);
-        let scores = Scores::of(&bank, &families, &null);
+        let scores = Scores::of(&bank, &families, &null, knock::best(&fitted, record)?);
         let threshold = null.threshold(options.false_alarm_probability);
         first.get_or_insert_with(|| (scores.ranking(&families), threshold));
         let Some(best) = scores.named(&families) else {
@@ -164,12 +168,20 @@ pub fn search<'a>(
             family: best.family,
             shape,
             p_value: null.probability(statistic),
+            searched: best.searched,
         });
-        fitted = fitted.refitted(&extension(&plan, &accepted))?;
+        match fitted.refitted(&extension(&plan, record, &accepted)) {
+            Ok(refitted) => fitted = refitted,
+            // What cannot be fitted beside the others cannot be told from them.
+            Err(_) => {
+                accepted.pop();
+                inseparable.push(best.family);
+            }
+        }
     }
     let mut findings = Vec::with_capacity(accepted.len());
     for index in 0..accepted.len() {
-        findings.push(finding(&fitted, &plan, &accepted, index, options)?);
+        findings.push(finding(&fitted, &plan, record, &accepted, index, options)?);
     }
     let (ranking, threshold) = first.unwrap_or_default();
     Ok(Searched {
@@ -182,12 +194,14 @@ pub fn search<'a>(
 }
 
 /// The model that all accepted effects make up.
-fn extension(plan: &Plan, accepted: &[Accepted]) -> Extension {
+fn extension(plan: &Plan, record: &Record, accepted: &[Accepted]) -> Extension {
     let mut extension = Extension::default();
     for accepted in accepted {
         extend(
+            plan,
+            record,
             &mut extension,
-            &plan.families[accepted.family],
+            accepted.family,
             accepted.shape,
         );
     }
@@ -208,6 +222,10 @@ struct Best {
     family: usize,
     candidate: usize,
     statistic: f64,
+    /// Variance of the increments of a random walk; onset of a knock, s.
+    shape: f64,
+    /// What a knock's statistic loses for having been looked for in every step.
+    searched: f64,
 }
 
 /// The best candidate of every family, and what searching alone reaches.
@@ -217,11 +235,31 @@ struct Scores<'a> {
 }
 
 impl<'a> Scores<'a> {
-    fn of(bank: &Bank, families: &[Family], null: &'a Null) -> Self {
+    fn of(bank: &Bank, families: &[Family], null: &'a Null, knock: Option<Knock>) -> Self {
         let best = families
             .iter()
             .enumerate()
             .map(|(family, content)| {
+                if content.knock && content.candidates.is_empty() {
+                    return knock.map(|knock| Best {
+                        family,
+                        candidate: 0,
+                        statistic: knock.equivalent,
+                        shape: knock.onset_s,
+                        searched: knock.statistic - knock.equivalent,
+                    });
+                }
+                if let Some(steps) = &content.walk {
+                    let (information, score) = bank.part(steps);
+                    let (statistic, variance) = Walk::new(information).best(&score);
+                    return Some(Best {
+                        family,
+                        candidate: 0,
+                        statistic,
+                        shape: variance,
+                        searched: 0.0,
+                    });
+                }
                 content
                     .candidates
                     .iter()
@@ -231,6 +269,8 @@ impl<'a> Scores<'a> {
                             family,
                             candidate,
                             statistic: joint.statistic,
+                            shape: 0.0,
+                            searched: 0.0,
                         })
                     })
                     .max_by(|a, b| a.statistic.total_cmp(&b.statistic))
@@ -248,12 +288,21 @@ impl<'a> Scores<'a> {
         })
     }
 
+    /// The penalised statistic, a random walk behind what follows a law.
+    fn preferred(&self, families: &[Family], family: usize) -> f64 {
+        let walk = families[family].walk.is_some();
+        self.penalised(family) - if walk { RICHER } else { 0.0 }
+    }
+
     /// The family to be named: the best, or a simpler one that it contains if it is not
     /// significantly better than that; of equivalents the first.
     fn named(&self, families: &[Family]) -> Option<Best> {
         let best = (0..families.len())
             .filter(|family| self.best[*family].is_some())
-            .max_by(|a, b| self.penalised(*a).total_cmp(&self.penalised(*b)))?;
+            .max_by(|a, b| {
+                self.preferred(families, *a)
+                    .total_cmp(&self.preferred(families, *b))
+            })?;
         // Of equivalents the first in the table, which the families follow.
         let equivalents = families[best].effect.equivalents;
         let best = (0..best)
@@ -303,6 +352,10 @@ fn refined(
     plan: &Plan,
     best: &Best,
 ) -> Result<Option<f64>, CalibrationError> {
+    let family = &plan.families[best.family];
+    if family.walk.is_some() || family.knock {
+        return Ok(Some(best.shape));
+    }
     let candidates = &plan.families[best.family].candidates;
     let candidate = &candidates[best.candidate];
     let Some(shape) = candidate.shape else {
@@ -357,36 +410,43 @@ fn refined(
 fn finding(
     fitted: &Extended<'_>,
     plan: &Plan,
+    record: &Record,
     accepted: &[Accepted],
     index: usize,
     options: &SearchOptions,
 ) -> Result<Finding, CalibrationError> {
     let own = &accepted[index];
     let family = &plan.families[own.family];
-    let places = places(fitted, family);
-    let bank = Bank::new(fitted, &plan.further, &places)?;
+    let places = places(fitted, plan, family);
+    let mut further = plan.further.clone();
+    if let (true, Some(onset_s)) = (family.knock, own.shape) {
+        further.extend(jump(record, onset_s));
+    }
+    let bank = Bank::new(fitted, &further, &places)?;
     let others: Vec<usize> = accepted
         .iter()
         .enumerate()
         .filter(|(other, _)| *other != index)
         .map(|(_, accepted)| accepted.family)
         .collect();
-    let families: Vec<Family> = plan
+    let mut families: Vec<Family> = plan
         .families
         .iter()
         .enumerate()
-        .map(|(family, content)| Family {
-            effect: content.effect,
-            candidates: if others.contains(&family) || equivalent_to(plan, family, &others) {
-                Vec::new()
-            } else {
-                content.candidates.clone()
-            },
+        .map(|(family, content)| {
+            content.unless(others.contains(&family) || equivalent_to(plan, family, &others))
         })
         .collect();
+    if family.knock {
+        let first = PARAMETERS.len() + plan.further.len();
+        families[own.family].candidates = vec![Candidate {
+            columns: (first..first + 3).collect(),
+            shape: None,
+        }];
+    }
     let null = Null::draw(&bank, &families, options.seed);
-    let scores = Scores::of(&bank, &families, &null);
-    let best = scores.penalised(own.family);
+    let scores = Scores::of(&bank, &families, &null, None);
+    let best = scores.penalised(own.family) - own.searched;
     let mut rivals: Vec<Rival> = (0..families.len())
         .filter(|other| {
             *other != own.family
@@ -423,7 +483,15 @@ fn finding(
     let statistic = scores.best[own.family].map_or(0.0, |best| best.statistic);
     Ok(Finding {
         effect: family.id(),
-        parameters: estimates(fitted, family, &places, own.shape),
+        parameters: match (&family.walk, own.shape) {
+            (Some(_), Some(variance)) => vec![FoundParameter {
+                name: "size",
+                estimate: (variance / plan.onset_interval_h(record)).sqrt(),
+                sigma: None,
+                unit: "deg/h/sqrt(h)",
+            }],
+            _ => estimates(fitted, family, &places, own.shape),
+        },
         z: statistic.max(0.0).sqrt(),
         p_value: own.p_value,
         rivals,
@@ -443,17 +511,33 @@ fn from_joint(effect: &'static gyrocal::EffectRow, joint: &Joint) -> Vec<FoundPa
 }
 
 /// Where an effect's values are among those of the fit.
-fn places(fitted: &Extended<'_>, family: &Family) -> Vec<usize> {
+fn places(fitted: &Extended<'_>, plan: &Plan, family: &Family) -> Vec<usize> {
     let extension = fitted.extension();
     let first = crate::COEFFICIENTS;
-    if family.effect.id == "platform.initial_attitude" {
+    if let Some(steps) = &family.walk {
+        let base = first + extension.parameters.len();
+        let own: Vec<&Column> = steps
+            .iter()
+            .map(|column| &plan.further[column - PARAMETERS.len()])
+            .collect();
+        let columns = extension.further.columns().iter().enumerate();
+        return columns
+            .filter(|(_, column)| own.contains(column))
+            .map(|(index, _)| base + index)
+            .collect();
+    }
+    if family.effect.kind == "state" {
         let base = first + extension.parameters.len();
         return extension
             .further
             .columns()
             .iter()
             .enumerate()
-            .filter(|(_, column)| matches!(column, Column::Start { .. }))
+            .filter(|(_, column)| match column {
+                Column::Start { .. } => !family.knock,
+                Column::Jump { .. } => family.knock,
+                _ => false,
+            })
             .map(|(index, _)| base + index)
             .collect();
     }

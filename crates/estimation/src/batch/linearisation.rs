@@ -9,7 +9,8 @@ use nalgebra::DMatrix;
 use super::filter::{Conditional, backward, cholesky, forward};
 use super::gram::Gram;
 use super::noise::{NoiseFilter, NoiseScore};
-use super::step::{Step, Stepper, map_columns, sandwich};
+use super::step::{Step, Stepper, add, map_columns, sandwich};
+use super::tape::Tape;
 use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 use crate::transition::Integration;
@@ -43,6 +44,8 @@ where
     pub active: &'a [usize],
     /// Further columns, after those of the parameters.
     pub further: &'a C,
+    /// What an earlier pass about the same trajectory, with the same parameters active, kept.
+    pub tape: Option<&'a Tape<D::Point, M>>,
 }
 
 /// What the first pass leaves of a record.
@@ -114,8 +117,26 @@ where
     /// [`EstimationError::InvalidArgument`] if there is not one point for each row, times do not
     /// rise, or the noise does not drive every moving state;
     /// [`EstimationError::NotFinite`] if the model left the numbers.
-    pub fn reduce(
+    pub fn reduce(&self, watch: impl FnMut(&Whitened<'_>)) -> Result<Reduced<M>, EstimationError> {
+        self.reduce_onto(None, watch)
+    }
+
+    /// As [`Self::reduce`], and keeps what the model gave for later passes.
+    ///
+    /// # Errors
+    /// As [`Self::reduce`].
+    pub fn reduce_and_keep(
         &self,
+        watch: impl FnMut(&Whitened<'_>),
+    ) -> Result<(Reduced<M>, Tape<D::Point, M>), EstimationError> {
+        let mut tape = Tape::new(self.points.len().saturating_sub(1), self.active.len());
+        let reduced = self.reduce_onto(Some(&mut tape), watch)?;
+        Ok((reduced, tape))
+    }
+
+    fn reduce_onto(
+        &self,
+        mut tape: Option<&mut Tape<D::Point, M>>,
         mut watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<M>, EstimationError> {
         let count = self.active.len() + self.further.count();
@@ -141,14 +162,45 @@ where
             })?;
             reduced.rows += usize::from(reduced.values > before);
             if row + 1 < self.points.len() {
-                let (_, cost) = pass.advance(row)?;
+                let (step, cost) = pass.advance(row)?;
                 reduced.trajectory_cost += cost;
+                if let Some(tape) = &mut tape {
+                    tape.steps.push(step);
+                    tape.columns.extend_from_slice(&pass.own);
+                }
             }
         }
         reduced.gram = gram.finish();
         reduced.last = pass.filter.columns;
         reduced.last_covariance = pass.filter.covariance;
         Ok(reduced)
+    }
+
+    /// A pass that tells of each output its Jacobian and its covariance with the moving states,
+    /// and of each step its transition.
+    pub(crate) fn forward(
+        &self,
+        mut output: impl FnMut(&Whitened<'_>, &[f64; M], [f64; M]),
+        mut step: impl FnMut(&[[f64; M]; M]),
+    ) -> Result<(), EstimationError> {
+        let count = self.active.len() + self.further.count();
+        let mut pass = Pass::new(self, count, None)?;
+        for row in 0..self.points.len() {
+            pass.observe(row, |whitened, taken| {
+                let mut cross = [0.0; M];
+                for i in 0..M {
+                    for j in 0..M {
+                        cross[i] += taken.covariance[i][j] * taken.jacobian[j];
+                    }
+                }
+                output(whitened, &taken.jacobian, cross);
+            })?;
+            if row + 1 < self.points.len() {
+                let (advanced, _) = pass.advance(row)?;
+                step(&advanced.moving);
+            }
+        }
+        Ok(())
     }
 
     /// Where the model goes by itself from the first point: the trajectory without measurements
@@ -198,13 +250,10 @@ where
             });
         }
         let (outputs, inputs) = factors.split_at(Y);
-        let mut scaled = *self;
-        for (density, factor) in scaled.noise_density.iter_mut().zip(inputs) {
-            *density *= factor;
-        }
         let none = vec![0.0; self.active.len() + self.further.count()];
-        let mut pass = Pass::new(&scaled, 0, Some(&none))?;
+        let mut pass = Pass::new(self, 0, Some(&none))?;
         pass.factors.copy_from_slice(outputs);
+        pass.input_factors.copy_from_slice(inputs);
         let mut filter = NoiseFilter::<M>::new(Y);
         for row in 0..self.points.len() {
             pass.observe(row, |whitened, taken| filter.take(whitened, taken))?;
@@ -308,6 +357,10 @@ where
     prior_cost: f64,
     /// What the declared variances of the outputs are multiplied by.
     factors: [f64; Y],
+    /// What the densities of the noise inputs are multiplied by.
+    input_factors: [f64; M],
+    /// Active parameter columns of the last step, M rows of them.
+    own: Vec<f64>,
     /// Change of the columns; all are then folded into column 0.
     change: Option<&'a [f64]>,
     d_parameters: Vec<f64>,
@@ -331,6 +384,10 @@ where
             || of.points.len() != of.series.rows()
             || of.parameters.len() != of.model.parameters()
             || of.active.iter().any(|index| *index >= of.parameters.len())
+            || of.tape.is_some_and(|tape| {
+                tape.steps.len() + 1 != of.points.len()
+                    || tape.columns.len() != tape.steps.len() * M * of.active.len()
+            })
             || change.is_some_and(|change| change.len() != of.active.len() + further)
         {
             return Err(EstimationError::InvalidArgument {
@@ -373,6 +430,8 @@ where
             inputs: of.inputs,
             prior_cost,
             factors: [1.0; Y],
+            input_factors: [1.0; M],
+            own: vec![0.0; M * of.active.len()],
             change,
             d_parameters: vec![0.0; Y * of.model.output_parameters()],
             drive: vec![0.0; M * further],
@@ -486,24 +545,61 @@ where
         &self.drive
     }
 
-    /// Goes on to the next row; returns the transition and what the noise's part adds to the
-    /// cost of the trajectory.
-    fn advance(&mut self, row: usize) -> Result<(Step<D::Point, M>, f64), EstimationError> {
+    /// The step after a row, from the tape or from the model; leaves its active columns in
+    /// [`Self::own`].
+    fn step(&mut self, row: usize) -> Result<Step<D::Point, M>, EstimationError> {
         let of = self.of;
+        let active = of.active.len();
+        if let Some(tape) = of.tape {
+            let first = row * M * active;
+            self.own
+                .copy_from_slice(&tape.columns[first..first + M * active]);
+            // Further columns may follow a parameter that is active.
+            let p = of.parameters.len();
+            for i in 0..M {
+                for (own, index) in self.own[i * active..].iter().zip(of.active) {
+                    self.stepper.columns[i * p + index] = *own;
+                }
+            }
+            return Ok(tape.steps[row]);
+        }
         let mut step = self
             .stepper
             .advance(of.series, row, &of.points[row], of.parameters)?;
-        let mut jump = of.model.difference(&step.predicted, &of.points[row + 1]);
+        let jump = of.model.difference(&step.predicted, &of.points[row + 1]);
         let p = of.parameters.len();
         if let Some(corrected) = of.model.corrected(&jump) {
             step.correct(&corrected);
             map_columns(&corrected.point, &mut self.stepper.columns, p);
         }
+        for i in 0..M {
+            for (own, index) in self.own[i * active..].iter_mut().zip(of.active) {
+                *own = self.stepper.columns[i * p + index];
+            }
+        }
+        Ok(step)
+    }
+
+    /// Goes on to the next row; returns the transition and what the noise's part adds to the
+    /// cost of the trajectory.
+    fn advance(&mut self, row: usize) -> Result<(Step<D::Point, M>, f64), EstimationError> {
+        let of = self.of;
+        let mut step = self.step(row)?;
+        let mut jump = of.model.difference(&step.predicted, &of.points[row + 1]);
+        if self.input_factors != [1.0; M] {
+            step.noise = [[0.0; M]; M];
+            for (share, factor) in step.shares.iter_mut().zip(self.input_factors) {
+                for element in share.as_flattened_mut() {
+                    *element *= factor;
+                }
+                add(&mut step.noise, share);
+            }
+        }
         self.filter.predict(&step.moving, &step.noise);
         let (active, further) = (of.active.len(), of.further.count());
         self.drive(row);
         for i in 0..M {
-            let own = &self.stepper.columns[i * p..(i + 1) * p];
+            let own = &self.own[i * active..(i + 1) * active];
             let drive = &self.drive[i * further..(i + 1) * further];
             let mut mean = 0.0;
             for (column, drive) in drive.iter().enumerate() {
@@ -511,15 +607,15 @@ where
             }
             let target = self.filter.row_mut(i);
             if let Some(change) = self.change {
-                for (index, change) in of.active.iter().zip(change) {
-                    mean += own[*index] * change;
+                for (own, change) in own.iter().zip(change) {
+                    mean += own * change;
                 }
                 for (drive, change) in drive.iter().zip(&change[active..]) {
                     mean += drive * change;
                 }
             } else {
-                for (value, index) in target[1..].iter_mut().zip(of.active) {
-                    *value += own[*index];
+                for (value, own) in target[1..].iter_mut().zip(own) {
+                    *value += own;
                 }
                 for (value, drive) in target[1 + active..].iter_mut().zip(drive) {
                     *value += drive;

@@ -19,16 +19,20 @@
 mod columns;
 mod filter;
 mod gram;
+mod jumps;
 mod linearisation;
 mod noise;
 
 mod step;
+mod tape;
 
 pub use crate::manifold::{Corrected, Manifold};
 pub use columns::{Columns, NoColumns};
 pub use gram::Gram;
+pub use jumps::JumpScore;
 pub use linearisation::{Linearisation, Reduced, Smoothed, Whitened};
 pub use noise::NoiseScore;
+pub use tape::Tape;
 
 /// The rows of a record, and what the model's inputs are over and at them.
 pub trait Series<I, const Y: usize> {

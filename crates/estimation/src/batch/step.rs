@@ -8,6 +8,7 @@ use crate::error::EstimationError;
 use crate::transition::{Integration, Integrator};
 
 /// What a step does to the moving states, to first order.
+#[derive(Clone, Copy)]
 pub(crate) struct Step<P, const M: usize> {
     /// Where the model goes from the linearisation point.
     pub(crate) predicted: P,

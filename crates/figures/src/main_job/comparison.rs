@@ -73,7 +73,7 @@ fn rules() -> Result<Vec<Figure>, Error> {
         (
             "exact data, default filter",
             false,
-            Options::default(),
+            Options::streaming(),
             FITS,
         ),
     ];
@@ -127,7 +127,7 @@ fn coordinates() -> Result<Vec<Figure>, Error> {
     for (name, recentring, limit) in rows {
         let options = Options {
             recentring,
-            ..Options::default()
+            ..Options::streaming()
         };
         let nees = SEEDS
             .into_par_iter()

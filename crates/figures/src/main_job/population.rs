@@ -27,7 +27,7 @@ fn consistency(runs: u64) -> Result<Figure, Error> {
         .map(|number| {
             judge(
                 &simulate(&population.scenario(number))?,
-                &Options::default(),
+                &Options::streaming(),
             )?
             .nees()
         })
@@ -55,7 +55,7 @@ fn coverage(runs: u64) -> Result<Figure, Error> {
         .map(|number| {
             let judged = judge(
                 &simulate(&population.scenario(number))?,
-                &Options::default(),
+                &Options::streaming(),
             )?;
             Ok(judged
                 .in_sigmas()

@@ -925,6 +925,11 @@ impl<T: Scalar> Model<T, 2, 2> for Pendulum {
         d_parameters[3] = zero;
         [zero, zero]
     }
+    #[inline(always)]
+    fn enters_at_origin(&self, i: usize, j: usize) -> bool {
+        const ENTERS: [[bool; 2]; 2] = [[false, false], [false, false]];
+        ENTERS[i][j]
+    }
     #[inline]
     fn output(
         &self,

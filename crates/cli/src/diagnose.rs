@@ -1,0 +1,146 @@
+//! `gyrocal diagnose`: a record and its bench description in, what the model gets wrong out.
+
+mod apart;
+mod blind;
+mod failed;
+mod figures;
+mod filter;
+mod json;
+mod tables;
+mod words;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use gyrocal::Platform;
+use gyrocal_calibration::CalibrationError;
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
+use gyrocal_record::{Bench, DiagnosisReport, DiagnosisVerdict, Outputs, Record};
+
+use crate::outputs::refuse_overlap;
+use crate::progress::Progress;
+use crate::{Answer, Failure};
+use failed::NotDiagnosed;
+
+/// Show what the model gets wrong about a record, and name the cause.
+///
+/// Says whether anything is wrong and with what probability of error, which effects of the
+/// catalogue explain it, which the record cannot tell apart and what would, how much better the
+/// model is with them, and what is left.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit codes: 0 the answer was written, whatever it is; 1 an input or the work \
+                        failed; 2 the command line is wrong. With --exit-code also 3 effects found, \
+                        4 something is left unexplained."
+)]
+pub(crate) struct DiagnoseArguments {
+    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c.
+    #[arg(value_name = "RECORD.csv")]
+    record: PathBuf,
+    /// The bench description (TOML).
+    #[arg(long, value_name = "BENCH.toml")]
+    bench: PathBuf,
+    /// The result to write for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+    /// Write pictures of it into this folder, as SVG and PNG.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Look for these effects too, beside those of the usual search: gyro_xy.axis_misalignment,
+    /// say, or gyro_x.magnetic.
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
+    effects: Vec<String>,
+    /// Probability that a sound record shows anything.
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
+    false_alarm: f64,
+    /// Judge this filter on the record too.
+    #[arg(long, value_enum)]
+    filter: Option<Filter>,
+    /// Exit with 3 if effects were found and with 4 if something is left unexplained.
+    #[arg(long)]
+    exit_code: bool,
+}
+
+/// A filter that may be judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Filter {
+    /// That of the paper: Euler angles as states, one Euler step a sample.
+    Euler,
+}
+
+/// What there is to tell.
+struct Found<'a> {
+    path: &'a std::path::Path,
+    record: &'a Record,
+    bench: &'a Bench,
+    diagnosis: Diagnosis<'a>,
+    report: DiagnosisReport,
+}
+
+/// Runs the command; returns what is to be said on stdout.
+pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
+    let inputs = [arguments.record.as_path(), arguments.bench.as_path()];
+    refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    if arguments.effects.iter().any(|id| id == filter::EFFECT) {
+        return Err(Failure::Usage(format!(
+            "{} is an error of a filter and not of the record: it is looked for with --filter euler",
+            filter::EFFECT
+        )));
+    }
+    let bench = Bench::read(&arguments.bench)?;
+    let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
+    tracing::info!(rows = record.len(), "read");
+    let options = DiagnoseOptions {
+        false_alarm_probability: arguments.false_alarm,
+        also: arguments.effects.clone(),
+        ..DiagnoseOptions::default()
+    };
+    let failed = |source| NotDiagnosed::new(&arguments.record, source);
+    if arguments.filter.is_some() && bench.initial_angles_deg.is_none() {
+        return Err(failed(CalibrationError::NoAttitude.into()).into());
+    }
+    let progress = Progress::waiting("diagnosing", record.len());
+    let diagnosis = diagnose(&record, &bench, &options).map_err(failed)?;
+    let judged = match arguments.filter {
+        Some(Filter::Euler) => {
+            Some(filter::judge(&record, &bench).map_err(|source| failed(source.into()))?)
+        }
+        None => None,
+    };
+    drop(progress);
+    tracing::info!(verdict = ?diagnosis.verdict, "diagnosed");
+    let blind = blind::blind(&diagnosis, &record).map_err(|source| failed(source.into()))?;
+    let report = json::report(&diagnosis, judged, blind, options.seed, &inputs)?;
+    let found = Found {
+        path: &arguments.record,
+        record: &record,
+        bench: &bench,
+        diagnosis,
+        report,
+    };
+    let mut text = words::summary(&found);
+    let mut outputs = Outputs::new();
+    if let Some(folder) = &arguments.figures {
+        text.push_str(&figures::stage(&found, folder, &mut outputs)?);
+    }
+    if let Some(path) = &arguments.json {
+        outputs.stage_json(path, &found.report)?;
+        text.push_str(&format!("\n{}: the result for programs\n", path.display()));
+    }
+    outputs.commit()?;
+    Ok(Answer {
+        text,
+        exit_code: match (arguments.exit_code, found.report.verdict) {
+            (true, DiagnosisVerdict::EffectsFound) => 3,
+            (true, DiagnosisVerdict::Unexplained) => 4,
+            _ => 0,
+        },
+    })
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("expected a probability, greater than 0 and less than 1".to_owned()),
+    }
+}

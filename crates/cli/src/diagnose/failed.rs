@@ -1,0 +1,58 @@
+//! Why there is no diagnosis, and what to do about it.
+
+use std::path::Path;
+
+use gyrocal_calibration::CalibrationError;
+use gyrocal_diagnosis::DiagnoseError;
+use miette::Diagnostic;
+
+use crate::Failure;
+
+/// The record could not be diagnosed.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[error("{record}: no diagnosis")]
+#[diagnostic(code(gyrocal::diagnose), help("{}", self.advice()))]
+pub(super) struct NotDiagnosed {
+    record: String,
+    source: DiagnoseError,
+}
+
+impl NotDiagnosed {
+    pub(super) fn new(record: &Path, source: DiagnoseError) -> Self {
+        Self {
+            record: record.display().to_string(),
+            source,
+        }
+    }
+
+    fn advice(&self) -> &'static str {
+        use CalibrationError as Fit;
+        use DiagnoseError as Why;
+
+        match &self.source {
+            Why::UnknownEffect { .. } => "docs/diagnosis.md lists the effects",
+            Why::Unavailable { .. } => "leave it out of --effects, or supply what is missing",
+            Why::Calibration(Fit::TooShort { .. }) | Why::Residuals(_) => "record for longer",
+            Why::Calibration(Fit::NoAttitude) => {
+                "leave out --filter: the filter needs initial_angles_deg, the diagnosis does not"
+            }
+            Why::Calibration(Fit::NotLevelled | Fit::NoAzimuth { .. }) => {
+                "give initial_angles_deg and initial_angles_sigma_deg in [platform]"
+            }
+            Why::Calibration(Fit::NoDescent { .. } | Fit::NotConverged { .. }) => {
+                "look for a knock, a restart or a run of bad values in the record: `gyrocal \
+                 calibrate --streaming` says how badly one pass fits"
+            }
+            _ => {
+                "the numbers of the bench file may be out of proportion to each other or to the \
+                 record: check [noise], [prior] and initial_angles_sigma_deg"
+            }
+        }
+    }
+}
+
+impl From<NotDiagnosed> for Failure {
+    fn from(error: NotDiagnosed) -> Self {
+        Self::Work(error.into())
+    }
+}

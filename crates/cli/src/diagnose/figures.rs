@@ -1,0 +1,135 @@
+//! Pictures of a diagnosis.
+
+mod model;
+mod residual;
+
+use std::fs;
+use std::path::Path;
+
+use gyrocal_diagnosis::DiagnosisError;
+use gyrocal_record::{DiagnosisVerdict, Outputs};
+use gyrocal_report::{Picture, to_png};
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+
+use super::{Found, filter};
+use crate::Failure;
+
+/// Width of the PNGs, px: that of the SVGs and a quarter, for sharp letters.
+const WIDTH_PX: u32 = 1200;
+
+/// A picture with the name of its files.
+type Named = (&'static str, Box<dyn Picture>);
+
+/// Writes all pictures beside their names, to be committed with the other outputs; returns what is
+/// to be said.
+pub(super) fn stage(
+    found: &Found<'_>,
+    folder: &Path,
+    outputs: &mut Outputs,
+) -> Result<String, Failure> {
+    let pictures = pictures(found).map_err(|reason| {
+        Failure::Work(miette!("{}: no pictures: {reason}", found.path.display()))
+    })?;
+    fs::create_dir_all(folder).map_err(|reason| {
+        Failure::Work(miette!(
+            help = "give a folder, or a name that is free",
+            "--figures {}: cannot be made: {reason}",
+            folder.display()
+        ))
+    })?;
+    for (name, picture) in &pictures {
+        let drawn = || format!("the picture {name} of {}", found.path.display());
+        let svg = picture
+            .to_svg()
+            .into_diagnostic()
+            .wrap_err_with(drawn)
+            .map_err(Failure::Work)?;
+        let png = to_png(&svg, WIDTH_PX)
+            .into_diagnostic()
+            .wrap_err_with(drawn)
+            .map_err(Failure::Work)?;
+        outputs.stage(&folder.join(name).with_extension("svg"), svg.as_bytes())?;
+        outputs.stage(&folder.join(name).with_extension("png"), &png)?;
+    }
+    Ok(format!(
+        "\n{}: {} pictures, as SVG and PNG: {}\n",
+        folder.display(),
+        pictures.len(),
+        pictures
+            .iter()
+            .map(|(name, _)| *name)
+            .collect::<Vec<_>>()
+            .join(", ")
+    ))
+}
+
+/// A record that is too short for one picture leaves that out.
+fn pictures(found: &Found<'_>) -> Result<Vec<Named>, gyrocal_calibration::CalibrationError> {
+    let runs = residual::FreeRuns::of(found)?;
+    let mut pictures: Vec<Named> = vec![
+        ("residuals", Box::new(runs.residuals(found))),
+        ("free-run", Box::new(runs.free_run(found))),
+        (
+            "residual-against-force",
+            Box::new(runs.against_force(found)),
+        ),
+    ];
+    let mut add =
+        |name: &'static str, picture: Result<Box<dyn Picture>, DiagnosisError>| match picture {
+            Ok(picture) => pictures.push((name, picture)),
+            Err(reason) => tracing::warn!(%reason, "no picture {name}"),
+        };
+    add("periodogram", residual::periodograms(found));
+    add("autocorrelation", residual::autocorrelations(found));
+    add("norm", residual::norm(found));
+    if let Some(ranking) = model::ranking(found) {
+        pictures.push(("ranking", Box::new(ranking)));
+    }
+    if let Some(gain) = &found.report.gain {
+        pictures.push(("gain", Box::new(model::gain(found, gain))));
+    }
+    if let Some(coefficients) = model::coefficients(found) {
+        pictures.push(("coefficients", Box::new(coefficients)));
+    }
+    Ok(pictures)
+}
+
+/// Causes in the model, for titles: `gyro_y.g_z and gyro_x.ramp`.
+fn causes(found: &Found<'_>) -> Option<String> {
+    let ids: Vec<&str> = found
+        .diagnosis
+        .findings
+        .iter()
+        .map(|finding| finding.effect)
+        .collect();
+    match ids.as_slice() {
+        [] => None,
+        [one] => Some((*one).to_owned()),
+        [head @ .., last] => Some(format!("{} and {last}", head.join(", "))),
+    }
+}
+
+/// What belongs below every title.
+fn subtitle(found: &Found<'_>) -> String {
+    let verdict = match found.report.verdict {
+        DiagnosisVerdict::EffectsFound => {
+            let ids: Vec<&str> = found
+                .report
+                .findings
+                .iter()
+                .map(|finding| finding.effect.as_str())
+                // The pictures are of the record and not of another filter.
+                .filter(|effect| *effect != filter::EFFECT)
+                .collect();
+            if ids.is_empty() {
+                "nothing found".to_owned()
+            } else {
+                format!("found: {}", ids.join(", "))
+            }
+        }
+        DiagnosisVerdict::Unexplained => "something is left unexplained".to_owned(),
+        _ => "nothing found".to_owned(),
+    };
+    let name = found.path.file_name().unwrap_or(found.path.as_os_str());
+    format!("{}; {verdict}", name.display())
+}

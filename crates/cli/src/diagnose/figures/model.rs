@@ -1,0 +1,157 @@
+//! Effects by statistic, and what a model with the causes gains.
+
+use gyrocal::generated::platform::DRIFT;
+use gyrocal_record::GainReport;
+use gyrocal_report::{
+    Comparison, Estimate, Gain, Omitted, Quantity, RankedEffect, Ranking, RankingGroup, Role,
+};
+
+use super::{Found, causes, subtitle};
+use crate::diagnose::words::likelihood;
+
+/// Effects that were neither named nor rivals and are shown.
+const OTHERS_SHOWN: usize = 10;
+
+/// All effects of the first search by their statistic; `None` if nothing could be searched.
+pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
+    let report = &found.report;
+    let threshold = report.threshold.filter(|threshold| *threshold > 0.0)?;
+    let largest = report.ranking.first()?;
+    let statistic = |effect: &str| {
+        let ranked = report.ranking.iter().find(|r| r.effect == effect);
+        ranked.map_or(f64::NAN, |ranked| ranked.statistic)
+    };
+    let mut groups = Vec::new();
+    let mut shown: Vec<&str> = Vec::new();
+    for finding in &found.diagnosis.findings {
+        let Some(finding) = report.findings.iter().find(|f| f.effect == finding.effect) else {
+            continue;
+        };
+        let mut effects = vec![RankedEffect {
+            effect: finding.effect.clone(),
+            statistic: statistic(&finding.effect),
+            role: Role::Named,
+            note: String::new(),
+        }];
+        let equal = finding.equivalents.iter().map(|equivalent| RankedEffect {
+            effect: equivalent.effect.clone(),
+            statistic: statistic(&equivalent.effect),
+            role: Role::Rival,
+            note: "no record can tell it apart".to_owned(),
+        });
+        effects.extend(equal.filter(|effect| effect.statistic.is_finite()));
+        effects.extend(finding.rivals.iter().map(|rival| RankedEffect {
+            effect: rival.effect.clone(),
+            statistic: statistic(&rival.effect),
+            role: Role::Rival,
+            note: likelihood(rival),
+        }));
+        let label = if effects.len() == 1 {
+            format!("{} alone", finding.effect)
+        } else {
+            format!(
+                "{} or what the record does not tell from it",
+                finding.effect
+            )
+        };
+        shown.push(&finding.effect);
+        shown.extend(finding.rivals.iter().map(|r| r.effect.as_str()));
+        shown.extend(finding.equivalents.iter().map(|e| e.effect.as_str()));
+        groups.push(RankingGroup { label, effects });
+    }
+    let rest: Vec<_> = report
+        .ranking
+        .iter()
+        .filter(|ranked| !shown.contains(&ranked.effect.as_str()))
+        .collect();
+    let others = rest.iter().take(OTHERS_SHOWN).map(|ranked| RankedEffect {
+        effect: ranked.effect.clone(),
+        statistic: ranked.statistic.max(0.0),
+        role: Role::Other,
+        note: String::new(),
+    });
+    groups.push(RankingGroup {
+        label: "not named".to_owned(),
+        effects: others.collect(),
+    });
+    let title = match causes(found) {
+        Some(causes) => format!(
+            "Of {} effects {causes} explains the record best",
+            report.ranking.len()
+        ),
+        None => format!(
+            "None of {} effects passes the threshold; {} comes nearest",
+            report.ranking.len(),
+            largest.effect
+        ),
+    };
+    Some(Ranking {
+        title,
+        subtitle: format!(
+            "before anything was added to the model; {}",
+            subtitle(found)
+        ),
+        statistic: "chi-square less what searching alone reaches".to_owned(),
+        threshold,
+        // The share that the search has of all false alarms.
+        false_alarm_probability: 0.5 * report.false_alarm_probability,
+        tested: report.ranking.len(),
+        groups,
+        omitted: rest.get(OTHERS_SHOWN).map(|next| Omitted {
+            effects: rest.len() - OTHERS_SHOWN,
+            largest: next.statistic,
+        }),
+    })
+}
+
+/// What the extended model predicts better, block by block.
+pub(super) fn gain(found: &Found<'_>, gain: &GainReport) -> Gain {
+    let blocks = &gain.block_log_score_nats;
+    let better = blocks.iter().filter(|nats| **nats > 0.0).count();
+    Gain {
+        title: format!(
+            "With {} {better} of {} blocks are predicted better, by {:.1} nats in all",
+            causes(found).unwrap_or_default(),
+            blocks.len(),
+            gain.cross_validated_log_score_nats
+        ),
+        subtitle: format!("each block predicted from the others; {}", subtitle(found)),
+        block_gain_nats: blocks.clone(),
+        drift: None,
+    }
+}
+
+/// The nine coefficients without and with the causes.
+pub(super) fn coefficients(found: &Found<'_>) -> Option<Comparison> {
+    let (nominal, extended) = (&found.diagnosis.nominal, found.diagnosis.extended.as_ref()?);
+    let shifts = &found.report.gain.as_ref()?.coefficient_shift;
+    let largest = shifts
+        .iter()
+        .max_by(|a, b| a.in_sigmas.abs().total_cmp(&b.in_sigmas.abs()))?;
+    let estimate = |fit: &gyrocal_calibration::Extended<'_>, index: usize| Estimate {
+        value: fit.values()[index],
+        sigma: fit.covariance()[(index, index)].sqrt(),
+    };
+    Some(Comparison {
+        title: format!(
+            "Without {} the coefficients are off by up to {:.0} sigma, {} most",
+            causes(found).unwrap_or_default(),
+            largest.in_sigmas.abs(),
+            largest.coefficient
+        ),
+        subtitle: subtitle(found),
+        estimators: vec!["nominal".to_owned(), "extended".to_owned()],
+        quantities: DRIFT
+            .iter()
+            .enumerate()
+            .map(|(index, element)| Quantity {
+                name: element.id.to_owned(),
+                unit: element.unit.to_owned(),
+                reference: None,
+                estimates: vec![estimate(nominal, index), estimate(extended, index)],
+            })
+            .collect(),
+        columns: 3,
+        reference_label: String::new(),
+    })
+}

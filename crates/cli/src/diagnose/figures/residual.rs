@@ -1,0 +1,378 @@
+//! Residuals of the free run and one-step innovations.
+
+use gyrocal_calibration::CalibrationError;
+use gyrocal_diagnosis::{
+    Autocorrelation, Dependence, DiagnosisError, Periodogram, autocorrelation, norm_channel,
+    periodogram,
+};
+use gyrocal_report::{
+    After, Against, AgainstPanel, Bin, Correlation, CorrelationPanel, FreeRun, MarkedLine, Picture,
+    Residuals, Spectrum, SpectrumPanel, Threshold,
+};
+
+use super::{Found, causes, subtitle};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Bins of a dependence.
+const BINS: usize = 24;
+
+/// Lags of the autocorrelation.
+const LAGS: usize = 40;
+
+/// 97.5 % point of the normal distribution.
+const NORMAL_97_5: f64 = 1.959_963_984_540_054;
+
+/// Cycles a sidereal day, a day.
+const SIDEREAL_PER_DAY: f64 = 1.002_737_9;
+
+const SECONDS_PER_DAY: f64 = 86_400.0;
+
+/// What the models give when they run by themselves from the first row.
+pub(super) struct FreeRuns {
+    nominal_g: Vec<[f64; 3]>,
+    extended_g: Option<Vec<[f64; 3]>>,
+}
+
+impl FreeRuns {
+    pub(super) fn of(found: &Found<'_>) -> Result<Self, CalibrationError> {
+        let diagnosis = &found.diagnosis;
+        Ok(Self {
+            nominal_g: diagnosis.nominal.free_run_g()?,
+            extended_g: diagnosis
+                .extended
+                .as_ref()
+                .map(|extended| extended.free_run_g())
+                .transpose()?,
+        })
+    }
+
+    /// Measured less simulated specific force, before and after.
+    pub(super) fn residuals(&self, found: &Found<'_>) -> Residuals {
+        let before = differences(found, &self.nominal_g);
+        let after = self.extended_g.as_deref().map(|g| differences(found, g));
+        let miss = amount(rms(&before));
+        let noise = amount(found.bench.accel_noise_g);
+        let title = match (&after, causes(found)) {
+            (Some(after), Some(causes)) => format!(
+                "The nominal model misses the record by {miss}; with {causes} by {}",
+                amount(rms(after))
+            ),
+            _ => format!("The nominal model misses the record by {miss}; noise is {noise}"),
+        };
+        Residuals {
+            title,
+            subtitle: format!(
+                "measured less simulated from the first row on; {}",
+                subtitle(found)
+            ),
+            time_s: found.record.time_s.clone(),
+            before,
+            before_label: "nominal model".to_owned(),
+            after: after.map(|values| After {
+                values,
+                label: format!("with {}", causes(found).unwrap_or_default()),
+            }),
+            sigma: [found.bench.accel_noise_g; 3],
+            quantity: "residual".to_owned(),
+            unit: "g".to_owned(),
+        }
+    }
+
+    /// The nominal model beside the record.
+    pub(super) fn free_run(&self, found: &Found<'_>) -> FreeRun {
+        let miss = amount(rms(&differences(found, &self.nominal_g)));
+        let days = found.record.duration_s() / SECONDS_PER_DAY;
+        FreeRun {
+            title: format!("The nominal model follows {days:.1} days of the record to {miss} rms"),
+            subtitle: subtitle(found),
+            time_s: found.record.time_s.clone(),
+            measured_g: columns(&found.record.accel_g),
+            simulated_g: columns(&self.nominal_g),
+            sigma_g: [found.bench.accel_noise_g; 3],
+        }
+    }
+
+    /// What the nominal model misses against each component of specific force, and temperature.
+    pub(super) fn against_force(&self, found: &Found<'_>) -> Against {
+        let residuals = differences(found, &self.nominal_g);
+        let forces = columns(&self.nominal_g);
+        let mut panels = Vec::new();
+        let mut steepest = (0.0, 0, String::new());
+        for (axis, residual) in residuals.iter().enumerate() {
+            let mut add = |name: String, unit: &str, abscissa: &[f64]| {
+                let share = explained(abscissa, residual);
+                if share > steepest.0 {
+                    steepest = (share, axis, name.clone());
+                }
+                panels.push(AgainstPanel {
+                    name: AXES[axis].to_owned(),
+                    abscissa: name,
+                    abscissa_unit: unit.to_owned(),
+                    bins: Bin::of(abscissa, residual, BINS),
+                });
+            };
+            for (other, force) in forces.iter().enumerate() {
+                add(format!("specific force {}", AXES[other]), "g", force);
+            }
+            if let Some(temperature) = &found.record.temperature_c {
+                add("temperature".to_owned(), "°C", temperature);
+            }
+        }
+        let (share, axis, name) = steepest;
+        Against {
+            title: format!(
+                "{:.0} % of what the nominal model misses in {} goes with {name}",
+                100.0 * share,
+                AXES[axis]
+            ),
+            subtitle: format!(
+                "means of the residual of the free run in {BINS} bins; {}",
+                subtitle(found)
+            ),
+            quantity: "mean residual".to_owned(),
+            unit: "g".to_owned(),
+            columns: panels.len() / 3,
+            panels,
+        }
+    }
+}
+
+/// Periodograms of the innovations: of the nominal model, and with all causes.
+pub(super) fn periodograms(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
+    let probability = found.report.false_alarm_probability;
+    let time_s = &found.record.time_s;
+    let mut channels = Vec::new();
+    let mut frequency_per_day = Vec::new();
+    // Of each channel the power of its strongest line over the threshold, and its frequency.
+    let mut lines: Vec<(f64, f64)> = Vec::new();
+    for (label, innovations) in whitened(found) {
+        for (axis, series) in columns(innovations).iter().enumerate() {
+            let Periodogram {
+                frequency_hz,
+                power,
+                level,
+                line,
+            } = periodogram(time_s, series, probability)?;
+            lines.push((line.power / level, line.frequency_hz * SECONDS_PER_DAY));
+            frequency_per_day = frequency_hz.iter().map(|hz| hz * SECONDS_PER_DAY).collect();
+            channels.push(SpectrumPanel {
+                name: format!("{}, {label}", AXES[axis]),
+                power,
+                samples: series.iter().filter(|value| !value.is_nan()).count(),
+                threshold: Some(Threshold {
+                    power: level,
+                    false_alarm_probability: probability,
+                }),
+            });
+        }
+    }
+    let mut marks = vec![MarkedLine {
+        frequency_per_day: SIDEREAL_PER_DAY,
+        label: "sidereal day".to_owned(),
+    }];
+    let strongest = (0..lines.len())
+        .filter(|channel| lines[*channel].0 > 1.0)
+        .max_by(|a, b| lines[*a].0.total_cmp(&lines[*b].0));
+    let title = match strongest {
+        None => "The innovations hold no line that noise alone would not".to_owned(),
+        Some(channel) => {
+            let (beyond, per_day) = lines[channel];
+            let period = format!("{:.2} h", 24.0 / per_day);
+            let mut title = format!(
+                "The strongest line has a period of {period} ({}), {beyond:.1} times the threshold",
+                channels[channel].name
+            );
+            // Those of the extended model follow the first three.
+            if lines.len() > 3 && lines[3..].iter().all(|(beyond, _)| *beyond <= 1.0) {
+                title.push_str("; none is left");
+            }
+            marks.push(MarkedLine {
+                frequency_per_day: per_day,
+                label: period,
+            });
+            title
+        }
+    };
+    Ok(Box::new(Spectrum {
+        title,
+        subtitle: format!("one-step innovations; {}", subtitle(found)),
+        frequency_per_day,
+        channels,
+        quantity: "power".to_owned(),
+        unit: String::new(),
+        marks,
+    }))
+}
+
+/// Autocorrelations of the same innovations.
+pub(super) fn autocorrelations(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
+    let mut channels = Vec::new();
+    let mut worst: Option<(f64, String)> = None;
+    let mut beyond = 0;
+    for (label, innovations) in whitened(found) {
+        let Autocorrelation {
+            correlation, sigma, ..
+        } = autocorrelation(innovations, LAGS, found.report.false_alarm_probability)?;
+        for (axis, name) in AXES.iter().enumerate() {
+            let values: Vec<f64> = correlation.iter().map(|lag| lag[axis]).collect();
+            let band = sigma
+                .first()
+                .map_or(f64::NAN, |lag| NORMAL_97_5 * lag[axis]);
+            let name = format!("{name}, {label}");
+            beyond += values.iter().filter(|value| value.abs() > band).count();
+            let largest = values.iter().fold(0.0_f64, |most, value| {
+                if value.abs() > most.abs() {
+                    *value
+                } else {
+                    most
+                }
+            });
+            if worst
+                .as_ref()
+                .is_none_or(|(most, _)| largest.abs() > most.abs())
+            {
+                worst = Some((largest, name.clone()));
+            }
+            channels.push(CorrelationPanel {
+                name,
+                correlation: values,
+                band,
+                samples: innovations.iter().filter(|row| !row[axis].is_nan()).count(),
+            });
+        }
+    }
+    let total = LAGS * channels.len();
+    let (largest, name) = worst.unwrap_or_default();
+    Ok(Box::new(Correlation {
+        title: format!(
+            "{beyond} of {total} correlations of the innovations leave the 95 % band; the largest \
+             is {largest:.3} ({name})"
+        ),
+        subtitle: format!("one-step innovations; {}", subtitle(found)),
+        channels,
+        confidence: 0.95,
+    }))
+}
+
+/// |E|² against specific force and time: accelerometers only.
+pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
+    let noise_g = [found.bench.accel_noise_g; 3];
+    let gravity_g = found.bench.specific_force_at_rest();
+    let norm = norm_channel(found.record, &noise_g, gravity_g, BINS)?;
+    let panel = |abscissa: String, unit: &str, scale: f64, dependence: &Dependence| {
+        let first = if unit == "days" {
+            found.record.time_s.first().copied().unwrap_or(0.0)
+        } else {
+            0.0
+        };
+        AgainstPanel {
+            name: "|E|² less gravity squared".to_owned(),
+            abscissa,
+            abscissa_unit: unit.to_owned(),
+            bins: dependence
+                .bins
+                .iter()
+                .map(|bin| Bin {
+                    centre: (bin.at - first) * scale,
+                    mean: bin.mean,
+                    standard_error: bin.sigma,
+                    samples: bin.values,
+                })
+                .collect(),
+        }
+    };
+    let mut panels: Vec<AgainstPanel> = norm
+        .on_component
+        .iter()
+        .zip(AXES)
+        .map(|(dependence, axis)| panel(format!("specific force {axis}"), "g", 1.0, dependence))
+        .collect();
+    let per_day = 1.0 / SECONDS_PER_DAY;
+    panels.push(panel("time".to_owned(), "days", per_day, &norm.on_time));
+    if let Some(dependence) = &norm.on_temperature {
+        panels.push(panel("temperature".to_owned(), "°C", 1.0, dependence));
+    }
+    let tests = norm
+        .on_component
+        .iter()
+        .chain([&norm.on_time])
+        .chain(&norm.on_temperature);
+    let least = tests
+        .map(|test| test.p_value)
+        .fold(norm.mean_p_value, f64::min);
+    let count = 1.0 + panels.len() as f64;
+    let title = if least * count < found.report.false_alarm_probability {
+        "The norm of specific force is not gravity: an accelerometer is in error"
+    } else {
+        "The norm of specific force is gravity: no error of an accelerometer shows"
+    };
+    Ok(Box::new(Against {
+        title: title.to_owned(),
+        subtitle: format!(
+            "no gyro and no attitude enters it; in standard deviations of one sample; {}",
+            subtitle(found)
+        ),
+        quantity: "mean".to_owned(),
+        unit: String::new(),
+        columns: 2,
+        panels,
+    }))
+}
+
+/// Innovations of the nominal model, and of the model with all causes if there are any.
+fn whitened<'a>(found: &'a Found<'_>) -> Vec<(&'static str, &'a [[f64; 3]])> {
+    let diagnosis = &found.diagnosis;
+    let mut all = vec![("nominal", diagnosis.innovations.normalised.as_slice())];
+    if diagnosis.extended.is_some() {
+        all.push((
+            "with what was found",
+            diagnosis.remainder.whitened.as_slice(),
+        ));
+    }
+    all
+}
+
+fn differences(found: &Found<'_>, simulated_g: &[[f64; 3]]) -> [Vec<f64>; 3] {
+    std::array::from_fn(|axis| {
+        found
+            .record
+            .accel_g
+            .iter()
+            .zip(simulated_g)
+            .map(|(measured, simulated)| measured[axis] - simulated[axis])
+            .collect()
+    })
+}
+
+fn columns(rows: &[[f64; 3]]) -> [Vec<f64>; 3] {
+    std::array::from_fn(|axis| rows.iter().map(|row| row[axis]).collect())
+}
+
+fn rms(columns: &[Vec<f64>; 3]) -> f64 {
+    let values = columns.iter().flatten().filter(|value| !value.is_nan());
+    let (count, sum) = values.fold((0.0, 0.0), |(count, sum), value| {
+        (count + 1.0, sum + value * value)
+    });
+    (sum / f64::max(count, 1.0)).sqrt()
+}
+
+/// Share of the mean square of a residual that the means of its bins hold.
+fn explained(abscissa: &[f64], residual: &[f64]) -> f64 {
+    let bins = Bin::of(abscissa, residual, BINS);
+    let within: f64 = bins
+        .iter()
+        .map(|bin| bin.samples as f64 * bin.mean * bin.mean)
+        .sum();
+    let pairs = abscissa.iter().zip(residual);
+    let whole: f64 = pairs
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .map(|(_, y)| y * y)
+        .sum();
+    if whole > 0.0 { within / whole } else { 0.0 }
+}
+
+/// A specific force in the unit that people read.
+fn amount(force_g: f64) -> String {
+    format!("{:.0} µg", 1e6 * force_g)
+}

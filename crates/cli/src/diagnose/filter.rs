@@ -1,0 +1,82 @@
+//! What the paper's own filter makes of a record.
+
+use gyrocal_calibration::{CalibrationError, Options, calibrate};
+use gyrocal_diagnosis::two_sided_p;
+use gyrocal_record::{Bench, FilterReport, FindingReport, Record};
+
+/// The effect that is named if the filter's rule is too coarse.
+pub(super) const EFFECT: &str = "filter.discretisation";
+
+/// Innovations that are less likely than this from a filter that fits: it adds nothing to the
+/// probability of a false alarm.
+const FAR: f64 = 1e-6;
+
+/// What noise and causes do to innovations they do to those of both filters; a rule that is too
+/// coarse makes its own larger by at least this factor.
+const LARGER: f64 = 1.5;
+
+/// A filter that was judged.
+pub(super) struct Judged {
+    pub(super) report: FilterReport,
+    pub(super) finding: Option<FindingReport>,
+}
+
+/// Filters the record as the paper does, and as this program does.
+pub(super) fn judge(record: &Record, bench: &Bench) -> Result<Judged, CalibrationError> {
+    let own = calibrate(record, bench, &Options::streaming(), |_| ())?.fit;
+    let mut report = FilterReport {
+        name: "euler".to_owned(),
+        nis_mean: None,
+        nis_band: own.nis_band(),
+        reference_nis_mean: own.nis_mean(),
+        stopped: None,
+    };
+    let paper = match calibrate(record, bench, &Options::of_the_paper(), |_| ()) {
+        Ok(calibration) => calibration.fit,
+        Err(CalibrationError::Filter {
+            row,
+            time_s,
+            source,
+        }) => {
+            report.stopped = Some(format!("at row {row} (t = {time_s} s): {source}"));
+            return Ok(Judged {
+                report,
+                finding: None,
+            });
+        }
+        Err(other) => return Err(other),
+    };
+    report.nis_mean = Some(paper.nis_mean());
+    let z = z_of_chi_square(paper.nis_sum(), paper.values() as f64);
+    let p_value = two_sided_p(z);
+    let named = z > 0.0 && p_value < FAR && paper.nis_mean() > LARGER * own.nis_mean();
+    let finding = named.then(|| FindingReport {
+        effect: EFFECT.to_owned(),
+        parameters: Vec::new(),
+        z,
+        p_value,
+        coverage: super::json::COVERAGE,
+        rivals: Vec::new(),
+        equivalents: Vec::new(),
+    });
+    Ok(Judged { report, finding })
+}
+
+/// A chi-square variable as a standard normal one (Wilson and Hilferty, PNAS 17, 684, 1931).
+fn z_of_chi_square(sum: f64, degrees: f64) -> f64 {
+    let spread = 2.0 / (9.0 * degrees);
+    ((sum / degrees).cbrt() - (1.0 - spread)) / spread.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::z_of_chi_square;
+
+    #[test]
+    fn z_is_that_of_tables() {
+        // 97.5 % and 2.5 % points of chi-square with 100 degrees of freedom: z = ±1.960; the
+        // approximation is good to a few thousandths there.
+        assert!((z_of_chi_square(129.561, 100.0) - 1.960).abs() < 5e-3);
+        assert!((z_of_chi_square(74.222, 100.0) + 1.960).abs() < 5e-3);
+    }
+}

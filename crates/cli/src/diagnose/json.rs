@@ -1,0 +1,214 @@
+//! The result for programs.
+
+use std::path::Path;
+
+use gyrocal::generated::MODEL_HASH;
+use gyrocal::generated::catalogue::EFFECTS;
+use gyrocal_calibration::{NoiseEstimate, NoiseRatio};
+use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions};
+use gyrocal_diagnosis::{Diagnosis, Gain, NoiseFinding, Verdict};
+use gyrocal_record::{
+    DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, FreeRunReport, GainReport,
+    NoiseRatioReport, NoiseReport, NotSearchedReport, ParameterReport, RankedReport,
+    RemainderReport, RemainderVerdict, RivalReport, SCHEMA_VERSION, ShiftReport,
+};
+
+use super::apart;
+use super::filter::Judged;
+use crate::Failure;
+use crate::outputs::manifest;
+
+/// Probability that a named set holds its cause; what [`SearchOptions`] has by default.
+pub(super) const COVERAGE: f64 = 0.95;
+
+pub(super) fn report(
+    diagnosis: &Diagnosis<'_>,
+    judged: Option<Judged>,
+    blind: Vec<NotSearchedReport>,
+    seed: u64,
+    inputs: &[&Path],
+) -> Result<DiagnosisReport, Failure> {
+    let coverage = SearchOptions::default().coverage;
+    debug_assert!(coverage == COVERAGE);
+    let (filter, of_filter) = match judged {
+        Some(judged) => (Some(judged.report), judged.finding),
+        None => (None, None),
+    };
+    let noise = diagnosis.noise_findings.iter().map(of_noise);
+    let causes = diagnosis.findings.iter().map(of_cause);
+    let findings: Vec<FindingReport> = noise.chain(causes).chain(of_filter).collect();
+    let searched: Vec<&str> = diagnosis.ranking.iter().map(|r| r.effect).collect();
+    Ok(DiagnosisReport {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest(MODEL_HASH, seed, inputs)?,
+        verdict: match diagnosis.verdict {
+            _ if !findings.is_empty() => DiagnosisVerdict::EffectsFound,
+            Verdict::EffectsFound => DiagnosisVerdict::EffectsFound,
+            Verdict::Unexplained => DiagnosisVerdict::Unexplained,
+            Verdict::Clean => DiagnosisVerdict::Clean,
+        },
+        false_alarm_probability: diagnosis.false_alarm_probability,
+        gain: diagnosis.gain.as_ref().map(gain),
+        remainder: RemainderReport {
+            verdict: if diagnosis.remainder.unexplained {
+                RemainderVerdict::Unexplained
+            } else {
+                RemainderVerdict::White
+            },
+            p_value: diagnosis.remainder.p_value,
+            description: diagnosis.remainder.description.clone(),
+        },
+        cannot_tell: findings
+            .iter()
+            .flat_map(|finding| apart::cannot_tell(finding, &searched))
+            .collect(),
+        ranking: diagnosis
+            .ranking
+            .iter()
+            .map(|ranked| RankedReport {
+                effect: ranked.effect.to_owned(),
+                statistic: ranked.statistic,
+            })
+            .collect(),
+        threshold: Some(diagnosis.threshold).filter(|threshold| threshold.is_finite()),
+        noise: noise_report(&diagnosis.noise),
+        not_searched: blind.into_iter().chain(not_searched(diagnosis)).collect(),
+        findings,
+        filter,
+    })
+}
+
+fn of_noise(finding: &NoiseFinding) -> FindingReport {
+    FindingReport {
+        effect: finding.effect.to_owned(),
+        parameters: finding
+            .parameters
+            .iter()
+            .map(|found| ParameterReport {
+                name: found.name.to_owned(),
+                estimate: found.estimate,
+                sigma: Some(found.sigma),
+                unit: found.unit.to_owned(),
+            })
+            .collect(),
+        z: finding.z,
+        p_value: finding.p_value,
+        coverage: COVERAGE,
+        rivals: Vec::new(),
+        equivalents: Vec::new(),
+    }
+}
+
+fn of_cause(finding: &Finding) -> FindingReport {
+    FindingReport {
+        effect: finding.effect.to_owned(),
+        parameters: parameters(&finding.parameters),
+        z: finding.z,
+        p_value: finding.p_value,
+        coverage: COVERAGE,
+        rivals: finding
+            .rivals
+            .iter()
+            .map(|rival| RivalReport {
+                effect: rival.effect.to_owned(),
+                log_likelihood_deficit: rival.log_likelihood_deficit,
+            })
+            .collect(),
+        equivalents: finding
+            .equivalents
+            .iter()
+            .map(|(effect, found)| EquivalentReport {
+                effect: (*effect).to_owned(),
+                parameters: parameters(found),
+            })
+            .collect(),
+    }
+}
+
+fn parameters(found: &[FoundParameter]) -> Vec<ParameterReport> {
+    found
+        .iter()
+        .map(|parameter| ParameterReport {
+            name: parameter.name.to_owned(),
+            estimate: parameter.estimate,
+            sigma: parameter.sigma,
+            unit: parameter.unit.to_owned(),
+        })
+        .collect()
+}
+
+fn gain(gain: &Gain) -> GainReport {
+    let [before, after] = gain.free_run_rms_g;
+    GainReport {
+        cross_validated_log_score_nats: gain.log_score_nats(),
+        block_log_score_nats: gain.block_log_score_nats.clone(),
+        free_run_rms_g: FreeRunReport {
+            before,
+            after,
+            noise: gain.noise_rms_g,
+        },
+        coefficient_shift: gain
+            .coefficient_shift
+            .iter()
+            .map(|shift| ShiftReport {
+                coefficient: shift.coefficient.to_owned(),
+                shift: shift.shift,
+                in_sigmas: shift.in_sigmas,
+                unit: shift.unit.to_owned(),
+            })
+            .collect(),
+    }
+}
+
+fn noise_report(estimate: &NoiseEstimate) -> NoiseReport {
+    let ratio = |found: NoiseRatio| NoiseRatioReport {
+        ratio: found.ratio,
+        interval: found.interval,
+    };
+    NoiseReport {
+        accel: estimate.accel.map(ratio),
+        gyro: estimate.gyro.map(ratio),
+    }
+}
+
+/// Effects of the catalogue that neither the search nor the audit looked at, and why.
+fn not_searched(diagnosis: &Diagnosis<'_>) -> Vec<NotSearchedReport> {
+    let audited = diagnosis.audit.accel_ratio.is_some();
+    EFFECTS
+        .iter()
+        .filter_map(|effect| {
+            let id = effect.id;
+            let unavailable = diagnosis.unavailable.iter().find(|u| u.effect == id);
+            let ranked = diagnosis.ranking.iter().any(|r| r.effect == id);
+            let noise = effect.kind == "noise";
+            let why = if let Some(unavailable) = unavailable {
+                unavailable.why.clone()
+            } else if ranked || effect.kind == "nominal" {
+                return None;
+            } else if id == super::filter::EFFECT {
+                "an error of a filter: --filter euler".to_owned()
+            } else if id.ends_with(".random_walk") || id == "platform.knock" {
+                "not part of the search".to_owned()
+            } else if noise && (audited || effect.enters == "drift" || tested_value_by_value(id)) {
+                return None;
+            } else if noise {
+                "the record is too short for a spectrum of its noise".to_owned()
+            } else if !effect.default_search {
+                "only if asked for: --effects".to_owned()
+            } else {
+                "the fit of the nine coefficients leaves nothing of it in so short a record, or \
+                 so small a part of the circle"
+                    .to_owned()
+            };
+            Some(NotSearchedReport {
+                effect: id.to_owned(),
+                why,
+            })
+        })
+        .collect()
+}
+
+/// Outliers and quantisation need no spectrum.
+fn tested_value_by_value(id: &str) -> bool {
+    id == "accel.outliers" || id.ends_with(".quantisation")
+}

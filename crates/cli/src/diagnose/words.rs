@@ -1,0 +1,392 @@
+//! The first screen: what was found, in words.
+
+use std::fmt::Write as _;
+
+use gyrocal::generated::catalogue::EFFECTS;
+use gyrocal_record::{
+    DiagnosisVerdict, FilterReport, FindingReport, GainReport, ParameterReport, RemainderVerdict,
+    RivalReport,
+};
+
+use super::blind::is_blind;
+use super::{Found, filter, tables};
+use crate::rounding::rounded;
+
+/// Letters in a line.
+const LINE: usize = 100;
+
+/// Rivals that are told in words; the table has all.
+const RIVALS_TOLD: usize = 4;
+
+/// Shifts of coefficients that are told in words.
+const SHIFTS_TOLD: usize = 3;
+
+pub(super) fn summary(found: &Found<'_>) -> String {
+    let report = &found.report;
+    let mut text = format!(
+        "{}: {} rows over {:.2} days\n\n",
+        found.path.display(),
+        found.record.len(),
+        found.record.duration_s() / 86_400.0
+    );
+    text.push_str(&paragraph("", &verdict(found)));
+    for (index, finding) in report.findings.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "\n{}. {}: {}",
+            index + 1,
+            finding.effect,
+            name(&finding.effect)
+        );
+        text.push_str(&paragraph("   ", &size(finding)));
+        if !finding.rivals.is_empty() {
+            text.push_str(&paragraph("   ", &rivals(finding)));
+        }
+        for equivalent in &finding.equivalents {
+            let words = format!(
+                "No record can tell it from {}: {}.",
+                equivalent.effect,
+                values(&equivalent.parameters)
+            );
+            text.push_str(&paragraph("   ", &words));
+        }
+    }
+    if let Some(filter) = &report.filter {
+        text.push('\n');
+        text.push_str(&paragraph("", &judged(filter, &report.findings)));
+    }
+    if !report.cannot_tell.is_empty() {
+        text.push_str("\nNot told apart, and what would separate it:\n");
+        for group in &report.cannot_tell {
+            let words = format!(
+                "{}: {}. To separate: {}.",
+                group.members.join(", "),
+                group.why,
+                group.would_separate
+            );
+            text.push_str(&bullet(&words));
+        }
+    }
+    if let Some(gain) = &report.gain {
+        text.push('\n');
+        text.push_str(&paragraph("", &gained(gain)));
+    }
+    text.push('\n');
+    text.push_str(&paragraph("", &left(found)));
+    text.push_str(&tables::all(found));
+    text
+}
+
+/// What the catalogue calls an effect.
+pub(super) fn name(effect: &str) -> &'static str {
+    EFFECTS
+        .iter()
+        .find(|row| row.id == effect)
+        .map_or("", |row| row.name)
+}
+
+fn verdict(found: &Found<'_>) -> String {
+    let report = &found.report;
+    let percent = 100.0 * report.false_alarm_probability;
+    let alarm = format!(
+        "a sound record shows anything with a probability of {} %",
+        short(percent)
+    );
+    match report.verdict {
+        DiagnosisVerdict::EffectsFound => {
+            let count = report.findings.len();
+            let least = report
+                .findings
+                .iter()
+                .map(|finding| finding.p_value)
+                .fold(1.0, f64::min);
+            format!(
+                "Something is wrong: {} found. By chance the whole search would show as much with a \
+                 probability of {}; {alarm}.",
+                if count == 1 {
+                    "one effect".to_owned()
+                } else {
+                    format!("{count} effects")
+                },
+                probability(least),
+            )
+        }
+        DiagnosisVerdict::Unexplained => format!(
+            "Something is wrong, and no effect of the catalogue explains it (probability by chance \
+             {}; {alarm}).",
+            probability(report.remainder.p_value)
+        ),
+        _ => format!(
+            "Nothing is wrong: noise as declared, no effect of the catalogue, white innovations \
+             ({alarm}).{}",
+            unseen(found)
+        ),
+    }
+}
+
+/// What a verdict on a short record does not mean.
+fn unseen(found: &Found<'_>) -> String {
+    let report = &found.report;
+    let blind = report.not_searched.iter().filter(|e| is_blind(e)).count();
+    if blind == 0 {
+        return String::new();
+    }
+    format!(
+        " That says little: the record is so short that {blind} of {} effects would pass unseen \
+         at their typical size. Record for a day or longer.",
+        report.ranking.len()
+    )
+}
+
+fn size(finding: &FindingReport) -> String {
+    let mut words = Vec::new();
+    if !finding.parameters.is_empty() {
+        words.push(values(&finding.parameters));
+    }
+    words.push(format!(
+        "{:.1} sigma, probability by chance {}",
+        finding.z,
+        probability(finding.p_value)
+    ));
+    words.join("; ")
+}
+
+/// All parameters with their sigmas and units.
+pub(super) fn values(parameters: &[ParameterReport]) -> String {
+    let each = parameters.iter().map(|parameter| {
+        let unit = match parameter.unit.as_str() {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        format!("{} {}{unit}", parameter.name, value(parameter))
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// Estimate and sigma of a parameter.
+pub(super) fn value(parameter: &ParameterReport) -> String {
+    match parameter.sigma {
+        Some(sigma) => {
+            let [estimate, sigma] = rounded(parameter.estimate, sigma);
+            format!("{estimate} ± {sigma}")
+        }
+        None => short(parameter.estimate),
+    }
+}
+
+fn rivals(finding: &FindingReport) -> String {
+    let told: Vec<String> = finding
+        .rivals
+        .iter()
+        .take(RIVALS_TOLD)
+        .map(|rival| format!("{} ({})", rival.effect, likelihood(rival)))
+        .collect();
+    let more = finding.rivals.len().saturating_sub(RIVALS_TOLD);
+    let more = match more {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!(
+        "Or else {}{more}: the set holds the cause with a probability of {:.0} %.",
+        told.join(", "),
+        100.0 * finding.coverage
+    )
+}
+
+/// How much less likely a rival is.
+pub(super) fn likelihood(rival: &RivalReport) -> String {
+    let factor = rival.log_likelihood_deficit.exp();
+    if factor >= 1.05 {
+        format!("{factor:.1} times less likely")
+    } else if factor > 0.95 {
+        "as likely".to_owned()
+    } else {
+        format!(
+            "{:.1} times more likely, but the richer one",
+            factor.recip()
+        )
+    }
+}
+
+fn judged(report: &FilterReport, findings: &[FindingReport]) -> String {
+    let [low, high] = report.nis_band;
+    let reference = report.reference_nis_mean;
+    let band = format!("99.9 % band {low:.3} to {high:.3}");
+    match (report.nis_mean, &report.stopped) {
+        (Some(mean), _) if findings.iter().any(|found| found.effect == filter::EFFECT) => format!(
+            "The paper's filter on this record: mean NIS {mean:.1} ({band}), where the filter of \
+             this program has {reference:.3}. One Euler step a sample, with Euler angles as states, \
+             is too coarse for this record; its coefficients and sigmas mean nothing."
+        ),
+        (Some(mean), _) => format!(
+            "The paper's filter on this record: mean NIS {mean:.3} ({band}), the filter of this \
+             program {reference:.3}: its integration rule is not what is wrong."
+        ),
+        (None, stopped) => format!(
+            "The paper's filter stopped {}; the filter of this program has mean NIS {reference:.3} \
+             ({band}).",
+            stopped.as_deref().unwrap_or("before it had an answer")
+        ),
+    }
+}
+
+fn gained(gain: &GainReport) -> String {
+    let nats = gain.cross_validated_log_score_nats;
+    let rms = gain.free_run_rms_g;
+    let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
+    shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
+    let shifts: Vec<String> = shifts
+        .iter()
+        .take(SHIFTS_TOLD)
+        .map(|shift| {
+            format!(
+                "{} {:+.2e} {} ({:.1} sigma)",
+                shift.coefficient,
+                shift.shift,
+                shift.unit,
+                shift.in_sigmas.abs()
+            )
+        })
+        .collect();
+    let predicts = if nats > 0.0 {
+        format!(
+            "it predicts each sixth of the record from the others better, by {nats:.1} nats in all"
+        )
+    } else {
+        format!(
+            "it does not predict a sixth of the record from the others any better ({nats:.1} nats): \
+             significant, but of no use to a prediction"
+        )
+    };
+    format!(
+        "With that in the model {predicts}. Running freely from the first row it misses the \
+         record by {:.2e} g rms instead of {:.2e} g, where the accelerometers' noise is {:.2e} g. \
+         Without it the coefficients are off, most of all {}.",
+        rms.after,
+        rms.before,
+        rms.noise,
+        shifts.join(", ")
+    )
+}
+
+fn left(found: &Found<'_>) -> String {
+    let remainder = &found.report.remainder;
+    let p = probability(remainder.p_value);
+    match remainder.verdict {
+        RemainderVerdict::Unexplained => format!(
+            "Left unexplained: {} (probability by chance {p}). No effect of the catalogue does \
+             this; docs/adding-a-term.md adds one.",
+            remainder.description
+        ),
+        _ => format!(
+            "Left: noise. The innovations of the model are white up to half the sampling rate \
+             (probability of as much structure by chance {p})."
+        ),
+    }
+}
+
+/// A probability to two digits, whatever its size.
+pub(super) fn probability(p: f64) -> String {
+    if p < 1e-300 {
+        "below 1e-300".to_owned()
+    } else if p >= 1e-3 {
+        format!("{p:.2}").replace("0.00", "below 0.01")
+    } else {
+        format!("{p:.0e}")
+    }
+}
+
+/// Four digits without trailing zeros.
+pub(super) fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        let digits = value.abs().max(1e-9).log10().floor() as i32;
+        let decimals = usize::try_from(3 - digits).unwrap_or(0);
+        let text = format!("{value:.decimals$}");
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        }
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+/// Words in lines, each with the indent in front.
+fn paragraph(indent: &str, words: &str) -> String {
+    lines(indent, indent, words)
+}
+
+/// An entry of a list.
+pub(super) fn bullet(words: &str) -> String {
+    lines(" - ", "   ", words)
+}
+
+fn lines(first: &str, next: &str, words: &str) -> String {
+    let mut text = String::with_capacity(words.len() + words.len() / 20);
+    let mut line = first.to_owned();
+    let mut empty = true;
+    for word in words.split_whitespace() {
+        if !empty && line.chars().count() + 1 + word.chars().count() > LINE {
+            text.push_str(&line);
+            text.push('\n');
+            line = next.to_owned();
+            empty = true;
+        }
+        if !empty {
+            line.push(' ');
+        }
+        line.push_str(word);
+        empty = false;
+    }
+    text.push_str(&line);
+    text.push('\n');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [
+            (86_400.0, "86400"),
+            (12.345_67, "12.35"),
+            (0.5, "0.5"),
+            (1e-7, "1.000e-7"),
+            (0.0, "0"),
+            (100.0, "100"),
+        ];
+        for (value, expected) in cases {
+            assert_eq!(short(value), expected);
+        }
+        assert_eq!(probability(0.034), "0.03");
+        assert_eq!(probability(0.002), "below 0.01");
+        assert_eq!(probability(2.3e-12), "2e-12");
+        assert_eq!(probability(0.0), "below 1e-300");
+    }
+
+    #[test]
+    fn lines_are_broken_and_indented() {
+        let text = bullet(&"word ".repeat(40));
+        let broken: Vec<&str> = text.lines().collect();
+        assert_eq!(broken.len(), 3);
+        assert!(broken[0].starts_with(" - word") && broken[1].starts_with("   word"));
+        assert!(broken.iter().all(|line| line.len() <= LINE));
+        assert_eq!(text.matches("word").count(), 40);
+    }
+
+    #[test]
+    fn a_rival_is_told_by_its_likelihood() {
+        let of = |log_likelihood_deficit| {
+            likelihood(&RivalReport {
+                effect: "gyro_x.ramp".to_owned(),
+                log_likelihood_deficit,
+            })
+        };
+        assert_eq!(of(2.0), "7.4 times less likely");
+        assert_eq!(of(0.0), "as likely");
+        assert_eq!(of(-1.0), "2.7 times more likely, but the richer one");
+    }
+}

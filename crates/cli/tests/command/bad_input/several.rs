@@ -1,0 +1,94 @@
+//! Records and bench files that do not go together, or not with an option.
+
+use super::{JSON, assert_says, bench, record};
+use crate::folder::Folder;
+
+#[test]
+fn rows_that_two_records_share_are_refused() {
+    let folder = Folder::new();
+    folder.put("a.csv", record(100));
+    let later: Vec<String> = record(140)
+        .lines()
+        .enumerate()
+        .filter(|(line, _)| *line == 0 || *line > 60)
+        .map(|(_, text)| text.to_owned())
+        .collect();
+    folder.put("b.csv", later.join("\n"));
+    folder.put("b.toml", bench());
+    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    assert_says(
+        &errors,
+        "b.csv: found 40 rows in succession that a.csv has too, from row 1 of the data \
+         (t = 3600 s) on, expected rows of its own: they would count twice",
+    );
+    // A copy by another name is the same record.
+    folder.put("b.csv", record(100));
+    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    assert_says(
+        &errors,
+        "b.csv: found 100 rows in succession that a.csv has too",
+    );
+}
+
+#[test]
+fn bench_files_that_contradict_each_other_are_refused() {
+    let folder = Folder::new();
+    let sigma = |sigma: &str| {
+        let declared = format!("= 48.2\nlatitude_sigma_deg = {sigma}");
+        bench().replace("= 48.2", &declared)
+    };
+    let prior = "\n[prior]\nbias_sigma_deg_per_h = 2.0\n";
+    let cases = [
+        (
+            bench(),
+            bench() + prior,
+            "found a [prior] other than in b.toml",
+        ),
+        (
+            sigma("0.001"),
+            sigma("0.002"),
+            "found uncertainties of the same site other than in b.toml",
+        ),
+    ];
+    for (one, other, message) in cases {
+        folder.put("b.toml", one);
+        folder.put("c.toml", other);
+        let arguments = [
+            "calibrate",
+            "x.csv",
+            "y.csv",
+            "--bench",
+            "b.toml",
+            "--bench",
+            "c.toml",
+        ];
+        let errors = folder.fail(&arguments);
+        assert_says(&errors, &format!("c.toml: {message}, expected the same"));
+    }
+    folder.put("b.toml", sigma("0"));
+    assert_says(
+        &folder.fail(&JSON),
+        "b.toml:3:22: found `0`, expected a finite number greater than 0",
+    );
+}
+
+#[test]
+fn a_record_that_is_too_slow_to_average_is_told_so() {
+    let folder = Folder::new();
+    folder.put("r.csv", record(20));
+    folder.put("b.toml", bench());
+    for seconds in ["60", "601"] {
+        let arguments: Vec<&str> = JSON.into_iter().chain(["--average", seconds]).collect();
+        let errors = folder.fail(&arguments);
+        assert_says(
+            &errors,
+            &format!("r.csv: means over {seconds} s were asked for, expected from 120 s"),
+        );
+    }
+    // Five means are no calibration.
+    let arguments: Vec<&str> = JSON.into_iter().chain(["--average", "240"]).collect();
+    assert_says(
+        &folder.fail(&arguments),
+        "the record has 5 rows with a value",
+    );
+}

@@ -1,0 +1,215 @@
+//! `gyrocal diagnose` as a user runs it.
+
+mod bad_input;
+mod sealed;
+
+use std::fs;
+use std::sync::OnceLock;
+
+use gyrocal_record::{DiagnosisReport, DiagnosisVerdict, RemainderVerdict};
+
+use crate::folder::{Folder, repository};
+
+const RECORD: &str = "hidden_fault.csv";
+const BENCH: &str = "hidden_fault.bench.toml";
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    for name in [RECORD, BENCH] {
+        let shipped = repository("examples/data").join(name);
+        folder.put(name, fs::read(shipped).unwrap());
+    }
+    folder
+}
+
+fn report(folder: &Folder, name: &str) -> DiagnosisReport {
+    serde_json::from_str(&folder.text(name)).unwrap()
+}
+
+/// One run with everything, which several tests look at: stdout and what was written.
+fn whole() -> &'static (String, Folder) {
+    static WHOLE: OnceLock<(String, Folder)> = OnceLock::new();
+    WHOLE.get_or_init(|| {
+        let folder = folder();
+        let said = folder.succeed(&[
+            "diagnose",
+            RECORD,
+            "--bench",
+            BENCH,
+            "--json",
+            "o.json",
+            "--figures",
+            "figures",
+            "--filter",
+            "euler",
+        ]);
+        (said, folder)
+    })
+}
+
+#[test]
+fn the_hidden_fault_is_named_with_its_size() {
+    let (said, folder) = whole();
+    let report = report(folder, "o.json");
+    assert_eq!(report.schema_version, 1);
+    assert_eq!(report.verdict, DiagnosisVerdict::EffectsFound);
+    assert_eq!(report.false_alarm_probability, 0.01);
+    let finding = &report.findings[0];
+    assert_eq!(finding.effect, "gyro_y.g_z");
+    assert!(finding.z > 12.0 && finding.p_value < 1e-20);
+    let size = &finding.parameters[0];
+    let sigma = size.sigma.unwrap();
+    // The truth of the scenario; the record is fixed, and an error of four sigmas is one in
+    // sixteen thousand.
+    assert!((size.estimate - 0.0012).abs() < 4.0 * sigma, "{size:?}");
+    assert!(
+        said.contains("\n1. gyro_y.g_z: mass unbalance of gyro y"),
+        "{said}"
+    );
+    assert_eq!(report.remainder.verdict, RemainderVerdict::White);
+}
+
+#[test]
+fn what_is_gained_is_told() {
+    let (said, folder) = whole();
+    let report = report(folder, "o.json");
+    let gain = report.gain.unwrap();
+    let sum: f64 = gain.block_log_score_nats.iter().sum();
+    // Sums of the same six numbers.
+    assert!((gain.cross_validated_log_score_nats - sum).abs() < 1e-9);
+    assert!(sum > 8.0);
+    let rms = gain.free_run_rms_g;
+    assert!(rms.noise == 1e-5 && rms.after < 0.7 * rms.before, "{rms:?}");
+    assert_eq!(gain.coefficient_shift.len(), 9);
+    assert!(
+        said.contains("With that in the model it predicts each sixth"),
+        "{said}"
+    );
+}
+
+#[test]
+fn near_twins_are_listed_with_what_would_separate_them() {
+    let (said, folder) = whole();
+    let groups = report(folder, "o.json").cannot_tell;
+    let twins = groups
+        .iter()
+        .find(|group| group.members.iter().any(|id| id == "gyro_y.magnetic"))
+        .unwrap();
+    assert_eq!(twins.members[0], "gyro_y.g_z");
+    assert!(twins.would_separate.contains("another initial attitude"));
+    assert!(
+        said.contains("Not told apart, and what would separate it"),
+        "{said}"
+    );
+}
+
+#[test]
+fn the_filter_of_the_paper_is_named_for_its_rule() {
+    let (_, folder) = whole();
+    let report = report(folder, "o.json");
+    let last = report.findings.last().unwrap();
+    assert_eq!(last.effect, "filter.discretisation");
+    let filter = report.filter.unwrap();
+    assert_eq!(filter.name, "euler");
+    // Exact data: the rule's error is as large as the noise, its NIS some hundreds.
+    assert!(filter.nis_mean.unwrap() > 100.0);
+    assert!(filter.reference_nis_mean < 4.0);
+}
+
+#[test]
+fn pictures_are_written_in_both_forms() {
+    let (_, folder) = whole();
+    let written = |name: &str| fs::read(folder.path("figures").join(name)).unwrap();
+    for name in [
+        "residuals",
+        "free-run",
+        "residual-against-force",
+        "periodogram",
+        "autocorrelation",
+        "norm",
+        "ranking",
+        "gain",
+        "coefficients",
+    ] {
+        assert!(
+            written(&format!("{name}.svg")).starts_with(b"<svg"),
+            "{name}"
+        );
+        assert!(
+            written(&format!("{name}.png")).starts_with(b"\x89PNG"),
+            "{name}"
+        );
+    }
+    let residuals = String::from_utf8(written("residuals.svg")).unwrap();
+    assert!(residuals.contains("with gyro_y.g_z by"));
+    // The picture of the README is the one that its command draws.
+    let shown = fs::read(repository("docs/pictures/hidden-fault.png")).unwrap();
+    assert!(shown.len() < 200_000);
+    assert!(
+        shown == written("residuals.png"),
+        "docs/pictures/hidden-fault.png differs: copy target/figures/residuals.png there"
+    );
+}
+
+#[test]
+fn a_clean_record_is_called_clean() {
+    let folder = Folder::new();
+    for name in ["three_days.csv", "three_days.bench.toml"] {
+        folder.put(
+            name,
+            fs::read(repository("examples/data").join(name)).unwrap(),
+        );
+    }
+    let arguments = [
+        "diagnose",
+        "three_days.csv",
+        "--bench",
+        "three_days.bench.toml",
+        "--json",
+        "o.json",
+        "--exit-code",
+    ];
+    let said = folder.succeed(&arguments);
+    assert!(
+        said.contains("\nNothing is wrong: noise as declared"),
+        "{said}"
+    );
+    let value: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_eq!(value["verdict"], "clean");
+    assert_eq!(value["findings"], serde_json::json!([]));
+    assert_eq!(value["gain"], serde_json::Value::Null);
+    assert_eq!(value["remainder"]["verdict"], "white");
+    assert_eq!(value["cannot_tell"], serde_json::json!([]));
+    assert_eq!(
+        value["manifest"]["inputs"][1]["path"],
+        "three_days.bench.toml"
+    );
+}
+
+#[test]
+fn the_exit_code_speaks_if_asked_to() {
+    let folder = folder();
+    let arguments = ["diagnose", RECORD, "--bench", BENCH, "--exit-code"];
+    assert_eq!(folder.run(&arguments).status.code(), Some(3));
+}
+
+#[test]
+fn the_record_that_ships_is_what_its_scenario_gives() {
+    let folder = Folder::new();
+    let scenario = repository("examples/data/hidden_fault.scenario.toml");
+    folder.succeed(&[
+        "simulate",
+        scenario.to_str().unwrap(),
+        "--out",
+        RECORD,
+        "--bench-out",
+        BENCH,
+    ]);
+    for name in [RECORD, BENCH] {
+        let shipped = repository("examples/data").join(name);
+        assert!(
+            folder.text(name) == fs::read_to_string(shipped).unwrap(),
+            "{name} differs: run the command in the head of the scenario again"
+        );
+    }
+}

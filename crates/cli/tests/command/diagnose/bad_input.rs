@@ -1,0 +1,122 @@
+//! What cannot be diagnosed: exit code 1 or 2, one message, no output.
+
+use super::{BENCH, RECORD, folder};
+
+#[test]
+fn an_effect_that_cannot_be_looked_for_is_refused() {
+    let folder = folder();
+    let cases = [
+        (
+            "gyro_y.gz",
+            "there is no effect `gyro_y.gz` in the catalogue; the nearest are `gyro_y.g_z`",
+        ),
+        (
+            "gyro_xy.axis_misalignment,gyro_x.temperature",
+            "`gyro_x.temperature` cannot be looked for: the record has no column `temperature_c`",
+        ),
+        (
+            "gyro_x.magnetic",
+            "`gyro_x.magnetic` cannot be looked for: the bench file has no `magnetic_field_gauss`",
+        ),
+    ];
+    for (effects, message) in cases {
+        let errors = folder.fail(&[
+            "diagnose",
+            RECORD,
+            "--bench",
+            BENCH,
+            "--json",
+            "o.json",
+            "--effects",
+            effects,
+        ]);
+        assert!(errors.contains(message), "{message}\nis not in\n{errors}");
+        assert!(errors.contains("help: "), "{errors}");
+    }
+}
+
+/// The record with its first rows only.
+fn shortened(rows: usize) -> crate::folder::Folder {
+    let folder = folder();
+    let whole = folder.text(RECORD);
+    let lines: Vec<&str> = whole.lines().take(rows + 1).collect();
+    folder.put(RECORD, lines.join("\n") + "\n");
+    folder
+}
+
+#[test]
+fn a_record_shorter_than_the_state_is_refused() {
+    let errors = shortened(11).fail(&["diagnose", RECORD, "--bench", BENCH]);
+    assert!(
+        errors.contains("found 11 rows after the header, expected at least 12 rows"),
+        "{errors}"
+    );
+}
+
+#[test]
+fn a_short_record_says_what_it_could_not_show() {
+    let folder = shortened(240);
+    let said = folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"]);
+    assert!(said.contains("That says little"), "{said}");
+    let report = super::report(&folder, "o.json");
+    // In four hours the platform turns by a sixth of the circle: no cross-axis term of 0.05
+    // deg/h/g is told from drift and attitude.
+    let unseen = report
+        .not_searched
+        .iter()
+        .find(|entry| entry.effect == "gyro_y.g_z")
+        .unwrap();
+    assert!(unseen.why.contains("too short"), "{unseen:?}");
+}
+
+#[test]
+fn the_filter_of_the_paper_needs_an_attitude() {
+    let folder = folder();
+    let bench: String = folder
+        .text(BENCH)
+        .lines()
+        .filter(|line| !line.starts_with("initial_angles"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    folder.put(BENCH, bench);
+    let errors = folder.fail(&["diagnose", RECORD, "--bench", BENCH, "--filter", "euler"]);
+    assert!(errors.contains("leave out --filter"), "{errors}");
+}
+
+#[test]
+fn a_wrong_command_line_is_a_usage_error() {
+    let folder = folder();
+    let cases: [(&[&str], &str); 4] = [
+        (&["--false-alarm", "0"], "greater than 0 and less than 1"),
+        (&["--filter", "rk4"], "[possible values: euler]"),
+        (&["--effects", "filter.discretisation"], "--filter euler"),
+        (&["--json", RECORD], "would overwrite the input"),
+    ];
+    for (more, message) in cases {
+        let arguments = [&["diagnose", RECORD, "--bench", BENCH], more].concat();
+        let output = folder.run(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(errors.contains(message), "{message}\nis not in\n{errors}");
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_is_refused() {
+    let folder = folder();
+    folder.put("taken", "");
+    let errors = folder.fail(&[
+        "diagnose",
+        RECORD,
+        "--bench",
+        BENCH,
+        "--json",
+        "o.json",
+        "--figures",
+        "taken",
+    ]);
+    assert!(
+        errors.contains("--figures taken: cannot be made"),
+        "{errors}"
+    );
+}

@@ -1,0 +1,122 @@
+//! Whether effects that were asked for exist, and can be looked for.
+
+use gyrocal::Platform;
+use gyrocal::generated::catalogue::EFFECTS;
+use gyrocal_calibration::CalibrationError;
+use gyrocal_record::{Bench, Record};
+
+use crate::cause::missing;
+use crate::diagnose::DiagnoseError;
+
+/// So many near ids are told of a mistyped one.
+const NEAREST: usize = 3;
+
+/// Refuses effects that are in no catalogue, effects whose input is missing, and a record with
+/// fewer rows than a filter has states.
+pub(crate) fn check(
+    effects: &[String],
+    record: &Record,
+    bench: &Bench,
+) -> Result<(), DiagnoseError> {
+    for id in effects {
+        let Some(effect) = EFFECTS.iter().find(|effect| effect.id == id) else {
+            return Err(DiagnoseError::UnknownEffect {
+                id: id.clone(),
+                nearest: nearest(id),
+            });
+        };
+        if let Some(why) = missing(effect, record, bench) {
+            return Err(DiagnoseError::Unavailable {
+                effect: effect.id,
+                why,
+            });
+        }
+    }
+    let measured = |row: &&[f64; 3]| row.iter().any(|component| !component.is_nan());
+    let found = record.accel_g.iter().filter(measured).count();
+    if found < Platform::STATES {
+        return Err(CalibrationError::TooShort {
+            found,
+            expected: Platform::STATES,
+        }
+        .into());
+    }
+    Ok(())
+}
+
+/// The nearest ids as the end of a sentence.
+fn nearest(typed: &str) -> String {
+    let typed = typed.to_lowercase();
+    let mut known: Vec<(usize, &str)> = EFFECTS
+        .iter()
+        .map(|effect| (strsim::osa_distance(&typed, effect.id), effect.id))
+        .collect();
+    // Of equally near ones the order of the catalogue.
+    known.sort_by_key(|(distance, _)| *distance);
+    let names: Vec<String> = known
+        .iter()
+        .take(NEAREST)
+        .map(|(_, id)| format!("`{id}`"))
+        .collect();
+    format!("; the nearest are {}", names.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record() -> Record {
+        Record {
+            time_s: (0..20).map(|row| 60.0 * f64::from(row)).collect(),
+            accel_g: vec![[0.0, 0.0, 1.0]; 20],
+            temperature_c: None,
+        }
+    }
+
+    fn refused(id: &str) -> String {
+        let bench = Bench::parse(
+            "[site]\nlatitude_deg = 39.1\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n",
+            "bench",
+        );
+        let Ok(bench) = bench else {
+            return "no bench".to_owned();
+        };
+        check(&[id.to_owned()], &record(), &bench)
+            .err()
+            .map_or_else(String::new, |error| error.to_string())
+    }
+
+    #[test]
+    fn what_cannot_be_looked_for_is_refused_with_its_reason() {
+        let unknown = refused("gyro_y.gz");
+        assert!(
+            unknown.starts_with("there is no effect `gyro_y.gz`")
+                && unknown.contains("`gyro_y.g_z`"),
+            "{unknown}"
+        );
+        assert!(refused("gyro_x.temperature").contains("no column `temperature_c`"));
+        assert!(refused("gyro_x.magnetic").contains("no `magnetic_field_gauss`"));
+        assert_eq!(refused("gyro_xy.axis_misalignment"), "");
+    }
+
+    #[test]
+    fn a_record_shorter_than_the_state_is_refused() {
+        let mut short = record();
+        short.accel_g.truncate(11);
+        short.time_s.truncate(11);
+        let bench = Bench::parse(
+            "[site]\nlatitude_deg = 39.1\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n",
+            "bench",
+        );
+        let error = bench
+            .ok()
+            .and_then(|bench| check(&[], &short, &bench).err());
+        assert!(matches!(
+            error,
+            Some(DiagnoseError::Calibration(CalibrationError::TooShort {
+                found: 11,
+                ..
+            }))
+        ));
+    }
+}

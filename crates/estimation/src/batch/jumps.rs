@@ -1,0 +1,111 @@
+//! What a sudden change of the moving states would explain, at every step at once.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::linearisation::{Linearisation, Whitened};
+use super::step::sandwich;
+use super::{Columns, Manifold, Series};
+use crate::error::EstimationError;
+
+/// Score and information of a jump of the moving states in the step before a row (auxiliary
+/// residuals: de Jong, Penzer, J. Amer. Statist. Assoc. 93, 1998).
+#[derive(Clone, Debug, PartialEq)]
+pub struct JumpScore<const M: usize> {
+    /// Sum of products of the innovations with the derivatives of later innovations, sign of a
+    /// score; then the same of each column, whose product with the jump's own derivatives it is.
+    pub columns: Vec<[f64; M]>,
+    /// Information on the jump if all columns were known.
+    pub information: [[f64; M]; M],
+}
+
+/// What the backward pass needs of one output.
+struct Seen<const M: usize> {
+    /// Jacobian over the standard deviation of the innovation.
+    jacobian: [f64; M],
+    /// Gain times that deviation.
+    gain: [f64; M],
+    columns: Vec<f64>,
+}
+
+impl<D, S, C, const M: usize, const Y: usize> Linearisation<'_, D, S, C, M, Y>
+where
+    D: Manifold<M, Y>,
+    S: Series<D::Inputs, Y>,
+    C: Columns<M, Y>,
+{
+    /// Passes forward and backward over the record; `watch` gets each row but the first, last
+    /// row first, with what a jump in the step before it would explain.
+    ///
+    /// # Errors
+    /// As [`Self::reduce`].
+    pub fn jumps(
+        &self,
+        mut watch: impl FnMut(usize, &JumpScore<M>),
+    ) -> Result<(), EstimationError> {
+        let rows = self.points.len();
+        let mut seen: Vec<Vec<Seen<M>>> = Vec::with_capacity(rows);
+        let mut transitions = Vec::with_capacity(rows);
+        self.forward(
+            |whitened: &Whitened<'_>, jacobian, cross| {
+                let reciprocal = 1.0 / whitened.deviation;
+                let entry = Seen {
+                    jacobian: jacobian.map(|element| element * reciprocal),
+                    gain: cross.map(|element| element * reciprocal),
+                    columns: whitened.columns.to_vec(),
+                };
+                while seen.len() <= whitened.row {
+                    seen.push(Vec::new());
+                }
+                seen[whitened.row].push(entry);
+            },
+            |transition| transitions.push(*transition),
+        )?;
+        seen.resize_with(rows, Vec::new);
+        let count = 1 + self.active.len() + self.further.count();
+        let mut score = JumpScore {
+            columns: vec![[0.0; M]; count],
+            information: [[0.0; M]; M],
+        };
+        for row in (1..rows).rev() {
+            for output in seen[row].iter().rev() {
+                // Later innovations see what this update leaves: (I - g h)ᵀ.
+                let mut left = [[0.0; M]; M];
+                for i in 0..M {
+                    for j in 0..M {
+                        left[i][j] =
+                            f64::from(u8::from(i == j)) - output.jacobian[i] * output.gain[j];
+                    }
+                }
+                score.information = sandwich(&left, &score.information);
+                for i in 0..M {
+                    for j in 0..M {
+                        score.information[i][j] += output.jacobian[i] * output.jacobian[j];
+                    }
+                }
+                for (sum, value) in score.columns.iter_mut().zip(&output.columns) {
+                    let along: f64 = (0..M).map(|j| output.gain[j] * sum[j]).sum();
+                    for i in 0..M {
+                        sum[i] += output.jacobian[i] * (value - along);
+                    }
+                }
+            }
+            watch(row, &score);
+            let transition = &transitions[row - 1];
+            let mut transposed = [[0.0; M]; M];
+            for i in 0..M {
+                for j in 0..M {
+                    transposed[i][j] = transition[j][i];
+                }
+            }
+            score.information = sandwich(&transposed, &score.information);
+            for sum in &mut score.columns {
+                let before = *sum;
+                for i in 0..M {
+                    sum[i] = (0..M).map(|j| transposed[i][j] * before[j]).sum();
+                }
+            }
+        }
+        Ok(())
+    }
+}

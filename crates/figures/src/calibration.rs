@@ -1,0 +1,37 @@
+//! Calibration that can be trusted: consistency over a population, exactness, and what it costs.
+
+mod attitudes;
+mod cost;
+mod exactness;
+mod paper;
+mod population;
+mod site;
+
+// Support of the calibration package's tests, which has no other reader.
+#[allow(clippy::expect_used)]
+#[path = "../../calibration/tests/dense/mod.rs"]
+mod dense;
+
+use crate::figure::Figure;
+
+/// Why a figure could not be measured.
+pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
+
+/// All figures of the topic.
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    // Memory first, while nothing else has been asked of the allocator.
+    let mut figures = cost::figures(small)?;
+    figures.extend(population::figures(small)?);
+    figures.extend(paper::figures(small)?);
+    figures.extend(site::figures()?);
+    figures.extend(exactness::figures()?);
+    figures.extend(attitudes::figures()?);
+    Ok(figures)
+}
+
+/// Names of the coefficients.
+fn names() -> [&'static str; 9] {
+    gyrocal_truth::Coefficients::NONE
+        .named()
+        .map(|(name, _, _)| name)
+}

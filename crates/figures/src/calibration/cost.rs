@@ -1,0 +1,164 @@
+//! What a calibration takes: processor time and memory.
+
+use std::time::Instant;
+
+use gyrocal_calibration::{Options, calibrate};
+use gyrocal_campaign::statistics::median;
+use gyrocal_truth::{Coefficients, Scenario, Simulation, simulate};
+
+use super::Error;
+use crate::figure::Figure;
+
+const THREE_DAYS_MS: f64 = 100.0;
+const MILLION_S: f64 = 30.0;
+const MILLION_MB: f64 = 500.0;
+
+/// Time of a row and a pass may differ by this factor between lengths: caches of a processor are
+/// not all as fast.
+const LINEAR: f64 = 1.5;
+
+/// The same ten days, sampled more and more often.
+const TEN_DAYS_S: f64 = 864_000.0;
+
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let mut figures = Vec::new();
+    let mut per_pass_ns: Vec<f64> = Vec::new();
+    let lengths: &[u32] = if small {
+        &[10_000, 100_000]
+    } else {
+        &[10_000, 100_000, 1_000_000]
+    };
+    for rows in lengths {
+        let simulation = simulate(&scenario(
+            TEN_DAYS_S / f64::from(*rows),
+            TEN_DAYS_S - TEN_DAYS_S / f64::from(*rows),
+        ))?;
+        if simulation.record.len() != *rows as usize {
+            return Err(format!("{} rows, expected {rows}", simulation.record.len()).into());
+        }
+        let repetitions = (300_000 / rows).max(1);
+        let peak = Peak::reset();
+        let mut iterations = 0;
+        let times = (0..repetitions)
+            .map(|_| {
+                let (seconds, passes) = timed(&simulation)?;
+                iterations = passes;
+                Ok(seconds)
+            })
+            .collect::<Result<Vec<f64>, Error>>()?;
+        let seconds = median(&times);
+        per_pass_ns.push(seconds * 1e9 / f64::from(*rows) / iterations as f64);
+        let peak_mb = peak.and_then(|peak| peak.read_mb());
+        if *rows == 1_000_000 {
+            let mut figure = Figure::within("a million samples", [0.0, MILLION_S], seconds);
+            figure.target = format!("<= {MILLION_S} s");
+            figure.measured = format!("{seconds:.1} s, {iterations} steps");
+            figures.push(figure);
+            // Where the kernel does not tell, nothing was measured, and so nothing holds.
+            let measured = peak_mb.unwrap_or(f64::NAN);
+            let mut figure = Figure::within(
+                "a million samples: peak memory of the process",
+                [0.0, MILLION_MB],
+                measured,
+            );
+            figure.target = format!("<= {MILLION_MB} MB");
+            figure.measured = format!("{measured:.0} MB");
+            figures.push(figure);
+        } else {
+            figures.push(Figure::note(
+                &format!("{rows} samples"),
+                format!("{:.0} ms, {iterations} steps", seconds * 1e3),
+            ));
+        }
+    }
+    let largest = per_pass_ns.iter().copied().fold(0.0, f64::max);
+    let least = per_pass_ns.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut linear = Figure::within(
+        "time of a row and a step, slowest over fastest length",
+        [0.0, LINEAR],
+        largest / least,
+    );
+    let each: Vec<String> = per_pass_ns.iter().map(|ns| format!("{ns:.0} ns")).collect();
+    linear.measured += &format!(" ({})", each.join(", "));
+    figures.push(linear);
+    figures.push(three_days(if small { 7 } else { 31 })?);
+    if small {
+        // Times on a machine that does other work as well say little: shown, not judged.
+        for figure in &mut figures {
+            figure.holds = None;
+        }
+    }
+    Ok(figures)
+}
+
+fn scenario(interval_s: f64, duration_s: f64) -> Scenario {
+    Scenario {
+        seed: 1,
+        coefficients: Coefficients::PAPER_LIKE,
+        interval_s,
+        duration_s,
+        ..Scenario::default()
+    }
+}
+
+fn three_days(repetitions: usize) -> Result<Figure, Error> {
+    let simulation = simulate(&scenario(60.0, 3.0 * 86_400.0))?;
+    let mut steps = 0;
+    let times = (0..repetitions)
+        .map(|_| {
+            let (seconds, iterations) = timed(&simulation)?;
+            steps = iterations;
+            Ok(seconds * 1e3)
+        })
+        .collect::<Result<Vec<f64>, Error>>()?;
+    let milliseconds = median(&times);
+    let mut figure = Figure::within(
+        "three days at 60 s, all passes, on one core: median",
+        [0.0, THREE_DAYS_MS],
+        milliseconds,
+    );
+    figure.target = format!("<= {THREE_DAYS_MS} ms");
+    figure.measured = format!("{milliseconds:.1} ms, {steps} steps");
+    Ok(figure.over(repetitions, "1"))
+}
+
+/// Processor seconds and steps of one calibration.
+fn timed(simulation: &Simulation) -> Result<(f64, usize), Error> {
+    let (begin, begin_cpu_s) = (Instant::now(), thread_s());
+    let found = calibrate(
+        &simulation.record,
+        &simulation.bench,
+        &Options::default(),
+        |_| (),
+    )?;
+    let seconds = match (begin_cpu_s, thread_s()) {
+        (Some(begin_s), Some(end_s)) => end_s - begin_s,
+        _ => begin.elapsed().as_secs_f64(),
+    };
+    Ok((seconds, found.iterations))
+}
+
+/// Processor time of this thread, where the kernel tells it. A calibration runs on one thread.
+fn thread_s() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(nanoseconds * 1e-9)
+}
+
+/// The largest memory that the process held since this was made.
+struct Peak;
+
+impl Peak {
+    fn reset() -> Option<Self> {
+        // 5 resets the peak resident set size, proc(5).
+        std::fs::write("/proc/self/clear_refs", "5").ok()?;
+        Some(Self)
+    }
+
+    fn read_mb(&self) -> Option<f64> {
+        let status = std::fs::read_to_string("/proc/self/status").ok()?;
+        let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+        let kibibytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+        Some(kibibytes * 1024.0 / 1e6)
+    }
+}

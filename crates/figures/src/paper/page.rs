@@ -1,0 +1,260 @@
+//! The page: its template filled with what was measured, and held against what is committed.
+
+use std::path::{Path, PathBuf};
+
+use gyrocal_report::{to_png, write_svg};
+
+use super::Error;
+use super::curves::Named;
+use super::values::Values;
+
+const TEMPLATE: &str = include_str!("page.md");
+/// Width of the pictures as PNG, px.
+const PNG_WIDTH_PX: u32 = 1440;
+
+/// The template with every `{{name}}` replaced.
+pub(super) fn fill(values: &Values) -> Result<String, Error> {
+    let mut unused: Vec<&str> = values.names().collect();
+    let mut page = String::new();
+    let mut rest = TEMPLATE;
+    while let Some((before, after)) = rest.split_once("{{") {
+        let (name, after) = after
+            .split_once("}}")
+            .ok_or("page.md: a place that does not end")?;
+        let value = values
+            .get(name)
+            .ok_or_else(|| format!("page.md: nothing is measured for {{{{{name}}}}}"))?;
+        page += before;
+        page += value;
+        unused.retain(|other| *other != name);
+        rest = after;
+    }
+    page += rest;
+    if unused.is_empty() {
+        Ok(page)
+    } else {
+        Err(format!("page.md has no place for: {}", unused.join(", ")).into())
+    }
+}
+
+/// What is committed under `docs`.
+pub(super) struct Documents {
+    pub(super) page: String,
+    pub(super) pictures: Vec<Named>,
+}
+
+impl Documents {
+    pub(super) fn write(&self) -> Result<(), Error> {
+        gyrocal_record::write_whole(&page_path(), self.page.as_bytes())?;
+        for (stem, picture) in &self.pictures {
+            let path = picture_path(stem);
+            write_svg(picture.as_ref(), &path)?;
+            let png = to_png(&picture.to_svg()?, PNG_WIDTH_PX)?;
+            gyrocal_record::write_whole(&path.with_extension("png"), &png)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the committed files say the same, numbers to their printed digits. Of a PNG it
+    /// is only asked that it is there: it is written together with its SVG.
+    pub(super) fn are_committed(&self) -> Result<bool, Error> {
+        let mut same = is_committed(&page_path(), &self.page)?;
+        for (stem, picture) in &self.pictures {
+            let path = picture_path(stem);
+            same &= is_committed(&path, &picture.to_svg()?)?;
+            same &= path.with_extension("png").is_file();
+        }
+        Ok(same)
+    }
+}
+
+fn is_committed(path: &Path, measured: &str) -> Result<bool, Error> {
+    let committed = std::fs::read_to_string(path)
+        .map_err(|error| format!("{}: {error}; write it with --write", path.display()))?;
+    match difference(&committed, measured) {
+        None => Ok(true),
+        Some((line, found)) => {
+            eprintln!(
+                "{}, line {line}: measured is `{found}`; renew the page with `cargo figures \
+                 paper --write`",
+                path.display()
+            );
+            Ok(false)
+        }
+    }
+}
+
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+}
+
+fn page_path() -> PathBuf {
+    docs().join("paper.md")
+}
+
+fn picture_path(stem: &str) -> PathBuf {
+    docs()
+        .join("pictures/paper")
+        .join(stem)
+        .with_extension("svg")
+}
+
+/// The first line in which two texts differ by more than the last printed digit of a number:
+/// its number, and how the second text has it.
+fn difference(committed: &str, measured: &str) -> Option<(usize, String)> {
+    let (mut ours, mut theirs) = (committed.lines(), measured.lines());
+    for line in 1.. {
+        match (ours.next(), theirs.next()) {
+            (None, None) => return None,
+            (Some(a), Some(b)) if same_line(a, b) => {}
+            (_, other) => return Some((line, other.unwrap_or_default().to_owned())),
+        }
+    }
+    None
+}
+
+fn same_line(a: &str, b: &str) -> bool {
+    let (a, b) = (pieces(a), pieces(b));
+    a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a == b || a.is_close(b))
+}
+
+#[derive(Debug, PartialEq)]
+enum Piece<'a> {
+    Word(&'a str),
+    Number {
+        value: f64,
+        /// What one more in the last printed digit is worth.
+        digit: f64,
+    },
+}
+
+impl Piece<'_> {
+    fn is_close(&self, other: &Self) -> bool {
+        match (self, other) {
+            (
+                Self::Number { value, digit },
+                Self::Number {
+                    value: to,
+                    digit: as_fine,
+                },
+            ) => {
+                // A little more than one, for sums of rounded numbers.
+                digit.max(*as_fine) * 1.001 >= (value - to).abs()
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Words and numbers of a line. A digit after a letter belongs to the
+/// word, and so does a sign.
+fn pieces(line: &str) -> Vec<Piece<'_>> {
+    let mut pieces = Vec::new();
+    let (mut word, mut at) = (0, 0);
+    while at < line.len() {
+        let after_word = line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        match number(&line[at..]).filter(|_| !after_word) {
+            Some((length, value, digit)) => {
+                pieces.push(Piece::Word(&line[word..at]));
+                pieces.push(Piece::Number { value, digit });
+                at += length;
+                word = at;
+            }
+            None => at += line[at..].chars().next().map_or(1, char::len_utf8),
+        }
+    }
+    pieces.push(Piece::Word(&line[word..]));
+    pieces
+}
+
+/// The number at the start of a text: its length, value, and last digit.
+fn number(text: &str) -> Option<(usize, f64, f64)> {
+    let digits = |from: usize| {
+        let rest = text.as_bytes().get(from..).unwrap_or_default();
+        rest.iter().take_while(|byte| byte.is_ascii_digit()).count()
+    };
+    let sign = usize::from(text.starts_with('-'));
+    let whole = digits(sign);
+    if whole == 0 {
+        return None;
+    }
+    let mut end = sign + whole;
+    let mut places = 0;
+    if text[end..].starts_with('.') && digits(end + 1) > 0 {
+        places = digits(end + 1);
+        end += 1 + places;
+    }
+    let mut power = 0;
+    if text[end..].starts_with('e') {
+        let minus = usize::from(text[end + 1..].starts_with('-'));
+        let count = digits(end + 1 + minus);
+        if count > 0 {
+            let exponent_end = end + 1 + minus + count;
+            power = text[end + 1..exponent_end].parse().ok()?;
+            end = exponent_end;
+        }
+    }
+    let value = text[..end].parse().ok()?;
+    Some((end, value, 10_f64.powi(power - places as i32)))
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "a failure here is a failed test")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_digit_may_differ() {
+        for (a, b) in [
+            ("NIS 3.01 and 185.5", "NIS 3.02 and 185.6"),
+            ("| -0.01 | 9.4e-5 |", "| 0.00 | 9.5e-5 |"),
+            ("x1 = 9.9e-5", "x1 = 1.0e-4"),
+            ("<a b=\"12\"/>", "<a b=\"13\"/>"),
+        ] {
+            assert_eq!(difference(a, b), None, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn anything_else_may_not() {
+        for (a, b) in [
+            ("NIS 3.01", "NIS 3.03"),
+            ("NIS 3.01", "NIS of 3.01"),
+            ("| 0.01 |", "| -0.01 |"),
+            ("`gyro_1`, 2", "`gyro_2`, 2"),
+            ("9.4e-5", "9.4e-4"),
+            ("one\ntwo", "one"),
+        ] {
+            assert!(difference(a, b).is_some(), "{a} {b}");
+        }
+    }
+
+    /// What the command checks with the numbers takes minutes without optimisation; this sees an
+    /// edit of the page that should have been one of its template, or a page not written again.
+    #[test]
+    fn the_committed_page_is_the_template_filled() {
+        let page = std::fs::read_to_string(page_path()).expect("docs/paper.md is committed");
+        let mut texts = TEMPLATE
+            .split("{{")
+            .map(|part| match part.split_once("}}") {
+                Some((_, text)) => text,
+                None => part,
+            });
+        let mut rest = texts
+            .next()
+            .and_then(|first| page.strip_prefix(first))
+            .expect("the page begins as its template does");
+        for text in texts {
+            let place = rest
+                .find(text)
+                .unwrap_or_else(|| panic!("the page lacks: {text}"));
+            rest = &rest[place + text.len()..];
+        }
+        assert_eq!(rest, "", "the page ends as its template does");
+    }
+
+    #[test]
+    fn a_place_without_a_value_is_an_error() {
+        assert!(fill(&Values::default()).is_err());
+    }
+}

@@ -1,0 +1,73 @@
+//! Named pieces of the page: numbers as they are printed, and tables of them.
+
+use std::collections::BTreeMap;
+
+/// What the template's places are filled with.
+#[derive(Default)]
+pub(super) struct Values(BTreeMap<String, String>);
+
+impl Values {
+    pub(super) fn put(&mut self, name: impl Into<String>, text: impl Into<String>) {
+        self.0.insert(name.into(), text.into());
+    }
+
+    pub(super) fn get(&self, name: &str) -> Option<&str> {
+        self.0.get(name).map(String::as_str)
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+}
+
+/// A number with a fixed number of decimals; zero has no sign.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|digit| matches!(digit, '0' | '.')) => rest.to_owned(),
+        _ => text,
+    }
+}
+
+/// A number with two significant digits.
+pub(super) fn two_digits(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e4).contains(&value.abs()) {
+        let decimals = 1.0 - value.abs().max(1e-3).log10().floor();
+        fixed(value, decimals.max(0.0) as usize)
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+/// A table of the page.
+pub(super) struct Table(String);
+
+impl Table {
+    pub(super) fn new<const N: usize>(header: [&str; N]) -> Self {
+        let rule = "|---".repeat(N);
+        Self(format!("| {} |\n{rule}|", header.join(" | ")))
+    }
+
+    pub(super) fn row<const N: usize>(&mut self, cells: [String; N]) {
+        self.0 += &format!("\n| {} |", cells.join(" | "));
+    }
+
+    pub(super) fn text(self) -> String {
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_their_digits() {
+        assert_eq!(fixed(-0.004, 2), "0.00");
+        assert_eq!(fixed(-0.006, 2), "-0.01");
+        assert_eq!(two_digits(-123.4), "-123");
+        assert_eq!(two_digits(0.012_34), "0.012");
+        assert_eq!(two_digits(9.96e-5), "1.0e-4");
+        assert_eq!(two_digits(0.0), "0.0000");
+    }
+}
