@@ -1,9 +1,5 @@
-use gyrocal_scalar::Real;
+use gyrocal_scalar::{NamedInputs, Real};
 
-#[cfg(feature = "catalogue")]
-use crate::generated::catalogue::CatalogueInputs;
-use crate::generated::platform::PlatformInputs;
-use crate::generated::surveyed::SurveyedInputs;
 use crate::rotation::cross;
 
 /// What lies fixed to the Earth, along the axes of a chart.
@@ -52,7 +48,7 @@ impl<T: Real> Surroundings<'_, T> {
 
 /// Inputs of a generated model of the platform, as far as a [`Chart`](crate::Chart) gives them.
 ///
-/// Implement it for the inputs of a model of your own, in two lines each:
+/// The inputs of every generated model implement it. For others it takes two lines each:
 ///
 /// ```
 /// use gyrocal::{ChartInputs, Real, Surroundings};
@@ -84,63 +80,28 @@ pub trait ChartInputs<T>: Copy {
     fn surround(&mut self, surroundings: &Surroundings<'_, T>);
 }
 
-impl<T: Real> ChartInputs<T> for PlatformInputs<T> {
+/// Every generated model is given what its groups of these names ask for. The others start at one
+/// of their unit, where no term divides by zero.
+impl<T: Real, I: NamedInputs<T>> ChartInputs<T> for I {
     #[inline(always)]
     fn unset() -> Self {
-        let zero = T::from_f64(0.0);
-        Self {
-            omega_0: [zero; 3],
-            f_0: [zero; 3],
-        }
+        Self::filled(T::from_f64(1.0))
     }
 
     #[inline(always)]
     fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
-        self.omega_0 = surroundings.omega_0();
-        self.f_0 = surroundings.f_0();
-    }
-}
-
-impl<T: Real> ChartInputs<T> for SurveyedInputs<T> {
-    #[inline(always)]
-    fn unset() -> Self {
-        let zero = T::from_f64(0.0);
-        Self {
-            omega_0: [zero; 3],
-            f_0: [zero; 3],
-            east_0: [zero; 3],
+        // The names are constants: nothing of this is left to be done at run time.
+        if let Some(group) = self.group_mut("omega_0") {
+            group.copy_from_slice(&surroundings.omega_0());
         }
-    }
-
-    #[inline(always)]
-    fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
-        self.omega_0 = surroundings.omega_0();
-        self.f_0 = surroundings.f_0();
-        self.east_0 = surroundings.east_0();
-    }
-}
-
-/// Conditions and shapes start at one of their unit, where no term divides by zero.
-#[cfg(feature = "catalogue")]
-impl<T: Real> ChartInputs<T> for CatalogueInputs<T> {
-    #[inline(always)]
-    fn unset() -> Self {
-        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        Self {
-            omega_0: [zero; 3],
-            f_0: [zero; 3],
-            east_0: [zero; 3],
-            field_0: [zero; 3],
-            conditions: [one; _],
-            shapes: [one; _],
+        if let Some(group) = self.group_mut("f_0") {
+            group.copy_from_slice(&surroundings.f_0());
         }
-    }
-
-    #[inline(always)]
-    fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
-        self.omega_0 = surroundings.omega_0();
-        self.f_0 = surroundings.f_0();
-        self.east_0 = surroundings.east_0();
-        self.field_0 = surroundings.field_0();
+        if let Some(group) = self.group_mut("east_0") {
+            group.copy_from_slice(&surroundings.east_0());
+        }
+        if let Some(group) = self.group_mut("field_0") {
+            group.copy_from_slice(&surroundings.field_0());
+        }
     }
 }

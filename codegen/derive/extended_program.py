@@ -72,6 +72,11 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
     )
 
 
+def added_parameters(effects: list[Effect]) -> list[Element]:
+    """The parameters after the drift coefficients, in the order in which a model has them."""
+    return _parameters(_output_first(effects)).elements[len(drift.elements):]
+
+
 def _forms(function: str) -> dict[str, str]:
     return {
         "value": function,

@@ -6,6 +6,7 @@
 from pathlib import Path
 
 import catalogue_program
+import model_file
 import oracle_program
 import platform_program
 import reference
@@ -23,3 +24,8 @@ def derive(output: Path) -> None:
     for program in programs:
         program.write(output / f"{program.name}.json")
     reference.write(programs, output / "reference.json")
+
+
+def derive_from(file: Path, name: str, output: Path) -> None:
+    """Writes the program `name` of a user's model file."""
+    model_file.program(file, name).write(output / f"{name}.json")

@@ -42,8 +42,8 @@ pub struct Header {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Path of the crate or module that has `Scalar`, `Model`, `RatesJacobian` and
-    /// `Element`: `gyrocal_scalar` unless told otherwise.
+    /// Path of the crate or module that has `Scalar`, `Model`, `NamedInputs`, `RatesJacobian`
+    /// and `Element`: `gyrocal_scalar` unless told otherwise.
     pub scalar_crate: String,
 }
 
@@ -157,8 +157,9 @@ fn imports(program: &Program, options: &Options) -> Result<TokenStream, Error> {
             .any(|word| parsed.segments[0].ident == word);
     let colon = (!is_rooted).then(|| quote!(::));
     let scalar = (!program.functions.is_empty()).then(|| quote!(, Scalar));
-    let names = match program.model {
-        Some(_) => quote!(Element, Model, RatesJacobian #scalar),
+    let names = match &program.model {
+        Some(model) if model.inputs.is_empty() => quote!(Element, Model, RatesJacobian #scalar),
+        Some(_) => quote!(Element, Model, NamedInputs, RatesJacobian #scalar),
         None => quote!(Element #scalar),
     };
     Ok(quote!(use #colon #tokens::{#names};))

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
-use gyrocal_codegen::build::{DECLARATION_FILE, Derivation, Error};
+use gyrocal_codegen::build::{DECLARATION_FILE, Derivation, Error, Variant};
 
 /// Writes or checks the files that a derivation generates.
 #[derive(Parser)]
@@ -15,6 +15,14 @@ struct Arguments {
     /// the directories above.
     #[arg(long, value_name = "DIRECTORY", default_value = ".")]
     derivation: PathBuf,
+
+    /// Not the derivation's own programs but the one that this file asks of it.
+    #[arg(long, value_name = "FILE", requires = "committed")]
+    file: Option<PathBuf>,
+
+    /// Directory of the committed copy of the module of --file.
+    #[arg(long, value_name = "DIRECTORY", requires = "file")]
+    committed: Option<PathBuf>,
 
     /// Print how long each stage took.
     #[arg(long, global = true)]
@@ -43,10 +51,19 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
-    let derivation = Derivation::open(find(&arguments.derivation))?;
+    let directory = find(&arguments.derivation);
+    let variant = match (&arguments.file, &arguments.committed) {
+        (Some(file), Some(committed)) => {
+            Some(Variant::open(&directory, file)?.committed(committed))
+        }
+        _ => None,
+    };
     let timings = match arguments.action {
         Action::Write => {
-            let written = derivation.write()?;
+            let written = match &variant {
+                Some(variant) => variant.write()?,
+                None => Derivation::open(&directory)?.write()?,
+            };
             let here = std::env::current_dir().unwrap_or_default();
             for path in &written.paths {
                 println!(
@@ -60,7 +77,10 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
             written.timings
         }
         Action::Check => {
-            let timings = derivation.check()?;
+            let timings = match &variant {
+                Some(variant) => variant.check()?,
+                None => Derivation::open(&directory)?.check()?,
+            };
             println!("every file is what the derivation gives");
             timings
         }

@@ -5,6 +5,7 @@ use clap::{ArgAction, Parser, Subcommand};
 use crate::allan::AllanArguments;
 use crate::calibrate::CalibrateArguments;
 use crate::diagnose::DiagnoseArguments;
+use crate::extend::ExtendArguments;
 use crate::import::ImportArguments;
 use crate::monte_carlo::MonteCarloArguments;
 use crate::simulate::SimulateArguments;
@@ -32,6 +33,7 @@ pub(crate) enum Command {
     Allan(AllanArguments),
     Calibrate(CalibrateArguments),
     Diagnose(DiagnoseArguments),
+    Extend(ExtendArguments),
     Import(ImportArguments),
     MonteCarlo(MonteCarloArguments),
     Simulate(SimulateArguments),

@@ -7,6 +7,7 @@ mod allan;
 mod calibrate;
 mod command;
 mod diagnose;
+mod extend;
 mod import;
 mod measured;
 mod monte_carlo;
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Command::Allan(arguments) => allan::run(arguments).map(Answer::from),
         Command::Calibrate(arguments) => calibrate::run(arguments).map(Answer::from),
         Command::Diagnose(arguments) => diagnose::run(arguments),
+        Command::Extend(arguments) => extend::run(arguments).map(Answer::from),
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments).map(Answer::from),
         Command::Import(arguments) => import::run(arguments).map(Answer::from),
         Command::Simulate(arguments) => simulate::run(arguments).map(Answer::from),

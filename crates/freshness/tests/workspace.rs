@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use gyrocal_codegen::build::{Settings, Variant};
 use gyrocal_freshness::{
-    Outcome, WorkspaceCopy, cargo, fresh_directory, run, snapshot, tools_only,
+    Outcome, WorkspaceCopy, cargo, fresh_directory, real_environments, run, snapshot, tools_only,
 };
 
 const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
@@ -196,6 +197,84 @@ fn an_edited_derivation_changes_the_compiled_dynamics() {
         warnings.contains("src/generated/platform.rs` is damaged"),
         "{warnings}"
     );
+}
+
+/// Prints what the catalogue makes of the term of docs/adding-a-term.md: its row, and the
+/// derivatives of the drift of gyro x by its two parameters, over its period.
+const LINE_PROBE: &str = r#"
+use gyrocal::generated::catalogue::{CatalogueInputs, PARAMETERS, conditions_index};
+use gyrocal::scalar::{Model, NamedInputs, RatesJacobian};
+use gyrocal::{Catalogue, EFFECTS};
+
+fn main() {
+    let row = EFFECTS.iter().find(|row| row.id == "gyro_x.line").unwrap();
+    println!("{} {} {}", row.kind, row.enters, row.states.join(" "));
+    let places: Vec<usize> = row.states.iter()
+        .map(|id| PARAMETERS.iter().position(|parameter| parameter.id == *id).unwrap())
+        .collect();
+    let mut inputs = CatalogueInputs::filled(1.0);
+    for part in 0..8 {
+        inputs.conditions[conditions_index::TIME_S] = 5.3 * 3600.0 * f64::from(part) / 8.0;
+        let mut parameters = vec![0.0; 3 * PARAMETERS.len()];
+        let mut jacobian = RatesJacobian {
+            moving: [[0.0; 3]; 3],
+            noise: [[0.0; 3]; 3],
+            parameters: &mut parameters,
+        };
+        let none = [0.0; PARAMETERS.len()];
+        Catalogue.rates_jacobian(&[0.0; 3], &none, &inputs, &mut jacobian);
+        let of = |rate: usize, place: usize| jacobian.parameters[rate * PARAMETERS.len() + place];
+        println!("{:e} {:e} {:e}", of(0, places[0]), of(0, places[1]), of(1, places[0]));
+    }
+}
+"#;
+
+#[test]
+fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
+    let (copy, _turn) = take_copy();
+    let page = copy.root.join("docs/adding-a-term.md");
+    let page = std::fs::read_to_string(page).unwrap().replace("\r\n", "\n");
+    let (_, entry) = page.split_once("```python\n").unwrap();
+    let (entry, _) = entry.split_once("```").unwrap();
+    copy.edit(
+        "codegen/derive/catalogue.py",
+        "\nEFFECTS = [\n",
+        &format!("\nEFFECTS = [\n{entry}"),
+    );
+    copy.add_probe(LINE_PROBE);
+    let mut command = quick_cargo(&copy, &target("target"), "run");
+    command.args(["--package", "probe", "--features", "gyrocal/catalogue"]);
+    let outcome = run(&mut command).succeeded();
+    assert!(outcome.stderr.contains("is stale"), "{}", outcome.stderr);
+    let mut lines = outcome.stdout.lines();
+    assert_eq!(
+        lines.next(),
+        Some("term drift gyro_x.line.sine gyro_x.line.cosine")
+    );
+    let deg_per_h = (1.0_f64 / 3600.0).to_radians();
+    for part in 0..8 {
+        let numbers = lines.next().unwrap().split(' ');
+        let numbers: Vec<f64> = numbers.map(|text| text.parse().unwrap()).collect();
+        let (sine, cosine) = (f64::from(part) * std::f64::consts::TAU / 8.0).sin_cos();
+        for (given, expected) in numbers.iter().zip([sine, cosine, 0.0]) {
+            // Numbers of 5e-6; a phase of up to 6 rad is right to some 1e-15.
+            let difference = (given - expected * deg_per_h).abs();
+            assert!(difference < 1e-14 * deg_per_h, "part {part}: {numbers:?}");
+        }
+    }
+
+    // A model of one's own can have it too.
+    let file = copy.root.join("with_line.model.toml");
+    let text = "schema_version = 1\neffects = [\"gyro_x.line\"]\n";
+    std::fs::write(&file, text).unwrap();
+    let mut settings = Settings::from_env();
+    settings.environments = Some(real_environments());
+    settings.offline = false;
+    let out_dir = fresh_directory(Path::new(SCRATCH).join("with-line"));
+    let variant = Variant::open(copy.derivation(), &file).unwrap();
+    variant.with_settings(settings).build(&out_dir).unwrap();
+    let module = std::fs::read_to_string(out_dir.join("with_line.rs")).unwrap();
+    assert!(module.contains("pub const GYRO_X_LINE_COSINE: usize = 10;"));
 }
 
 /// Two builds with directories of their own (one of them for a named target) that need the

@@ -58,6 +58,7 @@ mod error;
 mod fields;
 mod header;
 mod manifest;
+mod model_file;
 mod output;
 mod record;
 mod report;
@@ -74,6 +75,7 @@ pub use diagnosis_report::{
 };
 pub use error::{Error, InputError, InputErrorKind};
 pub use manifest::{Input, Manifest};
+pub use model_file::{KnownEffect, ModelFile, ParameterEstimate};
 pub use output::{Outputs, write_json, write_whole};
 pub use record::Record;
 pub use report::{
@@ -82,4 +84,5 @@ pub use report::{
     SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
 };
 pub use source::SourceText;
+pub use suggest::nearest_few;
 pub use tables::{Bound, Document, Table};

@@ -11,6 +11,18 @@ pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
         .map(|(_, name)| name)
 }
 
+/// The known names that take the fewest single-character edits, the fewest first.
+#[must_use]
+pub fn nearest_few<'a>(typed: &str, known: &[&'a str], count: usize) -> Vec<&'a str> {
+    let typed = typed.to_lowercase();
+    let mut all: Vec<(usize, &str)> = known
+        .iter()
+        .map(|name| (edits(&typed, name), *name))
+        .collect();
+    all.sort();
+    all.into_iter().take(count).map(|(_, name)| name).collect()
+}
+
 /// A list of names for a message: `a`, `b` or `c`.
 pub(crate) fn any_of(names: &[&str]) -> String {
     match names {

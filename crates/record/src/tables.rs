@@ -40,6 +40,29 @@ pub struct Table<'a> {
     span: Range<usize>,
 }
 
+/// A text in a TOML file.
+#[derive(Debug)]
+pub(crate) struct Text<'a> {
+    source: &'a SourceText,
+    /// The text.
+    pub(crate) text: &'a str,
+    span: Range<usize>,
+}
+
+impl Text<'_> {
+    /// An error at the place of the text.
+    pub(crate) fn error(
+        &self,
+        kind: InputErrorKind,
+        expected: &str,
+        advice: impl Into<String>,
+    ) -> Error {
+        let found = quoted(self.text);
+        self.source
+            .error(kind, self.span.clone(), found, expected, advice)
+    }
+}
+
 impl Document {
     /// Reads a TOML file.
     ///
@@ -237,6 +260,28 @@ impl<'a> Table<'a> {
             .and_then(|integer| i64::from_str_radix(integer.as_str(), integer.radix()).ok())
             .and_then(|integer| u64::try_from(integer).ok())
             .ok_or_else(|| self.wrong_type(value, EXPECTED))
+    }
+
+    /// Texts in a list that is not empty, each with its place.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if the list is absent, empty or anything else.
+    pub(crate) fn texts(&self, key: &str, expected: &str) -> Result<Vec<Text<'a>>, Error> {
+        let Some((_, value)) = self.entry(key) else {
+            return Err(self.missing(&format!("`{key} = ` {expected}"), &[]));
+        };
+        let items = value.get_ref().as_array().filter(|items| !items.is_empty());
+        let items = items.ok_or_else(|| self.wrong_type(value, expected))?;
+        let text = |item: &'a Spanned<DeValue<'a>>| match item.get_ref().as_str() {
+            Some(text) => Ok(Text {
+                source: self.source,
+                text,
+                span: item.span(),
+            }),
+            None => Err(self.wrong_type(item, expected)),
+        };
+        items.iter().map(text).collect()
     }
 
     /// Whether the value of a key is this word.

@@ -22,6 +22,6 @@ mod trigonometry;
 
 pub use exponential::{exp_f32, exp_f64};
 pub use lanes::Lanes;
-pub use model::{Element, Model, RatesJacobian, Recentre};
+pub use model::{Element, Model, NamedInputs, RatesJacobian, Recentre};
 pub use scalar::{Real, Scalar};
 pub use trigonometry::{sin_cos_f32, sin_cos_f64};

@@ -130,6 +130,17 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
     }
 }
 
+/// Inputs of a generated model by the names of their groups, for code that sets those that it
+/// knows, whatever a model takes beside them.
+pub trait NamedInputs<T>: Copy {
+    /// Inputs that are all of one value.
+    #[must_use]
+    fn filled(value: T) -> Self;
+
+    /// The numbers of a group; `None` if the model takes no group of this name.
+    fn group_mut(&mut self, name: &str) -> Option<&mut [T]>;
+}
+
 /// A model whose moving states are coordinates in a chart that can be moved.
 ///
 /// The defaults are those of a flat state space: no chart, corrections are added.

@@ -26,7 +26,8 @@ pub struct Stale {
 pub enum Reason {
     /// There is no such file.
     Missing,
-    /// It was generated from other inputs: the derivation or the emitter was edited.
+    /// It was generated from other inputs: the derivation, the file of a variant or the emitter
+    /// was edited.
     OtherInputs,
     /// Its text is not the one that was generated.
     Edited,
@@ -42,7 +43,7 @@ impl fmt::Display for Stale {
         write!(f, "`{}` ", shown(&self.path).display())?;
         match self.reason {
             Reason::Missing => write!(f, "is missing"),
-            Reason::OtherInputs => write!(f, "is stale: the derivation or the emitter was edited"),
+            Reason::OtherInputs => write!(f, "is stale: what it was derived from was edited"),
             Reason::Edited => write!(f, "is damaged: its text is not the one that was generated"),
             Reason::Differs { line } => {
                 write!(

@@ -26,6 +26,16 @@ pub(super) struct Declaration {
     /// Files of evaluated numbers.
     #[serde(default)]
     pub(super) numbers: Vec<NumbersDeclaration>,
+    /// What is otherwise for files of other packages.
+    #[serde(default)]
+    pub(super) variants: VariantsDeclaration,
+}
+
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct VariantsDeclaration {
+    /// Where those packages find the traits that generated code names.
+    pub(super) scalar_crate: Option<String>,
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -46,8 +56,8 @@ pub(super) struct ModuleDeclaration {
     pub(super) program: String,
     /// Committed Rust file.
     pub(super) rust: String,
-    /// Committed program.
-    pub(super) json: String,
+    /// Committed program, if it is committed.
+    pub(super) json: Option<String>,
 }
 
 #[derive(Debug, Clone, Deserialize)]

@@ -8,6 +8,7 @@ use super::outcome::Outcome;
 use super::run::{Derived, Timings, derive};
 use super::settings::{Settings, target_directory};
 use super::sources;
+use super::variant::Request;
 
 /// A derivation directory: a script that writes programs, and what it declares.
 #[derive(Debug, Clone)]
@@ -17,6 +18,8 @@ pub struct Derivation {
     pub(super) lock: Lock,
     pub(super) fingerprint: String,
     pub(super) settings: Settings,
+    /// What a file of another package asks for, instead of all programs.
+    pub(super) request: Option<Request>,
 }
 
 /// What [`Derivation::write`] did.
@@ -54,6 +57,7 @@ impl Derivation {
         Ok(Self {
             fingerprint: fingerprint(inputs),
             settings: Settings::from_env(),
+            request: None,
             directory,
             declaration,
             lock,
@@ -214,10 +218,9 @@ impl Derivation {
             .iter()
             .zip(&derived.modules)
             .flat_map(|(declared, derived)| {
-                [
-                    (self.resolve(&declared.rust), derived.rust.as_str()),
-                    (self.resolve(&declared.json), derived.json.as_str()),
-                ]
+                let json = declared.json.as_ref();
+                let json = json.map(|json| (self.resolve(json), derived.json.as_str()));
+                std::iter::once((self.resolve(&declared.rust), derived.rust.as_str())).chain(json)
             })
     }
 
@@ -263,6 +266,9 @@ impl Derivation {
 
     /// A declared path, with `..` taken away where it follows a name.
     fn resolve(&self, declared: &str) -> PathBuf {
+        if Path::new(declared).is_absolute() {
+            return PathBuf::from(declared);
+        }
         let mut path = self.directory.clone();
         for part in declared.split('/') {
             match part {

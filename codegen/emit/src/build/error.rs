@@ -18,6 +18,19 @@ pub enum Error {
         reason: String,
     },
 
+    /// A build script asked for the derivation of a dependency that cargo does not tell of.
+    #[error(
+        "`{variable}` is not set: found no dependency that tells where its derivation is\n\
+         To fix it, add the package with `links = \"{links}\"` to [dependencies] of this package \
+         (not only to [build-dependencies]) and call this from build.rs"
+    )]
+    NoDependency {
+        /// The variable that cargo would set.
+        variable: String,
+        /// The key `links` of the dependency.
+        links: String,
+    },
+
     /// A file or directory could not be read or written.
     #[error("cannot {action} `{}`: {source}", path.display())]
     Io {

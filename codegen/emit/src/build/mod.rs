@@ -57,6 +57,38 @@
 //! pub mod pendulum;
 //! ```
 //!
+//! # Variants
+//!
+//! A package that depends on one with a derivation may ask for a program of its own: a
+//! [`Variant`], of a file that it holds.
+//!
+//! ```no_run
+//! use gyrocal_codegen::build::{Error, Outcome, Variant};
+//!
+//! fn run() -> Result<Outcome, Error> {
+//!     let out_dir = std::env::var_os("OUT_DIR").unwrap_or_default();
+//!     Variant::of_dependency("the-links-key", "extended.model.toml")?
+//!         .committed("src/generated")
+//!         .build(out_dir)
+//! }
+//!
+//! fn main() {
+//!     match run() {
+//!         Ok(outcome) => print!("{}", outcome.cargo_lines()),
+//!         Err(error) => {
+//!             eprintln!("{error}");
+//!             std::process::exit(1);
+//!         }
+//!     }
+//! }
+//! ```
+//!
+//! The module is then in `OUT_DIR`, derived or copied:
+//!
+//! ```ignore
+//! pub mod extended { include!(concat!(env!("OUT_DIR"), "/extended.rs")); }
+//! ```
+//!
 //! # Environment
 //!
 //! CasADi runs in a virtual environment of its own, made once for a lock file and a
@@ -68,6 +100,7 @@
 //! |---|---|
 //! | `GYROCAL_PYTHON` | interpreter to use; otherwise the newest of `PATH`. One that has the pinned CasADi is used as it is, without an environment |
 //! | `GYROCAL_OFFLINE`, `CARGO_NET_OFFLINE` | `1` or `true`: never use the network. (Cargo does not tell build scripts of `--offline`) |
+//! | `GYROCAL_CODEGEN_WRITE` | `1` or `true`: a build writes stale committed copies of variants anew |
 //! | `GYROCAL_CODEGEN_ENV_DIR` | directory of the environments, for example one that continuous integration caches |
 //!
 //! `PYTHON*` and `PIP_*` variables of the caller are not passed on: they could change what
@@ -94,6 +127,7 @@ mod python;
 mod run;
 mod settings;
 mod sources;
+mod variant;
 
 pub use committed::{Reason, Stale};
 pub use declaration::DECLARATION_FILE;
@@ -103,5 +137,6 @@ pub use outcome::Outcome;
 pub use run::{Derived, DerivedModule, Timings};
 pub use settings::{
     CARGO_OFFLINE_VARIABLE, ENVIRONMENTS_VARIABLE, OFFLINE_VARIABLE, PYTHON_VARIABLE, Settings,
-    target_directory,
+    WRITE_VARIABLE, target_directory,
 };
+pub use variant::Variant;

@@ -1,10 +1,10 @@
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::committed::Stale;
 use super::derivation::Derivation;
 use super::run::Timings;
-use super::settings::VARIABLES;
+use super::settings::{VARIABLES, WRITE_VARIABLE};
 
 /// What [`Derivation::build`](super::Derivation::build) did.
 #[derive(Debug, Clone)]
@@ -48,6 +48,20 @@ impl Outcome {
         }
     }
 
+    /// What became of the module of a file that has no committed copy.
+    pub(super) fn of_file(derivation: &Derivation, file: &Path, timings: Option<Timings>) -> Self {
+        Self {
+            timings,
+            ..Self::fresh(derivation)
+        }
+        .watching(file)
+    }
+
+    pub(super) fn watching(mut self, file: &Path) -> Self {
+        self.inputs.push(file.to_owned());
+        self
+    }
+
     /// The committed files are used.
     #[must_use]
     pub fn is_fresh(&self) -> bool {
@@ -59,6 +73,21 @@ impl Outcome {
     #[must_use]
     pub fn cargo_instructions(&self, cfg: &str) -> String {
         let mut lines = format!("cargo::rustc-check-cfg=cfg({cfg})\n");
+        if !self.is_fresh() {
+            let _ = writeln!(lines, "cargo::rustc-cfg={cfg}");
+        }
+        lines + &self.lines()
+    }
+
+    /// The lines for cargo where the module is in `OUT_DIR` in any case, as that of a
+    /// [`Variant`](super::Variant) is: what to watch, and a warning for each stale file.
+    #[must_use]
+    pub fn cargo_lines(&self) -> String {
+        format!("cargo::rerun-if-env-changed={WRITE_VARIABLE}\n") + &self.lines()
+    }
+
+    fn lines(&self) -> String {
+        let mut lines = String::new();
         for path in &self.inputs {
             let _ = writeln!(lines, "cargo::rerun-if-changed={}", path.display());
         }
@@ -68,7 +97,6 @@ impl Outcome {
         for name in VARIABLES {
             let _ = writeln!(lines, "cargo::rerun-if-env-changed={name}");
         }
-        let _ = writeln!(lines, "cargo::rustc-cfg={cfg}");
         for stale in &self.stale {
             let _ = writeln!(
                 lines,

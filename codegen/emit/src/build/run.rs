@@ -12,7 +12,7 @@ use super::error::{Error, at, tail};
 use super::fingerprint::normalised;
 use super::process::python;
 use super::sources::write_exporter;
-use crate::{Header, Program, emit_module};
+use crate::{Header, Options, Program, emit_module_with};
 
 /// Exit code with which `run.py` refuses a derivation that no program can hold.
 const REFUSED: i32 = 3;
@@ -94,7 +94,8 @@ pub(super) fn derive(derivation: &Derivation, environments: &Path) -> Result<Der
         .into_iter()
         .map(|(name, json)| {
             let program = Program::from_json(&json, &format!("{name}.json"))?;
-            let rust = sealed(&emit_module(&program, &header(derivation))?);
+            let rust = emit_module_with(&program, &header(derivation), &options(derivation))?;
+            let rust = sealed(&rust);
             Ok(DerivedModule {
                 program: name.clone(),
                 json,
@@ -123,16 +124,27 @@ fn header(derivation: &Derivation) -> Header {
     }
 }
 
+fn options(derivation: &Derivation) -> Options {
+    let declared = &derivation.declaration.variants.scalar_crate;
+    match (&derivation.request, declared) {
+        (Some(_), Some(path)) => Options {
+            scalar_crate: path.clone(),
+        },
+        _ => Options::default(),
+    }
+}
+
 /// Runs `run.py` and returns the directory that holds what the derivation wrote.
 fn run_script(derivation: &Derivation, interpreter: &Path, work: &Path) -> Result<PathBuf, Error> {
     write_exporter(work)?;
     let output = work.join("output");
-    let result = python(interpreter)
-        .arg(work.join("run.py"))
-        .arg(&derivation.directory)
-        .arg(&output)
-        .output()
-        .map_err(at("start", interpreter))?;
+    let mut command = python(interpreter);
+    command.arg(work.join("run.py"));
+    command.arg(&derivation.directory).arg(&output);
+    if let Some(request) = &derivation.request {
+        command.arg(&request.file).arg(&request.program);
+    }
+    let result = command.output().map_err(at("start", interpreter))?;
     let source_name = derivation.declaration.source.clone();
     if result.status.success() {
         return Ok(output);

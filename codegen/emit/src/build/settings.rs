@@ -9,6 +9,9 @@ pub const PYTHON_VARIABLE: &str = "GYROCAL_PYTHON";
 pub const OFFLINE_VARIABLE: &str = "GYROCAL_OFFLINE";
 /// Directory that holds the private environments, for caches of continuous integration.
 pub const ENVIRONMENTS_VARIABLE: &str = "GYROCAL_CODEGEN_ENV_DIR";
+/// `1` or `true`: a build writes the committed copy of a [`Variant`](super::Variant) anew if it
+/// is stale.
+pub const WRITE_VARIABLE: &str = "GYROCAL_CODEGEN_WRITE";
 /// Cargo's own way of saying that the network must not be used.
 pub const CARGO_OFFLINE_VARIABLE: &str = "CARGO_NET_OFFLINE";
 
@@ -31,6 +34,8 @@ pub struct Settings {
     /// Directory of the private environments (`GYROCAL_CODEGEN_ENV_DIR`); otherwise
     /// `gyrocal-codegen` in the target directory.
     pub environments: Option<PathBuf>,
+    /// A build writes stale committed copies of variants anew (`GYROCAL_CODEGEN_WRITE`).
+    pub write: bool,
 }
 
 impl Settings {
@@ -43,6 +48,7 @@ impl Settings {
             python: value(PYTHON_VARIABLE),
             offline: yes(OFFLINE_VARIABLE) || yes(CARGO_OFFLINE_VARIABLE),
             environments: value(ENVIRONMENTS_VARIABLE).map(PathBuf::from),
+            write: yes(WRITE_VARIABLE),
         }
     }
 }

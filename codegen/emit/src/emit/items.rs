@@ -11,6 +11,7 @@ const USED_TYPES: &[&str] = &[
     "T",
     "Scalar",
     "Model",
+    "NamedInputs",
     "Element",
     "RatesJacobian",
     "Self",

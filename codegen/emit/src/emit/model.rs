@@ -137,9 +137,9 @@ fn constants(parts: &Parts<'_>) -> TokenStream {
     }
 }
 
-fn inputs(parts: &Parts<'_>, items: &mut Items<'_>) -> Result<Option<TokenStream>, Error> {
+fn inputs(parts: &Parts<'_>, items: &mut Items<'_>) -> Result<Vec<TokenStream>, Error> {
     if parts.model.inputs.is_empty() {
-        return Ok(None);
+        return Ok(Vec::new());
     }
     let place = format!("model `{}`, inputs", parts.model.name);
     let name = items.claim(
@@ -161,13 +161,33 @@ fn inputs(parts: &Parts<'_>, items: &mut Items<'_>) -> Result<Option<TokenStream
         let (field, length) = (ident(&group.name), integer(group.elements.len()));
         quote!(#doc pub #field: [T; #length],)
     });
-    Ok(Some(quote! {
-        #doc
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #name<T> {
-            #(#fields)*
-        }
-    }))
+    let names: Vec<_> = parts.inputs().map(|group| ident(&group.name)).collect();
+    let texts = parts.inputs().map(|group| &group.name);
+    Ok(vec![
+        quote! {
+            #doc
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct #name<T> {
+                #(#fields)*
+            }
+        },
+        quote! {
+            impl<T: Copy> NamedInputs<T> for #name<T> {
+                #[inline(always)]
+                fn filled(value: T) -> Self {
+                    Self { #(#names: [value; _]),* }
+                }
+
+                #[inline(always)]
+                fn group_mut(&mut self, name: &str) -> Option<&mut [T]> {
+                    match name {
+                        #(#texts => Some(&mut self.#names),)*
+                        _ => None,
+                    }
+                }
+            }
+        },
+    ])
 }
 
 fn state(parts: &Parts<'_>, items: &mut Items<'_>) -> Result<Vec<TokenStream>, Error> {

@@ -6,6 +6,7 @@ mod allan;
 mod bad_input;
 mod calibrate;
 mod diagnose;
+mod extend;
 mod folder;
 mod import;
 mod monte_carlo;

@@ -4,7 +4,7 @@
 // Rebuild: cargo test
 // Formatted by prettyplease: put `#[rustfmt::skip]` on the module that holds this file.
 
-use ::gyrocal_scalar::{Element, Model, RatesJacobian, Scalar};
+use ::gyrocal_scalar::{Element, Model, NamedInputs, RatesJacobian, Scalar};
 
 /// State of the pendulum.
 ///
@@ -794,6 +794,20 @@ impl Pendulum {
 pub struct PendulumInputs<T> {
     /// Field of gravity \[m/s^2\].
     pub field: [T; 1],
+}
+
+impl<T: Copy> NamedInputs<T> for PendulumInputs<T> {
+    #[inline(always)]
+    fn filled(value: T) -> Self {
+        Self { field: [value; _] }
+    }
+    #[inline(always)]
+    fn group_mut(&mut self, name: &str) -> Option<&mut [T]> {
+        match name {
+            "field" => Some(&mut self.field),
+            _ => None,
+        }
+    }
 }
 
 /// The state of [`Pendulum`]: moving states, then parameters.

@@ -1,0 +1,131 @@
+//! `gyrocal extend`: what a diagnosis found in, the model file of an extended filter out.
+
+mod diagnosis;
+mod effects;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_record::{Manifest, Outputs, SCHEMA_VERSION};
+use serde::Serialize;
+
+use crate::Failure;
+use crate::outputs::{manifest, refuse_overlap};
+use diagnosis::Diagnosis;
+use effects::{Extension, known, of_diagnosis, of_list};
+
+/// Write the model file of an extended filter.
+///
+/// Takes what `gyrocal diagnose --json` found, or a list of effects of the catalogue. A package
+/// that embeds a filter derives its model from the file when it is built: docs/extending.md.
+#[derive(Debug, Args)]
+pub(crate) struct ExtendArguments {
+    /// The diagnosis (JSON), as `gyrocal diagnose --json` writes it.
+    #[arg(required_unless_present = "effects", conflicts_with = "effects")]
+    diagnosis: Option<PathBuf>,
+    /// Effects of the catalogue instead of a diagnosis.
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
+    effects: Option<Vec<String>>,
+    /// The model file to write (TOML); the model is called as it is up to its first dot.
+    #[arg(long, value_name = "NAME.model.toml")]
+    out: PathBuf,
+    /// The result to write for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+}
+
+/// The result for programs.
+#[derive(Debug, Serialize)]
+struct ExtensionReport {
+    schema_version: u32,
+    manifest: Manifest,
+    effects: Vec<String>,
+    left_out: Vec<LeftOut>,
+}
+
+/// A finding that is in no model file.
+#[derive(Debug, Serialize)]
+struct LeftOut {
+    effect: String,
+    why: String,
+}
+
+/// Runs the command; returns what is to be said on stdout.
+pub(crate) fn run(arguments: &ExtendArguments) -> Result<String, Failure> {
+    let inputs: Vec<&Path> = arguments.diagnosis.iter().map(PathBuf::as_path).collect();
+    refuse_overlap(
+        &inputs,
+        &[
+            ("--out", Some(&arguments.out)),
+            ("--json", arguments.json.as_deref()),
+        ],
+    )?;
+    let extension = match &arguments.diagnosis {
+        Some(path) => of_diagnosis(&Diagnosis::read(path)?, &path.display().to_string()),
+        None => of_list(arguments.effects.as_deref().unwrap_or_default()),
+    }
+    .map_err(Failure::Work)?;
+    let mut outputs = Outputs::new();
+    let text = extension.model.to_toml(&arguments.out, &known())?;
+    outputs.stage(&arguments.out, text.as_bytes())?;
+    if let Some(path) = &arguments.json {
+        outputs.stage_json(path, &report(&extension, &inputs)?)?;
+    }
+    outputs.commit()?;
+    Ok(summary(arguments, &extension))
+}
+
+fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Failure> {
+    let left_out = extension.left_out.iter();
+    Ok(ExtensionReport {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest(MODEL_HASH, 0, inputs)?,
+        effects: extension.model.effects.clone(),
+        left_out: left_out
+            .map(|(effect, why)| LeftOut {
+                effect: effect.clone(),
+                why: why.clone(),
+            })
+            .collect(),
+    })
+}
+
+fn summary(arguments: &ExtendArguments, extension: &Extension) -> String {
+    let model = &extension.model;
+    let mut text = format!(
+        "{}: the nine drift coefficients and {}\n",
+        arguments.out.display(),
+        model.effects.join(", ")
+    );
+    for estimate in &model.estimates {
+        let _ = writeln!(
+            text,
+            "  {} starts at {:.3e} ± {:.1e}",
+            estimate.parameter, estimate.value, estimate.sigma
+        );
+    }
+    for (id, value) in &model.shapes {
+        let _ = writeln!(text, "  {id} is {value}");
+    }
+    let listed = known();
+    let listed = listed
+        .iter()
+        .filter(|k| model.effects.iter().any(|id| id == k.id));
+    for id in listed.flat_map(|effect| effect.shapes) {
+        if !model.shapes.iter().any(|(given, _)| given == id) {
+            let _ = writeln!(
+                text,
+                "  {id} is an input of the model; give it under [shapes] to build it in"
+            );
+        }
+    }
+    for (id, others) in &extension.equivalents {
+        let _ = writeln!(text, "  no record tells {id} from {}", others.join(", "));
+    }
+    for (id, why) in &extension.left_out {
+        let _ = writeln!(text, "  left out: {id} {why}");
+    }
+    text
+}

@@ -1,0 +1,160 @@
+//! Which effects a model file gets, and which it cannot have.
+
+use gyrocal::{EFFECTS, EffectRow};
+use gyrocal_record::{KnownEffect, ModelFile, ParameterEstimate};
+use miette::{Report, miette};
+
+use super::diagnosis::Diagnosis;
+
+/// A model file and what is to be said of how it came about.
+#[derive(Debug)]
+pub(super) struct Extension {
+    pub(super) model: ModelFile,
+    /// What was found and is in no model file, each with the reason as a half sentence.
+    pub(super) left_out: Vec<(String, String)>,
+    /// What is in it with what no record can tell it from.
+    pub(super) equivalents: Vec<(String, Vec<String>)>,
+}
+
+/// What a model file may name.
+pub(super) fn known() -> Vec<KnownEffect<'static>> {
+    EFFECTS.iter().map(known_effect).collect()
+}
+
+fn known_effect(row: &'static EffectRow) -> KnownEffect<'static> {
+    KnownEffect {
+        id: row.id,
+        kind: row.kind,
+        states: row.states,
+        shapes: row.shapes,
+    }
+}
+
+/// The model of what a diagnosis found.
+pub(super) fn of_diagnosis(diagnosis: &Diagnosis, name: &str) -> Result<Extension, Report> {
+    let mut extension = Extension {
+        model: ModelFile::default(),
+        left_out: Vec::new(),
+        equivalents: Vec::new(),
+    };
+    for finding in &diagnosis.findings {
+        let row = row(&finding.effect).map_err(|report| report.wrap_err(name.to_owned()))?;
+        if let Some(objection) = known_effect(row).objection() {
+            let left_out = (finding.effect.clone(), objection.to_owned());
+            extension.left_out.push(left_out);
+            continue;
+        }
+        let model = &mut extension.model;
+        if model.effects.contains(&finding.effect) {
+            let again = "was found once more, and a model has it once";
+            extension
+                .left_out
+                .push((finding.effect.clone(), again.to_owned()));
+            continue;
+        }
+        model.effects.push(finding.effect.clone());
+        for found in &finding.parameters {
+            let place = row.parameters.iter().position(|name| *name == found.name);
+            match (place, found.sigma) {
+                (Some(place), Some(sigma)) if place < row.states.len() => {
+                    model.estimates.push(ParameterEstimate {
+                        parameter: row.states[place].to_owned(),
+                        value: found.estimate,
+                        sigma,
+                    });
+                }
+                (Some(place), _) if place >= row.states.len() => {
+                    let id = row.shapes[place - row.states.len()];
+                    model.shapes.push((id.to_owned(), found.estimate));
+                }
+                // Without a sigma it is no start of a filter.
+                (Some(_), _) => {}
+                (None, _) => {
+                    return Err(miette!(
+                        help = "write the diagnosis again with this version of the program",
+                        "{name}: found the parameter `{}` of `{}`, expected {}",
+                        found.name,
+                        finding.effect,
+                        row.parameters.join(", ")
+                    ));
+                }
+            }
+        }
+        if !finding.equivalents.is_empty() {
+            let others = finding.equivalents.iter();
+            let others = others.map(|other| other.effect.clone()).collect();
+            extension.equivalents.push((finding.effect.clone(), others));
+        }
+    }
+    if extension.model.effects.is_empty() {
+        return Err(nothing(diagnosis, &extension, name));
+    }
+    Ok(extension)
+}
+
+/// The model of a list of effects.
+pub(super) fn of_list(ids: &[String]) -> Result<Extension, Report> {
+    let mut model = ModelFile::default();
+    let mut equivalents = Vec::new();
+    for id in ids {
+        let row = row(id)?;
+        if let Some(objection) = known_effect(row).objection() {
+            return Err(miette!("--effects: `{id}` {objection}"));
+        }
+        if model.effects.contains(id) {
+            return Err(miette!(
+                "--effects: found `{id}` twice, expected each effect once"
+            ));
+        }
+        let same = |other: &&String| row.equivalents.contains(&other.as_str());
+        if let Some(other) = model.effects.iter().find(same) {
+            return Err(miette!(
+                help = "keep one of them",
+                "--effects: no record whatever tells `{id}` from `{other}`"
+            ));
+        }
+        if !row.equivalents.is_empty() {
+            let others = row.equivalents.iter().map(|&other| other.to_owned());
+            equivalents.push((id.clone(), others.collect()));
+        }
+        model.effects.push(id.clone());
+    }
+    Ok(Extension {
+        model,
+        left_out: Vec::new(),
+        equivalents,
+    })
+}
+
+fn nothing(diagnosis: &Diagnosis, extension: &Extension, name: &str) -> Report {
+    if extension.left_out.is_empty() {
+        let help = match diagnosis.verdict.as_str() {
+            "unexplained" => "what the catalogue lacks is added to it first: docs/adding-a-term.md",
+            _ => "the nine coefficients explain the record: the model needs no extension",
+        };
+        return miette!(
+            help = help,
+            "{name}: found the verdict `{}` and no finding, expected an effect to extend the \
+             model by",
+            diagnosis.verdict
+        );
+    }
+    let reasons = extension.left_out.iter();
+    let reasons: Vec<String> = reasons.map(|(id, why)| format!("`{id}` {why}")).collect();
+    miette!(
+        help = reasons.join("\n"),
+        "{name}: found nothing that is a term of the model, expected an effect to extend it by"
+    )
+}
+
+fn row(id: &str) -> Result<&'static EffectRow, Report> {
+    EFFECTS.iter().find(|row| row.id == id).ok_or_else(|| {
+        let terms = EFFECTS.iter().filter(|row| row.kind == "term");
+        let terms: Vec<&str> = terms.map(|row| row.id).collect();
+        let near = gyrocal_record::nearest_few(id, &terms, 3).join("`, `");
+        miette!(
+            help = format!("the nearest are `{near}`"),
+            "found `{id}`, expected the id of an effect"
+        )
+    })
+}

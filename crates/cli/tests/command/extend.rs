@@ -1,0 +1,184 @@
+//! `gyrocal extend`: from findings, or a list of effects, to a model file.
+
+use serde_json::{Value, json};
+
+use crate::folder::Folder;
+
+const MODEL: [&str; 4] = ["extend", "d.json", "--out", "extended.model.toml"];
+
+fn finding(effect: &str, parameters: &[(&str, f64)]) -> Value {
+    let parameters = parameters.iter().map(|(name, estimate)| {
+        json!({ "name": name, "estimate": estimate, "sigma": 1e-4, "unit": "?" })
+    });
+    json!({
+        "effect": effect,
+        "parameters": parameters.collect::<Vec<_>>(),
+        "z": 18.9, "p_value": 1e-12, "coverage": 0.95,
+        "rivals": [], "equivalents": []
+    })
+}
+
+/// A result of `gyrocal diagnose --json`.
+fn diagnosis(verdict: &str, findings: &[Value]) -> String {
+    let result = json!({
+        "schema_version": 1,
+        "manifest": { "program": "gyrocal" },
+        "verdict": verdict,
+        "false_alarm_probability": 0.01,
+        "findings": findings,
+        "gain": null,
+        "remainder": { "verdict": "white", "p_value": 0.4, "description": "" },
+        "cannot_tell": []
+    });
+    serde_json::to_string_pretty(&result).unwrap()
+}
+
+/// The message for this diagnosis.
+fn refused(text: &str) -> String {
+    let folder = Folder::new();
+    folder.put("d.json", text);
+    folder.fail(&MODEL)
+}
+
+#[track_caller]
+fn assert_says(said: &str, message: &str) {
+    assert!(said.contains(message), "{message}\nis not in\n{said}");
+}
+
+#[test]
+fn terms_that_were_found_are_in_the_model_and_the_rest_is_explained() {
+    let folder = Folder::new();
+    let findings = [
+        finding("accel_x.noise", &[("ratio", 1.4)]),
+        finding("gyro_y.g_z", &[("size", 0.05)]),
+        finding("gyro_x.warmup", &[("size", 0.1), ("time_constant_h", 3.5)]),
+        finding("platform.knock", &[("x", 0.1), ("onset_s", 7200.0)]),
+    ];
+    folder.put("d.json", diagnosis("effects-found", &findings));
+    let arguments: Vec<&str> = MODEL.into_iter().chain(["--json", "o.json"]).collect();
+    let said = folder.succeed(&arguments);
+    assert_eq!(
+        folder.text("extended.model.toml"),
+        "# What a model has beside the nine drift coefficients; docs/extending.md.\n\
+         schema_version = 1\n\
+         effects = [\"gyro_y.g_z\", \"gyro_x.warmup\"]\n\
+         \n\
+         # built into the model; without them they are inputs of it\n\
+         [shapes]\n\
+         \"gyro_x.warmup.time_constant_h\" = 3.5\n\
+         \n\
+         # where filters start\n\
+         [estimates]\n\
+         \"gyro_y.g_z\" = { value = 0.05, sigma = 0.0001 }\n\
+         \"gyro_x.warmup\" = { value = 0.1, sigma = 0.0001 }\n"
+    );
+    assert_says(&said, "gyro_y.g_z starts at 5.000e-2 ± 1.0e-4");
+    assert_says(&said, "left out: accel_x.noise is noise and no term");
+    assert_says(
+        &said,
+        "left out: platform.knock is a matter of the attitude",
+    );
+    let report: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_eq!(report["effects"], json!(["gyro_y.g_z", "gyro_x.warmup"]));
+    assert_eq!(report["left_out"][1]["effect"], "platform.knock");
+    assert_eq!(report["manifest"]["inputs"][0]["path"], "d.json");
+}
+
+#[test]
+fn a_list_of_effects_is_a_model_without_estimates() {
+    let folder = Folder::new();
+    let said = folder.succeed(&[
+        "extend",
+        "--effects",
+        "gyro_z.step,gyro_x.g_yy",
+        "--out",
+        "m.model.toml",
+    ]);
+    assert_says(
+        &folder.text("m.model.toml"),
+        "effects = [\"gyro_z.step\", \"gyro_x.g_yy\"]\n",
+    );
+    assert_says(&said, "gyro_z.step.onset_s is an input of the model");
+    assert_says(&said, "no record tells gyro_x.g_yy from gyro_x.g_zz");
+}
+
+#[test]
+fn what_gives_no_model_says_why() {
+    assert_says(&refused(&diagnosis("clean", &[])), "the verdict `clean`");
+    assert_says(
+        &refused(&diagnosis("unexplained", &[])),
+        "docs/adding-a-term.md",
+    );
+    let noise = finding("accel_x.noise", &[("ratio", 1.4)]);
+    let said = refused(&diagnosis("effects-found", &[noise]));
+    assert_says(&said, "d.json: found nothing that is a term of the model");
+    assert_says(&said, "`accel_x.noise` is noise and no term");
+    let unknown = finding("gyro_y.gz", &[("size", 0.05)]);
+    let said = refused(&diagnosis("effects-found", &[unknown]));
+    assert_says(&said, "the nearest are `gyro_y.g_z`");
+    let other = finding("gyro_y.g_z", &[("length", 0.05)]);
+    let said = refused(&diagnosis("effects-found", &[other]));
+    assert_says(
+        &said,
+        "the parameter `length` of `gyro_y.g_z`, expected size",
+    );
+}
+
+#[test]
+fn a_file_that_is_no_diagnosis_is_shown_where_it_is_wrong() {
+    let good = diagnosis("clean", &[]);
+    let said = refused(&good.replace("\"findings\": []", "\"findings\": 3"));
+    // Fields are written in the order of the alphabet: line 4 has the findings.
+    assert_says(&said, "d.json:4:");
+    assert_says(&said, "expected what `gyrocal diagnose --json` writes");
+    let said = refused(&good.replace("\"schema_version\": 1", "\"schema_version\": 2"));
+    assert_says(&said, "found schema_version 2, expected 1");
+    assert_says(&refused("{"), "d.json:1:1: found JSON that is no result");
+}
+
+#[test]
+fn lists_that_no_model_can_have_are_refused() {
+    let cases = [
+        ("gyro_y.gz", "the nearest are `gyro_y.g_z`"),
+        (
+            "gyro_x.bias",
+            "`gyro_x.bias` is one of the nine coefficients",
+        ),
+        ("gyro_y.g_z,gyro_y.g_z", "found `gyro_y.g_z` twice"),
+        (
+            "gyro_x.g_yy,gyro_x.g_zz",
+            "no record whatever tells `gyro_x.g_zz` from `gyro_x.g_yy`",
+        ),
+        ("accel.outliers", "`[noise]` of the bench file"),
+    ];
+    for (effects, message) in cases {
+        let folder = Folder::new();
+        let said = folder.fail(&["extend", "--effects", effects, "--out", "m.toml"]);
+        assert_says(&said, message);
+    }
+}
+
+#[test]
+fn a_diagnosis_or_a_list_is_asked_for() {
+    let folder = Folder::new();
+    folder.put("d.json", "{}");
+    for arguments in [
+        &["extend", "--out", "m.toml"][..],
+        &[
+            "extend",
+            "d.json",
+            "--effects",
+            "gyro_y.g_z",
+            "--out",
+            "m.toml",
+        ],
+        &["extend", "d.json", "--out", "./d.json"],
+    ] {
+        assert_eq!(
+            folder.run(arguments).status.code(),
+            Some(2),
+            "{arguments:?}"
+        );
+    }
+    assert_eq!(folder.text("d.json"), "{}");
+}

@@ -1,0 +1,250 @@
+//! The model file: which effects of the catalogue a model of a user's own has.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::error::{Error, InputErrorKind};
+use crate::output::write_whole;
+use crate::report::SCHEMA_VERSION;
+use crate::suggest::{any_of, nearest_few};
+use crate::tables::{Bound, Document, Table};
+
+/// What a model file says: the effects of a model beside the nine drift coefficients, and what a
+/// record told of them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModelFile {
+    /// Ids of the effects, each once.
+    pub effects: Vec<String>,
+    /// Ids of shapes (onsets, time constants) with the values that are built into the model.
+    /// Those that are not here stay inputs of the model.
+    pub shapes: Vec<(String, f64)>,
+    /// Where filters start. Parameters that are not here start at zero with a wide prior.
+    pub estimates: Vec<ParameterEstimate>,
+}
+
+/// An estimated parameter of an effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParameterEstimate {
+    /// Public id of the parameter, such as `gyro_y.g_z`.
+    pub parameter: String,
+    /// The estimate, in the unit of the parameter.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
+
+/// What a model file may name: a row of the table of effects, as far as this matters here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct KnownEffect<'a> {
+    /// Public id.
+    pub id: &'a str,
+    /// `term` for those that a model file may name.
+    pub kind: &'a str,
+    /// Ids of its parameters.
+    pub states: &'a [&'a str],
+    /// Ids of its shapes.
+    pub shapes: &'a [&'a str],
+}
+
+impl KnownEffect<'_> {
+    /// Why a model file cannot name the effect, as a half sentence; `None` if it can.
+    #[must_use]
+    pub fn objection(&self) -> Option<&'static str> {
+        match self.kind {
+            "term" => None,
+            "nominal" => Some("is one of the nine coefficients that every model has"),
+            "noise" => {
+                Some("is noise and no term: tell filters of it by `[noise]` of the bench file")
+            }
+            "state" => Some(
+                "is a matter of the attitude and no term: every filter estimates the attitude, \
+                 so begin the record after it or widen the prior of the angles",
+            ),
+            _ => Some("is a matter of the filter and no term of the model"),
+        }
+    }
+}
+
+const KEYS: [&str; 4] = ["schema_version", "effects", "shapes", "estimates"];
+
+impl ModelFile {
+    /// Reads a model file.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it, effects among them
+    /// that are not `known` or are no terms.
+    pub fn read(path: &Path, known: &[KnownEffect<'_>]) -> Result<Self, Error> {
+        Self::from_document(&Document::read(path)?, known)
+    }
+
+    /// Parses the text of a model file; errors call it `name`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] for whatever is wrong in it.
+    pub fn parse(text: &str, name: &str, known: &[KnownEffect<'_>]) -> Result<Self, Error> {
+        Self::from_document(&Document::new(text, name)?, known)
+    }
+
+    /// Writes a model file whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::InvalidValue`] if [`ModelFile::read`] would refuse it, [`Error::Unwritable`].
+    pub fn write(&self, path: &Path, known: &[KnownEffect<'_>]) -> Result<(), Error> {
+        write_whole(path, self.to_toml(path, known)?.as_bytes())
+    }
+
+    /// The text of the model file; errors call it `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::InvalidValue`] if [`ModelFile::parse`] would refuse it.
+    pub fn to_toml(&self, path: &Path, known: &[KnownEffect<'_>]) -> Result<String, Error> {
+        let text = self.format();
+        match Self::parse(&text, "", known) {
+            Ok(_) => Ok(text),
+            Err(Error::Input(error)) => Err(Error::InvalidValue {
+                path: path.to_owned(),
+                found: error.found,
+                expected: error.expected,
+            }),
+            Err(other) => Err(other),
+        }
+    }
+
+    fn from_document(document: &Document, known: &[KnownEffect<'_>]) -> Result<Self, Error> {
+        document.interpret(&KEYS, |root| {
+            check_version(root)?;
+            let listed = effects(root, known)?;
+            let shapes: Vec<&str> = listed
+                .iter()
+                .flat_map(|effect| effect.shapes)
+                .copied()
+                .collect();
+            let states: Vec<&str> = listed
+                .iter()
+                .flat_map(|effect| effect.states)
+                .copied()
+                .collect();
+            Ok(Self {
+                effects: listed.iter().map(|effect| effect.id.to_owned()).collect(),
+                shapes: read_shapes(root, &shapes)?,
+                estimates: read_estimates(root, &states)?,
+            })
+        })
+    }
+
+    fn format(&self) -> String {
+        let mut text = format!(
+            "# What a model has beside the nine drift coefficients; docs/extending.md.\n\
+             schema_version = {SCHEMA_VERSION}\n\
+             effects = {:?}\n",
+            self.effects
+        );
+        if !self.shapes.is_empty() {
+            text.push_str(
+                "\n# built into the model; without them they are inputs of it\n[shapes]\n",
+            );
+            for (id, value) in &self.shapes {
+                let _ = writeln!(text, "{id:?} = {value:?}");
+            }
+        }
+        if !self.estimates.is_empty() {
+            text.push_str("\n# where filters start\n[estimates]\n");
+            for estimate in &self.estimates {
+                let _ = writeln!(
+                    text,
+                    "{:?} = {{ value = {:?}, sigma = {:?} }}",
+                    estimate.parameter, estimate.value, estimate.sigma
+                );
+            }
+        }
+        text
+    }
+}
+
+fn check_version(root: &Table<'_>) -> Result<(), Error> {
+    if root.whole_number("schema_version")? == u64::from(SCHEMA_VERSION) {
+        return Ok(());
+    }
+    Err(root.error_at(
+        "schema_version",
+        InputErrorKind::OutOfRange,
+        &format!("{SCHEMA_VERSION}, the version that this program knows"),
+        "write the file again with `gyrocal extend` of this version",
+    ))
+}
+
+fn effects<'k, 'a>(
+    root: &Table<'_>,
+    known: &'k [KnownEffect<'a>],
+) -> Result<Vec<&'k KnownEffect<'a>>, Error> {
+    const EXPECTED: &str = "a list of ids of effects, such as `[\"gyro_y.g_z\"]`";
+    let mut listed: Vec<&KnownEffect<'_>> = Vec::new();
+    for text in root.texts("effects", EXPECTED)? {
+        let Some(effect) = known.iter().find(|effect| effect.id == text.text) else {
+            let terms = known.iter().filter(|effect| effect.objection().is_none());
+            let terms: Vec<&str> = terms.map(|effect| effect.id).collect();
+            return Err(text.error(
+                InputErrorKind::OutOfRange,
+                "the id of an effect",
+                format!(
+                    "the nearest are {}",
+                    any_of(&nearest_few(text.text, &terms, 3))
+                ),
+            ));
+        };
+        if let Some(objection) = effect.objection() {
+            return Err(text.error(
+                InputErrorKind::OutOfRange,
+                "an effect that is a term of the model",
+                format!("`{}` {objection}", effect.id),
+            ));
+        }
+        if listed.iter().any(|other| other.id == effect.id) {
+            return Err(text.error(
+                InputErrorKind::OutOfRange,
+                "each effect once",
+                "take one of them away",
+            ));
+        }
+        listed.push(effect);
+    }
+    Ok(listed)
+}
+
+fn read_shapes(root: &Table<'_>, known: &[&str]) -> Result<Vec<(String, f64)>, Error> {
+    let Some(table) = root.optional_table("shapes", known)? else {
+        return Ok(Vec::new());
+    };
+    let mut shapes = Vec::new();
+    for &id in known {
+        let bound = match id.ends_with("time_constant_h") {
+            true => Bound::Positive,
+            false => Bound::Finite,
+        };
+        if let Some(value) = table.optional_number(id, bound)? {
+            shapes.push((id.to_owned(), value));
+        }
+    }
+    Ok(shapes)
+}
+
+fn read_estimates(root: &Table<'_>, known: &[&str]) -> Result<Vec<ParameterEstimate>, Error> {
+    let Some(table) = root.optional_table("estimates", known)? else {
+        return Ok(Vec::new());
+    };
+    let mut estimates = Vec::new();
+    for &id in known {
+        if let Some(estimate) = table.optional_table(id, &["value", "sigma"])? {
+            estimates.push(ParameterEstimate {
+                parameter: id.to_owned(),
+                value: estimate.number("value", Bound::Finite)?,
+                sigma: estimate.number("sigma", Bound::Positive)?,
+            });
+        }
+    }
+    Ok(estimates)
+}

@@ -1,0 +1,201 @@
+//! Model files: round trips, and each way in which one can be wrong.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use std::path::Path;
+
+use gyrocal_record::{Error, InputErrorKind, KnownEffect, ModelFile, ParameterEstimate};
+
+const fn effect(
+    id: &'static str,
+    kind: &'static str,
+    states: &'static [&'static str],
+    shapes: &'static [&'static str],
+) -> KnownEffect<'static> {
+    KnownEffect {
+        id,
+        kind,
+        states,
+        shapes,
+    }
+}
+
+const KNOWN: [KnownEffect<'static>; 7] = [
+    effect("gyro_x.bias", "nominal", &["gyro_x.bias"], &[]),
+    effect("gyro_y.g_z", "term", &["gyro_y.g_z"], &[]),
+    effect("gyro_y.g_yz", "term", &["gyro_y.g_yz"], &[]),
+    effect(
+        "gyro_x.warmup",
+        "term",
+        &["gyro_x.warmup"],
+        &["gyro_x.warmup.time_constant_h"],
+    ),
+    effect(
+        "gyro_x.diurnal",
+        "term",
+        &["gyro_x.diurnal.sine", "gyro_x.diurnal.cosine"],
+        &[],
+    ),
+    effect("accel_x.noise", "noise", &[], &[]),
+    effect("platform.knock", "state", &[], &[]),
+];
+
+const GOOD: &str = "\
+schema_version = 1
+effects = [\"gyro_y.g_z\", \"gyro_x.warmup\"]
+[shapes]
+\"gyro_x.warmup.time_constant_h\" = 3.5
+[estimates]
+\"gyro_y.g_z\" = { value = 0.05, sigma = 1e-4 }
+";
+
+#[test]
+fn what_is_written_is_what_is_read() {
+    let model = ModelFile::parse(GOOD, "m.toml", &KNOWN).unwrap();
+    assert_eq!(model.effects, ["gyro_y.g_z", "gyro_x.warmup"]);
+    assert_eq!(
+        model.shapes,
+        [("gyro_x.warmup.time_constant_h".to_owned(), 3.5)]
+    );
+    let estimate = ParameterEstimate {
+        parameter: "gyro_y.g_z".to_owned(),
+        value: 0.05,
+        sigma: 1e-4,
+    };
+    assert_eq!(model.estimates, [estimate]);
+    let text = model.to_toml(Path::new("m.toml"), &KNOWN).unwrap();
+    assert_eq!(ModelFile::parse(&text, "m.toml", &KNOWN).unwrap(), model);
+
+    let bare = ModelFile {
+        effects: vec!["gyro_x.diurnal".to_owned()],
+        ..ModelFile::default()
+    };
+    let text = bare.to_toml(Path::new("m.toml"), &KNOWN).unwrap();
+    assert_eq!(ModelFile::parse(&text, "m.toml", &KNOWN).unwrap(), bare);
+}
+
+#[test]
+fn what_no_reader_would_take_is_not_written() {
+    let mut model = ModelFile::parse(GOOD, "m.toml", &KNOWN).unwrap();
+    model.estimates[0].sigma = 0.0;
+    let error = model.to_toml(Path::new("m.toml"), &KNOWN).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "m.toml: not written: found `0.0`, expected a finite number greater than 0"
+    );
+}
+
+#[test]
+fn each_mistake_is_shown_where_it_is() {
+    use InputErrorKind as Kind;
+    let cases: &[(&str, &str, Kind, &str, &str)] = &[
+        (
+            "gyro_y.g_z\", ",
+            "gyro_y.gz\", ",
+            Kind::OutOfRange,
+            "2:12: found `gyro_y.gz`, expected the id of an effect",
+            "the nearest are `gyro_y.g_z`, `gyro_y.g_yz` or `gyro_x.warmup`",
+        ),
+        (
+            "gyro_y.g_z\", ",
+            "accel_x.noise\", ",
+            Kind::OutOfRange,
+            "2:12: found `accel_x.noise`, expected an effect that is a term of the model",
+            "`[noise]` of the bench file",
+        ),
+        (
+            "gyro_y.g_z\", ",
+            "platform.knock\", ",
+            Kind::OutOfRange,
+            "2:12: found `platform.knock`, expected an effect that is a term of the model",
+            "widen the prior of the angles",
+        ),
+        (
+            "gyro_y.g_z\", ",
+            "gyro_x.bias\", ",
+            Kind::OutOfRange,
+            "2:12: found `gyro_x.bias`, expected an effect that is a term of the model",
+            "every model has",
+        ),
+        (
+            "gyro_y.g_z\", ",
+            "gyro_x.warmup\", ",
+            Kind::OutOfRange,
+            "2:29: found `gyro_x.warmup`, expected each effect once",
+            "take one of them away",
+        ),
+        (
+            "[\"gyro_y.g_z\", \"gyro_x.warmup\"]",
+            "[]",
+            Kind::WrongType,
+            "2:11: found `[]`, expected a list of ids",
+            "",
+        ),
+        (
+            "[\"gyro_y.g_z\", \"gyro_x.warmup\"]",
+            "[3]",
+            Kind::WrongType,
+            "2:12: found `3`, expected a list of ids",
+            "",
+        ),
+        (
+            "= 1\n",
+            "= 2\n",
+            Kind::OutOfRange,
+            "1:18: found `2`, expected 1, the version",
+            "gyrocal extend",
+        ),
+        (
+            "schema_version = 1\n",
+            "",
+            Kind::MissingKey,
+            "1:1: found a file without it, expected `schema_version = `",
+            "add the line",
+        ),
+        (
+            "3.5",
+            "-3.5",
+            Kind::OutOfRange,
+            "4:35: found `-3.5`, expected a finite number greater than 0",
+            "",
+        ),
+        (
+            "warmup.time_constant_h\"",
+            "warmup.time_constant\"",
+            Kind::UnknownKey,
+            "4:1: found the unknown key `gyro_x.warmup.time_constant` in `[shapes]`",
+            "did you mean `gyro_x.warmup.time_constant_h`?",
+        ),
+        (
+            "\"gyro_y.g_z\" = {",
+            "\"gyro_y.g_yz\" = {",
+            Kind::UnknownKey,
+            "6:1: found the unknown key `gyro_y.g_yz` in `[estimates]`",
+            "did you mean `gyro_y.g_z`?",
+        ),
+        (
+            "sigma = 1e-4",
+            "sigma = 0",
+            Kind::OutOfRange,
+            "6:40: found `0`, expected a finite number greater than 0",
+            "",
+        ),
+        (
+            ", sigma = 1e-4",
+            "",
+            Kind::MissingKey,
+            "6:1: found `[gyro_y.g_z]` without it, expected `sigma = `",
+            "add the line",
+        ),
+    ];
+    for (right, wrong, kind, message, advice) in cases {
+        assert_eq!(GOOD.matches(right).count(), 1, "{right}");
+        let text = GOOD.replace(right, wrong);
+        let error = ModelFile::parse(&text, "m.toml", &KNOWN).unwrap_err();
+        let shown = error.to_string();
+        assert!(shown.starts_with(&format!("m.toml:{message}")), "{shown}");
+        let Error::Input(input) = error else { panic!() };
+        assert_eq!(input.kind, *kind, "{shown}");
+        assert!(input.advice.contains(advice), "{shown}: {}", input.advice);
+    }
+}

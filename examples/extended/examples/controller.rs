@@ -1,0 +1,82 @@
+//! Three days of samples, then a day without: how well do the nominal filter and the extended one
+//! know where the platform drifts? What they do not know, no torquer takes out.
+//!
+//! `cargo run --release --package gyrocal-extended --example controller -- RECORD.csv BENCH.toml`
+
+use std::path::Path;
+
+use gyrocal::{PlatformFilter, Settings, Site};
+use gyrocal_extended::Controller;
+use gyrocal_record::{Bench, Record};
+
+/// Samples are taken so long.
+const LEARNING_S: f64 = 3.0 * 86_400.0;
+/// A line is printed so often.
+const LINE_S: f64 = 3.0 * 3600.0;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [record, bench] = arguments.as_slice() else {
+        return Err("expected two arguments: RECORD.csv and BENCH.toml".into());
+    };
+    let record = Record::read(Path::new(record))?;
+    let settings = settings(&Bench::read(Path::new(bench))?)?;
+    let mut nominal = PlatformFilter::new(&settings)?;
+    let mut extended = Controller::new(&settings)?;
+
+    println!("hours alone   nominal off by   extended off by   torque it sends, deg/h");
+    let mut next_line_s = 0.0;
+    for (row, sample) in record.accel_g.iter().enumerate() {
+        let time_s = record.time_s[row] - record.time_s[0];
+        let interval_s = record.time_s[row] - record.time_s[row.saturating_sub(1)];
+        if time_s <= LEARNING_S {
+            if row > 0 {
+                nominal.predict(interval_s)?;
+            }
+            nominal.update(sample)?;
+            extended.take(interval_s, sample)?;
+        } else {
+            nominal.predict(interval_s)?;
+            extended.coast(interval_s)?;
+        }
+        if time_s - LEARNING_S >= next_line_s {
+            let [_, up] = nominal.kernel().inputs().orientation();
+            let torque = extended.drift_deg_per_h(sample).map(|drift| -drift);
+            println!(
+                "{:11.0} {:8.2} arcmin {:10.2} arcmin   [{:7.4}, {:7.4}, {:7.4}]",
+                next_line_s / 3600.0,
+                arcminutes_between(&up, sample),
+                arcminutes_between(&extended.expected_g(), sample),
+                torque[0],
+                torque[1],
+                torque[2],
+            );
+            next_line_s += LINE_S;
+        }
+    }
+    Ok(())
+}
+
+/// What both filters start from.
+fn settings(bench: &Bench) -> Result<Settings<f64>, &'static str> {
+    let angles_deg = bench.initial_angles_deg;
+    let angles_deg = angles_deg.ok_or("expected initial_angles_deg in the bench file")?;
+    Ok(Settings {
+        angles_rad: angles_deg.map(f64::to_radians),
+        angles_sigma_rad: bench.initial_angles_sigma_deg.map(f64::to_radians),
+        accel_noise_g: bench.accel_noise_g,
+        drift_noise_deg_per_h: bench.gyro_noise_deg_per_h,
+        ..Settings::level_at(Site::at_latitude_deg(bench.latitude_deg))
+    })
+}
+
+/// The angle between two specific forces.
+fn arcminutes_between(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let cross: [f64; 3] = std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        a[j] * b[k] - a[k] * b[j]
+    });
+    let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+    let sine = cross.iter().map(|c| c * c).sum::<f64>().sqrt();
+    sine.atan2(dot).to_degrees() * 60.0
+}
