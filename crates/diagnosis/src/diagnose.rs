@@ -159,6 +159,7 @@ pub fn diagnose<'a>(
         },
     )?;
     let mut noise_model = believed(&audit, record);
+    leave_out_early(&mut noise_model, record, &first, bench.accel_noise_g);
     let mut nominal = if noise_model == declared {
         first
     } else {
@@ -250,6 +251,46 @@ fn believed(audit: &NoiseAudit, record: &Record) -> NoiseModel {
                 .map(|keep| keep.map(|keep| f64::from(u8::from(keep))))
                 .collect()
         }),
+    }
+}
+
+/// The audit does not look at the first rows, where the filter has not settled: values there
+/// whose smoothed residual stands off those of its neighbours by more than this get no weight.
+const STANDS_OFF: f64 = 7.0;
+const EARLY_ROWS: usize = 48;
+
+fn leave_out_early(
+    noise_model: &mut NoiseModel,
+    record: &Record,
+    fitted: &Extended<'_>,
+    noise_g: f64,
+) {
+    let rows = record.len().min(EARLY_ROWS);
+    let predicted_g = fitted.predicted_g();
+    let residual =
+        |row: usize, axis: usize| (record.accel_g[row][axis] - predicted_g[row][axis]) / noise_g;
+    for row in 0..rows {
+        for axis in 0..3 {
+            let from = row.saturating_sub(4);
+            let to = (row + 5).min(record.len());
+            let mut around: Vec<f64> = (from..to)
+                .filter(|other| *other != row)
+                .map(|other| residual(other, axis))
+                .filter(|value| value.is_finite())
+                .collect();
+            around.sort_unstable_by(f64::total_cmp);
+            let Some(middle) = around.get(around.len() / 2) else {
+                continue;
+            };
+            let ratio = noise_model.accel_ratio[axis];
+            if (residual(row, axis) - middle).abs() > STANDS_OFF * ratio {
+                let all = record.len();
+                let weights = noise_model
+                    .weights
+                    .get_or_insert_with(|| vec![[1.0; 3]; all]);
+                weights[row][axis] = 0.0;
+            }
+        }
     }
 }
 

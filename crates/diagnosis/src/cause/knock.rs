@@ -7,6 +7,19 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::significance::z_of_two_sided_p;
 
+/// Below it the tails are taken by their asymptotes.
+const LEAST_PROBABILITY: f64 = 1e-200;
+
+/// The value u of chi-square with one degree of freedom that is as rare as the largest of `peaks`
+/// values t with three: from √(2t/π) exp(-t/2) `peaks` = √(2/(πu)) exp(-u/2).
+fn far_equivalent(statistic: f64, peaks: f64) -> f64 {
+    let mut value = statistic;
+    for _ in 0..4 {
+        value = statistic - 2.0 * peaks.ln() - (statistic * value).ln();
+    }
+    value
+}
+
 /// The step in which a knock would explain most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Knock {
@@ -59,10 +72,10 @@ pub(crate) fn best(
     Ok(Some(Knock {
         onset_s: record.time_s[row] - record.time_s[0],
         statistic,
-        equivalent: if probability > 0.0 {
+        equivalent: if probability > LEAST_PROBABILITY {
             z_of_two_sided_p(probability).powi(2)
         } else {
-            statistic
+            far_equivalent(statistic, peaks as f64)
         },
     }))
 }

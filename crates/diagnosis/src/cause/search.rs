@@ -171,7 +171,10 @@ pub fn search<'a>(
             p_value: null.probability(statistic),
             searched: best.searched,
         });
-        match fitted.refitted(&extension(&plan, record, &accepted)) {
+        let refitted = fitted
+            .refitted(&extension(&plan, record, &accepted))
+            .and_then(|refitted| Bank::new(&refitted, &[], &[]).map(|_| refitted));
+        match refitted {
             Ok(refitted) => fitted = refitted,
             // What cannot be fitted beside the others cannot be told from them.
             Err(_) => {
@@ -180,11 +183,26 @@ pub fn search<'a>(
             }
         }
     }
-    let mut findings = Vec::with_capacity(accepted.len());
-    for index in 0..accepted.len() {
-        findings.push(finding(&fitted, &plan, record, &accepted, index, options)?);
-    }
     let (ranking, threshold) = first.unwrap_or_default();
+    // What was found first may be explained by what was found later.
+    let findings = loop {
+        let mut findings = Vec::with_capacity(accepted.len());
+        let mut weakest: Option<(usize, f64)> = None;
+        for index in 0..accepted.len() {
+            let (found, strength) = finding(&fitted, &plan, record, &accepted, index, options)?;
+            findings.push(found);
+            if weakest.is_none_or(|(_, least)| strength < least) {
+                weakest = Some((index, strength));
+            }
+        }
+        match weakest {
+            Some((index, strength)) if strength <= threshold && accepted.len() > 1 => {
+                accepted.remove(index);
+                fitted = fitted.refitted(&extension(&plan, record, &accepted))?;
+            }
+            _ => break findings,
+        }
+    };
     Ok(Searched {
         fitted,
         findings,
@@ -407,7 +425,8 @@ fn refined(
     Ok(Some(finest.map_or(shape, |(shape, _)| shape)))
 }
 
-/// What is to be said of one accepted effect, the others being in the model.
+/// What is to be said of one accepted effect, the others being in the model, and its statistic
+/// less what searching reaches.
 fn finding(
     fitted: &Extended<'_>,
     plan: &Plan,
@@ -415,7 +434,7 @@ fn finding(
     accepted: &[Accepted],
     index: usize,
     options: &SearchOptions,
-) -> Result<Finding, CalibrationError> {
+) -> Result<(Finding, f64), CalibrationError> {
     let own = &accepted[index];
     let family = &plan.families[own.family];
     let places = places(fitted, plan, family);
@@ -482,7 +501,7 @@ fn finding(
         })
         .collect();
     let statistic = scores.best[own.family].map_or(0.0, |best| best.statistic);
-    Ok(Finding {
+    let finding = Finding {
         effect: family.id(),
         parameters: match (&family.walk, own.shape) {
             (Some(_), Some(variance)) => vec![FoundParameter {
@@ -497,7 +516,8 @@ fn finding(
         p_value: own.p_value,
         rivals,
         equivalents,
-    })
+    };
+    Ok((finding, best))
 }
 
 fn from_joint(effect: &'static gyrocal::EffectRow, joint: &Joint) -> Vec<FoundParameter> {
