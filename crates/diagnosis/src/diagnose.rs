@@ -196,7 +196,10 @@ pub fn diagnose<'a>(
     };
     let gyros = gyro_noise(&estimate, &noise_model, gyro_share);
     noise_findings.extend(gyros.into_iter().filter(|finding| !walks(finding.effect)));
-    let remainder = remainder(&searched.fitted, record, remainder_share)?;
+    let mut remainder = remainder(&searched.fitted, record, remainder_share)?;
+    for line in &searched.lines {
+        remainder.add(line);
+    }
     let found = !searched.findings.is_empty();
     let gain = if found {
         let noise_g = noise_model

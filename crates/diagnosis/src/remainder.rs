@@ -3,6 +3,7 @@
 use gyrocal_calibration::{CalibrationError, Extended};
 use gyrocal_record::Record;
 
+use crate::cause::DriftLine;
 use crate::spectrum::{periodogram, strongest};
 use crate::whiteness::autocorrelation;
 
@@ -23,6 +24,24 @@ pub struct Remainder {
     pub description: String,
     /// The whitened innovations, row by row; NaN where there is no value.
     pub whitened: Vec<[f64; 3]>,
+}
+
+impl Remainder {
+    /// Adds a line that the search met and the catalogue does not hold.
+    pub(crate) fn add(&mut self, line: &DriftLine) {
+        const GYROS: [&str; 3] = ["x", "y", "z"];
+        if !self.description.is_empty() {
+            self.description.push_str("; ");
+        }
+        self.description.push_str(&format!(
+            "a line in the drift of gyro {} with a period of {:.2} h and an amplitude of {:.2e} \
+             deg/h, which no effect of the catalogue explains",
+            GYROS[line.gyro], line.period_h, line.amplitude_deg_per_h
+        ));
+        let chance = (-0.5 * (line.statistic - line.searched)).exp();
+        self.p_value = self.p_value.min(chance);
+        self.unexplained = true;
+    }
 }
 
 /// Tests the innovations of a fit.

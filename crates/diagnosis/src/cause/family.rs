@@ -19,7 +19,7 @@ const SHORTEST_TIME_CONSTANT_H: f64 = 0.3;
 pub(crate) const KNOCK: &str = "platform.knock";
 
 /// The constant drifts, which steps and warm-ups are shares of.
-const BIASES: [usize; 3] = [
+pub(crate) const BIASES: [usize; 3] = [
     parameters_index::GYRO_X_BIAS,
     parameters_index::GYRO_Y_BIAS,
     parameters_index::GYRO_Z_BIAS,

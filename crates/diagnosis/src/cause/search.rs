@@ -5,8 +5,9 @@ use gyrocal_calibration::{CalibrationError, Column, Extended, Extension};
 use gyrocal_record::{Bench, Record};
 
 use super::bank::{Bank, Joint};
-use super::family::{Candidate, Family, Plan, Unavailable, extend, jump, parameter};
+use super::family::{Candidate, Family, Plan, Unavailable, axis_of, extend, jump, parameter};
 use super::knock::{self, Knock};
+use super::line::{self, DriftLine};
 use super::null::Null;
 use super::walk::Walk;
 
@@ -104,6 +105,8 @@ pub struct Searched<'a> {
     pub fitted: Extended<'a>,
     /// The causes, strongest first.
     pub findings: Vec<Finding>,
+    /// Lines in the drift that no effect of the catalogue explains; they are in the model.
+    pub lines: Vec<DriftLine>,
     /// All families in the first search, largest first.
     pub ranking: Vec<Ranked>,
     /// What their largest statistic must exceed.
@@ -137,6 +140,7 @@ pub fn search<'a>(
     let mut fitted = nominal;
     let mut accepted: Vec<Accepted> = Vec::new();
     let mut inseparable: Vec<usize> = Vec::new();
+    let mut lines: Vec<DriftLine> = Vec::new();
     let mut first: Option<(Vec<Ranked>, f64)> = None;
     loop {
         let bank = Bank::new(&fitted, &plan.further, &[])?;
@@ -164,6 +168,18 @@ pub fn search<'a>(
         if statistic <= threshold || accepted.len() == MOST_EFFECTS {
             break;
         }
+        // A random walk swallows a line, which has no name in the catalogue: it goes into the
+        // model without one.
+        if plan.families[best.family].walk.is_some()
+            && let Some(gyro) = axis_of(plan.families[best.family].id())
+            && lines.len() < MOST_EFFECTS
+            && let Some(line) = line::strongest(&fitted, record, gyro)?
+            && line.statistic - line.searched > best.statistic
+        {
+            lines.push(line);
+            fitted = fitted.refitted(&extension(&plan, record, &accepted, &lines))?;
+            continue;
+        }
         let shape = refined(&fitted, record, &plan, &best)?;
         accepted.push(Accepted {
             family: best.family,
@@ -172,7 +188,7 @@ pub fn search<'a>(
             searched: best.searched,
         });
         let refitted = fitted
-            .refitted(&extension(&plan, record, &accepted))
+            .refitted(&extension(&plan, record, &accepted, &lines))
             .and_then(|refitted| Bank::new(&refitted, &[], &[]).map(|_| refitted));
         match refitted {
             Ok(refitted) => fitted = refitted,
@@ -198,7 +214,7 @@ pub fn search<'a>(
         match weakest {
             Some((index, strength)) if strength <= threshold && accepted.len() > 1 => {
                 accepted.remove(index);
-                fitted = fitted.refitted(&extension(&plan, record, &accepted))?;
+                fitted = fitted.refitted(&extension(&plan, record, &accepted, &lines))?;
             }
             _ => break findings,
         }
@@ -206,6 +222,7 @@ pub fn search<'a>(
     Ok(Searched {
         fitted,
         findings,
+        lines,
         ranking,
         threshold,
         unavailable: plan.unavailable,
@@ -213,8 +230,17 @@ pub fn search<'a>(
 }
 
 /// The model that all accepted effects make up.
-fn extension(plan: &Plan, record: &Record, accepted: &[Accepted]) -> Extension {
+fn extension(
+    plan: &Plan,
+    record: &Record,
+    accepted: &[Accepted],
+    lines: &[DriftLine],
+) -> Extension {
     let mut extension = Extension::default();
+    for found in lines {
+        let columns = line::courses(record, found.gyro, found.period_h);
+        extension.further.extend(columns, f64::INFINITY);
+    }
     for accepted in accepted {
         extend(
             plan,

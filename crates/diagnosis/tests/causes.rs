@@ -1,0 +1,108 @@
+//! Effects hidden in simulated records: each kind of search finds its own.
+#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+
+use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
+use gyrocal_record::{Bench, Record};
+use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
+
+/// Two days at a random attitude with an effect hidden.
+fn record(seed: u64, effect: &str, parameters: &[(&str, f64)]) -> (Record, Bench) {
+    let simulation = simulate(&Scenario {
+        seed,
+        coefficients: Coefficients::PAPER_LIKE,
+        initial: InitialAttitude::Random,
+        duration_s: 2.0 * 86_400.0,
+        hidden: vec![Hidden::new(effect, parameters).unwrap()],
+        ..Scenario::default()
+    })
+    .unwrap();
+    (simulation.record, simulation.bench)
+}
+
+/// Diagnoses, and returns the parameters of the one finding there must be.
+fn only_finding(effect: &str, parameters: &[(&str, f64)]) -> Vec<(&'static str, f64, Option<f64>)> {
+    let (record, bench) = record(5, effect, parameters);
+    let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+    assert_eq!(found.verdict, Verdict::EffectsFound);
+    let names: Vec<&str> = found
+        .findings
+        .iter()
+        .map(|finding| finding.effect)
+        .collect();
+    assert_eq!(names, [effect]);
+    assert!(
+        found.noise_findings.is_empty(),
+        "{:?}",
+        found.noise_findings
+    );
+    assert!(
+        !found.remainder.unexplained,
+        "{}",
+        found.remainder.description
+    );
+    // All these are large: a model without them predicts left-out blocks worse.
+    assert!(found.gain.unwrap().log_score_nats() > 8.0);
+    found.findings[0]
+        .parameters
+        .iter()
+        .map(|parameter| (parameter.name, parameter.estimate, parameter.sigma))
+        .collect()
+}
+
+#[test]
+fn a_term_of_the_drift_is_found_with_its_size() {
+    let found = only_finding("gyro_y.g_z", &[("size", 0.01)]);
+    let (_, estimate, sigma) = found[0];
+    // One in sixteen thousand is farther off than four sigmas.
+    assert!((estimate - 0.01).abs() < 4.0 * sigma.unwrap());
+}
+
+#[test]
+fn a_step_is_found_with_its_onset() {
+    let found = only_finding("gyro_x.step", &[("size", 0.01), ("onset_s", 90_000.0)]);
+    assert_eq!(found[1].0, "onset_s");
+    // Five per cent of the record.
+    assert!((found[1].1 - 90_000.0).abs() < 8_640.0, "{found:?}");
+}
+
+#[test]
+fn a_knock_is_found_in_its_step() {
+    let angles = [("x_deg", 0.02), ("y_deg", -0.01), ("z_deg", 0.015)];
+    let found = only_finding(
+        "platform.knock",
+        &[angles[0], angles[1], angles[2], ("onset_s", 100_010.0)],
+    );
+    for ((_, truth), (_, estimate, sigma)) in angles.iter().zip(&found) {
+        assert!((estimate - truth).abs() < 4.0 * sigma.unwrap(), "{found:?}");
+    }
+    // The row after it, or a neighbour that explains as much: noise is a tenth of the knock.
+    assert!((found[3].1 - 100_010.0).abs() <= 180.0, "{found:?}");
+}
+
+#[test]
+fn a_random_walk_is_no_cause_with_a_law() {
+    let found = only_finding("gyro_z.random_walk", &[("size", 0.001)]);
+    // Forty increments tell a variance to a fifth, hence its root to a tenth, and a walk has only
+    // some of them where it is seen: a factor of two.
+    assert!((0.5..2.0).contains(&(found[0].1 / 0.001)), "{found:?}");
+}
+
+#[test]
+fn a_tone_has_no_name_and_is_told_with_its_period() {
+    let (record, bench) = record(6, "gyro_x.tone", &[("size", 0.004), ("period_h", 5.3)]);
+    let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+    assert!(
+        found.findings.is_empty(),
+        "named {}",
+        found.findings[0].effect
+    );
+    assert_eq!(found.verdict, Verdict::Unexplained);
+    assert!(
+        found
+            .remainder
+            .description
+            .contains("drift of gyro x with a period of 5."),
+        "{}",
+        found.remainder.description
+    );
+}
