@@ -75,7 +75,7 @@ mod tests {
 
     fn refused(id: &str) -> String {
         let bench = Bench::parse(
-            "[site]\nlatitude_deg = 39.1\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n",
+            "[site]\nlatitude_deg = 39.1\n[platform]\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n",
             "bench",
         );
         let Ok(bench) = bench else {
@@ -105,7 +105,7 @@ mod tests {
         short.accel_g.truncate(11);
         short.time_s.truncate(11);
         let bench = Bench::parse(
-            "[site]\nlatitude_deg = 39.1\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n",
+            "[site]\nlatitude_deg = 39.1\n[platform]\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n",
             "bench",
         );
         let error = bench
