@@ -3,16 +3,16 @@
 //! # How it works
 //!
 //! Every effect has a *signature*: what a small amount of it does to the whitened innovations of
-//! the fitted model. All signatures come from one pass over the record ([`bank`]), with what the
+//! the fitted model. All signatures come from one pass over the record (`bank`), with what the
 //! fit would take up of them projected out, so an effect is judged by what the nine coefficients
 //! and the initial attitude cannot imitate. Effects whose onset or time constant is unknown are
 //! *families* of signatures; those with several parameters are judged jointly.
 //!
 //! The search has one probability of a false alarm for all families together: what the largest
 //! of these correlated statistics exceeds under the nominal model is found by drawing from their
-//! joint distribution ([`null`]). Families are compared after subtracting what each would reach
+//! joint distribution (`null`). Families are compared after subtracting what each would reach
 //! by searching alone. An effect that is found is put into the model, which is fitted again, and
-//! the search goes on ([`search`]).
+//! the search goes on.
 
 mod bank;
 mod bound;
