@@ -48,10 +48,12 @@ impl<T: Real> Surroundings<'_, T> {
 
 /// Inputs of a generated model of the platform, as far as a [`Chart`](crate::Chart) gives them.
 ///
-/// The inputs of every generated model implement it. For others it takes two lines each:
+/// The inputs of every generated model have it through
+/// [`NamedInputs`](gyrocal_scalar::NamedInputs); inputs written by hand get it by that trait too:
 ///
 /// ```
-/// use gyrocal::{ChartInputs, Real, Surroundings};
+/// use gyrocal::scalar::NamedInputs;
+/// use gyrocal::{ChartInputs, Real};
 ///
 /// #[derive(Clone, Copy)]
 /// struct MyInputs<T> {
@@ -60,16 +62,22 @@ impl<T: Real> Surroundings<'_, T> {
 ///     conditions: [T; 3],
 /// }
 ///
-/// impl<T: Real> ChartInputs<T> for MyInputs<T> {
-///     fn unset() -> Self {
-///         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-///         Self { omega_0: [zero; 3], f_0: [zero; 3], conditions: [one; 3] }
+/// impl<T: Real> NamedInputs<T> for MyInputs<T> {
+///     fn filled(value: T) -> Self {
+///         Self { omega_0: [value; 3], f_0: [value; 3], conditions: [value; 3] }
 ///     }
-///     fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
-///         self.omega_0 = surroundings.omega_0();
-///         self.f_0 = surroundings.f_0();
+///     fn group_mut(&mut self, name: &str) -> Option<&mut [T]> {
+///         match name {
+///             "omega_0" => Some(&mut self.omega_0),
+///             "f_0" => Some(&mut self.f_0),
+///             "conditions" => Some(&mut self.conditions),
+///             _ => None,
+///         }
 ///     }
 /// }
+///
+/// let unset = <MyInputs<f64> as ChartInputs<f64>>::unset();
+/// assert_eq!(unset.conditions, [1.0; 3]);
 /// ```
 pub trait ChartInputs<T>: Copy {
     /// Inputs before a chart has set them; those that no chart sets have a harmless value.
