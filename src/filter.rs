@@ -62,6 +62,12 @@ impl<T: Real> Settings<T> {
         }
     }
 
+    /// Spectral density of the drift noise, (deg/h)² s: what is declared is held over a minute.
+    #[must_use]
+    pub fn drift_noise_density(&self) -> T {
+        self.drift_noise_deg_per_h * self.drift_noise_deg_per_h * T::from_f64(HELD_S)
+    }
+
     /// The paper's own filter, equations (14) to (23): Euler angles as states in one chart,
     /// one Euler step a sample. It is consistent with data simulated by the same rule only.
     #[must_use]
@@ -191,7 +197,7 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
         Ok(Self {
             kernel,
             accel_variance_g2: [settings.accel_noise_g * settings.accel_noise_g; 3],
-            drift_density: [noise * noise * T::from_f64(HELD_S); 3],
+            drift_density: [settings.drift_noise_density(); 3],
             longest_step_s: settings.longest_step_s,
         })
     }

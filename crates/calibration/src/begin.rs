@@ -71,8 +71,7 @@ pub(crate) fn leg<'a>(
     Leg {
         rows: Rows::new(run.record, rows, [settings.accel_noise_g; 3]),
         chart: Chart::for_model(settings.site),
-        // The declared noise is held over a minute.
-        noise_density: [settings.drift_noise_deg_per_h.powi(2) * 60.0; 3],
+        noise_density: [settings.drift_noise_density(); 3],
         prior: prior.orientation,
         prior_covariance: prior.covariance,
         points,

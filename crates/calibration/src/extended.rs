@@ -5,6 +5,7 @@ use gyrocal::estimation::batch::{Linearisation, Reduced, Whitened};
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Chart, Recentring, Settings};
+use gyrocal_record::Bench;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::PARAMETERS;
@@ -13,6 +14,7 @@ use crate::begin::begin;
 use crate::calibrate::Options;
 use crate::error::CalibrationError;
 use crate::further::Further;
+use crate::layout::SiteQuantity;
 use crate::noise::{self, NoiseEstimate};
 use crate::run::{Rows, Run};
 use crate::settings::level;
@@ -52,6 +54,22 @@ pub struct Jump {
     pub information: [[f64; 3]; 3],
 }
 
+/// What a bench declares uncertain of its site is free to take that up in every fit.
+fn of_site(bench: &Bench) -> Extension {
+    Extension {
+        parameters: SiteQuantity::ALL
+            .into_iter()
+            .filter_map(|quantity| {
+                let place = catalogue::PARAMETERS
+                    .iter()
+                    .position(|element| element.id == quantity.id())?;
+                Some((place, quantity.declared_sigma(bench)?))
+            })
+            .collect(),
+        ..Extension::default()
+    }
+}
+
 /// The noise that is believed of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseModel {
@@ -84,7 +102,7 @@ pub struct Extended<'a> {
 }
 
 impl<'a> Extended<'a> {
-    /// Fits the nominal model.
+    /// Fits the nominal model; what the bench declares uncertain of its site is in the extension.
     ///
     /// # Errors
     /// As [`crate::calibrate`].
@@ -101,8 +119,9 @@ impl<'a> Extended<'a> {
         };
         let fit = |careful| {
             let beginning = begin(run, &settings, options, careful)?;
-            let mut values = vec![0.0; Catalogue::PARAMETERS];
-            values[..PARAMETERS].copy_from_slice(&beginning.start.drift);
+            let extension = of_site(run.bench);
+            let mut values = beginning.start.drift.to_vec();
+            values.resize(PARAMETERS + extension.parameters.len(), 0.0);
             let accel_noise_g = noise
                 .accel_ratio
                 .map(|ratio| ratio * settings.accel_noise_g);
@@ -112,7 +131,7 @@ impl<'a> Extended<'a> {
             if let Some(field_gauss) = run.bench.magnetic_field_gauss {
                 chart.set_field_gauss(field_gauss);
             }
-            let density = settings.drift_noise_deg_per_h.powi(2) * 60.0;
+            let density = settings.drift_noise_density();
             let leg = Leg {
                 rows,
                 chart,
@@ -132,12 +151,13 @@ impl<'a> Extended<'a> {
                     .drift_sigma
                     .to_array()
                     .into_iter()
+                    .chain(extension.parameters.iter().map(|(_, sigma)| *sigma))
                     .map(Unknown::estimated)
                     .collect(),
                 legs: vec![leg],
                 values,
             };
-            Self::solved(problem, Extension::default())
+            Self::solved(problem, extension)
         };
         fit(false).or_else(|_| fit(true))
     }
@@ -203,12 +223,8 @@ impl<'a> Extended<'a> {
     ///
     /// # Errors
     /// As [`Self::refitted`].
-    pub fn with_noise(
-        &self,
-        bench: &gyrocal_record::Bench,
-        noise: &NoiseModel,
-    ) -> Result<Self, CalibrationError> {
-        let density = bench.gyro_noise_deg_per_h.powi(2) * 60.0;
+    pub fn with_noise(&self, bench: &Bench, noise: &NoiseModel) -> Result<Self, CalibrationError> {
+        let density = level(bench).drift_noise_density();
         self.refitted_with(&self.extension, |leg| {
             leg.rows
                 .set_noise(noise.accel_ratio.map(|ratio| ratio * bench.accel_noise_g));

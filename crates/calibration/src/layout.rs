@@ -7,8 +7,8 @@ use crate::PARAMETERS;
 use crate::settings::level;
 use crate::solve::Unknown;
 
-/// Indices of the constant drifts among the coefficients.
-pub(crate) const BIASES: [usize; 3] = [index::GYRO_X_BIAS, index::GYRO_Y_BIAS, index::GYRO_Z_BIAS];
+/// Indices of the constant drifts of gyros x, y, z among the coefficients.
+pub const BIASES: [usize; 3] = [index::GYRO_X_BIAS, index::GYRO_Y_BIAS, index::GYRO_Z_BIAS];
 
 /// Turn-on sigma of a gyro whose turn-ons are declared equal while those of others differ.
 const SAME_DEG_PER_H: f64 = 1e-9;
@@ -28,6 +28,16 @@ pub enum SiteQuantity {
 impl SiteQuantity {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Gravity, Self::Latitude, Self::EarthRate];
+
+    /// Public id of its error in the catalogue.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Gravity => "site.gravity",
+            Self::Latitude => "site.latitude",
+            Self::EarthRate => "site.earth_rate",
+        }
+    }
 
     /// The standard deviation that the bench declares.
     #[must_use]

@@ -56,12 +56,13 @@ pub use error::CalibrationError;
 pub use extended::{Extended, Extension, Jump, NoiseModel};
 pub use fit::{Fit, Verdict, chi_square_band};
 pub use further::{Column, Further};
-pub use layout::SiteQuantity;
+pub use layout::{BIASES, SiteQuantity};
 pub use noise::{NoiseEstimate, NoiseRatio};
 pub use observability::Undetermined;
 pub use result::{AzimuthSearch, Calibration, CoefficientEstimate, RunResult, SiteInfluence};
 pub use run::Run;
 pub use settings::settings;
+pub use streaming::pass;
 
 /// Number of drift coefficients.
 const PARAMETERS: usize = gyrocal::Platform::PARAMETERS;

@@ -2,7 +2,7 @@
 
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{Covariance, Factors};
-use gyrocal::{Drift, EstimationError, PlatformFilter, Settings};
+use gyrocal::{Drift, EstimationError, Innovation, PlatformFilter, Settings};
 use gyrocal_record::Record;
 
 use crate::PARAMETERS;
@@ -37,26 +37,12 @@ fn filter_in<F: Form<f64>>(
     settings: &Settings<f64>,
     mut watch: impl FnMut(usize),
 ) -> Result<Filtered, CalibrationError> {
-    let at = |row: usize| {
-        move |source: EstimationError| CalibrationError::Filter {
-            row: row + 1,
-            time_s: record.time_s[row],
-            source,
-        }
-    };
-    let mut filter = PlatformFilter::<f64, F>::with_form(settings).map_err(at(0))?;
     let mut fit = Fit::of_nothing();
-    fit.add(&filter.update(&record.accel_g[0]).map_err(at(0))?);
-    watch(0);
-    for row in 1..record.len() {
-        let interval_s = record.time_s[row] - record.time_s[row - 1];
-        fit.add(
-            &filter
-                .step(interval_s, &record.accel_g[row])
-                .map_err(at(row))?,
-        );
+    let filter = PlatformFilter::<f64, F>::with_form(settings);
+    let filter = pass(record, record.len(), filter, |row, _, innovation| {
+        fit.add(innovation);
         watch(row);
-    }
+    })?;
     Ok(Filtered {
         drift: filter.drift(),
         covariance: filter.drift_covariance(),
@@ -64,4 +50,35 @@ fn filter_in<F: Form<f64>>(
         platform_c_enu: filter.platform_c_enu(),
         angles_rad: filter.angles_rad(),
     })
+}
+
+/// Takes a filter over the first rows of a record; `watch` sees each row, the filter after it and
+/// what the row said.
+///
+/// # Errors
+/// [`CalibrationError::Filter`] with the row at which the filter stopped; the first if it could
+/// not be made.
+pub fn pass<F: Form<f64>>(
+    record: &Record,
+    rows: usize,
+    filter: Result<PlatformFilter<f64, F>, EstimationError>,
+    mut watch: impl FnMut(usize, &PlatformFilter<f64, F>, &Innovation<f64, 3>),
+) -> Result<PlatformFilter<f64, F>, CalibrationError> {
+    let at = |row: usize| {
+        move |source: EstimationError| CalibrationError::Filter {
+            row: row + 1,
+            time_s: record.time_s[row],
+            source,
+        }
+    };
+    let mut filter = filter.map_err(at(0))?;
+    for row in 0..rows {
+        if row > 0 {
+            let interval_s = record.time_s[row] - record.time_s[row - 1];
+            filter.predict(interval_s).map_err(at(row))?;
+        }
+        let innovation = filter.update(&record.accel_g[row]).map_err(at(row))?;
+        watch(row, &filter, &innovation);
+    }
+    Ok(filter)
 }

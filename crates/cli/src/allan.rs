@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::Cell;
 use gyrocal_measured::allan::{
     AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
 };
@@ -13,8 +13,10 @@ use gyrocal_record::{SourceText, write_json};
 use serde_json::json;
 
 use crate::Failure;
-use crate::measured::{positive, probability, unusable};
+use crate::measured::unusable;
+use crate::numbers::{positive, probability};
 use crate::outputs::{manifest, refuse_overlap};
+use crate::tables::{right, table};
 
 /// Overlapping Allan deviation of columns of a log.
 ///
@@ -110,16 +112,10 @@ fn document(column: &Column<'_>) -> serde_json::Value {
 }
 
 fn summary(arguments: &AllanArguments, columns: &[Column<'_>]) -> String {
-    let rule = LineStyle::none().fill('─').junction('─');
     let mut text = String::new();
     for column in columns {
-        let mut table = Table::new();
-        table
-            .load_style(TableStyle::new().header_separator(rule))
-            .set_content_arrangement(ContentArrangement::Dynamic)
-            .set_header(["tau [s]", "deviation", "low", "high", "freedom", "noise"]);
+        let mut table = table(["tau [s]", "deviation", "low", "high", "freedom", "noise"]);
         for point in &column.points {
-            let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
             table.add_row([
                 right(format!("{:.4}", point.tau_s)),
                 right(format!("{:.4e}", point.deviation)),

@@ -3,7 +3,6 @@
 mod failed;
 mod inputs;
 mod json;
-mod paragraph;
 mod tables;
 mod words;
 
@@ -14,6 +13,7 @@ use gyrocal_calibration::{Calibration, CalibrationError, Options, Run, calibrate
 use gyrocal_record::{CalibrationMethod, write_json};
 
 use crate::Failure;
+use crate::numbers::positive;
 use crate::outputs::refuse_overlap;
 use crate::progress::Progress;
 use failed::NotCalibrated;
@@ -201,13 +201,6 @@ fn first_alone(runs: &[Run<'_>], options: &Options) -> Option<Vec<f64>> {
             tracing::warn!(%error, "the first record alone could not be calibrated");
             None
         }
-    }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("expected a number greater than 0".to_owned()),
     }
 }
 

@@ -17,10 +17,18 @@ use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_record::{Bench, DiagnosisReport, DiagnosisVerdict, Outputs, Record};
 
+use crate::numbers::probability;
 use crate::outputs::refuse_overlap;
 use crate::progress::Progress;
 use crate::{Answer, Failure};
 use failed::NotDiagnosed;
+
+/// The help of `--figures`.
+const FIGURES: &str = if cfg!(feature = "png") {
+    "Write pictures of it into this folder, as SVG and PNG"
+} else {
+    "Write pictures of it into this folder, as SVG; PNG needs a build with --features png"
+};
 
 /// Show what the model gets wrong about a record, and name the cause.
 ///
@@ -43,8 +51,7 @@ pub(crate) struct DiagnoseArguments {
     /// The result to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    /// Write pictures of it into this folder, as SVG and PNG.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", help = FIGURES)]
     figures: Option<PathBuf>,
     /// Look for these effects too, beside those of the usual search: gyro_xy.axis_misalignment,
     /// say, or gyro_x.magnetic.
@@ -136,11 +143,4 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
             _ => 0,
         },
     })
-}
-
-fn probability(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
-        _ => Err("expected a probability, greater than 0 and less than 1".to_owned()),
-    }
 }

@@ -13,7 +13,6 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::outputs::{manifest, refuse_overlap};
-use diagnosis::Diagnosis;
 use effects::{Extension, known, of_diagnosis, of_list};
 
 /// Write the model file of an extended filter.
@@ -63,7 +62,7 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<String, Failure> {
         ],
     )?;
     let extension = match &arguments.diagnosis {
-        Some(path) => of_diagnosis(&Diagnosis::read(path)?, &path.display().to_string()),
+        Some(path) => of_diagnosis(&diagnosis::read(path)?, &path.display().to_string()),
         None => of_list(arguments.effects.as_deref().unwrap_or_default()),
     }
     .map_err(Failure::Work)?;

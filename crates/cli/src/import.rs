@@ -10,7 +10,8 @@ use gyrocal_measured::{Description, Log, MeasuredError, ResultFile};
 use gyrocal_record::Outputs;
 
 use crate::Failure;
-use crate::measured::{positive, unusable};
+use crate::measured::unusable;
+use crate::numbers::positive;
 use crate::outputs::{manifest, refuse_overlap};
 
 /// Make a record from a recording of another kind.

@@ -11,10 +11,14 @@ mod extend;
 mod import;
 mod measured;
 mod monte_carlo;
+mod noise;
+mod numbers;
 mod outputs;
 mod progress;
 mod rounding;
 mod simulate;
+mod tables;
+mod text;
 mod tumble;
 
 use std::io::{IsTerminal as _, Write as _};

@@ -47,19 +47,3 @@ pub(crate) fn interval(text: &str) -> Result<[f64; 2], String> {
     ends.filter(|[from, to]| from < to)
         .ok_or_else(|| "expected two times in seconds, FROM:TO, FROM before TO".to_owned())
 }
-
-/// Parses a number between 0 and 1.
-pub(crate) fn probability(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    value
-        .filter(|value| *value > 0.0 && *value < 1.0)
-        .ok_or_else(|| "expected a number between 0 and 1".to_owned())
-}
-
-/// Parses a number greater than 0.
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    value
-        .filter(|value| *value > 0.0 && value.is_finite())
-        .ok_or_else(|| "expected a number greater than 0".to_owned())
-}

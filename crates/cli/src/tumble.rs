@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{Cell, Table};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_measured::tumble::{
     Finding, Prepared, SearchSettings, TumbleReport, TumbleSettings, prepare, tumble,
@@ -17,8 +17,10 @@ use gyrocal_record::write_json;
 
 use crate::Failure;
 use crate::measured::{interval, unusable};
+use crate::numbers::probability;
 use crate::outputs::{manifest, refuse_overlap};
 use crate::rounding::rounded;
+use crate::tables::{right, table};
 
 /// Test gyros in many static attitudes: fit the drift law and say what it leaves out.
 ///
@@ -43,7 +45,7 @@ pub(crate) struct TumbleArguments {
     #[arg(long, value_name = "FACTOR", default_value_t = StopSettings::default().accel_factor)]
     quiet_factor: f64,
     /// Probability of finding something in data without effects.
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = crate::measured::probability)]
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
     /// Stops in a row that are left out together when the gain is measured.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
@@ -191,20 +193,14 @@ fn sensors(text: &mut String, prepared: &Prepared) {
 }
 
 fn laws(report: &TumbleReport) -> Table {
-    let rule = LineStyle::none().fill('─').junction('─');
-    let mut table = Table::new();
-    table
-        .load_style(TableStyle::new().header_separator(rule))
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header([
-            "coefficient",
-            "nominal",
-            "sigma",
-            "extended",
-            "sigma",
-            "unit",
-        ]);
-    let right = |text: &str| Cell::new(text).set_alignment(CellAlignment::Right);
+    let mut table = table([
+        "coefficient",
+        "nominal",
+        "sigma",
+        "extended",
+        "sigma",
+        "unit",
+    ]);
     for gyro in &report.gyros {
         for coefficient in &gyro.extended.coefficients {
             let mut nominal = gyro.nominal.coefficients.iter();
@@ -216,10 +212,10 @@ fn laws(report: &TumbleReport) -> Table {
             let [estimate, sigma] = rounded(coefficient.estimate, coefficient.sigma);
             table.add_row([
                 Cell::new(&coefficient.name),
-                right(&before),
-                right(&before_sigma),
-                right(&estimate),
-                right(&sigma),
+                right(before),
+                right(before_sigma),
+                right(estimate),
+                right(sigma),
                 Cell::new(&coefficient.unit),
             ]);
         }

@@ -1,8 +1,9 @@
 //! The whole diagnosis of one record.
 
+use gyrocal::estimation::Factors;
 use gyrocal::{PlatformFilter, Settings};
 use gyrocal_calibration::{
-    CalibrationError, Extended, NoiseEstimate, NoiseModel, Options, Run, settings,
+    CalibrationError, Extended, NoiseEstimate, NoiseModel, Options, Run, pass, settings,
 };
 use gyrocal_record::{Bench, Record};
 
@@ -362,40 +363,31 @@ fn innovations(
         drift: gyrocal::Drift::from_array(core::array::from_fn(|i| fitted.values()[i])),
         ..base
     };
-    let stopped = |row: usize| {
-        move |source| CalibrationError::Filter {
-            row: row + 1,
-            time_s: record.time_s[row],
-            source,
-        }
-    };
-    let mut filter = PlatformFilter::<f64>::at_attitude(
+    let filter = PlatformFilter::<f64, Factors>::at_attitude(
         &settings,
         &fitted.points()[0],
         &settings.angles_sigma_rad,
-    )
-    .map_err(stopped(0))?;
+    );
     let mut innovations = Innovations::default();
-    for row in 0..record.len() {
-        if row > 0 {
-            let interval_s = record.time_s[row] - record.time_s[row - 1];
-            filter.predict(interval_s).map_err(stopped(row))?;
-        }
-        let force_g = filter.kernel().inputs().inputs().f_0;
-        let innovation = filter.update(&record.accel_g[row]).map_err(stopped(row))?;
-        let residual_g: [f64; 3] = core::array::from_fn(|axis| {
+    let mut refused = None;
+    pass(record, record.len(), filter, |row, filter, innovation| {
+        let residual_g = core::array::from_fn(|axis| {
             if innovation.observed[axis] {
                 innovation.residual[axis]
             } else {
                 f64::NAN
             }
         });
-        innovations.push(
+        let pushed = innovations.push(
             record.time_s[row],
             residual_g,
             &innovation.covariance(),
-            force_g,
-        )?;
+            filter.kernel().inputs().inputs().f_0,
+        );
+        refused = refused.take().or(pushed.err());
+    })?;
+    if let Some(error) = refused {
+        return Err(error.into());
     }
     Ok(innovations)
 }

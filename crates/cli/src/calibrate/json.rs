@@ -5,17 +5,17 @@ use std::path::Path;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
-    AzimuthSearch, NoiseEstimate, NoiseRatio, RunResult, SiteInfluence, SiteQuantity, Undetermined,
-    Verdict,
+    AzimuthSearch, RunResult, SiteInfluence, SiteQuantity, Undetermined, Verdict,
 };
 use gyrocal_record::{
-    AzimuthReport, CalibrationReport, Coefficient, FitVerdict, NoiseRatioReport, NoiseReport,
-    OtherAzimuth, RunReport, SCHEMA_VERSION, SiteReport, TurnOn, UndeterminedReport,
+    AzimuthReport, CalibrationReport, Coefficient, FitVerdict, OtherAzimuth, RunReport,
+    SCHEMA_VERSION, SiteReport, TurnOn, UndeterminedReport,
 };
 
 use super::Found;
 use super::inputs::Measurement;
 use crate::Failure;
+use crate::noise;
 use crate::outputs::manifest;
 
 pub(super) fn report(found: &Found, inputs: &[&Path]) -> Result<CalibrationReport, Failure> {
@@ -79,7 +79,7 @@ fn of_run(measurement: &Measurement, run: &RunResult) -> RunReport {
             .turn_on_deg_per_h
             .map(|gyros| gyros.map(|[estimate, sigma]| TurnOn { estimate, sigma })),
         azimuth: run.azimuth.as_ref().map(azimuth),
-        noise: run.noise.as_ref().map(noise),
+        noise: run.noise.as_ref().map(noise::report),
         bounded_values: run.bounded_values,
     }
 }
@@ -92,17 +92,6 @@ fn azimuth(search: &AzimuthSearch) -> AzimuthReport {
             relative_deg: search.other_rad.to_degrees(),
             log_likelihood_deficit: search.margin,
         }),
-    }
-}
-
-fn noise(estimate: &NoiseEstimate) -> NoiseReport {
-    let ratio = |found: NoiseRatio| NoiseRatioReport {
-        ratio: found.ratio,
-        interval: found.interval,
-    };
-    NoiseReport {
-        accel: estimate.accel.map(ratio),
-        gyro: estimate.gyro.map(ratio),
     }
 }
 

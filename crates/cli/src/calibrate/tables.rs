@@ -1,27 +1,14 @@
 //! The tables below the words.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::Cell;
 use gyrocal_calibration::{Calibration, SiteInfluence, SiteQuantity};
 
 use super::Found;
 use super::words::site_error;
 use crate::rounding::rounded;
+use crate::tables::{right, table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-
-fn table(header: impl IntoIterator<Item = String>) -> Table {
-    let rule = LineStyle::none().fill('─').junction('─');
-    let mut table = Table::new();
-    table
-        .load_style(TableStyle::new().header_separator(rule))
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(header);
-    table
-}
-
-fn right(text: impl Into<String>) -> Cell {
-    Cell::new(text.into()).set_alignment(CellAlignment::Right)
-}
 
 /// The nine, with sigmas.
 pub(super) fn coefficients(calibration: &Calibration) -> String {
@@ -33,7 +20,7 @@ pub(super) fn coefficients(calibration: &Calibration) -> String {
         "determined",
         "meaning",
     ];
-    let mut table = table(header.map(str::to_owned));
+    let mut table = table(header);
     for coefficient in calibration.coefficients() {
         let [estimate, sigma] = rounded(coefficient.estimate, coefficient.sigma);
         table.add_row([
@@ -104,7 +91,7 @@ pub(super) fn gains(found: &Found) -> Option<String> {
         "ratio",
         "unit",
     ];
-    let mut table = table(header.map(str::to_owned));
+    let mut table = table(header);
     for (coefficient, alone) in found.calibration.coefficients().into_iter().zip(alone) {
         if differ && coefficient.id.ends_with(".bias") {
             continue;

@@ -10,14 +10,12 @@ use gyrocal_calibration::{
 use gyrocal_record::CalibrationMethod;
 
 use super::inputs::Measurement;
-use super::paragraph::paragraph;
 use super::{Found, tables};
+use crate::noise::told;
+use crate::text::paragraph;
 
 /// Of the variance of a mean; less does no harm to the fit of a record of some days.
 const LARGE_WALK_SHARE: f64 = 0.05;
-
-/// An interval that spans more than this factor says that the record does not tell the noise.
-const TELLS_NOTHING: f64 = 100.0;
 
 pub(super) fn summary(found: &Found) -> String {
     let calibration = &found.calibration;
@@ -211,12 +209,10 @@ fn azimuth(run: &RunResult, search: &AzimuthSearch, of: &str) -> String {
 
 fn ratios(found: &[NoiseRatio; 3]) -> String {
     let one = |(axis, ratio): (&str, &NoiseRatio)| {
-        let [low, high] = ratio.interval;
-        if high > TELLS_NOTHING * low {
-            format!("{axis} not told by the record")
-        } else {
-            format!("{axis} {:.3} ({low:.3} to {high:.3})", ratio.ratio)
-        }
+        told(ratio.ratio, ratio.interval).map_or_else(
+            || format!("{axis} not told by the record"),
+            |told| format!("{axis} {told}"),
+        )
     };
     let parts: Vec<String> = ["x", "y", "z"].into_iter().zip(found).map(one).collect();
     parts.join(", ")

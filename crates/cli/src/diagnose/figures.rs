@@ -8,13 +8,21 @@ use std::path::Path;
 
 use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_record::{DiagnosisVerdict, Outputs};
-use gyrocal_report::{Picture, to_png};
+use gyrocal_report::Picture;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 
 use super::{Found, filter};
 use crate::Failure;
 
+/// Forms in which pictures are written.
+const FORMS: &str = if cfg!(feature = "png") {
+    "as SVG and PNG"
+} else {
+    "as SVG (PNG needs a build with --features png)"
+};
+
 /// Width of the PNGs, px: that of the SVGs and a quarter, for sharp letters.
+#[cfg(feature = "png")]
 const WIDTH_PX: u32 = 1200;
 
 /// A picture with the name of its files.
@@ -44,15 +52,18 @@ pub(super) fn stage(
             .into_diagnostic()
             .wrap_err_with(drawn)
             .map_err(Failure::Work)?;
-        let png = to_png(&svg, WIDTH_PX)
-            .into_diagnostic()
-            .wrap_err_with(drawn)
-            .map_err(Failure::Work)?;
         outputs.stage(&folder.join(name).with_extension("svg"), svg.as_bytes())?;
-        outputs.stage(&folder.join(name).with_extension("png"), &png)?;
+        #[cfg(feature = "png")]
+        {
+            let png = gyrocal_report::to_png(&svg, WIDTH_PX)
+                .into_diagnostic()
+                .wrap_err_with(drawn)
+                .map_err(Failure::Work)?;
+            outputs.stage(&folder.join(name).with_extension("png"), &png)?;
+        }
     }
     Ok(format!(
-        "\n{}: {} pictures, as SVG and PNG: {}\n",
+        "\n{}: {} pictures, {FORMS}: {}\n",
         folder.display(),
         pictures.len(),
         pictures

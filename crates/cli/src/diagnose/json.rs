@@ -4,18 +4,18 @@ use std::path::Path;
 
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::generated::catalogue::EFFECTS;
-use gyrocal_calibration::{NoiseEstimate, NoiseRatio};
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions};
 use gyrocal_diagnosis::{Diagnosis, Gain, NoiseFinding, Verdict};
 use gyrocal_record::{
     DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, FreeRunReport, GainReport,
-    NoiseRatioReport, NoiseReport, NotSearchedReport, ParameterReport, RankedReport,
-    RemainderReport, RemainderVerdict, RivalReport, SCHEMA_VERSION, ShiftReport,
+    NotSearchedReport, ParameterReport, RankedReport, RemainderReport, RemainderVerdict,
+    RivalReport, SCHEMA_VERSION, ShiftReport,
 };
 
 use super::apart;
 use super::filter::Judged;
 use crate::Failure;
+use crate::noise;
 use crate::outputs::manifest;
 
 /// Probability that a named set holds its cause; what [`SearchOptions`] has by default.
@@ -71,7 +71,7 @@ pub(super) fn report(
             })
             .collect(),
         threshold: Some(diagnosis.threshold).filter(|threshold| threshold.is_finite()),
-        noise: noise_report(&diagnosis.noise),
+        noise: noise::report(&diagnosis.noise),
         not_searched: blind.into_iter().chain(not_searched(diagnosis)).collect(),
         findings,
         filter,
@@ -157,17 +157,6 @@ fn gain(gain: &Gain) -> GainReport {
                 unit: shift.unit.to_owned(),
             })
             .collect(),
-    }
-}
-
-fn noise_report(estimate: &NoiseEstimate) -> NoiseReport {
-    let ratio = |found: NoiseRatio| NoiseRatioReport {
-        ratio: found.ratio,
-        interval: found.interval,
-    };
-    NoiseReport {
-        accel: estimate.accel.map(ratio),
-        gyro: estimate.gyro.map(ratio),
     }
 }
 

@@ -3,17 +3,17 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::Cell;
 use gyrocal_record::{DiagnosisReport, NoiseRatioReport};
 
 use super::Found;
-use super::words::{bullet, likelihood, probability, short, value};
+use super::words::{likelihood, probability, short, value};
+use crate::noise::told;
+use crate::tables::{right, table};
+use crate::text::bullet;
 
 /// Rows of the ranking that are shown.
 const TOP: usize = 12;
-
-/// An interval that spans more than this factor says that the record does not tell the noise.
-const TELLS_NOTHING: f64 = 100.0;
 
 /// All tables with their heads.
 pub(super) fn all(found: &Found<'_>) -> String {
@@ -65,20 +65,6 @@ pub(super) fn all(found: &Found<'_>) -> String {
         );
     }
     text
-}
-
-fn table<const N: usize>(header: [&str; N]) -> Table {
-    let rule = LineStyle::none().fill('─').junction('─');
-    let mut table = Table::new();
-    table
-        .load_style(TableStyle::new().header_separator(rule))
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(header);
-    table
-}
-
-fn right(text: impl Into<String>) -> Cell {
-    Cell::new(text.into()).set_alignment(CellAlignment::Right)
 }
 
 fn findings(report: &DiagnosisReport) -> String {
@@ -152,11 +138,7 @@ fn noise(report: &DiagnosisReport) -> String {
 }
 
 fn interval(ratio: &NoiseRatioReport) -> String {
-    let [low, high] = ratio.interval;
-    if high > TELLS_NOTHING * low {
-        return "not told".to_owned();
-    }
-    format!("{:.3} ({low:.3} to {high:.3})", ratio.ratio)
+    told(ratio.ratio, ratio.interval).unwrap_or_else(|| "not told".to_owned())
 }
 
 /// What the audit of the noise saw, in lines.

@@ -11,9 +11,7 @@ use gyrocal_record::{
 use super::blind::is_blind;
 use super::{Found, filter, tables};
 use crate::rounding::rounded;
-
-/// Letters in a line.
-const LINE: usize = 100;
+use crate::text::{bullet, indented, paragraph};
 
 /// Rivals that are told in words; the table has all.
 const RIVALS_TOLD: usize = 4;
@@ -29,7 +27,7 @@ pub(super) fn summary(found: &Found<'_>) -> String {
         found.record.len(),
         found.record.duration_s() / 86_400.0
     );
-    text.push_str(&paragraph("", &verdict(found)));
+    text.push_str(&paragraph(&verdict(found)));
     for (index, finding) in report.findings.iter().enumerate() {
         let _ = writeln!(
             text,
@@ -38,9 +36,9 @@ pub(super) fn summary(found: &Found<'_>) -> String {
             finding.effect,
             name(&finding.effect)
         );
-        text.push_str(&paragraph("   ", &size(finding)));
+        text.push_str(&indented("   ", &size(finding)));
         if !finding.rivals.is_empty() {
-            text.push_str(&paragraph("   ", &rivals(finding)));
+            text.push_str(&indented("   ", &rivals(finding)));
         }
         for equivalent in &finding.equivalents {
             let words = format!(
@@ -48,12 +46,12 @@ pub(super) fn summary(found: &Found<'_>) -> String {
                 equivalent.effect,
                 values(&equivalent.parameters)
             );
-            text.push_str(&paragraph("   ", &words));
+            text.push_str(&indented("   ", &words));
         }
     }
     if let Some(filter) = &report.filter {
         text.push('\n');
-        text.push_str(&paragraph("", &judged(filter, &report.findings)));
+        text.push_str(&paragraph(&judged(filter, &report.findings)));
     }
     if !report.cannot_tell.is_empty() {
         text.push_str("\nNot told apart, and what would separate it:\n");
@@ -69,10 +67,10 @@ pub(super) fn summary(found: &Found<'_>) -> String {
     }
     if let Some(gain) = &report.gain {
         text.push('\n');
-        text.push_str(&paragraph("", &gained(gain)));
+        text.push_str(&paragraph(&gained(gain)));
     }
     text.push('\n');
-    text.push_str(&paragraph("", &left(found)));
+    text.push_str(&paragraph(&left(found)));
     text.push_str(&tables::all(found));
     text
 }
@@ -312,38 +310,6 @@ pub(super) fn short(value: f64) -> String {
     }
 }
 
-/// Words in lines, each with the indent in front.
-fn paragraph(indent: &str, words: &str) -> String {
-    lines(indent, indent, words)
-}
-
-/// An entry of a list.
-pub(super) fn bullet(words: &str) -> String {
-    lines(" - ", "   ", words)
-}
-
-fn lines(first: &str, next: &str, words: &str) -> String {
-    let mut text = String::with_capacity(words.len() + words.len() / 20);
-    let mut line = first.to_owned();
-    let mut empty = true;
-    for word in words.split_whitespace() {
-        if !empty && line.chars().count() + 1 + word.chars().count() > LINE {
-            text.push_str(&line);
-            text.push('\n');
-            line = next.to_owned();
-            empty = true;
-        }
-        if !empty {
-            line.push(' ');
-        }
-        line.push_str(word);
-        empty = false;
-    }
-    text.push_str(&line);
-    text.push('\n');
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -365,16 +331,6 @@ mod tests {
         assert_eq!(probability(0.002), "below 0.01");
         assert_eq!(probability(2.3e-12), "2e-12");
         assert_eq!(probability(0.0), "below 1e-300");
-    }
-
-    #[test]
-    fn lines_are_broken_and_indented() {
-        let text = bullet(&"word ".repeat(40));
-        let broken: Vec<&str> = text.lines().collect();
-        assert_eq!(broken.len(), 3);
-        assert!(broken[0].starts_with(" - word") && broken[1].starts_with("   word"));
-        assert!(broken.iter().all(|line| line.len() <= LINE));
-        assert_eq!(text.matches("word").count(), 40);
     }
 
     #[test]

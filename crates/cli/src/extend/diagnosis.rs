@@ -1,69 +1,47 @@
-//! What a diagnosis found, as far as a model file is made of it.
+//! What a diagnosis found, read from its file.
 
 use std::path::Path;
 
-use gyrocal_record::{Error, InputErrorKind, SCHEMA_VERSION, SourceText};
+use gyrocal_record::{DiagnosisReport, Error, InputErrorKind, SCHEMA_VERSION, SourceText};
 use serde::Deserialize;
 
-/// The result of `gyrocal diagnose --json`; other fields do not matter here.
-#[derive(Debug, Deserialize)]
-pub(super) struct Diagnosis {
+/// What results of any version have.
+#[derive(Deserialize)]
+struct Versioned {
     schema_version: u32,
-    pub(super) verdict: String,
-    pub(super) findings: Vec<Finding>,
 }
 
-/// One finding.
-#[derive(Debug, Deserialize)]
-pub(super) struct Finding {
-    pub(super) effect: String,
-    pub(super) parameters: Vec<Parameter>,
-    #[serde(default)]
-    pub(super) equivalents: Vec<Equivalent>,
-}
-
-/// A parameter that was estimated.
-#[derive(Debug, Deserialize)]
-pub(super) struct Parameter {
-    pub(super) name: String,
-    pub(super) estimate: f64,
-    pub(super) sigma: Option<f64>,
-}
-
-/// An effect that no record can tell from the one that was found.
-#[derive(Debug, Deserialize)]
-pub(super) struct Equivalent {
-    pub(super) effect: String,
-}
-
-impl Diagnosis {
-    /// Reads a result.
-    pub(super) fn read(path: &Path) -> Result<Self, Error> {
-        let source = SourceText::read(path)?;
-        let diagnosis: Self = serde_json::from_str(source.text()).map_err(|error| {
-            let place = offset(source.text(), error.line(), error.column());
-            let reason = error.to_string();
-            let reason = reason.split(" at line ").next().unwrap_or_default();
-            source.error(
-                InputErrorKind::Syntax,
-                place..place,
-                format!("JSON that is no result of a diagnosis ({reason})"),
-                "what `gyrocal diagnose --json` writes",
-                "write it again with `gyrocal diagnose`",
-            )
-        })?;
-        if diagnosis.schema_version == SCHEMA_VERSION {
-            return Ok(diagnosis);
-        }
-        let place = source.text().find("\"schema_version\"").unwrap_or(0);
-        Err(source.error(
+/// Reads the result of `gyrocal diagnose --json`. The version comes first: what another one has
+/// in it may be called otherwise.
+pub(super) fn read(path: &Path) -> Result<DiagnosisReport, Error> {
+    let source = SourceText::read(path)?;
+    let text = source.text();
+    let versioned: Versioned =
+        serde_json::from_str(text).map_err(|error| no_diagnosis(&source, &error))?;
+    if versioned.schema_version != SCHEMA_VERSION {
+        let place = text.find("\"schema_version\"").unwrap_or(0);
+        return Err(source.error(
             InputErrorKind::OutOfRange,
             place..place,
-            format!("schema_version {}", diagnosis.schema_version),
+            format!("schema_version {}", versioned.schema_version),
             format!("{SCHEMA_VERSION}, the version that this program knows"),
             "write it again with `gyrocal diagnose` of this version",
-        ))
+        ));
     }
+    serde_json::from_str(text).map_err(|error| no_diagnosis(&source, &error))
+}
+
+fn no_diagnosis(source: &SourceText, error: &serde_json::Error) -> Error {
+    let place = offset(source.text(), error.line(), error.column());
+    let reason = error.to_string();
+    let reason = reason.split(" at line ").next().unwrap_or_default();
+    source.error(
+        InputErrorKind::Syntax,
+        place..place,
+        format!("JSON that is no result of a diagnosis ({reason})"),
+        "what `gyrocal diagnose --json` writes",
+        "write it again with `gyrocal diagnose`",
+    )
 }
 
 /// The byte of a line and column from 1, the column in bytes, within the text.

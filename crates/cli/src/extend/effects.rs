@@ -1,10 +1,10 @@
 //! Which effects a model file gets, and which it cannot have.
 
 use gyrocal::{EFFECTS, EffectRow};
-use gyrocal_record::{KnownEffect, ModelFile, ParameterEstimate};
+use gyrocal_record::{
+    DiagnosisReport, DiagnosisVerdict, KnownEffect, ModelFile, ParameterEstimate,
+};
 use miette::{Report, miette};
-
-use super::diagnosis::Diagnosis;
 
 /// A model file and what is to be said of how it came about.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ fn known_effect(row: &'static EffectRow) -> KnownEffect<'static> {
 }
 
 /// The model of what a diagnosis found.
-pub(super) fn of_diagnosis(diagnosis: &Diagnosis, name: &str) -> Result<Extension, Report> {
+pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Extension, Report> {
     let mut extension = Extension {
         model: ModelFile::default(),
         left_out: Vec::new(),
@@ -126,17 +126,22 @@ pub(super) fn of_list(ids: &[String]) -> Result<Extension, Report> {
     })
 }
 
-fn nothing(diagnosis: &Diagnosis, extension: &Extension, name: &str) -> Report {
+fn nothing(diagnosis: &DiagnosisReport, extension: &Extension, name: &str) -> Report {
     if extension.left_out.is_empty() {
-        let help = match diagnosis.verdict.as_str() {
-            "unexplained" => "what the catalogue lacks is added to it first: docs/adding-a-term.md",
-            _ => "the nine coefficients explain the record: the model needs no extension",
+        let (verdict, help) = match diagnosis.verdict {
+            DiagnosisVerdict::Unexplained => (
+                "unexplained",
+                "what the catalogue lacks is added to it first: docs/adding-a-term.md",
+            ),
+            _ => (
+                "clean",
+                "the nine coefficients explain the record: the model needs no extension",
+            ),
         };
         return miette!(
             help = help,
-            "{name}: found the verdict `{}` and no finding, expected an effect to extend the \
-             model by",
-            diagnosis.verdict
+            "{name}: found the verdict `{verdict}` and no finding, expected an effect to extend \
+             the model by"
         );
     }
     let reasons = extension.left_out.iter();

@@ -2,11 +2,12 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{Cell, Table};
 use gyrocal_campaign::{Banded, CoefficientSummary, Failure, Measured, Summary};
 
 use super::MonteCarloArguments;
 use crate::rounding::rounded;
+use crate::tables::{right, table};
 
 /// Failed runs that are shown; the JSON has all.
 const FAILURES_SHOWN: usize = 5;
@@ -32,7 +33,7 @@ pub(super) fn text(arguments: &MonteCarloArguments, summary: &Summary) -> String
         let more = summary.failures.len() - FAILURES_SHOWN;
         let _ = writeln!(text, "  and {more} more");
     }
-    let _ = writeln!(text, "\n{}\n", table(summary).trim_fmt());
+    let _ = writeln!(text, "\n{}\n", coefficients(summary).trim_fmt());
     text.push_str(
         "Each coefficient over the runs that determined it: sigma below a tenth of the prior's.\n\
          In parentheses 95 % intervals.\n\n",
@@ -77,8 +78,7 @@ fn nine(summary: &Summary) -> Option<Banded> {
         .filter(|_| !summary.coefficients.iter().all(all))
 }
 
-fn table(summary: &Summary) -> Table {
-    let rule = LineStyle::none().fill('─').junction('─');
+fn coefficients(summary: &Summary) -> Table {
     let bounded = summary
         .coefficients
         .iter()
@@ -96,13 +96,8 @@ fn table(summary: &Summary) -> Table {
         header.push("RMSE / bound");
     }
     header.push("95 % interval holds, %");
-    let mut table = Table::new();
-    table
-        .load_style(TableStyle::new().header_separator(rule))
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(header);
+    let mut table = table(header);
     for coefficient in &summary.coefficients {
-        let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
         let ratio = |ratio: Option<Measured>| {
             right(ratio.map_or_else(String::new, |ratio| measured_text(ratio, 1.0, 3)))
         };

@@ -20,15 +20,24 @@ fn finding(effect: &str, parameters: &[(&str, f64)]) -> Value {
 
 /// A result of `gyrocal diagnose --json`.
 fn diagnosis(verdict: &str, findings: &[Value]) -> String {
+    let ratios = vec![json!({ "ratio": 1.0, "interval": [0.9, 1.1] }); 3];
     let result = json!({
         "schema_version": 1,
-        "manifest": { "program": "gyrocal" },
+        "manifest": {
+            "program": "gyrocal", "version": "0.1.0", "model_hash": "00",
+            "inputs": [], "seed": 0, "command": "gyrocal diagnose r.csv --bench b.toml"
+        },
         "verdict": verdict,
         "false_alarm_probability": 0.01,
         "findings": findings,
         "gain": null,
         "remainder": { "verdict": "white", "p_value": 0.4, "description": "" },
-        "cannot_tell": []
+        "cannot_tell": [],
+        "ranking": [],
+        "threshold": null,
+        "noise": { "accel": ratios, "gyro": ratios },
+        "not_searched": [],
+        "filter": null
     });
     serde_json::to_string_pretty(&result).unwrap()
 }
@@ -128,11 +137,16 @@ fn what_gives_no_model_says_why() {
 fn a_file_that_is_no_diagnosis_is_shown_where_it_is_wrong() {
     let good = diagnosis("clean", &[]);
     let said = refused(&good.replace("\"findings\": []", "\"findings\": 3"));
-    // Fields are written in the order of the alphabet: line 4 has the findings.
-    assert_says(&said, "d.json:4:");
+    // Fields are written in the order of the alphabet: line 5 has the findings.
+    assert_says(&said, "d.json:5:");
     assert_says(&said, "expected what `gyrocal diagnose --json` writes");
     let said = refused(&good.replace("\"schema_version\": 1", "\"schema_version\": 2"));
     assert_says(&said, "found schema_version 2, expected 1");
+    // Another version may have other fields, and is still told for what it is.
+    let said = refused("{ \"schema_version\": 2 }");
+    assert_says(&said, "found schema_version 2, expected 1");
+    let said = refused(&good.replace("\"clean\"", "\"fine\""));
+    assert_says(&said, "unknown variant `fine`");
     assert_says(&refused("{"), "d.json:1:1: found JSON that is no result");
 }
 

@@ -1,13 +1,13 @@
 //! How small an effect a record could show.
 
 use gyrocal::EffectRow;
-use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, parameters_index};
-use gyrocal_calibration::{CalibrationError, Column, Extended};
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS};
+use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended};
 use gyrocal_record::Record;
 use nalgebra::DMatrix;
 
 use super::bank::Bank;
-use super::family::{axis_of, parameter, warm_up};
+use super::family::{KNOCK, axis_of, jump, parameter, warm_up};
 
 /// Information of a record on the sizes of an effect, after all that a fit takes up is projected
 /// out, in the units of the effect's table: the inverse is the Cramér-Rao bound. `shape` is the
@@ -50,11 +50,6 @@ fn columns(
     record: &Record,
     shape: Option<f64>,
 ) -> Option<(Vec<Column>, Vec<usize>)> {
-    const BIASES: [usize; 3] = [
-        parameters_index::GYRO_X_BIAS,
-        parameters_index::GYRO_Y_BIAS,
-        parameters_index::GYRO_Z_BIAS,
-    ];
     let first_s = record.time_s.first().copied().unwrap_or(0.0);
     let row_at = |time_s: f64| {
         record
@@ -65,10 +60,7 @@ fn columns(
     let base = PARAMETERS.len();
     let further = match (row.id, shape, axis_of(row.id)) {
         ("platform.initial_attitude", ..) => [0, 1, 2].map(|axis| Column::Start { axis }).to_vec(),
-        ("platform.knock", Some(onset_s), _) => {
-            let row = row_at(onset_s);
-            [0, 1, 2].map(|axis| Column::Jump { row, axis }).to_vec()
-        }
+        (KNOCK, Some(onset_s), _) => jump(record, onset_s).to_vec(),
         (id, Some(onset_s), Some(axis)) if id.ends_with(".step") => vec![Column::Onset {
             parameter: BIASES[axis],
             row: row_at(onset_s),

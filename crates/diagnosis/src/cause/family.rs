@@ -1,8 +1,8 @@
 //! Families of signatures: which columns stand for which effect.
 
 use gyrocal::EffectRow;
-use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, SHAPES, parameters_index};
-use gyrocal_calibration::{Column, Extension};
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, SHAPES};
+use gyrocal_calibration::{BIASES, Column, Extension};
 use gyrocal_record::{Bench, Record};
 
 /// Onsets that a step is looked for at: two and a half percent of the record apart, across
@@ -17,13 +17,6 @@ const SHORTEST_TIME_CONSTANT_H: f64 = 0.3;
 
 /// The one effect that is a jump of the attitude.
 pub(crate) const KNOCK: &str = "platform.knock";
-
-/// The constant drifts, which steps and warm-ups are shares of.
-pub(crate) const BIASES: [usize; 3] = [
-    parameters_index::GYRO_X_BIAS,
-    parameters_index::GYRO_Y_BIAS,
-    parameters_index::GYRO_Z_BIAS,
-];
 
 /// One signature, or several that belong together.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,11 +4,10 @@
 use core::f64::consts::TAU;
 
 use gyrocal::generated::catalogue::PARAMETERS;
-use gyrocal_calibration::{CalibrationError, Column, Extended};
+use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended};
 use gyrocal_record::Record;
 
 use super::bank::Bank;
-use super::family::BIASES;
 
 /// The shortest period that is looked for here, h; shorter ones show in the innovations.
 const SHORTEST_PERIOD_H: f64 = 1.0;

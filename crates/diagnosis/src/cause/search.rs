@@ -137,6 +137,7 @@ pub fn search<'a>(
 ) -> Result<Searched<'a>, CalibrationError> {
     let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
     let plan = Plan::new(record, bench, &also);
+    let base = nominal.extension().clone();
     let mut fitted = nominal;
     let mut accepted: Vec<Accepted> = Vec::new();
     let mut inseparable: Vec<usize> = Vec::new();
@@ -177,7 +178,7 @@ pub fn search<'a>(
             && line.statistic - line.searched > best.statistic
         {
             lines.push(line);
-            fitted = fitted.refitted(&extension(&plan, record, &accepted, &lines))?;
+            fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &lines))?;
             continue;
         }
         let shape = refined(&fitted, record, &plan, &best)?;
@@ -188,7 +189,7 @@ pub fn search<'a>(
             searched: best.searched,
         });
         let refitted = fitted
-            .refitted(&extension(&plan, record, &accepted, &lines))
+            .refitted(&extension(&base, &plan, record, &accepted, &lines))
             .and_then(|refitted| Bank::new(&refitted, &[], &[]).map(|_| refitted));
         match refitted {
             Ok(refitted) => fitted = refitted,
@@ -214,7 +215,7 @@ pub fn search<'a>(
         match weakest {
             Some((index, strength)) if strength <= threshold && accepted.len() > 1 => {
                 accepted.remove(index);
-                fitted = fitted.refitted(&extension(&plan, record, &accepted, &lines))?;
+                fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &lines))?;
             }
             _ => break findings,
         }
@@ -231,12 +232,13 @@ pub fn search<'a>(
 
 /// The model that all accepted effects make up.
 fn extension(
+    base: &Extension,
     plan: &Plan,
     record: &Record,
     accepted: &[Accepted],
     lines: &[DriftLine],
 ) -> Extension {
-    let mut extension = Extension::default();
+    let mut extension = base.clone();
     for found in lines {
         let columns = line::courses(record, found.gyro, found.period_h);
         extension.further.extend(columns, f64::INFINITY);
@@ -598,7 +600,8 @@ fn places(fitted: &Extended<'_>, plan: &Plan, family: &Family) -> Vec<usize> {
         .parameters
         .iter()
         .enumerate()
-        .filter(|(_, (parameter, _))| states.contains(&Some(*parameter)))
+        // What the bench declares uncertain has a sigma and is no cause.
+        .filter(|(_, (parameter, sigma))| states.contains(&Some(*parameter)) && sigma.is_infinite())
         .map(|(index, _)| first + index)
         .collect()
 }

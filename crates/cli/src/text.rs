@@ -1,0 +1,80 @@
+//! Words in lines that a terminal shows whole.
+
+/// Letters in a line.
+const LINE: usize = 100;
+
+/// Words in lines, with a line break at the end.
+pub(crate) fn paragraph(words: &str) -> String {
+    lines("", "", words)
+}
+
+/// The same with an indent in front of each line.
+pub(crate) fn indented(indent: &str, words: &str) -> String {
+    lines(indent, indent, words)
+}
+
+/// An entry of a list.
+pub(crate) fn bullet(words: &str) -> String {
+    lines(" - ", "   ", words)
+}
+
+/// Only spaces part words: what has several of them, as a path may, keeps them.
+fn lines(first: &str, next: &str, words: &str) -> String {
+    let mut text = first.to_owned();
+    let mut column = first.chars().count();
+    let mut empty = true;
+    for word in words.split(' ') {
+        let length = word.chars().count();
+        if !empty && column + 1 + length > LINE {
+            text.push('\n');
+            text.push_str(next);
+            column = next.chars().count();
+        } else if !empty {
+            text.push(' ');
+            column += 1;
+        }
+        text.push_str(word);
+        column += length;
+        empty = false;
+    }
+    text.push('\n');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LINE, bullet, indented, paragraph};
+
+    #[test]
+    fn lines_are_filled_and_not_overfilled() {
+        let words = "gyro_x.bias, ".repeat(40);
+        let text = paragraph(words.trim_end());
+        assert_eq!(text.replace('\n', " "), words);
+        for (index, line) in text.lines().enumerate() {
+            let length = line.chars().count();
+            assert!(length <= LINE, "{length}");
+            // A further word has 12 letters and a space before it.
+            assert!(
+                length + 13 > LINE || index + 1 == text.lines().count(),
+                "{length}"
+            );
+        }
+        assert_eq!(paragraph(&"w".repeat(200)), "w".repeat(200) + "\n");
+        assert_eq!(paragraph("a  b.csv"), "a  b.csv\n");
+    }
+
+    #[test]
+    fn lines_are_broken_and_indented() {
+        let words = "word ".repeat(40);
+        let text = bullet(words.trim_end());
+        let broken: Vec<&str> = text.lines().collect();
+        assert_eq!(broken.len(), 3);
+        assert!(broken[0].starts_with(" - word") && broken[1].starts_with("   word"));
+        assert!(broken.iter().all(|line| line.len() <= LINE));
+        assert_eq!(text.matches("word").count(), 40);
+        assert_eq!(
+            indented("   ", words.trim_end())[1..],
+            text.replace('-', " ")[1..]
+        );
+    }
+}
