@@ -1,6 +1,6 @@
 //! What the statistics reach if the model is right: drawn from their joint distribution.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -72,11 +72,11 @@ impl Null {
                     steps.iter().map(|column| place(*column)).collect();
                 let Some(places) = places else { continue };
                 let walk = Walk::new(bank.part(steps).0);
-                for draw in 0..DRAWS {
-                    let score = DVector::from_fn(places.len(), |i, _| {
-                        scores[(places[i], draw)] / scale[places[i]]
-                    });
-                    reached[(index, draw)] = walk.best(&score).0;
+                let own = DMatrix::from_fn(places.len(), DRAWS, |i, draw| {
+                    scores[(places[i], draw)] / scale[places[i]]
+                });
+                for (draw, statistic) in walk.best_of_each(&own).into_iter().enumerate() {
+                    reached[(index, draw)] = statistic;
                 }
                 continue;
             }
