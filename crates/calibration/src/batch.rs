@@ -13,11 +13,12 @@ use crate::fit::Fit;
 use crate::layout::{Layout, SiteQuantity};
 use crate::noise;
 use crate::observability::undetermined;
+use crate::problem::Problem;
 use crate::result::{AzimuthSearch, Calibration, RunResult, SiteInfluence};
 use crate::robust;
 use crate::run::Run;
 use crate::settings::level;
-use crate::solve::{Failure, Problem, Solution};
+use crate::solve::{Failure, Solution};
 use crate::uncertainty::Uncertainty;
 
 /// Steps after which an estimate that still moves is given up.
@@ -107,7 +108,8 @@ fn problem<'a>(
             longest_step_s: options.longest_step_s,
             ..level(run.bench)
         };
-        let beginning = begin(run, &settings, options, careful)?;
+        let beginning = begin(run, &settings, options, careful)
+            .map_err(|error| error.of_record(index, runs.len()))?;
         let start = beginning.start;
         for (i, sum) in weights.iter_mut().enumerate() {
             let weight: f64 = start.sigma[i].powi(-2);

@@ -16,9 +16,10 @@ use crate::error::CalibrationError;
 use crate::further::Further;
 use crate::layout::SiteQuantity;
 use crate::noise::{self, NoiseEstimate};
+use crate::problem::{Leg, Problem, Unknown};
 use crate::run::{Rows, Run};
 use crate::settings::level;
-use crate::solve::{Failure, Leg, Problem, Solution, Unknown};
+use crate::solve::{Failure, Solution};
 use crate::uncertainty::Uncertainty;
 
 /// What a model has beyond the nine coefficients.

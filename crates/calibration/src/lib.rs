@@ -40,6 +40,7 @@ mod further;
 mod layout;
 mod noise;
 mod observability;
+mod problem;
 mod result;
 mod robust;
 mod run;
