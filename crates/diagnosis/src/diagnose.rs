@@ -41,9 +41,9 @@ impl Default for DiagnoseOptions {
 }
 
 /// Shares of the probability of a false alarm: noise audit, gyro noise, search, remainder. A
-/// fifth is kept back: thresholds that are drawn and probabilities that hold for long records are
-/// each a little off, and a search has no error that is welcome.
-const SHARES: [f64; 4] = [0.15, 0.05, 0.45, 0.15];
+/// twentieth is kept back: thresholds that are drawn and probabilities that hold for long records
+/// are each a little off.
+const SHARES: [f64; 4] = [0.15, 0.05, 0.6, 0.15];
 
 /// Gyro noise that differs from the declared one by so many sigmas is reckoned with in the
 /// search, so that it makes no causes of itself; it is named only if it still differs when the

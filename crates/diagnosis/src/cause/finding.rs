@@ -65,8 +65,8 @@ pub(super) struct Accepted {
     pub(super) searched: f64,
 }
 
-/// What is to be said of one accepted effect, the others being in the model, and its statistic
-/// less what searching reaches.
+/// What is to be said of one accepted effect, the others being in the model, and its statistic as
+/// the test takes it.
 pub(super) fn finding(
     fitted: &Extended<'_>,
     plan: &Plan,
@@ -106,7 +106,13 @@ pub(super) fn finding(
     }
     let null = Null::draw(&bank, &families, options.seed);
     let scores = Scores::of(&bank, &families, &null, None);
-    let best = scores.penalised(own.family) - own.searched;
+    // What searching in every step reaches is in the place of what three directions do.
+    let (best, tested) = if family.knock {
+        let statistic = scores.best[own.family].map_or(0.0, |best| best.statistic);
+        (statistic - own.searched, statistic - own.searched)
+    } else {
+        (scores.penalised(own.family), scores.tested(own.family))
+    };
     let mut rivals: Vec<Rival> = (0..families.len())
         .filter(|other| {
             *other != own.family
@@ -157,7 +163,7 @@ pub(super) fn finding(
         rivals,
         equivalents,
     };
-    Ok((finding, best))
+    Ok((finding, tested))
 }
 
 fn from_joint(effect: &'static gyrocal::EffectRow, joint: &Joint) -> Vec<FoundParameter> {

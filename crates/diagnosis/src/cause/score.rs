@@ -15,7 +15,7 @@ const RICHER: f64 = 3.84;
 pub struct Ranked {
     /// Public id of the effect.
     pub effect: &'static str,
-    /// Its largest statistic less what searching alone reaches.
+    /// Its largest statistic, as the test of whether anything is there takes it.
     pub statistic: f64,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Best {
 /// The best candidate of every family, and what searching alone reaches.
 pub(super) struct Scores<'a> {
     pub(super) best: Vec<Option<Best>>,
-    penalties: &'a [f64],
+    null: &'a Null,
 }
 
 impl<'a> Scores<'a> {
@@ -84,16 +84,27 @@ impl<'a> Scores<'a> {
                     .max_by(|a, b| a.statistic.total_cmp(&b.statistic))
             })
             .collect();
-        Self {
-            best,
-            penalties: &null.penalties,
-        }
+        Self { best, null }
     }
 
     pub(super) fn penalised(&self, family: usize) -> f64 {
         self.best[family].map_or(f64::NEG_INFINITY, |best| {
-            best.statistic - self.penalties[family]
+            best.statistic - self.null.penalties[family]
         })
+    }
+
+    /// The statistic of a family as the test takes it.
+    pub(super) fn tested(&self, family: usize) -> f64 {
+        self.best[family].map_or(f64::NEG_INFINITY, |best| {
+            best.statistic - self.null.paid[family]
+        })
+    }
+
+    /// The statistic of the test: the largest of all.
+    pub(super) fn largest(&self) -> f64 {
+        (0..self.best.len())
+            .map(|family| self.tested(family))
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The penalised statistic, a random walk behind what follows a law.
@@ -145,7 +156,7 @@ impl<'a> Scores<'a> {
             .filter(|(index, _)| self.best[*index].is_some())
             .map(|(index, family)| Ranked {
                 effect: family.id(),
-                statistic: self.penalised(index),
+                statistic: self.tested(index),
             })
             .collect();
         ranking.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));

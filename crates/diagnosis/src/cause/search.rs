@@ -95,7 +95,7 @@ pub fn search<'a>(
         let Some(best) = scores.named(&families) else {
             break;
         };
-        let statistic = scores.penalised(best.family);
+        let statistic = scores.largest();
         if statistic <= threshold || accepted.len() == MOST_EFFECTS {
             break;
         }
