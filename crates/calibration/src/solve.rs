@@ -74,7 +74,7 @@ pub(crate) struct Leg<'a, I> {
 
 impl<I> Leg<'_, I> {
     /// For each column the unknowns whose sum it is.
-    fn columns(&self) -> Vec<&[usize]> {
+    pub(crate) fn columns(&self) -> Vec<&[usize]> {
         let parameters = self.sums.iter().filter(|unknowns| !unknowns.is_empty());
         parameters
             .map(Vec::as_slice)
@@ -429,7 +429,7 @@ where
 }
 
 /// Adds a record's Gram matrix, whose columns are the model's parameters, to that of the unknowns.
-fn add_gram(total: &mut DMatrix<f64>, gram: &DMatrix<f64>, sums: &[&[usize]]) {
+pub(crate) fn add_gram(total: &mut DMatrix<f64>, gram: &DMatrix<f64>, sums: &[&[usize]]) {
     let size = sums.len() + 1;
     // Column 0 is the residual in both.
     let targets = |column: usize| -> Vec<usize> {
