@@ -54,7 +54,7 @@ pub use averaging::{Averaged, average, walk_share};
 pub use bound::bound;
 pub use calibrate::{Method, Options, calibrate, calibrate_runs};
 pub use error::CalibrationError;
-pub use extended::{Extended, Extension, Jump, NoiseModel};
+pub use extended::{Estimates, Expectation, Extended, Extension, Jump, NoiseModel};
 pub use fit::{Fit, Verdict, chi_square_band};
 pub use further::{Column, Further};
 pub use layout::{BIASES, SiteQuantity};

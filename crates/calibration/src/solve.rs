@@ -246,7 +246,7 @@ where
 }
 
 /// Adds a record's Gram matrix, whose columns are the model's parameters, to that of the unknowns.
-fn add_gram(total: &mut DMatrix<f64>, gram: &DMatrix<f64>, sums: &[&[usize]]) {
+pub(crate) fn add_gram(total: &mut DMatrix<f64>, gram: &DMatrix<f64>, sums: &[&[usize]]) {
     let size = sums.len() + 1;
     // Column 0 is the residual in both.
     let targets = |column: usize| -> Vec<usize> {

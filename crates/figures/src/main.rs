@@ -3,6 +3,7 @@
 
 mod calibration;
 mod figure;
+mod gain;
 mod kernel;
 mod main_job;
 mod naming;
@@ -46,6 +47,8 @@ enum Topic {
     Kernel,
     /// Causes hidden in records: detected, named, and what clean records show.
     Naming,
+    /// What extended models gain: under cross-validation, in the coefficients, on a second record.
+    Gain,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
 }
@@ -57,6 +60,7 @@ fn main() -> ExitCode {
         Topic::Calibration => calibration::figures(arguments.small),
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
         Topic::Naming => naming::figures(arguments.small),
+        Topic::Gain => gain::figures(arguments.small),
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {

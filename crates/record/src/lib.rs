@@ -56,6 +56,7 @@ mod bench;
 mod diagnosis_report;
 mod error;
 mod fields;
+mod gain_report;
 mod header;
 mod manifest;
 mod model_file;
@@ -70,10 +71,13 @@ mod tables;
 pub use bench::{Bench, Gravity, Prior, SiteUncertainty};
 pub use diagnosis_report::{
     CannotTellReport, DiagnosisReport, DiagnosisVerdict, EquivalentReport, FilterReport,
-    FindingReport, FreeRunReport, GainReport, NotSearchedReport, ParameterReport, RankedReport,
-    RemainderReport, RemainderVerdict, RivalReport, ShiftReport,
+    FindingReport, NotSearchedReport, ParameterReport, RankedReport, RemainderReport,
+    RemainderVerdict, RivalReport,
 };
 pub use error::{Error, InputError, InputErrorKind};
+pub use gain_report::{
+    CompensationReport, FreeRunReport, GainReport, ShiftReport, ValidationReport,
+};
 pub use manifest::{Input, Manifest};
 pub use model_file::{KnownEffect, ModelFile, ParameterEstimate};
 pub use output::{Outputs, write_json, write_whole};

@@ -53,6 +53,21 @@ pub struct Searched<'a> {
     pub threshold: f64,
     /// What could not be looked for.
     pub unavailable: Vec<Unavailable>,
+    base: Extension,
+    plan: Plan,
+    accepted: Vec<Accepted>,
+}
+
+impl Searched<'_> {
+    /// The extension with the lines and some of the findings: those that are `kept`.
+    pub(crate) fn extension_with(&self, record: &Record, kept: &[bool]) -> Extension {
+        let accepted = self.accepted.iter().zip(kept);
+        let accepted: Vec<Accepted> = accepted
+            .filter(|(_, kept)| **kept)
+            .map(|(accepted, _)| accepted.clone())
+            .collect();
+        extension(&self.base, &self.plan, record, &accepted, &self.lines)
+    }
 }
 
 /// Looks for causes in a record, from the nominal model at its best fit.
@@ -156,7 +171,10 @@ pub fn search<'a>(
         lines,
         ranking,
         threshold,
-        unavailable: plan.unavailable,
+        unavailable: plan.unavailable.clone(),
+        base,
+        plan,
+        accepted,
     })
 }
 

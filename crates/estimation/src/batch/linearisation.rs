@@ -209,13 +209,29 @@ where
     /// # Errors
     /// As [`Self::reduce`].
     pub fn free_run(&self) -> Result<Vec<D::Point>, EstimationError> {
+        self.free_run_over(0..self.points.len())
+    }
+
+    /// The same over some rows, from the point at the first of them.
+    ///
+    /// # Errors
+    /// As [`Self::reduce`], and [`EstimationError::InvalidArgument`] if there are no such rows.
+    pub fn free_run_over(
+        &self,
+        rows: core::ops::Range<usize>,
+    ) -> Result<Vec<D::Point>, EstimationError> {
+        if rows.is_empty() || rows.end > self.points.len() {
+            return Err(EstimationError::InvalidArgument {
+                expected: "rows of the record, and at least one",
+            });
+        }
         let none = vec![0.0; self.active.len() + self.further.count()];
         let mut pass = Pass::new(self, 0, Some(&none))?;
-        let mut points = Vec::with_capacity(self.points.len());
-        let mut point = self.points[0];
+        let mut points = Vec::with_capacity(rows.len());
+        let mut point = self.points[rows.start];
         points.push(point);
         let further = self.further.count();
-        for row in 0..self.points.len() - 1 {
+        for row in rows.start..rows.end - 1 {
             let step = pass
                 .stepper
                 .advance(self.series, row, &point, self.parameters)?;
