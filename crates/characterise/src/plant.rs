@@ -49,6 +49,22 @@ impl Planted {
         }
         Hidden::new(self.effect.id, &parameters)
     }
+
+    /// Its length in sigmas of its own bound; 0 if the record says nothing of it.
+    ///
+    /// # Errors
+    /// As [`simulate`], [`Extended::nominal`] and [`Bank::new`].
+    pub fn strength(&self, scenario: &Scenario) -> Result<f64, CharacteriseError> {
+        let clean = simulate(scenario)?;
+        let mut columns = Columns::default();
+        let Some(signature) = columns.signature(self.effect, &clean.record, self.shape) else {
+            return Ok(0.0);
+        };
+        let bank = Bank::new(&fitted(&clean)?, &columns.further)?;
+        let sizes = DVector::from_column_slice(&self.sizes);
+        let square = (bank.product(&signature, &signature) * &sizes).dot(&sizes);
+        Ok(square.max(0.0).sqrt())
+    }
 }
 
 /// The effects of the default search that have a signature and that a scenario's record can show.
