@@ -2,8 +2,13 @@
 
 use gyrocal_truth::{Population, Scenario, Temperature};
 
+use crate::draw::Draw;
+
 /// Seed of the population; records are numbers in it.
 const SEED: u64 = 77;
+
+/// Of the stream that decides whether the temperature is logged; 0 draws what is hidden.
+const PURPOSE: u64 = 1;
 
 /// Times between rows. A record each minute is the usual one, and one each ten seconds costs as
 /// much as six of those.
@@ -11,7 +16,7 @@ const INTERVALS_S: [f64; 8] = [10.0, 30.0, 60.0, 60.0, 60.0, 120.0, 120.0, 120.0
 
 /// The scenario of a record without anything hidden: any attitude, latitude to 80 degrees on
 /// both hemispheres, drift as [`Population::new`] draws it, two to four days each 10, 30, 60 or
-/// 120 s, up to three gaps of ten minutes to six hours, and in every other record the temperature.
+/// 120 s, up to three gaps of ten minutes to six hours, and the temperature logged in half of the records.
 /// Noise is as declared.
 #[must_use]
 pub fn scenario(number: u64) -> Scenario {
@@ -21,7 +26,7 @@ pub fn scenario(number: u64) -> Scenario {
         ..Population::varied(SEED)
     };
     Scenario {
-        temperature: number.is_multiple_of(2).then(Temperature::default),
+        temperature: (Draw::new(number, PURPOSE).uniform() < 0.5).then(Temperature::default),
         ..population.scenario(number)
     }
 }
