@@ -4,6 +4,7 @@ use clap::{ArgAction, Parser, Subcommand};
 
 use crate::allan::AllanArguments;
 use crate::calibrate::CalibrateArguments;
+use crate::characterise::CharacteriseArguments;
 use crate::diagnose::DiagnoseArguments;
 use crate::extend::ExtendArguments;
 use crate::import::ImportArguments;
@@ -32,6 +33,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     Allan(AllanArguments),
     Calibrate(CalibrateArguments),
+    Characterise(CharacteriseArguments),
     Diagnose(DiagnoseArguments),
     Extend(ExtendArguments),
     Import(ImportArguments),

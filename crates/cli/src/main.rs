@@ -5,6 +5,7 @@
 
 mod allan;
 mod calibrate;
+mod characterise;
 mod command;
 mod diagnose;
 mod extend;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Allan(arguments) => allan::run(arguments).map(Answer::from),
         Command::Calibrate(arguments) => calibrate::run(arguments).map(Answer::from),
+        Command::Characterise(arguments) => characterise::run(arguments),
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Extend(arguments) => extend::run(arguments).map(Answer::from),
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments).map(Answer::from),
