@@ -24,7 +24,10 @@ mod search;
 mod walk;
 
 pub use bound::information;
-pub(crate) use family::missing;
 pub use family::{Candidate, Family, Plan, Unavailable};
+pub(crate) use family::{KNOCK, axis_of, extend, jump, missing, parameter, warm_up};
 pub use line::DriftLine;
+pub(crate) use null::normal;
 pub use search::{Finding, FoundParameter, Ranked, Rival, SearchOptions, Searched, search};
+pub(crate) use search::{RICHER, SET_CONSTANT};
+pub(crate) use walk::Walk;

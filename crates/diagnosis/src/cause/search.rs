@@ -42,11 +42,11 @@ const MOST_EFFECTS: usize = 6;
 /// log-likelihood ratio. Over simulated records with causes five standard deviations large the
 /// true one was within 2.8 of the first in 95 %, and within 3.4 in 97 %; `cargo figures naming`
 /// measures the coverage.
-const SET_CONSTANT: f64 = 3.5;
+pub(crate) const SET_CONSTANT: f64 = 3.5;
 
 /// A richer effect than one that it contains must be better by the 5 % point of chi-square with
 /// one degree of freedom.
-const RICHER: f64 = 3.84;
+pub(crate) const RICHER: f64 = 3.84;
 
 /// Onsets and time constants are refined on so many points between the neighbours of the best.
 const REFINED: usize = 9;
