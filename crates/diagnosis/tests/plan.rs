@@ -72,8 +72,14 @@ fn sigmas_after_the_planned_run_are_as_predicted() {
 fn twins() {
     let scenario = Scenario {
         magnetic_field_gauss: Some([0.02, 0.25, -0.4]),
-        hidden: vec![Hidden::new("gyro_y.g_z", &[("size", 0.003)]).unwrap()],
-        ..scenario(31)
+        hidden: vec![
+            Hidden::new(
+                "gyro_y.g_z",
+                &[("size", std::env::var("SIZE").unwrap().parse().unwrap())],
+            )
+            .unwrap(),
+        ],
+        ..scenario(std::env::var("SEED").unwrap().parse().unwrap())
     };
     let first = simulate(&scenario).unwrap();
     let options = DiagnoseOptions {
