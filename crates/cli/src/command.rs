@@ -9,6 +9,7 @@ use crate::diagnose::DiagnoseArguments;
 use crate::extend::ExtendArguments;
 use crate::import::ImportArguments;
 use crate::monte_carlo::MonteCarloArguments;
+use crate::plan::PlanArguments;
 use crate::simulate::SimulateArguments;
 use crate::tumble::TumbleArguments;
 
@@ -38,6 +39,7 @@ pub(crate) enum Command {
     Extend(ExtendArguments),
     Import(ImportArguments),
     MonteCarlo(MonteCarloArguments),
+    Plan(PlanArguments),
     Simulate(SimulateArguments),
     Tumble(TumbleArguments),
 }

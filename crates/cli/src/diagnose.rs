@@ -21,7 +21,7 @@ use crate::numbers::probability;
 use crate::outputs::refuse_overlap;
 use crate::progress::Progress;
 use crate::{Answer, Failure};
-use failed::NotDiagnosed;
+pub(crate) use failed::NotDiagnosed;
 
 /// The help of `--figures`.
 const FIGURES: &str = if cfg!(feature = "png") {

@@ -15,6 +15,7 @@ mod monte_carlo;
 mod noise;
 mod numbers;
 mod outputs;
+mod plan;
 mod progress;
 mod rounding;
 mod simulate;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Command::Extend(arguments) => extend::run(arguments).map(Answer::from),
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments).map(Answer::from),
         Command::Import(arguments) => import::run(arguments).map(Answer::from),
+        Command::Plan(arguments) => plan::run(arguments).map(Answer::from),
         Command::Simulate(arguments) => simulate::run(arguments).map(Answer::from),
         Command::Tumble(arguments) => tumble::run(arguments).map(Answer::from),
     };

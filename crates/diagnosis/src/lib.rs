@@ -28,6 +28,7 @@ mod error;
 mod gain;
 mod noise;
 mod norm;
+pub mod plan;
 mod remainder;
 mod request;
 mod series;

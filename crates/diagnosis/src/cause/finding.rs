@@ -14,7 +14,7 @@ use super::search::SearchOptions;
 /// log-likelihood ratio. Over simulated records with causes five standard deviations large the
 /// true one was within 2.8 of the first in 95 %, and within 3.4 in 97 %; `cargo figures naming`
 /// measures the coverage.
-const SET_CONSTANT: f64 = 3.5;
+pub(crate) const SET_CONSTANT: f64 = 3.5;
 
 /// One parameter of a cause.
 #[derive(Clone, Debug, PartialEq)]

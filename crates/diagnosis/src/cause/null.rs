@@ -192,7 +192,7 @@ pub(crate) fn tail(value: f64) -> f64 {
 }
 
 /// A normal deviate by the polar method (Marsaglia).
-fn normal(generator: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn normal(generator: &mut ChaCha8Rng) -> f64 {
     let mut uniform = || (generator.next_u64() >> 11) as f64 * (2.0 / (1u64 << 53) as f64) - 1.0;
     loop {
         let (x, y) = (uniform(), uniform());

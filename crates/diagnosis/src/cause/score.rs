@@ -8,7 +8,7 @@ use super::walk::Walk;
 
 /// A richer effect than one that it contains must be better by the 5 % point of chi-square with
 /// one degree of freedom.
-const RICHER: f64 = 3.84;
+pub(crate) const RICHER: f64 = 3.84;
 
 /// One family in the first search.
 #[derive(Clone, Debug, PartialEq)]
