@@ -14,7 +14,9 @@ use crate::noise::{AuditOptions, DeclaredNoise, Estimate, NoiseAudit, NoiseFindi
 use crate::remainder::{Remainder, remainder};
 use crate::request;
 use crate::series::Innovations;
+use crate::side::{NormVerdict, norm_verdict};
 use crate::significance::two_sided_p;
+use crate::stability::{Stability, stability};
 
 /// How a record is diagnosed.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +47,10 @@ impl Default for DiagnoseOptions {
 /// each a little off, and a search has no error that is welcome.
 const SHARES: [f64; 4] = [0.15, 0.05, 0.45, 0.15];
 
+/// Share of what is told of the norm and of averaging, which makes no finding: of what is kept
+/// back.
+const TOLD: f64 = 0.1;
+
 /// Gyro noise that differs from the declared one by so many sigmas is reckoned with in the
 /// search, so that it makes no causes of itself; it is named only if it still differs when the
 /// causes are in the model.
@@ -73,6 +79,11 @@ pub struct Diagnosis<'a> {
     pub verdict: Verdict,
     /// Probability of any finding on a sound record, as asked for.
     pub false_alarm_probability: f64,
+    /// What the norm of specific force says, which no gyro enters; `None` if there are too few
+    /// complete rows.
+    pub norm: Option<NormVerdict>,
+    /// How what is left averages out; `None` without a stretch that is long enough.
+    pub stability: Option<Stability>,
     /// What is wrong with the noise.
     pub noise_findings: Vec<NoiseFinding>,
     /// The noise audit with all its figures.
@@ -161,6 +172,11 @@ pub fn diagnose<'a>(
     )?;
     let mut noise_model = believed(&audit, record);
     leave_out_early(&mut noise_model, record, &first, bench.accel_noise_g);
+    let slow_noise_g = noise_model
+        .accel_ratio
+        .map(|ratio| ratio * bench.accel_noise_g);
+    let told = TOLD * options.false_alarm_probability;
+    let norm = norm_verdict(&audit.cleaned.apply(record), bench, &slow_noise_g, told).ok();
     let mut nominal = if noise_model == declared {
         first
     } else {
@@ -195,18 +211,21 @@ pub fn diagnose<'a>(
         let mut found = searched.findings.iter();
         found.any(|finding| finding.effect.strip_prefix(gyro) == Some("random_walk"))
     };
-    let gyros = gyro_noise(&estimate, &noise_model, gyro_share);
+    let gyros = if audit.cleaned.correlation == 0.0 {
+        gyro_noise(&estimate, &noise_model, gyro_share)
+    } else {
+        // The likelihood takes the slow part of correlated noise for the gyros'.
+        Vec::new()
+    };
     noise_findings.extend(gyros.into_iter().filter(|finding| !walks(finding.effect)));
     let mut remainder = remainder(&searched.fitted, record, remainder_share)?;
     for line in &searched.lines {
         remainder.add(line);
     }
     let found = !searched.findings.is_empty();
+    let stability = stability(&record.time_s, &remainder.whitened, told).ok();
     let gain = if found {
-        let noise_g = noise_model
-            .accel_ratio
-            .map(|ratio| ratio * bench.accel_noise_g);
-        Some(gain(&nominal, &searched.fitted, record, noise_g)?)
+        Some(gain(&nominal, &searched.fitted, record, slow_noise_g)?)
     } else {
         None
     };
@@ -220,6 +239,8 @@ pub fn diagnose<'a>(
     Ok(Diagnosis {
         verdict,
         false_alarm_probability: options.false_alarm_probability,
+        norm,
+        stability,
         noise_findings,
         audit,
         noise: estimate,
