@@ -2,6 +2,7 @@
 //! value, runs, seeds, and whether it holds. The exit code is 1 if one does not.
 
 mod calibration;
+mod diagnosis_ground;
 mod figure;
 mod gain;
 mod kernel;
@@ -45,6 +46,8 @@ enum Topic {
     Calibration,
     /// The structured kernel: speed, scaling, rounding errors, instructions.
     Kernel,
+    /// What a diagnosis stands on: the noise audit, and signatures against the simulation.
+    DiagnosisGround,
     /// Causes hidden in records: detected, named, and what clean records show.
     Naming,
     /// What extended models gain: under cross-validation, in the coefficients, on a second record.
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Topic::MainJob => main_job::figures(arguments.small),
         Topic::Calibration => calibration::figures(arguments.small),
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
+        Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
         Topic::Paper => paper::figures(arguments.write),
