@@ -1,6 +1,6 @@
 //! Where generated code says that the elements of its arrays are, against the programs.
 
-use gyrocal::generated::{catalogue, oracle, platform, surveyed};
+use gyrocal::generated::{catalogue, oracle, platform, strapdown, surveyed};
 use gyrocal_oracle::points::{Purpose, State, states};
 use gyrocal_oracle::program::Output;
 use gyrocal_scalar::Element;
@@ -26,7 +26,7 @@ fn sparse_outputs() -> Vec<Sparse> {
     let state = &states(Purpose::ScalarTypes, 1)[0];
     let (theta, drift) = (&state.theta, &state.drift);
     let (omega_0, f_0, step) = (&state.omega_0, &state.f_0, &state.step);
-    let east_0 = &state.east_0;
+    let (east_0, gyros) = (&state.east_0, &state.platform_c_gyros);
     let (field_0, conditions) = (&state.field_0, &state.conditions);
     let (surveyed, catalogue) = (parameters(state), parameters(state));
     let names = catalogue::SHAPES.map(|shape| shape.name.to_owned());
@@ -73,6 +73,22 @@ fn sparse_outputs() -> Vec<Sparse> {
             theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense;
             theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
         surveyed::accelerometers_at_origin_jacobian(&surveyed, f_0)
+            -> AccelerometersAtOriginJacobian:
+            reading_d_theta, READING_D_THETA, reading_d_theta_dense;
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        strapdown::dynamics_jacobian(theta, &surveyed, omega_0, f_0, east_0, gyros)
+            -> DynamicsJacobian:
+            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense;
+            theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
+        strapdown::accelerometers_jacobian(theta, &surveyed, f_0) -> AccelerometersJacobian:
+            reading_d_theta, READING_D_THETA, reading_d_theta_dense;
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        strapdown::dynamics_at_origin_jacobian(&surveyed, omega_0, f_0, east_0, gyros)
+            -> DynamicsAtOriginJacobian:
+            theta_dot_d_theta, THETA_DOT_D_THETA, theta_dot_d_theta_dense;
+            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense;
+            theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
+        strapdown::accelerometers_at_origin_jacobian(&surveyed, f_0)
             -> AccelerometersAtOriginJacobian:
             reading_d_theta, READING_D_THETA, reading_d_theta_dense;
             reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
@@ -139,7 +155,7 @@ fn sparse_outputs_stand_where_the_program_has_them() {
 
 #[test]
 fn groups_have_the_elements_of_the_program() {
-    let generated: [(&str, &[Element]); 24] = [
+    let generated: [(&str, &[Element]); 30] = [
         ("theta", &platform::THETA),
         ("drift", &platform::DRIFT),
         ("omega_0", &platform::OMEGA_0),
@@ -156,6 +172,12 @@ fn groups_have_the_elements_of_the_program() {
         ("omega_0", &surveyed::OMEGA_0),
         ("f_0", &surveyed::F_0),
         ("east_0", &surveyed::EAST_0),
+        ("theta", &strapdown::THETA),
+        ("strapdown::parameters", &strapdown::PARAMETERS),
+        ("omega_0", &strapdown::OMEGA_0),
+        ("f_0", &strapdown::F_0),
+        ("east_0", &strapdown::EAST_0),
+        ("platform_c_gyros", &strapdown::PLATFORM_C_GYROS),
         ("theta", &catalogue::THETA),
         ("catalogue::parameters", &catalogue::PARAMETERS),
         ("omega_0", &catalogue::OMEGA_0),
