@@ -26,7 +26,7 @@ fn sparse_outputs() -> Vec<Sparse> {
     let state = &states(Purpose::ScalarTypes, 1)[0];
     let (theta, drift) = (&state.theta, &state.drift);
     let (omega_0, f_0, step) = (&state.omega_0, &state.f_0, &state.step);
-    let (east_0, gyros) = (&state.east_0, &state.platform_c_gyros);
+    let east_0 = &state.east_0;
     let (field_0, conditions) = (&state.field_0, &state.conditions);
     let (surveyed, catalogue) = (parameters(state), parameters(state));
     let names = catalogue::SHAPES.map(|shape| shape.name.to_owned());
@@ -76,18 +76,9 @@ fn sparse_outputs() -> Vec<Sparse> {
             -> AccelerometersAtOriginJacobian:
             reading_d_theta, READING_D_THETA, reading_d_theta_dense;
             reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
-        strapdown::dynamics_jacobian(theta, &surveyed, omega_0, f_0, east_0, gyros)
-            -> DynamicsJacobian:
-            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense;
-            theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
         strapdown::accelerometers_jacobian(theta, &surveyed, f_0) -> AccelerometersJacobian:
             reading_d_theta, READING_D_THETA, reading_d_theta_dense;
             reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
-        strapdown::dynamics_at_origin_jacobian(&surveyed, omega_0, f_0, east_0, gyros)
-            -> DynamicsAtOriginJacobian:
-            theta_dot_d_theta, THETA_DOT_D_THETA, theta_dot_d_theta_dense;
-            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense;
-            theta_dot_d_drift_noise, THETA_DOT_D_DRIFT_NOISE, theta_dot_d_drift_noise_dense.
         strapdown::accelerometers_at_origin_jacobian(&surveyed, f_0)
             -> AccelerometersAtOriginJacobian:
             reading_d_theta, READING_D_THETA, reading_d_theta_dense;

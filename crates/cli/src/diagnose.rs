@@ -19,16 +19,10 @@ use gyrocal_record::{Bench, DiagnosisReport, DiagnosisVerdict, Outputs, Record};
 
 use crate::numbers::probability;
 use crate::outputs::refuse_overlap;
+use crate::pictures;
 use crate::progress::Progress;
 use crate::{Answer, Failure};
 use failed::NotDiagnosed;
-
-/// The help of `--figures`.
-const FIGURES: &str = if cfg!(feature = "png") {
-    "Write pictures of it into this folder, as SVG and PNG"
-} else {
-    "Write pictures of it into this folder, as SVG; PNG needs a build with --features png"
-};
 
 /// Show what the model gets wrong about a record, and name the cause.
 ///
@@ -51,7 +45,7 @@ pub(crate) struct DiagnoseArguments {
     /// The result to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    #[arg(long, value_name = "DIR", help = FIGURES)]
+    #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
     /// Look for these effects too, beside those of the usual search: gyro_xy.axis_misalignment,
     /// say, or gyro_x.magnetic.

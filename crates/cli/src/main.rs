@@ -14,6 +14,7 @@ mod monte_carlo;
 mod noise;
 mod numbers;
 mod outputs;
+mod pictures;
 mod progress;
 mod rounding;
 mod simulate;

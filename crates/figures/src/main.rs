@@ -5,8 +5,11 @@ mod calibration;
 mod figure;
 mod kernel;
 mod main_job;
+mod measured;
 mod naming;
+mod page;
 mod paper;
+mod values;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -31,7 +34,8 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
-    /// instruction counts; paper: docs/paper.md and its pictures).
+    /// instruction counts; measured: docs/measured-data.md; paper: docs/paper.md and its
+    /// pictures).
     #[arg(long)]
     write: bool,
 }
@@ -46,6 +50,8 @@ enum Topic {
     Kernel,
     /// Causes hidden in records: detected, named, and what clean records show.
     Naming,
+    /// Two recordings of real gyros: docs/measured-data.md.
+    Measured,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
 }
@@ -57,6 +63,7 @@ fn main() -> ExitCode {
         Topic::Calibration => calibration::figures(arguments.small),
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
         Topic::Naming => naming::figures(arguments.small),
+        Topic::Measured => measured::figures(arguments.write),
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {
