@@ -25,6 +25,17 @@ pub enum CalibrationError {
         /// Number of accelerometer samples.
         samples: usize,
     },
+    /// Rows of the records, and attitudes of the gyros that go with them, are not as many.
+    #[error(
+        "{rows} rows and {attitudes} attitudes of the gyros, expected one attitude for each row of \
+         each record"
+    )]
+    GyroAxes {
+        /// Number of rows.
+        rows: usize,
+        /// Number of attitudes.
+        attitudes: usize,
+    },
     /// The filter could not go on; the source says why.
     #[error("the filter stopped at row {row} of the data (t = {time_s} s)")]
     Filter {

@@ -15,6 +15,7 @@ mod monte_carlo;
 mod noise;
 mod numbers;
 mod outputs;
+mod pictures;
 mod plan;
 mod progress;
 mod rounding;

@@ -7,8 +7,11 @@ mod figure;
 mod gain;
 mod kernel;
 mod main_job;
+mod measured;
 mod naming;
+mod page;
 mod paper;
+mod values;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -33,7 +36,8 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
-    /// instruction counts; paper: docs/paper.md and its pictures).
+    /// instruction counts; measured: docs/measured-data.md; paper: docs/paper.md and its
+    /// pictures).
     #[arg(long)]
     write: bool,
 }
@@ -52,6 +56,8 @@ enum Topic {
     Naming,
     /// What extended models gain: under cross-validation, in the coefficients, on a second record.
     Gain,
+    /// Two recordings of real gyros: docs/measured-data.md.
+    Measured,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
 }
@@ -65,6 +71,7 @@ fn main() -> ExitCode {
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
+        Topic::Measured => measured::figures(arguments.write),
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {
