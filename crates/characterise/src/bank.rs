@@ -85,6 +85,18 @@ impl Bank {
         })
     }
 
+    /// These scores and this information, of which everything can be seen.
+    #[cfg(test)]
+    pub(crate) fn of(information: DMatrix<f64>, score: DVector<f64>, values: usize) -> Self {
+        Self {
+            visible: vec![true; score.len()],
+            information,
+            score,
+            values,
+            whitened: Vec::new(),
+        }
+    }
+
     /// Whether the fit leaves enough of all columns of an effect to be seen.
     #[must_use]
     pub fn sees(&self, signature: &Signature) -> bool {

@@ -221,3 +221,38 @@ fn hidden_case(effect: &Beyond, strength: f64) -> HiddenCase {
         deficit: None,
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::population::scenario;
+
+    #[test]
+    fn every_kind_is_scaled_to_its_length() {
+        let scenario = Scenario {
+            duration_s: 86_400.0,
+            interval_s: 300.0,
+            gaps_s: Vec::new(),
+            ..scenario(3)
+        };
+        let clean = simulate(&scenario).unwrap();
+        let mut scaled = 0;
+        for kind in 0..6 {
+            let mut effect = Beyond::draw(kind, &scenario, &mut Draw::new(kind, 0));
+            if scale(&scenario, &clean, &mut effect, 10.0).unwrap() {
+                scaled += 1;
+                let other = with(&scenario, &effect).unwrap();
+                let length = length(&clean, &other, &Extension::default()).unwrap();
+                assert!(
+                    (10.0 / REACHED..10.0 * REACHED).contains(&length),
+                    "{length}"
+                );
+                // A size is what it is, with the sign that it had.
+                assert!(effect.size > 0.0);
+            }
+        }
+        // A term whose force never changes its sign in a day is a constant, and cannot be.
+        assert!(scaled >= 3, "{scaled}");
+    }
+}

@@ -122,3 +122,61 @@ pub fn same(one: &str, other: &str) -> bool {
             .iter()
             .any(|effect| effect.id == one && effect.equivalents.contains(&other))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(effect: &str, rivals: &[&str]) -> FoundCase {
+        FoundCase {
+            effect: effect.to_owned(),
+            z: 8.0,
+            parameters: Vec::new(),
+            rivals: rivals
+                .iter()
+                .map(|rival| ((*rival).to_owned(), 1.0))
+                .collect(),
+            equivalents: Vec::new(),
+            alone: false,
+        }
+    }
+
+    fn hidden(effect: &str) -> HiddenCase {
+        HiddenCase {
+            effect: effect.to_owned(),
+            parameters: Vec::new(),
+            strength: 8.0,
+            in_set: true,
+            first_cosine: 1.0,
+            covered: None,
+            onset_error: None,
+            deficit: None,
+        }
+    }
+
+    #[test]
+    fn two_effects_need_a_finding_each() {
+        let pair = |findings: Vec<FoundCase>| Case {
+            hidden: vec![hidden("gyro_x.g_y"), hidden("gyro_y.ramp")],
+            verdict: "effects-found".to_owned(),
+            findings,
+            noise: Vec::new(),
+            unexplained: None,
+            oracle_set_size: None,
+            nearest: Vec::new(),
+            methods: Vec::new(),
+        };
+        // One finding whose set holds both is not enough.
+        let both = found("gyro_x.g_y", &["gyro_y.ramp"]);
+        assert!(!pair(vec![both.clone()]).each_in_its_set());
+        assert!(!pair(vec![both.clone(), found("accel_x.bias", &[])]).each_in_its_set());
+        assert!(pair(vec![found("gyro_y.step", &["gyro_y.ramp"]), both.clone()]).each_in_its_set());
+        assert_eq!(pair(vec![both]).set_size(), 2);
+    }
+
+    #[test]
+    fn exact_equivalents_are_the_same() {
+        assert!(same("gyro_x.g_yy", "gyro_x.g_zz") && same("clock.rate", "site.latitude"));
+        assert!(!same("gyro_x.g_yy", "gyro_y.g_zz") && !same("no effect", "gyro_x.g_y"));
+    }
+}

@@ -9,7 +9,7 @@ use crate::draw::Draw;
 use crate::error::CharacteriseError;
 use crate::judge::judge;
 use crate::methods::Method;
-use crate::plant::{Planted, plant, searched, shape};
+use crate::plant::{Planted, fitted, plant, plant_in, searched, shape};
 use crate::population::scenario;
 
 /// Draws of an effect that the record can show before it is given up.
@@ -151,6 +151,10 @@ impl Cell {
     }
 }
 
+/// Multiples of it, less their whole part, fill the interval from 0 to 1 evenly, however many there
+/// are: the golden ratio.
+const EVENLY: f64 = 0.618_033_988_749_894_9;
+
 /// The list that single effects are taken from in turn: every effect, those that have no sister on
 /// another axis three times.
 fn turns(effects: &[&'static EffectRow]) -> Vec<&'static EffectRow> {
@@ -171,14 +175,16 @@ fn single(
     draw: &mut Draw,
 ) -> Result<Vec<(Planted, f64)>, CharacteriseError> {
     let effects = turns(&searched(scenario));
+    let clean = simulate(scenario)?;
+    let fitted = fitted(&clean)?;
     for attempt in 0..TRIES {
         // In turn; another one if the record says nothing of it.
         let effect = match attempt {
-            0 => effects[(seed % effects.len() as u64) as usize],
+            0 => effects[((seed as f64 * EVENLY).fract() * effects.len() as f64) as usize],
             _ => *draw.one_of(&effects),
         };
-        let with_shape = (effect, shape(effect, scenario, draw));
-        if let Some(planted) = plant(scenario, &[with_shape], strength, 1.0, draw)? {
+        let with_shape = [(effect, shape(effect, scenario, draw))];
+        if let Some(planted) = plant_in(&clean, &fitted, &with_shape, strength, 1.0, draw)? {
             return Ok(planted.into_iter().map(|one| (one, strength)).collect());
         }
     }
@@ -194,6 +200,8 @@ fn pair(
     draw: &mut Draw,
 ) -> Result<Vec<(Planted, f64)>, CharacteriseError> {
     let effects = searched(scenario);
+    let clean = simulate(scenario)?;
+    let fitted = fitted(&clean)?;
     for _ in 0..TRIES {
         let one = *draw.one_of(&effects);
         let other = *draw.one_of(&effects);
@@ -201,7 +209,7 @@ fn pair(
             continue;
         }
         let both = [one, other].map(|effect| (effect, shape(effect, scenario, draw)));
-        if let Some(planted) = plant(scenario, &both, strength, LARGEST_COSINE, draw)? {
+        if let Some(planted) = plant_in(&clean, &fitted, &both, strength, LARGEST_COSINE, draw)? {
             return Ok(planted.into_iter().map(|one| (one, strength)).collect());
         }
     }
@@ -249,4 +257,51 @@ fn azimuth(scenario: &Scenario, draw: &mut Draw) -> Result<Vec<(Planted, f64)>, 
     };
     let strength = planted.strength(scenario)?;
     Ok(vec![(planted, strength)])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_lead_back() {
+        for cell in Cell::ALL {
+            assert_eq!(Cell::of_name(&cell.name()).ok(), Some(cell));
+        }
+        let error = Cell::of_name("d7").err().map(|error| error.to_string());
+        assert!(
+            error.is_some_and(|error| error.contains("found the cell `d7`, expected one of clean"))
+        );
+    }
+
+    /// No effect is left out of a full cell, and none is drawn much more often than its turns.
+    #[test]
+    fn turns_are_even() {
+        let scenario = Scenario {
+            temperature: Some(gyrocal_truth::Temperature::default()),
+            ..scenario(1)
+        };
+        let effects = turns(&searched(&scenario));
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for seed in 0..1000_u64 {
+            let place = ((seed as f64 * EVENLY).fract() * effects.len() as f64) as usize;
+            *counts.entry(effects[place].id).or_default() += 1;
+        }
+        let even = 1000.0 / effects.len() as f64;
+        for effect in searched(&scenario) {
+            let single = !["gyro_", "accel_"]
+                .iter()
+                .any(|kind| effect.id.starts_with(kind));
+            let turns = if single { 3.0 } else { 1.0 };
+            let count = counts.get(effect.id).copied().unwrap_or(0) as f64;
+            // The golden sequence is off by fewer than two in any interval.
+            assert!(
+                (count - turns * even).abs() < 1.0 + turns,
+                "{}: {count}",
+                effect.id
+            );
+        }
+    }
 }

@@ -161,3 +161,69 @@ impl Gathered {
         self.push(figure, target, ratio, None, runs, Some(holds));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn judged(full: bool, judge: impl Fn(&mut Gathered)) -> Option<bool> {
+        let mut gathered = Gathered {
+            cell: String::new(),
+            seeds: 0..10,
+            full,
+            all: Vec::new(),
+        };
+        judge(&mut gathered);
+        gathered.all[0].holds
+    }
+
+    #[test]
+    fn a_full_population_must_meet_a_target_and_a_small_one_must_not_miss_it() {
+        let of = |hits, trials| Proportion { hits, trials };
+        let least =
+            |full, hits, trials| judged(full, |all| all.at_least("", 0.9, of(hits, trials)));
+        assert_eq!(least(true, 900, 1000), Some(true));
+        assert_eq!(least(true, 899, 1000), Some(false));
+        // 0.8 of ten says little about 0.9; 0.4 is shown to be less: its 99.9 % bound is 0.83.
+        assert_eq!(least(false, 8, 10), Some(true));
+        assert_eq!(least(false, 4, 10), Some(false));
+        let most = |full, hits, trials| judged(full, |all| all.at_most("", 0.1, of(hits, trials)));
+        assert_eq!(most(true, 101, 1000), Some(false));
+        assert_eq!(most(false, 2, 10), Some(true));
+        assert_eq!(most(false, 6, 10), Some(false));
+        // The upper bound of 27 of 2000 is below 2 %, that of 30 is not.
+        let bound = |hits| judged(true, |all| all.bound_at_most("", 0.02, of(hits, 2000)));
+        assert_eq!((bound(27), bound(33)), (Some(true), Some(false)));
+        // One family of two that misses all of its twenty records.
+        let families = [of(20, 20), of(0, 20)];
+        assert_eq!(
+            judged(true, |all| all.none_below("", 0.8, &families)),
+            Some(false)
+        );
+        assert_eq!(
+            judged(true, |all| all.none_below("", 0.8, &families[..1])),
+            Some(true)
+        );
+    }
+
+    #[test]
+    fn sizes_are_compared_in_the_mean() {
+        let ratio =
+            |full, pairs: &[[f64; 2]]| judged(full, |all| all.ratio_at_most("", 1.2, pairs));
+        let fine = [[1.0, 1.0], [3.0, 3.0], [2.0, 2.0]];
+        let large = [[3.0, 2.0], [3.0, 2.0], [3.1, 2.0]];
+        assert_eq!(
+            (ratio(true, &fine), ratio(true, &large)),
+            (Some(true), Some(false))
+        );
+        assert_eq!(
+            (ratio(false, &fine), ratio(false, &large)),
+            (Some(true), Some(false))
+        );
+        // One that is off among others shows nothing.
+        assert_eq!(
+            ratio(false, &[[5.0, 1.0], [1.0, 1.0], [1.0, 1.0]]),
+            Some(true)
+        );
+    }
+}

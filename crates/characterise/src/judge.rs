@@ -20,7 +20,7 @@ const NEAREST_KEPT: usize = 10;
 /// points of the normal distribution at the roots of 0.95 (Sidak 1967; more if sizes correlate).
 const HALF_WIDTHS: [f64; 3] = [
     1.959_963_984_540_054,
-    2.236_476_644_557_790,
+    2.236_476_644_557_79,
     2.387_737_887_070_817,
 ];
 

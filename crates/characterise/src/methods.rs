@@ -139,3 +139,6 @@ pub(crate) fn library(
     }
     library
 }
+
+#[cfg(test)]
+mod tests;

@@ -127,6 +127,21 @@ pub fn plant(
 ) -> Result<Option<Vec<Planted>>, CharacteriseError> {
     let clean = simulate(scenario)?;
     let fitted = fitted(&clean)?;
+    plant_in(&clean, &fitted, effects, strength, largest_cosine, draw)
+}
+
+/// The same in a record without them that is simulated and fitted already.
+///
+/// # Errors
+/// As [`Bank::new`].
+pub fn plant_in(
+    clean: &Simulation,
+    fitted: &Extended<'_>,
+    effects: &[(&'static EffectRow, Option<f64>)],
+    strength: f64,
+    largest_cosine: f64,
+    draw: &mut Draw,
+) -> Result<Option<Vec<Planted>>, CharacteriseError> {
     let mut columns = Columns::default();
     let signatures: Option<Vec<Signature>> = effects
         .iter()
@@ -135,7 +150,7 @@ pub fn plant(
     let Some(signatures) = signatures else {
         return Ok(None);
     };
-    let bank = Bank::new(&fitted, &columns.further)?;
+    let bank = Bank::new(fitted, &columns.further)?;
     if !signatures.iter().all(|signature| bank.sees(signature)) {
         return Ok(None);
     }
@@ -198,4 +213,5 @@ fn own_information(bank: &Bank, own: &Signature, others: &[&Signature]) -> Optio
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests;

@@ -127,7 +127,7 @@ fn single(
     let first_at = |cosine: f64| {
         share(cases, move |case| {
             let hidden = case.hidden.first()?;
-            case.detected().then(|| hidden.first_cosine >= cosine)
+            case.detected().then_some(hidden.first_cosine >= cosine)
         })
     };
     match first {
@@ -147,7 +147,7 @@ fn single(
     gathered.note("the name named first is right", first_at(1.0));
     covered(gathered, cases);
     let more = share(cases, |case| {
-        case.detected().then(|| case.findings.len() > 1)
+        case.detected().then_some(case.findings.len() > 1)
     });
     gathered.note("a spurious second", more);
 }

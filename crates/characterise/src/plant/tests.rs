@@ -9,6 +9,7 @@ fn short(number: u64) -> Scenario {
         duration_s: 86_400.0,
         interval_s: 300.0,
         gaps_s: Vec::new(),
+        temperature: Some(gyrocal_truth::Temperature::default()),
         ..scenario(number)
     }
 }

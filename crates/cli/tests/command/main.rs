@@ -5,6 +5,7 @@
 mod allan;
 mod bad_input;
 mod calibrate;
+mod characterise;
 mod diagnose;
 mod extend;
 mod folder;

@@ -1,13 +1,20 @@
 //! One record, diagnosed, and what its extended model gains.
 
+use gyrocal::EffectRow;
 use gyrocal_calibration::{Extended, Run};
+use gyrocal_characterise::{Draw, plant, searched, shape};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, validated};
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::Error;
-use crate::naming::hidden::{Drawn, drawn, scenario};
+
+/// Numbers of these records in the population begin here: `gyrocal characterise` has those below.
+const FIRST_NUMBER: u64 = 100_000_000;
+
+/// Effects that are tried on a record until one is seen in it.
+const TRIES: usize = 40;
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
@@ -56,6 +63,45 @@ impl Extension {
     pub(super) fn extended(&self) -> bool {
         self.findings.iter().any(|(_, _, accepted)| *accepted)
     }
+}
+
+/// A record with a cause in it.
+struct Drawn {
+    /// With the cause.
+    scenario: Scenario,
+    effect: &'static EffectRow,
+    /// Its true sizes.
+    sizes: Vec<f64>,
+}
+
+fn scenario(seed: u64) -> Scenario {
+    gyrocal_characterise::scenario(FIRST_NUMBER + seed)
+}
+
+/// Hides a random effect of the default search, `strength` standard deviations of its own bound
+/// large.
+fn drawn(seed: u64, strength: f64) -> Result<Drawn, Error> {
+    let scenario = scenario(seed);
+    let draw = &mut Draw::new(FIRST_NUMBER + seed, 0);
+    let effects = searched(&scenario);
+    for _ in 0..TRIES {
+        let effect = *draw.one_of(&effects);
+        let with_shape = [(effect, shape(effect, &scenario, draw))];
+        let Some(planted) = plant(&scenario, &with_shape, strength, 1.0, draw)? else {
+            continue;
+        };
+        if let [only] = planted.as_slice() {
+            return Ok(Drawn {
+                effect,
+                sizes: only.sizes.clone(),
+                scenario: Scenario {
+                    hidden: vec![only.hidden()?],
+                    ..scenario
+                },
+            });
+        }
+    }
+    Err(format!("the record of seed {seed} shows none of {TRIES} effects that were tried").into())
 }
 
 fn diagnosed(simulation: &Simulation) -> Result<Diagnosis<'_>, Error> {

@@ -1,0 +1,150 @@
+//! `gyrocal characterise` as a user runs it. A record takes a second or more, so few are run.
+
+use std::fs;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use gyrocal_characterise::CharacteriseReport;
+
+use crate::folder::Folder;
+
+fn said(folder: &Folder, more: &str) -> String {
+    let line = format!("characterise {more}");
+    folder.succeed(&line.split_whitespace().collect::<Vec<_>>())
+}
+
+#[test]
+fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
+    let line =
+        "--cell cubic --runs 3 --seed 5 --method bic --results runs --json o.json --markdown o.md";
+    let fresh = Folder::new();
+    let expected = said(&fresh, line);
+    assert!(
+        expected.contains("silent") && expected.contains(">= 0.75"),
+        "{expected}"
+    );
+    let report: CharacteriseReport = serde_json::from_str(&fresh.text("o.json")).unwrap();
+    assert_eq!(report.cells.len(), 1);
+    let cell = &report.cells[0];
+    assert_eq!((cell.cell.as_str(), cell.seeds), ("cubic", [5, 8]));
+    assert_eq!(cell.characteristics[0].runs, 3);
+    let methods: Vec<&str> = cell
+        .comparison
+        .iter()
+        .map(|row| row.method.as_str())
+        .collect();
+    assert_eq!(methods, ["gyrocal", "bic"]);
+    assert!(
+        fresh.text("o.md").contains("| silent "),
+        "{}",
+        fresh.text("o.md")
+    );
+
+    let folder = Folder::new();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("gyrocal"))
+        .current_dir(folder.path(""))
+        .arg("characterise")
+        .args(line.split_whitespace())
+        .args(["--threads", "1"])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let started = Instant::now();
+    let kept = || fs::read_to_string(folder.path("runs/cubic.jsonl")).unwrap_or_default();
+    while kept().lines().count() < 2 {
+        assert!(
+            started.elapsed() < Duration::from_secs(300),
+            "it writes as it goes"
+        );
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let before = kept();
+    let whole = before.rfind('\n').unwrap() + 1;
+    assert_eq!(said(&folder, line), expected);
+    assert!(
+        kept().starts_with(&before[..whole]),
+        "what was finished is not run again"
+    );
+    assert_eq!(folder.text("o.json"), fresh.text("o.json"));
+    assert_eq!(folder.text("o.md"), fresh.text("o.md"));
+
+    // Results of other methods are other results.
+    let errors = folder.fail(&[
+        "characterise",
+        "--cell",
+        "cubic",
+        "--runs",
+        "1",
+        "--results",
+        "runs",
+    ]);
+    assert!(
+        errors.contains(
+            "results of another campaign, of methods `bic`, expected `nis, ljung-box, bic, stls`"
+        ),
+        "{errors}"
+    );
+
+    // Five records that are not silent show that fewer than three quarters are.
+    let text = kept();
+    let mut lines = text.lines();
+    let mut missed = lines.next().unwrap().to_owned();
+    let case = lines.next().unwrap();
+    assert!(case.contains("\"verdict\":"), "{case}");
+    let mut value: serde_json::Value = serde_json::from_str(case).unwrap();
+    for seed in 5..10 {
+        value["done"]["seed"] = seed.into();
+        value["done"]["result"]["verdict"] = "effects-found".into();
+        missed = format!("{missed}\n{value}");
+    }
+    folder.put("runs/cubic.jsonl", missed + "\n");
+    let line = "characterise --cell cubic --runs 5 --seed 5 --method bic --results runs";
+    let run = |more: &str| {
+        let line = format!("{line} {more}");
+        folder.run(&line.split_whitespace().collect::<Vec<_>>())
+    };
+    let plain = run("");
+    assert_eq!(plain.status.code(), Some(0));
+    assert!(String::from_utf8(plain.stdout).unwrap().contains(" NO "));
+    assert_eq!(run("--exit-code").status.code(), Some(3));
+}
+
+#[test]
+fn bad_input_is_refused_before_any_work() {
+    let folder = Folder::new();
+    let errors = folder.fail(&["characterise", "--json", "nowhere/o.json"]);
+    assert!(
+        errors.contains("nowhere/o.json: cannot be written"),
+        "{errors}"
+    );
+    folder.put("notes", "a file");
+    let errors = folder.fail(&["characterise", "--results", "notes"]);
+    assert!(
+        errors.contains("notes: the results cannot be kept there"),
+        "{errors}"
+    );
+    for (more, message) in [
+        (
+            "--cell d7",
+            "found the cell `d7`, expected one of clean, d5",
+        ),
+        (
+            "--method aic",
+            "expected one of nis, ljung-box, bic, stls, none",
+        ),
+        (
+            "--method none --method nis",
+            "--method none and another method",
+        ),
+        ("--runs 0", "--runs"),
+        ("--json o --markdown o", "would overwrite --json o"),
+    ] {
+        let line = format!("characterise {more}");
+        let output = folder.run(&line.split_whitespace().collect::<Vec<_>>());
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{errors}");
+        assert!(errors.contains(message), "{errors}");
+    }
+}
