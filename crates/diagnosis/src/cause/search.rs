@@ -162,7 +162,9 @@ pub fn search<'a>(
             }
         }
         match weakest {
-            Some((index, strength)) if strength <= threshold && accepted.len() > 1 => {
+            Some((index, strength))
+                if strength <= threshold && accepted.len() + unnamed.len() > 1 =>
+            {
                 accepted.remove(index);
                 fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &unnamed))?;
             }
