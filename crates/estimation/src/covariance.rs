@@ -17,9 +17,9 @@
 use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers, Observation, Transition};
+use crate::form::{Form, Numbers, Observation, Transition, Zeros};
 use crate::innovation::Innovation;
-use crate::lanes4::{load, load_rows, mul_add, multiply_add, small_product, store};
+use crate::lanes4::{load, load_rows, mul_add, multiply_add, store};
 use crate::projection::{Projection, is_variance, not_positive};
 
 /// P itself: the fast form. It needs double precision, and a prior that is not wider against
@@ -56,10 +56,10 @@ impl<T: Real> Form<T> for Covariance {
     fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,
         transition: &Transition<'_, T, M>,
-        enters: impl Fn(usize, usize) -> bool,
+        zeros: &impl Zeros,
     ) -> Result<(), EstimationError> {
         let n = numbers.pivots.len();
-        predict::<T, M, SPARSE>(numbers.matrix, n, transition, numbers.cross, enters)
+        predict::<_, _, M, SPARSE>(numbers.matrix, n, transition, numbers.cross, zeros)
     }
 
     #[inline(always)]
@@ -105,12 +105,12 @@ impl<T: Real> Form<T> for Covariance {
 /// P ← W (Φ P Φᵀ + Γ diag(variance) Γᵀ) Wᵀ. W, which waits for the end of the step and for its
 /// sines and cosines, comes last.
 #[inline(always)]
-fn predict<T: Real, const M: usize, const SPARSE: bool>(
+fn predict<T: Real, Z: Zeros, const M: usize, const SPARSE: bool>(
     p: &mut [T],
     n: usize,
     transition: &Transition<'_, T, M>,
     workspace: &mut [T],
-    enters: impl Fn(usize, usize) -> bool,
+    zeros: &Z,
 ) -> Result<(), EstimationError> {
     let count = n - M;
     let half = T::from_f64(0.5);
@@ -123,34 +123,37 @@ fn predict<T: Real, const M: usize, const SPARSE: bool>(
     } = transition;
     let mut column = 0;
     while column + 4 <= count {
-        predict_columns::<T, M, 4, SPARSE>(p, n, transition, &enters, workspace, column);
+        predict_columns::<_, _, M, 4, SPARSE>(p, n, transition, zeros, workspace, column);
         column += 4;
     }
     while column < count {
-        predict_columns::<T, M, 1, SPARSE>(p, n, transition, &enters, workspace, column);
+        predict_columns::<_, _, M, 1, SPARSE>(p, n, transition, zeros, workspace, column);
         column += 1;
     }
-    let added = added::<T, M, SPARSE>(transition.parameters, count, workspace, enters);
-    let mapped = small_product(moving, &load_rows(p, n, 0));
+    let added = added::<_, _, M, SPARSE>(transition.parameters, count, workspace, zeros);
+    let old: [[T; M]; M] = load_rows(p, n, 0);
+    let mapped = product(moving, |i, j| zeros.moves(i, j), &old);
     let mut corner = [[T::from_f64(0.0); M]; M];
     for i in 0..M {
         for j in 0..=i {
             let mut sum = half * (added[i][j] + added[j][i]);
             for k in 0..M {
-                sum = mapped[i][k].mul_add(moving[j][k], sum);
-                sum = (noise[i][k] * variance[k]).mul_add(noise[j][k], sum);
+                sum = add_product(mapped[i][k], moving[j][k], zeros.moves(j, k), j == k, sum);
+                if zeros.drives(i, k) && zeros.drives(j, k) {
+                    sum = (noise[i][k] * variance[k]).mul_add(noise[j][k], sum);
+                }
             }
             corner[i][j] = sum;
             corner[j][i] = sum;
         }
     }
     if let Some(map) = map {
-        let rows = small_product(map, &corner);
+        let rows = product(map, |i, j| zeros.maps(i, j), &corner);
         for i in 0..M {
             for j in 0..=i {
                 let mut sum = T::from_f64(0.0);
                 for k in 0..M {
-                    sum = rows[i][k].mul_add(map[j][k], sum);
+                    sum = add_product(rows[i][k], map[j][k], zeros.maps(j, k), j == k, sum);
                 }
                 corner[i][j] = sum;
                 corner[j][i] = sum;
@@ -166,28 +169,23 @@ fn predict<T: Real, const M: usize, const SPARSE: bool>(
 /// The moving rows W (Φ_mm P_mp + Φ_mp P_pp), for `W` columns. C = Φ_mp P_pp + 2 Φ_mm P_mp is left
 /// in `workspace`.
 #[inline(always)]
-fn predict_columns<T: Real, const M: usize, const W: usize, const SPARSE: bool>(
+fn predict_columns<T: Real, Z: Zeros, const M: usize, const W: usize, const SPARSE: bool>(
     p: &mut [T],
     n: usize,
     transition: &Transition<'_, T, M>,
-    enters: &impl Fn(usize, usize) -> bool,
+    zeros: &Z,
     workspace: &mut [T],
     column: usize,
 ) {
     let (count, at) = (n - M, M + column);
     let columns = transition.parameters;
     let old: [[T; W]; M] = load_rows(p, n, at);
-    let mut mapped = [[T::from_f64(0.0); W]; M];
-    for i in 0..M {
-        for j in 0..M {
-            mapped[i] = mul_add(old[j], transition.moving[i][j], mapped[i]);
-        }
-    }
+    let mapped = product(&transition.moving, |i, j| zeros.moves(i, j), &old);
     let mut sums = mapped;
     for l in 0..count {
         let row: [T; W] = load(p, (M + l) * n + at);
         for i in 0..M {
-            if !SPARSE || enters(i, l) {
+            if !SPARSE || zeros.enters(i, l) {
                 sums[i] = mul_add(row, columns[i * count + l], sums[i]);
             }
         }
@@ -197,27 +195,56 @@ fn predict_columns<T: Real, const M: usize, const W: usize, const SPARSE: bool>(
         store(workspace, i * count + column, both);
     }
     if let Some(map) = &transition.map {
-        let before = sums;
-        for i in 0..M {
-            sums[i] = before[0].map(|value| value * map[i][0]);
-            for j in 1..M {
-                sums[i] = mul_add(before[j], map[i][j], sums[i]);
-            }
-        }
+        sums = product(map, |i, j| zeros.maps(i, j), &sums);
     }
     for (i, row) in sums.iter().enumerate() {
         store(p, i * n + at, *row);
     }
 }
 
+/// `matrix` times `rows`, where `differs` says which elements are not those of the unit matrix.
+#[inline(always)]
+fn product<T: Real, const M: usize, const W: usize>(
+    matrix: &[[T; M]; M],
+    differs: impl Fn(usize, usize) -> bool,
+    rows: &[[T; W]; M],
+) -> [[T; W]; M] {
+    let mut result = [[T::from_f64(0.0); W]; M];
+    for i in 0..M {
+        // The diagonal first: where it is one, the sum starts without a product.
+        result[i] = if differs(i, i) {
+            rows[i].map(|value| value * matrix[i][i])
+        } else {
+            rows[i]
+        };
+        for j in 0..M {
+            if j != i && differs(i, j) {
+                result[i] = mul_add(rows[j], matrix[i][j], result[i]);
+            }
+        }
+    }
+    result
+}
+
+/// `sum` and the product of `value` with an element of a matrix, which is that of the unit matrix
+/// where it does not differ.
+#[inline(always)]
+fn add_product<T: Real>(value: T, element: T, differs: bool, on_diagonal: bool, sum: T) -> T {
+    match (differs, on_diagonal) {
+        (true, _) => value.mul_add(element, sum),
+        (false, true) => sum + value,
+        (false, false) => sum,
+    }
+}
+
 /// C Φ_mpᵀ, whose symmetric part is all that the parameters add to the moving block. C (M × p, by
 /// rows) is in `workspace`.
 #[inline(always)]
-fn added<T: Real, const M: usize, const SPARSE: bool>(
+fn added<T: Real, Z: Zeros, const M: usize, const SPARSE: bool>(
     columns: &[T],
     count: usize,
     workspace: &[T],
-    enters: impl Fn(usize, usize) -> bool,
+    zeros: &Z,
 ) -> [[T; M]; M] {
     let mut added = [[T::from_f64(0.0); M]; M];
     let mut rest = 0;
@@ -239,7 +266,7 @@ fn added<T: Real, const M: usize, const SPARSE: bool>(
     }
     for l in rest..count {
         for j in 0..M {
-            if !SPARSE || enters(j, l) {
+            if !SPARSE || zeros.enters(j, l) {
                 let phi = columns[j * count + l];
                 for i in 0..M {
                     added[i][j] = workspace[i * count + l].mul_add(phi, added[i][j]);
@@ -416,12 +443,14 @@ fn downdate<T: Real, const M: usize, const Y: usize, const W: usize>(
 #[inline(always)]
 fn check_diagonal<T: Real>(p: &[T], n: usize, count: usize) -> Result<(), EstimationError> {
     let mut bad = 0_u32;
-    let mut sum = T::from_f64(0.0);
+    // Several sums, as one would be a chain.
+    let mut sums = [T::from_f64(0.0); 4];
     for i in 0..count {
         let variance = p[i * n + i];
         bad |= u32::from(!variance.is_positive());
-        sum = sum + variance;
+        sums[i % 4] = sums[i % 4] + variance;
     }
+    let sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
     // A sum of positive numbers is finite only if all of them are.
     if bad == 0 && sum.is_finite() {
         return Ok(());

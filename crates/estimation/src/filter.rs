@@ -9,6 +9,7 @@ use crate::innovation::Innovation;
 use crate::observe::{Sensor, check_noise};
 use crate::storage::{Storage, View};
 use crate::transition::{Integration, Integrator};
+use crate::zeros::Known;
 
 /// The part of the buffers that belongs to the covariance.
 macro_rules! numbers {
@@ -176,7 +177,7 @@ where
             variance: zero,
             map: None,
         };
-        F::predict::<M, false>(&mut numbers!(buffers), &transition, |_, _| true)
+        F::predict::<M, false>(&mut numbers!(buffers), &transition, &())
     }
 
     /// Predicts over `dt` seconds with noise of the given spectral densities (unit of the
@@ -237,10 +238,17 @@ where
         };
         let numbers = &mut numbers!(buffers);
         if F::USES_ZEROS && at_origin && self.integration == Integration::EULER {
-            let enters = |i, j| self.model.enters_at_origin(i, j);
-            F::predict::<M, true>(numbers, &transition, enters)
+            F::predict::<M, true>(
+                numbers,
+                &transition,
+                &Known::<T, D, M, Y, true>::of(&self.model),
+            )
         } else {
-            F::predict::<M, false>(numbers, &transition, |_, _| true)
+            F::predict::<M, false>(
+                numbers,
+                &transition,
+                &Known::<T, D, M, Y, false>::of(&self.model),
+            )
         }
     }
 

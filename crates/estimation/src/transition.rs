@@ -164,7 +164,9 @@ where
                 model.rates_jacobian(&at, parameters, inputs, &mut jacobian)
             };
             jacobians[stage] = jacobian.moving;
-            noises[stage] = jacobian.noise;
+            if self.model.noise_parameters().is_none() {
+                noises[stage] = jacobian.noise;
+            }
             *moving = mul_add(rates, weights[stage], *moving);
         }
         let adjoint = Adjoint::new(&jacobians, nodes, weights);

@@ -1,0 +1,54 @@
+//! What a model says of the zeros of a step.
+
+use core::marker::PhantomData;
+
+use gyrocal_scalar::{Real, Recentre};
+
+use crate::form::Zeros;
+
+/// The zeros that a model knows of: those of its map to another chart, and, with `ONE_STAGE`,
+/// those of a transition that consists of the Jacobian at the origin of the chart alone.
+pub(crate) struct Known<'a, T, D, const M: usize, const Y: usize, const ONE_STAGE: bool> {
+    model: &'a D,
+    scalar: PhantomData<T>,
+}
+
+impl<'a, T, D, const M: usize, const Y: usize, const ONE_STAGE: bool>
+    Known<'a, T, D, M, Y, ONE_STAGE>
+{
+    #[inline(always)]
+    pub(crate) fn of(model: &'a D) -> Self {
+        Self {
+            model,
+            scalar: PhantomData,
+        }
+    }
+}
+
+impl<T, D, const M: usize, const Y: usize, const ONE_STAGE: bool> Zeros
+    for Known<'_, T, D, M, Y, ONE_STAGE>
+where
+    T: Real,
+    D: Recentre<T, M, Y>,
+{
+    #[inline(always)]
+    fn moves(&self, i: usize, j: usize) -> bool {
+        !ONE_STAGE || self.model.moves_at_origin(i, j)
+    }
+
+    #[inline(always)]
+    fn enters(&self, i: usize, j: usize) -> bool {
+        !ONE_STAGE || self.model.enters_at_origin(i, j)
+    }
+
+    #[inline(always)]
+    fn drives(&self, i: usize, k: usize) -> bool {
+        let same = self.model.noise_parameters();
+        same.is_none_or(|same| self.enters(i, same[k]))
+    }
+
+    #[inline(always)]
+    fn maps(&self, i: usize, j: usize) -> bool {
+        self.model.maps(i, j)
+    }
+}
