@@ -206,6 +206,11 @@ where
     }
 
     #[inline(always)]
+    fn shows_at_origin(&self, k: usize, j: usize) -> bool {
+        self.0.shows_at_origin(k, j)
+    }
+
+    #[inline(always)]
     fn output(&self, moving: &[T; 3], parameters: &[T], chart: &Self::Inputs) -> [T; 3] {
         self.0.output(moving, parameters, &chart.inputs)
     }

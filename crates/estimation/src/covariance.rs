@@ -67,7 +67,7 @@ impl<T: Real> Form<T> for Covariance {
         numbers: &mut Numbers<'_, T>,
         observation: &Observation<'_, T, M, Y>,
     ) -> Result<Innovation<T, Y>, EstimationError> {
-        let projection = Projection::new(numbers.matrix, numbers.pivots.len(), observation);
+        let projection = Projection::new(numbers.matrix, numbers.pivots.len(), observation, &());
         projection.check()?;
         let innovation = projection.innovation();
         innovation.check()?;
@@ -79,13 +79,14 @@ impl<T: Real> Form<T> for Covariance {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
+        zeros: &impl Zeros,
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError> {
         let n = numbers.pivots.len();
         // Needs nothing of S, and fills the time in which the divisions of its factors wait for
         // each other.
-        project_parameters(numbers.matrix, n, observation, numbers.gain);
-        let projection = Projection::new(numbers.matrix, n, observation);
+        project_parameters(numbers.matrix, n, observation, zeros, numbers.gain);
+        let projection = Projection::new(numbers.matrix, n, observation, zeros);
         projection.check()?;
         let innovation = projection.innovation();
         innovation.check()?;
@@ -379,29 +380,31 @@ impl<'a, T: Real, const M: usize, const Y: usize> Pass<'a, T, M, Y> {
 
 /// Leaves the parameter columns of H P in `products` (Y × n).
 #[inline(always)]
-fn project_parameters<T: Real, const M: usize, const Y: usize>(
+fn project_parameters<T: Real, Z: Zeros, const M: usize, const Y: usize>(
     p: &[T],
     n: usize,
     observation: &Observation<'_, T, M, Y>,
+    zeros: &Z,
     products: &mut [T],
 ) {
     let count = n - M;
     let mut column = 0;
     while column + 4 <= count {
-        project_columns::<T, M, Y, 4>(p, n, observation, products, M + column);
+        project_columns::<_, _, M, Y, 4>(p, n, observation, zeros, products, M + column);
         column += 4;
     }
     while column < count {
-        project_columns::<T, M, Y, 1>(p, n, observation, products, M + column);
+        project_columns::<_, _, M, Y, 1>(p, n, observation, zeros, products, M + column);
         column += 1;
     }
 }
 
 #[inline(always)]
-fn project_columns<T: Real, const M: usize, const Y: usize, const W: usize>(
+fn project_columns<T: Real, Z: Zeros, const M: usize, const Y: usize, const W: usize>(
     p: &[T],
     n: usize,
     observation: &Observation<'_, T, M, Y>,
+    zeros: &Z,
     products: &mut [T],
     at: usize,
 ) {
@@ -415,7 +418,9 @@ fn project_columns<T: Real, const M: usize, const Y: usize, const W: usize>(
             } else {
                 observation.parameters[k * q + i - M]
             };
-            sums[k] = mul_add(row, h, sums[k]);
+            if i >= M || zeros.shows(k, i) {
+                sums[k] = mul_add(row, h, sums[k]);
+            }
         }
     }
     for (k, sum) in sums.iter().enumerate() {

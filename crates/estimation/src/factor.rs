@@ -65,6 +65,7 @@ impl<T: Real> Form<T> for Factors {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
+        _zeros: &impl Zeros,
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError> {
         update(numbers, parameters, observation, correct)

@@ -264,15 +264,37 @@ where
         measured: &[T; Y],
         noise_variance: &[T; Y],
     ) -> Result<Innovation<T, Y>, EstimationError> {
+        if self.at_origin() {
+            self.update_with::<true>(measured, noise_variance)
+        } else {
+            self.update_elsewhere(measured, noise_variance)
+        }
+    }
+
+    /// A function of its own: the step from the origin is then not inlined together with it.
+    #[inline(never)]
+    fn update_elsewhere(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        self.update_with::<false>(measured, noise_variance)
+    }
+
+    #[inline(always)]
+    fn update_with<const AT_ORIGIN: bool>(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
         check_noise(noise_variance)?;
-        let at_origin = self.at_origin();
         let buffers = self.storage.buffers();
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
         let mut moving = to_array(moving_slice);
         let sensor = Sensor {
             model: &self.model,
             inputs: &self.inputs,
-            at_origin,
+            at_origin: AT_ORIGIN,
         };
         let observation = sensor.observe(
             &moving,
@@ -286,6 +308,7 @@ where
             &mut numbers!(buffers),
             parameters,
             &observation,
+            &Known::<T, D, M, Y, AT_ORIGIN>::of(&self.model),
             |correction| match recentring {
                 Recentring::EveryStep => model.correct(&mut moving, inputs, correction),
                 _ => moving = add(&moving, correction),

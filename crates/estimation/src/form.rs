@@ -53,6 +53,7 @@ pub trait Form<T: Real> {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
+        zeros: &impl Zeros,
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError>;
 }
@@ -79,6 +80,13 @@ pub trait Zeros {
     #[inline(always)]
     fn drives(&self, i: usize, k: usize) -> bool {
         let _ = (i, k);
+        true
+    }
+
+    /// Whether element (k, j) of the moving columns of H is not zero.
+    #[inline(always)]
+    fn shows(&self, k: usize, j: usize) -> bool {
+        let _ = (k, j);
         true
     }
 

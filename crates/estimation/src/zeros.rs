@@ -6,15 +6,16 @@ use gyrocal_scalar::{Real, Recentre};
 
 use crate::form::Zeros;
 
-/// The zeros that a model knows of: those of its map to another chart, and, with `ONE_STAGE`,
-/// those of a transition that consists of the Jacobian at the origin of the chart alone.
-pub(crate) struct Known<'a, T, D, const M: usize, const Y: usize, const ONE_STAGE: bool> {
+/// The zeros that a model knows of: those of its map to another chart, and, with `AT_ORIGIN`,
+/// those of what consists of the Jacobians at the origin of the chart alone: of a transition of
+/// one stage, and of an observation.
+pub(crate) struct Known<'a, T, D, const M: usize, const Y: usize, const AT_ORIGIN: bool> {
     model: &'a D,
     scalar: PhantomData<T>,
 }
 
-impl<'a, T, D, const M: usize, const Y: usize, const ONE_STAGE: bool>
-    Known<'a, T, D, M, Y, ONE_STAGE>
+impl<'a, T, D, const M: usize, const Y: usize, const AT_ORIGIN: bool>
+    Known<'a, T, D, M, Y, AT_ORIGIN>
 {
     #[inline(always)]
     pub(crate) fn of(model: &'a D) -> Self {
@@ -25,26 +26,31 @@ impl<'a, T, D, const M: usize, const Y: usize, const ONE_STAGE: bool>
     }
 }
 
-impl<T, D, const M: usize, const Y: usize, const ONE_STAGE: bool> Zeros
-    for Known<'_, T, D, M, Y, ONE_STAGE>
+impl<T, D, const M: usize, const Y: usize, const AT_ORIGIN: bool> Zeros
+    for Known<'_, T, D, M, Y, AT_ORIGIN>
 where
     T: Real,
     D: Recentre<T, M, Y>,
 {
     #[inline(always)]
     fn moves(&self, i: usize, j: usize) -> bool {
-        !ONE_STAGE || self.model.moves_at_origin(i, j)
+        !AT_ORIGIN || self.model.moves_at_origin(i, j)
     }
 
     #[inline(always)]
     fn enters(&self, i: usize, j: usize) -> bool {
-        !ONE_STAGE || self.model.enters_at_origin(i, j)
+        !AT_ORIGIN || self.model.enters_at_origin(i, j)
     }
 
     #[inline(always)]
     fn drives(&self, i: usize, k: usize) -> bool {
         let same = self.model.noise_parameters();
         same.is_none_or(|same| self.enters(i, same[k]))
+    }
+
+    #[inline(always)]
+    fn shows(&self, k: usize, j: usize) -> bool {
+        !AT_ORIGIN || self.model.shows_at_origin(k, j)
     }
 
     #[inline(always)]

@@ -95,6 +95,14 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
         true
     }
 
+    /// Whether the derivative of output `k` with respect to moving state `j` is other than
+    /// structurally zero in [`Self::output_jacobian_at_origin`].
+    #[inline(always)]
+    fn shows_at_origin(&self, k: usize, j: usize) -> bool {
+        let _ = (k, j);
+        true
+    }
+
     /// Outputs: what the sensors would read without noise.
     ///
     /// # Panics
