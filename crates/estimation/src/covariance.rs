@@ -6,11 +6,13 @@
 //! it is symmetric to the last bit without being made so.
 //!
 //! - Prediction: Φ is the identity on the parameters, so the parameter block does not change;
-//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp. A step that starts at the origin of its chart
-//!   and has one stage takes of Φ_mp what the model says is not zero.
+//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp.
 //! - Update: with S = L diag(α) Lᵀ the whitened gain is V = diag(α)^-1/2 L⁻¹ H P, and
 //!   P ← P - Vᵀ V. Where a measurement removes nearly all of a wide prior, the moving block is
 //!   updated in Joseph form, which cannot lose definiteness by cancellation.
+//!
+//! What the model knows to be zero in Φ, H and the map to the next chart is left out: see
+//! [`Zeros`].
 //!
 //! A variance that is not positive afterwards is an error; nothing is repaired.
 
@@ -21,6 +23,7 @@ use crate::form::{Form, Numbers, Observation, Transition, Zeros};
 use crate::innovation::Innovation;
 use crate::lanes4::{load, load_rows, mul_add, multiply_add, store};
 use crate::projection::{Projection, is_variance, not_positive};
+use crate::zeros::{add_product, product};
 
 /// P itself: the fast form. It needs double precision, and a prior that is not wider against
 /// the noise than that holds: what an update would cancel to nothing but rounding is
@@ -200,41 +203,6 @@ fn predict_columns<T: Real, Z: Zeros, const M: usize, const W: usize, const SPAR
     }
     for (i, row) in sums.iter().enumerate() {
         store(p, i * n + at, *row);
-    }
-}
-
-/// `matrix` times `rows`, where `differs` says which elements are not those of the unit matrix.
-#[inline(always)]
-fn product<T: Real, const M: usize, const W: usize>(
-    matrix: &[[T; M]; M],
-    differs: impl Fn(usize, usize) -> bool,
-    rows: &[[T; W]; M],
-) -> [[T; W]; M] {
-    let mut result = [[T::from_f64(0.0); W]; M];
-    for i in 0..M {
-        // The diagonal first: where it is one, the sum starts without a product.
-        result[i] = if differs(i, i) {
-            rows[i].map(|value| value * matrix[i][i])
-        } else {
-            rows[i]
-        };
-        for j in 0..M {
-            if j != i && differs(i, j) {
-                result[i] = mul_add(rows[j], matrix[i][j], result[i]);
-            }
-        }
-    }
-    result
-}
-
-/// `sum` and the product of `value` with an element of a matrix, which is that of the unit matrix
-/// where it does not differ.
-#[inline(always)]
-fn add_product<T: Real>(value: T, element: T, differs: bool, on_diagonal: bool, sum: T) -> T {
-    match (differs, on_diagonal) {
-        (true, _) => value.mul_add(element, sum),
-        (false, true) => sum + value,
-        (false, false) => sum,
     }
 }
 
