@@ -201,6 +201,16 @@ where
     }
 
     #[inline(always)]
+    fn moves_at_origin(&self, i: usize, j: usize) -> bool {
+        self.0.moves_at_origin(i, j)
+    }
+
+    #[inline(always)]
+    fn shows_at_origin(&self, k: usize, j: usize) -> bool {
+        self.0.shows_at_origin(k, j)
+    }
+
+    #[inline(always)]
     fn output(&self, moving: &[T; 3], parameters: &[T], chart: &Self::Inputs) -> [T; 3] {
         self.0.output(moving, parameters, &chart.inputs)
     }
@@ -247,6 +257,13 @@ where
         chart.turn(&at.platform_c_chart);
         *moving = [T::from_f64(0.0); 3];
         Some(at.rotation_d_theta_dense())
+    }
+
+    /// W is the rate matrix of rotations about x, then y, then z: the last turns about the axis
+    /// itself, and the second stays in the plane across it.
+    #[inline(always)]
+    fn maps(&self, i: usize, j: usize) -> bool {
+        j == 0 || (j == 1 && i < 2)
     }
 
     #[inline(always)]

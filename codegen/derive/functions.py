@@ -45,12 +45,13 @@ def at_origin(name: str, doc: str, function: Function) -> Function:
 
 
 def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
-                  domain: str, together: tuple = ()) -> list[Function]:
+                  domain: str, together: tuple = (), derived: tuple = ()) -> list[Function]:
     """Two functions: the value alone, and the value with its Jacobians (shared terms once).
 
     `by` lists (group, unit of the Jacobian). By the groups in `together` the value is
     differentiated in one pass, so that equal columns, such as those of biases and noise, are the
-    same expressions; they are in the order of `by`.
+    same expressions; they are in the order of `by`. `derived` are Jacobians in the order of `by`
+    in a shorter form than differentiating the value gives.
     """
     jacobians = [
         jacobian_output(
@@ -59,6 +60,8 @@ def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
         )
         for group, unit in by
     ]
+    for place, expression in enumerate(derived):
+        jacobians[place] = replace(jacobians[place], expression=expression)
     whole = ca.jacobian(value.expression, ca.vertcat(*[group.sx for group in together]))
     end = 0
     for place, (group, _) in enumerate(by):

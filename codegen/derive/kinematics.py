@@ -4,8 +4,9 @@ import math
 
 import casadi as ca
 
-from drift import drift_rate
-from frames import platform_c_chart
+from drift import drift_rate, drift_law
+from frames import in_platform_axes
+from specific_force import specific_force
 
 DEG_PER_HOUR_IN_RAD_PER_S = math.pi / 180 / 3600
 
@@ -21,15 +22,13 @@ def rate_matrix(theta: ca.SX) -> ca.SX:
     )
 
 
-def rate_matrix_inverse(theta: ca.SX) -> ca.SX:
-    """W^-1 in closed form; singular at theta_y = +-90 deg (gimbal lock of the chart)."""
+def angle_rates_from(theta: ca.SX, rate: ca.SX) -> ca.SX:
+    """W^-1 applied to columns, in closed form; singular at theta_y = +-90 deg (gimbal lock of
+    the chart)."""
     cy, sy = ca.cos(theta[1]), ca.sin(theta[1])
     cz, sz = ca.cos(theta[2]), ca.sin(theta[2])
-    return ca.vertcat(
-        ca.horzcat(cz / cy, -sz / cy, 0),
-        ca.horzcat(sz, cz, 0),
-        ca.horzcat(-sy * cz / cy, sy * sz / cy, 1),
-    )
+    x = (cz * rate[0, :] - sz * rate[1, :]) / cy
+    return ca.vertcat(x, sz * rate[0, :] + cz * rate[1, :], rate[2, :] - sy * x)
 
 
 def angle_rates(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.SX, f_0: ca.SX) -> ca.SX:
@@ -43,6 +42,36 @@ def angle_rates(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.SX, f_0: c
 
 def angle_rates_of(theta: ca.SX, omega_d: ca.SX, omega_0: ca.SX) -> ca.SX:
     """W^-1 (omega_d - p_C_0 omega_0) in rad/s, for any drift omega_d in deg/h."""
-    inertial_rate = DEG_PER_HOUR_IN_RAD_PER_S * omega_d
-    relative_rate = inertial_rate - platform_c_chart(theta) @ omega_0
-    return rate_matrix_inverse(theta) @ relative_rate
+    return angle_rates_from(theta, relative_rate(omega_d, in_platform_axes(theta, omega_0)))
+
+
+def relative_rate(omega_d: ca.SX, omega: ca.SX) -> ca.SX:
+    """Rate relative to the chart, of drift in deg/h and Earth rate in rad/s, in platform axes."""
+    return DEG_PER_HOUR_IN_RAD_PER_S * omega_d - omega
+
+
+def angle_rates_jacobians(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.SX,
+                          f_0: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """Jacobians of `angle_rates` by angles, drift coefficients and noise, in two thirds of the
+    operations that differentiating its expressions takes.
+
+    Seen from axes that turn by dphi = W dtheta, a fixed vector v changes by v x dphi; and
+    W theta_dot = relative rate is differentiated as it stands.
+    """
+    a, omega, theta_dot = ca.SX.sym("a", 3), ca.SX.sym("omega", 3), ca.SX.sym("theta_dot", 3)
+    omega_d, w = drift_law(a, drift, noise), rate_matrix(theta)
+    relative = relative_rate(omega_d, omega)
+    turned = (ca.jacobian(relative, a) @ ca.skew(a)
+              + ca.jacobian(relative, omega) @ ca.skew(omega)) @ w
+    by_theta = angle_rates_from(theta, turned - ca.jacobian(w @ theta_dot, theta))
+    by_drift_rate = angle_rates_from(theta, ca.jacobian(relative_rate(a, omega), a))
+    jacobians = [
+        by_theta,
+        by_drift_rate @ ca.jacobian(omega_d, drift),
+        by_drift_rate @ ca.jacobian(omega_d, noise),
+    ]
+    return tuple(ca.sparsify(jacobian) for jacobian in ca.substitute(
+        jacobians, [a, omega, theta_dot],
+        [specific_force(theta, f_0), in_platform_axes(theta, omega_0),
+         angle_rates(theta, drift, noise, omega_0, f_0)],
+    ))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import casadi as ca
 
-from casadi_program import Element, Group, Program
+from casadi_program import Element, Function, Group, Program
 from frames import platform_c_chart
 
 POINTS = 200
@@ -90,10 +90,7 @@ def write(programs: list[Program], path: Path) -> None:
         "casadi_version": ca.__version__,
         "inputs": points,
         "functions": {
-            f"{program.name}::{function.name}": [
-                [value for output in _evaluate(program, function, point) for value in output]
-                for point in points
-            ]
+            f"{program.name}::{function.name}": _evaluate(program, function, points)
             for program in programs
             for function in program.functions
         },
@@ -111,10 +108,12 @@ def write(programs: list[Program], path: Path) -> None:
     path.write_text("\n".join(lines), encoding="utf-8", newline="\n")
 
 
-def _evaluate(program, function, point):
-    """Structural nonzeros of every output, in the order of the program."""
+def _evaluate(program: Program, function: Function, points: list[dict]) -> list[list[float]]:
+    """Structural nonzeros of every output, in the order of the program, for each point."""
     compiled = function.casadi()
-    results = compiled.call(
-        [ca.DM(point[_key(program, group)]) for group in function.inputs]
-    )
-    return [result.nonzeros() for result in results]
+    keys = [_key(program, group) for group in function.inputs]
+    return [
+        [value for output in compiled.call([ca.DM(point[key]) for key in keys])
+         for value in output.nonzeros()]
+        for point in points
+    ]

@@ -247,6 +247,11 @@ fn main() {
     for (i, j) in (0..3).flat_map(|i| (0..9).map(move |j| (i, j))) {
         assert_eq!(platform.enters_at_origin(i, j), j / 3 == i, "{i}, {j}");
     }
+    // No angle changes its own rate there, nor the force along its own axis.
+    for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+        assert_eq!(platform.moves_at_origin(i, j), i != j, "{i}, {j}");
+        assert_eq!(platform.shows_at_origin(i, j), i != j, "{i}, {j}");
+    }
     assert_eq!((platform.parameters(), platform.output_parameters()), (9, 0));
     assert_eq!(Model::<f64, 2, 2>::noise_parameters(&Pendulum), None);
     // One source serves lanes and f32.

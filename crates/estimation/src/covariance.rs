@@ -6,21 +6,24 @@
 //! it is symmetric to the last bit without being made so.
 //!
 //! - Prediction: Φ is the identity on the parameters, so the parameter block does not change;
-//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp. A step that starts at the origin of its chart
-//!   and has one stage takes of Φ_mp what the model says is not zero.
+//!   the moving rows become Φ_mm P_mp + Φ_mp P_pp.
 //! - Update: with S = L diag(α) Lᵀ the whitened gain is V = diag(α)^-1/2 L⁻¹ H P, and
 //!   P ← P - Vᵀ V. Where a measurement removes nearly all of a wide prior, the moving block is
 //!   updated in Joseph form, which cannot lose definiteness by cancellation.
+//!
+//! What the model knows to be zero in Φ, H and the map to the next chart is left out: see
+//! [`Zeros`].
 //!
 //! A variance that is not positive afterwards is an error; nothing is repaired.
 
 use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers, Observation, Transition};
+use crate::form::{Form, Numbers, Observation, Transition, Zeros};
 use crate::innovation::Innovation;
-use crate::lanes4::{load, load_rows, mul_add, multiply_add, small_product, store};
+use crate::lanes4::{load, load_rows, mul_add, multiply_add, store};
 use crate::projection::{Projection, is_variance, not_positive};
+use crate::zeros::{add_product, product};
 
 /// P itself: the fast form. It needs double precision, and a prior that is not wider against
 /// the noise than that holds: what an update would cancel to nothing but rounding is
@@ -56,10 +59,10 @@ impl<T: Real> Form<T> for Covariance {
     fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,
         transition: &Transition<'_, T, M>,
-        enters: impl Fn(usize, usize) -> bool,
+        zeros: &impl Zeros,
     ) -> Result<(), EstimationError> {
         let n = numbers.pivots.len();
-        predict::<T, M, SPARSE>(numbers.matrix, n, transition, numbers.cross, enters)
+        predict::<_, _, M, SPARSE>(numbers.matrix, n, transition, numbers.cross, zeros)
     }
 
     #[inline(always)]
@@ -67,7 +70,7 @@ impl<T: Real> Form<T> for Covariance {
         numbers: &mut Numbers<'_, T>,
         observation: &Observation<'_, T, M, Y>,
     ) -> Result<Innovation<T, Y>, EstimationError> {
-        let projection = Projection::new(numbers.matrix, numbers.pivots.len(), observation);
+        let projection = Projection::new(numbers.matrix, numbers.pivots.len(), observation, &());
         projection.check()?;
         let innovation = projection.innovation();
         innovation.check()?;
@@ -79,13 +82,14 @@ impl<T: Real> Form<T> for Covariance {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
+        zeros: &impl Zeros,
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError> {
         let n = numbers.pivots.len();
         // Needs nothing of S, and fills the time in which the divisions of its factors wait for
         // each other.
-        project_parameters(numbers.matrix, n, observation, numbers.gain);
-        let projection = Projection::new(numbers.matrix, n, observation);
+        project_parameters(numbers.matrix, n, observation, zeros, numbers.gain);
+        let projection = Projection::new(numbers.matrix, n, observation, zeros);
         projection.check()?;
         let innovation = projection.innovation();
         innovation.check()?;
@@ -105,12 +109,12 @@ impl<T: Real> Form<T> for Covariance {
 /// P ← W (Φ P Φᵀ + Γ diag(variance) Γᵀ) Wᵀ. W, which waits for the end of the step and for its
 /// sines and cosines, comes last.
 #[inline(always)]
-fn predict<T: Real, const M: usize, const SPARSE: bool>(
+fn predict<T: Real, Z: Zeros, const M: usize, const SPARSE: bool>(
     p: &mut [T],
     n: usize,
     transition: &Transition<'_, T, M>,
     workspace: &mut [T],
-    enters: impl Fn(usize, usize) -> bool,
+    zeros: &Z,
 ) -> Result<(), EstimationError> {
     let count = n - M;
     let half = T::from_f64(0.5);
@@ -123,34 +127,37 @@ fn predict<T: Real, const M: usize, const SPARSE: bool>(
     } = transition;
     let mut column = 0;
     while column + 4 <= count {
-        predict_columns::<T, M, 4, SPARSE>(p, n, transition, &enters, workspace, column);
+        predict_columns::<_, _, M, 4, SPARSE>(p, n, transition, zeros, workspace, column);
         column += 4;
     }
     while column < count {
-        predict_columns::<T, M, 1, SPARSE>(p, n, transition, &enters, workspace, column);
+        predict_columns::<_, _, M, 1, SPARSE>(p, n, transition, zeros, workspace, column);
         column += 1;
     }
-    let added = added::<T, M, SPARSE>(transition.parameters, count, workspace, enters);
-    let mapped = small_product(moving, &load_rows(p, n, 0));
+    let added = added::<_, _, M, SPARSE>(transition.parameters, count, workspace, zeros);
+    let old: [[T; M]; M] = load_rows(p, n, 0);
+    let mapped = product(moving, |i, j| zeros.moves(i, j), &old);
     let mut corner = [[T::from_f64(0.0); M]; M];
     for i in 0..M {
         for j in 0..=i {
             let mut sum = half * (added[i][j] + added[j][i]);
             for k in 0..M {
-                sum = mapped[i][k].mul_add(moving[j][k], sum);
-                sum = (noise[i][k] * variance[k]).mul_add(noise[j][k], sum);
+                sum = add_product(mapped[i][k], moving[j][k], zeros.moves(j, k), j == k, sum);
+                if zeros.drives(i, k) && zeros.drives(j, k) {
+                    sum = (noise[i][k] * variance[k]).mul_add(noise[j][k], sum);
+                }
             }
             corner[i][j] = sum;
             corner[j][i] = sum;
         }
     }
     if let Some(map) = map {
-        let rows = small_product(map, &corner);
+        let rows = product(map, |i, j| zeros.maps(i, j), &corner);
         for i in 0..M {
             for j in 0..=i {
                 let mut sum = T::from_f64(0.0);
                 for k in 0..M {
-                    sum = rows[i][k].mul_add(map[j][k], sum);
+                    sum = add_product(rows[i][k], map[j][k], zeros.maps(j, k), j == k, sum);
                 }
                 corner[i][j] = sum;
                 corner[j][i] = sum;
@@ -166,28 +173,23 @@ fn predict<T: Real, const M: usize, const SPARSE: bool>(
 /// The moving rows W (Φ_mm P_mp + Φ_mp P_pp), for `W` columns. C = Φ_mp P_pp + 2 Φ_mm P_mp is left
 /// in `workspace`.
 #[inline(always)]
-fn predict_columns<T: Real, const M: usize, const W: usize, const SPARSE: bool>(
+fn predict_columns<T: Real, Z: Zeros, const M: usize, const W: usize, const SPARSE: bool>(
     p: &mut [T],
     n: usize,
     transition: &Transition<'_, T, M>,
-    enters: &impl Fn(usize, usize) -> bool,
+    zeros: &Z,
     workspace: &mut [T],
     column: usize,
 ) {
     let (count, at) = (n - M, M + column);
     let columns = transition.parameters;
     let old: [[T; W]; M] = load_rows(p, n, at);
-    let mut mapped = [[T::from_f64(0.0); W]; M];
-    for i in 0..M {
-        for j in 0..M {
-            mapped[i] = mul_add(old[j], transition.moving[i][j], mapped[i]);
-        }
-    }
+    let mapped = product(&transition.moving, |i, j| zeros.moves(i, j), &old);
     let mut sums = mapped;
     for l in 0..count {
         let row: [T; W] = load(p, (M + l) * n + at);
         for i in 0..M {
-            if !SPARSE || enters(i, l) {
+            if !SPARSE || zeros.enters(i, l) {
                 sums[i] = mul_add(row, columns[i * count + l], sums[i]);
             }
         }
@@ -197,13 +199,7 @@ fn predict_columns<T: Real, const M: usize, const W: usize, const SPARSE: bool>(
         store(workspace, i * count + column, both);
     }
     if let Some(map) = &transition.map {
-        let before = sums;
-        for i in 0..M {
-            sums[i] = before[0].map(|value| value * map[i][0]);
-            for j in 1..M {
-                sums[i] = mul_add(before[j], map[i][j], sums[i]);
-            }
-        }
+        sums = product(map, |i, j| zeros.maps(i, j), &sums);
     }
     for (i, row) in sums.iter().enumerate() {
         store(p, i * n + at, *row);
@@ -213,11 +209,11 @@ fn predict_columns<T: Real, const M: usize, const W: usize, const SPARSE: bool>(
 /// C Φ_mpᵀ, whose symmetric part is all that the parameters add to the moving block. C (M × p, by
 /// rows) is in `workspace`.
 #[inline(always)]
-fn added<T: Real, const M: usize, const SPARSE: bool>(
+fn added<T: Real, Z: Zeros, const M: usize, const SPARSE: bool>(
     columns: &[T],
     count: usize,
     workspace: &[T],
-    enters: impl Fn(usize, usize) -> bool,
+    zeros: &Z,
 ) -> [[T; M]; M] {
     let mut added = [[T::from_f64(0.0); M]; M];
     let mut rest = 0;
@@ -239,7 +235,7 @@ fn added<T: Real, const M: usize, const SPARSE: bool>(
     }
     for l in rest..count {
         for j in 0..M {
-            if !SPARSE || enters(j, l) {
+            if !SPARSE || zeros.enters(j, l) {
                 let phi = columns[j * count + l];
                 for i in 0..M {
                     added[i][j] = workspace[i * count + l].mul_add(phi, added[i][j]);
@@ -352,29 +348,31 @@ impl<'a, T: Real, const M: usize, const Y: usize> Pass<'a, T, M, Y> {
 
 /// Leaves the parameter columns of H P in `products` (Y × n).
 #[inline(always)]
-fn project_parameters<T: Real, const M: usize, const Y: usize>(
+fn project_parameters<T: Real, Z: Zeros, const M: usize, const Y: usize>(
     p: &[T],
     n: usize,
     observation: &Observation<'_, T, M, Y>,
+    zeros: &Z,
     products: &mut [T],
 ) {
     let count = n - M;
     let mut column = 0;
     while column + 4 <= count {
-        project_columns::<T, M, Y, 4>(p, n, observation, products, M + column);
+        project_columns::<_, _, M, Y, 4>(p, n, observation, zeros, products, M + column);
         column += 4;
     }
     while column < count {
-        project_columns::<T, M, Y, 1>(p, n, observation, products, M + column);
+        project_columns::<_, _, M, Y, 1>(p, n, observation, zeros, products, M + column);
         column += 1;
     }
 }
 
 #[inline(always)]
-fn project_columns<T: Real, const M: usize, const Y: usize, const W: usize>(
+fn project_columns<T: Real, Z: Zeros, const M: usize, const Y: usize, const W: usize>(
     p: &[T],
     n: usize,
     observation: &Observation<'_, T, M, Y>,
+    zeros: &Z,
     products: &mut [T],
     at: usize,
 ) {
@@ -388,7 +386,9 @@ fn project_columns<T: Real, const M: usize, const Y: usize, const W: usize>(
             } else {
                 observation.parameters[k * q + i - M]
             };
-            sums[k] = mul_add(row, h, sums[k]);
+            if i >= M || zeros.shows(k, i) {
+                sums[k] = mul_add(row, h, sums[k]);
+            }
         }
     }
     for (k, sum) in sums.iter().enumerate() {
@@ -416,12 +416,14 @@ fn downdate<T: Real, const M: usize, const Y: usize, const W: usize>(
 #[inline(always)]
 fn check_diagonal<T: Real>(p: &[T], n: usize, count: usize) -> Result<(), EstimationError> {
     let mut bad = 0_u32;
-    let mut sum = T::from_f64(0.0);
+    // Several sums, as one would be a chain.
+    let mut sums = [T::from_f64(0.0); 4];
     for i in 0..count {
         let variance = p[i * n + i];
         bad |= u32::from(!variance.is_positive());
-        sum = sum + variance;
+        sums[i % 4] = sums[i % 4] + variance;
     }
+    let sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
     // A sum of positive numbers is finite only if all of them are.
     if bad == 0 && sum.is_finite() {
         return Ok(());

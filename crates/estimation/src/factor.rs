@@ -12,7 +12,7 @@
 use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers, Observation, Transition};
+use crate::form::{Form, Numbers, Observation, Transition, Zeros};
 use crate::innovation::Innovation;
 use crate::lanes4::{load, mul_add, multiply_add, small_product, store};
 
@@ -47,7 +47,7 @@ impl<T: Real> Form<T> for Factors {
     fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,
         transition: &Transition<'_, T, M>,
-        _enters: impl Fn(usize, usize) -> bool,
+        _zeros: &impl Zeros,
     ) -> Result<(), EstimationError> {
         predict(numbers.matrix, numbers.pivots, transition)
     }
@@ -65,6 +65,7 @@ impl<T: Real> Form<T> for Factors {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
+        _zeros: &impl Zeros,
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError> {
         update(numbers, parameters, observation, correct)

@@ -9,6 +9,7 @@ use crate::innovation::Innovation;
 use crate::observe::{Sensor, check_noise};
 use crate::storage::{Storage, View};
 use crate::transition::{Integration, Integrator};
+use crate::zeros::Known;
 
 /// The part of the buffers that belongs to the covariance.
 macro_rules! numbers {
@@ -176,7 +177,7 @@ where
             variance: zero,
             map: None,
         };
-        F::predict::<M, false>(&mut numbers!(buffers), &transition, |_, _| true)
+        F::predict::<M, false>(&mut numbers!(buffers), &transition, &())
     }
 
     /// Predicts over `dt` seconds with noise of the given spectral densities (unit of the
@@ -237,10 +238,17 @@ where
         };
         let numbers = &mut numbers!(buffers);
         if F::USES_ZEROS && at_origin && self.integration == Integration::EULER {
-            let enters = |i, j| self.model.enters_at_origin(i, j);
-            F::predict::<M, true>(numbers, &transition, enters)
+            F::predict::<M, true>(
+                numbers,
+                &transition,
+                &Known::<T, D, M, Y, true>::of(&self.model),
+            )
         } else {
-            F::predict::<M, false>(numbers, &transition, |_, _| true)
+            F::predict::<M, false>(
+                numbers,
+                &transition,
+                &Known::<T, D, M, Y, false>::of(&self.model),
+            )
         }
     }
 
@@ -256,15 +264,37 @@ where
         measured: &[T; Y],
         noise_variance: &[T; Y],
     ) -> Result<Innovation<T, Y>, EstimationError> {
+        if self.at_origin() {
+            self.update_with::<true>(measured, noise_variance)
+        } else {
+            self.update_elsewhere(measured, noise_variance)
+        }
+    }
+
+    /// A function of its own: the step from the origin is then not inlined together with it.
+    #[inline(never)]
+    fn update_elsewhere(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        self.update_with::<false>(measured, noise_variance)
+    }
+
+    #[inline(always)]
+    fn update_with<const AT_ORIGIN: bool>(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
         check_noise(noise_variance)?;
-        let at_origin = self.at_origin();
         let buffers = self.storage.buffers();
         let (moving_slice, parameters) = buffers.state.split_at_mut(M);
         let mut moving = to_array(moving_slice);
         let sensor = Sensor {
             model: &self.model,
             inputs: &self.inputs,
-            at_origin,
+            at_origin: AT_ORIGIN,
         };
         let observation = sensor.observe(
             &moving,
@@ -278,6 +308,7 @@ where
             &mut numbers!(buffers),
             parameters,
             &observation,
+            &Known::<T, D, M, Y, AT_ORIGIN>::of(&self.model),
             |correction| match recentring {
                 Recentring::EveryStep => model.correct(&mut moving, inputs, correction),
                 _ => moving = add(&moving, correction),

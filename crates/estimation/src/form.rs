@@ -22,15 +22,15 @@ pub trait Form<T: Real> {
 
     /// P ← W (Φ P Φᵀ + Γ diag(variance) Γᵀ) Wᵀ, W being the map on the moving states.
     ///
-    /// With `SPARSE`, the parameter columns of Φ are taken to be zero where `enters(i, j)` is not
-    /// true for moving state i and parameter j.
+    /// `zeros` says which products can be left out; with `SPARSE` there are enough of them among
+    /// the parameter columns of Φ to look at each element.
     ///
     /// # Errors
     /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::NotFinite`].
     fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,
         transition: &Transition<'_, T, M>,
-        enters: impl Fn(usize, usize) -> bool,
+        zeros: &impl Zeros,
     ) -> Result<(), EstimationError>;
 
     /// The innovation alone; nothing changes but workspace.
@@ -53,9 +53,53 @@ pub trait Form<T: Real> {
         numbers: &mut Numbers<'_, T>,
         parameters: &mut [T],
         observation: &Observation<'_, T, M, Y>,
+        zeros: &impl Zeros,
         correct: impl FnOnce(&[T; M]),
     ) -> Result<Innovation<T, Y>, EstimationError>;
 }
+
+/// Which elements of a linearised step are those of a unit matrix whatever the state is: zero, and
+/// one on the diagonal. What is said of an element must be a constant, for the compiler to leave
+/// products out; by default nothing is known.
+pub trait Zeros {
+    /// Whether element (i, j) of the moving columns of Φ is any other number.
+    #[inline(always)]
+    fn moves(&self, i: usize, j: usize) -> bool {
+        let _ = (i, j);
+        true
+    }
+
+    /// Whether element (i, j) of the parameter columns of Φ is not zero.
+    #[inline(always)]
+    fn enters(&self, i: usize, j: usize) -> bool {
+        let _ = (i, j);
+        true
+    }
+
+    /// Whether element (i, k) of Γ is not zero.
+    #[inline(always)]
+    fn drives(&self, i: usize, k: usize) -> bool {
+        let _ = (i, k);
+        true
+    }
+
+    /// Whether element (k, j) of the moving columns of H is not zero.
+    #[inline(always)]
+    fn shows(&self, k: usize, j: usize) -> bool {
+        let _ = (k, j);
+        true
+    }
+
+    /// Whether element (i, j) of W is any other number.
+    #[inline(always)]
+    fn maps(&self, i: usize, j: usize) -> bool {
+        let _ = (i, j);
+        true
+    }
+}
+
+/// Nothing is known of the elements.
+impl Zeros for () {}
 
 /// The numbers of the covariance and workspace, for n states.
 #[derive(Debug)]

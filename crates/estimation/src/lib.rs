@@ -63,6 +63,7 @@ mod observe;
 mod projection;
 mod storage;
 mod transition;
+mod zeros;
 
 pub use covariance::Covariance;
 pub use error::EstimationError;

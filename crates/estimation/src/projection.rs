@@ -3,7 +3,7 @@
 use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
-use crate::form::Observation;
+use crate::form::{Observation, Zeros};
 use crate::innovation::Innovation;
 use crate::lanes4::{load, mul_add, store};
 
@@ -32,7 +32,12 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
     /// Loops run over all outputs with conditions inside: bounds that depend on another index keep
     /// the compiler from unrolling them, and small matrices would then live in memory.
     #[inline(always)]
-    pub(crate) fn new(p: &[T], n: usize, observation: &'a Observation<'a, T, M, Y>) -> Self {
+    pub(crate) fn new(
+        p: &[T],
+        n: usize,
+        observation: &'a Observation<'a, T, M, Y>,
+        zeros: &impl Zeros,
+    ) -> Self {
         let output = observation.parameters;
         let q = output.len() / Y;
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
@@ -42,7 +47,9 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
             for j in 0..M {
                 let mut sum = zero;
                 for i in 0..M {
-                    sum = h[k][i].mul_add(p[i * n + j], sum);
+                    if zeros.shows(k, i) {
+                        sum = h[k][i].mul_add(p[i * n + j], sum);
+                    }
                 }
                 for i in 0..q {
                     sum = output[k * q + i].mul_add(p[j * n + M + i], sum);
@@ -57,7 +64,9 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
             for l in 0..Y {
                 if l <= k {
                     for j in 0..M {
-                        scaled[k][l] = moving[k][j].mul_add(h[l][j], scaled[k][l]);
+                        if zeros.shows(l, j) {
+                            scaled[k][l] = moving[k][j].mul_add(h[l][j], scaled[k][l]);
+                        }
                     }
                     for i in 0..q {
                         let of_parameter = Self::of_parameter(p, n, h, output, k, i);

@@ -164,7 +164,9 @@ where
                 model.rates_jacobian(&at, parameters, inputs, &mut jacobian)
             };
             jacobians[stage] = jacobian.moving;
-            noises[stage] = jacobian.noise;
+            if self.model.noise_parameters().is_none() {
+                noises[stage] = jacobian.noise;
+            }
             *moving = mul_add(rates, weights[stage], *moving);
         }
         let adjoint = Adjoint::new(&jacobians, nodes, weights);
@@ -260,7 +262,9 @@ impl<T: Scalar, const M: usize, const ORDER: usize> Adjoint<T, M, ORDER> {
         }
         for stage in 0..ORDER {
             for j in 0..M {
-                let rate: [T; W] = load(stages, (stage * M + j) * stride + column);
+                // A slice as long as the stride, which bounds the column.
+                let row = &stages[(stage * M + j) * stride..][..stride];
+                let rate: [T; W] = load(row, column);
                 if stage + 1 == ORDER {
                     sums[j] = mul_add(rate, self.last, sums[j]);
                 } else {
@@ -270,8 +274,8 @@ impl<T: Scalar, const M: usize, const ORDER: usize> Adjoint<T, M, ORDER> {
                 }
             }
         }
-        for (i, row) in sums.iter().enumerate() {
-            store(columns, i * stride + column, *row);
+        for (i, sum) in sums.iter().enumerate() {
+            store(&mut columns[i * stride..][..stride], column, *sum);
         }
     }
 }

@@ -87,6 +87,22 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
         true
     }
 
+    /// Whether the derivative of moving state `i`'s rate with respect to moving state `j` is other
+    /// than structurally zero in [`Self::rates_jacobian_at_origin`].
+    #[inline(always)]
+    fn moves_at_origin(&self, i: usize, j: usize) -> bool {
+        let _ = (i, j);
+        true
+    }
+
+    /// Whether the derivative of output `k` with respect to moving state `j` is other than
+    /// structurally zero in [`Self::output_jacobian_at_origin`].
+    #[inline(always)]
+    fn shows_at_origin(&self, k: usize, j: usize) -> bool {
+        let _ = (k, j);
+        true
+    }
+
     /// Outputs: what the sensors would read without noise.
     ///
     /// # Panics
@@ -157,6 +173,14 @@ pub trait Recentre<T: Scalar, const M: usize, const Y: usize>: Model<T, M, Y> {
     fn recentre(&self, moving: &mut [T; M], inputs: &mut Self::Inputs) -> Option<[[T; M]; M]> {
         let _ = (moving, inputs);
         None
+    }
+
+    /// Whether element (`i`, `j`) of what [`Self::recentre`] returns can be other than that of a
+    /// unit matrix.
+    #[inline(always)]
+    fn maps(&self, i: usize, j: usize) -> bool {
+        let _ = (i, j);
+        true
     }
 
     /// Applies a correction, expressed as the error at the origin of the chart, when the

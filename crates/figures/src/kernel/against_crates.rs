@@ -11,7 +11,7 @@ use super::Error;
 use super::extended_filter::samples;
 use super::peers::{Adskalman, Multicalc};
 use super::speed::{DENSITY, STEP_S, STEPS, VARIANCE};
-use super::timing::{medians, seconds};
+use super::timing::{medians, seconds, well_placed};
 use crate::figure::Figure;
 
 /// Within a tenth of the fastest.
@@ -66,12 +66,14 @@ fn time<F: Clone>(
     samples: &[[f64; 3]],
     step: impl Fn(&mut F, &[f64; 3]) -> Result<(), EstimationError>,
 ) -> Result<f64, EstimationError> {
-    let mut filter = black_box(start.clone());
-    let time = seconds(|| {
-        samples
-            .iter()
-            .try_for_each(|sample| step(&mut filter, black_box(sample)))
-    });
-    black_box(&filter);
-    time
+    well_placed(|| {
+        let mut filter = black_box(start.clone());
+        let time = seconds(|| {
+            samples
+                .iter()
+                .try_for_each(|sample| step(&mut filter, black_box(sample)))
+        });
+        black_box(&filter);
+        time
+    })
 }

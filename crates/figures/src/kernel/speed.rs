@@ -11,7 +11,7 @@ use gyrocal::{
 use nalgebra::{SMatrix, SVector};
 
 use super::extended_filter::samples;
-use super::timing::{is_x86_64_v3, medians, seconds};
+use super::timing::{is_x86_64_v3, medians, seconds, well_placed};
 use super::{Error, RULES};
 use crate::figure::Figure;
 
@@ -46,20 +46,23 @@ pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
             SMatrix::from_diagonal(&SVector::from(variances)),
         );
         let (times, ratios) = medians(rounds, || {
-            let ours_s = time(&ours, &samples)?;
-            let mut dense = black_box(dense.clone());
-            let dense_s = seconds(|| {
-                samples.iter().try_for_each(|sample| {
-                    dense.predict(STEP_S, &DENSITY);
-                    dense
-                        .update(black_box(sample), &VARIANCE)
-                        .map(|innovation| {
-                            black_box(innovation);
-                        })
-                })
+            let ours_s = well_placed(|| time(&ours, &samples))?;
+            let dense_s = well_placed(|| {
+                let mut dense = black_box(dense.clone());
+                let time = seconds(|| {
+                    samples.iter().try_for_each(|sample| {
+                        dense.predict(STEP_S, &DENSITY);
+                        dense
+                            .update(black_box(sample), &VARIANCE)
+                            .map(|innovation| {
+                                black_box(innovation);
+                            })
+                    })
+                });
+                black_box(&dense);
+                time
             })?;
-            black_box(&dense);
-            let factors_s = time(&factors, &samples)?;
+            let factors_s = well_placed(|| time(&factors, &samples))?;
             Ok::<_, EstimationError>([ours_s, dense_s, factors_s])
         })?;
         let target = match (rule, is_x86_64_v3()) {

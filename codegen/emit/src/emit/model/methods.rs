@@ -60,8 +60,7 @@ impl<'a> Methods<'a> {
         let rates_jacobian = self.rates_jacobian(&Form::full(self.parts, of_rates));
         let rates_at_origin =
             Form::at_origin(self.parts, of_rates).map(|form| self.rates_jacobian(&form));
-        let enters_at_origin =
-            Form::at_origin(self.parts, of_rates).and_then(|form| self.enters_at_origin(&form));
+        let nonzeros_at_origin = self.nonzeros_at_origin();
         let output = self.output();
         let output_jacobian =
             self.output_jacobian(&Form::full(self.parts, of_output), output_parameters);
@@ -90,7 +89,7 @@ impl<'a> Methods<'a> {
                 #rates
                 #rates_jacobian
                 #rates_at_origin
-                #enters_at_origin
+                #nonzeros_at_origin
                 #output
                 #output_jacobian
                 #output_at_origin
@@ -173,22 +172,36 @@ impl<'a> Methods<'a> {
         }
     }
 
-    /// Which derivatives of the rates by parameters the form has; nothing where there are none.
-    fn enters_at_origin(&self, form: &Form<'_>) -> Option<TokenStream> {
-        let jacobian = form.jacobian(self.parts.parameters_name()?)?.given;
-        let rows = (0..self.moving).map(|row| {
-            let columns = 0..self.parameters;
-            let entries = columns.map(|column| jacobian.nonzero_at(row, column).is_some());
-            quote!([#(#entries),*])
-        });
-        let [moving, parameters] = [self.moving, self.parameters].map(integer);
-        Some(quote! {
-            #[inline(always)]
-            fn enters_at_origin(&self, i: usize, j: usize) -> bool {
-                const ENTERS: [[bool; #parameters]; #moving] = [#(#rows),*];
-                ENTERS[i][j]
-            }
+    /// Which derivatives the forms at the origin have: of the rates by parameters and by moving
+    /// states, and of the output by moving states. Nothing where there are none.
+    fn nonzeros_at_origin(&self) -> TokenStream {
+        let (of_rates, of_output) = (self.parts.model.rates, self.parts.model.output);
+        let moving = Some(self.parts.moving().name.as_str());
+        [
+            ("enters_at_origin", of_rates, self.parts.parameters_name()),
+            ("moves_at_origin", of_rates, moving),
+            ("shows_at_origin", of_output, moving),
+        ]
+        .into_iter()
+        .filter_map(|(name, function, group)| {
+            let form = Form::at_origin(self.parts, function)?;
+            let jacobian = form.jacobian(group?)?.given;
+            let rows = (0..jacobian.rows).map(|row| {
+                let columns = 0..jacobian.columns;
+                let entries = columns.map(|column| jacobian.nonzero_at(row, column).is_some());
+                quote!([#(#entries),*])
+            });
+            let (name, [rows_count, columns]) =
+                (ident(name), [jacobian.rows, jacobian.columns].map(integer));
+            Some(quote! {
+                #[inline(always)]
+                fn #name(&self, i: usize, j: usize) -> bool {
+                    const NONZERO: [[bool; #columns]; #rows_count] = [#(#rows),*];
+                    NONZERO[i][j]
+                }
+            })
         })
+        .collect()
     }
 
     fn output_jacobian(&self, form: &Form<'_>, output_parameters: usize) -> TokenStream {

@@ -927,8 +927,18 @@ impl<T: Scalar> Model<T, 2, 2> for Pendulum {
     }
     #[inline(always)]
     fn enters_at_origin(&self, i: usize, j: usize) -> bool {
-        const ENTERS: [[bool; 2]; 2] = [[false, false], [false, false]];
-        ENTERS[i][j]
+        const NONZERO: [[bool; 2]; 2] = [[false, false], [false, false]];
+        NONZERO[i][j]
+    }
+    #[inline(always)]
+    fn moves_at_origin(&self, i: usize, j: usize) -> bool {
+        const NONZERO: [[bool; 2]; 2] = [[false, true], [true, true]];
+        NONZERO[i][j]
+    }
+    #[inline(always)]
+    fn shows_at_origin(&self, i: usize, j: usize) -> bool {
+        const NONZERO: [[bool; 2]; 2] = [[true, false], [false, false]];
+        NONZERO[i][j]
     }
     #[inline]
     fn output(
