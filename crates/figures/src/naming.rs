@@ -2,6 +2,7 @@
 //! show.
 
 mod hidden;
+mod plan;
 
 use gyrocal_campaign::statistics::Proportion;
 use gyrocal_campaign::{Campaign, Fingerprint, Outcome};
@@ -66,6 +67,7 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
             &format!("{seeds:?}"),
         ));
     }
+    figures.extend(plan::figures(small)?);
     Ok(figures)
 }
 
