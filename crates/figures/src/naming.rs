@@ -1,6 +1,8 @@
 //! Causes hidden in simulated records: what is detected, what is named, and what clean records
 //! show. The cells are those of `gyrocal characterise`, and its results serve here too.
 
+mod plan;
+
 use gyrocal_characterise::{Cell, Characteristic, Method, Target, campaign, cell_report};
 
 use crate::figure::Figure;
@@ -47,6 +49,7 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         let all = report.characteristics.iter();
         figures.extend(all.map(|characteristic| figure(&report.title, characteristic)));
     }
+    figures.extend(plan::figures(small)?);
     Ok(figures)
 }
 

@@ -100,7 +100,9 @@ pub struct SetMemberReport {
 pub struct GoalReport {
     /// The goal in words.
     pub wish: String,
-    /// The shortest run that was found to reach it; `None` if none does.
+    /// Whether the record so far reaches it.
+    pub already: bool,
+    /// The shortest run that was found to reach it; `None` if none is needed or none does.
     pub run: Option<ProposalReport>,
     /// The longest run that was looked at \[s\].
     pub longest_s: f64,

@@ -31,6 +31,7 @@ pub(super) fn report(
         proposals: planned.proposals.iter().map(proposal).collect(),
         goal: planned.reached.as_ref().map(|reached| GoalReport {
             wish: found.wish.clone().unwrap_or_default(),
+            already: reached.already,
             run: reached.run.as_ref().map(proposal),
             longest_s: reached.longest_s,
         }),

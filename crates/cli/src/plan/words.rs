@@ -32,12 +32,13 @@ pub(super) fn summary(found: &Found<'_>) -> String {
         }
         text.push_str(&bullet(&sigmas(&best.outlook)));
         if let Some(going_on) = going_on {
-            text.push_str(&bullet(&instead(&going_on.outlook)));
+            text.push_str(&paragraph(&instead(&going_on.outlook)));
         }
     }
     if let (Some(wish), Some(reached)) = (&found.wish, &planned.reached) {
         text.push('\n');
         text.push_str(&paragraph(&match &reached.run {
+            _ if reached.already => format!("This record alone has {wish}."),
             Some(run) => format!(
                 "The shortest run that was found for {wish}: {} from {}.",
                 hours(run.duration_s),
@@ -167,7 +168,7 @@ fn instead(outlook: &Outlook) -> String {
         format!("{} and ", sets.join(", "))
     };
     format!(
-        "going on in the present attitude for as long would {sets}shrink the sigmas to {:.2}",
+        "Going on in the present attitude for as long would {sets}shrink the sigmas to {:.2}.",
         outlook.sigma_ratio
     )
 }

@@ -11,5 +11,6 @@ mod extend;
 mod folder;
 mod import;
 mod monte_carlo;
+mod plan;
 mod simulate;
 mod tumble;

@@ -11,11 +11,11 @@ use super::attitude::of_angles;
 use super::expected::{Deviates, Posteriors, expected};
 use super::outlook::{Forecast, Outlook, SetForecast, SetMember, ratio};
 use super::piece::Piece;
-use super::present::duration_s;
+use super::present::duration_s as duration_s_of;
 use super::said::{Said, foreseen};
 use super::sigma::sigmas;
 use super::universe::Universe;
-use crate::cause::axis_of;
+use crate::cause::{axis_of, parameter};
 
 /// How finely a run is looked at.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,9 @@ pub(crate) struct Setting<'a> {
     noise: &'a NoiseModel,
     limits: GimbalLimits,
     options: Options,
+    /// In the record, and in the next run, which begins with what a step or a ramp has come to.
     parameters: Vec<f64>,
+    next_parameters: Vec<f64>,
     shapes: [f64; gyrocal::generated::catalogue::SHAPES.len()],
     start: Orientation,
     now: Said,
@@ -74,20 +76,7 @@ impl<'a> Setting<'a> {
             .iter()
             .map(|case| Posteriors::new(case, &universe.unknowns, &now))
             .collect();
-        let mut parameters = fitted.parameters();
-        // A step stays, so the next run begins with it.
-        for case in &universe.cases {
-            if let Some(named) = case.members.first().map(|member| member.suspect.row)
-                && named.id.ends_with(".step")
-                && let (Some(axis), Some(size)) = (
-                    axis_of(named.id),
-                    crate::cause::parameter(named.states.first().copied().unwrap_or("")),
-                )
-            {
-                parameters[BIASES[axis]] += parameters[size];
-                parameters[size] = 0.0;
-            }
-        }
+        let parameters = fitted.parameters();
         Some(Self {
             universe,
             run,
@@ -97,6 +86,7 @@ impl<'a> Setting<'a> {
                 longest_step_s: options.longest_step_s.max(LONGEST_STEP_S),
                 ..options
             },
+            next_parameters: begun(universe, &parameters, duration_s_of(run.record)),
             parameters,
             shapes: fitted.extension().shapes,
             start: *fitted.points().first()?,
@@ -156,7 +146,7 @@ impl<'a> Setting<'a> {
             accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
             ..self.run.bench.clone()
         };
-        let imagined = self.imagined(&record, &bench, start);
+        let imagined = self.imagined(&record, &bench, start, &self.next_parameters);
         let points = imagined.trajectory(&self.options)?;
         if let Some(row) = points.iter().position(|point| !self.allowed(point)) {
             return Ok(Looked::Stopped(
@@ -171,7 +161,7 @@ impl<'a> Setting<'a> {
 
     /// The record gone on with for the duration of the next run.
     pub(crate) fn going_on(&self) -> Result<Option<Outlook>, CalibrationError> {
-        let first_s = duration_s(self.run.record);
+        let first_s = duration_s_of(self.run.record);
         let (mut record, noise_factor) = self.rows(first_s + self.duration_s);
         let given = self.run.bench.initial_angles_deg.is_some();
         if !given {
@@ -182,7 +172,7 @@ impl<'a> Setting<'a> {
             accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
             ..self.run.bench.clone()
         };
-        let imagined = self.imagined(&record, &bench, self.start);
+        let imagined = self.imagined(&record, &bench, self.start, &self.parameters);
         let points = imagined.trajectory(&self.options)?;
         let from = record.time_s.partition_point(|t| *t <= first_s);
         // Without the fit's own columns, which are of the record's own rows.
@@ -231,11 +221,12 @@ impl<'a> Setting<'a> {
         record: &'b Record,
         bench: &'b Bench,
         start: Orientation,
+        parameters: &'b [f64],
     ) -> ImaginedRun<'b> {
         ImaginedRun {
             run: Run { record, bench },
             start,
-            parameters: &self.parameters,
+            parameters,
             shapes: self.shapes,
             noise: self.noise,
         }
@@ -274,7 +265,7 @@ impl<'a> Setting<'a> {
         const DAY_S: f64 = 86_400.0;
         let record = self.run.record;
         let first_s = record.time_s.first().copied().unwrap_or(0.0);
-        let length_s = duration_s(record);
+        let length_s = duration_s_of(record);
         let days_s = (length_s / DAY_S).floor() * DAY_S;
         let at = if days_s > 0.0 {
             time_s.rem_euclid(days_s)
@@ -287,6 +278,29 @@ impl<'a> Setting<'a> {
             .copied()
             .unwrap_or(0.0)
     }
+}
+
+/// Parameters at the start of the next run: a step stays, and a ramp has grown.
+fn begun(universe: &Universe, parameters: &[f64], first_s: f64) -> Vec<f64> {
+    let mut begun = parameters.to_vec();
+    for named in universe
+        .cases
+        .iter()
+        .filter_map(|case| case.members.first())
+    {
+        let row = named.suspect.row;
+        let place = row.states.first().and_then(|id| parameter(id));
+        let (Some(axis), Some(place)) = (axis_of(row.id), place) else {
+            continue;
+        };
+        if row.id.ends_with(".step") {
+            begun[BIASES[axis]] += parameters[place];
+            begun[place] = 0.0;
+        } else if row.id.ends_with(".ramp") {
+            begun[BIASES[axis]] += parameters[place] * first_s / 86_400.0;
+        }
+    }
+    begun
 }
 
 /// The usual interval of a record, s.

@@ -11,7 +11,7 @@ use super::proposal::{FINE, Planner, Proposal};
 const RESOLVED: f64 = 0.95;
 
 /// The longest run that is looked at, s: two months.
-const LONGEST_S: f64 = 60.0 * 86_400.0;
+pub(crate) const LONGEST_S: f64 = 60.0 * 86_400.0;
 
 /// Durations that are looked at are so many times the one before.
 const RATIO: f64 = core::f64::consts::SQRT_2;
@@ -28,7 +28,9 @@ pub struct Goal {
 /// What was found for a goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// The run; `None` if none that was looked at reaches the goal.
+    /// Whether the record so far reaches it already.
+    pub already: bool,
+    /// The run; `None` if none is needed or none that was looked at reaches the goal.
     pub run: Option<Proposal>,
     /// The longest that was looked at, s.
     pub longest_s: f64,
@@ -54,7 +56,7 @@ impl Goal {
         Ok(())
     }
 
-    fn is_met(&self, outlook: &Outlook) -> bool {
+    pub(crate) fn is_met(&self, outlook: &Outlook) -> bool {
         let small = self.sigmas.iter().all(|(name, wanted)| {
             let mut found = outlook.coefficients.iter();
             found.any(|coefficient| coefficient.name == *name && coefficient.sigma <= *wanted)
@@ -96,6 +98,7 @@ pub(crate) fn reach(planner: &Planner<'_, '_>, first: [f64; 3]) -> Result<Reache
         }
     }
     Ok(Reached {
+        already: false,
         run: found,
         longest_s: LONGEST_S,
     })

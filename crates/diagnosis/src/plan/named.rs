@@ -117,7 +117,7 @@ fn unknown(effect: &str) -> PlanError {
     }
 }
 
-/// Whether a fit without what a run cannot show has the same causes as another.
+/// Those that come again in a later run by themselves: all terms but what goes on from before.
 pub(crate) fn recurring(named: &[Named]) -> Vec<Named> {
     named
         .iter()

@@ -113,7 +113,13 @@ pub fn plan(
         }));
         proposals.extend(planner.search(*duration_s)?);
     }
+    let now = now.ok_or(CalibrationError::NotPositiveDefinite)?;
     let reached = match proposals.first().and_then(|best| best.angles_deg) {
+        Some(_) if !options.goal.is_empty() && options.goal.is_met(&now) => Some(Reached {
+            already: true,
+            run: None,
+            longest_s: 0.0,
+        }),
         Some(angles_deg) if !options.goal.is_empty() => Some(reach(&planner, angles_deg)?),
         _ => None,
     };
@@ -129,7 +135,7 @@ pub fn plan(
         .collect();
     Ok(Planned {
         aim: planner.aim,
-        now: now.ok_or(CalibrationError::NotPositiveDefinite)?,
+        now,
         going_on,
         proposals,
         reached,

@@ -1,0 +1,271 @@
+//! Planned runs, made: what was predicted of sigmas and named sets, beside what they are.
+
+use gyrocal::{EFFECTS, EffectRow};
+use gyrocal_calibration::{Extended, NoiseModel, Options, Run, calibrate_runs};
+use gyrocal_diagnosis::cause::information;
+use gyrocal_diagnosis::plan::{Named, PlanOptions, Proposal, compare, plan};
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_truth::{Hidden, InitialAttitude, Population, Scenario, Simulation, simulate};
+use nalgebra::DVector;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+use super::{Error, campaign};
+use crate::figure::Figure;
+
+/// Population that the records are drawn from.
+const POPULATION: u64 = 78;
+
+/// Seeds of records whose sigmas are planned for, and of records with something hidden, as strong
+/// as that: there named sets are large.
+const SIGMA_SEEDS: [u64; 2] = [600_000, 200];
+const SET_SEEDS: [u64; 2] = [610_000, 300];
+const STRENGTH: f64 = 6.0;
+
+/// In the small version, which runs everywhere, fewer.
+const SMALL: [u64; 2] = [4, 10];
+
+/// A next run that is a twelfth of the record: long enough to tell some rivals apart, too short
+/// for all.
+const SHORT: f64 = 1.0 / 12.0;
+
+/// What "within 20 %" is.
+const WITHIN: [f64; 2] = [0.8, 1.2];
+
+/// A planned run that was made.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Sigmas {
+    /// Least and largest of the nine ratios of the sigma that a joint calibration has and the
+    /// predicted one.
+    ratios: [f64; 2],
+}
+
+/// Sizes of one named set: now, and predicted and found after a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Sets {
+    /// Now; `None` where there is no set of two or more.
+    now: Option<f64>,
+    /// After a short run and one as long as the record: predicted, found.
+    after: [[f64; 2]; 2],
+}
+
+/// All figures of planning.
+pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let runs = if small {
+        SMALL
+    } else {
+        [SIGMA_SEEDS[1], SET_SEEDS[1]]
+    };
+    let seeds = SIGMA_SEEDS[0]..SIGMA_SEEDS[0] + runs[0];
+    let outcome = campaign("plan-sigmas", seeds.clone(), small).run(sigmas, |_| ())?;
+    let ratios: Vec<[f64; 2]> = outcome.successes().map(|(_, case)| case.ratios).collect();
+    let least = ratios.iter().map(|r| r[0]).fold(f64::INFINITY, f64::min);
+    let most = ratios.iter().map(|r| r[1]).fold(0.0, f64::max);
+    let mut figures = Vec::new();
+    for (name, extreme) in [("least", least), ("largest", most)] {
+        figures.push(
+            Figure::within(
+                &format!("planned run: {name} of the nine sigmas over the predicted, any run"),
+                WITHIN,
+                extreme,
+            )
+            .over(ratios.len(), format!("{seeds:?}")),
+        );
+    }
+    let failed = outcome.failures().count();
+    let seeds = SET_SEEDS[0]..SET_SEEDS[0] + runs[1];
+    let outcome = campaign("plan-sets", seeds.clone(), small).run(sets, |_| ())?;
+    let cases: Vec<&Sets> = outcome
+        .successes()
+        .map(|(_, case)| case)
+        .filter(|case| case.now.is_some())
+        .collect();
+    let mean = |of: &dyn Fn(&Sets) -> f64| {
+        let values: Vec<f64> = cases.iter().map(|case| of(case)).collect();
+        gyrocal_campaign::statistics::mean(&values)
+    };
+    figures.push(Figure::note(
+        "planned run: mean size of named sets of two or more before it",
+        format!("{:.2}", mean(&|case| case.now.unwrap_or(0.0))),
+    ));
+    for (index, length) in ["a twelfth of the record", "as long as the record"]
+        .into_iter()
+        .enumerate()
+    {
+        let [predicted, found] = [0, 1].map(|which| mean(&|case| case.after[index][which]));
+        figures.push(
+            Figure::within(
+                &format!("planned run {length}: mean size of the set over the predicted"),
+                WITHIN,
+                found / predicted,
+            )
+            .over(cases.len(), format!("{seeds:?}")),
+        );
+        figures.push(Figure::note(
+            &format!("planned run {length}: mean size of the set"),
+            format!("{found:.2}, predicted {predicted:.2}"),
+        ));
+    }
+    let failed = failed + outcome.failures().count();
+    if failed > 0 {
+        figures.push(Figure::note(
+            "planned run: records that could not be planned for",
+            failed.to_string(),
+        ));
+    }
+    Ok(figures)
+}
+
+fn run(simulation: &Simulation) -> Run<'_> {
+    Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    }
+}
+
+/// Two days at any latitude and attitude; of every other record the turn-ons differ.
+fn scenario(seed: u64) -> Scenario {
+    let mut scenario = Scenario {
+        duration_s: 2.0 * 86_400.0,
+        ..Population::new(POPULATION).scenario(seed)
+    };
+    scenario.prior.turn_on_sigma_deg_per_h = [0.01 * (seed % 2) as f64; 3];
+    scenario
+}
+
+/// The next run as planned; what was hidden is there again or has left its traces.
+fn made(scenario: &Scenario, planned: &Proposal) -> Result<Simulation, Error> {
+    let mut next = Scenario {
+        seed: scenario.seed ^ 0x5ec0_4d00,
+        initial: InitialAttitude::AnglesDeg(planned.angles_deg.unwrap_or_default()),
+        duration_s: planned.duration_s,
+        hidden: Vec::new(),
+        ..scenario.clone()
+    };
+    let days = scenario.duration_s / 86_400.0;
+    for hidden in &scenario.hidden {
+        let size = hidden
+            .parameters()
+            .first()
+            .map_or(0.0, |(_, size, _)| *size);
+        let (channel, term) = hidden.id().split_once('.').unwrap_or((hidden.id(), ""));
+        let grown = match term {
+            "initial_attitude" | "knock" => continue,
+            "step" => size,
+            "ramp" => size * days,
+            _ => 0.0,
+        };
+        if term != "step" {
+            next.hidden.push(hidden.clone());
+        }
+        if grown != 0.0 {
+            let bias = Hidden::new(&format!("{channel}.bias"), &[("size", grown)])?;
+            next.hidden.push(bias);
+        }
+    }
+    Ok(simulate(&next)?)
+}
+
+fn sigmas(seed: u64) -> Result<Sigmas, Error> {
+    let scenario = scenario(seed);
+    let first = simulate(&scenario)?;
+    let noise = NoiseModel::default();
+    let fitted = Named::fitted(&[], &run(&first), &noise, &Options::default())?;
+    let planned = plan(&fitted, &run(&first), &noise, &[], &PlanOptions::default())?;
+    let best = planned.proposals.first().ok_or("no proposal")?;
+    let second = made(&scenario, best)?;
+    let joint = calibrate_runs(&[run(&first), run(&second)], &Options::default(), |_| ())?;
+    let predicted = best.outlook.coefficients.iter();
+    let ratios: Vec<f64> = predicted
+        .zip(joint.coefficients())
+        .map(|(predicted, found)| found.sigma / predicted.sigma)
+        .collect();
+    Ok(Sigmas {
+        ratios: [
+            ratios.iter().copied().fold(f64::INFINITY, f64::min),
+            ratios.iter().copied().fold(0.0, f64::max),
+        ],
+    })
+}
+
+fn sets(seed: u64) -> Result<Sets, Error> {
+    let scenario = hide(scenario(seed), seed)?;
+    let first = simulate(&scenario)?;
+    let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default())?;
+    let named: Vec<Named> = found.findings.iter().map(Named::of).collect();
+    let fitted = found.extended.as_ref().unwrap_or(&found.nominal);
+    let mut sets = Sets {
+        now: None,
+        after: [[0.0; 2]; 2],
+    };
+    if !named.iter().any(|named| !named.rivals.is_empty()) {
+        return Ok(sets);
+    }
+    for (after, share) in sets.after.iter_mut().zip([SHORT, 1.0]) {
+        let options = PlanOptions {
+            durations_s: vec![share * scenario.duration_s],
+            ..PlanOptions::default()
+        };
+        let planned = plan(fitted, &run(&first), &found.noise_model, &named, &options)?;
+        let of_first = |sizes: Vec<f64>| sizes.first().copied();
+        let now = planned.now.sets.iter().map(|set| set.mean_size);
+        sets.now = of_first(now.collect()).filter(|size| *size > 1.0);
+        let best = planned.proposals.first().ok_or("no proposal")?;
+        let predicted = best.outlook.sets.iter().map(|set| set.mean_size);
+        let second = made(&scenario, best)?;
+        let compared = compare(
+            fitted,
+            &run(&first),
+            &run(&second),
+            &found.noise_model,
+            &named,
+            &Options::default(),
+        )?;
+        let left = compared.sets.iter().map(|set| {
+            let stay = set.iter().filter(|member| member.stays);
+            stay.count() as f64
+        });
+        let predicted = of_first(predicted.collect()).ok_or("no set")?;
+        *after = [predicted, of_first(left.collect()).ok_or("no set")?];
+    }
+    Ok(sets)
+}
+
+/// Hides a random effect of the default search, some standard deviations of its own bound large.
+fn hide(scenario: Scenario, seed: u64) -> Result<Scenario, Error> {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    let mut uniform = || (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    let effects: Vec<&EffectRow> = EFFECTS
+        .iter()
+        .filter(|effect| effect.default_search && effect.needs.is_empty() && effect.kind == "term")
+        .collect();
+    let clean = simulate(&scenario)?;
+    let fitted = Extended::nominal(&run(&clean), &Options::default(), &NoiseModel::default())?;
+    loop {
+        let effect = effects[(uniform() * effects.len() as f64) as usize];
+        let shape = match effect.parameters.last() {
+            Some(&"onset_s") => Some((0.2 + 0.6 * uniform()) * scenario.duration_s),
+            Some(&"time_constant_h") => Some(1.0 + 9.0 * uniform()),
+            _ => None,
+        };
+        let Some(information) = information(&fitted, &clean.record, effect.id, shape)? else {
+            continue;
+        };
+        let direction = DVector::from_fn(information.nrows(), |i, _| {
+            (uniform() - 0.5) / information[(i, i)].sqrt()
+        });
+        let length = (&information * &direction).dot(&direction).sqrt();
+        let values = direction.iter().map(|size| size * STRENGTH / length);
+        let parameters: Vec<(&str, f64)> = effect
+            .parameters
+            .iter()
+            .copied()
+            .zip(values.chain(shape))
+            .collect();
+        return Ok(Scenario {
+            hidden: vec![Hidden::new(effect.id, &parameters)?],
+            ..scenario
+        });
+    }
+}
