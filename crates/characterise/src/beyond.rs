@@ -27,6 +27,10 @@ const TRIES: usize = 8;
 /// asked for: those that switch do not grow in proportion.
 const REACHED: f64 = 1.2;
 
+/// Larger ones change the motion of the platform itself: they are not small disturbances of what the
+/// model fits, but another record. Of a gyro \[deg/h\] and of an accelerometer \[g\].
+const LARGEST_SIZES: [f64; 2] = [0.05, 5e-4];
+
 /// An effect and how it depends on its size.
 struct Beyond {
     id: String,
@@ -39,6 +43,15 @@ impl Beyond {
         let mut parameters = vec![("size", self.size)];
         parameters.extend(self.further.iter().copied());
         Hidden::new(&self.id, &parameters)
+    }
+
+    fn largest_size(&self) -> f64 {
+        let [gyro_deg_per_h, accel_g] = LARGEST_SIZES;
+        if self.id.starts_with("gyro_") {
+            gyro_deg_per_h
+        } else {
+            accel_g
+        }
     }
 
     /// A tone at an odd period, a term with the sign of a specific force (Coulomb friction), or a
@@ -123,7 +136,7 @@ pub(crate) fn beyond(
                     ..case(&found)
                 });
             }
-            effect.size *= off.min(LARGEST_CORRECTION);
+            effect.size = (effect.size * off.min(LARGEST_CORRECTION)).min(effect.largest_size());
         }
     }
     Err(CharacteriseError::NothingToHide {
@@ -154,6 +167,9 @@ fn scale(
             return Ok(true);
         }
         effect.size *= off;
+        if effect.size > effect.largest_size() {
+            return Ok(false);
+        }
     }
     Ok(false)
 }

@@ -19,9 +19,9 @@ pub struct Case {
     pub unexplained: Option<String>,
     /// Effects in the first set of an oracle that knows the noise; `None` if it finds nothing.
     pub oracle_set_size: Option<usize>,
-    /// Twice the log-likelihood that each effect lacks to the best in the first search, after
-    /// searching is allowed for: the nearest, rising, the best itself left out.
-    pub nearest: Vec<f64>,
+    /// The effects nearest to the best in the first search, with twice the log-likelihood that each
+    /// lacks, after searching is allowed for; exact equivalents of one that stands before left out.
+    pub nearest: Vec<(String, f64)>,
     /// What other methods say of the same record.
     pub methods: Vec<MethodCase>,
 }

@@ -2,7 +2,7 @@
 
 use gyrocal::{EFFECTS, EffectRow};
 use gyrocal_calibration::NoiseModel;
-use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions, search};
+use gyrocal_diagnosis::cause::{Finding, FoundParameter, Ranked, SearchOptions, search};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
 use gyrocal_truth::{Scenario, Simulation};
 
@@ -106,7 +106,6 @@ pub(crate) fn judge(
 
 /// What was found, with nothing known of what is hidden.
 pub(crate) fn case(found: &Diagnosis<'_>) -> Case {
-    let best = found.ranking.first().map_or(0.0, |best| best.statistic);
     Case {
         hidden: Vec::new(),
         verdict: match found.verdict {
@@ -126,15 +125,27 @@ pub(crate) fn case(found: &Diagnosis<'_>) -> Case {
             .unexplained
             .then(|| found.remainder.description.clone()),
         oracle_set_size: None,
-        nearest: found
-            .ranking
-            .iter()
-            .skip(1)
-            .take(NEAREST_KEPT)
-            .map(|ranked| best - ranked.statistic)
-            .collect(),
+        nearest: nearest(&found.ranking),
         methods: Vec::new(),
     }
+}
+
+fn nearest(ranking: &[Ranked]) -> Vec<(String, f64)> {
+    let Some(best) = ranking.first() else {
+        return Vec::new();
+    };
+    let mut nearest: Vec<(String, f64)> = Vec::with_capacity(NEAREST_KEPT);
+    for ranked in &ranking[1..] {
+        let told = same(ranked.effect, best.effect)
+            || nearest.iter().any(|(other, _)| same(ranked.effect, other));
+        if !told {
+            nearest.push((ranked.effect.to_owned(), best.statistic - ranked.statistic));
+        }
+        if nearest.len() == NEAREST_KEPT {
+            break;
+        }
+    }
+    nearest
 }
 
 fn found_case(finding: &Finding) -> FoundCase {
