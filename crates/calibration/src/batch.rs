@@ -14,11 +14,12 @@ use crate::gyro_axes::GyroAxes;
 use crate::layout::{Layout, SiteQuantity};
 use crate::noise;
 use crate::observability::undetermined;
+use crate::problem::Problem;
 use crate::result::{AzimuthSearch, Calibration, RunResult, SiteInfluence};
 use crate::robust;
 use crate::run::{Conditions, Run};
 use crate::settings::level;
-use crate::solve::{Failure, Problem, Solution};
+use crate::solve::{Failure, Solution};
 use crate::uncertainty::Uncertainty;
 
 /// Steps after which an estimate that still moves is given up.
@@ -121,7 +122,8 @@ where
             longest_step_s: options.longest_step_s,
             ..level(run.bench)
         };
-        let beginning = begin(run, &settings, options, careful)?;
+        let beginning = begin(run, &settings, options, careful)
+            .map_err(|error| error.of_record(index, runs.len()))?;
         let start = beginning.start;
         // The filter's drifts are those of gyros along the platform's axes.
         if gyro_axes.is_none() {

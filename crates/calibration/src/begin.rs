@@ -10,9 +10,9 @@ use crate::calibrate::Options;
 use crate::error::CalibrationError;
 use crate::further::Further;
 use crate::layout::Layout;
+use crate::problem::{Leg, Problem};
 use crate::result::AzimuthSearch;
 use crate::run::{Rows, Run};
-use crate::solve::{Leg, Problem};
 use crate::start::{Start, filtered};
 use crate::uncertainty::Uncertainty;
 
@@ -83,7 +83,7 @@ pub(crate) fn leg<'a, I: ChartInputs<f64>>(
 }
 
 /// One run by itself, to be solved over its first rows.
-fn alone<'a>(
+pub(crate) fn alone<'a>(
     run: &Run<'a>,
     rows: usize,
     settings: &Settings<f64>,

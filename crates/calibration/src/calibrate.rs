@@ -99,7 +99,8 @@ pub fn calibrate(
 /// its own initial attitude and start.
 ///
 /// # Errors
-/// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`] of a record;
+/// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`] of a record, as
+/// [`CalibrationError::OfSeveral`] if there are several;
 /// [`CalibrationError::Filter`] with the row at which the filter stopped;
 /// [`CalibrationError::NotConverged`] and [`CalibrationError::NoDescent`] of the batch
 /// estimator; [`CalibrationError::NotPositiveDefinite`] if the covariance that was found is
@@ -110,8 +111,8 @@ pub fn calibrate_runs(
     options: &Options,
     mut progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    for run in runs {
-        check(run.record)?;
+    for (index, run) in runs.iter().enumerate() {
+        check(run.record).map_err(|error| error.of_record(index, runs.len()))?;
     }
     match (options.method, runs) {
         (Method::Batch, _) => {

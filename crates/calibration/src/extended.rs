@@ -1,5 +1,7 @@
 //! The nominal model with effects of the catalogue, fitted to one record.
 
+mod prediction;
+
 use gyrocal::estimation::EstimationError;
 use gyrocal::estimation::batch::{Linearisation, Reduced, Whitened};
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
@@ -16,10 +18,13 @@ use crate::error::CalibrationError;
 use crate::further::Further;
 use crate::layout::SiteQuantity;
 use crate::noise::{self, NoiseEstimate};
+use crate::problem::{Leg, Problem, Unknown};
 use crate::run::{Rows, Run};
 use crate::settings::level;
-use crate::solve::{Failure, Leg, Problem, Solution, Unknown};
+use crate::solve::{Failure, Solution, add_gram};
 use crate::uncertainty::Uncertainty;
+
+pub use prediction::{Estimates, Expectation};
 
 /// What a model has beyond the nine coefficients.
 #[derive(Clone, Debug, PartialEq)]
@@ -365,13 +370,16 @@ impl<'a> Extended<'a> {
             .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
         let unknowns = &self.problem.unknowns;
         let count = unknowns.len();
-        let mut information = reduced.gram.view((1, 1), (count, count)).into_owned();
+        // The pass has the parameters in the order of the model.
+        let mut gram = DMatrix::zeros(count + 1, count + 1);
+        add_gram(&mut gram, &reduced.gram, &self.problem.legs[0].columns());
+        let mut information = gram.view((1, 1), (count, count)).into_owned();
         let mut gradient = DVector::zeros(count);
         let mut prior = 0.0;
         for (i, unknown) in unknowns.iter().enumerate() {
             let weight = unknown.sigma.powi(-2);
             information[(i, i)] += weight;
-            gradient[i] = -reduced.gram[(0, i + 1)] - weight * self.problem.values[i];
+            gradient[i] = -gram[(0, i + 1)] - weight * self.problem.values[i];
             prior += weight * self.problem.values[i].powi(2);
             if weight > 0.0 {
                 prior -= weight.ln();
@@ -381,7 +389,7 @@ impl<'a> Extended<'a> {
         let gained = cholesky.solve(&gradient).dot(&gradient);
         let determinant = 2.0 * cholesky.l().diagonal().iter().map(|x| x.ln()).sum::<f64>();
         Ok(-0.5
-            * (reduced.gram[(0, 0)] + prior - gained
+            * (gram[(0, 0)] + prior - gained
                 + reduced.log_variance
                 + determinant
                 + reduced.values as f64 * core::f64::consts::TAU.ln()))

@@ -9,12 +9,12 @@ mod json;
 mod tables;
 mod words;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use gyrocal::Platform;
-use gyrocal_calibration::CalibrationError;
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
+use gyrocal_calibration::{CalibrationError, Run};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Validation, diagnose, validated};
 use gyrocal_record::{Bench, DiagnosisReport, DiagnosisVerdict, Outputs, Record};
 
 use crate::numbers::probability;
@@ -22,7 +22,7 @@ use crate::outputs::refuse_overlap;
 use crate::pictures;
 use crate::progress::Progress;
 use crate::{Answer, Failure};
-use failed::NotDiagnosed;
+pub(crate) use failed::NotDiagnosed;
 
 /// Show what the model gets wrong about a record, and name the cause.
 ///
@@ -45,6 +45,13 @@ pub(crate) struct DiagnoseArguments {
     /// The result to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+    /// A later record of the same platform (CSV), to be predicted with the nominal and with the
+    /// extended model.
+    #[arg(long, value_name = "LATER.csv", requires = "validate_bench")]
+    validate: Option<PathBuf>,
+    /// Its bench description (TOML); the attitude in it is that of its own first row.
+    #[arg(long, value_name = "BENCH.toml", requires = "validate")]
+    validate_bench: Option<PathBuf>,
     #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
     /// Look for these effects too, beside those of the usual search: gyro_xy.axis_misalignment,
@@ -71,16 +78,25 @@ enum Filter {
 
 /// What there is to tell.
 struct Found<'a> {
-    path: &'a std::path::Path,
+    path: &'a Path,
     record: &'a Record,
     bench: &'a Bench,
     diagnosis: Diagnosis<'a>,
+    /// Of the later record, if there is one and an effect is in the model.
+    validation: Option<Validation>,
+    /// The later record.
+    later: Option<&'a Path>,
     report: DiagnosisReport,
 }
 
 /// Runs the command; returns what is to be said on stdout.
 pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
-    let inputs = [arguments.record.as_path(), arguments.bench.as_path()];
+    let inputs: Vec<&Path> = [&arguments.record, &arguments.bench]
+        .into_iter()
+        .chain(&arguments.validate)
+        .chain(&arguments.validate_bench)
+        .map(PathBuf::as_path)
+        .collect();
     refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
     if arguments.effects.iter().any(|id| id == filter::EFFECT) {
         return Err(Failure::Usage(format!(
@@ -90,6 +106,14 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     }
     let bench = Bench::read(&arguments.bench)?;
     let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
+    let later = match (&arguments.validate, &arguments.validate_bench) {
+        (Some(path), Some(bench)) => Some((
+            path.as_path(),
+            Record::read_at_least(path, Platform::STATES)?,
+            Bench::read(bench)?,
+        )),
+        _ => None,
+    };
     tracing::info!(rows = record.len(), "read");
     let options = DiagnoseOptions {
         false_alarm_probability: arguments.false_alarm,
@@ -108,15 +132,33 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         }
         None => None,
     };
+    let validation = match &later {
+        Some((path, later, later_bench)) => {
+            let [first, later] = [(&record, &bench), (later, later_bench)]
+                .map(|(record, bench)| Run { record, bench });
+            validated(&diagnosis, &first, &later, &options)
+                .map_err(|source| NotDiagnosed::new(path, source))?
+        }
+        None => None,
+    };
     drop(progress);
     tracing::info!(verdict = ?diagnosis.verdict, "diagnosed");
     let blind = blind::blind(&diagnosis, &record).map_err(|source| failed(source.into()))?;
-    let report = json::report(&diagnosis, judged, blind, options.seed, &inputs)?;
+    let report = json::report(
+        &diagnosis,
+        validation.as_ref(),
+        judged,
+        blind,
+        options.seed,
+        &inputs,
+    )?;
     let found = Found {
         path: &arguments.record,
         record: &record,
         bench: &bench,
         diagnosis,
+        validation,
+        later: later.as_ref().map(|(path, ..)| *path),
         report,
     };
     let mut text = words::summary(&found);

@@ -9,7 +9,7 @@ use gyrocal_record::{Bench, Record};
 
 use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, search};
 use crate::error::DiagnosisError;
-use crate::gain::{Gain, gain};
+use crate::gain::{Acceptance, Gain, Validation, gain, judge, validate};
 use crate::noise::{AuditOptions, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, audit_noise};
 use crate::remainder::{Remainder, remainder};
 use crate::request;
@@ -41,9 +41,9 @@ impl Default for DiagnoseOptions {
 }
 
 /// Shares of the probability of a false alarm: noise audit, gyro noise, search, remainder. A
-/// fifth is kept back: thresholds that are drawn and probabilities that hold for long records are
-/// each a little off, and a search has no error that is welcome.
-const SHARES: [f64; 4] = [0.15, 0.05, 0.45, 0.15];
+/// twentieth is kept back: thresholds that are drawn and probabilities that hold for long records
+/// are each a little off.
+const SHARES: [f64; 4] = [0.15, 0.05, 0.6, 0.15];
 
 /// Gyro noise that differs from the declared one by so many sigmas is reckoned with in the
 /// search, so that it makes no causes of itself; it is named only if it still differs when the
@@ -92,13 +92,16 @@ pub struct Diagnosis<'a> {
     pub search_false_alarm_probability: f64,
     /// What could not be looked for.
     pub unavailable: Vec<Unavailable>,
-    /// What the extended model gains; `None` without a physical cause.
+    /// Of each cause, in the same order, whether it is in the extended model.
+    pub acceptances: Vec<Acceptance>,
+    /// What the extended model gains; if no cause is in it, what a model with all of them does;
+    /// `None` without a cause.
     pub gain: Option<Gain>,
     /// What is left.
     pub remainder: Remainder,
     /// The nominal model at its best fit.
     pub nominal: Extended<'a>,
-    /// The model with all causes, if there are any.
+    /// The model with all causes that are accepted, if there are any.
     pub extended: Option<Extended<'a>>,
     /// Innovations of the nominal model as the streaming filter makes them.
     pub innovations: Innovations,
@@ -146,26 +149,12 @@ pub fn diagnose<'a>(
     let [audit_share, gyro_share, search_share, remainder_share] =
         SHARES.map(|share| share * options.false_alarm_probability);
     let declared = NoiseModel::default();
-    let first = Extended::nominal(&run, &options.calibration, &declared)?;
-    let innovations = innovations(record, bench, &first)?;
-    let audit = audit_noise(
-        record,
-        &innovations,
-        &DeclaredNoise {
-            accel_g: [bench.accel_noise_g; 3],
-            gyro_deg_per_h: bench.gyro_noise_deg_per_h,
-        },
-        &AuditOptions {
-            false_alarm: audit_share,
-        },
-    )?;
-    let mut noise_model = believed(&audit, record);
-    leave_out_early(&mut noise_model, record, &first, bench.accel_noise_g);
-    let mut nominal = if noise_model == declared {
-        first
-    } else {
-        first.with_noise(bench, &noise_model)?
-    };
+    let Audited {
+        mut nominal,
+        mut noise_model,
+        innovations,
+        audit,
+    } = audited(&run, &declared, audit_share, &options.calibration)?;
     let search_options = SearchOptions {
         false_alarm_probability: search_share,
         also: options.also.clone(),
@@ -202,11 +191,17 @@ pub fn diagnose<'a>(
         remainder.add(line);
     }
     let found = !searched.findings.is_empty();
+    let judged = judge(&nominal, &searched, record)?;
     let gain = if found {
-        let noise_g = noise_model
-            .accel_ratio
-            .map(|ratio| ratio * bench.accel_noise_g);
-        Some(gain(&nominal, &searched.fitted, record, noise_g)?)
+        let extended = judged.extended.as_ref().unwrap_or(&searched.fitted);
+        let accel_noise_g = bench.accel_noise_g;
+        Some(gain(
+            &nominal,
+            extended,
+            record,
+            &noise_model,
+            accel_noise_g,
+        )?)
     } else {
         None
     };
@@ -229,11 +224,82 @@ pub fn diagnose<'a>(
         search_false_alarm_probability: search_share,
         unavailable: searched.unavailable,
         findings: searched.findings,
+        acceptances: judged.acceptances,
         gain,
         remainder,
         nominal,
-        extended: found.then_some(searched.fitted),
+        extended: judged.extended,
         innovations,
+    })
+}
+
+/// Holds the nominal and the extended model that a diagnosis of `first` made against another, later
+/// record of the same platform; `None` if no cause is in the extended model.
+///
+/// # Errors
+/// [`DiagnoseError`].
+pub fn validated(
+    diagnosis: &Diagnosis<'_>,
+    first: &Run<'_>,
+    later: &Run<'_>,
+    options: &DiagnoseOptions,
+) -> Result<Option<Validation>, DiagnoseError> {
+    let Some(extended) = &diagnosis.extended else {
+        return Ok(None);
+    };
+    request::check(&[], later.record, later.bench)?;
+    // Gyros as noisy as in the first record; outliers of the later one left out.
+    let believed = NoiseModel {
+        gyro_ratio: diagnosis.noise_model.gyro_ratio,
+        ..NoiseModel::default()
+    };
+    let share = SHARES[0] * options.false_alarm_probability;
+    let later_fit = audited(later, &believed, share, &options.calibration)?.nominal;
+    let nominal = &diagnosis.nominal;
+    Ok(Some(validate(nominal, extended, first, &later_fit, later)?))
+}
+
+/// The nominal model of a record with the noise that its audit left.
+struct Audited<'a> {
+    nominal: Extended<'a>,
+    noise_model: NoiseModel,
+    innovations: Innovations,
+    audit: NoiseAudit,
+}
+
+fn audited<'a>(
+    run: &Run<'a>,
+    before: &NoiseModel,
+    false_alarm: f64,
+    options: &Options,
+) -> Result<Audited<'a>, DiagnoseError> {
+    let Run { record, bench } = *run;
+    let first = Extended::nominal(run, options, before)?;
+    let innovations = innovations(record, bench, &first)?;
+    let audit = audit_noise(
+        record,
+        &innovations,
+        &DeclaredNoise {
+            accel_g: [bench.accel_noise_g; 3],
+            gyro_deg_per_h: bench.gyro_noise_deg_per_h,
+        },
+        &AuditOptions { false_alarm },
+    )?;
+    let mut noise_model = NoiseModel {
+        gyro_ratio: before.gyro_ratio,
+        ..believed(&audit, record)
+    };
+    leave_out_early(&mut noise_model, record, &first, bench.accel_noise_g);
+    let nominal = if noise_model == *before {
+        first
+    } else {
+        first.with_noise(bench, &noise_model)?
+    };
+    Ok(Audited {
+        nominal,
+        noise_model,
+        innovations,
+        audit,
     })
 }
 

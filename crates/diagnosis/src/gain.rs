@@ -1,12 +1,21 @@
 //! What an extended model gains.
 
+mod accepted;
+mod carried;
+mod later;
+mod score;
+
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_calibration::{CalibrationError, Extended};
+use gyrocal_calibration::{CalibrationError, Extended, NoiseModel};
 use gyrocal_record::Record;
 
-/// Contiguous blocks that are left out in turn. A last-block hold-out would misjudge effects at
-/// the start of a record.
-const BLOCKS: usize = 6;
+pub use accepted::Acceptance;
+pub(crate) use accepted::judge;
+pub use later::{Compensation, Validation, validate};
+use score::block_log_scores;
+
+/// 97.5 % point of the normal distribution.
+const NORMAL_97_5: f64 = 1.959_963_984_540_054;
 
 /// What the extended model is better by.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,9 +24,11 @@ pub struct Gain {
     /// nominal, nats, block by block.
     pub block_log_score_nats: Vec<f64>,
     /// Root mean square of measured minus simulated specific force, the simulation running by
-    /// itself from the first attitude, g: nominal, extended.
+    /// itself from the first attitude, g: nominal, extended. Values that the noise audit left
+    /// out are left out.
     pub free_run_rms_g: [f64; 2],
-    /// What noise alone leaves of it, g: the accelerometers'.
+    /// What the noise of the accelerometers alone leaves of it, g. The gyros' noise adds to the
+    /// drift as time goes on, and no model takes that away.
     pub noise_rms_g: f64,
     /// What the extension changes of each coefficient.
     pub coefficient_shift: Vec<CoefficientShift>,
@@ -30,10 +41,29 @@ pub struct CoefficientShift {
     pub coefficient: &'static str,
     /// Extended less nominal estimate.
     pub shift: f64,
-    /// Over the standard deviation that the nominal fit claimed.
+    /// Its standard deviation: the nominal estimate is wrong by the shift, which the record knows
+    /// as well as it knows the extension.
+    pub sigma: f64,
+    /// The shift over the standard deviation that the nominal fit claimed.
     pub in_sigmas: f64,
     /// Unit of the shift.
     pub unit: &'static str,
+    /// Standard deviation that the nominal fit claimed.
+    pub claimed_sigma: f64,
+}
+
+impl CoefficientShift {
+    /// 95 % interval of the shift.
+    #[must_use]
+    pub fn interval(&self) -> [f64; 2] {
+        [-1.0, 1.0].map(|side| self.shift + side * NORMAL_97_5 * self.sigma)
+    }
+
+    /// The same over the standard deviation that the nominal fit claimed.
+    #[must_use]
+    pub fn interval_in_sigmas(&self) -> [f64; 2] {
+        self.interval().map(|end| end / self.claimed_sigma)
+    }
 }
 
 impl Gain {
@@ -44,7 +74,8 @@ impl Gain {
     }
 }
 
-/// Measures what `extended` gains over `nominal` on the record both were fitted to.
+/// Measures what `extended` gains over `nominal` on the record both were fitted to with the same
+/// noise, of which `accel_noise_g` is declared.
 ///
 /// # Errors
 /// As [`Extended::log_evidence_without`].
@@ -52,52 +83,55 @@ pub fn gain(
     nominal: &Extended<'_>,
     extended: &Extended<'_>,
     record: &Record,
-    noise_g: [f64; 3],
+    noise: &NoiseModel,
+    accel_noise_g: f64,
 ) -> Result<Gain, CalibrationError> {
-    let rows = record.len();
-    let whole = [nominal, extended].map(|fit| fit.log_evidence_without(0..0));
-    let [nominal_whole, extended_whole] = whole;
-    let whole = extended_whole? - nominal_whole?;
-    let mut block_log_score_nats = Vec::with_capacity(BLOCKS);
-    for block in 0..BLOCKS {
-        let left_out = block * rows / BLOCKS..(block + 1) * rows / BLOCKS;
-        let without = extended.log_evidence_without(left_out.clone())?
-            - nominal.log_evidence_without(left_out)?;
-        block_log_score_nats.push(whole - without);
-    }
+    let scores = block_log_scores(extended)?
+        .into_iter()
+        .zip(block_log_scores(nominal)?);
+    let squares = noise.accel_ratio.iter().map(|ratio| ratio * ratio);
     Ok(Gain {
-        block_log_score_nats,
+        block_log_score_nats: scores.map(|(after, before)| after - before).collect(),
         free_run_rms_g: [
-            rms(record, &nominal.free_run_g()?),
-            rms(record, &extended.free_run_g()?),
+            rms(record, noise, &nominal.free_run_g()?),
+            rms(record, noise, &extended.free_run_g()?),
         ],
-        noise_rms_g: (noise_g.iter().map(|sigma| sigma * sigma).sum::<f64>() / 3.0).sqrt(),
+        noise_rms_g: accel_noise_g * (squares.sum::<f64>() / 3.0).sqrt(),
         coefficient_shift: DRIFT
             .iter()
             .enumerate()
             .map(|(i, element)| {
                 let shift = extended.values()[i] - nominal.values()[i];
+                let [before, after] = [nominal, extended].map(|fit| fit.covariance()[(i, i)]);
                 CoefficientShift {
                     coefficient: element.id,
                     shift,
-                    in_sigmas: shift / nominal.covariance()[(i, i)].sqrt(),
+                    // Extended = nominal + shift, the two independent. An extension that does not
+                    // touch a coefficient changes its variance by rounding only.
+                    sigma: (after - before).max(0.0).sqrt(),
+                    in_sigmas: shift / before.sqrt(),
                     unit: element.unit,
+                    claimed_sigma: before.sqrt(),
                 }
             })
             .collect(),
     })
 }
 
-fn rms(record: &Record, simulated_g: &[[f64; 3]]) -> f64 {
-    let squares = record
-        .accel_g
-        .iter()
-        .zip(simulated_g)
-        .flat_map(|(measured, simulated)| (0..3).map(move |i| measured[i] - simulated[i]))
-        .filter(|residual| !residual.is_nan())
-        .map(|residual| residual * residual);
-    let (count, sum) = squares.fold((0.0, 0.0), |(count, sum), square| {
-        (count + 1.0, sum + square)
-    });
+fn rms(record: &Record, noise: &NoiseModel, simulated_g: &[[f64; 3]]) -> f64 {
+    let used = |row: usize, axis: usize| {
+        let weight = noise.weights.as_ref().map_or(1.0, |w| w[row][axis]);
+        weight > 0.0
+    };
+    let (mut count, mut sum) = (0.0, 0.0);
+    for (row, (measured, simulated)) in record.accel_g.iter().zip(simulated_g).enumerate() {
+        for axis in 0..3 {
+            let residual = measured[axis] - simulated[axis];
+            if !residual.is_nan() && used(row, axis) {
+                count += 1.0;
+                sum += residual * residual;
+            }
+        }
+    }
     (sum / f64::max(count, 1.0)).sqrt()
 }

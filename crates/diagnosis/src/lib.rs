@@ -28,6 +28,7 @@ mod error;
 mod gain;
 mod noise;
 mod norm;
+pub mod plan;
 mod remainder;
 mod request;
 mod series;
@@ -36,9 +37,9 @@ mod spectrum;
 mod whiteness;
 
 pub use dependence::{Bin, Dependence, dependence};
-pub use diagnose::{DiagnoseError, DiagnoseOptions, Diagnosis, Verdict, diagnose};
+pub use diagnose::{DiagnoseError, DiagnoseOptions, Diagnosis, Verdict, diagnose, validated};
 pub use error::DiagnosisError;
-pub use gain::{CoefficientShift, Gain, gain};
+pub use gain::{Acceptance, CoefficientShift, Compensation, Gain, Validation, gain, validate};
 pub use noise::{
     AuditOptions, Cleaned, DeclaredNoise, Estimate, Gaps, NoiseAudit, NoiseFinding, Outlier,
     Shares, audit_noise,

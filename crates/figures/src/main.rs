@@ -3,6 +3,7 @@
 
 mod calibration;
 mod figure;
+mod gain;
 mod kernel;
 mod main_job;
 mod measured;
@@ -52,6 +53,8 @@ enum Topic {
     Naming,
     /// Two recordings of real gyros: docs/measured-data.md.
     Measured,
+    /// What extended models gain: under cross-validation, in the coefficients, on a second record.
+    Gain,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
 }
@@ -64,6 +67,7 @@ fn main() -> ExitCode {
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
         Topic::Naming => naming::figures(arguments.small),
         Topic::Measured => measured::figures(arguments.write),
+        Topic::Gain => gain::figures(arguments.small),
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {

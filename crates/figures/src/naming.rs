@@ -1,7 +1,7 @@
 //! Causes hidden in simulated records: what is detected, what is named, and what clean records
 //! show.
 
-mod hidden;
+pub(crate) mod hidden;
 
 use gyrocal_campaign::statistics::Proportion;
 use gyrocal_campaign::{Campaign, Fingerprint, Outcome};

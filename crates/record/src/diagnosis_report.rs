@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::gain_report::GainReport;
 use crate::manifest::Manifest;
 use crate::report::NoiseReport;
 
@@ -18,7 +19,7 @@ pub struct DiagnosisReport {
     pub false_alarm_probability: f64,
     /// What is wrong: noise, then causes, each in falling strength, then the filter.
     pub findings: Vec<FindingReport>,
-    /// What the model with all causes gains; `None` without a cause in the model.
+    /// What the extended model gains; `None` without a cause.
     pub gain: Option<GainReport>,
     /// What is left with all causes in the model.
     pub remainder: RemainderReport,
@@ -66,6 +67,11 @@ pub struct FindingReport {
     pub rivals: Vec<RivalReport>,
     /// Effects that no record can tell from it.
     pub equivalents: Vec<EquivalentReport>,
+    /// By how much blocks of the record are predicted better with it in the model than without,
+    /// beside the other causes, in nats; `None` of what is no term of the model: noise, a filter.
+    pub gain_nats: Option<f64>,
+    /// Whether it is in the extended model: whether that is a gain. `None` as above.
+    pub accepted: Option<bool>,
 }
 
 /// One parameter of an effect.
@@ -98,45 +104,6 @@ pub struct EquivalentReport {
     pub effect: String,
     /// What its parameters would have to be.
     pub parameters: Vec<ParameterReport>,
-}
-
-/// What an extended model gains.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct GainReport {
-    /// Predictive log score of the blocks of the record, each given the others: extended less
-    /// nominal, all together.
-    pub cross_validated_log_score_nats: f64,
-    /// The same block by block.
-    pub block_log_score_nats: Vec<f64>,
-    /// Measured less simulated specific force.
-    pub free_run_rms_g: FreeRunReport,
-    /// What the extension changes of each of the nine coefficients.
-    pub coefficient_shift: Vec<ShiftReport>,
-}
-
-/// Root mean square of measured less simulated specific force, the simulation running by itself
-/// from the first attitude \[g\].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct FreeRunReport {
-    /// Of the nominal model.
-    pub before: f64,
-    /// Of the model with all causes.
-    pub after: f64,
-    /// What the noise of the accelerometers alone leaves.
-    pub noise: f64,
-}
-
-/// What an extension changes of a coefficient.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ShiftReport {
-    /// `gyro_x.bias`, `gyro_x.g_x`, `gyro_x.g_xx`, and so on.
-    pub coefficient: String,
-    /// Extended less nominal estimate, in `unit`.
-    pub shift: f64,
-    /// Over the standard deviation that the nominal fit claimed.
-    pub in_sigmas: f64,
-    /// `deg/h`, `deg/h/g` or `deg/h/g^2`.
-    pub unit: String,
 }
 
 /// What is left with all causes in the model.

@@ -188,6 +188,8 @@ mod tests {
                     parameters: Vec::new(),
                 })
                 .collect(),
+            gain_nats: Some(20.0),
+            accepted: Some(true),
         }
     }
 

@@ -58,6 +58,8 @@ pub(super) fn judge(record: &Record, bench: &Bench) -> Result<Judged, Calibratio
         coverage: super::json::COVERAGE,
         rivals: Vec::new(),
         equivalents: Vec::new(),
+        gain_nats: None,
+        accepted: None,
     });
     Ok(Judged { report, finding })
 }

@@ -1,15 +1,16 @@
 //! The result for programs.
 
+mod gain;
+
 use std::path::Path;
 
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::generated::catalogue::EFFECTS;
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions};
-use gyrocal_diagnosis::{Diagnosis, Gain, NoiseFinding, Verdict};
+use gyrocal_diagnosis::{Acceptance, Diagnosis, NoiseFinding, Validation, Verdict};
 use gyrocal_record::{
-    DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, FreeRunReport, GainReport,
-    NotSearchedReport, ParameterReport, RankedReport, RemainderReport, RemainderVerdict,
-    RivalReport, SCHEMA_VERSION, ShiftReport,
+    DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, NotSearchedReport,
+    ParameterReport, RankedReport, RemainderReport, RemainderVerdict, RivalReport, SCHEMA_VERSION,
 };
 
 use super::apart;
@@ -23,6 +24,7 @@ pub(super) const COVERAGE: f64 = 0.95;
 
 pub(super) fn report(
     diagnosis: &Diagnosis<'_>,
+    validation: Option<&Validation>,
     judged: Option<Judged>,
     blind: Vec<NotSearchedReport>,
     seed: u64,
@@ -35,7 +37,8 @@ pub(super) fn report(
         None => (None, None),
     };
     let noise = diagnosis.noise_findings.iter().map(of_noise);
-    let causes = diagnosis.findings.iter().map(of_cause);
+    let causes = diagnosis.findings.iter().zip(&diagnosis.acceptances);
+    let causes = causes.map(|(finding, acceptance)| of_cause(finding, *acceptance));
     let findings: Vec<FindingReport> = noise.chain(causes).chain(of_filter).collect();
     let searched: Vec<&str> = diagnosis.ranking.iter().map(|r| r.effect).collect();
     Ok(DiagnosisReport {
@@ -48,7 +51,7 @@ pub(super) fn report(
             Verdict::Clean => DiagnosisVerdict::Clean,
         },
         false_alarm_probability: diagnosis.false_alarm_probability,
-        gain: diagnosis.gain.as_ref().map(gain),
+        gain: gain::report(diagnosis, validation),
         remainder: RemainderReport {
             verdict: if diagnosis.remainder.unexplained {
                 RemainderVerdict::Unexplained
@@ -96,10 +99,12 @@ fn of_noise(finding: &NoiseFinding) -> FindingReport {
         coverage: COVERAGE,
         rivals: Vec::new(),
         equivalents: Vec::new(),
+        gain_nats: None,
+        accepted: None,
     }
 }
 
-fn of_cause(finding: &Finding) -> FindingReport {
+fn of_cause(finding: &Finding, acceptance: Acceptance) -> FindingReport {
     FindingReport {
         effect: finding.effect.to_owned(),
         parameters: parameters(&finding.parameters),
@@ -122,6 +127,8 @@ fn of_cause(finding: &Finding) -> FindingReport {
                 parameters: parameters(found),
             })
             .collect(),
+        gain_nats: Some(acceptance.gain_nats),
+        accepted: Some(acceptance.accepted),
     }
 }
 
@@ -135,29 +142,6 @@ fn parameters(found: &[FoundParameter]) -> Vec<ParameterReport> {
             unit: parameter.unit.to_owned(),
         })
         .collect()
-}
-
-fn gain(gain: &Gain) -> GainReport {
-    let [before, after] = gain.free_run_rms_g;
-    GainReport {
-        cross_validated_log_score_nats: gain.log_score_nats(),
-        block_log_score_nats: gain.block_log_score_nats.clone(),
-        free_run_rms_g: FreeRunReport {
-            before,
-            after,
-            noise: gain.noise_rms_g,
-        },
-        coefficient_shift: gain
-            .coefficient_shift
-            .iter()
-            .map(|shift| ShiftReport {
-                coefficient: shift.coefficient.to_owned(),
-                shift: shift.shift,
-                in_sigmas: shift.in_sigmas,
-                unit: shift.unit.to_owned(),
-            })
-            .collect(),
-    }
 }
 
 /// Effects of the catalogue that neither the search nor the audit looked at, and why.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use comfy_table::Cell;
-use gyrocal_record::{DiagnosisReport, NoiseRatioReport};
+use gyrocal_record::{DiagnosisReport, FindingReport, GainReport, NoiseRatioReport};
 
 use super::Found;
 use super::words::{likelihood, probability, short, value};
@@ -36,19 +36,11 @@ pub(super) fn all(found: &Found<'_>) -> String {
         );
     }
     if let Some(gain) = &report.gain {
-        let mut table = table(["coefficient", "shift", "in sigmas", "unit"]);
-        for shift in &gain.coefficient_shift {
-            table.add_row([
-                Cell::new(&shift.coefficient),
-                right(format!("{:+.2e}", shift.shift)),
-                right(format!("{:+.1}", shift.in_sigmas)),
-                Cell::new(&shift.unit),
-            ]);
-        }
         let _ = writeln!(
             text,
-            "\nWhat the findings change of the coefficients:\n\n{}",
-            table.trim_fmt()
+            "\nWhat {} changes of the coefficients, with 95 % intervals:\n\n{}",
+            gain.effects.join(", "),
+            shifts(gain)
         );
     }
     let _ = writeln!(
@@ -68,20 +60,30 @@ pub(super) fn all(found: &Found<'_>) -> String {
 }
 
 fn findings(report: &DiagnosisReport) -> String {
-    let mut table = table(["effect", "parameter", "estimate", "unit", "z", "p"]);
+    let mut table = table([
+        "effect",
+        "parameter",
+        "estimate",
+        "unit",
+        "z",
+        "p",
+        "gain, nats",
+    ]);
     for finding in &report.findings {
         let mut head = [
             Cell::new(&finding.effect),
             right(format!("{:.1}", finding.z)),
             right(probability(finding.p_value)),
+            right(gain(finding)),
         ];
         if finding.parameters.is_empty() {
-            let [effect, z, p] = head;
-            table.add_row([effect, Cell::new(""), Cell::new(""), Cell::new(""), z, p]);
+            let [effect, z, p, gain] = head;
+            let none = || Cell::new("");
+            table.add_row([effect, none(), none(), none(), z, p, gain]);
             continue;
         }
         for parameter in &finding.parameters {
-            let [effect, z, p] = head;
+            let [effect, z, p, gain] = head;
             table.add_row([
                 effect,
                 Cell::new(&parameter.name),
@@ -89,9 +91,43 @@ fn findings(report: &DiagnosisReport) -> String {
                 Cell::new(&parameter.unit),
                 z,
                 p,
+                gain,
             ]);
-            head = [Cell::new(""), Cell::new(""), Cell::new("")];
+            head = [(); 4].map(|()| Cell::new(""));
         }
+    }
+    table.trim_fmt()
+}
+
+/// Noise is no term of the model and has none.
+fn gain(finding: &FindingReport) -> String {
+    match (finding.gain_nats, finding.accepted) {
+        (Some(nats), Some(false)) => format!("{nats:+.1}, not in the model"),
+        (Some(nats), _) => format!("{nats:+.1}"),
+        (None, _) => String::new(),
+    }
+}
+
+fn shifts(gain: &GainReport) -> String {
+    let mut table = table([
+        "coefficient",
+        "shift",
+        "interval",
+        "in sigmas",
+        "interval",
+        "unit",
+    ]);
+    for shift in &gain.coefficient_shift {
+        let [low, high] = shift.interval;
+        let [low_sigmas, high_sigmas] = shift.in_sigmas_interval;
+        table.add_row([
+            Cell::new(&shift.coefficient),
+            right(format!("{:+.2e}", shift.shift)),
+            right(format!("{low:+.2e} to {high:+.2e}")),
+            right(format!("{:+.1}", shift.in_sigmas)),
+            right(format!("{low_sigmas:+.1} to {high_sigmas:+.1}")),
+            Cell::new(&shift.unit),
+        ]);
     }
     table.trim_fmt()
 }

@@ -1,11 +1,12 @@
 //! The first screen: what was found, in words.
 
+mod gain;
+
 use std::fmt::Write as _;
 
 use gyrocal::generated::catalogue::EFFECTS;
 use gyrocal_record::{
-    DiagnosisVerdict, FilterReport, FindingReport, GainReport, ParameterReport, RemainderVerdict,
-    RivalReport,
+    DiagnosisVerdict, FilterReport, FindingReport, ParameterReport, RemainderVerdict, RivalReport,
 };
 
 use super::blind::is_blind;
@@ -15,9 +16,6 @@ use crate::text::{bullet, indented, paragraph};
 
 /// Rivals that are told in words; the table has all.
 const RIVALS_TOLD: usize = 4;
-
-/// Shifts of coefficients that are told in words.
-const SHIFTS_TOLD: usize = 3;
 
 pub(super) fn summary(found: &Found<'_>) -> String {
     let report = &found.report;
@@ -37,6 +35,9 @@ pub(super) fn summary(found: &Found<'_>) -> String {
             name(&finding.effect)
         );
         text.push_str(&indented("   ", &size(finding)));
+        if let Some(words) = gain::refused(finding) {
+            text.push_str(&indented("   ", &words));
+        }
         if !finding.rivals.is_empty() {
             text.push_str(&indented("   ", &rivals(finding)));
         }
@@ -67,7 +68,11 @@ pub(super) fn summary(found: &Found<'_>) -> String {
     }
     if let Some(gain) = &report.gain {
         text.push('\n');
-        text.push_str(&paragraph(&gained(gain)));
+        text.push_str(&paragraph(&gain::gained(gain)));
+        if let Some(words) = gain::later(found, gain) {
+            text.push('\n');
+            text.push_str(&paragraph(&words));
+        }
     }
     text.push('\n');
     text.push_str(&paragraph(&left(found)));
@@ -226,45 +231,6 @@ fn judged(report: &FilterReport, findings: &[FindingReport]) -> String {
             stopped.as_deref().unwrap_or("before it had an answer")
         ),
     }
-}
-
-fn gained(gain: &GainReport) -> String {
-    let nats = gain.cross_validated_log_score_nats;
-    let rms = gain.free_run_rms_g;
-    let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
-    shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
-    let shifts: Vec<String> = shifts
-        .iter()
-        .take(SHIFTS_TOLD)
-        .map(|shift| {
-            format!(
-                "{} {:+.2e} {} ({:.1} sigma)",
-                shift.coefficient,
-                shift.shift,
-                shift.unit,
-                shift.in_sigmas.abs()
-            )
-        })
-        .collect();
-    let predicts = if nats > 0.0 {
-        format!(
-            "it predicts each sixth of the record from the others better, by {nats:.1} nats in all"
-        )
-    } else {
-        format!(
-            "it does not predict a sixth of the record from the others any better ({nats:.1} nats): \
-             significant, but of no use to a prediction"
-        )
-    };
-    format!(
-        "With that in the model {predicts}. Running freely from the first row it misses the \
-         record by {:.2e} g rms instead of {:.2e} g, where the accelerometers' noise is {:.2e} g. \
-         Without it the coefficients are off, most of all {}.",
-        rms.after,
-        rms.before,
-        rms.noise,
-        shifts.join(", ")
-    )
 }
 
 fn left(found: &Found<'_>) -> String {

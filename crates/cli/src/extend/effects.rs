@@ -44,6 +44,14 @@ pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Ex
             extension.left_out.push(left_out);
             continue;
         }
+        if finding.accepted == Some(false) {
+            let why = "does not help to predict the record: it is not in the extended model of the \
+                       diagnosis, --effects builds it in all the same";
+            extension
+                .left_out
+                .push((finding.effect.clone(), why.to_owned()));
+            continue;
+        }
         let model = &mut extension.model;
         if model.effects.contains(&finding.effect) {
             let again = "was found once more, and a model has it once";

@@ -17,14 +17,23 @@
 mod bank;
 mod bound;
 mod family;
+mod finding;
 mod knock;
 mod line;
 mod null;
+mod refine;
+mod score;
 mod search;
 mod walk;
 
 pub use bound::information;
-pub(crate) use family::missing;
 pub use family::{Candidate, Family, Plan, Unavailable};
+pub(crate) use family::{KNOCK, axis_of, extend, jump, missing, parameter, warm_up};
+pub(crate) use finding::SET_CONSTANT;
+pub use finding::{Finding, FoundParameter, Rival};
 pub use line::DriftLine;
-pub use search::{Finding, FoundParameter, Ranked, Rival, SearchOptions, Searched, search};
+pub(crate) use null::normal;
+pub(crate) use score::RICHER;
+pub use score::Ranked;
+pub use search::{SearchOptions, Searched, search};
+pub(crate) use walk::Walk;

@@ -35,7 +35,7 @@ pub(super) struct Case {
 }
 
 /// Three days at any latitude and attitude, with drift.
-fn scenario(seed: u64) -> Scenario {
+pub(crate) fn scenario(seed: u64) -> Scenario {
     Scenario {
         duration_s: 3.0 * 86_400.0,
         ..Population::new(POPULATION).scenario(seed)
@@ -53,9 +53,18 @@ pub(super) fn clean(seed: u64) -> Result<bool, Error> {
     Ok(found.verdict != Verdict::Clean)
 }
 
+/// A record with a cause in it.
+pub(crate) struct Drawn {
+    /// With the cause.
+    pub(crate) scenario: Scenario,
+    pub(crate) effect: &'static EffectRow,
+    /// Its true sizes.
+    pub(crate) sizes: DVector<f64>,
+}
+
 /// Hides a random effect of the default search, `strength` standard deviations of its own bound
-/// large, and diagnoses the record.
-pub(super) fn hidden(seed: u64, strength: f64) -> Result<Case, Error> {
+/// large.
+pub(crate) fn drawn(seed: u64, strength: f64) -> Result<Drawn, Error> {
     let scenario = scenario(seed);
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
     let effects: Vec<&EffectRow> = EFFECTS
@@ -66,7 +75,7 @@ pub(super) fn hidden(seed: u64, strength: f64) -> Result<Case, Error> {
                 && matches!(effect.kind, "term" | "state")
         })
         .collect();
-    let (effect, sizes, parameters) = loop {
+    loop {
         let effect = effects[(draw.uniform() * effects.len() as f64) as usize];
         let shape = shape(effect, scenario.duration_s, &mut draw);
         // A record may say nothing of an effect: another one then.
@@ -77,13 +86,26 @@ pub(super) fn hidden(seed: u64, strength: f64) -> Result<Case, Error> {
                 .collect();
             parameters
                 .extend(shape.map(|shape| (effect.parameters[effect.parameters.len() - 1], shape)));
-            break (effect, sizes, parameters);
+            return Ok(Drawn {
+                scenario: Scenario {
+                    hidden: vec![Hidden::new(effect.id, &parameters)?],
+                    ..scenario
+                },
+                effect,
+                sizes,
+            });
         }
-    };
-    let simulation = simulate(&Scenario {
-        hidden: vec![Hidden::new(effect.id, &parameters)?],
-        ..scenario
-    })?;
+    }
+}
+
+/// Diagnoses the record of [`drawn`].
+pub(super) fn hidden(seed: u64, strength: f64) -> Result<Case, Error> {
+    let Drawn {
+        scenario,
+        effect,
+        sizes,
+    } = drawn(seed, strength)?;
+    let simulation = simulate(&scenario)?;
     let found = diagnose(
         &simulation.record,
         &simulation.bench,

@@ -1,0 +1,22 @@
+//! Predictive log scores under contiguous blocked cross-validation.
+
+use gyrocal_calibration::{CalibrationError, Extended};
+
+/// Contiguous blocks that are left out in turn. A last-block hold-out would misjudge effects at
+/// the start of a record.
+pub(crate) const BLOCKS: usize = 6;
+
+/// Logarithm of the density of each block of the record given the others, nats.
+///
+/// # Errors
+/// As [`Extended::log_evidence_without`].
+pub(crate) fn block_log_scores(fit: &Extended<'_>) -> Result<[f64; BLOCKS], CalibrationError> {
+    let rows = fit.points().len();
+    let whole = fit.log_evidence_without(0..0)?;
+    let mut scores = [0.0; BLOCKS];
+    for (block, score) in scores.iter_mut().enumerate() {
+        let left_out = block * rows / BLOCKS..(block + 1) * rows / BLOCKS;
+        *score = whole - fit.log_evidence_without(left_out)?;
+    }
+    Ok(scores)
+}

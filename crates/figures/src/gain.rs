@@ -1,0 +1,236 @@
+//! What extended models gain: under cross-validation, in the coefficients, on a second record.
+
+mod records;
+
+use core::ops::Range;
+
+use gyrocal_campaign::statistics::{Proportion, mean_square_band, median};
+use gyrocal_campaign::{Campaign, Fingerprint, Outcome};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::figure::Figure;
+use records::{Errors, Extension, Second};
+
+/// Why a figure could not be measured.
+type Error = Box<dyn std::error::Error + Send + Sync>;
+
+/// First seed and number of records of each cell; small versions are of a fraction.
+const CLEAN: [u64; 2] = [600_000, 2_000];
+const HIDDEN: [u64; 2] = [700_000, 1_000];
+const CROSS_AXIS: [u64; 2] = [800_000, 300];
+const SECOND: [u64; 2] = [900_000, 1_000];
+const SMALL_SHARE: u64 = 50;
+const SMALL_LEAST: u64 = 16;
+
+/// Sigmas of its own bound that a hidden effect is large, and at least on second records.
+const STRENGTH: f64 = 8.0;
+const LEAST_STRENGTH: f64 = 12.0;
+
+/// All figures of the topic.
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let mut figures = clean(small)?;
+    figures.extend(hidden(small)?);
+    figures.extend(cross_axis(small)?);
+    figures.extend(second(small)?);
+    Ok(figures)
+}
+
+/// Runs a cell; a full one goes on from where it stopped.
+fn cell<T: Serialize + DeserializeOwned + Send>(
+    name: &str,
+    [first, runs]: [u64; 2],
+    small: bool,
+    job: impl Fn(u64) -> Result<T, Error> + Sync,
+) -> Result<(Outcome<T>, Range<u64>), Error> {
+    if std::env::var("GAIN_CELL").is_ok_and(|cell| cell != name) {
+        return Ok((
+            Campaign::new(0..0, Fingerprint::new("x")).run(job, |_| ())?,
+            0..0,
+        ));
+    }
+    let runs = match std::env::var("GAIN_RUNS").ok().and_then(|n| n.parse().ok()) {
+        Some(n) => n,
+        None if small => (runs / SMALL_SHARE).max(SMALL_LEAST),
+        None => runs,
+    };
+    let seeds = first..first + runs;
+    let campaign = Campaign::new(seeds.clone(), Fingerprint::new("gain").with("cell", name));
+    let campaign = if small {
+        campaign
+    } else {
+        campaign.results(format!("target/gain-{name}.jsonl"))
+    };
+    Ok((campaign.run(job, |_| ())?, seeds))
+}
+
+/// A share that must not be lower than a target; a small population fails if it shows that it is.
+fn at_least(name: &str, least: f64, found: Proportion, small: bool) -> Figure {
+    let mut figure = Figure::within(name, [least, f64::INFINITY], found.share());
+    if small {
+        figure.holds = Some(found.upper_bound(0.999) >= least);
+    }
+    figure
+}
+
+fn failures<T>(cell: &str, outcome: &Outcome<T>) -> Option<Figure> {
+    let failed = outcome.failures().count();
+    let (_, first) = outcome.failures().next()?;
+    let name = format!("{cell}: records that could not be diagnosed");
+    Some(Figure::note(&name, format!("{failed} ({first})")))
+}
+
+/// Extensions of records in which nothing is hidden.
+fn clean(small: bool) -> Result<Vec<Figure>, Error> {
+    let (outcome, seeds) = cell("clean", CLEAN, small, records::clean)?;
+    let of = |what: &dyn Fn(&Extension) -> bool| {
+        Proportion::of(outcome.successes().map(|(_, found)| what(found)))
+    };
+    let extended = of(&Extension::extended);
+    let significant = of(&|found: &Extension| !found.findings.is_empty());
+    let runs = extended.trials as usize;
+    let bound = if small {
+        Figure::truth(
+            "clean records: extensions not shown to exceed 2 %",
+            extended.lower_bound(0.999) <= 0.02,
+        )
+    } else {
+        Figure::within(
+            "clean records: extensions accepted, one-sided 95 % upper bound",
+            [f64::NEG_INFINITY, 0.02],
+            extended.upper_bound(0.95),
+        )
+    };
+    let figures = [
+        bound.over(runs, format!("{seeds:?}")),
+        Figure::note(
+            "clean records: significant terms, and of these accepted",
+            format!("{} and {}", significant.hits, extended.hits),
+        ),
+    ];
+    Ok(figures
+        .into_iter()
+        .chain(failures("clean", &outcome))
+        .collect())
+}
+
+/// Gain of what is found in records with one hidden effect.
+fn hidden(small: bool) -> Result<Vec<Figure>, Error> {
+    let job = |seed| records::hidden(seed, STRENGTH);
+    let (outcome, seeds) = cell("hidden", HIDDEN, small, job)?;
+    let found: Vec<&Extension> = outcome.successes().map(|(_, found)| found).collect();
+    let terms = || found.iter().flat_map(|found| &found.findings);
+    let gain = Proportion::of(terms().map(|(_, nats, _)| *nats > 0.0));
+    let nats: Vec<f64> = found.iter().filter_map(|found| found.gain_nats).collect();
+    let runs = found.len();
+    if std::env::var("GAIN_PRINT").is_ok() {
+        for found in &found {
+            eprintln!("{found:?}");
+        }
+    }
+    let name = format!("d = {STRENGTH}: significant terms that gain under cross-validation");
+    let figures = [
+        at_least(&name, 0.95, gain, small).over(runs, format!("{seeds:?}")),
+        Figure::within(
+            &format!("d = {STRENGTH}: median gain of a record, nats"),
+            [8.0, f64::INFINITY],
+            median(&nats),
+        )
+        .over(nats.len(), format!("{seeds:?}")),
+    ];
+    Ok(figures
+        .into_iter()
+        .chain(failures("hidden", &outcome))
+        .collect())
+}
+
+/// Errors of the coefficients with a large cross-axis term.
+fn cross_axis(small: bool) -> Result<Vec<Figure>, Error> {
+    let (outcome, seeds) = cell("cross-axis", CROSS_AXIS, small, records::cross_axis)?;
+    let errors: Vec<&Errors> = outcome.successes().map(|(_, errors)| errors).collect();
+    let runs = errors.len();
+    let all = |of: &dyn Fn(&Errors) -> f64| errors.iter().map(|e| of(e)).collect::<Vec<f64>>();
+    let mean = |values: Vec<f64>| gyrocal_campaign::statistics::mean(&values);
+    if std::env::var("GAIN_PRINT").is_ok() {
+        for found in &errors {
+            eprintln!("{found:?}");
+        }
+    }
+    let name = "0.05 deg/h/g across an axis:";
+    let band = mean_square_band(9.0 * runs as f64, runs as f64, 0.99);
+    let figures = [
+        Figure::within(
+            &format!("{name} median of the largest nominal error, sigmas"),
+            [10.0, f64::INFINITY],
+            median(&all(&|e| e.largest[0])),
+        )
+        .over(runs, format!("{seeds:?}")),
+        Figure::within(
+            &format!("{name} mean NEES of the extended model, 99 % band"),
+            band.map(|end| (100.0 * end).round() / 100.0),
+            mean(all(&|e| e.nees[1])),
+        )
+        .over(runs, format!("{seeds:?}")),
+        Figure::note(
+            &format!("{name} median of the largest extended error, sigmas"),
+            format!("{:.2}", median(&all(&|e| e.largest[1]))),
+        ),
+        Figure::note(
+            &format!("{name} median NEES of the nominal model"),
+            format!("{:.0}", median(&all(&|e| e.nees[0]))),
+        ),
+    ];
+    Ok(figures
+        .into_iter()
+        .chain(failures("cross-axis", &outcome))
+        .collect())
+}
+
+/// Prediction of a second record.
+fn second(small: bool) -> Result<Vec<Figure>, Error> {
+    let job = |seed| records::second(seed, LEAST_STRENGTH);
+    let (outcome, seeds) = cell("second", SECOND, small, job)?;
+    let found: Vec<&Second> = outcome.successes().map(|(_, second)| second).collect();
+    let runs = found.len();
+    if std::env::var("GAIN_PRINT").is_ok() {
+        for found in &found {
+            eprintln!("{found:?}");
+        }
+    }
+    // A cause that is not found improves nothing.
+    let better = Proportion::of(found.iter().map(
+        |second| matches!(second.after_a_day_arcmin, Some([before, after, _]) if after < before),
+    ));
+    let scored = Proportion::of(
+        found
+            .iter()
+            .map(|second| second.gain_nats.is_some_and(|nats| nats > 0.0)),
+    );
+    let angles: Vec<[f64; 3]> = found.iter().filter_map(|s| s.after_a_day_arcmin).collect();
+    let of = |which: usize| median(&angles.iter().map(|a| a[which]).collect::<Vec<f64>>());
+    let name = format!(
+        "second record, d = {LEAST_STRENGTH} to {}:",
+        4.0 * LEAST_STRENGTH
+    );
+    let figures = [
+        at_least(
+            &format!("{name} drift predicted better"),
+            0.95,
+            better,
+            small,
+        )
+        .over(runs, format!("{seeds:?}")),
+        Figure::note(
+            &format!("{name} higher log score"),
+            format!("{:.3}", scored.share()),
+        ),
+        Figure::note(
+            &format!("{name} median error after a day, nominal, extended, expected, arcmin"),
+            format!("{:.2}, {:.2}, {:.2}", of(0), of(1), of(2)),
+        ),
+    ];
+    Ok(figures
+        .into_iter()
+        .chain(failures("second", &outcome))
+        .collect())
+}

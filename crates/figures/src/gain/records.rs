@@ -1,0 +1,198 @@
+//! One record, diagnosed, and what its extended model gains.
+
+use gyrocal_calibration::{Extended, Run};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, validated};
+use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use super::Error;
+use crate::naming::hidden::{Drawn, drawn, scenario};
+
+const SECONDS_PER_DAY: f64 = 86_400.0;
+
+/// The second record begins so long after the first: whole days, so that waves of a day meet it in
+/// their first phase.
+const LATER_S: f64 = 4.0 * SECONDS_PER_DAY;
+
+/// Added to the seed of a first record for that of its second.
+const LATER_SEED: u64 = 1 << 40;
+
+/// Mass unbalance across the input axis, deg/h/g: what the coefficients cannot take up.
+const CROSS_AXIS: f64 = 0.05;
+const CROSS_AXES: [&str; 6] = [
+    "gyro_x.g_y",
+    "gyro_x.g_z",
+    "gyro_y.g_x",
+    "gyro_y.g_z",
+    "gyro_z.g_x",
+    "gyro_z.g_y",
+];
+
+/// What a diagnosis put into the extended model.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Extension {
+    /// What was hidden; empty if nothing.
+    pub(super) hidden: String,
+    /// Each finding with its gain and whether it was accepted.
+    pub(super) findings: Vec<(String, f64, bool)>,
+    /// What the extended model gains in all, nats.
+    pub(super) gain_nats: Option<f64>,
+}
+
+impl Extension {
+    fn of(hidden: &str, found: &Diagnosis<'_>) -> Self {
+        let findings = found.findings.iter().zip(&found.acceptances);
+        Self {
+            hidden: hidden.to_owned(),
+            findings: findings
+                .map(|(f, a)| (f.effect.to_owned(), a.gain_nats, a.accepted))
+                .collect(),
+            gain_nats: found.gain.as_ref().map(|gain| gain.log_score_nats()),
+        }
+    }
+
+    /// Whether the model was extended.
+    pub(super) fn extended(&self) -> bool {
+        self.findings.iter().any(|(_, _, accepted)| *accepted)
+    }
+}
+
+fn diagnosed(simulation: &Simulation) -> Result<Diagnosis<'_>, Error> {
+    let options = DiagnoseOptions::default();
+    Ok(diagnose(&simulation.record, &simulation.bench, &options)?)
+}
+
+/// A record in which nothing is hidden.
+pub(super) fn clean(seed: u64) -> Result<Extension, Error> {
+    let simulation = simulate(&scenario(seed))?;
+    Ok(Extension::of("", &diagnosed(&simulation)?))
+}
+
+/// A record with one hidden effect.
+pub(super) fn hidden(seed: u64, strength: f64) -> Result<Extension, Error> {
+    let drawn = drawn(seed, strength)?;
+    let simulation = simulate(&drawn.scenario)?;
+    Ok(Extension::of(drawn.effect.id, &diagnosed(&simulation)?))
+}
+
+/// What a cross-axis term does to the coefficients.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Errors {
+    pub(super) effect: String,
+    /// Effects in the extended model.
+    pub(super) accepted: Vec<String>,
+    /// Largest error of a coefficient in sigmas: nominal, extended.
+    pub(super) largest: [f64; 2],
+    /// Normalised squared error of the nine: nominal, extended.
+    pub(super) nees: [f64; 2],
+}
+
+pub(super) fn cross_axis(seed: u64) -> Result<Errors, Error> {
+    let effect = CROSS_AXES[(seed % 6) as usize];
+    let simulation = simulate(&Scenario {
+        hidden: vec![Hidden::new(effect, &[("size", CROSS_AXIS)])?],
+        ..scenario(seed)
+    })?;
+    let found = diagnosed(&simulation)?;
+    let truth = simulation.truth.coefficients.named().map(|(_, v, _)| v);
+    let extended = found.extended.as_ref().unwrap_or(&found.nominal);
+    let of = |fit: &Extended<'_>| {
+        let error = DVector::from_fn(9, |i, _| fit.values()[i] - truth[i]);
+        let covariance: DMatrix<f64> = fit.covariance().view((0, 0), (9, 9)).into_owned();
+        let largest = (0..9).map(|i| error[i].abs() / covariance[(i, i)].sqrt());
+        let largest = largest.fold(0.0, f64::max);
+        let solved = covariance.cholesky().map(|c| c.solve(&error));
+        (largest, solved.map_or(f64::NAN, |s| s.dot(&error)))
+    };
+    let (before, after) = (of(&found.nominal), of(extended));
+    let accepted = found.findings.iter().zip(&found.acceptances);
+    Ok(Errors {
+        effect: effect.to_owned(),
+        accepted: accepted
+            .filter(|(_, acceptance)| acceptance.accepted)
+            .map(|(finding, _)| finding.effect.to_owned())
+            .collect(),
+        largest: [before.0, after.0],
+        nees: [before.1, after.1],
+    })
+}
+
+/// What an extended model gains on a second record.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Second {
+    pub(super) effect: String,
+    /// Effects in the extended model.
+    pub(super) accepted: Vec<String>,
+    /// Log score of the second record, extended less nominal; `None` without an extension.
+    pub(super) gain_nats: Option<f64>,
+    /// Angle after a day, arc minutes: nominal, extended, expected of the extended.
+    pub(super) after_a_day_arcmin: Option<[f64; 3]>,
+}
+
+/// Diagnoses a record with an effect `least` to four times as many sigmas large, and predicts a
+/// second record of the same platform at another attitude.
+pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
+    // Log-uniform by the golden ratio: any number of seeds is spread evenly.
+    let share = (seed as f64 * 0.618_033_988_749_894_9).fract();
+    let drawn = drawn(seed, least * 4.0_f64.powf(share))?;
+    let first = simulate(&drawn.scenario)?;
+    let found = diagnosed(&first)?;
+    let later = simulate(&later(&drawn)?)?;
+    let run = |of: &'_ Simulation| -> _ { (of.record.clone(), of.bench.clone()) };
+    let ((first_record, first_bench), (later_record, later_bench)) = (run(&first), run(&later));
+    let validation = validated(
+        &found,
+        &Run {
+            record: &first_record,
+            bench: &first_bench,
+        },
+        &Run {
+            record: &later_record,
+            bench: &later_bench,
+        },
+        &DiagnoseOptions::default(),
+    )?;
+    let accepted = found.findings.iter().zip(&found.acceptances);
+    Ok(Second {
+        effect: drawn.effect.id.to_owned(),
+        accepted: accepted
+            .filter(|(_, acceptance)| acceptance.accepted)
+            .map(|(finding, _)| finding.effect.to_owned())
+            .collect(),
+        gain_nats: validation.as_ref().map(|v| v.gain_nats()),
+        after_a_day_arcmin: validation.map(|v| v.compensation.at_end_arcmin()),
+    })
+}
+
+/// The same platform four days later, at another attitude: what changed stays changed, what ages
+/// has aged.
+fn later(drawn: &Drawn) -> Result<Scenario, Error> {
+    let mut scenario = Scenario {
+        seed: drawn.scenario.seed ^ LATER_SEED,
+        start_s: drawn.scenario.start_s + LATER_S,
+        hidden: Vec::new(),
+        ..drawn.scenario.clone()
+    };
+    let (channel, term) = drawn.effect.id.split_once('.').unwrap_or_default();
+    let axis = ["gyro_x", "gyro_y", "gyro_z"]
+        .iter()
+        .position(|gyro| *gyro == channel);
+    let size = drawn.sizes[0];
+    let aged = size * LATER_S / SECONDS_PER_DAY;
+    match (term, axis) {
+        ("step", Some(axis)) => scenario.coefficients.bias_deg_per_h[axis] += size,
+        ("ramp", Some(axis)) => {
+            scenario.coefficients.bias_deg_per_h[axis] += aged;
+            scenario.hidden.clone_from(&drawn.scenario.hidden);
+        }
+        ("ramp", None) => {
+            scenario.hidden.clone_from(&drawn.scenario.hidden);
+            let bias = Hidden::new(&format!("{channel}.bias"), &[("size", aged)])?;
+            scenario.hidden.push(bias);
+        }
+        ("knock" | "initial_attitude", _) => {}
+        _ => scenario.hidden.clone_from(&drawn.scenario.hidden),
+    }
+    Ok(scenario)
+}
