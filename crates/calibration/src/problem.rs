@@ -105,7 +105,11 @@ where
             .map(|(row, point)| {
                 self.model.place(point, &mut moving, &mut chart);
                 Series::<Chart<f64, I>, 3>::at(&leg.rows, row, &mut chart);
-                self.model.output(&moving, &parameters, &chart)
+                let mut outputs_g = self.model.output(&moving, &parameters, &chart);
+                for (output, reading_g) in outputs_g.iter_mut().enumerate() {
+                    *reading_g += leg.further.reading_g(row, output);
+                }
+                outputs_g
             })
             .collect()
     }
