@@ -57,6 +57,9 @@ pub struct Jump {
     pub score: [f64; 3],
     /// Information on it, 1/rad².
     pub information: [[f64; 3]; 3],
+    /// Score of a change of each reading of the row that ends the step, 1/g; zero where there is
+    /// none.
+    pub readings: [f64; 3],
 }
 
 /// What a bench declares uncertain of its site is free to take that up in every fit.
@@ -431,6 +434,7 @@ impl<'a> Extended<'a> {
                         // Columns are derivatives of the innovations: those of a jump too.
                         score: found.columns[0],
                         information: found.information,
+                        readings: core::array::from_fn(|output| found.readings[output]),
                     };
                     let taken = DMatrix::from_fn(count, 3, |i, j| found.columns[i + 1][j]);
                     let share = covariance * &taken;
@@ -459,6 +463,29 @@ impl<'a> Extended<'a> {
         further: &[crate::Column],
         watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
+        let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
+        self.reduced(&all, further, watch)
+    }
+
+    /// The same with the parameters of the fit as columns only, in the order of
+    /// [`Self::values`], then the extension's own further columns, then `further`.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn beside(&self, further: &[crate::Column]) -> Result<Reduced<3>, CalibrationError> {
+        let extended = self.extension.parameters.iter();
+        let own: Vec<usize> = (0..PARAMETERS)
+            .chain(extended.map(|(parameter, _)| *parameter))
+            .collect();
+        self.reduced(&own, further, |_| ())
+    }
+
+    fn reduced(
+        &self,
+        active: &[usize],
+        further: &[crate::Column],
+        watch: impl FnMut(&Whitened<'_>),
+    ) -> Result<Reduced<3>, CalibrationError> {
         let leg = &self.problem.legs[0];
         let own = self.extension.further.columns().len();
         let mut columns = self.extension.further.columns().to_vec();
@@ -471,9 +498,8 @@ impl<'a> Extended<'a> {
         all.set_amplitudes(amplitudes);
         debug_assert_eq!(own, leg.amplitudes.len());
         let parameters = self.parameters();
-        let active: Vec<usize> = (0..parameters.len()).collect();
         self.problem
-            .with_active(0, &parameters, &active, &all, |pass| pass.reduce(watch))
+            .with_active(0, &parameters, active, &all, |pass| pass.reduce(watch))
             .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))
     }
 

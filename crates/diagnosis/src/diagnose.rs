@@ -11,7 +11,7 @@ use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, search};
 use crate::error::DiagnosisError;
 use crate::gain::{Acceptance, Gain, Validation, gain, judge, validate};
 use crate::noise::{AuditOptions, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, audit_noise};
-use crate::remainder::{Remainder, remainder};
+use crate::remainder::{Remainder, TESTS, remainder};
 use crate::request;
 use crate::series::Innovations;
 use crate::side::{NormVerdict, norm_verdict};
@@ -172,6 +172,7 @@ pub fn diagnose<'a>(
     let norm = norm_verdict(&audit.cleaned.apply(record), bench, &slow_noise_g, told).ok();
     let search_options = SearchOptions {
         false_alarm_probability: search_share,
+        unnamed_probability: remainder_share / TESTS,
         also: options.also.clone(),
         seed: options.seed,
         ..SearchOptions::default()
@@ -207,8 +208,8 @@ pub fn diagnose<'a>(
     };
     noise_findings.extend(gyros.into_iter().filter(|finding| !walks(finding.effect)));
     let mut remainder = remainder(&searched.fitted, record, remainder_share)?;
-    for line in &searched.lines {
-        remainder.add(line);
+    for found in &searched.unnamed {
+        remainder.add(found);
     }
     let found = !searched.findings.is_empty();
     let stability = stability(&record.time_s, &remainder.whitened, told).ok();

@@ -16,6 +16,7 @@
 
 mod bank;
 mod bound;
+mod curve;
 mod family;
 mod finding;
 mod knock;
@@ -24,6 +25,7 @@ mod null;
 mod refine;
 mod score;
 mod search;
+mod unnamed;
 mod walk;
 
 pub use bound::information;
@@ -31,9 +33,9 @@ pub use family::{Candidate, Family, Plan, Unavailable};
 pub(crate) use family::{KNOCK, axis_of, extend, jump, missing, parameter, warm_up};
 pub(crate) use finding::SET_CONSTANT;
 pub use finding::{Finding, FoundParameter, Rival};
-pub use line::DriftLine;
 pub(crate) use null::normal;
 pub(crate) use score::RICHER;
 pub use score::Ranked;
 pub use search::{SearchOptions, Searched, search};
+pub use unnamed::{Channel, Pattern, Unnamed};
 pub(crate) use walk::Walk;

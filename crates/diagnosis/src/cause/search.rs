@@ -4,19 +4,21 @@ use gyrocal_calibration::{CalibrationError, Extended, Extension};
 use gyrocal_record::{Bench, Record};
 
 use super::bank::Bank;
-use super::family::{Family, Plan, Unavailable, axis_of, equivalent_to, extend};
+use super::family::{Family, Plan, Unavailable, equivalent_to, extend};
 use super::finding::{Accepted, Finding, finding};
 use super::knock;
-use super::line::{self, DriftLine};
 use super::null::Null;
 use super::refine::refined;
-use super::score::{Ranked, Scores};
+use super::score::{RICHER, Ranked, Scores};
+use super::unnamed::{self, Unnamed};
 
 /// How causes are looked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchOptions {
     /// Probability that a record of the nominal model shows anything.
     pub false_alarm_probability: f64,
+    /// Probability that such a record shows anything that has no name.
+    pub unnamed_probability: f64,
     /// Probability that the named set holds the cause.
     pub coverage: f64,
     /// Effects beside those of the default search.
@@ -29,6 +31,7 @@ impl Default for SearchOptions {
     fn default() -> Self {
         Self {
             false_alarm_probability: 0.01,
+            unnamed_probability: 0.001,
             coverage: 0.95,
             also: Vec::new(),
             seed: 0,
@@ -45,8 +48,8 @@ pub struct Searched<'a> {
     pub fitted: Extended<'a>,
     /// The causes, strongest first.
     pub findings: Vec<Finding>,
-    /// Lines in the drift that no effect of the catalogue explains; they are in the model.
-    pub lines: Vec<DriftLine>,
+    /// What no effect of the catalogue explains; it is in the model.
+    pub unnamed: Vec<Unnamed>,
     /// All families in the first search, largest first.
     pub ranking: Vec<Ranked>,
     /// What their largest statistic must exceed.
@@ -59,14 +62,14 @@ pub struct Searched<'a> {
 }
 
 impl Searched<'_> {
-    /// The extension with the lines and some of the findings: those that are `kept`.
+    /// The extension with what has no name and some of the findings: those that are `kept`.
     pub(crate) fn extension_with(&self, record: &Record, kept: &[bool]) -> Extension {
         let accepted = self.accepted.iter().zip(kept);
         let accepted: Vec<Accepted> = accepted
             .filter(|(_, kept)| **kept)
             .map(|(accepted, _)| accepted.clone())
             .collect();
-        extension(&self.base, &self.plan, record, &accepted, &self.lines)
+        extension(&self.base, &self.plan, record, &accepted, &self.unnamed)
     }
 }
 
@@ -86,7 +89,7 @@ pub fn search<'a>(
     let mut fitted = nominal;
     let mut accepted: Vec<Accepted> = Vec::new();
     let mut inseparable: Vec<usize> = Vec::new();
-    let mut lines: Vec<DriftLine> = Vec::new();
+    let mut unnamed: Vec<Unnamed> = Vec::new();
     let mut first: Option<(Vec<Ranked>, f64)> = None;
     loop {
         let bank = Bank::new(&fitted, &plan.further, &[])?;
@@ -104,37 +107,38 @@ pub fn search<'a>(
             })
             .collect();
         let null = Null::draw(&bank, &families, options.seed);
-        let scores = Scores::of(&bank, &families, &null, knock::best(&fitted, record)?);
+        let jumps = fitted.jumps()?;
+        let scores = Scores::of(&bank, &families, &null, knock::best(&jumps, record));
         let threshold = null.threshold(options.false_alarm_probability);
         first.get_or_insert_with(|| (scores.ranking(&families), threshold));
-        let Some(best) = scores.named(&families) else {
-            break;
-        };
-        let statistic = scores.largest();
-        if statistic <= threshold || accepted.len() == MOST_EFFECTS {
-            break;
-        }
-        // A random walk swallows a line, which has no name in the catalogue: it goes into the
-        // model without one.
-        if plan.families[best.family].walk.is_some()
-            && let Some(gyro) = axis_of(plan.families[best.family].id())
-            && lines.len() < MOST_EFFECTS
-            && let Some(line) = line::strongest(&fitted, record, gyro)?
-            && line.statistic - line.searched > best.statistic
+        let best = scores
+            .named(&families)
+            .filter(|_| scores.largest() > threshold && accepted.len() < MOST_EFFECTS);
+        // What the catalogue has no name for goes into the model without one: if nothing else is
+        // there, or if it explains so much more that a name would be a false one. A random walk
+        // would swallow any curve.
+        let curves = best.is_none_or(|best| families[best.family].walk.is_some());
+        if unnamed.len() < MOST_EFFECTS
+            && let Some(other) = unnamed::strongest(&fitted, record, &jumps, curves)?
+            && other.ln_probability < options.unnamed_probability.ln()
+            && best.is_none_or(|best| other.equivalent() > scores.penalised(best.family) + RICHER)
         {
-            lines.push(line);
-            fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &lines))?;
+            unnamed.push(other);
+            fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &unnamed))?;
             continue;
         }
+        let Some(best) = best else {
+            break;
+        };
         let shape = refined(&fitted, record, &plan, &best)?;
         accepted.push(Accepted {
             family: best.family,
             shape,
-            p_value: null.probability(statistic),
+            p_value: null.probability(scores.largest()),
             searched: best.searched,
         });
         let refitted = fitted
-            .refitted(&extension(&base, &plan, record, &accepted, &lines))
+            .refitted(&extension(&base, &plan, record, &accepted, &unnamed))
             .and_then(|refitted| Bank::new(&refitted, &[], &[]).map(|_| refitted));
         match refitted {
             Ok(refitted) => fitted = refitted,
@@ -160,7 +164,7 @@ pub fn search<'a>(
         match weakest {
             Some((index, strength)) if strength <= threshold && accepted.len() > 1 => {
                 accepted.remove(index);
-                fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &lines))?;
+                fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &unnamed))?;
             }
             _ => break findings,
         }
@@ -168,7 +172,7 @@ pub fn search<'a>(
     Ok(Searched {
         fitted,
         findings,
-        lines,
+        unnamed,
         ranking,
         threshold,
         unavailable: plan.unavailable.clone(),
@@ -184,11 +188,11 @@ fn extension(
     plan: &Plan,
     record: &Record,
     accepted: &[Accepted],
-    lines: &[DriftLine],
+    unnamed: &[Unnamed],
 ) -> Extension {
     let mut extension = base.clone();
-    for found in lines {
-        let columns = line::courses(record, found.gyro, found.period_h);
+    for found in unnamed {
+        let columns = found.columns.iter().cloned();
         extension.further.extend(columns, f64::INFINITY);
     }
     for accepted in accepted {
