@@ -13,7 +13,7 @@ use crate::plant::{Planted, fitted, plant, plant_in, searched, shape};
 use crate::population::scenario;
 
 /// Draws of an effect that the record can show before it is given up.
-const TRIES: usize = 200;
+pub(crate) const TRIES: usize = 200;
 
 /// Two effects are hidden together if the cosine between their signatures is less.
 const LARGEST_COSINE: f64 = 0.6;

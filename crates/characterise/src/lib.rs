@@ -60,7 +60,7 @@ pub use draw::Draw;
 pub use error::CharacteriseError;
 pub use family::{FamilyRow, families, family};
 pub use methods::{Called, Method};
-pub use plant::{Planted, fitted, plant, plant_in, searched, shape};
+pub use plant::{Planted, fitted, plant, plant_any, plant_in, searched, shape};
 pub use population::scenario;
 pub use report::{CellReport, CharacteriseReport, campaign, cell_report};
 pub use signature::{Columns, Signature};

@@ -6,6 +6,7 @@ use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::bank::Bank;
+use crate::cell::TRIES;
 use crate::draw::Draw;
 use crate::error::CharacteriseError;
 use crate::population::duration_h;
@@ -128,6 +129,37 @@ pub fn plant(
     let clean = simulate(scenario)?;
     let fitted = fitted(&clean)?;
     plant_in(&clean, &fitted, effects, strength, largest_cosine, draw)
+}
+
+/// A scenario with any effect that its record can show, `strength` sigmas of its own bound large,
+/// and that effect.
+///
+/// # Errors
+/// As [`plant`], and [`CharacteriseError::NothingToHide`] if none of those that were tried shows.
+pub fn plant_any(
+    scenario: Scenario,
+    strength: f64,
+    draw: &mut Draw,
+) -> Result<(Scenario, Planted), CharacteriseError> {
+    let effects = searched(&scenario);
+    let clean = simulate(&scenario)?;
+    let fitted = fitted(&clean)?;
+    for _ in 0..TRIES {
+        let effect = *draw.one_of(&effects);
+        let with_shape = [(effect, shape(effect, &scenario, draw))];
+        let planted = plant_in(&clean, &fitted, &with_shape, strength, 1.0, draw)?;
+        if let Some(only) = planted.and_then(|planted| planted.into_iter().next()) {
+            let scenario = Scenario {
+                hidden: vec![only.hidden()?],
+                ..scenario
+            };
+            return Ok((scenario, only));
+        }
+    }
+    Err(CharacteriseError::NothingToHide {
+        tried: TRIES,
+        strength,
+    })
 }
 
 /// The same in a record without them that is simulated and fitted already.

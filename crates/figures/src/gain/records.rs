@@ -1,8 +1,7 @@
 //! One record, diagnosed, and what its extended model gains.
 
-use gyrocal::EffectRow;
 use gyrocal_calibration::{Extended, Run};
-use gyrocal_characterise::{Draw, plant, searched, shape};
+use gyrocal_characterise::{Draw, Planted, plant_any};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, validated};
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{DMatrix, DVector};
@@ -12,9 +11,6 @@ use super::Error;
 
 /// Numbers of these records in the population begin here: `gyrocal characterise` has those below.
 const FIRST_NUMBER: u64 = 100_000_000;
-
-/// Effects that are tried on a record until one is seen in it.
-const TRIES: usize = 40;
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
@@ -65,43 +61,14 @@ impl Extension {
     }
 }
 
-/// A record with a cause in it.
-struct Drawn {
-    /// With the cause.
-    scenario: Scenario,
-    effect: &'static EffectRow,
-    /// Its true sizes.
-    sizes: Vec<f64>,
-}
-
 fn scenario(seed: u64) -> Scenario {
     gyrocal_characterise::scenario(FIRST_NUMBER + seed)
 }
 
-/// Hides a random effect of the default search, `strength` standard deviations of its own bound
-/// large.
-fn drawn(seed: u64, strength: f64) -> Result<Drawn, Error> {
-    let scenario = scenario(seed);
+/// With a random effect in it, `strength` standard deviations of its own bound large.
+fn drawn(seed: u64, strength: f64) -> Result<(Scenario, Planted), Error> {
     let draw = &mut Draw::new(FIRST_NUMBER + seed, 0);
-    let effects = searched(&scenario);
-    for _ in 0..TRIES {
-        let effect = *draw.one_of(&effects);
-        let with_shape = [(effect, shape(effect, &scenario, draw))];
-        let Some(planted) = plant(&scenario, &with_shape, strength, 1.0, draw)? else {
-            continue;
-        };
-        if let [only] = planted.as_slice() {
-            return Ok(Drawn {
-                effect,
-                sizes: only.sizes.clone(),
-                scenario: Scenario {
-                    hidden: vec![only.hidden()?],
-                    ..scenario
-                },
-            });
-        }
-    }
-    Err(format!("the record of seed {seed} shows none of {TRIES} effects that were tried").into())
+    Ok(plant_any(scenario(seed), strength, draw)?)
 }
 
 fn diagnosed(simulation: &Simulation) -> Result<Diagnosis<'_>, Error> {
@@ -117,9 +84,9 @@ pub(super) fn clean(seed: u64) -> Result<Extension, Error> {
 
 /// A record with one hidden effect.
 pub(super) fn hidden(seed: u64, strength: f64) -> Result<Extension, Error> {
-    let drawn = drawn(seed, strength)?;
-    let simulation = simulate(&drawn.scenario)?;
-    Ok(Extension::of(drawn.effect.id, &diagnosed(&simulation)?))
+    let (scenario, planted) = drawn(seed, strength)?;
+    let simulation = simulate(&scenario)?;
+    Ok(Extension::of(planted.effect.id, &diagnosed(&simulation)?))
 }
 
 /// What a cross-axis term does to the coefficients.
@@ -181,10 +148,10 @@ pub(super) struct Second {
 pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     // Log-uniform by the golden ratio: any number of seeds is spread evenly.
     let share = (seed as f64 * 0.618_033_988_749_894_9).fract();
-    let drawn = drawn(seed, least * 4.0_f64.powf(share))?;
-    let first = simulate(&drawn.scenario)?;
+    let (scenario, planted) = drawn(seed, least * 4.0_f64.powf(share))?;
+    let first = simulate(&scenario)?;
     let found = diagnosed(&first)?;
-    let later = simulate(&later(&drawn)?)?;
+    let later = simulate(&later(&scenario, &planted)?)?;
     let run = |of: &'_ Simulation| -> _ { (of.record.clone(), of.bench.clone()) };
     let ((first_record, first_bench), (later_record, later_bench)) = (run(&first), run(&later));
     let validation = validated(
@@ -201,7 +168,7 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     )?;
     let accepted = found.findings.iter().zip(&found.acceptances);
     Ok(Second {
-        effect: drawn.effect.id.to_owned(),
+        effect: planted.effect.id.to_owned(),
         accepted: accepted
             .filter(|(_, acceptance)| acceptance.accepted)
             .map(|(finding, _)| finding.effect.to_owned())
@@ -213,32 +180,32 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
 
 /// The same platform four days later, at another attitude: what changed stays changed, what ages
 /// has aged.
-fn later(drawn: &Drawn) -> Result<Scenario, Error> {
+fn later(first: &Scenario, planted: &Planted) -> Result<Scenario, Error> {
     let mut scenario = Scenario {
-        seed: drawn.scenario.seed ^ LATER_SEED,
-        start_s: drawn.scenario.start_s + LATER_S,
+        seed: first.seed ^ LATER_SEED,
+        start_s: first.start_s + LATER_S,
         hidden: Vec::new(),
-        ..drawn.scenario.clone()
+        ..first.clone()
     };
-    let (channel, term) = drawn.effect.id.split_once('.').unwrap_or_default();
+    let (channel, term) = planted.effect.id.split_once('.').unwrap_or_default();
     let axis = ["gyro_x", "gyro_y", "gyro_z"]
         .iter()
         .position(|gyro| *gyro == channel);
-    let size = drawn.sizes[0];
+    let size = planted.sizes[0];
     let aged = size * LATER_S / SECONDS_PER_DAY;
     match (term, axis) {
         ("step", Some(axis)) => scenario.coefficients.bias_deg_per_h[axis] += size,
         ("ramp", Some(axis)) => {
             scenario.coefficients.bias_deg_per_h[axis] += aged;
-            scenario.hidden.clone_from(&drawn.scenario.hidden);
+            scenario.hidden.clone_from(&first.hidden);
         }
         ("ramp", None) => {
-            scenario.hidden.clone_from(&drawn.scenario.hidden);
+            scenario.hidden.clone_from(&first.hidden);
             let bias = Hidden::new(&format!("{channel}.bias"), &[("size", aged)])?;
             scenario.hidden.push(bias);
         }
         ("knock" | "initial_attitude", _) => {}
-        _ => scenario.hidden.clone_from(&drawn.scenario.hidden),
+        _ => scenario.hidden.clone_from(&first.hidden),
     }
     Ok(scenario)
 }

@@ -1,17 +1,16 @@
 //! Planned runs, made: what was predicted of sigmas and named sets, beside what they are.
 
-use gyrocal::{EFFECTS, EffectRow};
-use gyrocal_calibration::{Extended, NoiseModel, Options, Run, calibrate_runs};
-use gyrocal_diagnosis::cause::information;
+use core::ops::Range;
+
+use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
+use gyrocal_campaign::{Campaign, Fingerprint};
+use gyrocal_characterise::{Draw, plant_any};
 use gyrocal_diagnosis::plan::{Named, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_truth::{Hidden, InitialAttitude, Population, Scenario, Simulation, simulate};
-use nalgebra::DVector;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use super::{Error, campaign};
+use super::Error;
 use crate::figure::Figure;
 
 /// Population that the records are drawn from.
@@ -117,6 +116,15 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
+fn campaign(name: &str, seeds: Range<u64>, small: bool) -> Campaign {
+    let campaign = Campaign::new(seeds, Fingerprint::new("naming").with("cell", name));
+    if small {
+        campaign
+    } else {
+        campaign.results(format!("target/{name}.jsonl"))
+    }
+}
+
 fn run(simulation: &Simulation) -> Run<'_> {
     Run {
         record: &simulation.record,
@@ -190,7 +198,7 @@ fn sigmas(seed: u64) -> Result<Sigmas, Error> {
 }
 
 fn sets(seed: u64) -> Result<Sets, Error> {
-    let scenario = hide(scenario(seed), seed)?;
+    let (scenario, _) = plant_any(scenario(seed), STRENGTH, &mut Draw::new(seed, 0))?;
     let first = simulate(&scenario)?;
     let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default())?;
     let named: Vec<Named> = found.findings.iter().map(Named::of).collect();
@@ -230,42 +238,4 @@ fn sets(seed: u64) -> Result<Sets, Error> {
         *after = [predicted, of_first(left.collect()).ok_or("no set")?];
     }
     Ok(sets)
-}
-
-/// Hides a random effect of the default search, some standard deviations of its own bound large.
-fn hide(scenario: Scenario, seed: u64) -> Result<Scenario, Error> {
-    let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let mut uniform = || (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-    let effects: Vec<&EffectRow> = EFFECTS
-        .iter()
-        .filter(|effect| effect.default_search && effect.needs.is_empty() && effect.kind == "term")
-        .collect();
-    let clean = simulate(&scenario)?;
-    let fitted = Extended::nominal(&run(&clean), &Options::default(), &NoiseModel::default())?;
-    loop {
-        let effect = effects[(uniform() * effects.len() as f64) as usize];
-        let shape = match effect.parameters.last() {
-            Some(&"onset_s") => Some((0.2 + 0.6 * uniform()) * scenario.duration_s),
-            Some(&"time_constant_h") => Some(1.0 + 9.0 * uniform()),
-            _ => None,
-        };
-        let Some(information) = information(&fitted, &clean.record, effect.id, shape)? else {
-            continue;
-        };
-        let direction = DVector::from_fn(information.nrows(), |i, _| {
-            (uniform() - 0.5) / information[(i, i)].sqrt()
-        });
-        let length = (&information * &direction).dot(&direction).sqrt();
-        let values = direction.iter().map(|size| size * STRENGTH / length);
-        let parameters: Vec<(&str, f64)> = effect
-            .parameters
-            .iter()
-            .copied()
-            .zip(values.chain(shape))
-            .collect();
-        return Ok(Scenario {
-            hidden: vec![Hidden::new(effect.id, &parameters)?],
-            ..scenario
-        });
-    }
 }
