@@ -91,6 +91,9 @@ where
     })
 }
 
+/// A joint problem, and how the azimuth of each record was found.
+type Started<'a, D, I> = (Problem<'a, D, I>, Vec<Option<AzimuthSearch>>);
+
 /// The joint problem at its start.
 fn problem<'a, D, I>(
     model: &'a D,
@@ -100,7 +103,7 @@ fn problem<'a, D, I>(
     options: &Options,
     careful: bool,
     progress: &mut dyn FnMut(usize),
-) -> Result<(Problem<'a, D, I>, Vec<Option<AzimuthSearch>>), CalibrationError>
+) -> Result<Started<'a, D, I>, CalibrationError>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,

@@ -321,3 +321,55 @@ pub(crate) fn warm_up(record: &Record, parameter: usize, time_constant_h: f64) -
             .collect(),
     }
 }
+
+/// Share of a time constant over which its derivative is taken.
+const NEAR: f64 = 0.05;
+
+/// What an effect with an onset, s, or a time constant, h, does to first order when its size and
+/// that change: one column each.
+pub(super) fn with_shape(
+    record: &Record,
+    id: &str,
+    gyro: usize,
+    shape: f64,
+    size: f64,
+) -> Option<[Column; 2]> {
+    let parameter = BIASES[gyro];
+    if id.ends_with(".warmup") {
+        let of = |time_constant_h: f64| match warm_up(record, parameter, time_constant_h) {
+            Column::Course { steps, .. } => steps,
+            _ => Vec::new(),
+        };
+        let (before, after) = (of((1.0 - NEAR) * shape), of((1.0 + NEAR) * shape));
+        let slopes = before.iter().zip(&after);
+        let steps = slopes
+            .map(|(before, after)| size * (after - before) / (2.0 * NEAR * shape))
+            .collect();
+        let change = Column::Course { parameter, steps };
+        return Some([warm_up(record, parameter, shape), change]);
+    }
+    if !id.ends_with(".step") {
+        return None;
+    }
+    let first_s = record.time_s.first().copied()?;
+    let rows = record.len();
+    let row = record.time_s.partition_point(|t| t - first_s < shape);
+    // From one onset that is looked at to the next: nearer ones are not told apart.
+    let (from, to) = (
+        row.saturating_sub(rows / (2 * ONSETS)),
+        (row + rows / (2 * ONSETS)).min(rows - 1),
+    );
+    let width_s = record.time_s[to] - record.time_s[from];
+    let later = |step: usize| {
+        if (from..to).contains(&step) {
+            -size / width_s
+        } else {
+            0.0
+        }
+    };
+    let change = Column::Course {
+        parameter,
+        steps: (0..rows.saturating_sub(1)).map(later).collect(),
+    };
+    Some([Column::Onset { parameter, row }, change])
+}

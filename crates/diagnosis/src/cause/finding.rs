@@ -5,7 +5,7 @@ use gyrocal_calibration::{CalibrationError, Column, Extended};
 use gyrocal_record::Record;
 
 use super::bank::{Bank, Joint};
-use super::family::{Candidate, Family, Plan, equivalent_to, jump, parameter};
+use super::family::{Candidate, Family, Plan, axis_of, equivalent_to, jump, parameter, with_shape};
 use super::null::Null;
 use super::score::Scores;
 use super::search::SearchOptions;
@@ -23,7 +23,8 @@ pub struct FoundParameter {
     pub name: &'static str,
     /// The estimate.
     pub estimate: f64,
-    /// Its standard deviation; `None` for onsets and time constants, which were searched.
+    /// Its standard deviation: of a size with the onset or time constant unknown, of these to
+    /// first order. `None` where a walk or a knock has none.
     pub sigma: Option<f64>,
     /// Unit of both.
     pub unit: &'static str,
@@ -82,7 +83,21 @@ pub(super) fn finding(
     if let (true, Some(onset_s)) = (family.knock, own.shape) {
         further.extend(jump(record, onset_s));
     }
+    // How uncertain the size is with the onset or time constant.
+    let shaped = match (places.as_slice(), own.shape, axis_of(family.id())) {
+        ([place], Some(shape), Some(gyro)) => {
+            let size = fitted.values()[*place];
+            with_shape(record, family.id(), gyro, shape, size)
+        }
+        _ => None,
+    };
+    let shaped = shaped.map(|columns| {
+        let first = PARAMETERS.len() + further.len();
+        further.extend(columns);
+        [first, first + 1]
+    });
     let bank = Bank::new(fitted, &further, &places)?;
+    let shaped = shaped.and_then(|columns| bank.joint(&columns));
     let others: Vec<usize> = accepted
         .iter()
         .enumerate()
@@ -156,7 +171,7 @@ pub(super) fn finding(
                 sigma: None,
                 unit: "deg/h/sqrt(h)",
             }],
-            _ => estimates(fitted, family, &places, own.shape),
+            _ => estimates(fitted, family, &places, own.shape, shaped.as_ref()),
         },
         z: statistic.max(0.0).sqrt(),
         p_value: own.p_value,
@@ -229,8 +244,10 @@ fn estimates(
     family: &Family,
     places: &[usize],
     shape: Option<f64>,
+    shaped: Option<&Joint>,
 ) -> Vec<FoundParameter> {
     let effect = family.effect;
+    let with_shape = |index: usize| shaped.map(|joint| joint.covariance[(index, index)].sqrt());
     // Attitudes are estimated in radians.
     let to_unit = |unit: &str| {
         if unit == "deg" && effect.kind == "state" {
@@ -248,13 +265,14 @@ fn estimates(
             Some(place) => FoundParameter {
                 name,
                 estimate: fitted.values()[*place] * to_unit(unit),
-                sigma: Some(fitted.covariance()[(*place, *place)].sqrt() * to_unit(unit)),
+                sigma: with_shape(index)
+                    .or_else(|| Some(fitted.covariance()[(*place, *place)].sqrt() * to_unit(unit))),
                 unit,
             },
             None => FoundParameter {
                 name,
                 estimate: shape.unwrap_or(f64::NAN),
-                sigma: None,
+                sigma: with_shape(index),
                 unit,
             },
         })
