@@ -10,7 +10,6 @@ use nalgebra::{DMatrix, DVector};
 use super::attitude::of_angles;
 use super::expected::{Deviates, Posteriors, expected};
 use super::outlook::{Forecast, Outlook, SetForecast, SetMember, ratio};
-use super::piece::Piece;
 use super::present::duration_s as duration_s_of;
 use super::said::{Said, foreseen};
 use super::sigma::sigmas;
@@ -175,9 +174,9 @@ impl<'a> Setting<'a> {
         let imagined = self.imagined(&record, &bench, self.start, &self.parameters);
         let points = imagined.trajectory(&self.options)?;
         let from = record.time_s.partition_point(|t| *t <= first_s);
-        // Without the fit's own columns, which are of the record's own rows.
-        let pieces: Vec<Piece> = self.universe.first.clone();
-        let information = foreseen(&imagined, &pieces, from, points, &self.options)?;
+        // A fit's own columns, which are of the record's own rows, say nothing here.
+        let pieces = &self.universe.first;
+        let information = foreseen(&imagined, pieces, from, points, &self.options)?;
         let next = self.universe.of_first(&silent(information)).information;
         Ok(self.outlook(&next))
     }

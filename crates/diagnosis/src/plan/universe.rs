@@ -131,7 +131,7 @@ impl Universe {
                     .collect()
             })
             .collect();
-        for index in 0..members.len() {
+        for (index, own) in members.iter().enumerate() {
             let mut nuisance: Vec<usize> = (0..COEFFICIENTS).collect();
             let declared = |place: &usize| all.unknowns[*place].sigma > 0.0;
             nuisance.extend(all.site.iter().filter(|place| declared(place)));
@@ -144,7 +144,7 @@ impl Universe {
             );
             all.cases.push(Case {
                 nuisance,
-                members: members[index].clone(),
+                members: own.clone(),
             });
         }
         all
