@@ -5,14 +5,14 @@ use std::path::Path;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::generated::catalogue::EFFECTS;
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions};
-use gyrocal_diagnosis::{Diagnosis, Gain, NoiseFinding, Verdict};
+use gyrocal_diagnosis::{Diagnosis, Gain, NoiseFinding, Remainder, Verdict};
 use gyrocal_record::{
     DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, FreeRunReport, GainReport,
     NotSearchedReport, ParameterReport, RankedReport, RemainderReport, RemainderVerdict,
     RivalReport, SCHEMA_VERSION, ShiftReport,
 };
 
-use super::apart;
+use super::{apart, channels};
 use super::filter::Judged;
 use crate::Failure;
 use crate::noise;
@@ -48,16 +48,10 @@ pub(super) fn report(
             Verdict::Clean => DiagnosisVerdict::Clean,
         },
         false_alarm_probability: diagnosis.false_alarm_probability,
+        norm: diagnosis.norm.as_ref().map(channels::norm),
+        allan: diagnosis.stability.as_ref().map(channels::allan),
         gain: diagnosis.gain.as_ref().map(gain),
-        remainder: RemainderReport {
-            verdict: if diagnosis.remainder.unexplained {
-                RemainderVerdict::Unexplained
-            } else {
-                RemainderVerdict::White
-            },
-            p_value: diagnosis.remainder.p_value,
-            description: diagnosis.remainder.description.clone(),
-        },
+        remainder: remainder(&diagnosis.remainder),
         cannot_tell: findings
             .iter()
             .flat_map(|finding| apart::cannot_tell(finding, &searched))
@@ -137,6 +131,22 @@ fn parameters(found: &[FoundParameter]) -> Vec<ParameterReport> {
         .collect()
 }
 
+fn remainder(remainder: &Remainder) -> RemainderReport {
+    let (verdict, description) = if remainder.unexplained {
+        (RemainderVerdict::Unexplained, remainder.description.clone())
+    } else if remainder.untested.is_empty() {
+        (RemainderVerdict::White, String::new())
+    } else {
+        let untested = remainder.untested.join(" and ");
+        (RemainderVerdict::NotTested, untested)
+    };
+    RemainderReport {
+        verdict,
+        p_value: remainder.p_value,
+        description,
+    }
+}
+
 fn gain(gain: &Gain) -> GainReport {
     let [before, after] = gain.free_run_rms_g;
     GainReport {
@@ -163,6 +173,7 @@ fn gain(gain: &Gain) -> GainReport {
 /// Effects of the catalogue that neither the search nor the audit looked at, and why.
 fn not_searched(diagnosis: &Diagnosis<'_>) -> Vec<NotSearchedReport> {
     let audited = diagnosis.audit.accel_ratio.is_some();
+    let correlated = diagnosis.audit.cleaned.correlation != 0.0;
     EFFECTS
         .iter()
         .filter_map(|effect| {
@@ -176,6 +187,8 @@ fn not_searched(diagnosis: &Diagnosis<'_>) -> Vec<NotSearchedReport> {
                 return None;
             } else if id == super::filter::EFFECT {
                 "an error of a filter: --filter euler".to_owned()
+            } else if correlated && id.starts_with("gyro_") && id.ends_with(".noise") {
+                "correlated noise of the accelerometers hides it".to_owned()
             } else if noise && (audited || effect.enters == "drift" || tested_value_by_value(id)) {
                 return None;
             } else if noise {
