@@ -47,7 +47,9 @@ pub fn norm_verdict(
     let bins = (rows.len() / ROWS_A_BIN).clamp(1, MOST_BINS);
     let uncertain = bench.uncertainty.gravity_relative_sigma.is_some();
     let gravity_g = if uncertain && !rows.is_empty() {
-        let squares = rows.iter().map(|row| row.iter().map(|a| a * a).sum::<f64>());
+        let squares = rows
+            .iter()
+            .map(|row| row.iter().map(|a| a * a).sum::<f64>());
         let variance: f64 = accel_noise_g.iter().map(|sigma| sigma * sigma).sum();
         (squares.sum::<f64>() / rows.len() as f64 - variance)
             .max(0.0)

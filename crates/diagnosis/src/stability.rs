@@ -92,7 +92,10 @@ pub fn stability(
     let averaging = octaves(stretch.len());
     let mut points: [Vec<AllanPoint>; 3] = Default::default();
     for (axis, points) in points.iter_mut().enumerate() {
-        let series: Vec<f64> = whitened[stretch.clone()].iter().map(|row| row[axis]).collect();
+        let series: Vec<f64> = whitened[stretch.clone()]
+            .iter()
+            .map(|row| row[axis])
+            .collect();
         // Equal intervals and finite values: nothing to refuse.
         *points = allan_deviation(&series, interval_s, &averaging, CONFIDENCE)
             .map_err(|_| too_short.clone())?;

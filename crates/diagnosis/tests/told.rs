@@ -92,8 +92,7 @@ fn errors_of_accelerometers_are_told_by_what_they_go_with() {
         ),
     ];
     for (error_g, words) in cases {
-        let norm =
-            norm_verdict(&record(1, error_g), &bench(""), &[SIGMA_G; 3], 1e-3).unwrap();
+        let norm = norm_verdict(&record(1, error_g), &bench(""), &[SIGMA_G; 3], 1e-3).unwrap();
         assert!(norm.accelerometers);
         assert!(norm.description.contains(words), "{}", norm.description);
     }

@@ -47,7 +47,13 @@ fn campaign(cell: &str, seeds: core::ops::Range<u64>, small: bool) -> Result<Cam
     std::fs::create_dir_all(&directory)?;
     let file: String = cell
         .chars()
-        .map(|letter| if letter.is_alphanumeric() { letter } else { '-' })
+        .map(|letter| {
+            if letter.is_alphanumeric() {
+                letter
+            } else {
+                '-'
+            }
+        })
         .collect();
     Ok(campaign.results(directory.join(format!("diagnosis-ground-{file}-{program}.jsonl"))))
 }

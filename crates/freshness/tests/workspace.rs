@@ -307,12 +307,17 @@ fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
         LINE_FINDER,
     );
     let mut command = quick_cargo(&copy, &target("target"), "run");
-    let found = run(command.args(["--package", "finder"])).succeeded().stdout;
+    let found = run(command.args(["--package", "finder"]))
+        .succeeded()
+        .stdout;
     let lines: Vec<&str> = found.lines().collect();
     assert_eq!(lines.len(), 3, "{found}");
     assert_eq!(lines[0], "EffectsFound false");
     let words: Vec<&str> = lines[1].split(' ').collect();
-    assert_eq!([words[0], words[1], words[4]], ["gyro_x.line", "sine", "cosine"]);
+    assert_eq!(
+        [words[0], words[1], words[4]],
+        ["gyro_x.line", "sine", "cosine"]
+    );
     let number = |text: &str| text.parse::<f64>().unwrap();
     let (sine, cosine) = 30.0_f64.to_radians().sin_cos();
     for (place, truth) in [(2, 0.02 * cosine), (5, 0.02 * sine)] {

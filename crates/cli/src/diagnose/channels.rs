@@ -110,7 +110,9 @@ pub(super) fn allan_in_words(report: &DiagnosisReport) -> String {
     let most = allan
         .points
         .iter()
-        .flat_map(|point| (0..3).map(move |axis| (point.deviation[axis] / point.white, point, axis)))
+        .flat_map(|point| {
+            (0..3).map(move |axis| (point.deviation[axis] / point.white, point, axis))
+        })
         .max_by(|a, b| a.0.total_cmp(&b.0));
     let Some((factor, point, axis)) = most else {
         return String::new();

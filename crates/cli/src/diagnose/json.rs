@@ -12,8 +12,8 @@ use gyrocal_record::{
     RivalReport, SCHEMA_VERSION, ShiftReport,
 };
 
-use super::{apart, channels};
 use super::filter::Judged;
+use super::{apart, channels};
 use crate::Failure;
 use crate::noise;
 use crate::outputs::manifest;

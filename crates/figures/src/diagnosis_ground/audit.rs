@@ -226,9 +226,7 @@ fn is_sized(fault: Fault, audit: &NoiseAudit) -> bool {
     match fault {
         Fault::None | Fault::GyroRatio(_) => audit.findings.is_empty(),
         Fault::Quantised(step) => each("quantisation", step * 1e-5),
-        Fault::Outliers(_, size) => {
-            within("accel.outliers", 1, size * 1e-5, 0.05 * size * 1e-5)
-        }
+        Fault::Outliers(_, size) => within("accel.outliers", 1, size * 1e-5, 0.05 * size * 1e-5),
         Fault::Coloured(correlation) => within("accel.coloured_noise", 0, correlation, 0.03),
         Fault::Ratio(ratio) => each("noise", ratio),
     }

@@ -105,7 +105,9 @@ fn others(all: &[&Diagnosed], expected: &[&str]) -> String {
         for effect in more {
             *effects.entry(effect.to_owned()).or_default() += 1;
         }
-        let fewer = expected.iter().filter(|effect| !one.noise.iter().any(|n| n == **effect));
+        let fewer = expected
+            .iter()
+            .filter(|effect| !one.noise.iter().any(|n| n == **effect));
         for effect in fewer {
             *effects.entry(format!("no {effect}")).or_default() += 1;
         }
