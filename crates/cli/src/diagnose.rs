@@ -2,6 +2,7 @@
 
 mod apart;
 mod blind;
+mod channels;
 mod failed;
 mod figures;
 mod filter;

@@ -25,6 +25,8 @@ pub struct Remainder {
     pub unexplained: bool,
     /// What there is: channel, frequency, size; empty if nothing.
     pub description: String,
+    /// What the record is too short to be tested for; empty if all tests were made.
+    pub untested: Vec<&'static str>,
     /// The whitened innovations, row by row; NaN where there is no value.
     pub whitened: Vec<[f64; 3]>,
 }
@@ -60,6 +62,7 @@ pub fn remainder(
     });
     let mut p_value = 1.0_f64;
     let mut description = String::new();
+    let mut untested = Vec::new();
     if let [Ok(x), Ok(y), Ok(z)] = &lines {
         let of = [x.line, y.line, z.line];
         let (axis, p) = strongest(&of);
@@ -74,6 +77,8 @@ pub fn remainder(
                 line.amplitude
             );
         }
+    } else {
+        untested.push("lines of a spectrum");
     }
     if let Ok(correlation) = autocorrelation(&whitened, LAGS, false_alarm) {
         p_value = p_value.min(TESTS * correlation.p_value);
@@ -87,11 +92,14 @@ pub fn remainder(
                 correlation.ljung_box, correlation.degrees_of_freedom
             ));
         }
+    } else {
+        untested.push("correlation of neighbouring rows");
     }
     Ok(Remainder {
         p_value: p_value.min(1.0),
         unexplained: p_value < false_alarm,
         description,
+        untested,
         whitened,
     })
 }

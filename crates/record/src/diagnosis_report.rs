@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::channel_report::{AllanReport, NormReport};
 use crate::gain_report::GainReport;
 use crate::manifest::Manifest;
 use crate::report::NoiseReport;
@@ -17,6 +18,8 @@ pub struct DiagnosisReport {
     pub verdict: DiagnosisVerdict,
     /// Probability of any finding on a record of the nominal model with the declared noise.
     pub false_alarm_probability: f64,
+    /// What the norm of specific force says; `None` if there are too few complete rows.
+    pub norm: Option<NormReport>,
     /// What is wrong: noise, then causes, each in falling strength, then the filter.
     pub findings: Vec<FindingReport>,
     /// What the extended model gains; `None` without a cause.
@@ -31,6 +34,8 @@ pub struct DiagnosisReport {
     pub threshold: Option<f64>,
     /// Noise over the declared one by maximum likelihood, with all causes in the model.
     pub noise: NoiseReport,
+    /// How what is left averages out; `None` without a stretch of rows that is long enough.
+    pub allan: Option<AllanReport>,
     /// Effects that were not looked for, and those that so short a record could not show.
     pub not_searched: Vec<NotSearchedReport>,
     /// What another filter makes of the record, if one was asked for.
@@ -113,7 +118,8 @@ pub struct RemainderReport {
     pub verdict: RemainderVerdict,
     /// Probability of as much structure in white innovations.
     pub p_value: f64,
-    /// Channel, period and size of what there is; empty if it is noise.
+    /// Channel, period and size of what there is, or what could not be tested; empty if it is
+    /// noise.
     pub description: String,
 }
 
@@ -124,6 +130,8 @@ pub struct RemainderReport {
 pub enum RemainderVerdict {
     /// It is white.
     White,
+    /// Nothing stands out, but the record is too short for some of the tests.
+    NotTested,
     /// It has structure that no effect of the catalogue explains.
     Unexplained,
 }
@@ -176,6 +184,7 @@ pub struct FilterReport {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::channel_report::{AllanCourse, AllanPointReport};
     use crate::manifest::Input;
     use crate::report::{NoiseRatioReport, SCHEMA_VERSION};
 
@@ -211,6 +220,13 @@ mod tests {
             },
             verdict: DiagnosisVerdict::EffectsFound,
             false_alarm_probability: 0.01,
+            norm: Some(NormReport {
+                accelerometers: true,
+                p_value: 1e-9,
+                mean_g: 3e-6,
+                mean_sigma_g: 1e-7,
+                description: "it is above gravity".to_owned(),
+            }),
             findings: vec![FindingReport {
                 effect: "gyro_y.g_xx".to_owned(),
                 parameters: vec![size.clone(), onset],
@@ -260,6 +276,17 @@ mod tests {
                 accel: [ratio; 3],
                 gyro: [ratio; 3],
             },
+            allan: Some(AllanReport {
+                course: AllanCourse::LargerWhite,
+                p_value: 1e-4,
+                rows: 128,
+                points: vec![AllanPointReport {
+                    tau_s: 60.0,
+                    white: 1.0,
+                    deviation: [1.2; 3],
+                    interval: [[1.1, 1.3]; 3],
+                }],
+            }),
             not_searched: vec![NotSearchedReport {
                 effect: "gyro_x.magnetic".to_owned(),
                 why: "only if asked for".to_owned(),
@@ -288,6 +315,9 @@ mod tests {
         let value = serde_json::to_value(report()).unwrap();
         assert_eq!(value["verdict"], "effects-found");
         assert_eq!(value["remainder"]["verdict"], "white");
+        assert_eq!(value["allan"]["course"], "larger-white");
+        let untested = serde_json::to_value(RemainderVerdict::NotTested).unwrap();
+        assert_eq!(untested, "not-tested");
         assert_eq!(
             value["findings"][0]["parameters"][1]["sigma"],
             serde_json::Value::Null

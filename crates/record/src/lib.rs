@@ -53,6 +53,7 @@
 //! are written whole or not at all ([`Outputs`]).
 
 mod bench;
+mod channel_report;
 mod diagnosis_report;
 mod error;
 mod fields;
@@ -71,6 +72,7 @@ mod suggest;
 mod tables;
 
 pub use bench::{Bench, Gravity, Prior, SiteUncertainty};
+pub use channel_report::{AllanCourse, AllanPointReport, AllanReport, NormReport};
 pub use diagnosis_report::{
     CannotTellReport, DiagnosisReport, DiagnosisVerdict, EquivalentReport, FilterReport,
     FindingReport, NotSearchedReport, ParameterReport, RankedReport, RemainderReport,

@@ -7,14 +7,14 @@ use std::path::Path;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::generated::catalogue::EFFECTS;
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions};
-use gyrocal_diagnosis::{Acceptance, Diagnosis, NoiseFinding, Validation, Verdict};
+use gyrocal_diagnosis::{Acceptance, Diagnosis, NoiseFinding, Remainder, Validation, Verdict};
 use gyrocal_record::{
     DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, NotSearchedReport,
     ParameterReport, RankedReport, RemainderReport, RemainderVerdict, RivalReport, SCHEMA_VERSION,
 };
 
-use super::apart;
 use super::filter::Judged;
+use super::{apart, channels};
 use crate::Failure;
 use crate::noise;
 use crate::outputs::manifest;
@@ -51,16 +51,10 @@ pub(super) fn report(
             Verdict::Clean => DiagnosisVerdict::Clean,
         },
         false_alarm_probability: diagnosis.false_alarm_probability,
+        norm: diagnosis.norm.as_ref().map(channels::norm),
+        allan: diagnosis.stability.as_ref().map(channels::allan),
         gain: gain::report(diagnosis, validation),
-        remainder: RemainderReport {
-            verdict: if diagnosis.remainder.unexplained {
-                RemainderVerdict::Unexplained
-            } else {
-                RemainderVerdict::White
-            },
-            p_value: diagnosis.remainder.p_value,
-            description: diagnosis.remainder.description.clone(),
-        },
+        remainder: remainder(&diagnosis.remainder),
         cannot_tell: findings
             .iter()
             .flat_map(|finding| apart::cannot_tell(finding, &searched))
@@ -144,9 +138,26 @@ fn parameters(found: &[FoundParameter]) -> Vec<ParameterReport> {
         .collect()
 }
 
+fn remainder(remainder: &Remainder) -> RemainderReport {
+    let (verdict, description) = if remainder.unexplained {
+        (RemainderVerdict::Unexplained, remainder.description.clone())
+    } else if remainder.untested.is_empty() {
+        (RemainderVerdict::White, String::new())
+    } else {
+        let untested = remainder.untested.join(" and ");
+        (RemainderVerdict::NotTested, untested)
+    };
+    RemainderReport {
+        verdict,
+        p_value: remainder.p_value,
+        description,
+    }
+}
+
 /// Effects of the catalogue that neither the search nor the audit looked at, and why.
 fn not_searched(diagnosis: &Diagnosis<'_>) -> Vec<NotSearchedReport> {
     let audited = diagnosis.audit.accel_ratio.is_some();
+    let correlated = diagnosis.audit.cleaned.correlation != 0.0;
     EFFECTS
         .iter()
         .filter_map(|effect| {
@@ -160,6 +171,8 @@ fn not_searched(diagnosis: &Diagnosis<'_>) -> Vec<NotSearchedReport> {
                 return None;
             } else if id == super::filter::EFFECT {
                 "an error of a filter: --filter euler".to_owned()
+            } else if correlated && id.starts_with("gyro_") && id.ends_with(".noise") {
+                "correlated noise of the accelerometers hides it".to_owned()
             } else if noise && (audited || effect.enters == "drift" || tested_value_by_value(id)) {
                 return None;
             } else if noise {

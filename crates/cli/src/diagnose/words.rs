@@ -10,7 +10,7 @@ use gyrocal_record::{
 };
 
 use super::blind::is_blind;
-use super::{Found, filter, tables};
+use super::{Found, channels, filter, tables};
 use crate::rounding::rounded;
 use crate::text::{bullet, indented, paragraph};
 
@@ -26,6 +26,8 @@ pub(super) fn summary(found: &Found<'_>) -> String {
         found.record.duration_s() / 86_400.0
     );
     text.push_str(&paragraph(&verdict(found)));
+    text.push('\n');
+    text.push_str(&paragraph(&channels::norm_in_words(report)));
     for (index, finding) in report.findings.iter().enumerate() {
         let _ = writeln!(
             text,
@@ -76,6 +78,7 @@ pub(super) fn summary(found: &Found<'_>) -> String {
     }
     text.push('\n');
     text.push_str(&paragraph(&left(found)));
+    text.push_str(&paragraph(&channels::allan_in_words(report)));
     text.push_str(&tables::all(found));
     text
 }
@@ -120,8 +123,16 @@ fn verdict(found: &Found<'_>) -> String {
             probability(report.remainder.p_value)
         ),
         _ => format!(
-            "Nothing is wrong: noise as declared, no effect of the catalogue, white innovations \
-             ({alarm}).{}",
+            "Nothing is wrong: {}, no effect of the catalogue{} ({alarm}).{}",
+            if found.diagnosis.audit.accel_ratio.is_some() {
+                "noise as declared"
+            } else {
+                "no outliers nor quantisation (the record is too short for a spectrum of its noise)"
+            },
+            match report.remainder.verdict {
+                RemainderVerdict::White => ", white innovations",
+                _ => "",
+            },
             unseen(found)
         ),
     }
@@ -240,6 +251,10 @@ fn left(found: &Found<'_>) -> String {
         RemainderVerdict::Unexplained => format!(
             "Left unexplained: {} (probability by chance {p}). No effect of the catalogue does \
              this; docs/adding-a-term.md adds one.",
+            remainder.description
+        ),
+        RemainderVerdict::NotTested => format!(
+            "What is left was not tested for {}: the record is too short.",
             remainder.description
         ),
         _ => format!(

@@ -6,7 +6,7 @@ mod sealed;
 use std::fs;
 use std::sync::OnceLock;
 
-use gyrocal_record::{DiagnosisReport, DiagnosisVerdict, RemainderVerdict};
+use gyrocal_record::{AllanCourse, DiagnosisReport, DiagnosisVerdict, RemainderVerdict};
 
 use crate::folder::{Folder, repository};
 
@@ -70,6 +70,50 @@ fn the_hidden_fault_is_named_with_its_size() {
         "{said}"
     );
     assert_eq!(report.remainder.verdict, RemainderVerdict::White);
+}
+
+#[test]
+fn the_norm_says_which_side_and_averaging_what_is_left() {
+    let (said, folder) = whole();
+    let report = report(folder, "o.json");
+    let norm = report.norm.unwrap();
+    assert!(!norm.accelerometers && norm.description.is_empty());
+    // 2 sigma of a sample over twice the root of 4321 rows.
+    assert!((norm.mean_sigma_g / 1.52e-7 - 1.0).abs() < 0.01);
+    let norm_at = said.find("says: not the accelerometers' side").unwrap();
+    assert!(norm_at < said.find("\n1. gyro_y.g_z").unwrap(), "{said}");
+    let allan = report.allan.unwrap();
+    assert_eq!(allan.course, AllanCourse::White);
+    assert_eq!(allan.rows, 4321);
+    for point in &allan.points[..6] {
+        for (deviation, interval) in point.deviation.iter().zip(point.interval) {
+            // Six octaves from a row on, with a hundred degrees of freedom and more.
+            assert!((deviation / point.white - 1.0).abs() < 0.4, "{point:?}");
+            assert!(interval[0] < *deviation && *deviation < interval[1]);
+        }
+    }
+    assert!(said.contains("it falls as white noise of the believed size does"));
+}
+
+#[test]
+fn an_error_of_an_accelerometer_is_on_the_accelerometers_side() {
+    let folder = bad_input::shortened(720);
+    let biased: String = folder
+        .text(RECORD)
+        .lines()
+        .enumerate()
+        .map(|(line, text)| {
+            let mut cells: Vec<String> = text.split(',').map(str::to_owned).collect();
+            if line > 0 {
+                cells[1] = (cells[1].parse::<f64>().unwrap() + 5e-5).to_string();
+            }
+            cells.join(",") + "\n"
+        })
+        .collect();
+    folder.put(RECORD, biased);
+    let said = folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"]);
+    assert!(said.contains("says: the accelerometers' side"), "{said}");
+    assert!(report(&folder, "o.json").norm.unwrap().accelerometers);
 }
 
 #[test]

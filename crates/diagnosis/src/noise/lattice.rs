@@ -6,6 +6,9 @@ const NEAR: f64 = 0.05;
 const MOST: f64 = 0.98;
 /// Fewer steps than this prove nothing.
 const LEAST_STEPS: usize = 20;
+/// Nor do steps that are all of one size, as those of a steady trend are: so many values must
+/// repeat, or be apart by another multiple than most.
+const LEAST_OTHERS: usize = 10;
 
 /// A lattice that values lie on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +36,9 @@ pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Latt
     // Below this, two values are the same one with rounding of a printed decimal.
     let same = NEAR * least;
     let mut steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let apart = steps.len();
     steps.retain(|step| *step > same);
+    let repeated = apart - steps.len();
     steps.sort_unstable_by(f64::total_cmp);
     if steps.len() < LEAST_STEPS || steps[0] < least * (1.0 - NEAR) {
         return None;
@@ -41,7 +46,7 @@ pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Latt
     let step = common_divisor(&steps)?;
     let off = |distance: &&f64| ((**distance / step) - (**distance / step).round()).abs();
     let near = steps.iter().filter(|distance| off(distance) < NEAR).count();
-    if (near as f64) < MOST * steps.len() as f64 {
+    if (near as f64) < MOST * steps.len() as f64 || repeated + others(&steps, step) < LEAST_OTHERS {
         return None;
     }
     if is_smooth(&in_order, step) {
@@ -81,6 +86,16 @@ fn is_smooth(in_order: &[f64], step: f64) -> bool {
         }
     }
     moved > 0.5 * step * count && squares < 0.5 * (SMOOTH * step).powi(2) * count
+}
+
+/// How many of the steps, which rise, are another multiple than most.
+fn others(steps: &[f64], step: f64) -> usize {
+    let multiple = |distance: &f64| (distance / step).round();
+    let most = steps
+        .chunk_by(|a, b| multiple(a) == multiple(b))
+        .map(<[f64]>::len)
+        .max();
+    steps.len() - most.unwrap_or(0)
 }
 
 /// The step that the smallest distances suggest, refined with larger ones in turn.
@@ -137,6 +152,20 @@ mod tests {
         let step = 7e-4;
         let coarse = (0..60).map(|k| (slow(k) / step).round() * step);
         assert!(find(coarse, 7e-6).is_some());
+    }
+
+    #[test]
+    fn a_steady_trend_is_none() {
+        // Half an hour of a platform that turns: rows are apart by 2.4e-3 g, and that changes by
+        // 3 % over the record.
+        let trend = |row: f64| 2.4e-3 * row * (1.0 + 5e-4 * row) + 1e-5 * (7.0 * row).sin();
+        let values = || (0..29).map(|row| trend(f64::from(row)));
+        assert_eq!(find(values(), 5e-6), None);
+        // The same through a converter of three sigmas has steps of many multiples.
+        let step = 3e-5;
+        let found = find(values().map(|value| (value / step).round() * step), 5e-6);
+        // A lattice of a multiple that all values happen to have would be wider.
+        assert!(found.is_some_and(|lattice| (lattice.step / step - 1.0).abs() < 1e-3));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::{Error, campaign};
 use crate::figure::Figure;
 
 /// Clean records; records of each kind; records with each physical cause. With `--small` fewer.
-const RUNS: [u64; 3] = [2000, 1000, 200];
+const RUNS: [u64; 3] = [2000, 1000, 100];
 const SMALL_RUNS: [u64; 3] = [60, 24, 8];
 
 /// Share of the records that must have the right finding, and the right size.
@@ -40,7 +40,7 @@ struct Audited {
 type Make = fn() -> Term;
 
 /// Physical causes far larger than any that must be found, which the audit should leave alone.
-const CAUSES: [(&str, Make); 7] = [
+const CAUSES: [(&str, Make); 8] = [
     ("a step of 0.01 deg/h", || drift_step(0.01)),
     ("a step of 0.3 deg/h", || drift_step(0.3)),
     ("an accelerometer's step of 40 sigma", || {
@@ -53,6 +53,9 @@ const CAUSES: [(&str, Make); 7] = [
     }),
     ("a tone of 0.2 sigma with a period of 7 rows", || {
         Term::Output(Box::new(|m| [2e-6 * (m.time_s / 67.0).sin(), 0.0, 0.0]))
+    }),
+    ("a tone of 5 sigma with a period of 7 rows", || {
+        Term::Output(Box::new(|m| [5e-5 * (m.time_s / 67.0).sin(), 0.0, 0.0]))
     }),
     ("a tone of 0.01 deg/h with a period of 1 h", || {
         Term::Drift(Box::new(|m| [0.01 * (m.time_s * 1.7e-3).sin(), 0.0, 0.0]))

@@ -1,6 +1,7 @@
 //! Signatures of all effects against finite differences of the nonlinear simulation.
 
 use gyrocal_truth::{Population, Scenario, Temperature};
+use rayon::prelude::*;
 
 use super::Error;
 use super::difference::{Compared, compare};
@@ -8,7 +9,7 @@ use crate::figure::Figure;
 
 /// Seed of the population, and how many scenarios of it are compared.
 const POPULATION: u64 = 8;
-const SCENARIOS: u64 = 24;
+const SCENARIOS: u64 = 12;
 const FEW: u64 = 2;
 
 /// What a signature may differ from a finite difference, as a part of its norm.
@@ -16,15 +17,19 @@ const TARGET: f64 = 1e-3;
 
 pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let scenarios = if small { FEW } else { SCENARIOS };
-    let mut all: Vec<Compared> = Vec::new();
-    for number in 0..scenarios {
-        all.extend(compare(&Scenario {
+    let of = |number| {
+        compare(&Scenario {
             duration_s: 3.0 * 86_400.0,
             temperature: Some(Temperature::default()),
             magnetic_field_gauss: Some([0.01, 0.2, -0.45]),
             ..Population::new(POPULATION).scenario(number)
-        })?);
-    }
+        })
+    };
+    let each: Vec<Vec<Compared>> = (0..scenarios)
+        .into_par_iter()
+        .map(of)
+        .collect::<Result<_, Error>>()?;
+    let all: Vec<Compared> = each.into_iter().flatten().collect();
     let seeds = format!("population {POPULATION}, 0 to {}", scenarios - 1);
     let count = all.len() / scenarios as usize;
     let figure = |name: &str, errors: &[(f64, &str)]| {

@@ -1,5 +1,7 @@
 //! What cannot be diagnosed: exit code 1 or 2, one message, no output.
 
+use gyrocal_record::{DiagnosisVerdict, RemainderVerdict};
+
 use super::{BENCH, RECORD, folder};
 
 #[test]
@@ -36,7 +38,7 @@ fn an_effect_that_cannot_be_looked_for_is_refused() {
 }
 
 /// The record with its first rows only.
-fn shortened(rows: usize) -> crate::folder::Folder {
+pub(super) fn shortened(rows: usize) -> crate::folder::Folder {
     let folder = folder();
     let whole = folder.text(RECORD);
     let lines: Vec<&str> = whole.lines().take(rows + 1).collect();
@@ -67,6 +69,37 @@ fn a_short_record_says_what_it_could_not_show() {
         .find(|entry| entry.effect == "gyro_y.g_z")
         .unwrap();
     assert!(unseen.why.contains("too short"), "{unseen:?}");
+}
+
+#[test]
+fn what_a_record_is_too_short_to_be_tested_for_is_named() {
+    // Half an hour: rows are apart by the platform's steady turn, which is no lattice.
+    let folder = shortened(29);
+    let said = folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"]);
+    let report = super::report(&folder, "o.json");
+    assert_eq!(report.verdict, DiagnosisVerdict::Clean);
+    assert_eq!(report.findings, []);
+    assert_eq!(report.remainder.verdict, RemainderVerdict::NotTested);
+    assert_eq!(
+        report.remainder.description,
+        "correlation of neighbouring rows"
+    );
+    for words in [
+        "the record is too short for a spectrum of its noise",
+        "What is left was not tested for correlation of neighbouring rows",
+        "No stretch of rows without a gap is long enough for an Allan deviation",
+    ] {
+        assert!(said.replace('\n', " ").contains(words), "{words}\n{said}");
+    }
+    assert!(!said.contains("white"), "{said}");
+    let why = |effect: &str| {
+        let mut all = report.not_searched.iter();
+        all.find(|entry| entry.effect == effect)
+            .map_or("", |entry| &entry.why)
+            .to_owned()
+    };
+    assert!(why("accel_x.noise").contains("too short for a spectrum"));
+    assert!(why("gyro_y.g_z").contains("too short"));
 }
 
 #[test]

@@ -1,0 +1,129 @@
+//! What is told without being a finding: which side the norm speaks for, and how noise averages.
+#![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
+
+use gyrocal_diagnosis::{NoiseCourse, norm_verdict, stability};
+use gyrocal_record::{Bench, Record};
+use rand_chacha::ChaCha12Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+const ROWS: usize = 1440;
+const SIGMA_G: f64 = 1e-5;
+
+struct Normals(ChaCha12Rng);
+
+impl Normals {
+    fn of_seed(seed: u64) -> Self {
+        Self(ChaCha12Rng::seed_from_u64(seed))
+    }
+
+    fn uniform(&mut self) -> f64 {
+        ((self.0.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        (-2.0 * self.uniform().ln()).sqrt() * (core::f64::consts::TAU * self.uniform()).cos()
+    }
+
+    fn white(&mut self) -> Vec<[f64; 3]> {
+        (0..ROWS)
+            .map(|_| core::array::from_fn(|_| self.normal()))
+            .collect()
+    }
+}
+
+fn minutes() -> Vec<f64> {
+    (0..ROWS).map(|row| 60.0 * row as f64).collect()
+}
+
+/// A day in which gravity sweeps round the platform.
+fn record(seed: u64, error_g: impl Fn(usize, [f64; 3]) -> [f64; 3]) -> Record {
+    let noise = Normals::of_seed(seed).white();
+    let accel_g = noise.iter().enumerate().map(|(row, noise)| {
+        let angle = core::f64::consts::TAU * row as f64 / ROWS as f64;
+        let force = [0.8 * angle.cos(), 0.8 * angle.sin(), 0.6];
+        let error = error_g(row, force);
+        core::array::from_fn(|axis| force[axis] + SIGMA_G * noise[axis] + error[axis])
+    });
+    Record {
+        time_s: minutes(),
+        accel_g: accel_g.collect(),
+        temperature_c: None,
+    }
+}
+
+fn bench(more: &str) -> Bench {
+    let text = format!(
+        "[site]\nlatitude_deg = 39.1\n{more}\n[platform]\n[noise]\naccel_g = 1e-5\n\
+         gyro_deg_per_h = 0.002\n"
+    );
+    Bench::parse(&text, "bench").unwrap()
+}
+
+#[test]
+fn sound_records_are_told_of_no_more_often_than_they_may() {
+    const RECORDS: u64 = 400;
+    const FALSE_ALARM: f64 = 0.05;
+    let bench = bench("");
+    let (mut of_norm, mut of_averages) = (0, 0);
+    for seed in 0..RECORDS {
+        let sound = record(seed, |_, _| [0.0; 3]);
+        let norm = norm_verdict(&sound, &bench, &[SIGMA_G; 3], FALSE_ALARM).unwrap();
+        of_norm += u32::from(norm.accelerometers);
+        let white = Normals::of_seed(seed).white();
+        let found = stability(&minutes(), &white, FALSE_ALARM).unwrap();
+        of_averages += u32::from(found.course != NoiseCourse::White);
+    }
+    // At most 20 are expected, with a sigma of 4.4: four sigmas. Tests that share samples need
+    // less than each its share; none at all would be a test that sees nothing.
+    assert!((2..=38).contains(&of_norm), "{of_norm}");
+    assert!((2..=38).contains(&of_averages), "{of_averages}");
+}
+
+#[test]
+fn errors_of_accelerometers_are_told_by_what_they_go_with() {
+    type ErrorG = fn(usize, [f64; 3]) -> [f64; 3];
+    // In the norm each is 8 sigmas and more: 2 e·a over 2 sigma, times the root of 1440 rows.
+    let cases: [(ErrorG, &str); 3] = [
+        (|_, a| a.map(|a| 3e-6 * a), "above gravity by"),
+        (|_, _| [5e-6, 0.0, 0.0], "specific force along x"),
+        (
+            |row, _| [0.0, 0.0, 2e-5 * (row as f64 / 720.0 - 1.0)],
+            "varies with time",
+        ),
+    ];
+    for (error_g, words) in cases {
+        let norm = norm_verdict(&record(1, error_g), &bench(""), &[SIGMA_G; 3], 1e-3).unwrap();
+        assert!(norm.accelerometers);
+        assert!(norm.description.contains(words), "{}", norm.description);
+    }
+    // Where gravity itself is uncertain, its error is none of the accelerometers.
+    let scaled = record(1, |_, a| a.map(|a| 3e-6 * a));
+    let uncertain = bench("gravity_relative_sigma = 1e-4");
+    let norm = norm_verdict(&scaled, &uncertain, &[SIGMA_G; 3], 1e-3).unwrap();
+    assert!(!norm.accelerometers, "{norm:?}");
+}
+
+#[test]
+fn noise_that_does_not_average_out_is_told_by_its_course() {
+    let course = |of: &dyn Fn(usize, f64, &mut [f64; 3]) -> f64| {
+        let mut held = [0.0; 3];
+        let mut series = Normals::of_seed(5).white();
+        for (row, values) in series.iter_mut().enumerate() {
+            for value in values {
+                *value = of(row, *value, &mut held);
+            }
+        }
+        let found = stability(&minutes(), &series, 1e-3).unwrap();
+        // Each is far from white.
+        assert!(found.p_value < 1e-3 && found.most.is_some());
+        found.course
+    };
+    // Variance 2.25 where 1440 values know 1 to 4 %.
+    assert_eq!(course(&|_, white, _| 1.5 * white), NoiseCourse::LargerWhite);
+    // A walk of 0.1 a row is over white noise after ten rows.
+    let walk = |_: usize, white: f64, held: &mut [f64; 3]| {
+        held[0] += 0.3 * white;
+        held[0]
+    };
+    assert_eq!(course(&walk), NoiseCourse::Slow);
+}
