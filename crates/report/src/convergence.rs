@@ -14,7 +14,8 @@ use crate::trace::Frame;
 /// Estimates of coefficients against time with their bands of two sigma, one panel each.
 ///
 /// The scale of a panel is set by what the estimate and its band do after the first tenth of the
-/// time, and by the reference; what was before may leave the panel.
+/// time (four tenths if there is a rival), and by the reference; what was before may leave the
+/// panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
     /// What is seen.
@@ -54,6 +55,8 @@ pub struct ConvergingCoefficient {
 
 /// The part of the time that does not set the scale.
 const UNSETTLED: f64 = 0.1;
+/// The same with rivals: how two estimators differ shows when both have settled.
+const UNSETTLED_RIVALS: f64 = 0.4;
 const BAND_OPACITY: f64 = 0.35;
 
 impl Picture for Convergence {
@@ -80,7 +83,7 @@ impl Picture for Convergence {
         }
         let scale = format!(
             "scales leave the first {} of the time out",
-            percent(UNSETTLED)
+            percent(self.unsettled())
         );
         let subtitle = match self.subtitle.trim_end_matches('.') {
             "" => format!("{}{}.", scale[..1].to_uppercase(), &scale[1..]),
@@ -97,6 +100,14 @@ impl Picture for Convergence {
 }
 
 impl Convergence {
+    fn unsettled(&self) -> f64 {
+        if self.coefficients.iter().any(|c| c.rival.is_some()) {
+            UNSETTLED_RIVALS
+        } else {
+            UNSETTLED
+        }
+    }
+
     fn check(&self) -> Result<(), Error> {
         check::some("the list of converging coefficients", &self.coefficients)?;
         check::rising("the times of the estimates", &self.time_s)?;
@@ -128,7 +139,7 @@ impl Convergence {
             let band = band(&coefficient.estimate, &coefficient.sigma);
             let rival = coefficient.rival.as_ref();
             let rival_band = rival.map(|[estimate, sigma]| self::band(estimate, sigma));
-            let ordinate = coefficient.span(&elapsed, &band, rival_band.as_ref());
+            let ordinate = coefficient.span(&elapsed, &band, rival_band.as_ref(), self.unsettled());
             let frame = grid.frame(body, index);
             let ticks = (frame.width() / 45.0) as usize;
             let panel = Panel {
@@ -179,9 +190,10 @@ impl ConvergingCoefficient {
         elapsed: &[f64],
         band: &(Vec<f64>, Vec<f64>),
         rival: Option<&(Vec<f64>, Vec<f64>)>,
+        unsettled: f64,
     ) -> Span {
         let whole = elapsed.last().copied().unwrap_or(0.0);
-        let settled = elapsed.partition_point(|&time| time < UNSETTLED * whole);
+        let settled = elapsed.partition_point(|&time| time < unsettled * whole);
         let mut columns = vec![&self.estimate, &band.0, &band.1];
         columns.extend(rival.into_iter().flat_map(|(lower, upper)| [lower, upper]));
         let values = columns
