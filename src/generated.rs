@@ -25,6 +25,19 @@ pub mod surveyed {
     include!(concat!(env!("OUT_DIR"), "/surveyed.rs"));
 }
 
+/// The analytic platform of a strapdown unit: the drift law in the axes of gyros that are fixed to
+/// a body.
+#[cfg(not(gyrocal_rederived))]
+#[rustfmt::skip]
+pub mod strapdown;
+
+/// The analytic platform of a strapdown unit: the drift law in the axes of gyros that are fixed to
+/// a body.
+#[cfg(gyrocal_rederived)]
+pub mod strapdown {
+    include!(concat!(env!("OUT_DIR"), "/strapdown.rs"));
+}
+
 /// The platform with every effect of the catalogue, and the table of effects.
 #[cfg(all(feature = "catalogue", not(gyrocal_rederived)))]
 #[rustfmt::skip]
@@ -72,6 +85,14 @@ pub const SURVEYED_PROGRAM: &str = include_str!("generated/surveyed.json");
 /// The program of [`surveyed`], as derived: for interpreters.
 #[cfg(all(feature = "oracle", gyrocal_rederived))]
 pub const SURVEYED_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/surveyed.json"));
+
+/// The program of [`strapdown`], as derived: for interpreters.
+#[cfg(all(feature = "oracle", not(gyrocal_rederived)))]
+pub const STRAPDOWN_PROGRAM: &str = include_str!("generated/strapdown.json");
+
+/// The program of [`strapdown`], as derived: for interpreters.
+#[cfg(all(feature = "oracle", gyrocal_rederived))]
+pub const STRAPDOWN_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/strapdown.json"));
 
 /// The program of [`catalogue`], as derived: for interpreters.
 #[cfg(all(feature = "catalogue", feature = "oracle", not(gyrocal_rederived)))]

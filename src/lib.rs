@@ -84,6 +84,7 @@ pub use filter::{FactorisedPlatformFilter, PlatformFilter, Settings};
 #[cfg(feature = "catalogue")]
 pub use generated::catalogue::{Catalogue, EFFECTS, EffectRow};
 pub use generated::platform::{Drift, Platform};
+pub use generated::strapdown::Strapdown;
 pub use generated::surveyed::Surveyed;
 pub use gyrocal_estimation::{
     self as estimation, EstimationError, Innovation, Integration, Recentring,

@@ -11,7 +11,11 @@ def drift_rate(theta: ca.SX, drift: ca.SX, noise: ca.SX, f_0: ca.SX) -> ca.SX:
     `a` is the specific force along the gyro's own input axis, which is the platform
     axis of the same name.
     """
-    a = specific_force(theta, f_0)
+    return drift_law(specific_force(theta, f_0), drift, noise)
+
+
+def drift_law(a: ca.SX, drift: ca.SX, noise: ca.SX) -> ca.SX:
+    """The same of specific force `a` along the input axes of the gyros."""
     coefficients = ca.reshape(drift, 3, 3).T
     bias, along, square = coefficients[:, 0], coefficients[:, 1], coefficients[:, 2]
     return bias + along * a + square * a**2 + noise

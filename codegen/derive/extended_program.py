@@ -5,23 +5,29 @@ from dataclasses import replace
 import casadi as ca
 
 from casadi_program import Element, ExportError, Function, Group, Output, Program, Table
-from drift import drift_rate
+from drift import drift_law
 from effect import At, Effect, by_axis, rust_name
 from frames import platform_c_chart
 from functions import AWAY_FROM_GIMBAL_LOCK, at_origin, with_jacobian
 from kinematics import angle_rates_of
-from layout import AXES, conditions, drift, drift_noise, east_0, f_0, field_0, omega_0, theta
+from layout import (
+    AXES, conditions, drift, drift_noise, east_0, f_0, field_0, omega_0, platform_c_gyros, theta,
+)
 from specific_force import specific_force
 
 
 def program(name: str, model: str, doc: str, effects: list[Effect],
-            tables: list[Table] = ()) -> Program:
-    """The functions of a model, the nominal one with `effects`. Inputs are those it needs."""
+            tables: list[Table] = (), strapdown: bool = False) -> Program:
+    """The functions of a model, the nominal one with `effects`. Inputs are those it needs.
+
+    With `strapdown` the platform is computed from the outputs of gyros that are fixed to a body.
+    """
     effects = _output_first(effects)
     parameters = _parameters(effects)
     shapes = _shapes(effects)
-    rates, reading = _expressions(effects, parameters, shapes)
-    candidates = [omega_0, f_0, east_0, field_0, conditions, *([shapes] if shapes else [])]
+    rates, reading = _expressions(effects, parameters, shapes, strapdown)
+    candidates = [omega_0, f_0, east_0, field_0, platform_c_gyros, conditions,
+                  *([shapes] if shapes else [])]
 
     def needed(expression: ca.SX) -> list[Group]:
         return [group for group in candidates if ca.depends_on(expression, group.sx)]
@@ -120,8 +126,13 @@ def _shapes(effects: list[Effect]) -> Group | None:
     return Group("shapes", "Onsets and time constants of effects.", elements) if elements else None
 
 
-def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None):
-    """Rates of the angles, and what the accelerometers read."""
+def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
+                 strapdown: bool = False):
+    """Rates of the angles, and what the accelerometers read.
+
+    Gyros whose outputs, not whose torquers, hold the platform turn it by minus their error: what
+    they say too much is taken off the attitude (docs/measured-data.md).
+    """
     at = At(
         a={}, drift={}, field={},
         time_s=conditions["time_s"], interval_s=conditions["interval_s"],
@@ -136,13 +147,16 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None)
 
     for effect in _entering("site", effects):
         at = replace(at, **term(effect))
-    at = replace(
-        at,
-        a=by_axis(specific_force(theta.sx, at.f_0)),
-        field=by_axis(platform_c_chart(theta.sx) @ field_0.sx),
-    )
+    force = specific_force(theta.sx, at.f_0)
+    field = platform_c_chart(theta.sx) @ field_0.sx
+    along_platform = replace(at, a=by_axis(force))
+    if strapdown:
+        # Rows of the matrix are elements in a row; CasADi fills columns first.
+        rotation = ca.reshape(platform_c_gyros.sx, 3, 3).T
+        force, field = rotation.T @ force, rotation.T @ field
+    at = replace(at, a=by_axis(force), field=by_axis(field))
     nominal = parameters.sx[: len(drift.elements)]
-    omega_d = drift_rate(theta.sx, nominal, drift_noise.sx, at.f_0)
+    omega_d = drift_law(force, nominal, drift_noise.sx)
     # Terms that take drifts take those that the others add up to.
     others = ca.SX.sym("omega_d", 3)
     at = replace(at, drift=by_axis(others))
@@ -152,7 +166,10 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None)
     of_others = ca.vertcat(*[sum((e for e in added[i] if ca.depends_on(e, others)), ca.SX(0))
                              for i in AXES])
     omega_d = plain + ca.substitute(of_others, others, plain)
+    if strapdown:
+        omega_d = -rotation @ omega_d
     rates = angle_rates_of(theta.sx, omega_d, at.omega_0)
+    at = along_platform
     for effect in _entering("time", effects):
         rates = term(effect) * rates
     read = _sum(term(effect) for effect in _entering("output", effects))

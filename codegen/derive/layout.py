@@ -65,6 +65,14 @@ field_0 = Group(
     [Element(f"field_0_{i}", "gauss", f"magnetic field along chart {i}") for i in AXES],
 )
 
+platform_c_gyros = Group(
+    "platform_c_gyros",
+    "Direction cosine matrix by rows: platform components from components along the input axes "
+    "of gyros that are fixed to a body and not to the platform.",
+    [Element(f"platform_{i}_gyro_{j}", "1", f"platform {i} along the input axis of gyro {j}")
+     for i in AXES for j in AXES],
+)
+
 conditions = Group(
     "conditions",
     "What changes from step to step and is known.",

@@ -10,6 +10,7 @@ import model_file
 import oracle_program
 import platform_program
 import reference
+import strapdown_program
 import surveyed_program
 
 
@@ -19,6 +20,7 @@ def derive(output: Path) -> None:
         platform_program.program(),
         oracle_program.program(),
         surveyed_program.program(),
+        strapdown_program.program(),
         catalogue_program.program(),
     ]
     for program in programs:

@@ -12,6 +12,7 @@ from pathlib import Path
 import casadi as ca
 
 from casadi_program import Element, Group, Program
+from frames import platform_c_chart
 
 POINTS = 200
 SEED = 20150101
@@ -41,6 +42,13 @@ def _point(rng: random.Random) -> dict[str, list[float]]:
         "field_0": [rng.uniform(-0.6, 0.6) for _ in range(3)],
         "conditions": [rng.uniform(0, 3 * DAY_S), rng.uniform(1, 120), rng.uniform(-5, 5)],
     }
+
+
+def _rotation(rng: random.Random) -> list[float]:
+    """A direction cosine matrix by rows."""
+    angles = [rng.uniform(-math.pi, math.pi) for _ in range(3)]
+    rows = platform_c_chart(ca.DM(angles))
+    return [float(rows[i, j]) for i in range(3) for j in range(3)]
 
 
 def _own(group: Group, point: dict[str, list[float]], rng: random.Random) -> list[float]:
@@ -76,6 +84,7 @@ def write(programs: list[Program], path: Path) -> None:
         if group.name in OWN_GROUPS
     }
     for point in points:
+        point["platform_c_gyros"] = _rotation(rng)
         point.update({key: _own(group, point, rng) for key, group in own.items()})
     document = {
         "casadi_version": ca.__version__,

@@ -122,13 +122,23 @@ macro_rules! extended {
 
 /// function, output, what it is the derivative of, with respect to what.
 fn table() -> Vec<(&'static str, &'static str, &'static str, By)> {
-    let extended = [extended!("surveyed").0, extended!("catalogue").0].concat();
+    let extended = [
+        extended!("surveyed").0,
+        extended!("strapdown").0,
+        extended!("catalogue").0,
+    ]
+    .concat();
     [&NOMINAL[..], &extended].concat()
 }
 
 /// function, output, and the function whose value it repeats.
 pub(crate) fn values() -> Vec<(&'static str, &'static str, &'static str)> {
-    let extended = [extended!("surveyed").1, extended!("catalogue").1].concat();
+    let extended = [
+        extended!("surveyed").1,
+        extended!("strapdown").1,
+        extended!("catalogue").1,
+    ]
+    .concat();
     [&NOMINAL_VALUES[..], &extended].concat()
 }
 

@@ -1,6 +1,6 @@
 //! The generated functions, and the proof that none is left out.
 
-use gyrocal::generated::{catalogue, oracle, platform, surveyed};
+use gyrocal::generated::{catalogue, oracle, platform, strapdown, surveyed};
 use gyrocal_oracle::nonzeros::Nonzeros;
 use gyrocal_scalar::Scalar;
 
@@ -74,6 +74,16 @@ generated! {
     surveyed::dynamics_at_origin_jacobian(parameters, omega_0, f_0, east_0)
         -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
     surveyed::accelerometers_at_origin_jacobian(parameters, f_0)
+        -> [reading, reading_d_theta, reading_d_parameters];
+    strapdown::dynamics(theta, parameters, omega_0, f_0, east_0, platform_c_gyros);
+    strapdown::dynamics_jacobian(theta, parameters, omega_0, f_0, east_0, platform_c_gyros)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
+    strapdown::accelerometers(theta, parameters, f_0);
+    strapdown::accelerometers_jacobian(theta, parameters, f_0)
+        -> [reading, reading_d_theta, reading_d_parameters];
+    strapdown::dynamics_at_origin_jacobian(parameters, omega_0, f_0, east_0, platform_c_gyros)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
+    strapdown::accelerometers_at_origin_jacobian(parameters, f_0)
         -> [reading, reading_d_theta, reading_d_parameters];
     catalogue::dynamics(
         theta, parameters, omega_0, f_0, east_0, field_0, conditions, shapes);

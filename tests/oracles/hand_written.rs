@@ -1,6 +1,6 @@
 //! Functions that generated ones are derivatives of, where no generated function is.
 
-use gyrocal::generated::{catalogue, platform, surveyed};
+use gyrocal::generated::{catalogue, platform, strapdown, surveyed};
 use gyrocal_scalar::Scalar;
 
 use crate::callable::{Callable, callable, take};
@@ -21,6 +21,10 @@ pub(crate) fn hand_written() -> Vec<Callable> {
             ["origin", "surveyed::parameters", "omega_0", "f_0", "east_0"];
         "surveyed::accelerometers_from_origin" = surveyed_accelerometers,
             ["origin", "surveyed::parameters", "f_0"];
+        "strapdown::dynamics_from_origin" = strapdown_dynamics,
+            ["origin", "strapdown::parameters", "omega_0", "f_0", "east_0", "platform_c_gyros"];
+        "strapdown::accelerometers_from_origin" = strapdown_accelerometers,
+            ["origin", "strapdown::parameters", "f_0"];
         "catalogue::dynamics_from_origin" = catalogue_dynamics,
             ["origin", "catalogue::parameters", "omega_0", "f_0", "east_0", "field_0",
              "conditions", "catalogue::shapes"];
@@ -93,6 +97,21 @@ fn surveyed_dynamics<T: Scalar>(inputs: &[T]) -> Vec<T> {
 fn surveyed_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
     let mut rest = inputs;
     surveyed::accelerometers(take(&mut rest), take(&mut rest), take(&mut rest)).to_vec()
+}
+
+/// Rates of the analytic platform at angles near zero.
+fn strapdown_dynamics<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let (theta, parameters) = (take(&mut rest), take(&mut rest));
+    let (omega_0, f_0, east_0) = (take(&mut rest), take(&mut rest), take(&mut rest));
+    let gyros = take(&mut rest);
+    strapdown::dynamics(theta, parameters, omega_0, f_0, east_0, gyros).to_vec()
+}
+
+/// What the accelerometers of the analytic platform read at angles near zero.
+fn strapdown_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    strapdown::accelerometers(take(&mut rest), take(&mut rest), take(&mut rest)).to_vec()
 }
 
 /// Rates of the platform with all effects at angles near zero.

@@ -1,6 +1,6 @@
 //! Where generated code says that the elements of its arrays are, against the programs.
 
-use gyrocal::generated::{catalogue, oracle, platform, surveyed};
+use gyrocal::generated::{catalogue, oracle, platform, strapdown, surveyed};
 use gyrocal_oracle::points::{Purpose, State, states};
 use gyrocal_oracle::program::Output;
 use gyrocal_scalar::Element;
@@ -76,6 +76,13 @@ fn sparse_outputs() -> Vec<Sparse> {
             -> AccelerometersAtOriginJacobian:
             reading_d_theta, READING_D_THETA, reading_d_theta_dense;
             reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        strapdown::accelerometers_jacobian(theta, &surveyed, f_0) -> AccelerometersJacobian:
+            reading_d_theta, READING_D_THETA, reading_d_theta_dense;
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        strapdown::accelerometers_at_origin_jacobian(&surveyed, f_0)
+            -> AccelerometersAtOriginJacobian:
+            reading_d_theta, READING_D_THETA, reading_d_theta_dense;
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
         catalogue::dynamics_jacobian(
             theta, &catalogue, omega_0, f_0, east_0, field_0, conditions, &shapes)
             -> DynamicsJacobian:
@@ -139,7 +146,7 @@ fn sparse_outputs_stand_where_the_program_has_them() {
 
 #[test]
 fn groups_have_the_elements_of_the_program() {
-    let generated: [(&str, &[Element]); 24] = [
+    let generated: [(&str, &[Element]); 30] = [
         ("theta", &platform::THETA),
         ("drift", &platform::DRIFT),
         ("omega_0", &platform::OMEGA_0),
@@ -156,6 +163,12 @@ fn groups_have_the_elements_of_the_program() {
         ("omega_0", &surveyed::OMEGA_0),
         ("f_0", &surveyed::F_0),
         ("east_0", &surveyed::EAST_0),
+        ("theta", &strapdown::THETA),
+        ("strapdown::parameters", &strapdown::PARAMETERS),
+        ("omega_0", &strapdown::OMEGA_0),
+        ("f_0", &strapdown::F_0),
+        ("east_0", &strapdown::EAST_0),
+        ("platform_c_gyros", &strapdown::PLATFORM_C_GYROS),
         ("theta", &catalogue::THETA),
         ("catalogue::parameters", &catalogue::PARAMETERS),
         ("omega_0", &catalogue::OMEGA_0),

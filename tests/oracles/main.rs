@@ -25,8 +25,11 @@ mod model;
 mod model_extended;
 mod mutation;
 mod scalar_types;
+mod strapdown;
 
-use gyrocal::generated::{CATALOGUE_PROGRAM, ORACLE_PROGRAM, PLATFORM_PROGRAM, SURVEYED_PROGRAM};
+use gyrocal::generated::{
+    CATALOGUE_PROGRAM, ORACLE_PROGRAM, PLATFORM_PROGRAM, STRAPDOWN_PROGRAM, SURVEYED_PROGRAM,
+};
 use gyrocal_oracle::compare::{Comparison, Mismatch};
 use gyrocal_oracle::program::Program;
 
@@ -43,6 +46,7 @@ fn programs() -> Vec<Program> {
         PLATFORM_PROGRAM,
         ORACLE_PROGRAM,
         SURVEYED_PROGRAM,
+        STRAPDOWN_PROGRAM,
         CATALOGUE_PROGRAM,
     ];
     texts

@@ -1,40 +1,49 @@
 //! The batch estimator: from filtered trajectories to the joint solution.
 
+use gyrocal::estimation::Manifold;
 use gyrocal::estimation::batch::Linearisation;
-use gyrocal::generated::surveyed::SurveyedInputs;
-use gyrocal::trajectory::{angles_rad, platform_c_enu};
-use gyrocal::{Anchored, Drift, Recentring, Settings, Surveyed};
+use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
+use gyrocal::{Chart, Drift, Recentring, Settings};
 
 use crate::PARAMETERS;
 use crate::begin::{begin, leg};
 use crate::calibrate::Options;
 use crate::error::CalibrationError;
 use crate::fit::Fit;
+use crate::gyro_axes::GyroAxes;
 use crate::layout::{Layout, SiteQuantity};
 use crate::noise;
 use crate::observability::undetermined;
+use crate::problem::Problem;
 use crate::result::{AzimuthSearch, Calibration, RunResult, SiteInfluence};
 use crate::robust;
-use crate::run::Run;
+use crate::run::{Conditions, Run};
 use crate::settings::level;
-use crate::solve::{Failure, Problem, Solution};
+use crate::solve::{Failure, Solution};
 use crate::uncertainty::Uncertainty;
 
 /// Steps after which an estimate that still moves is given up.
 pub(crate) const MOST_ITERATIONS: usize = 50;
 
-pub(crate) type BatchProblem<'a> = Problem<'a, Anchored<Surveyed>, SurveyedInputs<f64>>;
-
-/// Calibrates on whole records.
-pub(crate) fn calibrate(
+/// Calibrates on whole records with a model whose parameters are those of
+/// [`gyrocal::Surveyed`]; `gyro_axes`, one for each run, for models in which gyros do not lie
+/// along the platform's axes.
+pub(crate) fn calibrate<D, I>(
+    model: &D,
     runs: &[Run<'_>],
+    gyro_axes: Option<&[GyroAxes]>,
     options: &Options,
     progress: &mut dyn FnMut(usize),
-) -> Result<Calibration, CalibrationError> {
+) -> Result<Calibration, CalibrationError>
+where
+    D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
+    I: Conditions,
+{
     let benches: Vec<_> = runs.iter().map(|run| run.bench).collect();
     let layout = Layout::new(&benches);
     let solve = |careful: bool, progress: &mut dyn FnMut(usize)| {
-        let (mut problem, azimuths) = problem(runs, &layout, options, careful, progress)?;
+        let (mut problem, azimuths) =
+            problem(model, runs, gyro_axes, &layout, options, careful, progress)?;
         let (solution, bounded) = match options.outlier_bound {
             Some(bound) => robust::solve(&mut problem, bound, MOST_ITERATIONS),
             None => problem
@@ -83,15 +92,21 @@ pub(crate) fn calibrate(
 }
 
 /// The joint problem at its start.
-fn problem<'a>(
+fn problem<'a, D, I>(
+    model: &'a D,
     runs: &[Run<'a>],
+    gyro_axes: Option<&'a [GyroAxes]>,
     layout: &Layout,
     options: &Options,
     careful: bool,
     progress: &mut dyn FnMut(usize),
-) -> Result<(BatchProblem<'a>, Vec<Option<AzimuthSearch>>), CalibrationError> {
+) -> Result<(Problem<'a, D, I>, Vec<Option<AzimuthSearch>>), CalibrationError>
+where
+    D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
+    I: Conditions,
+{
     let mut problem = Problem {
-        model: &Anchored(Surveyed),
+        model,
         integration: options.integration,
         longest_step_s: options.longest_step_s,
         unknowns: layout.unknowns.clone(),
@@ -107,37 +122,47 @@ fn problem<'a>(
             longest_step_s: options.longest_step_s,
             ..level(run.bench)
         };
-        let beginning = begin(run, &settings, options, careful)?;
+        let beginning = begin(run, &settings, options, careful)
+            .map_err(|error| error.of_record(index, runs.len()))?;
         let start = beginning.start;
-        for (i, sum) in weights.iter_mut().enumerate() {
-            let weight: f64 = start.sigma[i].powi(-2);
-            *sum += weight;
-            problem.values[i] += (start.drift[i] - problem.values[i]) * weight / *sum;
+        // The filter's drifts are those of gyros along the platform's axes.
+        if gyro_axes.is_none() {
+            for (i, sum) in weights.iter_mut().enumerate() {
+                let weight: f64 = start.sigma[i].powi(-2);
+                *sum += weight;
+                problem.values[i] += (start.drift[i] - problem.values[i]) * weight / *sum;
+            }
         }
         let prior = beginning.prior;
-        problem.legs.push(leg(
+        let mut leg = leg(
             run,
             run.record.len(),
             &settings,
             &prior,
             start.points,
             layout.sums(index),
-        ));
+        );
+        leg.rows.gyro_axes = gyro_axes.map(|axes| &axes[index]);
+        problem.legs.push(leg);
         azimuths.push(beginning.azimuth);
         progress(run.record.len());
     }
     Ok((problem, azimuths))
 }
 
-fn run_results(
-    problem: &BatchProblem<'_>,
+fn run_results<D, I>(
+    problem: &Problem<'_, D, I>,
     solution: &Solution,
     layout: &Layout,
     uncertainty: &Uncertainty,
     azimuths: Vec<Option<AzimuthSearch>>,
     bounded: &[usize],
     options: &Options,
-) -> Result<Vec<RunResult>, CalibrationError> {
+) -> Result<Vec<RunResult>, CalibrationError>
+where
+    D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
+    I: Conditions,
+{
     azimuths
         .into_iter()
         .enumerate()

@@ -1,17 +1,18 @@
 //! Where Gauss-Newton steps begin: at a filtered trajectory near enough to the solution.
 
+use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::trajectory::{Orientation, rotation_between};
-use gyrocal::{Anchored, Chart, Drift, Settings, Surveyed};
+use gyrocal::{Anchored, Chart, ChartInputs, Drift, Settings, Surveyed};
 
 use crate::attitude::{InitialAttitude, Trial, trials};
-use crate::batch::{BatchProblem, MOST_ITERATIONS};
+use crate::batch::MOST_ITERATIONS;
 use crate::calibrate::Options;
 use crate::error::CalibrationError;
 use crate::further::Further;
 use crate::layout::Layout;
+use crate::problem::{Leg, Problem};
 use crate::result::AzimuthSearch;
 use crate::run::{Rows, Run};
-use crate::solve::{Leg, Problem};
 use crate::start::{Start, filtered};
 use crate::uncertainty::Uncertainty;
 
@@ -60,14 +61,14 @@ pub(crate) fn begin(
     })
 }
 
-pub(crate) fn leg<'a>(
+pub(crate) fn leg<'a, I: ChartInputs<f64>>(
     run: &Run<'a>,
     rows: usize,
     settings: &Settings<f64>,
     prior: &InitialAttitude,
     points: Vec<Orientation>,
     sums: Vec<Vec<usize>>,
-) -> Leg<'a, gyrocal::generated::surveyed::SurveyedInputs<f64>> {
+) -> Leg<'a, I> {
     Leg {
         rows: Rows::new(run.record, rows, [settings.accel_noise_g; 3]),
         chart: Chart::for_model(settings.site),
@@ -82,14 +83,14 @@ pub(crate) fn leg<'a>(
 }
 
 /// One run by itself, to be solved over its first rows.
-fn alone<'a>(
+pub(crate) fn alone<'a>(
     run: &Run<'a>,
     rows: usize,
     settings: &Settings<f64>,
     prior: &InitialAttitude,
     start: &Start,
     options: &Options,
-) -> BatchProblem<'a> {
+) -> Problem<'a, Anchored<Surveyed>, SurveyedInputs<f64>> {
     let layout = Layout::new(&[run.bench]);
     let mut values = vec![0.0; layout.unknowns.len()];
     values[..start.drift.len()].copy_from_slice(&start.drift);

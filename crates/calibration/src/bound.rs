@@ -10,9 +10,9 @@ use crate::begin::leg;
 use crate::calibrate::Options;
 use crate::error::CalibrationError;
 use crate::layout::Layout;
+use crate::problem::Problem;
 use crate::run::Run;
 use crate::settings::level;
-use crate::solve::Problem;
 
 /// Cramér-Rao bound of the nine coefficients: the covariance that no estimator of them falls
 /// below, if noise and prior are what the bench declares.

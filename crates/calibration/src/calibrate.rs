@@ -1,8 +1,9 @@
-use gyrocal::{Integration, Platform, Recentring, Settings};
+use gyrocal::{Anchored, Integration, Platform, Recentring, Settings, Strapdown, Surveyed};
 use gyrocal_record::{Bench, Record};
 use nalgebra::SMatrix;
 
 use crate::error::CalibrationError;
+use crate::gyro_axes::GyroAxes;
 use crate::result::Calibration;
 use crate::run::Run;
 use crate::settings::settings;
@@ -98,7 +99,8 @@ pub fn calibrate(
 /// its own initial attitude and start.
 ///
 /// # Errors
-/// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`] of a record;
+/// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`] of a record, as
+/// [`CalibrationError::OfSeveral`] if there are several;
 /// [`CalibrationError::Filter`] with the row at which the filter stopped;
 /// [`CalibrationError::NotConverged`] and [`CalibrationError::NoDescent`] of the batch
 /// estimator; [`CalibrationError::NotPositiveDefinite`] if the covariance that was found is
@@ -109,14 +111,47 @@ pub fn calibrate_runs(
     options: &Options,
     mut progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    for run in runs {
-        check(run.record)?;
+    for (index, run) in runs.iter().enumerate() {
+        check(run.record).map_err(|error| error.of_record(index, runs.len()))?;
     }
     match (options.method, runs) {
-        (Method::Batch, _) => batch::calibrate(runs, options, &mut progress),
+        (Method::Batch, _) => {
+            batch::calibrate(&Anchored(Surveyed), runs, None, options, &mut progress)
+        }
         (Method::Streaming, [run]) => streaming(run, options, &mut progress),
         (Method::Streaming, _) => Err(CalibrationError::OneRecord { found: runs.len() }),
     }
+}
+
+/// Estimates the nine coefficients of a strapdown unit's gyros, in their own axes, from the
+/// records of the space-stable platform that was computed from their outputs: one record or
+/// several of one unit, each with the axes of its gyros. Always by the batch estimator.
+///
+/// Coefficients are errors of the gyros' outputs. In one attitude, however long, all of a gyro's
+/// are one number; records in other attitudes tell them apart.
+///
+/// # Errors
+/// [`CalibrationError::GyroAxes`] if there is not one attitude of the gyros for each row;
+/// otherwise as [`calibrate_runs`].
+pub fn calibrate_strapdown(
+    runs: &[Run<'_>],
+    gyro_axes: &[GyroAxes],
+    options: &Options,
+    mut progress: impl FnMut(usize),
+) -> Result<Calibration, CalibrationError> {
+    for run in runs {
+        check(run.record)?;
+    }
+    let rows = runs.iter().map(|run| run.record.len()).collect::<Vec<_>>();
+    let attitudes = gyro_axes.iter().map(GyroAxes::len).collect::<Vec<_>>();
+    if rows != attitudes {
+        return Err(CalibrationError::GyroAxes {
+            rows: rows.iter().sum(),
+            attitudes: attitudes.iter().sum(),
+        });
+    }
+    let model = &Anchored(Strapdown);
+    batch::calibrate(model, runs, Some(gyro_axes), options, &mut progress)
 }
 
 /// A row in which all accelerometers say `NaN` counts for nothing.

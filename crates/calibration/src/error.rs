@@ -25,6 +25,17 @@ pub enum CalibrationError {
         /// Number of accelerometer samples.
         samples: usize,
     },
+    /// Rows of the records, and attitudes of the gyros that go with them, are not as many.
+    #[error(
+        "{rows} rows and {attitudes} attitudes of the gyros, expected one attitude for each row of \
+         each record"
+    )]
+    GyroAxes {
+        /// Number of rows.
+        rows: usize,
+        /// Number of attitudes.
+        attitudes: usize,
+    },
     /// The filter could not go on; the source says why.
     #[error("the filter stopped at row {row} of the data (t = {time_s} s)")]
     Filter {
@@ -92,6 +103,16 @@ pub enum CalibrationError {
         /// Length of the last one in standard deviations of the whole problem.
         last_step: f64,
     },
+    /// One of several records could not be taken; the source says why.
+    #[error("record {run} of {runs} cannot be calibrated")]
+    OfSeveral {
+        /// Number of the record, counted from 1.
+        run: usize,
+        /// Number of records.
+        runs: usize,
+        /// What is wrong with it.
+        source: Box<CalibrationError>,
+    },
     /// Rows cannot be averaged over such intervals.
     #[error(
         "means over {found_s} s were asked for, expected from {least_s} s, two rows of the record, \
@@ -113,6 +134,20 @@ pub enum CalibrationError {
          covariance as factors"
     )]
     NotPositiveDefinite,
+}
+
+impl CalibrationError {
+    /// Says which of several records an error is about, `index` counted from 0.
+    pub(crate) fn of_record(self, index: usize, runs: usize) -> Self {
+        if runs == 1 {
+            return self;
+        }
+        Self::OfSeveral {
+            run: index + 1,
+            runs,
+            source: Box::new(self),
+        }
+    }
 }
 
 impl From<Failure> for CalibrationError {

@@ -18,9 +18,10 @@ use crate::error::CalibrationError;
 use crate::further::Further;
 use crate::layout::SiteQuantity;
 use crate::noise::{self, NoiseEstimate};
+use crate::problem::{Leg, Problem, Unknown};
 use crate::run::{Rows, Run};
 use crate::settings::level;
-use crate::solve::{Failure, Leg, Problem, Solution, Unknown, add_gram};
+use crate::solve::{Failure, Solution, add_gram};
 use crate::uncertainty::Uncertainty;
 
 pub use prediction::{Estimates, Expectation};
@@ -39,6 +40,9 @@ pub struct Extension {
 
 const SHAPES: usize = catalogue::SHAPES.len();
 
+/// How much wider than its estimate is large the prior of an unknown is that has none.
+const WIDE: f64 = 100.0;
+
 impl Default for Extension {
     fn default() -> Self {
         Self {
@@ -56,6 +60,9 @@ pub struct Jump {
     pub score: [f64; 3],
     /// Information on it, 1/rad².
     pub information: [[f64; 3]; 3],
+    /// Score of a change of each reading of the row that ends the step, 1/g; zero where there is
+    /// none.
+    pub readings: [f64; 3],
 }
 
 /// What a bench declares uncertain of its site is free to take that up in every fit.
@@ -351,7 +358,9 @@ impl<'a> Extended<'a> {
     }
 
     /// Logarithm of the density of the record without the rows of a range, all unknowns integrated
-    /// out over their priors (flat ones count as of unit density), linearised about this fit.
+    /// out over their priors, linearised about this fit. Unknowns without a prior get one, of
+    /// mean zero and a hundred times as wide as their estimates are large: what the range alone
+    /// tells of is else infinitely unlikely.
     ///
     /// # Errors
     /// [`CalibrationError::Pass`] and [`CalibrationError::NotPositiveDefinite`].
@@ -376,13 +385,17 @@ impl<'a> Extended<'a> {
         let mut gradient = DVector::zeros(count);
         let mut prior = 0.0;
         for (i, unknown) in unknowns.iter().enumerate() {
-            let weight = unknown.sigma.powi(-2);
+            let sigma = if unknown.sigma.is_finite() {
+                unknown.sigma
+            } else {
+                let known = self.uncertainty.total[(i, i)].sqrt();
+                WIDE * self.problem.values[i].hypot(known)
+            };
+            let weight = sigma.powi(-2);
             information[(i, i)] += weight;
             gradient[i] = -gram[(0, i + 1)] - weight * self.problem.values[i];
             prior += weight * self.problem.values[i].powi(2);
-            if weight > 0.0 {
-                prior -= weight.ln();
-            }
+            prior -= weight.ln();
         }
         let cholesky = Cholesky::new(information).ok_or(CalibrationError::NotPositiveDefinite)?;
         let gained = cholesky.solve(&gradient).dot(&gradient);
@@ -430,6 +443,7 @@ impl<'a> Extended<'a> {
                         // Columns are derivatives of the innovations: those of a jump too.
                         score: found.columns[0],
                         information: found.information,
+                        readings: core::array::from_fn(|output| found.readings[output]),
                     };
                     let taken = DMatrix::from_fn(count, 3, |i, j| found.columns[i + 1][j]);
                     let share = covariance * &taken;
@@ -458,6 +472,29 @@ impl<'a> Extended<'a> {
         further: &[crate::Column],
         watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
+        let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
+        self.reduced(&all, further, watch)
+    }
+
+    /// The same with the parameters of the fit as columns only, in the order of
+    /// [`Self::values`], then the extension's own further columns, then `further`.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn beside(&self, further: &[crate::Column]) -> Result<Reduced<3>, CalibrationError> {
+        let extended = self.extension.parameters.iter();
+        let own: Vec<usize> = (0..PARAMETERS)
+            .chain(extended.map(|(parameter, _)| *parameter))
+            .collect();
+        self.reduced(&own, further, |_| ())
+    }
+
+    fn reduced(
+        &self,
+        active: &[usize],
+        further: &[crate::Column],
+        watch: impl FnMut(&Whitened<'_>),
+    ) -> Result<Reduced<3>, CalibrationError> {
         let leg = &self.problem.legs[0];
         let own = self.extension.further.columns().len();
         let mut columns = self.extension.further.columns().to_vec();
@@ -470,9 +507,8 @@ impl<'a> Extended<'a> {
         all.set_amplitudes(amplitudes);
         debug_assert_eq!(own, leg.amplitudes.len());
         let parameters = self.parameters();
-        let active: Vec<usize> = (0..parameters.len()).collect();
         self.problem
-            .with_active(0, &parameters, &active, &all, |pass| pass.reduce(watch))
+            .with_active(0, &parameters, active, &all, |pass| pass.reduce(watch))
             .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))
     }
 

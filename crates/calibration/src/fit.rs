@@ -1,7 +1,8 @@
 use gyrocal::Innovation;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::solve::{Solution, Unknown};
+use crate::problem::Unknown;
+use crate::solve::Solution;
 use crate::uncertainty::Uncertainty;
 
 /// Probability with which a record that fits the model is called inconsistent.
@@ -21,6 +22,8 @@ pub struct Fit {
     values: usize,
     rows: usize,
     log_likelihood: f64,
+    /// Of one pass of the filter, not of a solution that was iterated.
+    one_pass: bool,
 }
 
 /// What the innovations say of the fit.
@@ -99,9 +102,14 @@ impl Fit {
                  angles of the bench file; the coefficients mean nothing"
             ),
             Verdict::TooLarge => format!(
-                "the innovations are larger than the declared noise explains ({figures}): the \
-                 model lacks something, the noise is larger than declared, or the prior is too \
-                 wide for one pass of the filter; the sigmas cannot be trusted"
+                "the innovations are larger than the declared noise explains ({figures}): {}; the \
+                 sigmas cannot be trusted",
+                if self.one_pass {
+                    "the model lacks something, the noise is larger than declared, or the prior \
+                     is too wide for one pass of the filter"
+                } else {
+                    "the model lacks something, or the noise is larger than declared"
+                }
             ),
             Verdict::TooSmall => format!(
                 "the innovations are smaller than the declared noise explains ({figures}): the \
@@ -117,6 +125,7 @@ impl Fit {
             values: 0,
             rows: 0,
             log_likelihood: 0.0,
+            one_pass: true,
         }
     }
 
@@ -140,6 +149,7 @@ impl Fit {
             log_likelihood: -0.5
                 * (solution.cost + solution.log_variance + prior - gained
                     + solution.values as f64 * core::f64::consts::TAU.ln()),
+            one_pass: false,
         }
     }
 
@@ -191,10 +201,18 @@ mod tests {
             values: 12_000,
             rows: 4_000,
             log_likelihood: 0.0,
+            one_pass: true,
         };
         assert_eq!(fit(12_000.0).verdict(), Verdict::Consistent);
         assert_eq!(fit(13_000.0).verdict(), Verdict::TooLarge);
         assert_eq!(fit(11_000.0).verdict(), Verdict::TooSmall);
-        assert!(fit(13_000.0).verdict_text().contains("mean NIS 3.250"));
+        let one_pass = fit(13_000.0);
+        assert!(one_pass.verdict_text().contains("mean NIS 3.250"));
+        assert!(one_pass.verdict_text().contains("one pass"));
+        let joint = Fit {
+            one_pass: false,
+            ..one_pass
+        };
+        assert!(!joint.verdict_text().contains("one pass"));
     }
 }

@@ -33,6 +33,11 @@ pub enum Column {
         /// One number for each step.
         steps: Vec<f64>,
     },
+    /// A change of the readings themselves, of which trajectory and parameters know nothing.
+    Readings {
+        /// Of each row, g.
+        change_g: Vec<[f64; 3]>,
+    },
 }
 
 /// A list of columns with their present amplitudes.
@@ -41,6 +46,8 @@ pub struct Further {
     columns: Vec<Column>,
     sigmas: Vec<f64>,
     amplitudes: Vec<f64>,
+    /// Places of the columns that change readings.
+    readings: Vec<usize>,
 }
 
 impl Further {
@@ -54,7 +61,11 @@ impl Further {
 
     /// Adds columns whose amplitudes have this standard deviation before the record.
     pub fn extend(&mut self, columns: impl IntoIterator<Item = Column>, sigma: f64) {
+        let before = self.columns.len();
         self.columns.extend(columns);
+        let new = self.columns.iter().enumerate().skip(before);
+        let changing = new.filter(|(_, column)| matches!(column, Column::Readings { .. }));
+        self.readings.extend(changing.map(|(place, _)| place));
         self.sigmas.resize(self.columns.len(), sigma);
         self.amplitudes.resize(self.columns.len(), 0.0);
     }
@@ -69,6 +80,19 @@ impl Further {
     #[must_use]
     pub fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    /// What columns with their amplitudes add to a reading, g.
+    pub(crate) fn reading_g(&self, row: usize, output: usize) -> f64 {
+        self.readings
+            .iter()
+            .map(|place| match &self.columns[*place] {
+                Column::Readings { change_g } => change_g
+                    .get(row)
+                    .map_or(0.0, |change_g| self.amplitudes[*place] * change_g[output]),
+                _ => 0.0,
+            })
+            .sum()
     }
 
     pub(crate) fn set_amplitudes(&mut self, amplitudes: impl Iterator<Item = f64>) {
@@ -98,7 +122,7 @@ impl Columns<3, 3> for Further {
     fn drive(&self, row: usize, parameters: &[f64], stride: usize, drive: [&mut [f64]; 3]) {
         for (index, column) in self.columns.iter().enumerate() {
             match column {
-                Column::Start { .. } => {}
+                Column::Start { .. } | Column::Readings { .. } => {}
                 Column::Jump { row: at, axis } => {
                     if *at == row {
                         drive[*axis][index] = 1.0;
@@ -117,6 +141,13 @@ impl Columns<3, 3> for Further {
                         drive[i][index] = share * parameters[i * stride + parameter];
                     }
                 }
+            }
+        }
+    }
+    fn output(&self, row: usize, output: usize, direct: &mut [f64]) {
+        for place in &self.readings {
+            if let Column::Readings { change_g } = &self.columns[*place] {
+                direct[*place] = change_g.get(row).map_or(0.0, |change_g| change_g[output]);
             }
         }
     }

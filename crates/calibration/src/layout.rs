@@ -4,8 +4,8 @@ use gyrocal::generated::surveyed::parameters_index as index;
 use gyrocal_record::Bench;
 
 use crate::PARAMETERS;
+use crate::problem::Unknown;
 use crate::settings::level;
-use crate::solve::Unknown;
 
 /// Indices of the constant drifts of gyros x, y, z among the coefficients.
 pub const BIASES: [usize; 3] = [index::GYRO_X_BIAS, index::GYRO_Y_BIAS, index::GYRO_Z_BIAS];

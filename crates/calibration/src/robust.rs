@@ -5,8 +5,9 @@ use gyrocal::estimation::Manifold;
 use gyrocal::estimation::batch::Series;
 use gyrocal::trajectory::Orientation;
 
+use crate::problem::Problem;
 use crate::run::Conditions;
-use crate::solve::{Failure, Problem, Solution};
+use crate::solve::{Failure, Solution};
 
 /// Rounds of weighting; weights of a record with a few outliers settle in three or four.
 const MOST_ROUNDS: usize = 20;

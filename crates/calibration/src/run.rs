@@ -2,19 +2,34 @@
 
 use gyrocal::estimation::batch::Series;
 use gyrocal::generated::catalogue::{CatalogueInputs, conditions_index};
+use gyrocal::generated::strapdown::StrapdownInputs;
 use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::{Chart, ChartInputs};
 use gyrocal_record::{Bench, Record};
 
-/// Inputs that may depend on time and temperature.
+use crate::gyro_axes::GyroAxes;
+
+/// Inputs that may depend on time, on temperature and on how the gyros lie.
 pub(crate) trait Conditions: ChartInputs<f64> {
     /// Sets time since the first row (of the middle of an interval, or of a row), the length of
     /// the interval, and temperature about its mean.
     fn set_conditions(&mut self, time_s: f64, interval_s: f64, temperature_k: f64);
+
+    /// Sets the matrix, by rows, from components along the gyros' axes to those along the
+    /// platform's, where these are not the same.
+    fn set_gyro_axes(&mut self, _platform_c_gyros: &[f64; 9]) {}
 }
 
 impl Conditions for SurveyedInputs<f64> {
     fn set_conditions(&mut self, _: f64, _: f64, _: f64) {}
+}
+
+impl Conditions for StrapdownInputs<f64> {
+    fn set_conditions(&mut self, _: f64, _: f64, _: f64) {}
+
+    fn set_gyro_axes(&mut self, platform_c_gyros: &[f64; 9]) {
+        self.platform_c_gyros = *platform_c_gyros;
+    }
 }
 
 impl Conditions for CatalogueInputs<f64> {
@@ -46,6 +61,8 @@ pub(crate) struct Rows<'a> {
     mean_temperature_c: f64,
     /// Weight of each row's outputs, if some are not trusted.
     pub(crate) weights: Option<Vec<[f64; 3]>>,
+    /// How the gyros lie, if not along the platform's axes.
+    pub(crate) gyro_axes: Option<&'a GyroAxes>,
 }
 
 impl<'a> Rows<'a> {
@@ -58,6 +75,7 @@ impl<'a> Rows<'a> {
                 temperature.iter().sum::<f64>() / temperature.len().max(1) as f64
             }),
             weights: None,
+            gyro_axes: None,
         }
     }
 
@@ -139,6 +157,10 @@ impl<I: Conditions> Series<Chart<f64, I>, 3> for Rows<'_> {
         inputs
             .inputs_mut()
             .set_conditions(middle_s - first_s, to_s - from_s, temperature_k);
+        if let Some(axes) = self.gyro_axes {
+            let platform_c_gyros = axes.between(row, share);
+            inputs.inputs_mut().set_gyro_axes(&platform_c_gyros);
+        }
     }
 
     fn at(&self, row: usize, inputs: &mut Chart<f64, I>) {

@@ -1,12 +1,15 @@
 //! Gauss-Newton on the trajectories of several records and the parameters they share.
 
-use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series, Tape};
+#[cfg(test)]
+mod failures;
+
+use gyrocal::estimation::batch::{Linearisation, Manifold, Tape};
 use gyrocal::trajectory::{Orientation, turned};
-use gyrocal::{Chart, EstimationError, Integration};
+use gyrocal::{Chart, EstimationError};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::further::Further;
-use crate::run::{Conditions, Rows};
+use crate::problem::Problem;
+use crate::run::Conditions;
 
 /// Rows of a record whose steps are kept between passes, some 700 bytes each.
 const LONGEST_TAPE: usize = 100_000;
@@ -21,79 +24,6 @@ const LAST_STEP: f64 = 1e-4;
 /// The same for records that the model does not fit, as a share of the root of the cost: a
 /// shorter step lowers the cost by less than rounding of its sum does.
 const LAST_SHARE: f64 = 1e-6;
-
-/// One parameter of the joint problem.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Unknown {
-    /// Mean of its prior.
-    pub(crate) prior: f64,
-    /// Standard deviation of its prior.
-    pub(crate) sigma: f64,
-    /// Whether it keeps its prior mean and only widens the covariance of the others.
-    pub(crate) considered: bool,
-}
-
-impl Unknown {
-    /// Estimated from zero.
-    pub(crate) fn estimated(sigma: f64) -> Self {
-        Self {
-            prior: 0.0,
-            sigma,
-            considered: false,
-        }
-    }
-
-    /// Held at zero; 0 is the sigma of what counts as known.
-    pub(crate) fn considered(sigma: Option<f64>) -> Self {
-        Self {
-            prior: 0.0,
-            sigma: sigma.unwrap_or(0.0),
-            considered: true,
-        }
-    }
-}
-
-/// One record within the joint problem.
-#[derive(Clone)]
-pub(crate) struct Leg<'a, I> {
-    pub(crate) rows: Rows<'a>,
-    pub(crate) chart: Chart<f64, I>,
-    pub(crate) noise_density: [f64; 3],
-    /// Attitude that the bench declares for the first row.
-    pub(crate) prior: Orientation,
-    pub(crate) prior_covariance: [[f64; 3]; 3],
-    /// Attitude at each row.
-    pub(crate) points: Vec<Orientation>,
-    /// For each parameter of the model the unknowns whose sum it is; none if it is zero for
-    /// good.
-    pub(crate) sums: Vec<Vec<usize>>,
-    /// Columns beside the model's parameters, and the unknown that is the amplitude of each.
-    pub(crate) further: Further,
-    pub(crate) amplitudes: Vec<usize>,
-}
-
-impl<I> Leg<'_, I> {
-    /// For each column the unknowns whose sum it is.
-    pub(crate) fn columns(&self) -> Vec<&[usize]> {
-        let parameters = self.sums.iter().filter(|unknowns| !unknowns.is_empty());
-        parameters
-            .map(Vec::as_slice)
-            .chain(self.amplitudes.iter().map(core::slice::from_ref))
-            .collect()
-    }
-}
-
-/// All records, and what they have in common.
-#[derive(Clone)]
-pub(crate) struct Problem<'a, D, I> {
-    pub(crate) model: &'a D,
-    pub(crate) integration: Integration,
-    pub(crate) longest_step_s: f64,
-    pub(crate) unknowns: Vec<Unknown>,
-    pub(crate) legs: Vec<Leg<'a, I>>,
-    /// Every unknown's present value.
-    pub(crate) values: Vec<f64>,
-}
 
 /// What the records say, linearised about the solution.
 #[derive(Clone)]
@@ -198,40 +128,6 @@ where
         }
     }
 
-    /// The parameters of the model in one record.
-    pub(crate) fn parameters(&self, leg: usize) -> Vec<f64> {
-        self.legs[leg]
-            .sums
-            .iter()
-            .map(|unknowns| unknowns.iter().map(|index| self.values[*index]).sum())
-            .collect()
-    }
-
-    /// Outputs that the model gives at each row of a record for these attitudes.
-    pub(crate) fn outputs(&self, leg: usize, points: &[Orientation]) -> Vec<[f64; 3]> {
-        let parameters = self.parameters(leg);
-        let leg = &self.legs[leg];
-        let (mut chart, mut moving) = (leg.chart, [0.0; 3]);
-        points
-            .iter()
-            .enumerate()
-            .map(|(row, point)| {
-                self.model.place(point, &mut moving, &mut chart);
-                Series::<Chart<f64, I>, 3>::at(&leg.rows, row, &mut chart);
-                self.model.output(&moving, &parameters, &chart)
-            })
-            .collect()
-    }
-
-    fn prior_cost(&self) -> f64 {
-        self.unknowns
-            .iter()
-            .zip(&self.values)
-            .filter(|(unknown, _)| !unknown.considered)
-            .map(|(unknown, value)| ((value - unknown.prior) / unknown.sigma).powi(2))
-            .sum()
-    }
-
     fn linearise(&self) -> Result<Point, Failure> {
         let size = self.unknowns.len() + 1;
         let mut point = Point {
@@ -261,78 +157,6 @@ where
             point.tapes.push(tape);
         }
         Ok(point)
-    }
-
-    pub(crate) fn with_leg<R>(
-        &self,
-        index: usize,
-        parameters: &[f64],
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, Further, 3, 3>) -> R,
-    ) -> R {
-        self.with_columns(index, parameters, &self.legs[index].further, pass)
-    }
-
-    /// A pass over a record with these columns beside those of its parameters.
-    pub(crate) fn with_columns<R, C: Columns<3, 3>>(
-        &self,
-        index: usize,
-        parameters: &[f64],
-        further: &C,
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, C, 3, 3>) -> R,
-    ) -> R {
-        let active: Vec<usize> = (0..parameters.len())
-            .filter(|parameter| !self.legs[index].sums[*parameter].is_empty())
-            .collect();
-        self.with_active(index, parameters, &active, further, pass)
-    }
-
-    /// A pass over a record as if some of its rows had no value.
-    pub(crate) fn without_rows<R>(
-        &self,
-        index: usize,
-        parameters: &[f64],
-        left_out: core::ops::Range<usize>,
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, Further, 3, 3>) -> R,
-    ) -> R {
-        let mut rows = self.legs[index].rows.again();
-        rows.leave_out(left_out);
-        let active: Vec<usize> = (0..parameters.len())
-            .filter(|parameter| !self.legs[index].sums[*parameter].is_empty())
-            .collect();
-        let further = &self.legs[index].further;
-        self.with_active(index, parameters, &active, further, |all| {
-            pass(&Linearisation {
-                series: &rows,
-                ..*all
-            })
-        })
-    }
-
-    /// A pass over a record with any parameters as columns.
-    pub(crate) fn with_active<R, C: Columns<3, 3>>(
-        &self,
-        index: usize,
-        parameters: &[f64],
-        active: &[usize],
-        further: &C,
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, C, 3, 3>) -> R,
-    ) -> R {
-        let leg = &self.legs[index];
-        pass(&Linearisation {
-            model: self.model,
-            inputs: leg.chart,
-            series: &leg.rows,
-            integration: self.integration,
-            longest_step_s: self.longest_step_s,
-            noise_density: leg.noise_density,
-            prior: leg.prior,
-            prior_covariance: leg.prior_covariance,
-            points: &leg.points,
-            parameters,
-            active,
-            further,
-            tape: None,
-        })
     }
 
     /// The Gauss-Newton step.
@@ -405,13 +229,6 @@ where
                 *point = turned(before, &correction.map(|angle| share * angle));
             }
         }
-    }
-
-    /// Indices of the unknowns that are estimated.
-    pub(crate) fn estimated(&self) -> Vec<usize> {
-        (0..self.unknowns.len())
-            .filter(|index| !self.unknowns[*index].considered)
-            .collect()
     }
 
     fn solution(&self, point: Point, iterations: usize) -> Solution {

@@ -5,7 +5,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::solve::{Solution, Unknown};
+use crate::problem::Unknown;
+use crate::solve::Solution;
 
 /// Covariances of the joint solution.
 #[derive(Clone)]

@@ -9,7 +9,9 @@ mod words;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
-use gyrocal_calibration::{Calibration, CalibrationError, Options, Run, calibrate_runs};
+use gyrocal_calibration::{
+    Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
+};
 use gyrocal_record::{CalibrationMethod, write_json};
 
 use crate::Failure;
@@ -48,6 +50,12 @@ pub(crate) struct CalibrateArguments {
     #[arg(long, value_name = "SIGMAS", num_args = 0..=1, default_missing_value = "3",
           value_parser = sigmas)]
     robust: Option<f64>,
+    /// How the gyros lie in the platform at each row (CSV), one file for each record: for
+    /// platforms that `import strapdown` computed, whose gyros are fixed to a body. Coefficients
+    /// are then those of the gyros in their own axes.
+    #[arg(long, value_name = "AXES.csv", action = ArgAction::Append,
+          conflicts_with_all = ["average", "streaming", "paper"])]
+    gyro_axes: Vec<PathBuf>,
     /// Leave out the estimate of the noise.
     #[arg(long)]
     no_noise: bool,
@@ -98,6 +106,13 @@ impl CalibrateArguments {
                 if records == 1 { "record" } else { "records" }
             ));
         }
+        let axes = self.gyro_axes.len();
+        if axes != 0 && axes != records {
+            return usage(format!(
+                "{axes} of --gyro-axes for {records} of records: give one for each record, in \
+                 their order"
+            ));
+        }
         let filter = match self.method() {
             CalibrationMethod::Batch if self.factorised => {
                 return usage(
@@ -136,6 +151,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
         .records
         .iter()
         .chain(&arguments.benches)
+        .chain(&arguments.gyro_axes)
         .map(PathBuf::as_path)
         .collect();
     refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
@@ -143,13 +159,14 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
     let rows = measurements.iter().map(|m| m.record.len()).sum();
     tracing::info!(records = measurements.len(), rows, "read");
     let options = arguments.options();
+    let gyro_axes = inputs::gyro_axes(&arguments.gyro_axes, &measurements)?;
     let runs: Vec<Run<'_>> = measurements.iter().map(Measurement::run).collect();
-    let calibration = calibrate(&runs, rows, &options, arguments.method())
+    let calibration = calibrate(&runs, &gyro_axes, rows, &options, arguments.method())
         .map_err(|source| NotCalibrated::new(arguments, source))?;
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
     let found = Found {
         method: arguments.method(),
-        first_alone: first_alone(&runs, &options),
+        first_alone: first_alone(&runs, &gyro_axes, &options),
         calibration,
         measurements,
     };
@@ -175,6 +192,7 @@ struct Found {
 
 fn calibrate(
     runs: &[Run<'_>],
+    gyro_axes: &[GyroAxes],
     rows: usize,
     options: &Options,
     method: CalibrationMethod,
@@ -182,20 +200,31 @@ fn calibrate(
     if method == CalibrationMethod::Batch {
         // Passes are not counted beforehand.
         let _progress = Progress::waiting("calibrating", rows);
-        return calibrate_runs(runs, options, |_| ());
+        return with_axes(runs, gyro_axes, options);
     }
     let mut progress = Progress::new("calibrating", rows);
     calibrate_runs(runs, options, |row| progress.reach(row))
 }
 
+fn with_axes(
+    runs: &[Run<'_>],
+    gyro_axes: &[GyroAxes],
+    options: &Options,
+) -> Result<Calibration, CalibrationError> {
+    match gyro_axes {
+        [] => calibrate_runs(runs, options, |_| ()),
+        axes => calibrate_strapdown(runs, axes, options, |_| ()),
+    }
+}
+
 /// A record that says too little by itself is no failure of all together.
-fn first_alone(runs: &[Run<'_>], options: &Options) -> Option<Vec<f64>> {
+fn first_alone(runs: &[Run<'_>], gyro_axes: &[GyroAxes], options: &Options) -> Option<Vec<f64>> {
     let [first, _, ..] = runs else { return None };
     let options = Options {
         noise: false,
         ..*options
     };
-    match calibrate_runs(&[*first], &options, |_| ()) {
+    match with_axes(&[*first], gyro_axes.get(..1).unwrap_or_default(), &options) {
         Ok(alone) => Some(alone.coefficients().map(|found| found.sigma).to_vec()),
         Err(error) => {
             tracing::warn!(%error, "the first record alone could not be calibrated");

@@ -4,10 +4,12 @@ use clap::{ArgAction, Parser, Subcommand};
 
 use crate::allan::AllanArguments;
 use crate::calibrate::CalibrateArguments;
+use crate::characterise::CharacteriseArguments;
 use crate::diagnose::DiagnoseArguments;
 use crate::extend::ExtendArguments;
 use crate::import::ImportArguments;
 use crate::monte_carlo::MonteCarloArguments;
+use crate::plan::PlanArguments;
 use crate::simulate::SimulateArguments;
 use crate::tumble::TumbleArguments;
 
@@ -32,10 +34,12 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     Allan(AllanArguments),
     Calibrate(CalibrateArguments),
+    Characterise(CharacteriseArguments),
     Diagnose(DiagnoseArguments),
     Extend(ExtendArguments),
     Import(ImportArguments),
     MonteCarlo(MonteCarloArguments),
+    Plan(PlanArguments),
     Simulate(SimulateArguments),
     Tumble(TumbleArguments),
 }

@@ -19,16 +19,10 @@ use gyrocal_record::{Bench, DiagnosisReport, DiagnosisVerdict, Outputs, Record};
 
 use crate::numbers::probability;
 use crate::outputs::refuse_overlap;
+use crate::pictures;
 use crate::progress::Progress;
 use crate::{Answer, Failure};
-use failed::NotDiagnosed;
-
-/// The help of `--figures`.
-const FIGURES: &str = if cfg!(feature = "png") {
-    "Write pictures of it into this folder, as SVG and PNG"
-} else {
-    "Write pictures of it into this folder, as SVG; PNG needs a build with --features png"
-};
+pub(crate) use failed::NotDiagnosed;
 
 /// Show what the model gets wrong about a record, and name the cause.
 ///
@@ -58,7 +52,7 @@ pub(crate) struct DiagnoseArguments {
     /// Its bench description (TOML); the attitude in it is that of its own first row.
     #[arg(long, value_name = "BENCH.toml", requires = "validate")]
     validate_bench: Option<PathBuf>,
-    #[arg(long, value_name = "DIR", help = FIGURES)]
+    #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
     /// Look for these effects too, beside those of the usual search: gyro_xy.axis_misalignment,
     /// say, or gyro_x.magnetic.

@@ -1,6 +1,6 @@
 //! `gyrocal extend`: what a diagnosis found in, the model file of an extended filter out.
 
-mod diagnosis;
+pub(crate) mod diagnosis;
 mod effects;
 
 use std::fmt::Write as _;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use gyrocal_measured::strapdown::{ImportReport, ImportSettings, Imported, import};
+use gyrocal_measured::strapdown::{ImportReport, ImportSettings, Imported, axes_csv, import};
 use gyrocal_measured::{Description, Log, MeasuredError, ResultFile};
 use gyrocal_record::Outputs;
 
@@ -44,6 +44,10 @@ struct StrapdownArguments {
     /// The bench description to write (TOML), which `calibrate` wants beside the record.
     #[arg(long, value_name = "BENCH.toml")]
     bench_out: Option<PathBuf>,
+    /// The attitude of the gyros in the virtual platform at each row (CSV), which `calibrate
+    /// --gyro-axes` wants.
+    #[arg(long, value_name = "AXES.csv")]
+    axes_out: Option<PathBuf>,
     /// Interval over which specific force is averaged into one row.
     #[arg(long, value_name = "S", default_value_t = ImportSettings::default().averaging_s, value_parser = positive)]
     averaging_s: f64,
@@ -89,6 +93,7 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<String, Failure> {
         &[
             ("--out", Some(&arguments.out)),
             ("--bench-out", arguments.bench_out.as_deref()),
+            ("--axes-out", arguments.axes_out.as_deref()),
             ("--json", arguments.json.as_deref()),
         ],
     )?;
@@ -100,6 +105,10 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<String, Failure> {
     )?;
     if let Some(path) = &arguments.bench_out {
         outputs.stage(path, imported.bench.to_toml(path)?.as_bytes())?;
+    }
+    if let Some(path) = &arguments.axes_out {
+        let text = axes_csv(&imported.record, &imported.platform_q_body);
+        outputs.stage(path, text.as_bytes())?;
     }
     if let Some(path) = &arguments.json {
         let manifest = manifest("", 0, &inputs)?;
@@ -178,6 +187,9 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
     let _ = writeln!(text, "\n{}: the record", arguments.out.display());
     if let Some(path) = &arguments.bench_out {
         let _ = writeln!(text, "{}: its bench description", path.display());
+    }
+    if let Some(path) = &arguments.axes_out {
+        let _ = writeln!(text, "{}: the axes of its gyros", path.display());
     }
     if let Some(path) = &arguments.json {
         let _ = writeln!(text, "{}: what was seen, for programs", path.display());

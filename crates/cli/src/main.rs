@@ -5,6 +5,7 @@
 
 mod allan;
 mod calibrate;
+mod characterise;
 mod command;
 mod diagnose;
 mod extend;
@@ -14,6 +15,8 @@ mod monte_carlo;
 mod noise;
 mod numbers;
 mod outputs;
+mod pictures;
+mod plan;
 mod progress;
 mod rounding;
 mod simulate;
@@ -36,10 +39,12 @@ fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Allan(arguments) => allan::run(arguments).map(Answer::from),
         Command::Calibrate(arguments) => calibrate::run(arguments).map(Answer::from),
+        Command::Characterise(arguments) => characterise::run(arguments),
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Extend(arguments) => extend::run(arguments).map(Answer::from),
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments).map(Answer::from),
         Command::Import(arguments) => import::run(arguments).map(Answer::from),
+        Command::Plan(arguments) => plan::run(arguments).map(Answer::from),
         Command::Simulate(arguments) => simulate::run(arguments).map(Answer::from),
         Command::Tumble(arguments) => tumble::run(arguments).map(Answer::from),
     };

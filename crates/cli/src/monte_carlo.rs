@@ -1,6 +1,6 @@
 //! `gyrocal monte-carlo`: a scenario over many seeds in, the quality of the calibration out.
 
-mod progress;
+pub(crate) mod progress;
 mod summary;
 
 use std::num::NonZeroUsize;

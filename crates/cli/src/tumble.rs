@@ -1,6 +1,8 @@
 //! `gyrocal tumble`: a log with static stops in many attitudes in, the drift law and what it
 //! leaves out of it out.
 
+mod figures;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -13,12 +15,13 @@ use gyrocal_measured::tumble::{
 use gyrocal_measured::{
     Description, Log, MeasuredError, ResultFile, StopSettings, find_stops, given_stops,
 };
-use gyrocal_record::write_json;
+use gyrocal_record::Outputs;
 
 use crate::Failure;
 use crate::measured::{interval, unusable};
 use crate::numbers::probability;
 use crate::outputs::{manifest, refuse_overlap};
+use crate::pictures;
 use crate::rounding::rounded;
 use crate::tables::{right, table};
 
@@ -53,6 +56,8 @@ pub(crate) struct TumbleArguments {
     /// Seed of the permutations.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    #[arg(long, value_name = "DIR", help = pictures::HELP)]
+    figures: Option<PathBuf>,
     /// The result to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -64,12 +69,19 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
     refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
     let (prepared, report) = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
     tracing::info!(?report, "tested");
+    let mut outputs = Outputs::new();
     if let Some(path) = &arguments.json {
         let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
         let result = serde_json::json!({ "sensors": prepared.sensors(), "test": report });
-        write_json(path, &ResultFile::new(manifest, result))?;
+        outputs.stage_json(path, &ResultFile::new(manifest, result))?;
     }
-    Ok(summary(arguments, &prepared, &report))
+    let mut text = summary(arguments, &prepared, &report);
+    if let Some(folder) = &arguments.figures {
+        let pictures = figures::pictures(&arguments.log, &prepared, &report);
+        text += &pictures::stage(&arguments.log, &pictures, folder, &mut outputs)?;
+    }
+    outputs.commit()?;
+    Ok(text)
 }
 
 fn work(arguments: &TumbleArguments) -> Result<(Prepared, TumbleReport), MeasuredError> {

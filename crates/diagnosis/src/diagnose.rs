@@ -9,10 +9,12 @@ use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, search};
 use crate::error::DiagnosisError;
 use crate::gain::{Acceptance, Gain, Validation, gain, judge, validate};
 use crate::noise::{Estimate, NoiseAudit, NoiseFinding};
-use crate::remainder::{Remainder, remainder};
+use crate::remainder::{Remainder, TESTS, remainder};
 use crate::request;
 use crate::series::Innovations;
+use crate::side::{NormVerdict, norm_verdict};
 use crate::significance::two_sided_p;
+use crate::stability::{Stability, stability};
 use audited::{Audited, audited};
 
 /// How a record is diagnosed.
@@ -40,9 +42,12 @@ impl Default for DiagnoseOptions {
 }
 
 /// Shares of the probability of a false alarm: noise audit, gyro noise, search, remainder. A
-/// fifth is kept back: thresholds that are drawn and probabilities that hold for long records are
-/// each a little off, and a search has no error that is welcome.
-const SHARES: [f64; 4] = [0.15, 0.05, 0.45, 0.15];
+/// twentieth is kept back: thresholds that are drawn and probabilities that hold for long records
+/// are each a little off.
+const SHARES: [f64; 4] = [0.15, 0.05, 0.6, 0.15];
+
+/// Share of what is told of the norm and of averaging; it makes no finding.
+const TOLD: f64 = 0.1;
 
 /// Gyro noise that differs from the declared one by so many sigmas is reckoned with in the
 /// search, so that it makes no causes of itself; it is named only if it still differs when the
@@ -72,6 +77,11 @@ pub struct Diagnosis<'a> {
     pub verdict: Verdict,
     /// Probability of any finding on a sound record, as asked for.
     pub false_alarm_probability: f64,
+    /// What the norm of specific force says, which no gyro enters; `None` if there are too few
+    /// complete rows.
+    pub norm: Option<NormVerdict>,
+    /// How what is left averages out; `None` without a stretch that is long enough.
+    pub stability: Option<Stability>,
     /// What is wrong with the noise.
     pub noise_findings: Vec<NoiseFinding>,
     /// The noise audit with all its figures.
@@ -154,8 +164,14 @@ pub fn diagnose<'a>(
         innovations,
         audit,
     } = audited(&run, &declared, audit_share, &options.calibration)?;
+    let slow_noise_g = noise_model
+        .accel_ratio
+        .map(|ratio| ratio * bench.accel_noise_g);
+    let told = TOLD * options.false_alarm_probability;
+    let norm = norm_verdict(&audit.cleaned.apply(record), bench, &slow_noise_g, told).ok();
     let search_options = SearchOptions {
         false_alarm_probability: search_share,
+        unnamed_probability: remainder_share / TESTS,
         also: options.also.clone(),
         seed: options.seed,
         ..SearchOptions::default()
@@ -183,13 +199,19 @@ pub fn diagnose<'a>(
         let mut found = searched.findings.iter();
         found.any(|finding| finding.effect.strip_prefix(gyro) == Some("random_walk"))
     };
-    let gyros = gyro_noise(&estimate, &noise_model, gyro_share);
+    let gyros = if audit.cleaned.correlation == 0.0 {
+        gyro_noise(&estimate, &noise_model, gyro_share)
+    } else {
+        // The likelihood takes the slow part of correlated noise for the gyros'.
+        Vec::new()
+    };
     noise_findings.extend(gyros.into_iter().filter(|finding| !walks(finding.effect)));
     let mut remainder = remainder(&searched.fitted, record, remainder_share)?;
-    for line in &searched.lines {
-        remainder.add(line);
+    for found in &searched.unnamed {
+        remainder.add(found);
     }
     let found = !searched.findings.is_empty();
+    let stability = stability(&record.time_s, &remainder.whitened, told).ok();
     let judged = judge(&nominal, &searched, record)?;
     let gain = if found {
         let extended = judged.extended.as_ref().unwrap_or(&searched.fitted);
@@ -214,6 +236,8 @@ pub fn diagnose<'a>(
     Ok(Diagnosis {
         verdict,
         false_alarm_probability: options.false_alarm_probability,
+        norm,
+        stability,
         noise_findings,
         audit,
         noise: estimate,

@@ -6,7 +6,9 @@
 //! ([`gyrocal_record::Record`]) and the [`Innovations`] that a filter made of it.
 //!
 //! - [`nis`], [`autocorrelation`], [`periodogram`], [`dependence`]: the usual tests.
-//! - [`norm_channel`]: |E|², which sees accelerometer errors only, without any filter.
+//! - [`norm_channel`]: |E|², which sees accelerometer errors only, without any filter;
+//!   [`norm_verdict`] says which side it speaks for.
+//! - [`stability`]: Allan deviation of innovations, whether they average out.
 //! - [`audit_noise`]: is the noise as declared? Robust, with one false-alarm probability for all.
 //!
 //! # The audit
@@ -28,11 +30,14 @@ mod error;
 mod gain;
 mod noise;
 mod norm;
+pub mod plan;
 mod remainder;
 mod request;
 mod series;
+mod side;
 mod significance;
 mod spectrum;
+mod stability;
 mod whiteness;
 
 pub use dependence::{Bin, Dependence, dependence};
@@ -46,8 +51,10 @@ pub use noise::{
 pub use norm::{NormChannel, norm_channel};
 pub use remainder::{Remainder, remainder};
 pub use series::Innovations;
+pub use side::{NormVerdict, norm_verdict};
 pub use significance::{two_sided_p, z_of_two_sided_p};
 pub use spectrum::{Line, Periodogram, periodogram, strongest};
+pub use stability::{NoiseCourse, Stability, stability};
 pub use whiteness::{Autocorrelation, Nis, autocorrelation, nis};
 
 /// Number of drift coefficients of the nominal model.

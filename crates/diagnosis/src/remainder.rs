@@ -3,12 +3,15 @@
 use gyrocal_calibration::{CalibrationError, Extended};
 use gyrocal_record::Record;
 
-use crate::cause::DriftLine;
+use crate::cause::Unnamed;
 use crate::spectrum::{periodogram, strongest};
 use crate::whiteness::autocorrelation;
 
 /// Lags of the portmanteau test: structure shorter than these many rows.
 const LAGS: usize = 20;
+
+/// Tests of what is left: of innovations two here, of lines and curves one of the search.
+pub(crate) const TESTS: f64 = 3.0;
 
 /// Channels by name.
 const CHANNELS: [&str; 3] = ["x", "y", "z"];
@@ -27,19 +30,13 @@ pub struct Remainder {
 }
 
 impl Remainder {
-    /// Adds a line that the search met and the catalogue does not hold.
-    pub(crate) fn add(&mut self, line: &DriftLine) {
-        const GYROS: [&str; 3] = ["x", "y", "z"];
+    /// Adds what the search met and the catalogue does not hold.
+    pub(crate) fn add(&mut self, found: &Unnamed) {
         if !self.description.is_empty() {
             self.description.push_str("; ");
         }
-        self.description.push_str(&format!(
-            "a line in the drift of gyro {} with a period of {:.2} h and an amplitude of {:.2e} \
-             deg/h, which no effect of the catalogue explains",
-            GYROS[line.gyro], line.period_h, line.amplitude_deg_per_h
-        ));
-        let chance = (-0.5 * (line.statistic - line.searched)).exp();
-        self.p_value = self.p_value.min(chance);
+        self.description.push_str(&found.description());
+        self.p_value = self.p_value.min(found.ln_probability.exp());
         self.unexplained = true;
     }
 }
@@ -63,8 +60,6 @@ pub fn remainder(
     });
     let mut p_value = 1.0_f64;
     let mut description = String::new();
-    // Two tests, the three channels of the first together.
-    const TESTS: f64 = 2.0;
     if let [Ok(x), Ok(y), Ok(z)] = &lines {
         let of = [x.line, y.line, z.line];
         let (axis, p) = strongest(&of);

@@ -1,6 +1,8 @@
 //! Between probabilities and standard deviations.
 
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 use statrs::function::erf::{erf_inv, erfc, erfc_inv};
+use statrs::function::gamma::ln_gamma;
 
 /// Probability that a standard normal variable is as far from zero as `z` or farther.
 #[must_use]
@@ -13,6 +15,34 @@ pub fn two_sided_p(z: f64) -> f64 {
 pub fn z_of_two_sided_p(p: f64) -> f64 {
     core::f64::consts::SQRT_2 * erfc_inv(p.clamp(f64::MIN_POSITIVE, 1.0))
 }
+
+/// Natural logarithm of the probability that chi-square exceeds a value.
+pub(crate) fn ln_chi_square_tail(value: f64, degrees_of_freedom: f64) -> f64 {
+    let tail = ChiSquared::new(degrees_of_freedom).map_or(1.0, |chi| chi.sf(value));
+    if tail > LEAST_TAIL {
+        return tail.ln();
+    }
+    // The first term of the tail's expansion.
+    let half = 0.5 * degrees_of_freedom;
+    (half - 1.0) * (0.5 * value).ln() - 0.5 * value - ln_gamma(half)
+}
+
+/// The value of chi-square with one degree of freedom that is exceeded with a probability of this
+/// natural logarithm: makes statistics of any kind comparable with that of one signature.
+pub(crate) fn single_equivalent(ln_probability: f64) -> f64 {
+    if ln_probability > LEAST_TAIL.ln() {
+        return z_of_two_sided_p(ln_probability.min(0.0).exp()).powi(2);
+    }
+    // From ln p = -u/2 - ln(pi u/2)/2, the first term of the tail's expansion.
+    let mut value = -2.0 * ln_probability;
+    for _ in 0..4 {
+        value = -2.0 * ln_probability - (core::f64::consts::FRAC_PI_2 * value).ln();
+    }
+    value
+}
+
+/// Below it, tails are taken by the first term of their expansions.
+const LEAST_TAIL: f64 = 1e-200;
 
 /// The value that a standard normal variable stays below with probability `p`.
 pub(crate) fn normal_quantile(p: f64) -> f64 {
@@ -36,5 +66,24 @@ mod tests {
             );
         }
         assert!(z_of_two_sided_p(0.0).is_finite());
+    }
+
+    #[test]
+    fn equivalents_join_where_tails_are_expanded() {
+        // One signature is equivalent to itself, near and far; the expansion is off by 1/u.
+        for value in [5.0, 50.0, 900.0, 1_100.0, 40_000.0] {
+            let equivalent = single_equivalent(ln_chi_square_tail(value, 1.0));
+            assert!(
+                (equivalent - value).abs() < 3.0 / value + 1e-6,
+                "{value} {equivalent}"
+            );
+        }
+        // Three degrees of freedom are worth less, by ln(x) + ...: 10 is exceeded with 0.018566.
+        assert!((ln_chi_square_tail(10.0, 3.0) - 0.018_566_f64.ln()).abs() < 1e-4);
+        let (near, far) = (
+            ln_chi_square_tail(920.0, 3.0),
+            ln_chi_square_tail(930.0, 3.0),
+        );
+        assert!((near - far - 5.0).abs() < 0.01, "{near} {far}");
     }
 }

@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 use realfft::RealFftPlanner;
 
 use crate::error::DiagnosisError;
+use crate::noise::median_interval_s;
 use crate::whiteness::check_probability;
 
 /// The transform is this many times longer than the record, so that a line between two of its own
@@ -77,32 +78,19 @@ pub fn periodogram(
             expected: LEAST_VALUES,
         });
     }
-    let interval_s = crate::noise::median_interval_s(time_s);
-    let place = |time: f64| ((time - time_s[0]) / interval_s).round() as usize;
-    let rows = place(time_s[time_s.len() - 1]) + 1;
-    let length = (OVERSAMPLING * rows).next_power_of_two();
-    let mut grid = vec![0.0; length];
-    for (time, value) in &there {
-        grid[place(*time)] += value;
+    let Some((mut power, step_hz)) = transformed(time_s, &there) else {
+        return Err(DiagnosisError::TooShort {
+            test: "the periodogram",
+            found: there.len(),
+            expected: LEAST_VALUES,
+        });
+    };
+    for power in &mut power {
+        *power /= there.len() as f64;
     }
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut coefficients = transform.make_output_vec();
-    transform
-        .process(&mut grid, &mut coefficients)
-        .map_err(|_| DiagnosisError::InvalidArgument {
-            what: "the length of the transform",
-            found: length as f64,
-            expected: "that of its plan",
-        })?;
-    let scale = 1.0 / there.len() as f64;
-    let last = length / 2;
-    let power: Vec<f64> = coefficients[1..last]
-        .iter()
-        .map(|c| c.norm_sqr() * scale)
-        .collect();
-    let step_hz = 1.0 / (length as f64 * interval_s);
-    let frequency_hz: Vec<f64> = (1..last).map(|k| k as f64 * step_hz).collect();
-    let searched = Searched::new(&there, 0.5 / interval_s);
+    let frequency_hz: Vec<f64> = (1..=power.len()).map(|k| k as f64 * step_hz).collect();
+    let times = there.iter().map(|(time, _)| *time);
+    let searched = Searched::new(times, 0.5 / median_interval_s(time_s));
     let largest = (0..power.len())
         .max_by(|a, b| power[*a].total_cmp(&power[*b]))
         .unwrap_or(0);
@@ -112,6 +100,27 @@ pub fn periodogram(
         frequency_hz,
         power,
     })
+}
+
+/// Squares of the Fourier sums of values at some of the times of a record, at multiples of a
+/// frequency from that itself to half the sampling rate, and that frequency \[Hz\]. `None` without
+/// values.
+pub(crate) fn transformed(time_s: &[f64], there: &[(f64, f64)]) -> Option<(Vec<f64>, f64)> {
+    let (first_s, last_s) = (*time_s.first()?, *time_s.last()?);
+    there.first()?;
+    let interval_s = median_interval_s(time_s);
+    let place = |time: f64| ((time - first_s) / interval_s).round() as usize;
+    let rows = place(last_s) + 1;
+    let length = (OVERSAMPLING * rows).next_power_of_two();
+    let mut grid = vec![0.0; length];
+    for (time, value) in there {
+        grid[place(*time)] += value;
+    }
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    let mut coefficients = transform.make_output_vec();
+    transform.process(&mut grid, &mut coefficients).ok()?;
+    let squares = coefficients[1..length / 2].iter().map(|c| c.norm_sqr());
+    Some((squares.collect(), 1.0 / (length as f64 * interval_s)))
 }
 
 /// The line near a frequency of the transform: its maximum by golden section, at the true times.
@@ -159,18 +168,24 @@ pub fn strongest(lines: &[Line; 3]) -> (usize, f64) {
 }
 
 /// How much was searched for a maximum: frequency range times effective duration.
-struct Searched(f64);
+pub(crate) struct Searched(f64);
 
 impl Searched {
-    fn new(there: &[(f64, f64)], largest_hz: f64) -> Self {
-        let count = there.len() as f64;
-        let mean = there.iter().map(|(time, _)| time).sum::<f64>() / count;
-        let variance = there
-            .iter()
-            .map(|(time, _)| (time - mean).powi(2))
-            .sum::<f64>()
-            / count;
+    fn new(times_s: impl Iterator<Item = f64> + Clone, largest_hz: f64) -> Self {
+        let count = times_s.clone().count() as f64;
+        let mean = times_s.clone().sum::<f64>() / count;
+        let variance = times_s.map(|time| (time - mean).powi(2)).sum::<f64>() / count;
         Self(largest_hz * (2.0 * TAU * variance).sqrt())
+    }
+
+    /// Over all rows of a record, to half the sampling rate.
+    pub(crate) fn of_times(time_s: &[f64]) -> Self {
+        Self::new(time_s.iter().copied(), 0.5 / median_interval_s(time_s))
+    }
+
+    /// Natural logarithm of [`Self::probability`], where that is small.
+    pub(crate) fn ln_probability(&self, power: f64) -> f64 {
+        (1.0 + self.0 * power.sqrt()).ln() - power
     }
 
     /// Probability that white noise exceeds a power anywhere (Baluev, MNRAS 385, 1279, 2008,

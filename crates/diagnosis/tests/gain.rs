@@ -20,41 +20,23 @@ fn simulation(seed: u64, days: f64, hidden: &[Hidden]) -> Simulation {
 }
 
 #[test]
-fn what_gains_nothing_is_told_and_not_in_the_model() {
-    // Asked for a false alarm with a probability of 0.99, the search names what is not there; some
-    // of that predicts the record no better.
-    let options = DiagnoseOptions {
-        false_alarm_probability: 0.99,
-        ..DiagnoseOptions::default()
-    };
-    let (mut accepted, mut refused) = (0, 0);
-    for seed in 0..4 {
-        let simulation = simulation(seed, 1.0, &[]);
-        let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap();
-        assert_eq!(found.acceptances.len(), found.findings.len());
-        for acceptance in &found.acceptances {
-            assert_eq!(acceptance.accepted, acceptance.gain_nats > 0.0);
-            *(if acceptance.accepted {
-                &mut accepted
-            } else {
-                &mut refused
-            }) += 1;
-        }
-        let any = found
-            .acceptances
-            .iter()
-            .any(|acceptance| acceptance.accepted);
-        assert_eq!(found.extended.is_some(), any);
-        assert_eq!(found.gain.is_some(), !found.findings.is_empty());
-        if let (false, Some(gain)) = (any, &found.gain) {
-            let all_are_worse = found.findings.len() > 1 || gain.log_score_nats() <= 0.0;
-            assert!(all_are_worse, "{:?}", found.acceptances);
-        }
+fn a_step_in_the_last_block_is_judged_too() {
+    // Nothing of the other five sixths tells of it.
+    let parameters = [("size", 0.02), ("onset_s", 1.85 * 86_400.0)];
+    let hidden = [Hidden::new("gyro_x.step", &parameters).unwrap()];
+    let simulation = simulation(11, 2.0, &hidden);
+    let options = DiagnoseOptions::default();
+    let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap();
+    assert!(!found.findings.is_empty());
+    for acceptance in &found.acceptances {
+        assert!(acceptance.gain_nats.is_finite(), "{acceptance:?}");
+        assert_eq!(acceptance.accepted, acceptance.gain_nats > 0.0);
     }
-    assert!(
-        refused > 0,
-        "{accepted} accepted, none refused: other seeds are needed"
-    );
+    let any = found
+        .acceptances
+        .iter()
+        .any(|acceptance| acceptance.accepted);
+    assert_eq!(found.extended.is_some(), any);
 }
 
 #[test]

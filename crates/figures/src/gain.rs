@@ -50,8 +50,16 @@ fn filters() -> [Figure; 2] {
     };
     let name = "extended filter less that of the catalogue, sigmas:";
     [
-        figure(&format!("{name} one step"), 1e-9, comparison::after_one_step()),
-        figure(&format!("{name} three days"), 1e-5, comparison::after_three_days()),
+        figure(
+            &format!("{name} one step"),
+            1e-9,
+            comparison::after_one_step(),
+        ),
+        figure(
+            &format!("{name} three days"),
+            1e-5,
+            comparison::after_three_days(),
+        ),
     ]
 }
 

@@ -2,12 +2,16 @@
 //! value, runs, seeds, and whether it holds. The exit code is 1 if one does not.
 
 mod calibration;
+mod diagnosis_ground;
 mod figure;
 mod gain;
 mod kernel;
 mod main_job;
+mod measured;
 mod naming;
+mod page;
 mod paper;
+mod values;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -32,7 +36,8 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
-    /// instruction counts; paper: docs/paper.md and its pictures).
+    /// instruction counts; measured: docs/measured-data.md; paper: docs/paper.md and its
+    /// pictures).
     #[arg(long)]
     write: bool,
 }
@@ -45,10 +50,14 @@ enum Topic {
     Calibration,
     /// The structured kernel: speed, scaling, rounding errors, instructions.
     Kernel,
+    /// What a diagnosis stands on: the noise audit, and signatures against the simulation.
+    DiagnosisGround,
     /// Causes hidden in records: detected, named, and what clean records show.
     Naming,
     /// What extended models gain: under cross-validation, in the coefficients, on a second record.
     Gain,
+    /// Two recordings of real gyros: docs/measured-data.md.
+    Measured,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
 }
@@ -59,8 +68,10 @@ fn main() -> ExitCode {
         Topic::MainJob => main_job::figures(arguments.small),
         Topic::Calibration => calibration::figures(arguments.small),
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
+        Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
+        Topic::Measured => measured::figures(arguments.write),
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {

@@ -5,17 +5,19 @@ mod bench;
 mod coordinates;
 mod curves;
 mod discretisation;
+mod documents;
 mod earth_rate;
-mod page;
 mod result;
 mod symmetry;
-mod values;
 
 use crate::figure::Figure;
-use values::Values;
+use crate::page;
+use crate::values::Values;
 
-/// Why a figure could not be measured.
-pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
+pub(crate) use crate::page::Error;
+
+/// What docs/paper.md is made from.
+pub(crate) const TEMPLATE: &str = include_str!("paper/page.md");
 
 /// What a section adds: words and tables for the page, and figures with their targets.
 #[derive(Default)]
@@ -34,8 +36,8 @@ pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
     earth_rate::measure(&mut measured)?;
     coordinates::measure(&mut measured)?;
     symmetry::measure(&mut measured)?;
-    let documents = page::Documents {
-        page: page::fill(&measured.values)?,
+    let documents = documents::Documents {
+        page: page::fill(TEMPLATE, &measured.values)?,
         pictures: curves::pictures()?,
     };
     let mut figures = measured.figures;

@@ -12,8 +12,11 @@
 //! ```
 //!
 //! A body at rest on the Earth has one constant δω: its gyros see one specific force. One
-//! attitude determines three numbers, whatever its length.
+//! attitude determines three numbers, whatever its length. The generated model
+//! [`gyrocal::Strapdown`] is the drift law in these axes; it takes R at each row, which
+//! [`axes_csv`] writes beside the record.
 
+mod axes_file;
 mod bench;
 mod integrate;
 mod rotation_fit;
@@ -23,6 +26,7 @@ use gyrocal::EARTH_RATE_RAD_PER_S;
 use gyrocal_record::{Bench, Record};
 use serde::Serialize;
 
+pub use axes_file::{axes_csv, read_axes};
 pub use integrate::{PlatformRow, integrate};
 pub use rotation_fit::{RotationFit, fit_rotation};
 
@@ -71,6 +75,8 @@ pub struct Imported {
     pub record: Record,
     /// Its bench description.
     pub bench: Bench,
+    /// For each row the unit quaternion (w, x, y, z) from body to platform axes.
+    pub platform_q_body: Vec<[f64; 4]>,
     /// What the log says by itself.
     pub report: ImportReport,
 }
@@ -202,6 +208,7 @@ pub fn import(
     Ok(Imported {
         record,
         bench,
+        platform_q_body: rows.iter().map(|row| row.platform_q_body).collect(),
         report,
     })
 }

@@ -208,6 +208,8 @@ pub struct Finding {
     pub sigma: f64,
     /// Unit of both.
     pub unit: String,
+    /// What the coefficient multiplies at each stop.
+    pub regressor: Vec<f64>,
     /// F statistic when it was found.
     pub f: f64,
     /// Probability of as large a statistic by chance anywhere in the search.
@@ -370,6 +372,11 @@ fn finding(
         estimate: coefficient.estimate,
         sigma: coefficient.sigma,
         unit: coefficient.unit.clone(),
+        regressor: data
+            .column(step.term)
+            .component_mul(&data.sigma)
+            .as_slice()
+            .to_vec(),
         f: step.f,
         p_value: step.p_value,
         rivals: rivals.members,

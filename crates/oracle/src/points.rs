@@ -48,6 +48,8 @@ pub struct State {
     pub east_0: [f64; 3],
     /// Magnetic field in chart axes, gauss: to ±0.6 along East, North and Up.
     pub field_0: [f64; 3],
+    /// Platform axes from axes of gyros that are fixed to a body, by rows: any rotation.
+    pub platform_c_gyros: [f64; 9],
     /// Time since the first row in s, to three days; length of the step in s; temperature
     /// above its mean in K, to ±5.
     pub conditions: [f64; 3],
@@ -68,6 +70,7 @@ impl State {
             "step" => &self.step,
             "east_0" => &self.east_0,
             "field_0" => &self.field_0,
+            "platform_c_gyros" => &self.platform_c_gyros,
             "conditions" => &self.conditions,
             _ => return None,
         })
@@ -148,6 +151,12 @@ fn state(rng: &mut ChaCha8Rng, turned: bool) -> State {
             within(rng, 5.0),
         ],
         free: core::array::from_fn(|_| within(rng, 1.0)),
+        platform_c_gyros: {
+            let turn = quaternion(rng);
+            let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            let columns = columns.map(|axis| rotate(turn, axis));
+            core::array::from_fn(|place| columns[place % 3][place / 3])
+        },
     }
 }
 

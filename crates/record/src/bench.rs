@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::error::{Error, InputErrorKind};
+use crate::gimbals::GimbalLimits;
 use crate::output::write_whole;
 use crate::tables::{Bound, Document, Table};
 
@@ -23,6 +24,8 @@ pub struct Bench {
     pub initial_angles_deg: Option<[f64; 3]>,
     /// Standard deviation of each of these angles; without meaning if they are not known.
     pub initial_angles_sigma_deg: [f64; 3],
+    /// How far the gimbals go.
+    pub gimbal_limits: GimbalLimits,
     /// Standard deviation of one sample of an accelerometer.
     pub accel_noise_g: f64,
     /// Standard deviation of the white gyro noise as held over one minute.
@@ -130,7 +133,7 @@ impl Bench {
     }
 
     fn from_document(document: &Document) -> Result<Self, Error> {
-        document.interpret(&["site", "platform", "noise", "prior"], |root| {
+        document.interpret(&KNOWN, |root| {
             let [latitude_sigma, rate_sigma, gravity_sigma] = SiteUncertainty::KEYS;
             let site = root.table(
                 "site",
@@ -172,6 +175,7 @@ impl Bench {
                 magnetic_field_gauss: site.optional_three_numbers(MAGNETIC_FIELD, FIELD_GAUSS)?,
                 initial_angles_deg,
                 initial_angles_sigma_deg,
+                gimbal_limits: GimbalLimits::from_root(root)?,
                 accel_noise_g: noise.number("accel_g", Bound::Positive)?,
                 gyro_noise_deg_per_h: noise.number("gyro_deg_per_h", Bound::Positive)?,
                 prior: Prior::from_root(root)?,
@@ -210,6 +214,7 @@ impl Bench {
         if self.prior != Prior::default() {
             text.push_str(&self.prior.to_toml());
         }
+        text.push_str(&self.gimbal_limits.to_toml());
         text
     }
 }
@@ -301,6 +306,9 @@ impl SiteUncertainty {
         text
     }
 }
+
+/// Tables of a bench file.
+const KNOWN: [&str; 5] = ["site", "platform", "noise", "prior", GimbalLimits::TABLE];
 
 const MAGNETIC_FIELD: &str = "magnetic_field_gauss";
 

@@ -57,10 +57,12 @@ mod diagnosis_report;
 mod error;
 mod fields;
 mod gain_report;
+mod gimbals;
 mod header;
 mod manifest;
 mod model_file;
 mod output;
+mod plan_report;
 mod record;
 mod report;
 mod rows;
@@ -78,9 +80,14 @@ pub use error::{Error, InputError, InputErrorKind};
 pub use gain_report::{
     CompensationReport, FreeRunReport, GainReport, ShiftReport, ValidationReport,
 };
+pub use gimbals::GimbalLimits;
 pub use manifest::{Input, Manifest};
 pub use model_file::{KnownEffect, ModelFile, ParameterEstimate};
 pub use output::{Outputs, write_json, write_whole};
+pub use plan_report::{
+    GoalReport, OutlookReport, PlanAim, PlanReport, ProposalReport, SetMemberReport, SetReport,
+    SigmaReport,
+};
 pub use record::Record;
 pub use report::{
     AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, FitVerdict,

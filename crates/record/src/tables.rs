@@ -198,6 +198,25 @@ impl<'a> Table<'a> {
             .transpose()
     }
 
+    /// Two numbers, or nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if what is there is not two numbers, or out of bounds.
+    pub fn optional_two_numbers(&self, key: &str, bound: Bound) -> Result<Option<[f64; 2]>, Error> {
+        let Some((_, value)) = self.entry(key) else {
+            return Ok(None);
+        };
+        let items = value.get_ref().as_array();
+        let [from, to] = items.map(|array| &array[..]).unwrap_or(&[]) else {
+            return Err(self.wrong_type(value, "two numbers `[from, to]`"));
+        };
+        Ok(Some([
+            self.as_number(from, bound)?,
+            self.as_number(to, bound)?,
+        ]))
+    }
+
     /// Three numbers, or one that stands for all three, or nothing.
     ///
     /// # Errors

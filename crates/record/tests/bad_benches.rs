@@ -253,6 +253,22 @@ fn each_mistake_is_shown_where_it_is() {
         ),
         (
             "[noise]",
+            "[gimbal_limits_deg]\ny = [60, -60]\n[noise]",
+            Kind::OutOfRange,
+            "7:5",
+            "`[60, -60]`",
+            "the lower end first",
+        ),
+        (
+            "[noise]",
+            "[gimbal_limits_deg]\nx = 60\n[noise]",
+            Kind::WrongType,
+            "7:5",
+            "`60`",
+            "two numbers `[from, to]`",
+        ),
+        (
+            "[noise]",
             "[noise]\naccel_g = 1e-5",
             Kind::Syntax,
             "8:1",

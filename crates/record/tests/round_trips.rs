@@ -7,9 +7,9 @@ use std::path::Path;
 
 use gyrocal_record::{
     AveragedReport, AzimuthReport, Bench, CalibrationMethod, CalibrationReport, Coefficient, Error,
-    FitVerdict, Gravity, Input, Manifest, NoiseRatioReport, NoiseReport, OtherAzimuth, Outputs,
-    Prior, Record, RunReport, SCHEMA_VERSION, SiteReport, SiteUncertainty, TurnOn,
-    UndeterminedReport, write_json, write_whole,
+    FitVerdict, GimbalLimits, Gravity, Input, Manifest, NoiseRatioReport, NoiseReport,
+    OtherAzimuth, Outputs, Prior, Record, RunReport, SCHEMA_VERSION, SiteReport, SiteUncertainty,
+    TurnOn, UndeterminedReport, write_json, write_whole,
 };
 
 fn record() -> Record {
@@ -108,6 +108,7 @@ fn bench() -> Bench {
         magnetic_field_gauss: None,
         initial_angles_deg: Some([20.0, -35.0, 1.0 / 3.0]),
         initial_angles_sigma_deg: [0.01, 1e-7, 0.5],
+        gimbal_limits: GimbalLimits::default(),
         accel_noise_g: 1e-5,
         gyro_noise_deg_per_h: 0.002,
         prior: Prior::default(),
@@ -129,6 +130,9 @@ fn a_bench_is_read_as_it_was_written() {
             gravity_relative_sigma: Some(1e-6),
         },
         magnetic_field_gauss: Some([0.0, 0.3, -0.4]),
+        gimbal_limits: GimbalLimits {
+            deg: [Some([-30.0, 45.5]), None, Some([10.0, 10.0])],
+        },
         prior: Prior {
             g_sigma_deg_per_h_per_g: [0.1, 0.2, 0.3],
             turn_on_sigma_deg_per_h: [0.05, 0.0, 0.01],

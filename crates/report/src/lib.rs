@@ -14,6 +14,7 @@
 //! | [`Against`] | binned means of a residual against what may cause it |
 //! | [`Ranking`] | effects by test statistic, with threshold |
 //! | [`Gain`] | what an extended model gains on held-out data and in predicted drift |
+//! | [`Contributions`] | what single terms of a law contribute |
 //! | [`Comparison`] | estimates of several estimators, with error bars |
 //!
 //! # Example
@@ -61,6 +62,7 @@ mod axis;
 mod canvas;
 mod check;
 mod comparison;
+mod contributions;
 mod convergence;
 mod correlation;
 mod error;
@@ -82,6 +84,7 @@ mod trace;
 
 pub use against::{Against, AgainstPanel, Bin};
 pub use comparison::{Comparison, Estimate, Quantity};
+pub use contributions::{Contribution, Contributions};
 pub use convergence::{Convergence, ConvergingCoefficient};
 pub use correlation::{Correlation, CorrelationPanel};
 pub use error::Error;

@@ -1,6 +1,6 @@
 //! What is to be simulated.
 
-use gyrocal_record::{Bench, Gravity, Prior, SiteUncertainty};
+use gyrocal_record::{Bench, GimbalLimits, Gravity, Prior, SiteUncertainty};
 
 use crate::attitude::Attitude;
 use crate::coefficients::Coefficients;
@@ -100,6 +100,7 @@ impl Scenario {
             magnetic_field_gauss: self.magnetic_field_gauss,
             initial_angles_deg: Some(self.declared_angles_deg()),
             initial_angles_sigma_deg: self.initial_angles_sigma_deg,
+            gimbal_limits: GimbalLimits::default(),
             accel_noise_g: self.accel_noise_g,
             gyro_noise_deg_per_h: self.gyro_noise_deg_per_h,
             prior: self.prior,

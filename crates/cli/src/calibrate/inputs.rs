@@ -4,8 +4,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use gyrocal::Platform;
-use gyrocal_calibration::{Run, average, walk_share};
-use gyrocal_record::{AveragedReport, Bench, Record};
+use gyrocal_calibration::{GyroAxes, Run, average, walk_share};
+use gyrocal_measured::strapdown::read_axes;
+use gyrocal_record::{AveragedReport, Bench, Record, SourceText};
 use miette::miette;
 
 use crate::Failure;
@@ -73,6 +74,19 @@ pub(super) fn read(
         }
     }
     Ok(measurements)
+}
+
+/// How the gyros lie in each record, if that is given.
+pub(super) fn gyro_axes(
+    paths: &[PathBuf],
+    measurements: &[Measurement],
+) -> Result<Vec<GyroAxes>, Failure> {
+    let pairs = paths.iter().zip(measurements);
+    let read = pairs.map(|(path, measurement)| {
+        let quaternions = read_axes(&SourceText::read(path)?, &measurement.record)?;
+        Ok(GyroAxes::new(&quaternions))
+    });
+    read.collect()
 }
 
 fn refuse_twins(records: &[PathBuf]) -> Result<(), Failure> {

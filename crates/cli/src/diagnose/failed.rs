@@ -12,13 +12,13 @@ use crate::Failure;
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[error("{record}: no diagnosis")]
 #[diagnostic(code(gyrocal::diagnose), help("{}", self.advice()))]
-pub(super) struct NotDiagnosed {
+pub(crate) struct NotDiagnosed {
     record: String,
     source: DiagnoseError,
 }
 
 impl NotDiagnosed {
-    pub(super) fn new(record: &Path, source: DiagnoseError) -> Self {
+    pub(crate) fn new(record: &Path, source: DiagnoseError) -> Self {
         Self {
             record: record.display().to_string(),
             source,

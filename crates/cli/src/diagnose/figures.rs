@@ -4,75 +4,27 @@ mod convergence;
 mod model;
 mod residual;
 
-use std::fs;
 use std::path::Path;
 
 use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_record::{DiagnosisVerdict, Outputs};
 use gyrocal_report::Picture;
-use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use miette::miette;
 
 use super::{Found, filter};
 use crate::Failure;
+use crate::pictures::{self, Named};
 
-/// Forms in which pictures are written.
-const FORMS: &str = if cfg!(feature = "png") {
-    "as SVG and PNG"
-} else {
-    "as SVG (PNG needs a build with --features png)"
-};
-
-/// Width of the PNGs, px: that of the SVGs and a quarter, for sharp letters.
-#[cfg(feature = "png")]
-const WIDTH_PX: u32 = 1200;
-
-/// A picture with the name of its files.
-type Named = (&'static str, Box<dyn Picture>);
-
-/// Writes all pictures beside their names, to be committed with the other outputs; returns what is
-/// to be said.
+/// Writes all pictures, to be committed with the other outputs; returns what is to be said.
 pub(super) fn stage(
     found: &Found<'_>,
     folder: &Path,
     outputs: &mut Outputs,
 ) -> Result<String, Failure> {
-    let pictures = pictures(found).map_err(|reason| {
+    let drawn = pictures(found).map_err(|reason| {
         Failure::Work(miette!("{}: no pictures: {reason}", found.path.display()))
     })?;
-    fs::create_dir_all(folder).map_err(|reason| {
-        Failure::Work(miette!(
-            help = "give a folder, or a name that is free",
-            "--figures {}: cannot be made: {reason}",
-            folder.display()
-        ))
-    })?;
-    for (name, picture) in &pictures {
-        let drawn = || format!("the picture {name} of {}", found.path.display());
-        let svg = picture
-            .to_svg()
-            .into_diagnostic()
-            .wrap_err_with(drawn)
-            .map_err(Failure::Work)?;
-        outputs.stage(&folder.join(name).with_extension("svg"), svg.as_bytes())?;
-        #[cfg(feature = "png")]
-        {
-            let png = gyrocal_report::to_png(&svg, WIDTH_PX)
-                .into_diagnostic()
-                .wrap_err_with(drawn)
-                .map_err(Failure::Work)?;
-            outputs.stage(&folder.join(name).with_extension("png"), &png)?;
-        }
-    }
-    Ok(format!(
-        "\n{}: {} pictures, {FORMS}: {}\n",
-        folder.display(),
-        pictures.len(),
-        pictures
-            .iter()
-            .map(|(name, _)| *name)
-            .collect::<Vec<_>>()
-            .join(", ")
-    ))
+    pictures::stage(found.path, &drawn, folder, outputs)
 }
 
 /// A record that is too short for one picture leaves that out.

@@ -13,7 +13,7 @@ struct Versioned {
 
 /// Reads the result of `gyrocal diagnose --json`. The version comes first: what another one has
 /// in it may be called otherwise.
-pub(super) fn read(path: &Path) -> Result<DiagnosisReport, Error> {
+pub(crate) fn read(path: &Path) -> Result<DiagnosisReport, Error> {
     let source = SourceText::read(path)?;
     let text = source.text();
     let versioned: Versioned =

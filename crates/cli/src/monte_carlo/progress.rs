@@ -8,12 +8,18 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// A bar with the time left, if stderr is a terminal; it goes when it is dropped.
 #[derive(Debug)]
-pub(super) struct SeedProgress {
+pub(crate) struct SeedProgress {
     bar: ProgressBar,
+    /// What is run, where a command runs several things.
+    of: String,
 }
 
 impl SeedProgress {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
+        Self::named("")
+    }
+
+    pub(crate) fn named(name: &str) -> Self {
         let bar = if std::io::stderr().is_terminal() {
             ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
         } else {
@@ -21,13 +27,17 @@ impl SeedProgress {
         };
         let style = ProgressStyle::with_template("{pos} of {len} runs {wide_bar} {msg}");
         let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self { bar }
+        let of = match name {
+            "" => String::new(),
+            name => format!("{name}, "),
+        };
+        Self { bar, of }
     }
 
-    pub(super) fn reach(&mut self, state: Progress) {
+    pub(crate) fn reach(&mut self, state: Progress) {
         self.bar.set_length(state.total);
         self.bar.set_position(state.done);
-        self.bar.set_message(said(state));
+        self.bar.set_message(format!("{}{}", self.of, said(state)));
     }
 }
 

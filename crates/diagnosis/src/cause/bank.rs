@@ -41,6 +41,32 @@ impl Bank {
                 column + own + 1
             }
         };
+        let columns = parameters + further.len();
+        Self::projected(fitted, &reduced.gram, &nuisance, columns, place, without)
+    }
+
+    /// Of `further` columns only, beside what the model has.
+    pub(crate) fn beside(
+        fitted: &Extended<'_>,
+        further: &[Column],
+    ) -> Result<Self, CalibrationError> {
+        let reduced = fitted.beside(further)?;
+        let own = fitted.values().len();
+        let nuisance: Vec<usize> = (0..own).collect();
+        let place = |column: usize| column + own + 1;
+        Self::projected(fitted, &reduced.gram, &nuisance, further.len(), place, &[])
+    }
+
+    /// From sums of products: residual and columns; `nuisance` are the columns of the model's own
+    /// values, `place` those of the signatures, which begin after the residual.
+    fn projected(
+        fitted: &Extended<'_>,
+        gram: &DMatrix<f64>,
+        nuisance: &[usize],
+        columns: usize,
+        place: impl Fn(usize) -> usize,
+        without: &[usize],
+    ) -> Result<Self, CalibrationError> {
         let values = fitted.values();
         let prior_sigma = fitted.prior_sigma();
         let dropped: Vec<(usize, f64)> = without
@@ -50,10 +76,10 @@ impl Bank {
         // Score of a column of the Gram matrix, in the model without what was dropped. Columns
         // are derivatives of the innovations, hence the sign.
         let score_of = |column: usize| {
-            -reduced.gram[(0, column)]
+            -gram[(0, column)]
                 + dropped
                     .iter()
-                    .map(|(at, value)| reduced.gram[(*at, column)] * value)
+                    .map(|(at, value)| gram[(*at, column)] * value)
                     .sum::<f64>()
         };
         let (mut gradient, mut precision, mut kept) = (Vec::new(), Vec::new(), Vec::new());
@@ -69,23 +95,19 @@ impl Bank {
         }
         let nuisance = kept;
         let count = nuisance.len();
-        let mut inner = DMatrix::from_fn(count, count, |i, j| {
-            reduced.gram[(nuisance[i], nuisance[j])]
-        });
+        let mut inner = DMatrix::from_fn(count, count, |i, j| gram[(nuisance[i], nuisance[j])]);
         for (i, precision) in precision.iter().enumerate() {
             inner[(i, i)] += precision;
         }
         let cholesky = Cholesky::new(inner).ok_or(CalibrationError::NotPositiveDefinite)?;
-        let columns = parameters + further.len();
-        let cross = DMatrix::from_fn(count, columns, |i, j| reduced.gram[(nuisance[i], place(j))]);
+        let cross = DMatrix::from_fn(count, columns, |i, j| gram[(nuisance[i], place(j))]);
         // L⁻¹ of the cross terms: what is projected out is its own product.
         let mut taken = cross;
         let lower = cholesky.l();
         lower.solve_lower_triangular_mut(&mut taken);
         let mut gradient = DVector::from_vec(gradient);
         lower.solve_lower_triangular_mut(&mut gradient);
-        let mut information =
-            DMatrix::from_fn(columns, columns, |i, j| reduced.gram[(place(i), place(j))]);
+        let mut information = DMatrix::from_fn(columns, columns, |i, j| gram[(place(i), place(j))]);
         let raw = information.diagonal();
         information.gemm_tr(-1.0, &taken, &taken, 1.0);
         let mut score = DVector::from_fn(columns, |j, _| score_of(place(j)));

@@ -287,6 +287,14 @@ pub(crate) fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Opt
     None
 }
 
+/// Whether a family cannot be told from one that is in the model.
+pub(super) fn equivalent_to(plan: &Plan, family: usize, taken: &[usize]) -> bool {
+    let id = plan.families[family].effect.id;
+    taken
+        .iter()
+        .any(|other| plan.families[*other].effect.equivalents.contains(&id))
+}
+
 /// From the shortest to half the record, in equal ratios.
 fn time_constants_h(duration_s: f64) -> Vec<f64> {
     let longest_h = (0.5 * duration_s / 3600.0).max(2.0 * SHORTEST_TIME_CONSTANT_H);

@@ -1,113 +1,165 @@
-//! A line in the drift of a gyro: a cause that the catalogue does not hold and that a random walk
-//! would swallow.
+//! Lines in drifts and readings. The scores of a change in every step and every reading are what a
+//! record would gain by any course of them; where their spectrum stands out, a line is tried.
 
 use core::f64::consts::TAU;
 
-use gyrocal::generated::catalogue::PARAMETERS;
-use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended};
+use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended, Jump};
 use gyrocal_record::Record;
 
 use super::bank::Bank;
+use super::unnamed::{Channel, Pattern, Unnamed, steps};
+use crate::spectrum::{Searched, transformed};
 
-/// The shortest period that is looked for here, h; shorter ones show in the innovations.
-const SHORTEST_PERIOD_H: f64 = 1.0;
+/// Lines that are tried in each channel.
+const TRIED: usize = 3;
 
-/// At most so many frequencies.
-const MOST_FREQUENCIES: usize = 240;
+/// Cycles in the record below which a line is a trend.
+const LEAST_CYCLES: f64 = 1.5;
 
-/// Frequencies per resolution of the record: between two of them a line loses a tenth.
-const PER_RESOLUTION: f64 = 2.0;
+/// Frequencies between two bands, as a ratio: spectra of scores change little over one.
+const BAND: f64 = 1.2;
 
-/// Its frequency is refined on so many points.
-const REFINED: usize = 21;
+/// A band has at least so many frequencies of the record.
+const LEAST_BAND_CYCLES: f64 = 6.0;
 
-/// A line in the drift of a gyro.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DriftLine {
-    /// 0, 1, 2 of gyro x, y, z.
-    pub gyro: usize,
-    /// Its period, h.
-    pub period_h: f64,
-    /// Its amplitude, deg/h.
-    pub amplitude_deg_per_h: f64,
-    /// Chi-square with two degrees of freedom if it is absent.
-    pub statistic: f64,
-    /// What searching over frequencies reaches by itself.
-    pub searched: f64,
-}
+/// The frequency is refined on so many points, across one frequency of the record.
+const REFINED: usize = 17;
 
-/// The strongest line of a gyro beside what a fit holds.
-pub(crate) fn strongest(
+/// The most significant line beside what a fit holds.
+pub(super) fn strongest(
     fitted: &Extended<'_>,
     record: &Record,
-    gyro: usize,
-) -> Result<Option<DriftLine>, CalibrationError> {
+    jumps: &[Option<Jump>],
+) -> Result<Option<Unnamed>, CalibrationError> {
     let (Some(first_s), Some(last_s)) = (record.time_s.first(), record.time_s.last()) else {
         return Ok(None);
     };
     let duration_h = (last_s - first_s) / 3600.0;
-    let count = ((PER_RESOLUTION * duration_h / SHORTEST_PERIOD_H) as usize).min(MOST_FREQUENCIES);
-    let periods_h: Vec<f64> = (2..=count)
-        .map(|index| PER_RESOLUTION * duration_h / index as f64)
+    let tried: Vec<(Channel, f64)> = Channel::ALL
+        .into_iter()
+        .flat_map(|channel| {
+            standing_out(record, jumps, channel)
+                .into_iter()
+                .map(move |period_h| (channel, period_h))
+        })
         .collect();
-    let searched = 2.0 * (periods_h.len().max(1) as f64).ln();
-    let Some(coarse) = best_of(fitted, record, gyro, &periods_h, searched)? else {
+    let Some(coarse) = best(fitted, record, &tried)? else {
         return Ok(None);
     };
-    // Frequencies between the neighbours of the best.
-    let step_per_h = 1.0 / (PER_RESOLUTION * duration_h);
-    let finer: Vec<f64> = (0..REFINED)
+    let Pattern::Line { period_h } = coarse.pattern else {
+        return Ok(None);
+    };
+    let finer: Vec<(Channel, f64)> = (0..REFINED)
         .map(|index| {
-            let offset = 2.0 * index as f64 / (REFINED - 1) as f64 - 1.0;
-            1.0 / (1.0 / coarse.period_h + offset * step_per_h)
+            let offset = index as f64 / (REFINED - 1) as f64 - 0.5;
+            (coarse.channel, 1.0 / (1.0 / period_h + offset / duration_h))
         })
+        .filter(|(_, period_h)| *period_h > 0.0)
         .collect();
-    best_of(fitted, record, gyro, &finer, searched)
+    best(fitted, record, &finer)
 }
 
-/// The strongest line among some periods.
-fn best_of(
-    fitted: &Extended<'_>,
-    record: &Record,
-    gyro: usize,
-    periods_h: &[f64],
-    searched: f64,
-) -> Result<Option<DriftLine>, CalibrationError> {
-    let columns: Vec<Column> = periods_h
-        .iter()
-        .flat_map(|period_h| courses(record, gyro, *period_h))
-        .collect();
-    let bank = Bank::new(fitted, &columns, &[])?;
-    Ok(periods_h
+/// Periods, h, at which the spectrum of a channel's scores stands out.
+fn standing_out(record: &Record, jumps: &[Option<Jump>], channel: Channel) -> Vec<f64> {
+    let scores: Vec<(f64, f64)> = jumps
         .iter()
         .enumerate()
-        .filter_map(|(index, period_h)| {
-            let first = PARAMETERS.len() + 2 * index;
-            let joint = bank.joint(&[first, first + 1])?;
-            Some(DriftLine {
-                gyro,
-                period_h: *period_h,
-                amplitude_deg_per_h: joint.estimate.norm(),
-                statistic: joint.statistic,
-                searched,
+        .skip(1)
+        .filter_map(|(row, jump)| {
+            let jump = (*jump)?;
+            let (before_s, here_s) = (record.time_s[row - 1], record.time_s[row]);
+            Some(match channel {
+                // A drift turns the platform by itself times the step.
+                Channel::Drift(axis) => (
+                    0.5 * (before_s + here_s),
+                    jump.score[axis] * (here_s - before_s),
+                ),
+                Channel::Readings(axis) => (here_s, jump.readings[axis]),
             })
         })
-        .max_by(|a, b| a.statistic.total_cmp(&b.statistic)))
+        .collect();
+    let Some((power, step_hz)) = transformed(&record.time_s, &scores) else {
+        return Vec::new();
+    };
+    let duration_s = record.time_s[record.len() - 1] - record.time_s[0];
+    // Places of the transform for each frequency of the record.
+    let finer = 1.0 / (duration_s * step_hz);
+    let mut peaks: Vec<(f64, usize)> = Vec::new();
+    let mut from = (LEAST_CYCLES * finer) as usize;
+    while from + 1 < power.len() {
+        let width = (from as f64 * (BAND - 1.0)).max(LEAST_BAND_CYCLES * finer);
+        let to = (from + width as usize + 1).min(power.len());
+        let mut sorted = power[from..to].to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let level = sorted[sorted.len() / 2].max(f64::MIN_POSITIVE);
+        for place in from.max(1)..to.min(power.len() - 1) {
+            if power[place] >= power[place - 1] && power[place] > power[place + 1] {
+                peaks.push((power[place] / level, place));
+            }
+        }
+        from = to;
+    }
+    peaks.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+    peaks
+        .into_iter()
+        .take(TRIED)
+        .map(|(_, place)| 1.0 / (3600.0 * (place as f64 + 1.0) * step_hz))
+        .collect()
 }
 
-/// Sine and cosine of a period, taken in the middle of each step.
-pub(crate) fn courses(record: &Record, gyro: usize, period_h: f64) -> [Column; 2] {
+/// The most significant of some lines.
+fn best(
+    fitted: &Extended<'_>,
+    record: &Record,
+    tried: &[(Channel, f64)],
+) -> Result<Option<Unnamed>, CalibrationError> {
+    let columns: Vec<Column> = tried
+        .iter()
+        .flat_map(|(channel, period_h)| pair(record, *channel, *period_h))
+        .collect();
+    if columns.is_empty() {
+        return Ok(None);
+    }
+    let bank = Bank::beside(fitted, &columns)?;
+    let searched = Searched::of_times(&record.time_s);
+    let found = tried.iter().enumerate().filter_map(|(index, place)| {
+        let (channel, period_h) = *place;
+        let joint = bank.joint(&[2 * index, 2 * index + 1])?;
+        // Half of chi-square with two degrees of freedom is a power; its own tail is its negative.
+        let power = 0.5 * joint.statistic;
+        let ln_chances = searched.ln_probability(power) + power;
+        Some(Unnamed::new(
+            (channel, Pattern::Line { period_h }),
+            joint.estimate.norm(),
+            (joint.statistic, 2),
+            ln_chances + (Channel::ALL.len() as f64).ln(),
+            columns[2 * index..2 * index + 2].to_vec(),
+        ))
+    });
+    Ok(found.min_by(|a, b| a.ln_probability.total_cmp(&b.ln_probability)))
+}
+
+/// Sine and cosine of a period: of a drift in the middle of each step.
+fn pair(record: &Record, channel: Channel, period_h: f64) -> [Column; 2] {
     let first_s = record.time_s.first().copied().unwrap_or(0.0);
-    let course = |of: fn(f64) -> f64| Column::Course {
-        parameter: BIASES[gyro],
-        steps: record
-            .time_s
-            .windows(2)
-            .map(|pair| {
-                let middle_s = 0.5 * (pair[0] + pair[1]) - first_s;
-                of(TAU * middle_s / (3600.0 * period_h))
-            })
-            .collect(),
-    };
-    [course(f64::sin), course(f64::cos)]
+    [f64::sin, f64::cos].map(|of: fn(f64) -> f64| {
+        let wave = |time_s: f64| of(TAU * time_s / (3600.0 * period_h));
+        match channel {
+            Channel::Drift(gyro) => Column::Course {
+                parameter: BIASES[gyro],
+                steps: steps(record, wave),
+            },
+            Channel::Readings(axis) => Column::Readings {
+                change_g: record
+                    .time_s
+                    .iter()
+                    .map(|time_s| {
+                        let mut change_g = [0.0; 3];
+                        change_g[axis] = wave(time_s - first_s);
+                        change_g
+                    })
+                    .collect(),
+            },
+        }
+    })
 }

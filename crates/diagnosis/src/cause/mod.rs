@@ -16,15 +16,26 @@
 
 mod bank;
 mod bound;
+mod curve;
 mod family;
+mod finding;
 mod knock;
 mod line;
 mod null;
+mod refine;
+mod score;
 mod search;
+mod unnamed;
 mod walk;
 
 pub use bound::information;
-pub(crate) use family::missing;
 pub use family::{Candidate, Family, Plan, Unavailable};
-pub use line::DriftLine;
-pub use search::{Finding, FoundParameter, Ranked, Rival, SearchOptions, Searched, search};
+pub(crate) use family::{KNOCK, axis_of, extend, jump, missing, parameter, warm_up};
+pub(crate) use finding::SET_CONSTANT;
+pub use finding::{Finding, FoundParameter, Rival};
+pub(crate) use null::normal;
+pub(crate) use score::RICHER;
+pub use score::Ranked;
+pub use search::{SearchOptions, Searched, search};
+pub use unnamed::{Channel, Pattern, Unnamed};
+pub(crate) use walk::Walk;

@@ -11,41 +11,72 @@ const LEAST: f64 = 1e-3;
 /// What turns the scores of the steps into the statistic of a walk.
 #[derive(Clone, Debug)]
 pub(crate) struct Walk {
-    values: DVector<f64>,
+    /// Eigenvectors of the steps' information, in columns.
     vectors: DMatrix<f64>,
+    /// Variances, rising.
+    variances: Vec<f64>,
+    /// What the square of the score along each eigenvector gains, for each variance (a row).
+    gains: DMatrix<f64>,
+    /// What each variance costs: the logarithm of the determinant.
+    costs: DVector<f64>,
 }
 
 impl Walk {
     /// From the steps' information.
     pub(crate) fn new(information: DMatrix<f64>) -> Self {
         let eigen = SymmetricEigen::new(information);
+        let values = eigen.eigenvalues.map(|value| value.max(0.0));
+        let typical = values.max();
+        let variances: Vec<f64> = (0..POINTS)
+            .map(|point| LEAST * RATIO.powi(point as i32) / typical)
+            .filter(|variance| variance.is_finite())
+            .collect();
+        let inflation = |point: usize, along: usize| 1.0 + variances[point] * values[along];
+        let gains = DMatrix::from_fn(variances.len(), values.len(), |point, along| {
+            variances[point] / inflation(point, along)
+        });
+        let costs = DVector::from_fn(variances.len(), |point, _| {
+            (0..values.len())
+                .map(|along| inflation(point, along).ln())
+                .sum()
+        });
         Self {
-            values: eigen.eigenvalues.map(|value| value.max(0.0)),
             vectors: eigen.eigenvectors,
+            variances,
+            gains,
+            costs,
         }
     }
 
     /// Twice the logarithm of the likelihood that the best variance gains over none, and that
     /// variance, from the scores of the steps.
     pub(crate) fn best(&self, score: &DVector<f64>) -> (f64, f64) {
-        let along = self.vectors.tr_mul(score);
-        let typical = self.values.max();
-        if typical <= 0.0 {
-            return (0.0, 0.0);
-        }
-        let mut best = (0.0, 0.0);
-        let mut variance = LEAST / typical;
-        for _ in 0..POINTS {
-            let mut gain = 0.0;
-            for (value, along) in self.values.iter().zip(along.iter()) {
-                let total = 1.0 + variance * value;
-                gain += variance * along * along / total - total.ln();
-            }
-            if gain > best.0 {
-                best = (gain, variance);
-            }
-            variance *= RATIO;
-        }
-        best
+        let squares = self.vectors.tr_mul(score).map(|along| along * along);
+        let gained = &self.gains * squares - &self.costs;
+        gained
+            .iter()
+            .zip(&self.variances)
+            .fold((0.0, 0.0), |best, (gain, variance)| {
+                if *gain > best.0 {
+                    (*gain, *variance)
+                } else {
+                    best
+                }
+            })
+    }
+
+    /// What the best variance gains over none, of scores in columns.
+    pub(crate) fn best_of_each(&self, scores: &DMatrix<f64>) -> Vec<f64> {
+        let squares = self.vectors.tr_mul(scores).map(|along| along * along);
+        let gained = &self.gains * squares;
+        gained
+            .column_iter()
+            .map(|column| {
+                column
+                    .iter()
+                    .zip(self.costs.iter())
+                    .fold(0.0, |best: f64, (gain, cost)| best.max(gain - cost))
+            })
+            .collect()
     }
 }

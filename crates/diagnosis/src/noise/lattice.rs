@@ -23,8 +23,12 @@ pub(crate) struct Lattice {
 /// Sorted, values are apart by whole multiples of the step. The smallest distances give the step,
 /// larger ones refine it. Values of continuous distribution have distances of any size, and the
 /// smallest are far below what matters.
+///
+/// Rows at equal intervals of a platform that turns uniformly lie on a lattice too, which no
+/// converter made: there each value is the mean of its neighbours to within much less than a step.
 pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Lattice> {
-    let mut sorted: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
+    let in_order: Vec<f64> = values.collect();
+    let mut sorted: Vec<f64> = in_order.iter().copied().filter(|v| !v.is_nan()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     // Below this, two values are the same one with rounding of a printed decimal.
     let same = NEAR * least;
@@ -38,6 +42,9 @@ pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Latt
     let off = |distance: &&f64| ((**distance / step) - (**distance / step).round()).abs();
     let near = steps.iter().filter(|distance| off(distance) < NEAR).count();
     if (near as f64) < MOST * steps.len() as f64 {
+        return None;
+    }
+    if is_smooth(&in_order, step) {
         return None;
     }
     let squares: f64 = steps
@@ -57,6 +64,23 @@ pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Latt
         sigma: (2.0 * squares / count / weight).sqrt(),
         z: (near as f64 - count * chance) / (count * chance * (1.0 - chance)).sqrt(),
     })
+}
+
+/// Whether values run on in equal steps, with no trace of having been rounded to multiples of
+/// `step`: rounding errors would make second differences of 0.7 steps rms. Values that stand
+/// still are no evidence.
+fn is_smooth(in_order: &[f64], step: f64) -> bool {
+    const SMOOTH: f64 = 0.25;
+    let (mut squares, mut moved, mut count) = (0.0, 0.0, 0.0_f64);
+    for three in in_order.windows(3) {
+        let second = three[0] - 2.0 * three[1] + three[2];
+        if second.is_finite() {
+            squares += second * second;
+            moved += (three[2] - three[0]).abs();
+            count += 2.0;
+        }
+    }
+    moved > 0.5 * step * count && squares < 0.5 * (SMOOTH * step).powi(2) * count
 }
 
 /// The step that the smallest distances suggest, refined with larger ones in turn.
@@ -102,6 +126,17 @@ mod tests {
             // Printing to 1e-7 moves each value by less than a hundredth of a step.
             assert!((found / step - 1.0).abs() < 1e-3, "{found}");
         }
+    }
+
+    #[test]
+    fn a_uniform_turn_sampled_at_equal_intervals_is_none() {
+        let slow = |k: u32| 0.016 + 0.0018 * f64::from(k) + 1e-5 * (f64::from(k * k) * 1.3).sin();
+        let with_gaps = (0..60).map(|k| if k % 5 == 1 { f64::NAN } else { slow(k) });
+        assert_eq!(find(with_gaps, 7e-6), None);
+        // The same through a converter is one, also when a row moves by some steps.
+        let step = 7e-4;
+        let coarse = (0..60).map(|k| (slow(k) / step).round() * step);
+        assert!(find(coarse, 7e-6).is_some());
     }
 
     #[test]

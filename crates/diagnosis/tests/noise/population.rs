@@ -29,6 +29,9 @@ pub(crate) struct Case {
     pub(crate) record: Record,
     pub(crate) innovations: Innovations,
     pub(crate) declared: DeclaredNoise,
+    /// What is wrong with it.
+    #[allow(dead_code)] // the figures ask
+    pub(crate) fault: Fault,
     /// Row and axis of true outliers.
     pub(crate) outliers: Vec<(usize, usize)>,
 }
@@ -82,6 +85,7 @@ pub(crate) fn case(population: &Population, number: u64, fault: Fault, terms: &[
         innovations: innovations(&record, &scenario),
         record,
         declared,
+        fault,
         outliers,
     }
 }

@@ -17,6 +17,8 @@ pub struct JumpScore<const M: usize> {
     pub columns: Vec<[f64; M]>,
     /// Information on the jump if all columns were known.
     pub information: [[f64; M]; M],
+    /// Of each output of the row, score of a change of that reading; zero where there is none.
+    pub readings: Vec<f64>,
 }
 
 /// What the backward pass needs of one output.
@@ -25,6 +27,9 @@ struct Seen<const M: usize> {
     jacobian: [f64; M],
     /// Gain times that deviation.
     gain: [f64; M],
+    output: usize,
+    /// Of that deviation.
+    reciprocal: f64,
     columns: Vec<f64>,
 }
 
@@ -52,6 +57,8 @@ where
                 let entry = Seen {
                     jacobian: jacobian.map(|element| element * reciprocal),
                     gain: cross.map(|element| element * reciprocal),
+                    output: whitened.output,
+                    reciprocal,
                     columns: whitened.columns.to_vec(),
                 };
                 while seen.len() <= whitened.row {
@@ -66,8 +73,10 @@ where
         let mut score = JumpScore {
             columns: vec![[0.0; M]; count],
             information: [[0.0; M]; M],
+            readings: vec![0.0; Y],
         };
         for row in (1..rows).rev() {
+            score.readings.fill(0.0);
             for output in seen[row].iter().rev() {
                 // Later innovations see what this update leaves: (I - g h)ᵀ.
                 let mut left = [[0.0; M]; M];
@@ -83,6 +92,8 @@ where
                         score.information[i][j] += output.jacobian[i] * output.jacobian[j];
                     }
                 }
+                let along: f64 = (0..M).map(|j| output.gain[j] * score.columns[0][j]).sum();
+                score.readings[output.output] = (output.columns[0] - along) * output.reciprocal;
                 for (sum, value) in score.columns.iter_mut().zip(&output.columns) {
                     let along: f64 = (0..M).map(|j| output.gain[j] * sum[j]).sum();
                     for i in 0..M {

@@ -22,7 +22,7 @@ mod gram;
 mod jumps;
 mod linearisation;
 mod noise;
-
+mod pass;
 mod step;
 mod tape;
 

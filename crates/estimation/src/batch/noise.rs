@@ -3,7 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::linearisation::{Taken, Whitened};
+use super::linearisation::Whitened;
+use super::pass::Taken;
 use super::step::{Step, add, map_columns, sandwich};
 
 /// Gradient and information of the log-likelihood with respect to the natural logarithms of the

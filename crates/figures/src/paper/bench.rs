@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
 use super::Error;
-use super::values::{Table, Values, fixed};
+use crate::values::{Table, Values, fixed};
 
 /// Seeds of all statistics, fixed beforehand.
 pub(super) const SEEDS: std::ops::RangeInclusive<u64> = 1..=60;

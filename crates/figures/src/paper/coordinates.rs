@@ -6,9 +6,9 @@ use gyrocal_campaign::statistics::{mean, median, quantile};
 
 use super::bench::{Data, Judged, judge_all, seeds};
 use super::result::coverage_percent;
-use super::values::{Table, fixed, two_digits};
 use super::{Error, Measured};
 use crate::figure::Figure;
+use crate::values::{Table, fixed, two_digits};
 
 /// Beyond which the second way moves its chart.
 const LIMIT_DEG: f64 = 20.0;

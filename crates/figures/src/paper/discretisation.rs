@@ -5,8 +5,8 @@ use gyrocal_calibration::Options;
 use gyrocal_campaign::statistics::{median, root_mean_square};
 
 use super::bench::{Data, Judged, PAPER_DAYS, SHOWN_SEED, judge_all, scenario};
-use super::values::{Table, fixed, two_digits};
 use super::{Error, Measured};
+use crate::values::{Table, fixed, two_digits};
 
 pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     without_noise(measured)?;

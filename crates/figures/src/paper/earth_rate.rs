@@ -7,9 +7,9 @@ use gyrocal_truth::{Scenario, simulate};
 use rayon::prelude::*;
 
 use super::bench::{Judged, PAPER_DAYS, SEEDS, scenario, seeds};
-use super::values::{Table, fixed};
 use super::{Error, Measured};
 use crate::figure::Figure;
+use crate::values::{Table, fixed};
 
 /// As for records that fit in Table 2.
 const FITS: [f64; 2] = [2.95, 3.05];

@@ -6,9 +6,9 @@ use gyrocal_campaign::statistics::{median, root_mean_square};
 use super::bench::{
     Data, Judged, PAPER_DAYS, SEEDS, SHOWN_SEED, judge_all, names, scenario, seeds,
 };
-use super::values::{Table, fixed};
 use super::{Error, Measured};
 use crate::figure::Figure;
+use crate::values::{Table, fixed};
 
 /// One of the four ways.
 pub(super) struct Way {

@@ -5,9 +5,9 @@ use gyrocal_calibration::{Calibration, Options, SiteQuantity, calibrate};
 use gyrocal_truth::{Coefficients, Hidden, Scenario, simulate};
 
 use super::bench::{PAPER_DAYS, SHOWN_SEED, names, scenario};
-use super::values::{Table, fixed, two_digits};
 use super::{Error, Measured};
 use crate::figure::Figure;
+use crate::values::{Table, fixed, two_digits};
 
 /// By how much the three D_I are lowered, deg/h/g.
 const LOWERED: f64 = 0.1;

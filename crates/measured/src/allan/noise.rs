@@ -45,8 +45,10 @@ impl NoiseType {
         }
     }
 
-    /// Table 5 of NIST SP 1065, for `phase_points` values of the angle.
-    pub(crate) fn degrees_of_freedom(self, phase_points: usize, averaging: usize) -> f64 {
+    /// Equivalent degrees of freedom of an overlapping Allan variance, table 5 of NIST SP 1065, for
+    /// `phase_points` values of the angle: one more than there are of the rate.
+    #[must_use]
+    pub fn degrees_of_freedom(self, phase_points: usize, averaging: usize) -> f64 {
         let (n, m) = (phase_points as f64, averaging as f64);
         let edf = match self {
             Self::WhiteAngle => (n + 1.0) * (n - 2.0 * m) / (2.0 * (n - m)),

@@ -11,6 +11,9 @@ pub struct PlatformRow {
     pub time_s: f64,
     /// Mean specific force in platform axes.
     pub force_g: [f64; 3],
+    /// Unit quaternion (w, x, y, z) that takes body components to platform components in the
+    /// middle of the interval.
+    pub platform_q_body: [f64; 4],
     /// Scatter of the gyros' samples within the interval, root of the three variances' sum
     /// \[rad/s\].
     pub gyro_scatter: f64,
@@ -31,13 +34,13 @@ pub struct PlatformRow {
 pub fn integrate(log: &Log, averaging_s: f64) -> Vec<PlatformRow> {
     let block = ((averaging_s / log.interval_s).round() as usize).max(1);
     let mut attitude = UnitQuaternion::identity();
-    let mut first = None;
     let mut before = Vector3::zeros();
     let mut sums = Vec::new();
+    let mut middles = Vec::new();
     let mut sum = Vector3::zeros();
     for (sample, (rate, force_g)) in log.gyro.iter().zip(&log.accel).enumerate() {
         if sample % block == block / 2 {
-            first.get_or_insert(attitude);
+            middles.push(attitude);
         }
         let interval_s = match sample {
             0 => log.interval_s,
@@ -57,7 +60,7 @@ pub fn integrate(log: &Log, averaging_s: f64) -> Vec<PlatformRow> {
             attitude.renormalize();
         }
     }
-    let platform_c_start = first.unwrap_or_default().inverse();
+    let platform_c_start = middles.first().copied().unwrap_or_default().inverse();
     sums.iter()
         .enumerate()
         .map(|(row, force_g)| {
@@ -67,11 +70,16 @@ pub fn integrate(log: &Log, averaging_s: f64) -> Vec<PlatformRow> {
             PlatformRow {
                 time_s: 0.5 * (start_s + end_s),
                 force_g: (platform_c_start * force_g).into(),
+                platform_q_body: quaternion(platform_c_start * middles[row]),
                 gyro_scatter: scatter(&log.gyro[samples.clone()]),
                 accel_scatter: scatter(&log.accel[samples]),
             }
         })
         .collect()
+}
+
+fn quaternion(rotation: UnitQuaternion<f64>) -> [f64; 4] {
+    [rotation.w, rotation.i, rotation.j, rotation.k]
 }
 
 fn scatter(samples: &[[f64; 3]]) -> f64 {

@@ -21,7 +21,7 @@ const DENSITY: [f64; 3] = [0.002 * 0.002 * 60.0; 3];
 const VARIANCE: [f64; 3] = [1e-10; 3];
 /// So small that a parameter of an effect stays what it is.
 const NOTHING: f64 = 1e-14;
-const FAULT: &str = include_str!("../fault.scenario.toml");
+const FAULT: &str = include_str!("../../fault.scenario.toml");
 
 type CatalogueFilter = Filter<
     f64,

@@ -4,24 +4,24 @@ use std::collections::BTreeMap;
 
 /// What the template's places are filled with.
 #[derive(Default)]
-pub(super) struct Values(BTreeMap<String, String>);
+pub(crate) struct Values(BTreeMap<String, String>);
 
 impl Values {
-    pub(super) fn put(&mut self, name: impl Into<String>, text: impl Into<String>) {
+    pub(crate) fn put(&mut self, name: impl Into<String>, text: impl Into<String>) {
         self.0.insert(name.into(), text.into());
     }
 
-    pub(super) fn get(&self, name: &str) -> Option<&str> {
+    pub(crate) fn get(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }
 
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(String::as_str)
     }
 }
 
 /// A number with a fixed number of decimals; zero has no sign.
-pub(super) fn fixed(value: f64, decimals: usize) -> String {
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().all(|digit| matches!(digit, '0' | '.')) => rest.to_owned(),
@@ -30,7 +30,7 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// A number with two significant digits.
-pub(super) fn two_digits(value: f64) -> String {
+pub(crate) fn two_digits(value: f64) -> String {
     if value == 0.0 || (1e-3..1e4).contains(&value.abs()) {
         let decimals = 1.0 - value.abs().max(1e-3).log10().floor();
         fixed(value, decimals.max(0.0) as usize)
@@ -40,19 +40,19 @@ pub(super) fn two_digits(value: f64) -> String {
 }
 
 /// A table of the page.
-pub(super) struct Table(String);
+pub(crate) struct Table(String);
 
 impl Table {
-    pub(super) fn new<const N: usize>(header: [&str; N]) -> Self {
+    pub(crate) fn new<const N: usize>(header: [&str; N]) -> Self {
         let rule = "|---".repeat(N);
         Self(format!("| {} |\n{rule}|", header.join(" | ")))
     }
 
-    pub(super) fn row<const N: usize>(&mut self, cells: [String; N]) {
+    pub(crate) fn row<const N: usize>(&mut self, cells: [String; N]) {
         self.0 += &format!("\n| {} |", cells.join(" | "));
     }
 
-    pub(super) fn text(self) -> String {
+    pub(crate) fn text(self) -> String {
         self.0
     }
 }

@@ -1,29 +1,25 @@
-//! The page: its template filled with what was measured, and held against what is committed.
+//! Pages of the documentation: a template filled with what was measured, and held against what is
+//! committed.
 
 use std::path::{Path, PathBuf};
 
-use gyrocal_report::{to_png, write_svg};
+use crate::values::Values;
 
-use super::Error;
-use super::curves::Named;
-use super::values::Values;
-
-const TEMPLATE: &str = include_str!("page.md");
-/// Width of the pictures as PNG, px.
-const PNG_WIDTH_PX: u32 = 1440;
+/// Why a page could not be filled or compared.
+pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
 
 /// The template with every `{{name}}` replaced.
-pub(super) fn fill(values: &Values) -> Result<String, Error> {
+pub(crate) fn fill(template: &str, values: &Values) -> Result<String, Error> {
     let mut unused: Vec<&str> = values.names().collect();
     let mut page = String::new();
-    let mut rest = TEMPLATE;
+    let mut rest = template;
     while let Some((before, after)) = rest.split_once("{{") {
         let (name, after) = after
             .split_once("}}")
-            .ok_or("page.md: a place that does not end")?;
+            .ok_or("a place of a template that does not end")?;
         let value = values
             .get(name)
-            .ok_or_else(|| format!("page.md: nothing is measured for {{{{{name}}}}}"))?;
+            .ok_or_else(|| format!("nothing is measured for the place {{{{{name}}}}}"))?;
         page += before;
         page += value;
         unused.retain(|other| *other != name);
@@ -33,42 +29,13 @@ pub(super) fn fill(values: &Values) -> Result<String, Error> {
     if unused.is_empty() {
         Ok(page)
     } else {
-        Err(format!("page.md has no place for: {}", unused.join(", ")).into())
+        Err(format!("the template has no place for: {}", unused.join(", ")).into())
     }
 }
 
-/// What is committed under `docs`.
-pub(super) struct Documents {
-    pub(super) page: String,
-    pub(super) pictures: Vec<Named>,
-}
-
-impl Documents {
-    pub(super) fn write(&self) -> Result<(), Error> {
-        gyrocal_record::write_whole(&page_path(), self.page.as_bytes())?;
-        for (stem, picture) in &self.pictures {
-            let path = picture_path(stem);
-            write_svg(picture.as_ref(), &path)?;
-            let png = to_png(&picture.to_svg()?, PNG_WIDTH_PX)?;
-            gyrocal_record::write_whole(&path.with_extension("png"), &png)?;
-        }
-        Ok(())
-    }
-
-    /// Whether the committed files say the same, numbers to their printed digits. Of a PNG it
-    /// is only asked that it is there: it is written together with its SVG.
-    pub(super) fn are_committed(&self) -> Result<bool, Error> {
-        let mut same = is_committed(&page_path(), &self.page)?;
-        for (stem, picture) in &self.pictures {
-            let path = picture_path(stem);
-            same &= is_committed(&path, &picture.to_svg()?)?;
-            same &= path.with_extension("png").is_file();
-        }
-        Ok(same)
-    }
-}
-
-fn is_committed(path: &Path, measured: &str) -> Result<bool, Error> {
+/// Whether a committed file says the same, numbers to their printed digits. If not, says where,
+/// and that `cargo figures TOPIC --write` renews it.
+pub(crate) fn is_committed(path: &Path, measured: &str, topic: &str) -> Result<bool, Error> {
     let committed = std::fs::read_to_string(path)
         .map_err(|error| format!("{}: {error}; write it with --write", path.display()))?;
     match difference(&committed, measured) {
@@ -76,7 +43,7 @@ fn is_committed(path: &Path, measured: &str) -> Result<bool, Error> {
         Some((line, found)) => {
             eprintln!(
                 "{}, line {line}: measured is `{found}`; renew the page with `cargo figures \
-                 paper --write`",
+                 {topic} --write`",
                 path.display()
             );
             Ok(false)
@@ -84,19 +51,9 @@ fn is_committed(path: &Path, measured: &str) -> Result<bool, Error> {
     }
 }
 
-fn docs() -> PathBuf {
+/// The folder of the documentation.
+pub(crate) fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
-}
-
-fn page_path() -> PathBuf {
-    docs().join("paper.md")
-}
-
-fn picture_path(stem: &str) -> PathBuf {
-    docs()
-        .join("pictures/paper")
-        .join(stem)
-        .with_extension("svg")
 }
 
 /// The first line in which two texts differ by more than the last printed digit of a number:
@@ -229,32 +186,38 @@ mod tests {
         }
     }
 
-    /// What the command checks with the numbers takes minutes without optimisation; this sees an
-    /// edit of the page that should have been one of its template, or a page not written again.
+    /// What the command checks with the numbers takes a while; this sees an edit of a page that
+    /// should have been one of its template, or a page not written again.
     #[test]
-    fn the_committed_page_is_the_template_filled() {
-        let page = std::fs::read_to_string(page_path()).expect("docs/paper.md is committed");
-        let mut texts = TEMPLATE
-            .split("{{")
-            .map(|part| match part.split_once("}}") {
-                Some((_, text)) => text,
-                None => part,
-            });
-        let mut rest = texts
-            .next()
-            .and_then(|first| page.strip_prefix(first))
-            .expect("the page begins as its template does");
-        for text in texts {
-            let place = rest
-                .find(text)
-                .unwrap_or_else(|| panic!("the page lacks: {text}"));
-            rest = &rest[place + text.len()..];
+    fn the_committed_pages_are_their_templates_filled() {
+        for (name, template) in [
+            ("paper.md", crate::paper::TEMPLATE),
+            ("measured-data.md", crate::measured::TEMPLATE),
+        ] {
+            let page = std::fs::read_to_string(docs().join(name)).expect("the page is committed");
+            let mut texts = template
+                .split("{{")
+                .map(|part| match part.split_once("}}") {
+                    Some((_, text)) => text,
+                    None => part,
+                });
+            let mut rest = texts
+                .next()
+                .and_then(|first| page.strip_prefix(first))
+                .expect("the page begins as its template does");
+            for text in texts {
+                let place = rest
+                    .find(text)
+                    .unwrap_or_else(|| panic!("{name} lacks: {text}"));
+                rest = &rest[place + text.len()..];
+            }
+            assert_eq!(rest, "", "{name} ends as its template does");
         }
-        assert_eq!(rest, "", "the page ends as its template does");
     }
 
     #[test]
     fn a_place_without_a_value_is_an_error() {
-        assert!(fill(&Values::default()).is_err());
+        assert!(fill("{{something}}", &Values::default()).is_err());
+        assert!(fill("a place that {{does not end", &Values::default()).is_err());
     }
 }

@@ -1,0 +1,85 @@
+//! How gyros lie that are fixed to a body, in the axes of the platform computed from them.
+
+/// For each row of a record the rotation from the gyros' axes to those of the platform.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GyroAxes {
+    /// Unit quaternions (w, x, y, z), of which neighbours lie in one half-space.
+    platform_q_gyros: Vec<[f64; 4]>,
+}
+
+impl GyroAxes {
+    /// From quaternions (w, x, y, z), one for each row, of any length but zero: `q` takes
+    /// components along the gyros' axes to components along the platform's.
+    #[must_use]
+    pub fn new(platform_q_gyros: &[[f64; 4]]) -> Self {
+        let mut before = [1.0, 0.0, 0.0, 0.0];
+        let unit = platform_q_gyros.iter().map(|q| {
+            // Both signs are one rotation; what lies between two is a matter of signs.
+            let sign = if dot(q, &before) < 0.0 { -1.0 } else { 1.0 };
+            let scale = sign / dot(q, q).sqrt();
+            before = q.map(|component| scale * component);
+            before
+        });
+        Self {
+            platform_q_gyros: unit.collect(),
+        }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.platform_q_gyros.len()
+    }
+
+    /// Whether there are no rows.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.platform_q_gyros.is_empty()
+    }
+
+    /// The direction cosine matrix, by rows, at some share of the way from a row to the next.
+    /// Between rows the rotation is taken as uniform but for (turn)²/24 of it.
+    pub(crate) fn between(&self, row: usize, share: f64) -> [f64; 9] {
+        let from = &self.platform_q_gyros[row];
+        let to = self.platform_q_gyros.get(row + 1).unwrap_or(from);
+        let mean: [f64; 4] = core::array::from_fn(|i| (1.0 - share) * from[i] + share * to[i]);
+        let scale = 1.0 / dot(&mean, &mean);
+        let [w, x, y, z] = mean;
+        [
+            w * w + x * x - y * y - z * z,
+            2.0 * (x * y - w * z),
+            2.0 * (x * z + w * y),
+            2.0 * (x * y + w * z),
+            w * w - x * x + y * y - z * z,
+            2.0 * (y * z - w * x),
+            2.0 * (x * z - w * y),
+            2.0 * (y * z + w * x),
+            w * w - x * x - y * y + z * z,
+        ]
+        .map(|element| scale * element)
+    }
+}
+
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_turn_about_z_takes_x_to_y_whatever_the_sign() {
+        let half = core::f64::consts::FRAC_PI_4;
+        for sign in [1.0, -1.0] {
+            let quarter = [half.cos(), 0.0, 0.0, half.sin()].map(|q| 3.0 * sign * q);
+            let axes = GyroAxes::new(&[[1.0, 0.0, 0.0, 0.0], quarter]);
+            let matrix = axes.between(1, 0.0);
+            // Columns are the gyros' axes: rounding of some products.
+            assert!((matrix[3] - 1.0).abs() < 1e-15 && (matrix[1] + 1.0).abs() < 1e-15);
+            // Halfway is an eighth.
+            let between = axes.between(0, 0.5);
+            assert!((between[3] - half.sin()).abs() < 1e-15, "{between:?}");
+        }
+    }
+}

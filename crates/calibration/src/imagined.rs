@@ -1,0 +1,137 @@
+//! What a run that has not been made would say.
+
+use gyrocal::generated::catalogue::{self, CatalogueInputs};
+use gyrocal::trajectory::Orientation;
+use gyrocal::{Anchored, Catalogue, Chart};
+use nalgebra::DMatrix;
+
+use crate::attitude::trials;
+use crate::calibrate::Options;
+use crate::error::CalibrationError;
+use crate::extended::NoiseModel;
+use crate::further::{Column, Further};
+use crate::problem::{Leg, Problem};
+use crate::run::{Rows, Run};
+use crate::settings::level;
+use crate::solve::Failure;
+
+/// A run that has not been made: from its first attitude the platform goes where the model takes
+/// it.
+#[derive(Clone, Debug)]
+pub struct ImaginedRun<'a> {
+    /// Its rows and its bench. Values of accelerometers do not matter, but for those of the first
+    /// rows if the bench does not give the attitude, and for which are missing.
+    pub run: Run<'a>,
+    /// Attitude at the first row.
+    pub start: Orientation,
+    /// All parameters of [`Catalogue`].
+    pub parameters: &'a [f64],
+    /// Onsets and time constants, as [`Catalogue`] takes them.
+    pub shapes: [f64; catalogue::SHAPES.len()],
+    /// The noise that is expected; weights do not matter.
+    pub noise: &'a NoiseModel,
+}
+
+/// What it would say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Foreseen {
+    /// Information on the amplitudes of columns, those of parameters first; the attitudes at all
+    /// rows are eliminated.
+    pub information: DMatrix<f64>,
+    /// Attitude at each row.
+    pub points: Vec<Orientation>,
+}
+
+impl ImaginedRun<'_> {
+    /// Where the platform goes, noise aside.
+    ///
+    /// # Errors
+    /// As [`crate::bound`].
+    pub fn trajectory(&self, options: &Options) -> Result<Vec<Orientation>, CalibrationError> {
+        let none = Further::default();
+        let points = vec![self.start; self.run.record.len()];
+        let problem = self.problem(points, options)?;
+        problem
+            .with_active(0, self.parameters, &[], &none, |pass| pass.free_run())
+            .map_err(|source| CalibrationError::from(Failure::Pass(0, source)))
+    }
+
+    /// Information of the rows from `first` on, given those before, on the parameters `active`
+    /// of [`Catalogue`] and on further columns, along a trajectory.
+    ///
+    /// # Errors
+    /// As [`crate::bound`].
+    pub fn foresee(
+        &self,
+        points: Vec<Orientation>,
+        active: &[usize],
+        columns: &[Column],
+        first: usize,
+        options: &Options,
+    ) -> Result<Foreseen, CalibrationError> {
+        let further = Further::new(columns.to_vec());
+        let count = active.len() + columns.len();
+        let problem = self.problem(points, options)?;
+        let mut earlier = DMatrix::zeros(count, count);
+        let reduced = problem
+            .with_active(0, self.parameters, active, &further, |pass| {
+                pass.reduce(|value| {
+                    if value.row < first {
+                        let columns = nalgebra::DVectorView::from_slice(&value.columns[1..], count);
+                        earlier.ger(1.0, &columns, &columns, 1.0);
+                    }
+                })
+            })
+            .map_err(|source| CalibrationError::from(Failure::Pass(0, source)))?;
+        Ok(Foreseen {
+            information: reduced.gram.view((1, 1), (count, count)) - earlier,
+            points: problem
+                .legs
+                .into_iter()
+                .flat_map(|leg| leg.points)
+                .collect(),
+        })
+    }
+
+    fn problem(
+        &self,
+        points: Vec<Orientation>,
+        options: &Options,
+    ) -> Result<Problem<'_, Anchored<Catalogue>, CatalogueInputs<f64>>, CalibrationError> {
+        let Run { record, bench } = self.run;
+        let settings = level(bench);
+        // All trials have the same covariance: it does not depend on azimuth.
+        let prior_covariance = trials(record, bench)?
+            .first()
+            .map(|trial| trial.prior.covariance)
+            .ok_or(CalibrationError::NotLevelled)?;
+        let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
+        if let Some(field_gauss) = bench.magnetic_field_gauss {
+            chart.set_field_gauss(field_gauss);
+        }
+        chart.inputs_mut().shapes = self.shapes;
+        let density = settings.drift_noise_density();
+        let noise_g = self
+            .noise
+            .accel_ratio
+            .map(|ratio| ratio * settings.accel_noise_g);
+        Ok(Problem {
+            model: &Anchored(Catalogue),
+            integration: options.integration,
+            longest_step_s: options.longest_step_s,
+            unknowns: Vec::new(),
+            values: Vec::new(),
+            legs: vec![Leg {
+                rows: Rows::new(record, record.len(), noise_g),
+                chart,
+                noise_density: self.noise.gyro_ratio.map(|ratio| ratio * ratio * density),
+                prior: self.start,
+                prior_covariance,
+                points,
+                sums: Vec::new(),
+                further: Further::default(),
+                amplitudes: Vec::new(),
+            }],
+        })
+    }
+}

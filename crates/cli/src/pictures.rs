@@ -1,0 +1,75 @@
+//! Pictures as files.
+
+use std::fs;
+use std::path::Path;
+
+use gyrocal_record::Outputs;
+use gyrocal_report::Picture;
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+
+use crate::Failure;
+
+/// The help of `--figures`.
+pub(crate) const HELP: &str = if cfg!(feature = "png") {
+    "Write pictures of it into this folder, as SVG and PNG"
+} else {
+    "Write pictures of it into this folder, as SVG; PNG needs a build with --features png"
+};
+
+/// Forms in which pictures are written.
+const FORMS: &str = if cfg!(feature = "png") {
+    "as SVG and PNG"
+} else {
+    "as SVG (PNG needs a build with --features png)"
+};
+
+/// Width of the PNGs, px: that of the SVGs and a quarter, for sharp letters.
+#[cfg(feature = "png")]
+const WIDTH_PX: u32 = 1200;
+
+/// A picture with the name of its files.
+pub(crate) type Named = (&'static str, Box<dyn Picture>);
+
+/// Writes the pictures of an input beside their names, to be committed with the other outputs;
+/// returns what is to be said.
+pub(crate) fn stage(
+    of: &Path,
+    pictures: &[Named],
+    folder: &Path,
+    outputs: &mut Outputs,
+) -> Result<String, Failure> {
+    fs::create_dir_all(folder).map_err(|reason| {
+        Failure::Work(miette!(
+            help = "give a folder, or a name that is free",
+            "--figures {}: cannot be made: {reason}",
+            folder.display()
+        ))
+    })?;
+    for (name, picture) in pictures {
+        let drawn = || format!("the picture {name} of {}", of.display());
+        let svg = picture
+            .to_svg()
+            .into_diagnostic()
+            .wrap_err_with(drawn)
+            .map_err(Failure::Work)?;
+        outputs.stage(&folder.join(name).with_extension("svg"), svg.as_bytes())?;
+        #[cfg(feature = "png")]
+        {
+            let png = gyrocal_report::to_png(&svg, WIDTH_PX)
+                .into_diagnostic()
+                .wrap_err_with(drawn)
+                .map_err(Failure::Work)?;
+            outputs.stage(&folder.join(name).with_extension("png"), &png)?;
+        }
+    }
+    let names: Vec<&str> = pictures.iter().map(|(name, _)| *name).collect();
+    let count = match names.len() {
+        1 => "one picture".to_owned(),
+        count => format!("{count} pictures"),
+    };
+    Ok(format!(
+        "\n{}: {count}, {FORMS}: {}\n",
+        folder.display(),
+        names.join(", ")
+    ))
+}

@@ -1,0 +1,139 @@
+//! `gyrocal plan`: a record in, the next run that says most out.
+
+mod failed;
+mod found;
+mod json;
+mod options;
+mod tables;
+mod words;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use gyrocal::Platform;
+use gyrocal_calibration::Run;
+use gyrocal_diagnosis::plan::{Aim, PlanOptions, Planned, plan};
+use gyrocal_record::{Bench, Outputs, Record};
+
+use crate::Failure;
+use crate::numbers::{positive, probability};
+use crate::outputs::refuse_overlap;
+use crate::progress::Progress;
+use failed::NotPlanned;
+use options::{goal, limit, limits, wished_sigma};
+
+/// Say from which attitude, and for how long, the next run should be made.
+///
+/// Looks through the attitudes that the gimbals allow for the run that shrinks the named set of
+/// causes most, or the sigmas of the coefficients, and tells what record and run will leave
+/// together. What was found is diagnosed first unless a diagnosis is given.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit codes: 0 the answer was written, 1 an input or the work failed, 2 the \
+                        command line is wrong."
+)]
+pub(crate) struct PlanArguments {
+    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c.
+    #[arg(value_name = "RECORD.csv")]
+    record: PathBuf,
+    /// The bench description (TOML).
+    #[arg(long, value_name = "BENCH.toml")]
+    bench: PathBuf,
+    /// What `gyrocal diagnose --json` wrote of this record; without it the record is diagnosed.
+    #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["effects", "false_alarm"])]
+    diagnosis: Option<PathBuf>,
+    /// The result to write for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+    /// Durations of the next run, h; as long as the record if none is given.
+    #[arg(long, value_name = "H,H", value_delimiter = ',', value_parser = positive)]
+    hours: Vec<f64>,
+    /// Limits of the platform angles in the whole run, deg: x=-30..30,y=-60..60. They go before
+    /// those of the bench file.
+    #[arg(
+        long,
+        value_name = "AXIS=FROM..TO",
+        value_delimiter = ',',
+        value_parser = limit,
+        allow_hyphen_values = true
+    )]
+    limits: Vec<(usize, [f64; 2])>,
+    /// What runs are ranked by; by sets if there is one with rivals.
+    #[arg(long, value_enum)]
+    aim: Option<AimArgument>,
+    /// Also find the shortest run after which a coefficient has this sigma: gyro_x.g_x=1e-4.
+    #[arg(long, value_name = "ID=SIGMA", value_delimiter = ',', value_parser = wished_sigma)]
+    sigma: Vec<(String, f64)>,
+    /// Also find the shortest run after which one name is left of each set, with 95 %.
+    #[arg(long)]
+    one_name: bool,
+    /// Look for these effects too when the record is diagnosed.
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
+    effects: Vec<String>,
+    /// Probability that a sound record shows anything when it is diagnosed.
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
+    false_alarm: f64,
+}
+
+/// What runs are ranked by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum AimArgument {
+    /// What is left of the named sets, then the sigmas.
+    Set,
+    /// The sigmas of the nine coefficients.
+    Sigmas,
+}
+
+/// What there is to tell.
+struct Found<'a> {
+    arguments: &'a PlanArguments,
+    record: &'a Record,
+    planned: Planned,
+    /// The goal in words, if there is one.
+    wish: Option<String>,
+}
+
+/// Runs the command; returns what is to be said on stdout.
+pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
+    let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
+    inputs.extend(arguments.diagnosis.as_deref());
+    refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    let bench = Bench::read(&arguments.bench)?;
+    let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
+    tracing::info!(rows = record.len(), "read");
+    let run = Run {
+        record: &record,
+        bench: &bench,
+    };
+    let progress = Progress::waiting("planning on", record.len());
+    let known = found::known(arguments, &run)?;
+    tracing::info!(named = known.named.len(), "known");
+    let goal = goal(arguments);
+    let options = PlanOptions {
+        durations_s: arguments.hours.iter().map(|hours| 3600.0 * hours).collect(),
+        limits: limits(&arguments.limits, &bench),
+        aim: arguments.aim.map(|aim| match aim {
+            AimArgument::Set => Aim::Set,
+            AimArgument::Sigmas => Aim::Sigmas,
+        }),
+        goal: goal.clone(),
+        ..PlanOptions::default()
+    };
+    let planned = plan(&known.fitted, &run, &known.noise, &known.named, &options)
+        .map_err(|source| NotPlanned::new(&arguments.record, source))?;
+    drop(progress);
+    let found = Found {
+        arguments,
+        record: &record,
+        planned,
+        wish: options::in_words(&goal),
+    };
+    let mut text = words::summary(&found);
+    let mut outputs = Outputs::new();
+    if let Some(path) = &arguments.json {
+        outputs.stage_json(path, &json::report(&found, options.seed, &inputs)?)?;
+        text.push_str(&format!("\n{}: the result for programs\n", path.display()));
+    }
+    outputs.commit()?;
+    Ok(text)
+}

@@ -1,0 +1,198 @@
+//! Drifts and readings that depend on specific force as no polynomial of the catalogue does: dead
+//! zones, friction, hysteresis about zero. Tried as piecewise linear functions of each component.
+
+use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended};
+use gyrocal_record::Record;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::bank::Bank;
+use super::unnamed::{Channel, Pattern, Unnamed};
+
+/// Knots of a function, from the least to the largest specific force that the record visits.
+const KNOTS: usize = 10;
+
+/// A component that moves by less shows no curve, g.
+const LEAST_RANGE_G: f64 = 0.02;
+
+/// Combinations of knots of which a fit leaves less than this share of the best seen one are not
+/// tried: constants and low powers, which the coefficients take up.
+const SEEN: f64 = 1e-4;
+
+/// The most significant curve beside what a fit holds.
+pub(super) fn strongest(
+    fitted: &Extended<'_>,
+    record: &Record,
+) -> Result<Option<Unnamed>, CalibrationError> {
+    let force_g = fitted.predicted_g();
+    let mut best: Option<Unnamed> = None;
+    // One channel after the other: columns of readings are large.
+    for channel in Channel::ALL {
+        let columns: Vec<(usize, Vec<Column>)> = (0..3)
+            .filter_map(|axis| Some((axis, knots(record, &force_g, channel, axis)?)))
+            .collect();
+        let all: Vec<Column> = columns
+            .iter()
+            .flat_map(|(_, columns)| columns.iter().cloned())
+            .collect();
+        if all.is_empty() {
+            continue;
+        }
+        let bank = Bank::beside(fitted, &all)?;
+        let mut first = 0;
+        for (axis, own) in &columns {
+            let places: Vec<usize> = (first..first + own.len()).collect();
+            first += own.len();
+            let found = spanned(
+                &bank,
+                &places,
+                own,
+                (channel, Pattern::Curve { axis: *axis }),
+            );
+            if let Some(found) = found
+                && best
+                    .as_ref()
+                    .is_none_or(|best| found.ln_probability < best.ln_probability)
+            {
+                best = Some(found);
+            }
+        }
+    }
+    Ok(best)
+}
+
+/// The best function of what some columns span.
+fn spanned(
+    bank: &Bank,
+    places: &[usize],
+    columns: &[Column],
+    which: (Channel, Pattern),
+) -> Option<Unnamed> {
+    let (information, score) = bank.part(places);
+    let scale = DVector::from_iterator(
+        places.len(),
+        places.iter().map(|place| bank.raw[*place].sqrt().recip()),
+    );
+    if !scale.iter().all(|scale| scale.is_finite()) {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(places.len(), places.len(), |i, j| {
+        information[(i, j)] * scale[i] * scale[j]
+    });
+    let eigen = SymmetricEigen::new(scaled);
+    let most = eigen.eigenvalues.max();
+    let along = eigen.eigenvectors.tr_mul(&score.component_mul(&scale));
+    let mut statistic = 0.0;
+    let mut combinations = Vec::new();
+    let mut size = 0.0;
+    for (index, value) in eigen.eigenvalues.iter().enumerate() {
+        if *value <= SEEN * most || *value <= SEEN {
+            continue;
+        }
+        statistic += along[index].powi(2) / value;
+        let weights = eigen.eigenvectors.column(index).component_mul(&scale);
+        let amplitude = along[index] / value;
+        let (combined, mean_square) = combination(columns, &weights)?;
+        size += amplitude * amplitude * mean_square;
+        combinations.push(combined);
+    }
+    let degrees_of_freedom = combinations.len();
+    if degrees_of_freedom == 0 {
+        return None;
+    }
+    // Of each channel three components are looked at.
+    let chances = 3.0 * Channel::ALL.len() as f64;
+    Some(Unnamed::new(
+        which,
+        size.sqrt(),
+        (statistic, degrees_of_freedom),
+        chances.ln(),
+        combinations,
+    ))
+}
+
+/// A weighted sum of columns of one kind, and its mean square.
+fn combination(columns: &[Column], weights: &DVector<f64>) -> Option<(Column, f64)> {
+    let mut sum: Option<Column> = None;
+    for (column, weight) in columns.iter().zip(weights.iter()) {
+        match (&mut sum, column) {
+            (None, Column::Course { parameter, steps }) => {
+                sum = Some(Column::Course {
+                    parameter: *parameter,
+                    steps: steps.iter().map(|share| weight * share).collect(),
+                });
+            }
+            (None, Column::Readings { change_g }) => {
+                sum = Some(Column::Readings {
+                    change_g: change_g
+                        .iter()
+                        .map(|row| row.map(|change| weight * change))
+                        .collect(),
+                });
+            }
+            (Some(Column::Course { steps: sum, .. }), Column::Course { steps, .. }) => {
+                for (sum, share) in sum.iter_mut().zip(steps) {
+                    *sum += weight * share;
+                }
+            }
+            (Some(Column::Readings { change_g: sum }), Column::Readings { change_g }) => {
+                let values = change_g.as_flattened().iter();
+                for (sum, change) in sum.as_flattened_mut().iter_mut().zip(values) {
+                    *sum += weight * change;
+                }
+            }
+            _ => return None,
+        }
+    }
+    let mean_square = match sum.as_ref()? {
+        Column::Course { steps, .. } => {
+            steps.iter().map(|share| share * share).sum::<f64>() / steps.len() as f64
+        }
+        Column::Readings { change_g } => {
+            let squares = change_g.as_flattened().iter().map(|change| change * change);
+            squares.sum::<f64>() / change_g.len() as f64
+        }
+        _ => return None,
+    };
+    Some((sum?, mean_square))
+}
+
+/// Hat functions of a component, in the middle of each step or at each row.
+fn knots(
+    record: &Record,
+    force_g: &[[f64; 3]],
+    channel: Channel,
+    axis: usize,
+) -> Option<Vec<Column>> {
+    let (least, most) = force_g
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, row| {
+            (ends.0.min(row[axis]), ends.1.max(row[axis]))
+        });
+    if record.len() < 2 || most - least < LEAST_RANGE_G {
+        return None;
+    }
+    let spacing = (most - least) / (KNOTS - 1) as f64;
+    let hat = |knot: usize, force_g: f64| {
+        (1.0 - ((force_g - least) / spacing - knot as f64).abs()).max(0.0)
+    };
+    let column = |knot: usize| match channel {
+        Channel::Drift(gyro) => Column::Course {
+            parameter: BIASES[gyro],
+            steps: force_g
+                .windows(2)
+                .map(|pair| hat(knot, 0.5 * (pair[0][axis] + pair[1][axis])))
+                .collect(),
+        },
+        Channel::Readings(output) => Column::Readings {
+            change_g: force_g
+                .iter()
+                .map(|row| {
+                    let mut change_g = [0.0; 3];
+                    change_g[output] = hat(knot, row[axis]);
+                    change_g
+                })
+                .collect(),
+        },
+    };
+    Some((0..KNOTS).map(column).collect())
+}

@@ -1,0 +1,157 @@
+//! What a record shows and the catalogue has no name for: lines, and curves over specific force.
+
+use gyrocal_calibration::{CalibrationError, Column, Extended, Jump};
+use gyrocal_record::Record;
+
+use super::{curve, line};
+use crate::significance::{ln_chi_square_tail, single_equivalent};
+
+/// A gyro or an accelerometer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// The drift of gyro 0, 1, 2 of x, y, z.
+    Drift(usize),
+    /// The readings of accelerometer 0, 1, 2 of x, y, z.
+    Readings(usize),
+}
+
+impl Channel {
+    /// All of them.
+    pub(super) const ALL: [Self; 6] = [
+        Self::Drift(0),
+        Self::Drift(1),
+        Self::Drift(2),
+        Self::Readings(0),
+        Self::Readings(1),
+        Self::Readings(2),
+    ];
+
+    /// Unit of what it shows.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Drift(_) => "deg/h",
+            Self::Readings(_) => "g",
+        }
+    }
+}
+
+impl core::fmt::Display for Channel {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (what, axis) = match self {
+            Self::Drift(axis) => ("the drift of gyro", axis),
+            Self::Readings(axis) => ("the readings of accelerometer", axis),
+        };
+        write!(f, "{what} {}", AXES[*axis])
+    }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// How it goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pattern {
+    /// As a sine.
+    Line {
+        /// Its period, h.
+        period_h: f64,
+    },
+    /// With a component of specific force, and not as a polynomial of the catalogue does.
+    Curve {
+        /// 0, 1, 2 of the component along x, y, z.
+        axis: usize,
+    },
+}
+
+/// Something that no effect of the catalogue explains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unnamed {
+    /// Where it is.
+    pub channel: Channel,
+    /// How it goes.
+    pub pattern: Pattern,
+    /// Amplitude of a line, root mean square of a curve, in the channel's unit.
+    pub size: f64,
+    /// Chi-square if it is absent.
+    pub statistic: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// Natural logarithm of the probability that chance shows as much anywhere that was looked at.
+    pub ln_probability: f64,
+    /// What it adds to a model.
+    pub(super) columns: Vec<Column>,
+}
+
+impl Unnamed {
+    pub(super) fn new(
+        (channel, pattern): (Channel, Pattern),
+        size: f64,
+        (statistic, degrees_of_freedom): (f64, usize),
+        ln_chances: f64,
+        columns: Vec<Column>,
+    ) -> Self {
+        let tail = ln_chi_square_tail(statistic, degrees_of_freedom as f64);
+        Self {
+            channel,
+            pattern,
+            size,
+            statistic,
+            degrees_of_freedom,
+            ln_probability: (tail + ln_chances).min(0.0),
+            columns,
+        }
+    }
+
+    /// The value of chi-square with one degree of freedom that is as rare.
+    pub(super) fn equivalent(&self) -> f64 {
+        single_equivalent(self.ln_probability)
+    }
+
+    /// In words.
+    #[must_use]
+    pub fn description(&self) -> String {
+        let Self { channel, size, .. } = self;
+        let unit = channel.unit();
+        match self.pattern {
+            Pattern::Line { period_h } => format!(
+                "a line in {channel} with a period of {period_h:.2} h and an amplitude of \
+                 {size:.2e} {unit}, which no effect of the catalogue explains"
+            ),
+            Pattern::Curve { axis } => format!(
+                "{channel} depends on specific force along {} as no polynomial of the catalogue \
+                 does, {size:.2e} {unit} rms",
+                AXES[axis]
+            ),
+        }
+    }
+}
+
+/// The most significant line, or, if they are asked for, curve beside what a fit holds.
+pub(super) fn strongest(
+    fitted: &Extended<'_>,
+    record: &Record,
+    jumps: &[Option<Jump>],
+    curves: bool,
+) -> Result<Option<Unnamed>, CalibrationError> {
+    let found = [
+        line::strongest(fitted, record, jumps)?,
+        if curves {
+            curve::strongest(fitted, record)?
+        } else {
+            None
+        },
+    ];
+    Ok(found
+        .into_iter()
+        .flatten()
+        .min_by(|a, b| a.ln_probability.total_cmp(&b.ln_probability)))
+}
+
+/// Numbers for each step that follow a course of time.
+pub(super) fn steps(record: &Record, of: impl Fn(f64) -> f64) -> Vec<f64> {
+    let first_s = record.time_s.first().copied().unwrap_or(0.0);
+    let middles = record.time_s.windows(2);
+    middles
+        .map(|pair| of(0.5 * (pair[0] + pair[1]) - first_s))
+        .collect()
+}

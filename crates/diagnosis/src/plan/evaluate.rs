@@ -1,0 +1,309 @@
+//! One attitude and duration, looked at.
+
+use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
+use gyrocal_calibration::{
+    BIASES, CalibrationError, Extended, ImaginedRun, NoiseModel, Options, Run,
+};
+use gyrocal_record::{Bench, GimbalLimits, Record};
+use nalgebra::{DMatrix, DVector};
+
+use super::attitude::of_angles;
+use super::expected::{Deviates, Posteriors, expected};
+use super::outlook::{Forecast, Outlook, SetForecast, SetMember, ratio};
+use super::piece::Piece;
+use super::present::duration_s;
+use super::said::{Said, foreseen};
+use super::sigma::sigmas;
+use super::universe::Universe;
+use crate::cause::axis_of;
+
+/// How finely a run is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Detail {
+    /// Most rows; fewer rows with as much information in all stand for more.
+    pub(crate) rows: usize,
+    /// Draws of the next run for each member of a set.
+    pub(crate) draws: usize,
+}
+
+/// What the platform turns in longer steps than this, 2.5°, is still integrated to 1e-9 rad.
+const LONGEST_STEP_S: f64 = 600.0;
+
+/// Everything but the attitude.
+pub(crate) struct Setting<'a> {
+    pub(crate) universe: &'a Universe,
+    pub(crate) run: Run<'a>,
+    noise: &'a NoiseModel,
+    limits: GimbalLimits,
+    options: Options,
+    parameters: Vec<f64>,
+    shapes: [f64; gyrocal::generated::catalogue::SHAPES.len()],
+    start: Orientation,
+    now: Said,
+    before: Vec<Forecast>,
+    posteriors: Vec<Posteriors>,
+    deviates: Deviates,
+    duration_s: f64,
+    detail: Detail,
+}
+
+/// What was seen of an attitude.
+pub(crate) enum Looked {
+    /// What record and run leave together.
+    At(Outlook),
+    /// The gimbals come to a limit after so long, s.
+    Stopped(f64),
+}
+
+impl<'a> Setting<'a> {
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn new(
+        universe: &'a Universe,
+        fitted: &Extended<'_>,
+        run: Run<'a>,
+        noise: &'a NoiseModel,
+        said: &Said,
+        limits: GimbalLimits,
+        options: Options,
+        (duration_s, detail, seed): (f64, Detail, u64),
+    ) -> Option<Self> {
+        let now = universe.of_first(said);
+        let (before, _) = sigmas(universe, &now.information)?;
+        let posteriors = universe
+            .cases
+            .iter()
+            .map(|case| Posteriors::new(case, &universe.unknowns, &now))
+            .collect();
+        let mut parameters = fitted.parameters();
+        // A step stays, so the next run begins with it.
+        for case in &universe.cases {
+            if let Some(named) = case.members.first().map(|member| member.suspect.row)
+                && named.id.ends_with(".step")
+                && let (Some(axis), Some(size)) = (
+                    axis_of(named.id),
+                    crate::cause::parameter(named.states.first().copied().unwrap_or("")),
+                )
+            {
+                parameters[BIASES[axis]] += parameters[size];
+                parameters[size] = 0.0;
+            }
+        }
+        Some(Self {
+            universe,
+            run,
+            noise,
+            limits,
+            options: Options {
+                longest_step_s: options.longest_step_s.max(LONGEST_STEP_S),
+                ..options
+            },
+            parameters,
+            shapes: fitted.extension().shapes,
+            start: *fitted.points().first()?,
+            now,
+            before,
+            posteriors,
+            deviates: Deviates::new(universe.unknowns.len(), detail.draws, seed),
+            duration_s,
+            detail,
+        })
+    }
+
+    /// What the record so far leaves.
+    pub(crate) fn present(&self) -> Option<Outlook> {
+        let (coefficients, sizes) = sigmas(self.universe, &self.now.information)?;
+        let sets = self
+            .universe
+            .cases
+            .iter()
+            .filter_map(|case| {
+                let size = case.members.len();
+                Some(SetForecast {
+                    effect: case.members.first()?.suspect.row.id,
+                    mean_size: size as f64,
+                    one_left: f64::from(u8::from(size == 1)),
+                    members: case
+                        .members
+                        .iter()
+                        .enumerate()
+                        .map(|(index, member)| SetMember {
+                            effect: member.suspect.row.id,
+                            equivalents: member.suspect.equivalents.clone(),
+                            told_apart: f64::from(u8::from(index == 0)),
+                        })
+                        .collect(),
+                })
+            })
+            .collect();
+        Some(Outlook {
+            sigma_ratio: 1.0,
+            coefficients,
+            sizes,
+            sets,
+        })
+    }
+
+    /// A run from platform angles.
+    pub(crate) fn look(&self, angles_deg: [f64; 3]) -> Result<Looked, CalibrationError> {
+        let start = of_angles(angles_deg);
+        let (mut record, noise_factor) = self.rows(self.duration_s);
+        // Where the bench gives no attitude the first samples have to tell it.
+        let up = start[1].map(|component| component * self.run.bench.specific_force_at_rest());
+        record.accel_g.fill(up);
+        let given = self.run.bench.initial_angles_deg.is_some();
+        let bench = Bench {
+            initial_angles_deg: given.then_some(angles_deg),
+            accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
+            ..self.run.bench.clone()
+        };
+        let imagined = self.imagined(&record, &bench, start);
+        let points = imagined.trajectory(&self.options)?;
+        if let Some(row) = points.iter().position(|point| !self.allowed(point)) {
+            return Ok(Looked::Stopped(
+                record.time_s[row.saturating_sub(1)] - record.time_s[0],
+            ));
+        }
+        let pieces = &self.universe.next;
+        let information = foreseen(&imagined, pieces, 0, points, &self.options)?;
+        let next = self.universe.of_next(&silent(information)).information;
+        Ok(self.outlook(&next).map_or(Looked::Stopped(0.0), Looked::At))
+    }
+
+    /// The record gone on with for the duration of the next run.
+    pub(crate) fn going_on(&self) -> Result<Option<Outlook>, CalibrationError> {
+        let first_s = duration_s(self.run.record);
+        let (mut record, noise_factor) = self.rows(first_s + self.duration_s);
+        let given = self.run.bench.initial_angles_deg.is_some();
+        if !given {
+            let up = self.start[1].map(|x| x * self.run.bench.specific_force_at_rest());
+            record.accel_g.fill(up);
+        }
+        let bench = Bench {
+            accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
+            ..self.run.bench.clone()
+        };
+        let imagined = self.imagined(&record, &bench, self.start);
+        let points = imagined.trajectory(&self.options)?;
+        let from = record.time_s.partition_point(|t| *t <= first_s);
+        // Without the fit's own columns, which are of the record's own rows.
+        let pieces: Vec<Piece> = self.universe.first.clone();
+        let information = foreseen(&imagined, &pieces, from, points, &self.options)?;
+        let next = self.universe.of_first(&silent(information)).information;
+        Ok(self.outlook(&next))
+    }
+
+    fn outlook(&self, next: &DMatrix<f64>) -> Option<Outlook> {
+        let total = &self.now.information + next;
+        let (coefficients, sizes) = sigmas(self.universe, &total)?;
+        let sets: Option<Vec<SetForecast>> = self
+            .universe
+            .cases
+            .iter()
+            .zip(&self.posteriors)
+            .map(|(case, posteriors)| {
+                expected(
+                    case,
+                    &self.universe.unknowns,
+                    posteriors,
+                    &self.now,
+                    next,
+                    &self.deviates,
+                )
+            })
+            .collect();
+        Some(Outlook {
+            sigma_ratio: ratio(&coefficients, &self.before),
+            coefficients,
+            sizes,
+            sets: sets?,
+        })
+    }
+
+    fn allowed(&self, point: &Orientation) -> bool {
+        let angles = angles_rad(&platform_c_enu(point)).map(f64::to_degrees);
+        // The same attitude by the other way round.
+        let other = [angles[0] + 180.0, 180.0 - angles[1], angles[2] + 180.0];
+        self.limits.hold(angles) || self.limits.hold(other)
+    }
+
+    fn imagined<'b>(
+        &'b self,
+        record: &'b Record,
+        bench: &'b Bench,
+        start: Orientation,
+    ) -> ImaginedRun<'b> {
+        ImaginedRun {
+            run: Run { record, bench },
+            start,
+            parameters: &self.parameters,
+            shapes: self.shapes,
+            noise: self.noise,
+        }
+    }
+
+    /// Rows over a duration, and what the noise of a sample is multiplied by where one of them
+    /// stands for several of the logger's.
+    fn rows(&self, duration_s: f64) -> (Record, f64) {
+        let logged_s = interval_s(self.run.record);
+        let steps = (duration_s / logged_s).round().max(1.0);
+        let taken = steps.min(self.detail.rows as f64).max(1.0);
+        let interval_s = duration_s / taken;
+        let time_s: Vec<f64> = (0..=taken as usize)
+            .map(|row| row as f64 * interval_s)
+            .collect();
+        let temperature_c = self.run.record.temperature_c.as_ref().map(|temperature| {
+            time_s
+                .iter()
+                .map(|t| self.temperature_c(temperature, *t))
+                .collect()
+        });
+        let rows = time_s.len();
+        (
+            Record {
+                time_s,
+                accel_g: vec![[0.0, 0.0, 1.0]; rows],
+                temperature_c,
+            },
+            (logged_s / interval_s).sqrt(),
+        )
+    }
+
+    /// The temperature of the record at a time since the start of a run; whole days later it is
+    /// the same again.
+    fn temperature_c(&self, temperature: &[f64], time_s: f64) -> f64 {
+        const DAY_S: f64 = 86_400.0;
+        let record = self.run.record;
+        let first_s = record.time_s.first().copied().unwrap_or(0.0);
+        let length_s = duration_s(record);
+        let days_s = (length_s / DAY_S).floor() * DAY_S;
+        let at = if days_s > 0.0 {
+            time_s.rem_euclid(days_s)
+        } else {
+            time_s.min(length_s)
+        };
+        let row = record.time_s.partition_point(|t| t - first_s < at);
+        temperature
+            .get(row.min(temperature.len().saturating_sub(1)))
+            .copied()
+            .unwrap_or(0.0)
+    }
+}
+
+/// The usual interval of a record, s.
+pub(crate) fn interval_s(record: &Record) -> f64 {
+    let mut intervals: Vec<f64> = record
+        .time_s
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .collect();
+    intervals.sort_unstable_by(f64::total_cmp);
+    intervals.get(intervals.len() / 2).copied().unwrap_or(60.0)
+}
+
+/// A run of which only the information is known.
+fn silent(information: DMatrix<f64>) -> Said {
+    Said {
+        score: DVector::zeros(information.nrows()),
+        information,
+    }
+}

@@ -1,0 +1,326 @@
+//! The search for the next run.
+
+use gyrocal_calibration::{CalibrationError, Extended, NoiseModel, Run};
+use rayon::prelude::*;
+
+use super::attitude::{apart_deg, beside, first};
+use super::error::PlanError;
+use super::evaluate::{Detail, Looked, Setting, interval_s};
+use super::goal::{Reached, reach};
+use super::named::Named;
+use super::options::{Aim, PlanOptions};
+use super::outlook::Outlook;
+use super::present::{duration_s, suspects, times};
+use super::said::Said;
+use super::universe::{Suspect, Universe};
+
+/// How finely attitudes are looked at while they are searched, and in the end.
+const COARSE: Detail = Detail {
+    rows: 160,
+    draws: 96,
+};
+pub(crate) const FINE: Detail = Detail {
+    rows: 720,
+    draws: 1024,
+};
+
+/// Attitudes that are followed to the best beside them, and how far apart they are.
+const FOLLOWED: usize = 5;
+const DISTINCT_DEG: f64 = 20.0;
+
+/// Steps to the attitudes beside one, deg; so often each at most.
+const STEPS_DEG: [f64; 3] = [12.0, 5.0, 2.0];
+const ROUNDS: usize = 3;
+
+/// A run has at least so many rows, as many as a filter has states.
+const LEAST_ROWS: f64 = 12.0;
+
+/// And lasts no longer than a year.
+const MOST_S: f64 = 366.0 * 86_400.0;
+
+/// A member of a set weighs as much as sigmas that are all smaller by this factor less: where a
+/// set is all but resolved, sigmas decide.
+const SIGMAS_IN_SETS: f64 = 0.2;
+
+/// A next run and what it would leave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proposal {
+    /// Platform angles about x, then y, then z at its first row; `None` if the record goes on.
+    pub angles_deg: Option<[f64; 3]>,
+    /// How long it takes, s.
+    pub duration_s: f64,
+    /// What record and run leave together.
+    pub outlook: Outlook,
+}
+
+/// What was planned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planned {
+    /// What proposals are ranked by.
+    pub aim: Aim,
+    /// What the record so far leaves.
+    pub now: Outlook,
+    /// What going on in the present attitude would leave, for each duration.
+    pub going_on: Vec<Proposal>,
+    /// For each duration the best runs, the best first.
+    pub proposals: Vec<Proposal>,
+    /// What was found for the goal, if there is one.
+    pub reached: Option<Reached>,
+    /// Effects that no run tells apart, as far as they are in question.
+    pub inseparable: Vec<Vec<&'static str>>,
+}
+
+/// Looks for the next run that says most, given a fit with what was named in its record.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn plan(
+    fitted: &Extended<'_>,
+    run: &Run<'_>,
+    noise: &NoiseModel,
+    named: &[Named],
+    options: &PlanOptions,
+) -> Result<Planned, PlanError> {
+    options.goal.check()?;
+    let planner = Planner::new(fitted, *run, noise, named, options)?;
+    let own = [duration_s(run.record)];
+    let durations_s = if options.durations_s.is_empty() {
+        &own[..]
+    } else {
+        &options.durations_s
+    };
+    let least_s = planner.least_s();
+    for found_s in durations_s {
+        if !(least_s..=MOST_S).contains(found_s) {
+            return Err(PlanError::Duration {
+                found_s: *found_s,
+                least_s,
+                most_s: MOST_S,
+            });
+        }
+    }
+    let mut now = None;
+    let (mut going_on, mut proposals) = (Vec::new(), Vec::new());
+    for duration_s in durations_s {
+        let (present, longer) = planner.with(*duration_s, FINE, |setting| {
+            Ok((setting.present(), setting.going_on()?))
+        })?;
+        now = now.or(present);
+        going_on.extend(longer.map(|outlook| Proposal {
+            angles_deg: None,
+            duration_s: *duration_s,
+            outlook,
+        }));
+        proposals.extend(planner.search(*duration_s)?);
+    }
+    let reached = match proposals.first().and_then(|best| best.angles_deg) {
+        Some(angles_deg) if !options.goal.is_empty() => Some(reach(&planner, angles_deg)?),
+        _ => None,
+    };
+    let inseparable = planner
+        .sets
+        .iter()
+        .flatten()
+        .filter(|suspect| !suspect.equivalents.is_empty())
+        .map(|suspect| {
+            let others = suspect.equivalents.iter().copied();
+            std::iter::once(suspect.row.id).chain(others).collect()
+        })
+        .collect();
+    Ok(Planned {
+        aim: planner.aim,
+        now: now.ok_or(CalibrationError::NotPositiveDefinite)?,
+        going_on,
+        proposals,
+        reached,
+        inseparable,
+    })
+}
+
+/// Everything but attitude and duration.
+pub(crate) struct Planner<'a, 'b> {
+    fitted: &'b Extended<'a>,
+    run: Run<'b>,
+    noise: &'b NoiseModel,
+    pub(crate) options: &'b PlanOptions,
+    sets: Vec<Vec<Suspect>>,
+    /// What the record says of the columns of a universe, which are the same for all durations.
+    said: Said,
+    aim: Aim,
+}
+
+impl<'a, 'b> Planner<'a, 'b> {
+    fn new(
+        fitted: &'b Extended<'a>,
+        run: Run<'b>,
+        noise: &'b NoiseModel,
+        named: &[Named],
+        options: &'b PlanOptions,
+    ) -> Result<Self, PlanError> {
+        let sets = suspects(fitted, &run, named)?;
+        let own = times(&run, duration_s(run.record));
+        let universe = Universe::new(fitted, &run, &sets, &own);
+        let said = Said::of(fitted, run.record, &universe.first)?;
+        let aim = options
+            .aim
+            .unwrap_or(if sets.iter().any(|set| set.len() > 1) {
+                Aim::Set
+            } else {
+                Aim::Sigmas
+            });
+        Ok(Self {
+            fitted,
+            run,
+            noise,
+            options,
+            sets,
+            said,
+            aim,
+        })
+    }
+
+    /// The shortest run, s.
+    pub(crate) fn least_s(&self) -> f64 {
+        LEAST_ROWS * interval_s(self.run.record)
+    }
+
+    /// With everything but the attitude.
+    pub(crate) fn with<R>(
+        &self,
+        duration_s: f64,
+        detail: Detail,
+        ask: impl FnOnce(&Setting<'_>) -> Result<R, PlanError>,
+    ) -> Result<R, PlanError> {
+        let times = times(&self.run, duration_s);
+        let universe = Universe::new(self.fitted, &self.run, &self.sets, &times);
+        let setting = Setting::new(
+            &universe,
+            self.fitted,
+            self.run,
+            self.noise,
+            &self.said,
+            self.options.limits,
+            self.options.calibration,
+            (duration_s, detail, self.options.seed),
+        )
+        .ok_or(CalibrationError::NotPositiveDefinite)?;
+        ask(&setting)
+    }
+
+    /// The best runs of a duration, the best first.
+    pub(crate) fn search(&self, duration_s: f64) -> Result<Vec<Proposal>, PlanError> {
+        let ends = self.with(duration_s, COARSE, |setting| {
+            let tried = first(&self.options.limits);
+            let mut seen = self.look(setting, tried, duration_s)?;
+            sort(&mut seen);
+            let starts = distinct(seen, FOLLOWED);
+            let ends = starts
+                .into_par_iter()
+                .map(|start| self.follow(setting, start));
+            Ok(ends.collect::<Vec<_>>())
+        })?;
+        self.with(duration_s, FINE, |setting| {
+            let angles = ends.into_iter().map(|(angles_deg, _)| angles_deg).collect();
+            let mut best = self.look(setting, angles, duration_s)?;
+            sort(&mut best);
+            Ok(distinct(best, self.options.proposals)
+                .into_iter()
+                .map(|(angles_deg, (_, outlook))| Proposal {
+                    angles_deg: Some(angles_deg),
+                    duration_s,
+                    outlook,
+                })
+                .collect())
+        })
+    }
+
+    /// All attitudes that the limits allow, with what is sought to be small.
+    fn look(
+        &self,
+        setting: &Setting<'_>,
+        tried: Vec<[f64; 3]>,
+        duration_s: f64,
+    ) -> Result<Vec<Seen>, PlanError> {
+        let looked: Vec<_> = tried
+            .into_par_iter()
+            .map(|angles_deg| (angles_deg, setting.look(angles_deg)))
+            .collect();
+        let mut seen = Vec::new();
+        let (mut longest, mut failed) = ((0.0, [0.0; 3]), None);
+        for (angles_deg, looked) in looked {
+            match looked {
+                Ok(Looked::At(outlook)) => seen.push((angles_deg, (self.cost(&outlook), outlook))),
+                Ok(Looked::Stopped(after_s)) if after_s > longest.0 => {
+                    longest = (after_s, angles_deg);
+                }
+                Ok(Looked::Stopped(_)) => {}
+                Err(error) => failed = Some(error),
+            }
+        }
+        match failed {
+            _ if !seen.is_empty() => Ok(seen),
+            Some(error) => Err(error.into()),
+            None => Err(PlanError::Limits {
+                wanted_h: duration_s / 3600.0,
+                longest_h: longest.0 / 3600.0,
+                angles_deg: longest.1,
+            }),
+        }
+    }
+
+    /// From one attitude to the best beside it, and on.
+    fn follow(&self, setting: &Setting<'_>, mut best: Seen) -> Seen {
+        for step_deg in STEPS_DEG {
+            for _ in 0..ROUNDS {
+                let beside = beside(best.0, step_deg);
+                let allowed = beside
+                    .into_iter()
+                    .filter(|angles| self.options.limits.hold(*angles));
+                let better = allowed
+                    .filter_map(|angles_deg| match setting.look(angles_deg) {
+                        Ok(Looked::At(outlook)) => {
+                            Some((angles_deg, (self.cost(&outlook), outlook)))
+                        }
+                        _ => None,
+                    })
+                    .min_by(|a: &Seen, b| a.1.0.total_cmp(&b.1.0));
+                match better {
+                    Some(better) if better.1.0 < best.1.0 => best = better,
+                    _ => break,
+                }
+            }
+        }
+        best
+    }
+
+    fn cost(&self, outlook: &Outlook) -> f64 {
+        match self.aim {
+            Aim::Set => outlook.surplus() + SIGMAS_IN_SETS * outlook.sigma_ratio,
+            Aim::Sigmas => outlook.sigma_ratio,
+        }
+    }
+}
+
+/// Angles, what is sought to be small, and all that was seen.
+type Seen = ([f64; 3], (f64, Outlook));
+
+fn sort(seen: &mut [Seen]) {
+    seen.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
+}
+
+/// The first ones that lie well apart.
+fn distinct(seen: Vec<Seen>, most: usize) -> Vec<Seen> {
+    let mut taken: Vec<Seen> = Vec::with_capacity(most);
+    for one in seen {
+        if taken.len() == most {
+            break;
+        }
+        if taken
+            .iter()
+            .all(|other| apart_deg(other.0, one.0) > DISTINCT_DEG)
+        {
+            taken.push(one);
+        }
+    }
+    taken
+}

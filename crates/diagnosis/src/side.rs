@@ -1,0 +1,106 @@
+//! Which side an error is on: what the norm channel says before any cause is looked for.
+
+use gyrocal_record::{Bench, Record};
+
+use crate::dependence::Dependence;
+use crate::error::DiagnosisError;
+use crate::norm::{NormChannel, norm_channel};
+
+/// Most bins of a dependence, and how many complete rows each should have.
+const MOST_BINS: usize = 24;
+const ROWS_A_BIN: usize = 20;
+
+/// What the norm of specific force says of the accelerometers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NormVerdict {
+    /// Whether the accelerometers, or gravity, are other than declared.
+    pub accelerometers: bool,
+    /// Probability of a norm as far from gravity by chance, all its tests together.
+    pub p_value: f64,
+    /// Mean of |E| less gravity \[g\]; zero where gravity is itself declared uncertain.
+    pub mean_g: f64,
+    /// Its standard deviation \[g\].
+    pub mean_sigma_g: f64,
+    /// What stands out; empty if nothing does.
+    pub description: String,
+    /// The channel that was tested.
+    pub channel: NormChannel,
+}
+
+/// Tests the norm of a record of which outliers are gone: its mean, its dependence on each
+/// component, on time and on temperature, with one probability of a false alarm for all.
+///
+/// `accel_noise_g` is what white noise as strong as the accelerometers' over long times would be.
+/// If the bench declares gravity uncertain, the mean of the norm stands for it.
+///
+/// # Errors
+///
+/// [`DiagnosisError::TooShort`] with too few complete rows.
+pub fn norm_verdict(
+    record: &Record,
+    bench: &Bench,
+    accel_noise_g: &[f64; 3],
+    false_alarm: f64,
+) -> Result<NormVerdict, DiagnosisError> {
+    let complete = |row: &&[f64; 3]| row.iter().all(|value| !value.is_nan());
+    let rows: Vec<&[f64; 3]> = record.accel_g.iter().filter(complete).collect();
+    let bins = (rows.len() / ROWS_A_BIN).clamp(1, MOST_BINS);
+    let uncertain = bench.uncertainty.gravity_relative_sigma.is_some();
+    let gravity_g = if uncertain && !rows.is_empty() {
+        let squares = rows
+            .iter()
+            .map(|row| row.iter().map(|a| a * a).sum::<f64>());
+        let variance: f64 = accel_noise_g.iter().map(|sigma| sigma * sigma).sum();
+        (squares.sum::<f64>() / rows.len() as f64 - variance)
+            .max(0.0)
+            .sqrt()
+    } else {
+        bench.specific_force_at_rest()
+    };
+    let channel = norm_channel(record, accel_noise_g, gravity_g, bins)?;
+    // d|E|² = 2 |E| d|E|.
+    let mean_g = channel.mean_g2 / (2.0 * gravity_g);
+    let mean_sigma_g = channel.mean_sigma_g2 / (2.0 * gravity_g);
+    let mut tests: Vec<(f64, f64, String)> = Vec::new();
+    if !uncertain {
+        let z = mean_g / mean_sigma_g;
+        let words = format!(
+            "it is {} gravity by {:.1e} g on average ({:.1} sigma)",
+            if mean_g > 0.0 { "above" } else { "below" },
+            mean_g.abs(),
+            z.abs()
+        );
+        tests.push((channel.mean_p_value, z * z, words));
+    }
+    let mut depends = |on: &str, found: &Dependence| {
+        let words = format!(
+            "it varies with {on} (chi-square {:.0} for {} degrees of freedom)",
+            found.chi_square,
+            found.bins.len()
+        );
+        tests.push((found.p_value, found.chi_square, words));
+    };
+    for (found, axis) in channel.on_component.iter().zip(["x", "y", "z"]) {
+        depends(&format!("specific force along {axis}"), found);
+    }
+    depends("time", &channel.on_time);
+    if let Some(found) = &channel.on_temperature {
+        depends("temperature", found);
+    }
+    let count = tests.len() as f64;
+    // Probabilities may underflow: of those the largest statistic.
+    let strongest = tests
+        .into_iter()
+        .min_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    let (least, words) = strongest.map_or((1.0, String::new()), |(p, _, words)| (p, words));
+    let p_value = (count * least).min(1.0);
+    let accelerometers = p_value < false_alarm;
+    Ok(NormVerdict {
+        accelerometers,
+        p_value,
+        mean_g,
+        mean_sigma_g,
+        description: if accelerometers { words } else { String::new() },
+        channel,
+    })
+}

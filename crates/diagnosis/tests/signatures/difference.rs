@@ -1,0 +1,278 @@
+//! Signatures of effects against finite differences of the nonlinear simulation.
+//!
+//! The simulator hides an effect twice, with either sign, and half the difference of the two
+//! records is what a unit of it does to the readings. Taken as a column of its own, it passes the
+//! filter about the same trajectory as the signature that the generated derivatives give: with
+//! the same whitening the two must be one.
+
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, SHAPES};
+use gyrocal_calibration::{BIASES, Column, Extended, Extension, NoiseModel, Options, Run};
+use gyrocal_record::Record;
+use gyrocal_truth::{Hidden, Scenario, simulate};
+use nalgebra::{DMatrix, DVector};
+
+/// Why a comparison could not be made.
+pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
+
+/// How far the readings are moved: the second order of a difference with either sign cancels, and
+/// the third is some 1e-9 of it, while the simulator's own error of 1e-12 rad is 1e-7 of it.
+const MOVED_G: f64 = 3e-5;
+
+/// Drift coefficients: the first columns, which every fit takes up.
+const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;
+
+/// What is left of a signature when the coefficients are projected out is compared down to this
+/// part of it: below, it cannot be seen either.
+const LEAST_PART: f64 = 1e-3;
+
+/// One signature beside its finite difference.
+#[derive(Clone, Debug)]
+pub(crate) struct Compared {
+    /// Id of the parameter, with onset, time constant or axis.
+    pub(crate) name: String,
+    /// Norm of the difference over that of the finite difference, both whitened.
+    pub(crate) error: f64,
+    /// The same of what is left when the nine coefficients are projected out; `None` if that is
+    /// next to nothing.
+    pub(crate) projected: Option<f64>,
+}
+
+/// A parameter with a signature, and how the simulator hides it.
+struct Probe {
+    name: String,
+    effect: &'static str,
+    parameter: &'static str,
+    /// Parameters that are held: onsets and time constants.
+    held: Vec<(&'static str, f64)>,
+    /// A size to begin with, in the simulator's unit.
+    size: f64,
+    /// Units of the column in a unit of the simulator's.
+    unit: f64,
+    signature: Signature,
+}
+
+/// Which column the signature is.
+enum Signature {
+    Parameter(usize),
+    Further(Column),
+}
+
+/// All signatures of the catalogue over the record of a scenario without noise.
+pub(crate) fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
+    let quiet = Scenario {
+        accel_noise_g: 0.0,
+        gyro_noise_deg_per_h: 0.0,
+        ..scenario.clone()
+    };
+    let record = simulate(&quiet)?.record;
+    let bench = scenario.bench();
+    let run = Run {
+        record: &record,
+        bench: &bench,
+    };
+    let nominal = Extended::nominal(&run, &Options::default(), &NoiseModel::default())?;
+    let shaped = Extension {
+        shapes: core::array::from_fn(|place| shape(SHAPES[place].id, &record)),
+        ..nominal.extension().clone()
+    };
+    let fitted = nominal.refitted(&shaped)?;
+    let probes = probes(&record)?;
+    let mut further = Vec::new();
+    let mut signatures = Vec::new();
+    for probe in &probes {
+        signatures.push(match &probe.signature {
+            Signature::Parameter(place) => *place,
+            Signature::Further(column) => {
+                further.push(column.clone());
+                PARAMETERS.len() + further.len() - 1
+            }
+        });
+    }
+    let first = PARAMETERS.len() + further.len();
+    for probe in &probes {
+        further.push(Column::Readings {
+            change_g: change_g(&quiet, probe)?,
+        });
+    }
+    let reduced = fitted.signatures(&further, |_| ())?;
+    // Column 0 is the residual.
+    let gram = reduced.gram.remove_row(0).remove_column(0);
+    let left = project(&gram, &fitted.prior_sigma())?;
+    let compared = probes.iter().enumerate().map(|(index, probe)| {
+        let (a, b) = (signatures[index], first + index);
+        let part = left[(b, b)] / gram[(b, b)];
+        Compared {
+            name: probe.name.clone(),
+            error: relative(&gram, a, b),
+            projected: (part > LEAST_PART * LEAST_PART).then(|| relative(&left, a, b)),
+        }
+    });
+    Ok(compared.collect())
+}
+
+/// Norm of the difference of two columns over that of the second.
+fn relative(gram: &DMatrix<f64>, a: usize, b: usize) -> f64 {
+    let squares = gram[(a, a)] - 2.0 * gram[(a, b)] + gram[(b, b)];
+    (squares.max(0.0) / gram[(b, b)]).sqrt()
+}
+
+/// Products of columns with the nine coefficients projected out as a fit with their priors does.
+fn project(gram: &DMatrix<f64>, prior_sigma: &[f64]) -> Result<DMatrix<f64>, Error> {
+    let weights = prior_sigma[..COEFFICIENTS]
+        .iter()
+        .map(|sigma| sigma.powi(-2));
+    let mut inner = gram.view((0, 0), (COEFFICIENTS, COEFFICIENTS)).into_owned();
+    inner += DMatrix::from_diagonal(&DVector::from_iterator(COEFFICIENTS, weights));
+    let cross = gram.rows(0, COEFFICIENTS).into_owned();
+    let cholesky = inner.cholesky().ok_or("the coefficients are dependent")?;
+    Ok(gram - cross.transpose() * cholesky.solve(&cross))
+}
+
+/// Onsets within a step, and time constants, that the catalogue's own parameters are taken at.
+fn shape(id: &str, record: &Record) -> f64 {
+    if id.ends_with("onset_s") {
+        let row = record.len() / 3;
+        0.7 * record.time_s[row] + 0.3 * record.time_s[row + 1] - record.time_s[0]
+    } else {
+        record.duration_s() / 3600.0 / 6.0
+    }
+}
+
+/// Every parameter of the catalogue, and the columns that stand for steps, warm-ups, knocks and
+/// the first attitude in a search.
+fn probes(record: &Record) -> Result<Vec<Probe>, Error> {
+    let mut probes = Vec::new();
+    for effect in EFFECTS
+        .iter()
+        .filter(|effect| ["nominal", "term"].contains(&effect.kind))
+    {
+        let held: Vec<(&str, f64)> = effect
+            .parameters
+            .iter()
+            .skip(effect.states.len())
+            .zip(effect.shapes)
+            .map(|(name, id)| (*name, shape(id, record)))
+            .collect();
+        for (parameter, id) in effect.parameters.iter().zip(effect.states) {
+            let place = PARAMETERS.iter().position(|element| element.id == *id);
+            probes.push(Probe {
+                name: (*id).to_owned(),
+                effect: effect.id,
+                parameter,
+                held: held.clone(),
+                size: effect.typical_size,
+                unit: 1.0,
+                signature: Signature::Parameter(place.ok_or("an effect without its parameter")?),
+            });
+        }
+    }
+    let rows = record.len();
+    let since_first_s = |row: usize| record.time_s[row] - record.time_s[0];
+    for (gyro, [step, warm_up]) in [
+        ["gyro_x.step", "gyro_x.warmup"],
+        ["gyro_y.step", "gyro_y.warmup"],
+        ["gyro_z.step", "gyro_z.warmup"],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        for row in [rows / 10, rows / 2, 9 * rows / 10] {
+            let onset_s = since_first_s(row);
+            probes.push(Probe {
+                name: format!("{step} at {onset_s} s"),
+                effect: step,
+                parameter: "size",
+                held: vec![("onset_s", onset_s)],
+                size: 0.01,
+                unit: 1.0,
+                signature: Signature::Further(Column::Onset {
+                    parameter: BIASES[gyro],
+                    row,
+                }),
+            });
+        }
+        for time_constant_h in [1.0, 0.5 * record.duration_s() / 3600.0] {
+            let share = |pair: &[f64]| {
+                let middle_s = 0.5 * (pair[0] + pair[1]) - record.time_s[0];
+                (-middle_s / (3600.0 * time_constant_h)).exp()
+            };
+            probes.push(Probe {
+                name: format!("{warm_up} of {time_constant_h} h"),
+                effect: warm_up,
+                parameter: "size",
+                held: vec![("time_constant_h", time_constant_h)],
+                size: 0.01,
+                unit: 1.0,
+                signature: Signature::Further(Column::Course {
+                    parameter: BIASES[gyro],
+                    steps: record.time_s.windows(2).map(share).collect(),
+                }),
+            });
+        }
+    }
+    for (axis, parameter) in ["x_deg", "y_deg", "z_deg"].into_iter().enumerate() {
+        let turn = |effect: &'static str, held, signature, at: String| Probe {
+            name: format!("{effect} about {}{at}", ["x", "y", "z"][axis]),
+            effect,
+            parameter,
+            held,
+            size: 0.05,
+            unit: core::f64::consts::PI / 180.0,
+            signature: Signature::Further(signature),
+        };
+        probes.push(turn(
+            "platform.initial_attitude",
+            Vec::new(),
+            Column::Start { axis },
+            String::new(),
+        ));
+        for row in [rows / 10, rows / 2, 9 * rows / 10] {
+            // The turn of a step is one at its end; a knock at any time within it is the same
+            // but for what the platform does in the rest of the step.
+            let onset_s = since_first_s(row + 1);
+            probes.push(turn(
+                "platform.knock",
+                vec![("onset_s", onset_s)],
+                Column::Jump { row, axis },
+                format!(" at {onset_s} s"),
+            ));
+        }
+    }
+    Ok(probes)
+}
+
+/// What a unit of the column does to the readings.
+fn change_g(quiet: &Scenario, probe: &Probe) -> Result<Vec<[f64; 3]>, Error> {
+    let readings_g = |size: f64| -> Result<Vec<[f64; 3]>, Error> {
+        let mut parameters = probe.held.clone();
+        parameters.push((probe.parameter, size));
+        let hidden = vec![Hidden::new(probe.effect, &parameters)?];
+        let hiding = Scenario {
+            hidden,
+            ..quiet.clone()
+        };
+        Ok(simulate(&hiding)?.record.accel_g)
+    };
+    let difference_g = |size: f64| -> Result<Vec<[f64; 3]>, Error> {
+        let (above, below) = (readings_g(size)?, readings_g(-size)?);
+        let pairs = above.iter().zip(&below);
+        Ok(pairs
+            .map(|(a, b)| core::array::from_fn(|axis| 0.5 * (a[axis] - b[axis])))
+            .collect())
+    };
+    let moved_g = |change: &[[f64; 3]]| {
+        let values = change.iter().flatten().filter(|value| !value.is_nan());
+        values.fold(0.0_f64, |most, value| most.max(value.abs()))
+    };
+    let coarse = moved_g(&difference_g(probe.size)?);
+    if coarse == 0.0 {
+        return Err(format!("{} moves no reading", probe.name).into());
+    }
+    let size = probe.size * MOVED_G / coarse;
+    let per_unit = 1.0 / (size * probe.unit);
+    let mut change = difference_g(size)?;
+    for value in change.iter_mut().flatten() {
+        *value *= per_unit;
+    }
+    Ok(change)
+}
