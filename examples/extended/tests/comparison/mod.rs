@@ -44,7 +44,7 @@ fn places() -> [usize; Extended::STATES] {
     })
 }
 
-pub fn settings(angles_rad: [f64; 3], drift: Drift<f64>) -> Settings<f64> {
+pub(crate) fn settings(angles_rad: [f64; 3], drift: Drift<f64>) -> Settings<f64> {
     Settings {
         angles_rad,
         drift,
@@ -102,7 +102,7 @@ fn differences(extended: &Controller<f64>, catalogue: &CatalogueFilter) -> [f64;
 }
 
 /// Differences after one step from one state.
-pub fn after_one_step() -> [f64; 2] {
+pub(crate) fn after_one_step() -> [f64; 2] {
     // Angles of any size, coefficients of a bad gyro.
     let drift = [0.41, -0.13, 0.04, -0.29, 0.21, -0.07, 0.15, 0.09, 0.02];
     let settings = settings([0.4, -0.6, 1.1], Drift::from_array(drift));
@@ -121,7 +121,7 @@ pub fn after_one_step() -> [f64; 2] {
 }
 
 /// Differences after three days of samples.
-pub fn after_three_days() -> [f64; 2] {
+pub(crate) fn after_three_days() -> [f64; 2] {
     let scenario = Scenario::parse(FAULT, "fault.scenario.toml").unwrap();
     let record = simulate(&scenario).unwrap().record;
     let angles = [10.0_f64, -20.0, 35.0].map(f64::to_radians);
