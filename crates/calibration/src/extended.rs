@@ -40,6 +40,9 @@ pub struct Extension {
 
 const SHAPES: usize = catalogue::SHAPES.len();
 
+/// How much wider than its estimate is large the prior of an unknown is that has none.
+const WIDE: f64 = 100.0;
+
 impl Default for Extension {
     fn default() -> Self {
         Self {
@@ -355,7 +358,9 @@ impl<'a> Extended<'a> {
     }
 
     /// Logarithm of the density of the record without the rows of a range, all unknowns integrated
-    /// out over their priors (flat ones count as of unit density), linearised about this fit.
+    /// out over their priors, linearised about this fit. Unknowns without a prior get one, of
+    /// mean zero and a hundred times as wide as their estimates are large: what the range alone
+    /// tells of is else infinitely unlikely.
     ///
     /// # Errors
     /// [`CalibrationError::Pass`] and [`CalibrationError::NotPositiveDefinite`].
@@ -380,13 +385,17 @@ impl<'a> Extended<'a> {
         let mut gradient = DVector::zeros(count);
         let mut prior = 0.0;
         for (i, unknown) in unknowns.iter().enumerate() {
-            let weight = unknown.sigma.powi(-2);
+            let sigma = if unknown.sigma.is_finite() {
+                unknown.sigma
+            } else {
+                let known = self.uncertainty.total[(i, i)].sqrt();
+                WIDE * self.problem.values[i].hypot(known)
+            };
+            let weight = sigma.powi(-2);
             information[(i, i)] += weight;
             gradient[i] = -gram[(0, i + 1)] - weight * self.problem.values[i];
             prior += weight * self.problem.values[i].powi(2);
-            if weight > 0.0 {
-                prior -= weight.ln();
-            }
+            prior -= weight.ln();
         }
         let cholesky = Cholesky::new(information).ok_or(CalibrationError::NotPositiveDefinite)?;
         let gained = cholesky.solve(&gradient).dot(&gradient);

@@ -88,6 +88,7 @@ fn convergence(noise: &mut Noise) -> Convergence {
                     .collect(),
                 sigma: time_s.iter().map(|&time| sigma(time)).collect(),
                 reference: Some(truth),
+                rival: None,
             });
         }
     }
@@ -98,6 +99,8 @@ fn convergence(noise: &mut Noise) -> Convergence {
         coefficients,
         columns: 3,
         reference_label: "true value".to_owned(),
+        estimate_label: String::new(),
+        rival_label: String::new(),
     }
 }
 
@@ -338,7 +341,7 @@ fn gain(noise: &mut Noise) -> Gain {
         drift: Some(DriftPrediction {
             nominal_arcmin: part(4.6),
             extended_arcmin: part(0.4),
-            extended_sigma_arcmin: Some(part(0.3)),
+            expected_arcmin: Some(part(0.3)),
             time_s,
         }),
     }

@@ -8,13 +8,14 @@ use crate::number::{percent, short};
 use crate::page::{Grid, Key, page};
 use crate::panel::{Panel, Surround};
 use crate::picture::Picture;
-use crate::style::{BLACK, BLUE, DATA, SKY, THIN};
+use crate::style::{BLACK, BLUE, DATA, ORANGE, SKY, THIN, VERMILION};
 use crate::trace::Frame;
 
 /// Estimates of coefficients against time with their bands of two sigma, one panel each.
 ///
 /// The scale of a panel is set by what the estimate and its band do after the first tenth of the
-/// time, and by the reference; what was before may leave the panel.
+/// time (four tenths if there is a rival), and by the reference; what was before may leave the
+/// panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
     /// What is seen.
@@ -29,6 +30,10 @@ pub struct Convergence {
     pub columns: usize,
     /// What references are, for the key: `true value`.
     pub reference_label: String,
+    /// What estimates are, for the key: `extended model`; empty: `estimate`.
+    pub estimate_label: String,
+    /// What the rival estimates are, for the key, if there are any: `nominal model`.
+    pub rival_label: String,
 }
 
 /// One coefficient while it converges.
@@ -44,10 +49,14 @@ pub struct ConvergingCoefficient {
     pub sigma: Vec<f64>,
     /// True or otherwise known value.
     pub reference: Option<f64>,
+    /// Another estimator's estimates and standard deviations at the times.
+    pub rival: Option<[Vec<f64>; 2]>,
 }
 
 /// The part of the time that does not set the scale.
 const UNSETTLED: f64 = 0.1;
+/// The same with rivals: how two estimators differ shows when both have settled.
+const UNSETTLED_RIVALS: f64 = 0.4;
 const BAND_OPACITY: f64 = 0.35;
 
 impl Picture for Convergence {
@@ -55,17 +64,26 @@ impl Picture for Convergence {
         self.check()?;
         let mut grid = Grid::new(self.columns, self.coefficients.len(), 130.0);
         grid.left_px = 70.0;
+        let estimate = match self.estimate_label.as_str() {
+            "" => "estimate",
+            label => label,
+        };
         let mut keys = vec![
-            Key::line(Stroke::solid(BLUE, DATA), "estimate"),
+            Key::line(Stroke::solid(BLUE, DATA), estimate),
             Key::area(SKY, BAND_OPACITY, "plus and minus 2 sigma (95%)"),
         ];
+        if self.coefficients.iter().any(|c| c.rival.is_some()) {
+            let stroke = Stroke::solid(VERMILION, DATA);
+            keys.push(Key::line(stroke, self.rival_label.as_str()));
+            keys.push(Key::area(ORANGE, BAND_OPACITY, "the same of it"));
+        }
         if self.coefficients.iter().any(|c| c.reference.is_some()) {
             let stroke = Stroke::dashed(BLACK, THIN);
             keys.push(Key::line(stroke, self.reference_label.as_str()));
         }
         let scale = format!(
             "scales leave the first {} of the time out",
-            percent(UNSETTLED)
+            percent(self.unsettled())
         );
         let subtitle = match self.subtitle.trim_end_matches('.') {
             "" => format!("{}{}.", scale[..1].to_uppercase(), &scale[1..]),
@@ -82,6 +100,14 @@ impl Picture for Convergence {
 }
 
 impl Convergence {
+    fn unsettled(&self) -> f64 {
+        if self.coefficients.iter().any(|c| c.rival.is_some()) {
+            UNSETTLED_RIVALS
+        } else {
+            UNSETTLED
+        }
+    }
+
     fn check(&self) -> Result<(), Error> {
         check::some("the list of converging coefficients", &self.coefficients)?;
         check::rising("the times of the estimates", &self.time_s)?;
@@ -94,6 +120,10 @@ impl Convergence {
                 times,
             )?;
             check::column(|| format!("sigmas of {name}"), &coefficient.sigma, times)?;
+            if let Some([estimate, sigma]) = &coefficient.rival {
+                check::column(|| format!("rival estimates of {name}"), estimate, times)?;
+                check::column(|| format!("rival sigmas of {name}"), sigma, times)?;
+            }
             if let Some(reference) = coefficient.reference {
                 check::finite(&format!("reference of {name}"), reference)?;
             }
@@ -106,8 +136,10 @@ impl Convergence {
         let elapsed: Vec<f64> = self.time_s.iter().map(|time| time - origin).collect();
         let span = Span::of(elapsed.iter().copied()).unwrap_or(Span { lo: 0.0, hi: 1.0 });
         for (index, coefficient) in self.coefficients.iter().enumerate() {
-            let band = coefficient.band();
-            let ordinate = coefficient.span(&elapsed, &band);
+            let band = band(&coefficient.estimate, &coefficient.sigma);
+            let rival = coefficient.rival.as_ref();
+            let rival_band = rival.map(|[estimate, sigma]| self::band(estimate, sigma));
+            let ordinate = coefficient.span(&elapsed, &band, rival_band.as_ref(), self.unsettled());
             let frame = grid.frame(body, index);
             let ticks = (frame.width() / 45.0) as usize;
             let panel = Panel {
@@ -126,6 +158,10 @@ impl Convergence {
                 panel.empty(canvas)?;
                 continue;
             }
+            if let (Some([estimate, _]), Some((lower, upper))) = (rival, &rival_band) {
+                panel.area(canvas, &elapsed, (lower, upper), ORANGE, BAND_OPACITY)?;
+                panel.line(canvas, &elapsed, estimate, Stroke::solid(VERMILION, DATA))?;
+            }
             panel.area(canvas, &elapsed, (&band.0, &band.1), SKY, BAND_OPACITY)?;
             panel.line(
                 canvas,
@@ -141,18 +177,25 @@ impl Convergence {
     }
 }
 
-impl ConvergingCoefficient {
-    fn band(&self) -> (Vec<f64>, Vec<f64>) {
-        let pairs = self.estimate.iter().zip(&self.sigma);
-        pairs
-            .map(|(estimate, sigma)| (estimate - 2.0 * sigma, estimate + 2.0 * sigma))
-            .unzip()
-    }
+fn band(estimates: &[f64], sigmas: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let pairs = estimates.iter().zip(sigmas);
+    pairs
+        .map(|(estimate, sigma)| (estimate - 2.0 * sigma, estimate + 2.0 * sigma))
+        .unzip()
+}
 
-    fn span(&self, elapsed: &[f64], band: &(Vec<f64>, Vec<f64>)) -> Span {
+impl ConvergingCoefficient {
+    fn span(
+        &self,
+        elapsed: &[f64],
+        band: &(Vec<f64>, Vec<f64>),
+        rival: Option<&(Vec<f64>, Vec<f64>)>,
+        unsettled: f64,
+    ) -> Span {
         let whole = elapsed.last().copied().unwrap_or(0.0);
-        let settled = elapsed.partition_point(|&time| time < UNSETTLED * whole);
-        let columns = [&self.estimate, &band.0, &band.1];
+        let settled = elapsed.partition_point(|&time| time < unsettled * whole);
+        let mut columns = vec![&self.estimate, &band.0, &band.1];
+        columns.extend(rival.into_iter().flat_map(|(lower, upper)| [lower, upper]));
         let values = columns
             .iter()
             .flat_map(|column| column.iter().skip(settled));

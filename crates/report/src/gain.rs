@@ -8,7 +8,7 @@ use crate::number::short;
 use crate::page::{Grid, Key, page};
 use crate::panel::{Panel, Surround};
 use crate::picture::Picture;
-use crate::style::{BLUE, DATA, GREY, HAIR, SKY, VERMILION};
+use crate::style::{BLACK, BLUE, DATA, GREY, HAIR, THIN, VERMILION};
 use crate::trace::Frame;
 
 /// The gain of an extended model over the nominal one: in the predictive log score of each
@@ -35,11 +35,9 @@ pub struct DriftPrediction {
     pub nominal_arcmin: Vec<f64>,
     /// Error of the prediction with extended coefficients, arc minutes.
     pub extended_arcmin: Vec<f64>,
-    /// Standard deviation of the extended prediction, arc minutes, if known.
-    pub extended_sigma_arcmin: Option<Vec<f64>>,
+    /// Error that is to be expected with extended coefficients, arc minutes, if known.
+    pub expected_arcmin: Option<Vec<f64>>,
 }
-
-const BAND_OPACITY: f64 = 0.35;
 
 impl Picture for Gain {
     fn to_svg(&self) -> Result<String, Error> {
@@ -73,8 +71,8 @@ impl Gain {
             check::column(nominal, &drift.nominal_arcmin, times)?;
             let extended = || "extended predictions".to_owned();
             check::column(extended, &drift.extended_arcmin, times)?;
-            if let Some(sigma) = &drift.extended_sigma_arcmin {
-                check::column(|| "sigmas of predictions".to_owned(), sigma, times)?;
+            if let Some(expected) = &drift.expected_arcmin {
+                check::column(|| "expected errors".to_owned(), expected, times)?;
             }
         }
         Ok(())
@@ -88,9 +86,9 @@ impl Gain {
         if let Some(drift) = &self.drift {
             keys.push(Key::line(Stroke::solid(VERMILION, DATA), "nominal model"));
             keys.push(Key::line(Stroke::solid(BLUE, DATA), "extended model"));
-            if drift.extended_sigma_arcmin.is_some() {
-                let label = "its plus and minus 2 sigma (95%)";
-                keys.push(Key::area(SKY, BAND_OPACITY, label));
+            if drift.expected_arcmin.is_some() {
+                let label = "to be expected of the extended model";
+                keys.push(Key::line(Stroke::dashed(BLACK, THIN), label));
             }
         }
         keys
@@ -150,18 +148,9 @@ impl DriftPrediction {
     fn draw(&self, canvas: &mut Canvas<'_>, frame: Frame) -> Result<(), Error> {
         let origin = self.time_s.first().copied().unwrap_or(0.0);
         let elapsed: Vec<f64> = self.time_s.iter().map(|time| time - origin).collect();
-        let band = self.extended_sigma_arcmin.as_ref().map(|sigmas| {
-            let pairs = self.extended_arcmin.iter().zip(sigmas);
-            let (lower, upper): (Vec<f64>, Vec<f64>) = pairs
-                .map(|(value, sigma)| (value - 2.0 * sigma, value + 2.0 * sigma))
-                .unzip();
-            (lower, upper)
-        });
         let values = self.nominal_arcmin.iter().chain(&self.extended_arcmin);
-        let bands = band
-            .iter()
-            .flat_map(|(lower, upper)| lower.iter().chain(upper));
-        let span = Span::of(values.chain(bands).copied().chain([0.0]));
+        let expected = self.expected_arcmin.iter().flatten();
+        let span = Span::of(values.chain(expected).copied().chain([0.0]));
         let times = Span::of(elapsed.iter().copied()).unwrap_or(Span { lo: 0.0, hi: 1.0 });
         let panel = Panel {
             frame,
@@ -195,8 +184,8 @@ impl DriftPrediction {
             return panel.empty(canvas);
         }
         panel.level(canvas, 0.0, Stroke::solid(GREY, HAIR))?;
-        if let Some((lower, upper)) = &band {
-            panel.area(canvas, &elapsed, (lower, upper), SKY, BAND_OPACITY)?;
+        if let Some(expected) = &self.expected_arcmin {
+            panel.line(canvas, &elapsed, expected, Stroke::dashed(BLACK, THIN))?;
         }
         let nominal = Stroke::solid(VERMILION, DATA);
         panel.line(canvas, &elapsed, &self.nominal_arcmin, nominal)?;

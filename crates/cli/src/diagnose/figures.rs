@@ -1,5 +1,6 @@
 //! Pictures of a diagnosis.
 
+mod convergence;
 mod model;
 mod residual;
 
@@ -54,18 +55,27 @@ fn pictures(found: &Found<'_>) -> Result<Vec<Named>, gyrocal_calibration::Calibr
     if let Some(coefficients) = model::coefficients(found) {
         pictures.push(("coefficients", Box::new(coefficients)));
     }
+    if let Some(convergence) = convergence::convergence(found)? {
+        pictures.push(("convergence", Box::new(convergence)));
+    }
     Ok(pictures)
 }
 
-/// Causes in the model, for titles: `gyro_y.g_z and gyro_x.ramp`.
+/// Causes in the extended model, for titles: `gyro_y.g_z and gyro_x.ramp`.
 fn causes(found: &Found<'_>) -> Option<String> {
-    let ids: Vec<&str> = found
-        .diagnosis
-        .findings
-        .iter()
-        .map(|finding| finding.effect)
-        .collect();
-    match ids.as_slice() {
+    let (findings, acceptances) = (&found.diagnosis.findings, &found.diagnosis.acceptances);
+    let accepted = findings.iter().zip(acceptances).filter(|(_, a)| a.accepted);
+    listed(&accepted.map(|(f, _)| f.effect).collect::<Vec<_>>())
+}
+
+/// Causes that were found, whether the model is better for them or not.
+fn named(found: &Found<'_>) -> Option<String> {
+    let findings = found.diagnosis.findings.iter();
+    listed(&findings.map(|finding| finding.effect).collect::<Vec<_>>())
+}
+
+fn listed(ids: &[&str]) -> Option<String> {
+    match ids {
         [] => None,
         [one] => Some((*one).to_owned()),
         [head @ .., last] => Some(format!("{} and {last}", head.join(", "))),

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod sealed;
+mod validation;
 
 use std::fs;
 use std::sync::OnceLock;
@@ -129,7 +130,7 @@ fn what_is_gained_is_told() {
     assert!(rms.noise == 1e-5 && rms.after < 0.7 * rms.before, "{rms:?}");
     assert_eq!(gain.coefficient_shift.len(), 9);
     assert!(
-        said.contains("With that in the model it predicts each sixth"),
+        said.contains("With gyro_y.g_z in the model it predicts"),
         "{said}"
     );
 }
@@ -177,6 +178,7 @@ fn pictures_are_written() {
         "ranking",
         "gain",
         "coefficients",
+        "convergence",
     ] {
         assert!(
             written(&format!("{name}.svg")).starts_with(b"<svg"),

@@ -32,49 +32,95 @@ pub(crate) fn judge<'a>(
     searched: &Searched<'a>,
     record: &Record,
 ) -> Result<Judged<'a>, CalibrationError> {
-    let total = |fit: &Extended<'_>| block_log_scores(fit).map(|scores| scores.iter().sum::<f64>());
-    let mut kept = vec![true; searched.findings.len()];
-    let mut gains = vec![0.0; kept.len()];
-    let mut model = searched.fitted.clone();
-    let nominal_score = total(nominal)?;
+    let count = searched.findings.len();
+    let fit = |kept: &[bool]| {
+        if kept.iter().all(|kept| *kept) {
+            return Ok(searched.fitted.clone());
+        }
+        searched
+            .fitted
+            .refitted(&searched.extension_with(record, kept))
+    };
+    let acceptances = sieve(count, |kept| {
+        // What cannot be fitted without a cause is held against the nominal model.
+        let scores = match fit(kept) {
+            Ok(fit) => block_log_scores(&fit)?,
+            Err(_) => block_log_scores(nominal)?,
+        };
+        Ok::<f64, CalibrationError>(scores.iter().sum())
+    })?;
+    let kept: Vec<bool> = acceptances.iter().map(|a| a.accepted).collect();
+    Ok(Judged {
+        extended: if kept.contains(&true) {
+            Some(fit(&kept)?)
+        } else {
+            None
+        },
+        acceptances,
+    })
+}
+
+/// Leaves out causes without which the score is as high, the least useful first.
+fn sieve<E>(
+    count: usize,
+    mut score: impl FnMut(&[bool]) -> Result<f64, E>,
+) -> Result<Vec<Acceptance>, E> {
+    let mut kept = vec![true; count];
+    let mut gains = vec![0.0; count];
     while kept.contains(&true) {
-        let score = total(&model)?;
-        let mut least: Option<(usize, f64, Option<Extended<'a>>)> = None;
-        for index in (0..kept.len()).filter(|index| kept[*index]) {
-            let others: Vec<bool> = (0..kept.len()).map(|i| kept[i] && i != index).collect();
-            // What cannot be fitted without a cause is held against the nominal model.
-            let without = model
-                .refitted(&searched.extension_with(record, &others))
-                .ok();
-            let other = match &without {
-                Some(fit) => total(fit)?,
-                None => nominal_score,
-            };
-            gains[index] = score - other;
-            if least
-                .as_ref()
-                .is_none_or(|(_, smallest, _)| gains[index] < *smallest)
-            {
-                least = Some((index, gains[index], without));
+        let with_all = score(&kept)?;
+        let mut least: Option<usize> = None;
+        for index in (0..count).filter(|index| kept[*index]) {
+            let mut others = kept.clone();
+            others[index] = false;
+            gains[index] = with_all - score(&others)?;
+            if least.is_none_or(|least| gains[index] < gains[least]) {
+                least = Some(index);
             }
         }
         match least {
-            Some((index, gain, without)) if gain <= 0.0 => {
-                kept[index] = false;
-                model = without.unwrap_or_else(|| nominal.clone());
-            }
+            Some(least) if gains[least] <= 0.0 => kept[least] = false,
             _ => break,
         }
     }
-    Ok(Judged {
-        extended: kept.contains(&true).then_some(model),
-        acceptances: gains
-            .into_iter()
-            .zip(kept)
-            .map(|(gain_nats, accepted)| Acceptance {
-                gain_nats,
-                accepted,
-            })
-            .collect(),
-    })
+    Ok(gains
+        .into_iter()
+        .zip(kept)
+        .map(|(gain_nats, accepted)| Acceptance {
+            gain_nats,
+            accepted,
+        })
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use core::convert::Infallible;
+
+    use super::{Acceptance, sieve};
+
+    fn sieved(count: usize, score: impl Fn(&[bool]) -> f64) -> Vec<(f64, bool)> {
+        let found = sieve(count, |kept| Ok::<f64, Infallible>(score(kept)));
+        let found: Vec<Acceptance> = found.unwrap_or_default();
+        found.iter().map(|a| (a.gain_nats, a.accepted)).collect()
+    }
+
+    #[test]
+    fn what_gains_nothing_is_left_out_and_told() {
+        let worth = [5.0, -1.0, 0.0];
+        let sum = |kept: &[bool]| -> f64 {
+            kept.iter()
+                .zip(worth)
+                .map(|(kept, w)| if *kept { w } else { 0.0 })
+                .sum()
+        };
+        assert_eq!(sieved(3, sum), [(5.0, true), (-1.0, false), (0.0, false)]);
+        assert_eq!(sieved(0, sum), []);
+    }
+
+    #[test]
+    fn of_two_that_do_the_same_one_stays() {
+        let either = |kept: &[bool]| f64::from(u8::from(kept.contains(&true)));
+        assert_eq!(sieved(2, either), [(0.0, false), (1.0, true)]);
+    }
 }

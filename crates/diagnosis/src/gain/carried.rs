@@ -157,3 +157,71 @@ fn carry(map: &mut DMatrix<f64>, parameter: usize, column: usize, clock: &Clock)
         _ => set(Some(parameter), 1.0),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shares of the parameters of a later record in one parameter of a first record.
+    fn carried(id: &str, clock: &Clock) -> Vec<(&'static str, f64)> {
+        let place = |id: &str| PARAMETERS.iter().position(|p| p.id == id);
+        let mut map = DMatrix::zeros(PARAMETERS.len(), 1);
+        carry(&mut map, place(id).unwrap_or(usize::MAX), 0, clock);
+        let shares = map.iter().enumerate().filter(|(_, share)| **share != 0.0);
+        shares
+            .map(|(row, share)| (PARAMETERS[row].id, *share))
+            .collect()
+    }
+
+    /// A record of an hour with this first row.
+    fn record(from_s: f64, temperature_c: f64) -> Record {
+        Record {
+            time_s: vec![from_s, from_s + 3600.0],
+            accel_g: vec![[0.0, 0.0, 1.0]; 2],
+            temperature_c: Some(vec![temperature_c; 2]),
+        }
+    }
+
+    #[test]
+    fn what_changed_stays_and_what_ages_goes_on() {
+        // Two days and six hours later, three kelvin warmer.
+        let clock = Clock::new(&record(100.0, 20.0), &record(100.0 + 2.25 * 86_400.0, 23.0));
+        assert_eq!(carried("gyro_y.step", &clock), [("gyro_y.bias", 1.0)]);
+        assert_eq!(carried("gyro_x.g_y", &clock), [("gyro_x.g_y", 1.0)]);
+        assert_eq!(carried("gyro_z.warmup", &clock), [("gyro_z.warmup", 1.0)]);
+        assert_eq!(
+            carried("gyro_x.ramp", &clock),
+            [("gyro_x.bias", 2.25), ("gyro_x.ramp", 1.0)]
+        );
+        assert_eq!(
+            carried("accel_x.temperature", &clock),
+            [("accel_x.bias", 3.0), ("accel_x.temperature", 1.0)]
+        );
+    }
+
+    #[test]
+    fn a_wave_of_a_day_goes_on_in_phase() {
+        let clock = Clock::new(&record(0.0, 20.0), &record(2.25 * 86_400.0, 20.0));
+        // A quarter of a day on: sin(x + 90°) = cos x, cos(x + 90°) = -sin x.
+        let near = |found: &[(&str, f64)], id: &str| {
+            found
+                .iter()
+                .find(|(other, _)| *other == id)
+                .map_or(0.0, |(_, share)| *share)
+        };
+        let sine = carried("gyro_x.diurnal.sine", &clock);
+        let cosine = carried("gyro_x.diurnal.cosine", &clock);
+        // Sine and cosine of a few turns: roundings of 1e-16.
+        assert!(
+            (near(&sine, "gyro_x.diurnal.cosine") - 1.0).abs() < 1e-14,
+            "{sine:?}"
+        );
+        assert!(
+            (near(&cosine, "gyro_x.diurnal.sine") + 1.0).abs() < 1e-14,
+            "{cosine:?}"
+        );
+        // A clock that began again has lost its phase.
+        let again = Clock::new(&record(0.0, 20.0), &record(0.0, 20.0));
+        assert_eq!(carried("gyro_x.diurnal.sine", &again), []);
+    }
+}

@@ -143,6 +143,14 @@ pub(super) struct Second {
     pub(super) after_a_day_arcmin: Option<[f64; 3]>,
 }
 
+impl Second {
+    /// Whether the drift is; a cause that is not found improves nothing.
+    pub(super) fn predicted_better(&self) -> bool {
+        let angles = self.after_a_day_arcmin;
+        angles.is_some_and(|[nominal, extended, _]| extended < nominal)
+    }
+}
+
 /// Diagnoses a record with an effect `least` to four times as many sigmas large, and predicts a
 /// second record of the same platform at another attitude.
 pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
@@ -152,20 +160,11 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     let first = simulate(&scenario)?;
     let found = diagnosed(&first)?;
     let later = simulate(&later(&scenario, &planted)?)?;
-    let run = |of: &'_ Simulation| -> _ { (of.record.clone(), of.bench.clone()) };
-    let ((first_record, first_bench), (later_record, later_bench)) = (run(&first), run(&later));
-    let validation = validated(
-        &found,
-        &Run {
-            record: &first_record,
-            bench: &first_bench,
-        },
-        &Run {
-            record: &later_record,
-            bench: &later_bench,
-        },
-        &DiagnoseOptions::default(),
-    )?;
+    let [one, other] = [&first, &later].map(|simulation| Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    });
+    let validation = validated(&found, &one, &other, &DiagnoseOptions::default())?;
     let accepted = found.findings.iter().zip(&found.acceptances);
     Ok(Second {
         effect: planted.effect.id.to_owned(),

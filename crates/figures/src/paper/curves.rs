@@ -93,6 +93,7 @@ impl Track {
             estimate: self.estimate.iter().map(|values| values[index]).collect(),
             sigma: self.sigma.iter().map(|values| values[index]).collect(),
             reference: Some(reference),
+            rival: None,
         }
     }
 }
@@ -121,6 +122,8 @@ fn convergence(gyro: usize, tracks: &[Track; 3], batch: &Judged) -> Convergence 
         coefficients: coefficients.collect(),
         columns: 3,
         reference_label: "true value in A, batch estimate in B and C".to_owned(),
+        estimate_label: String::new(),
+        rival_label: String::new(),
     }
 }
 

@@ -127,7 +127,7 @@ pub fn all() -> Vec<Sample> {
                     time_s: times(n),
                     nominal_arcmin: wave(n, 5.0, 0.0),
                     extended_arcmin: wave(n, 0.5, 0.0),
-                    extended_sigma_arcmin: Some(vec![0.2; n]),
+                    expected_arcmin: Some(vec![0.2; n]),
                 }),
             }),
             vec!["[nats]", "[arc minutes]", "sum 7.00 nats, 3 blocks", BAND],
@@ -147,6 +147,7 @@ fn convergence(n: usize) -> Convergence {
         estimate: (0..n).map(|k| 0.1 + (1.0 / (k as f64 + 1.0))).collect(),
         sigma: (0..n).map(|k| 1.0 / (k as f64 + 1.0)).collect(),
         reference,
+        rival: reference.map(|value| [vec![value; n], vec![0.1; n]]),
     };
     Convergence {
         title: "Convergence".to_owned(),
@@ -158,6 +159,8 @@ fn convergence(n: usize) -> Convergence {
         ],
         columns: 3,
         reference_label: "truth".to_owned(),
+        estimate_label: "extended".to_owned(),
+        rival_label: "nominal".to_owned(),
     }
 }
 

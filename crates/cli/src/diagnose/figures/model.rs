@@ -3,10 +3,11 @@
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_record::GainReport;
 use gyrocal_report::{
-    Comparison, Estimate, Gain, Omitted, Quantity, RankedEffect, Ranking, RankingGroup, Role,
+    Comparison, DriftPrediction, Estimate, Gain, Omitted, Quantity, RankedEffect, Ranking,
+    RankingGroup, Role,
 };
 
-use super::{Found, causes, subtitle};
+use super::{Found, causes, named, subtitle};
 use crate::diagnose::words::likelihood;
 
 /// Effects that were neither named nor rivals and are shown.
@@ -74,7 +75,7 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
         label: "not named".to_owned(),
         effects: others.collect(),
     });
-    let title = match causes(found) {
+    let title = match named(found) {
         Some(causes) => format!(
             "Of {} effects {causes} explains the record best",
             report.ranking.len()
@@ -105,18 +106,24 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
 
 /// What the extended model predicts better, block by block.
 pub(super) fn gain(found: &Found<'_>, gain: &GainReport) -> Gain {
+    let compensation = found.validation.as_ref().map(|v| &v.compensation);
     let blocks = &gain.block_log_score_nats;
     let better = blocks.iter().filter(|nats| **nats > 0.0).count();
     Gain {
         title: format!(
             "With {} {better} of {} blocks are predicted better, by {:.1} nats in all",
-            causes(found).unwrap_or_default(),
+            gain.effects.join(", "),
             blocks.len(),
             gain.cross_validated_log_score_nats
         ),
         subtitle: format!("each block predicted from the others; {}", subtitle(found)),
         block_gain_nats: blocks.clone(),
-        drift: None,
+        drift: compensation.map(|found| DriftPrediction {
+            time_s: found.time_s.clone(),
+            nominal_arcmin: found.nominal_arcmin.clone(),
+            extended_arcmin: found.extended_arcmin.clone(),
+            expected_arcmin: Some(found.expected_arcmin.clone()),
+        }),
     }
 }
 

@@ -1,0 +1,118 @@
+//! What is said of a record beforehand, against what the same fit says by other ways.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use gyrocal::Catalogue;
+use gyrocal::generated::catalogue::PARAMETERS;
+use gyrocal::trajectory::rotation_between;
+use gyrocal_calibration::{Expectation, Extended, Extension, NoiseModel, Options, Run};
+use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
+use nalgebra::DMatrix;
+
+fn simulation() -> Simulation {
+    simulate(&Scenario {
+        seed: 3,
+        initial: InitialAttitude::Random,
+        duration_s: 86_400.0,
+        interval_s: 300.0,
+        ..Scenario::default()
+    })
+    .unwrap()
+}
+
+fn fitted(simulation: &Simulation) -> Extended<'_> {
+    let run = Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    };
+    Extended::nominal(&run, &Options::default(), &NoiseModel::default()).unwrap()
+}
+
+#[test]
+fn what_the_prior_says_beforehand_is_the_evidence() {
+    let simulation = simulation();
+    let fit = fitted(&simulation);
+    let mut factor = DMatrix::zeros(Catalogue::PARAMETERS, 9);
+    for (i, sigma) in fit.prior_sigma().into_iter().enumerate() {
+        factor[(i, i)] = sigma;
+    }
+    let expected = Expectation {
+        mean: vec![0.0; Catalogue::PARAMETERS],
+        factor,
+    };
+    let density = fit.log_density_given(&expected).unwrap();
+    let evidence = fit.log_evidence_without(0..0).unwrap();
+    // Ten thousand nats; priors of 1 deg/h over sigmas of 1e-4 cost some digits of 1e-16.
+    assert!((density - evidence).abs() < 1e-4, "{density} {evidence}");
+    // A wrong mean that counts as known makes the record far less likely.
+    let mut wrong = Expectation {
+        factor: DMatrix::zeros(Catalogue::PARAMETERS, 1),
+        mean: fit.parameters(),
+    };
+    let right = fit.log_density_given(&wrong).unwrap();
+    assert!(right > evidence);
+    wrong.mean[0] += 10.0 * fit.covariance()[(0, 0)].sqrt();
+    // Ten marginal sigmas of one coefficient are at least ten with the others held: 50 nats.
+    let off = fit.log_density_given(&wrong).unwrap();
+    assert!(off < right - 49.0, "{off} {right}");
+}
+
+#[test]
+fn the_order_of_an_extension_does_not_matter() {
+    let simulation = simulation();
+    let fit = fitted(&simulation);
+    let place = |id: &str| PARAMETERS.iter().position(|p| p.id == id).unwrap();
+    // One free, one known to a thousandth of what the record says.
+    let (free, known) = (
+        (place("gyro_x.g_y"), f64::INFINITY),
+        (place("gyro_z.g_x"), 1e-7),
+    );
+    let evidence = |parameters: Vec<(usize, f64)>| {
+        let extension = Extension {
+            parameters,
+            ..Extension::default()
+        };
+        let fit = fit.refitted(&extension).unwrap();
+        fit.log_evidence_without(0..40).unwrap()
+    };
+    let (one, other) = (evidence(vec![free, known]), evidence(vec![known, free]));
+    // Both are converged to 1e-4 of a sigma, and rounding differs.
+    assert!((one - other).abs() < 1e-3, "{one} {other}");
+}
+
+#[test]
+fn the_last_estimate_is_that_of_the_fit() {
+    let simulation = simulation();
+    let fit = fitted(&simulation);
+    let last = simulation.record.len() - 1;
+    let found = fit.convergence(&[last / 2, last]).unwrap();
+    let [Some(half), Some(whole)] = found.as_slice() else {
+        panic!("{found:?}");
+    };
+    for i in 0..9 {
+        let sigma = fit.covariance()[(i, i)].sqrt();
+        // The fit is converged to 1e-4 of a sigma.
+        assert!((whole.coefficients[i] - fit.values()[i]).abs() < 1e-3 * sigma);
+        assert!((whole.sigmas[i] / sigma - 1.0).abs() < 1e-6);
+        assert!(half.sigmas[i] > sigma);
+    }
+}
+
+#[test]
+fn drift_from_the_first_row_is_the_free_run() {
+    let simulation = simulation();
+    let fit = fitted(&simulation);
+    let rows = simulation.record.len();
+    let free = fit.free_run_g().unwrap();
+    let drift = fit.drift_from(&fit.parameters(), 0..rows).unwrap();
+    for (row, ([_, up], free)) in drift.iter().zip(&free).enumerate() {
+        // Without accelerometer errors in the model an ideal reading is the direction of up.
+        for axis in 0..3 {
+            assert!((up[axis] - free[axis]).abs() < 1e-12, "row {row}");
+        }
+    }
+    // From a later row on the smoothed attitude is the start.
+    let later = fit.drift_from(&fit.parameters(), 100..110).unwrap();
+    let turn = rotation_between(&later[0], &fit.points()[100]);
+    assert_eq!((later.len(), turn), (10, [0.0; 3]));
+    assert!(fit.drift_from(&fit.parameters(), 100..rows + 1).is_err());
+}

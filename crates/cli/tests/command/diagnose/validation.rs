@@ -1,0 +1,38 @@
+//! A later record, predicted with what was found in the first.
+
+use std::fs;
+
+use super::{BENCH, RECORD, folder, report};
+use crate::folder::repository;
+
+const SCENARIO: &str = "hidden_fault.scenario.toml";
+
+#[test]
+fn a_later_record_tells_what_the_extended_model_wins() {
+    let folder = folder();
+    let scenario = fs::read(repository("examples/data").join(SCENARIO)).unwrap();
+    folder.put(SCENARIO, scenario);
+    folder.succeed(&["simulate", SCENARIO, "--seed", "40", "--out", "later.csv"]);
+    let command = ["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"];
+    let later = ["--validate", "later.csv", "--validate-bench", BENCH];
+    let said = folder.succeed(&[&command[..], &later].concat());
+    let report = report(&folder, "o.json");
+    assert_eq!(report.manifest.inputs.len(), 4);
+    let finding = &report.findings[0];
+    assert_eq!(finding.accepted, Some(true));
+    let gain = report.gain.unwrap();
+    // One cause: its gain is that of the model.
+    let all = gain.cross_validated_log_score_nats;
+    assert!((finding.gain_nats.unwrap() - all).abs() < 1e-3 * all);
+    assert_eq!(gain.effects, ["gyro_y.g_z"]);
+    for shift in &gain.coefficient_shift {
+        let [low, high] = shift.interval;
+        assert!(low <= shift.shift && shift.shift <= high, "{shift:?}");
+    }
+    let validation = gain.validation.unwrap();
+    // Fifteen sigmas, at an attitude like the first.
+    assert!(validation.log_score_nats > 8.0, "{validation:?}");
+    assert_eq!(validation.compensation.after_h, 24.0);
+    assert!(said.contains("later.csv is predicted better too"), "{said}");
+    assert!(said.contains("24.0 h with"), "{said}");
+}

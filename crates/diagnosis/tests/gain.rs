@@ -1,0 +1,106 @@
+//! What goes into an extended model, and what that gains on a later record.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use gyrocal_calibration::Run;
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose, validated};
+use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
+
+/// A day or more at a random attitude.
+fn simulation(seed: u64, days: f64, hidden: &[Hidden]) -> Simulation {
+    simulate(&Scenario {
+        seed,
+        coefficients: Coefficients::PAPER_LIKE,
+        initial: InitialAttitude::Random,
+        interval_s: 120.0,
+        duration_s: days * 86_400.0,
+        hidden: hidden.to_vec(),
+        ..Scenario::default()
+    })
+    .unwrap()
+}
+
+#[test]
+fn a_step_in_the_last_block_is_judged_too() {
+    // Nothing of the other five sixths tells of it.
+    let parameters = [("size", 0.02), ("onset_s", 1.85 * 86_400.0)];
+    let hidden = [Hidden::new("gyro_x.step", &parameters).unwrap()];
+    let simulation = simulation(11, 2.0, &hidden);
+    let options = DiagnoseOptions::default();
+    let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap();
+    assert!(!found.findings.is_empty());
+    for acceptance in &found.acceptances {
+        assert!(acceptance.gain_nats.is_finite(), "{acceptance:?}");
+        assert_eq!(acceptance.accepted, acceptance.gain_nats > 0.0);
+    }
+    let any = found
+        .acceptances
+        .iter()
+        .any(|acceptance| acceptance.accepted);
+    assert_eq!(found.extended.is_some(), any);
+}
+
+#[test]
+fn a_later_record_is_predicted_better_by_what_was_found_in_the_first() {
+    let hidden = [Hidden::new("gyro_y.g_z", &[("size", 0.02)]).unwrap()];
+    let (first, later) = (simulation(7, 2.0, &hidden), simulation(8, 2.0, &hidden));
+    let options = DiagnoseOptions::default();
+    let found = diagnose(&first.record, &first.bench, &options).unwrap();
+    assert_eq!(found.findings[0].effect, "gyro_y.g_z");
+    let run = |of: &Simulation| (of.record.clone(), of.bench.clone());
+    let ((one, its_bench), (other, other_bench)) = (run(&first), run(&later));
+    let validation = validated(
+        &found,
+        &Run {
+            record: &one,
+            bench: &its_bench,
+        },
+        &Run {
+            record: &other,
+            bench: &other_bench,
+        },
+        &options,
+    )
+    .unwrap()
+    .unwrap();
+    // The effect is some hundred sigmas.
+    assert!(
+        validation.gain_nats() > 1000.0,
+        "{:?}",
+        validation.log_score_nats
+    );
+    let left = &validation.compensation;
+    let [nominal, extended, expected] = left.at_end_arcmin();
+    assert!(extended < 0.2 * nominal, "{left:?}");
+    // Root mean square of three axes over starts that share one error of the coefficients: three
+    // times of it are one in thousands.
+    assert!(extended < 3.0 * expected, "{left:?}");
+    assert_eq!(left.nominal_arcmin[0], 0.0);
+    assert_eq!(
+        (left.time_s[0], *left.time_s.last().unwrap()),
+        (0.0, 86_400.0)
+    );
+}
+
+#[test]
+fn a_shift_is_known_as_well_as_the_effect_that_makes_it() {
+    let hidden = [Hidden::new("gyro_y.g_z", &[("size", 0.004)]).unwrap()];
+    let first = simulation(9, 2.0, &hidden);
+    let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default()).unwrap();
+    assert_eq!(found.findings.len(), 1);
+    let size = &found.findings[0].parameters[0];
+    let relative = size.sigma.unwrap() / size.estimate.abs();
+    let gain = found.gain.unwrap();
+    let mut compared = 0;
+    for shift in &gain.coefficient_shift {
+        // A shift is the size times a constant of the record. Where it is small its variance is
+        // the rounded difference of two that are nearly equal.
+        if shift.in_sigmas.abs() > 1.0 {
+            compared += 1;
+            let found = shift.sigma / shift.shift.abs();
+            assert!((found / relative - 1.0).abs() < 0.1, "{shift:?} {relative}");
+            let [low, high] = shift.interval();
+            assert!((high - low - 3.92 * shift.sigma).abs() < 1e-3 * shift.sigma);
+        }
+    }
+    assert!(compared > 0, "{:?}", gain.coefficient_shift);
+}

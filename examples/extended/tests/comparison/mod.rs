@@ -1,0 +1,141 @@
+//! The filter on the extended model against one on the model with every effect of the catalogue,
+//! all others of which are known to be absent. Tests and the figures of the repository use it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a comparison may stop at what must not happen"
+)]
+
+use gyrocal::estimation::{ArrayStorage, Filter};
+use gyrocal::generated::catalogue::{CatalogueInputs, PARAMETERS as CATALOGUE_PARAMETERS};
+use gyrocal::{
+    Anchored, Catalogue, Chart, Drift, Integration, Platform, Recentring, Settings, Site,
+};
+use gyrocal_extended::Controller;
+use gyrocal_extended::extended::{Extended, PARAMETERS, START};
+use gyrocal_truth::{Scenario, simulate};
+
+const STEP_S: f64 = 60.0;
+/// (0.002 deg/h)² held over 60 s.
+const DENSITY: [f64; 3] = [0.002 * 0.002 * 60.0; 3];
+/// (1e-5 g)².
+const VARIANCE: [f64; 3] = [1e-10; 3];
+/// So small that a parameter of an effect stays what it is.
+const NOTHING: f64 = 1e-14;
+const FAULT: &str = include_str!("../../fault.scenario.toml");
+
+type CatalogueFilter = Filter<
+    f64,
+    Anchored<Catalogue>,
+    Chart<f64, CatalogueInputs<f64>>,
+    ArrayStorage<f64, 3, 3, { Catalogue::STATES }>,
+    3,
+    3,
+>;
+
+/// Where each state of the extended model stands in that of the catalogue.
+fn places() -> [usize; Extended::STATES] {
+    let place = |id: &str| {
+        let parameter = CATALOGUE_PARAMETERS.iter().position(|other| other.id == id);
+        3 + parameter.unwrap()
+    };
+    std::array::from_fn(|state| match state {
+        0..3 => state,
+        _ => place(PARAMETERS[state - 3].id),
+    })
+}
+
+pub(crate) fn settings(angles_rad: [f64; 3], drift: Drift<f64>) -> Settings<f64> {
+    Settings {
+        angles_rad,
+        drift,
+        accel_noise_g: 1e-5,
+        drift_noise_deg_per_h: 0.002,
+        ..Settings::level_at(Site::at_latitude_deg(39.1))
+    }
+}
+
+/// The same start with the effects of the catalogue, all but those of the model file pinned.
+fn catalogue_filter(settings: &Settings<f64>) -> CatalogueFilter {
+    let (mut state, mut sigma) = ([0.0; Catalogue::STATES], [NOTHING; Catalogue::STATES]);
+    let places = places();
+    let nominal = settings.drift.to_array().into_iter();
+    let nominal = nominal.zip(settings.drift_sigma.to_array());
+    let angles = settings.angles_rad.into_iter();
+    let known = angles.zip(settings.angles_sigma_rad).chain(nominal);
+    let effects = START.iter().map(|start| (start.value, start.sigma));
+    for (place, (value, deviation)) in places.into_iter().zip(known.chain(effects)) {
+        (state[place], sigma[place]) = (value, deviation);
+    }
+    Filter::new(
+        Anchored(Catalogue),
+        Chart::for_model(settings.site),
+        Integration::RK4,
+        Recentring::EveryStep,
+        ArrayStorage::new(),
+        &state,
+        &sigma,
+    )
+    .unwrap()
+}
+
+/// The largest difference of a state in sigmas, angles by the axes that the charts give to North
+/// and Up, and the largest relative one of a sigma.
+fn differences(extended: &Controller<f64>, catalogue: &CatalogueFilter) -> [f64; 2] {
+    let extended = extended.filter();
+    let places = places();
+    let mut largest = [0.0_f64; 2];
+    for (state, place) in places.into_iter().enumerate() {
+        let sigma = extended.sigma(state);
+        let difference = (extended.state()[state] - catalogue.state()[place]).abs() / sigma;
+        largest[0] = largest[0].max(difference);
+        largest[1] = largest[1].max((catalogue.sigma(place) / sigma - 1.0).abs());
+    }
+    let smallest = (0..3).map(|angle| extended.sigma(angle));
+    let smallest = smallest.fold(f64::INFINITY, f64::min);
+    let axes = |[north, up]: [[f64; 3]; 2]| [north, up].concat();
+    let of_extended = axes(extended.inputs().orientation());
+    let of_catalogue = axes(catalogue.inputs().orientation());
+    for (one, other) in of_extended.iter().zip(of_catalogue) {
+        largest[0] = largest[0].max((one - other).abs() / smallest);
+    }
+    largest
+}
+
+/// Differences after one step from one state.
+pub(crate) fn after_one_step() -> [f64; 2] {
+    // Angles of any size, coefficients of a bad gyro.
+    let drift = [0.41, -0.13, 0.04, -0.29, 0.21, -0.07, 0.15, 0.09, 0.02];
+    let settings = settings([0.4, -0.6, 1.1], Drift::from_array(drift));
+    let mut extended = Controller::new(&settings).unwrap();
+    let mut catalogue = catalogue_filter(&settings);
+    let sample = extended.expected_g();
+    extended.take(0.0, &sample).unwrap();
+    catalogue.update(&sample, &VARIANCE).unwrap();
+    let before = extended.filter().state().to_vec();
+    let next = [sample[0] + 4e-3, sample[1] - 3e-3, sample[2] + 1e-3];
+    extended.take(STEP_S, &next).unwrap();
+    catalogue.predict(STEP_S, &DENSITY).unwrap();
+    catalogue.update(&next, &VARIANCE).unwrap();
+    assert_ne!(before, extended.filter().state(), "the step did nothing");
+    differences(&extended, &catalogue)
+}
+
+/// Differences after three days of samples.
+pub(crate) fn after_three_days() -> [f64; 2] {
+    let scenario = Scenario::parse(FAULT, "fault.scenario.toml").unwrap();
+    let record = simulate(&scenario).unwrap().record;
+    let angles = [10.0_f64, -20.0, 35.0].map(f64::to_radians);
+    let settings = settings(angles, Drift::from_array([0.0; Platform::PARAMETERS]));
+    let mut extended = Controller::new(&settings).unwrap();
+    let mut catalogue = catalogue_filter(&settings);
+    for (row, sample) in record.accel_g.iter().take(4321).enumerate() {
+        if row == 0 {
+            extended.take(0.0, sample).unwrap();
+        } else {
+            extended.take(STEP_S, sample).unwrap();
+            catalogue.predict(STEP_S, &DENSITY).unwrap();
+        }
+        catalogue.update(sample, &VARIANCE).unwrap();
+    }
+    differences(&extended, &catalogue)
+}
