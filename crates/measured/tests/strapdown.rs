@@ -163,8 +163,22 @@ fn a_heading_that_is_known_goes_into_the_bench_file() {
         [row([1.0, 0.0, 0.0]), row([0.0, 1.0, 0.0])]
     };
     assert!((y[0].atan2(y[1]).to_degrees() - 12.0).abs() < 1e-6);
-    // The unit is nearly upright: heading is mostly the angle about z.
-    assert!((bench.initial_angles_sigma_deg[2] / 0.5 - 1.0).abs() < 0.05);
+    // A heading by one sigma greater is one sigma of all angles together. The level's own sigma of
+    // 0.01 deg is added to each: beside movements of some hundredths it takes some percent off.
+    let greater = ImportSettings {
+        heading_deg: Some([12.5, 0.5]),
+        ..known
+    };
+    let greater = import(&log, &description(), &greater).unwrap().bench;
+    let moved = greater.initial_angles_deg.unwrap();
+    let sigmas = (0..3)
+        .map(|i| {
+            let turned = moved[i] - bench.initial_angles_deg.unwrap()[i];
+            (turned / bench.initial_angles_sigma_deg[i]).powi(2)
+        })
+        .sum::<f64>()
+        .sqrt();
+    assert!((0.95..1.001).contains(&sigmas), "{sigmas}");
     // Without one it is that of the body, which the gyros find.
     let bench = imported(&log).unwrap().bench;
     for (found, angle_deg) in bench.initial_angles_deg.unwrap().iter().zip(ANGLES_DEG) {

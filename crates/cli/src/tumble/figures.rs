@@ -61,13 +61,6 @@ fn causes(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Option<Cont
     })
 }
 
-/// At the start of a title.
-fn in_words(count: usize) -> String {
-    const WORDS: [&str; 7] = ["Two", "Three", "Four", "Five", "Six", "Seven", "Eight"];
-    let word = count.checked_sub(2).and_then(|place| WORDS.get(place));
-    word.map_or_else(|| count.to_string(), |word| (*word).to_owned())
-}
-
 fn contribution(
     prepared: &Prepared,
     report: &TumbleReport,

@@ -96,6 +96,64 @@ fn the_nominal_law_of_the_recorded_instrument_is_wrong_and_cross_axis_terms_are_
     assert_eq!(controls["forces_renamed_unexpected"], serde_json::json!([]));
 }
 
+/// Width of the pictures as PNG, px.
+const PNG_WIDTH_PX: u32 = 1200;
+
+#[test]
+fn causes_are_drawn_as_the_readme_shows_them() {
+    let folder = Folder::new();
+    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let arguments = arguments(&log, &description);
+    let text = folder.succeed(&[&arguments[..4], &["--figures", "pictures"]].concat());
+    assert!(text.contains("pictures: 2 pictures"), "{text}");
+    let causes = folder.text("pictures/causes.svg");
+    for cause in ["gyro_x.g_y", "gyro_y.g_z", "gyro_z.g_x"] {
+        assert!(causes.contains(cause), "{cause}");
+    }
+    // One dot for each stop in each of six panels, and one in the key.
+    assert_eq!(causes.matches("<circle").count(), 6 * 38 + 1);
+    assert!(
+        folder
+            .text("pictures/residuals.svg")
+            .contains("extended law")
+    );
+    // The picture of the README is the one that its command draws.
+    let shown = std::fs::read(repository("docs/pictures/xsens-causes.png")).unwrap();
+    assert!(shown.len() < 200_000);
+    assert!(
+        shown == gyrocal_report::to_png(&causes, PNG_WIDTH_PX).unwrap(),
+        "docs/pictures/xsens-causes.png differs: copy the causes.png that a build with --features \
+         png draws there"
+    );
+}
+
+#[test]
+fn a_log_that_is_never_static_is_told() {
+    // The unit turns in hand all the time: every stop but the turns between them is cut out, and
+    // what is left is put together on one clock.
+    let log = std::fs::read_to_string(repository(LOG)).unwrap();
+    let folder = Folder::new();
+    let mut lines = log.lines();
+    let mut moving = lines.next().unwrap().to_owned() + "\n";
+    let names: Vec<&str> = log.lines().next().unwrap().split(',').collect();
+    let accel_x = names
+        .iter()
+        .position(|name| *name == "accel_x_counts")
+        .unwrap();
+    for (row, line) in lines.take(6000).enumerate() {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        // Swung by a quarter of g at half a hertz.
+        let count: f64 = fields[accel_x].parse().unwrap();
+        let swing = 1000.0 * (row as f64 * 0.01 * core::f64::consts::PI).sin();
+        fields[accel_x] = format!("{:.0}", count + swing);
+        moving += &(fields.join(",") + "\n");
+    }
+    folder.put("l.csv", moving);
+    let description = path(DESCRIPTION);
+    let errors = folder.fail(&arguments("l.csv", &description));
+    assert!(errors.contains("static"), "{errors}");
+}
+
 #[test]
 fn bad_input_is_told() {
     let log = std::fs::read_to_string(repository(LOG)).unwrap();

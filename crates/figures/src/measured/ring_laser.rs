@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use gyrocal_calibration::{Calibration, GyroAxes, Options, Run, calibrate_strapdown};
+use gyrocal_calibration::{Calibration, GyroAxes, Options, Run, calibrate, calibrate_strapdown};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
 use gyrocal_measured::strapdown::{ImportReport, ImportSettings, Imported, import};
 use gyrocal_measured::{Description, Log};
@@ -27,6 +27,9 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     windows(measured, &imported.report);
     rates(measured, &imported.report);
     combinations(measured, &imported.report, &calibration);
+    let options = Options::default();
+    let in_platform_axes = calibrate(&imported.record, &imported.bench, &options, |_| ())?;
+    platform_axes(measured, &imported.report, &in_platform_axes);
     judged(measured, &diagnosis);
     let run = run_time("import, calibrate and diagnose", seconds);
     measured.figures.push(run);
@@ -128,9 +131,6 @@ fn rates(measured: &mut Measured, report: &ImportReport) {
 
 /// The errors along north, up and east at the first row, by calibration in the gyros' axes.
 fn combinations(measured: &mut Measured, report: &ImportReport, calibration: &Calibration) {
-    let body_c_enu = &report.body_c_enu;
-    let prior = calibration.prior_sigma.to_array();
-    let estimates = calibration.drift.to_array();
     let mut table = Table::new([
         "error of the gyros toward",
         "estimate, deg/h",
@@ -138,20 +138,10 @@ fn combinations(measured: &mut Measured, report: &ImportReport, calibration: &Ca
         "sigma before the record",
     ]);
     for (name, direction) in [("north", 1), ("up", 2), ("east", 0)] {
-        // What a coefficient of a gyro adds along a direction, at body specific force.
-        let weights: [f64; 9] = core::array::from_fn(|i| {
-            let force = body_c_enu[i / 3][2];
-            body_c_enu[i / 3][direction] * force.powi((i % 3) as i32)
-        });
-        let dot = |values: &[f64; 9]| (0..9).map(|i| weights[i] * values[i]).sum::<f64>();
-        let sigma = dot(&calibration.covariance.map(|row| dot(&row))).sqrt();
-        let before = (0..9)
-            .map(|i| (weights[i] * prior[i]).powi(2))
-            .sum::<f64>()
-            .sqrt();
+        let [estimate, sigma, before] = along(report, calibration, direction);
         table.row([
             name.to_owned(),
-            fixed(dot(&estimates), 4),
+            fixed(estimate, 4),
             fixed(sigma, 4),
             fixed(before, 2),
         ]);
@@ -178,6 +168,31 @@ fn combinations(measured: &mut Measured, report: &ImportReport, calibration: &Ca
         [7.0, 7.0],
         undetermined as f64,
     ));
+}
+
+/// Estimate of the error along east, north or up at the first row, its sigma, and that before the
+/// record.
+fn along(report: &ImportReport, calibration: &Calibration, direction: usize) -> [f64; 3] {
+    // What a coefficient of a gyro adds along a direction, at body specific force.
+    let weights: [f64; 9] = core::array::from_fn(|i| {
+        let axis = &report.body_c_enu[i / 3];
+        axis[direction] * axis[2].powi((i % 3) as i32)
+    });
+    let dot = |values: &[f64; 9]| (0..9).map(|i| weights[i] * values[i]).sum::<f64>();
+    let prior = calibration.prior_sigma.to_array();
+    let before = (0..9).map(|i| (weights[i] * prior[i]).powi(2)).sum::<f64>();
+    [
+        dot(&calibration.drift.to_array()),
+        dot(&calibration.covariance.map(|row| dot(&row))).sqrt(),
+        before.sqrt(),
+    ]
+}
+
+/// What the law of a platform with gyros of its own seems to determine.
+fn platform_axes(measured: &mut Measured, report: &ImportReport, calibration: &Calibration) {
+    let [_, sigma, before] = along(report, calibration, 0);
+    let values = &mut measured.values;
+    values.put("platform_east", fixed(100.0 * sigma / before, 0));
 }
 
 fn judged(measured: &mut Measured, diagnosis: &Diagnosis<'_>) {

@@ -27,8 +27,18 @@ pub(super) fn bench(
         ),
     };
     let angles_deg = angles_deg(&fit.turned_platform_c_enu(turn_deg.to_radians()));
-    let sigma_deg = sigma_deg(&angles_deg, &fit.up, heading_sigma_deg)
-        .map(|of_heading| of_heading.hypot(settings.level_sigma_deg));
+    let of_heading = sigma_deg(&angles_deg, &fit.up, heading_sigma_deg);
+    // A bench file knows no correlations: a turn about the vertical by one sigma would be as many
+    // as it moves angles.
+    let moved = of_heading
+        .iter()
+        .filter(|sigma| **sigma > settings.level_sigma_deg);
+    let share = (moved.count().max(1) as f64).sqrt();
+    let sigma_deg = of_heading.map(|of_heading| {
+        (share * of_heading)
+            .min(180.0)
+            .hypot(settings.level_sigma_deg)
+    });
     // A simulated log may have none, which no bench file can say.
     let positive = |value: f64| value.max(1e-9);
     let bias = settings.bias_sigma_deg_per_h;
