@@ -17,12 +17,10 @@ pub mod platform {
 /// The nominal platform with errors of latitude, Earth rate and gravity as parameters.
 #[cfg(not(gyrocal_rederived))]
 #[rustfmt::skip]
-#[allow(clippy::eq_op)] // x - x is NaN where x is not finite, so it is not taken away
 pub mod surveyed;
 
 /// The nominal platform with errors of latitude, Earth rate and gravity as parameters.
 #[cfg(gyrocal_rederived)]
-#[allow(clippy::eq_op)] // x - x is NaN where x is not finite, so it is not taken away
 pub mod surveyed {
     include!(concat!(env!("OUT_DIR"), "/surveyed.rs"));
 }
@@ -43,12 +41,10 @@ pub mod strapdown {
 /// The platform with every effect of the catalogue, and the table of effects.
 #[cfg(all(feature = "catalogue", not(gyrocal_rederived)))]
 #[rustfmt::skip]
-#[allow(clippy::eq_op)] // x - x is NaN where x is not finite, so it is not taken away
 pub mod catalogue;
 
 /// The platform with every effect of the catalogue, and the table of effects.
 #[cfg(all(feature = "catalogue", gyrocal_rederived))]
-#[allow(clippy::eq_op)] // x - x is NaN where x is not finite, so it is not taken away
 pub mod catalogue {
     include!(concat!(env!("OUT_DIR"), "/catalogue.rs"));
 }
@@ -66,12 +62,10 @@ pub const MODEL_HASH: &str = inputs_hash(include_str!(concat!(env!("OUT_DIR"), "
 /// Functions that only tests run: the Runge-Kutta step written out, with its exact Jacobian.
 #[cfg(all(feature = "oracle", not(gyrocal_rederived)))]
 #[rustfmt::skip]
-#[allow(clippy::eq_op)] // x - x is NaN where x is not finite, so it is not taken away
 pub mod oracle;
 
 /// Functions that only tests run: the Runge-Kutta step written out, with its exact Jacobian.
 #[cfg(all(feature = "oracle", gyrocal_rederived))]
-#[allow(clippy::eq_op)] // x - x is NaN where x is not finite, so it is not taken away
 pub mod oracle {
     include!(concat!(env!("OUT_DIR"), "/oracle.rs"));
 }

@@ -260,8 +260,8 @@ EFFECTS = [
     ),
     Effect(
         "clock.rate", "time",
-        "relative error of the sampling clock: the time of the record is 1 + p times the true one",
-        _size("1"), 2e-5, "", lambda p, at: 1 / (1 + p["size"]),
+        "relative error of the sampling clock, which runs fast: a second of the record lasts 1 - p",
+        _size("1"), 2e-5, "", lambda p, at: 1 - p["size"],
     ),
     Effect(
         "platform.initial_attitude", "state", "attitude at the first sample outside its prior",

@@ -24,9 +24,3 @@ def rotation_z(angle: ca.SX) -> ca.SX:
 def platform_c_chart(theta: ca.SX) -> ca.SX:
     """Direction cosine matrix p_C_0: platform components from chart components, (4)."""
     return rotation_z(theta[2]) @ rotation_y(theta[1]) @ rotation_x(theta[0])
-
-
-def in_platform_axes(theta: ca.SX, vector: ca.SX) -> ca.SX:
-    """p_C_0 times a vector, one rotation after the other: fewer operations than the matrix."""
-    once = rotation_y(theta[1]) @ (rotation_x(theta[0]) @ vector)
-    return rotation_z(theta[2]) @ once

@@ -4,8 +4,8 @@ import math
 
 import casadi as ca
 
-from drift import drift_rate, drift_law
-from frames import in_platform_axes
+from drift import drift_law, drift_rate
+from frames import platform_c_chart
 from specific_force import specific_force
 
 DEG_PER_HOUR_IN_RAD_PER_S = math.pi / 180 / 3600
@@ -22,9 +22,19 @@ def rate_matrix(theta: ca.SX) -> ca.SX:
     )
 
 
+def rate_matrix_inverse(theta: ca.SX) -> ca.SX:
+    """W^-1 in closed form; singular at theta_y = +-90 deg (gimbal lock of the chart)."""
+    cy, sy = ca.cos(theta[1]), ca.sin(theta[1])
+    cz, sz = ca.cos(theta[2]), ca.sin(theta[2])
+    return ca.vertcat(
+        ca.horzcat(cz / cy, -sz / cy, 0),
+        ca.horzcat(sz, cz, 0),
+        ca.horzcat(-sy * cz / cy, sy * sz / cy, 1),
+    )
+
+
 def angle_rates_from(theta: ca.SX, rate: ca.SX) -> ca.SX:
-    """W^-1 applied to columns, in closed form; singular at theta_y = +-90 deg (gimbal lock of
-    the chart)."""
+    """W^-1 applied to columns, in fewer operations than by the matrix."""
     cy, sy = ca.cos(theta[1]), ca.sin(theta[1])
     cz, sz = ca.cos(theta[2]), ca.sin(theta[2])
     x = (cz * rate[0, :] - sz * rate[1, :]) / cy
@@ -42,7 +52,7 @@ def angle_rates(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.SX, f_0: c
 
 def angle_rates_of(theta: ca.SX, omega_d: ca.SX, omega_0: ca.SX) -> ca.SX:
     """W^-1 (omega_d - p_C_0 omega_0) in rad/s, for any drift omega_d in deg/h."""
-    return angle_rates_from(theta, relative_rate(omega_d, in_platform_axes(theta, omega_0)))
+    return rate_matrix_inverse(theta) @ relative_rate(omega_d, platform_c_chart(theta) @ omega_0)
 
 
 def relative_rate(omega_d: ca.SX, omega: ca.SX) -> ca.SX:
@@ -72,6 +82,6 @@ def angle_rates_jacobians(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.
     ]
     return tuple(ca.sparsify(jacobian) for jacobian in ca.substitute(
         jacobians, [a, omega, theta_dot],
-        [specific_force(theta, f_0), in_platform_axes(theta, omega_0),
+        [specific_force(theta, f_0), platform_c_chart(theta) @ omega_0,
          angle_rates(theta, drift, noise, omega_0, f_0)],
     ))

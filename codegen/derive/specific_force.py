@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from frames import in_platform_axes
+from frames import platform_c_chart
 
 
 def specific_force(theta: ca.SX, f_0: ca.SX) -> ca.SX:
@@ -10,4 +10,4 @@ def specific_force(theta: ca.SX, f_0: ca.SX) -> ca.SX:
 
     Equation (8) of the paper speaks of gravity; the sign here is that of specific force.
     """
-    return in_platform_axes(theta, f_0)
+    return platform_c_chart(theta) @ f_0

@@ -93,7 +93,7 @@ fn by_hand(state: &State, p: &Named<'_>, shapes: &Named<'_>) -> [Vector; 2] {
             .filter(|&j| j != i)
             .map(|j| p.get(&format!("gyro_{}{}.axis_misalignment", AXES[i], AXES[j])) * drift[j]);
         let inertial = drift[i] - others.sum::<f64>();
-        (inertial - RAD_PER_S_IN_DEG_PER_H * sidereal[i]) / (1.0 + p.get("clock.rate"))
+        (inertial - RAD_PER_S_IN_DEG_PER_H * sidereal[i]) * (1.0 - p.get("clock.rate"))
     });
     let reading = core::array::from_fn(|i| {
         let of = |name: &str| p.get(&format!("accel_{}.{name}", AXES[i]));

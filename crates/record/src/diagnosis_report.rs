@@ -185,6 +185,7 @@ pub struct FilterReport {
 mod tests {
     use super::*;
     use crate::channel_report::{AllanCourse, AllanPointReport};
+    use crate::gain_report::{CompensationReport, FreeRunReport, ShiftReport, ValidationReport};
     use crate::manifest::Input;
     use crate::report::{NoiseRatioReport, SCHEMA_VERSION};
 
@@ -241,8 +242,11 @@ mod tests {
                     effect: "gyro_y.g_zz".to_owned(),
                     parameters: vec![size],
                 }],
+                gain_nats: Some(41.2),
+                accepted: Some(true),
             }],
             gain: Some(GainReport {
+                effects: vec!["gyro_y.g_xx".to_owned()],
                 cross_validated_log_score_nats: 41.2,
                 block_log_score_nats: vec![40.0, 1.2],
                 free_run_rms_g: FreeRunReport {
@@ -253,9 +257,21 @@ mod tests {
                 coefficient_shift: vec![ShiftReport {
                     coefficient: "gyro_y.bias".to_owned(),
                     shift: -0.0034,
+                    interval: [-0.0036, -0.0032],
                     in_sigmas: -19.0,
+                    in_sigmas_interval: [-20.1, -17.9],
                     unit: "deg/h".to_owned(),
                 }],
+                validation: Some(ValidationReport {
+                    log_score_nats: 7.5,
+                    compensation: CompensationReport {
+                        starts: 9,
+                        after_h: 24.0,
+                        nominal_arcmin: 3.1,
+                        extended_arcmin: 0.2,
+                        expected_arcmin: 0.15,
+                    },
+                }),
             }),
             remainder: RemainderReport {
                 verdict: RemainderVerdict::White,

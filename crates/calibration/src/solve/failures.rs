@@ -1,17 +1,18 @@
 //! Tests of far starts, and of how the solver gives up.
 #![allow(clippy::unwrap_used)]
 
-use gyrocal::{Recentring, Settings};
+use gyrocal::generated::surveyed::SurveyedInputs;
+use gyrocal::{Anchored, Recentring, Settings, Surveyed};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};
 
 use super::Failure;
 use crate::attitude::trials;
-use crate::batch::BatchProblem;
 use crate::begin::alone;
 use crate::calibrate::Options;
 use crate::calibrate_runs;
 use crate::error::CalibrationError;
+use crate::problem::Problem;
 use crate::run::Run;
 use crate::settings::level;
 use crate::start::Start;
@@ -37,7 +38,11 @@ fn settings(bench: &Bench) -> Settings<f64> {
 }
 
 /// A problem that begins at a drift, on the trajectory that goes with it.
-fn beginning<'a>(run: &Run<'a>, settings: &Settings<f64>, drift: [f64; 9]) -> BatchProblem<'a> {
+fn beginning<'a>(
+    run: &Run<'a>,
+    settings: &Settings<f64>,
+    drift: [f64; 9],
+) -> Problem<'a, Anchored<Surveyed>, SurveyedInputs<f64>> {
     let prior = trials(run.record, run.bench).unwrap()[0].prior;
     let rows = run.record.len();
     let start = Start {
