@@ -10,6 +10,10 @@ use crate::norm::{NormChannel, norm_channel};
 const MOST_BINS: usize = 24;
 const ROWS_A_BIN: usize = 20;
 
+/// A component that sweeps over less than this many sigmas of its noise is sorted into bins by that
+/// noise, which is in the norm too.
+const SWEPT: f64 = 3000.0;
+
 /// What the norm of specific force says of the accelerometers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormVerdict {
@@ -80,7 +84,15 @@ pub fn norm_verdict(
         );
         tests.push((found.p_value, found.chi_square, words));
     };
-    for (found, axis) in channel.on_component.iter().zip(["x", "y", "z"]) {
+    for (axis, found) in channel.on_component.iter().enumerate() {
+        let values = rows.iter().map(|row| row[axis]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        if high - low < SWEPT * accel_noise_g[axis] {
+            continue;
+        }
+        let axis = ["x", "y", "z"][axis];
         depends(&format!("specific force along {axis}"), found);
     }
     depends("time", &channel.on_time);

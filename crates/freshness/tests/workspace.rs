@@ -301,6 +301,8 @@ fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
     copy.add_program(
         "finder",
         &[
+            // With its default features: those that derive.
+            ("gyrocal", "../.."),
             ("gyrocal-diagnosis", "../diagnosis"),
             ("gyrocal-truth", "../truth"),
         ],

@@ -159,13 +159,7 @@ mod tests {
         // Half an hour of a platform that turns: rows are apart by 2.4e-3 g, and that changes by
         // 3 % over the record.
         let trend = |row: f64| 2.4e-3 * row * (1.0 + 5e-4 * row) + 1e-5 * (7.0 * row).sin();
-        let values = || (0..29).map(|row| trend(f64::from(row)));
-        assert_eq!(find(values(), 5e-6), None);
-        // The same through a converter of three sigmas has steps of many multiples.
-        let step = 3e-5;
-        let found = find(values().map(|value| (value / step).round() * step), 5e-6);
-        // A lattice of a multiple that all values happen to have would be wider.
-        assert!(found.is_some_and(|lattice| (lattice.step / step - 1.0).abs() < 1e-3));
+        assert_eq!(find((0..29).map(|row| trend(f64::from(row))), 5e-6), None);
     }
 
     #[test]
