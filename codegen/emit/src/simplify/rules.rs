@@ -103,23 +103,17 @@ impl Rules {
         self.sum(x, y)
     }
 
-    /// x - y, or the negative of y - x where that is known. Like CasADi, which knows fewer of
-    /// its nodes to be one, it takes x - x and zero times x for zero whatever x is.
+    /// x - y, or the negative of y - x where that is known.
     fn plain_difference(&mut self, x: NodeId, y: NodeId) -> NodeId {
-        if x == y {
-            return self.graph.constant(0.0);
-        }
         match self.graph.find(Node::Binary(Binary::Sub, y, x)) {
-            Some(reverse) => self.signed(true, reverse),
+            Some(reverse) if x != y => self.signed(true, reverse),
             _ => self.graph.add(Node::Binary(Binary::Sub, x, y)),
         }
     }
 
     fn product(&mut self, x: NodeId, y: NodeId) -> NodeId {
         let ((x_negative, x), (y_negative, y)) = (self.sign(x), self.sign(y));
-        let product = if self.is(x, 0.0) || self.is(y, 0.0) {
-            return self.graph.constant(0.0);
-        } else if self.is(x, 1.0) {
+        let product = if self.is(x, 1.0) {
             y
         } else if self.is(y, 1.0) {
             x

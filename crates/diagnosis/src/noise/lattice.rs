@@ -72,20 +72,20 @@ pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Latt
 }
 
 /// Whether values run on in equal steps, with no trace of having been rounded to multiples of
-/// `step`: rounding errors would make second differences of 0.7 steps rms. Values that stand
-/// still are no evidence.
+/// `step`: that would make second differences of up to 0.7 steps rms, and of 0.3 where the steps
+/// are nearly whole multiples. Values that stand still are no evidence.
 fn is_smooth(in_order: &[f64], step: f64) -> bool {
-    const SMOOTH: f64 = 0.25;
+    const SMOOTH: f64 = 0.1;
     let (mut squares, mut moved, mut count) = (0.0, 0.0, 0.0_f64);
     for three in in_order.windows(3) {
         let second = three[0] - 2.0 * three[1] + three[2];
         if second.is_finite() {
             squares += second * second;
             moved += (three[2] - three[0]).abs();
-            count += 2.0;
+            count += 1.0;
         }
     }
-    moved > 0.5 * step * count && squares < 0.5 * (SMOOTH * step).powi(2) * count
+    moved > step * count && squares < (SMOOTH * step).powi(2) * count
 }
 
 /// How many of the steps, which rise, are another multiple than most.
