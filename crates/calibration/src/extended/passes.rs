@@ -1,0 +1,134 @@
+//! Passes over a record with a fitted model: what signatures, sudden changes and noise would say.
+
+use gyrocal::estimation::batch::{Linearisation, Reduced, Whitened};
+use gyrocal::{Catalogue, EstimationError};
+use nalgebra::DMatrix;
+
+use super::{Extended, Jump};
+use crate::PARAMETERS;
+use crate::error::CalibrationError;
+use crate::further::{Column, Further};
+use crate::noise::{self, NoiseEstimate};
+use crate::solve::Failure;
+
+impl Extended<'_> {
+    /// Whitened innovations of the fit, row by row; NaN where there is no value.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn whitened(&self) -> Result<Vec<[f64; 3]>, CalibrationError> {
+        let parameters = self.parameters();
+        let mut whitened = vec![[f64::NAN; 3]; self.points().len()];
+        self.problem
+            .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                Linearisation { tape, ..*pass }
+                    .reduce(|value| whitened[value.row][value.output] = value.columns[0])
+            })
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+        Ok(whitened)
+    }
+
+    /// What a sudden change of attitude would explain in each step, with the unknowns of the fit
+    /// free to take it up: score and information of a turn about the platform axes, rad, by the
+    /// row that ends the step; `None` for the first row.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn jumps(&self) -> Result<Vec<Option<Jump>>, CalibrationError> {
+        let parameters = self.parameters();
+        let covariance = &self.uncertainty.conditional;
+        let count = covariance.nrows();
+        let mut jumps: Vec<Option<Jump>> = vec![None; self.points().len()];
+        self.problem
+            .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                Linearisation { tape, ..*pass }.jumps(|row, found| {
+                    let mut jump = Jump {
+                        // Columns are derivatives of the innovations: those of a jump too.
+                        score: found.columns[0],
+                        information: found.information,
+                        readings: core::array::from_fn(|output| found.readings[output]),
+                    };
+                    let taken = DMatrix::from_fn(count, 3, |i, j| found.columns[i + 1][j]);
+                    let share = covariance * &taken;
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            let product = taken.column(i).dot(&share.column(j));
+                            jump.information[i][j] -= product;
+                        }
+                    }
+                    jumps[row] = Some(jump);
+                })
+            })
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+        Ok(jumps)
+    }
+
+    /// Passes over the record with all parameters of [`Catalogue`] as columns (all but those in
+    /// the extension are zero at the linearisation point), then `further` columns. The
+    /// extension's own further columns are not among them unless they are in `further`, but
+    /// their amplitudes are taken into account. `watch` sees every whitened value.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn signatures(
+        &self,
+        further: &[Column],
+        watch: impl FnMut(&Whitened<'_>),
+    ) -> Result<Reduced<3>, CalibrationError> {
+        let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
+        self.reduced(&all, further, watch)
+    }
+
+    /// The same with the parameters of the fit as columns only, in the order of
+    /// [`Self::values`], then the extension's own further columns, then `further`.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn beside(&self, further: &[Column]) -> Result<Reduced<3>, CalibrationError> {
+        let extended = self.extension.parameters.iter();
+        let own: Vec<usize> = (0..PARAMETERS)
+            .chain(extended.map(|(parameter, _)| *parameter))
+            .collect();
+        self.reduced(&own, further, |_| ())
+    }
+
+    fn reduced(
+        &self,
+        active: &[usize],
+        further: &[Column],
+        watch: impl FnMut(&Whitened<'_>),
+    ) -> Result<Reduced<3>, CalibrationError> {
+        let leg = &self.problem.legs[0];
+        let own = self.extension.further.columns().len();
+        let mut columns = self.extension.further.columns().to_vec();
+        columns.extend_from_slice(further);
+        let mut all = Further::new(columns);
+        let amplitudes = leg
+            .amplitudes
+            .iter()
+            .map(|unknown| self.problem.values[*unknown]);
+        all.set_amplitudes(amplitudes);
+        debug_assert_eq!(own, leg.amplitudes.len());
+        let parameters = self.parameters();
+        self.problem
+            .with_active(0, &parameters, active, &all, |pass| pass.reduce(watch))
+            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))
+    }
+
+    /// Noise by maximum likelihood, over what the fit believes.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn noise(&self) -> Result<NoiseEstimate, CalibrationError> {
+        let parameters = self.parameters();
+        self.problem
+            .with_leg(0, &parameters, |pass| {
+                let tape = self.solution.tapes[0].as_ref();
+                let pass = Linearisation { tape, ..*pass };
+                noise::estimate(|factors| pass.noise_score(factors))
+            })
+            .map_err(|error: EstimationError| CalibrationError::from(Failure::Pass(0, error)))
+    }
+}
