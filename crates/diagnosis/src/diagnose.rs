@@ -5,7 +5,7 @@ mod audited;
 use gyrocal_calibration::{CalibrationError, Extended, NoiseEstimate, NoiseModel, Options, Run};
 use gyrocal_record::{Bench, Record};
 
-use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, search};
+use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, Unnamed, search};
 use crate::error::DiagnosisError;
 use crate::gain::{Acceptance, Gain, Validation, gain, judge, validate};
 use crate::noise::{Estimate, NoiseAudit, NoiseFinding};
@@ -106,6 +106,9 @@ pub struct Diagnosis<'a> {
     /// What the extended model gains; if no cause is in it, what a model with all of them does;
     /// `None` without a cause.
     pub gain: Option<Gain>,
+    /// What no effect of the catalogue explains, in the order in which it was met; it is in the
+    /// extended model.
+    pub unnamed: Vec<Unnamed>,
     /// What is left.
     pub remainder: Remainder,
     /// The nominal model at its best fit.
@@ -249,6 +252,7 @@ pub fn diagnose<'a>(
         findings: searched.findings,
         acceptances: judged.acceptances,
         gain,
+        unnamed: searched.unnamed,
         remainder,
         nominal,
         extended: judged.extended,

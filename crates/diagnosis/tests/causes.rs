@@ -1,6 +1,7 @@
 //! Effects hidden in simulated records: each kind of search finds its own.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+use gyrocal_diagnosis::cause::{Channel, Pattern};
 use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
@@ -88,21 +89,33 @@ fn a_random_walk_is_no_cause_with_a_law() {
 }
 
 #[test]
-fn a_tone_has_no_name_and_is_told_with_its_period() {
-    let (record, bench) = record(6, "gyro_x.tone", &[("size", 0.004), ("period_h", 5.3)]);
-    let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
-    assert!(
-        found.findings.is_empty(),
-        "named {}",
-        found.findings[0].effect
-    );
-    assert_eq!(found.verdict, Verdict::Unexplained);
-    assert!(
-        found
-            .remainder
-            .description
-            .contains("drift of gyro x with a period of 5."),
-        "{}",
-        found.remainder.description
-    );
+fn what_the_catalogue_does_not_hold_has_no_name_and_is_told() {
+    use Channel::{Drift, Readings};
+    type Case<'a> = (&'a str, &'a [(&'a str, f64)], Channel, Option<usize>);
+    let tone = |size| [("size", size), ("period_h", 5.3)];
+    let cases: [Case<'_>; 4] = [
+        ("gyro_x.tone", &tone(0.004), Drift(0), None),
+        ("accel_y.tone", &tone(6e-6), Readings(1), None),
+        ("gyro_y.sign_y", &[("size", 0.01)], Drift(1), Some(1)),
+        ("accel_y.sign", &[("size", 5e-5)], Readings(1), Some(1)),
+    ];
+    for (effect, parameters, channel, axis) in cases {
+        let (record, bench) = record(6, effect, parameters);
+        let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+        let described = &found.remainder.description;
+        assert!(found.remainder.unexplained, "{effect}: {described}");
+        let strongest = found.unnamed.first().expect(effect);
+        assert_eq!(strongest.channel, channel, "{effect}: {described}");
+        match (strongest.pattern, axis) {
+            // Known to a fraction of one cycle in the two days, which would be a tenth.
+            (Pattern::Line { period_h }, None) => {
+                assert!((period_h / 5.3 - 1.0).abs() < 0.03, "{period_h}");
+                // A tone has nothing of any cause.
+                assert!(found.findings.is_empty(), "{effect}");
+                assert_eq!(found.verdict, Verdict::Unexplained);
+            }
+            (Pattern::Curve { axis }, Some(expected)) => assert_eq!(axis, expected, "{effect}"),
+            (other, _) => panic!("{effect}: {other:?}"),
+        }
+    }
 }

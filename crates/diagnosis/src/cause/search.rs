@@ -90,6 +90,7 @@ pub fn search<'a>(
     let mut accepted: Vec<Accepted> = Vec::new();
     let mut inseparable: Vec<usize> = Vec::new();
     let mut unnamed: Vec<Unnamed> = Vec::new();
+    let mut seeking = true;
     let mut first: Option<(Vec<Ranked>, f64)> = None;
     loop {
         let bank = Bank::new(&fitted, &plan.further, &[])?;
@@ -117,15 +118,28 @@ pub fn search<'a>(
         // What the catalogue has no name for goes into the model without one: if nothing else is
         // there, or if it explains so much more that a name would be a false one. A random walk
         // would swallow any curve.
+        let stands = |other: &Unnamed| {
+            other.ln_probability < options.unnamed_probability.ln()
+                && best
+                    .is_none_or(|best| other.equivalent() > scores.penalised(best.family) + RICHER)
+        };
         let curves = best.is_none_or(|best| families[best.family].walk.is_some());
-        if unnamed.len() < MOST_EFFECTS
-            && let Some(other) = unnamed::strongest(&fitted, record, &jumps, curves)?
-            && other.ln_probability < options.unnamed_probability.ln()
-            && best.is_none_or(|best| other.equivalent() > scores.penalised(best.family) + RICHER)
+        if seeking
+            && unnamed.len() < MOST_EFFECTS
+            && let Some(other) = unnamed::strongest(&fitted, record, &jumps, curves, stands)?
         {
             unnamed.push(other);
-            fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &unnamed))?;
-            continue;
+            match fitted.refitted(&extension(&base, &plan, record, &accepted, &unnamed)) {
+                Ok(refitted) => {
+                    fitted = refitted;
+                    continue;
+                }
+                // What cannot be fitted beside the others is left to the tests of what remains.
+                Err(_) => {
+                    unnamed.pop();
+                    seeking = false;
+                }
+            }
         }
         let Some(best) = best else {
             break;

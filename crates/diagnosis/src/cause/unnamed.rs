@@ -126,25 +126,24 @@ impl Unnamed {
     }
 }
 
-/// The most significant line, or, if they are asked for, curve beside what a fit holds.
+/// The most significant line or curve beside what a fit holds, if it stands against what else there
+/// is. Curves, which cost more, are looked for if they are asked for or a line stands: what goes
+/// with specific force has the periods of a day.
 pub(super) fn strongest(
     fitted: &Extended<'_>,
     record: &Record,
     jumps: &[Option<Jump>],
     curves: bool,
+    stands: impl Fn(&Unnamed) -> bool,
 ) -> Result<Option<Unnamed>, CalibrationError> {
-    let found = [
-        line::strongest(fitted, record, jumps)?,
-        if curves {
-            curve::strongest(fitted, record)?
-        } else {
-            None
-        },
-    ];
-    Ok(found
-        .into_iter()
-        .flatten()
-        .min_by(|a, b| a.ln_probability.total_cmp(&b.ln_probability)))
+    let line = line::strongest(fitted, record, jumps)?.filter(&stands);
+    let curve = if curves || line.is_some() {
+        curve::strongest(fitted, record)?.filter(&stands)
+    } else {
+        None
+    };
+    let found = [line, curve].into_iter().flatten();
+    Ok(found.min_by(|a, b| a.ln_probability.total_cmp(&b.ln_probability)))
 }
 
 /// Numbers for each step that follow a course of time.
