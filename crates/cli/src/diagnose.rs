@@ -7,6 +7,7 @@ mod failed;
 mod figures;
 mod filter;
 mod json;
+mod residuals;
 mod tables;
 mod words;
 
@@ -145,11 +146,13 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     drop(progress);
     tracing::info!(verdict = ?diagnosis.verdict, "diagnosed");
     let blind = blind::blind(&diagnosis, &record).map_err(|source| failed(source.into()))?;
+    let shown = residuals::report(&diagnosis, &record).map_err(failed)?;
     let report = json::report(
         &diagnosis,
         validation.as_ref(),
         judged,
         blind,
+        shown,
         options.seed,
         &inputs,
     )?;

@@ -33,6 +33,7 @@ mod norm;
 pub mod plan;
 mod remainder;
 mod request;
+mod residuals;
 mod series;
 mod side;
 mod significance;
@@ -50,6 +51,7 @@ pub use noise::{
 };
 pub use norm::{NormChannel, norm_channel};
 pub use remainder::{Remainder, remainder};
+pub use residuals::{Abscissa, Residuals, residuals};
 pub use series::Innovations;
 pub use side::{NormVerdict, norm_verdict};
 pub use significance::{two_sided_p, z_of_two_sided_p};

@@ -6,6 +6,7 @@ use crate::channel_report::{AllanReport, NormReport};
 use crate::gain_report::GainReport;
 use crate::manifest::Manifest;
 use crate::report::NoiseReport;
+use crate::residuals_report::ResidualsReport;
 
 /// What `gyrocal diagnose` found in a record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,6 +21,8 @@ pub struct DiagnosisReport {
     pub false_alarm_probability: f64,
     /// What the norm of specific force says; `None` if there are too few complete rows.
     pub norm: Option<NormReport>,
+    /// What the residuals of the nominal model show; it makes no finding.
+    pub residuals: Option<ResidualsReport>,
     /// What is wrong: noise, then causes, each in falling strength, then the filter.
     pub findings: Vec<FindingReport>,
     /// What the extended model gains; `None` without a cause.
@@ -188,6 +191,7 @@ mod tests {
     use crate::gain_report::{CompensationReport, FreeRunReport, ShiftReport, ValidationReport};
     use crate::manifest::Input;
     use crate::report::{NoiseRatioReport, SCHEMA_VERSION};
+    use crate::residuals_report::AgainstReport;
 
     fn report() -> DiagnosisReport {
         let size = ParameterReport {
@@ -227,6 +231,18 @@ mod tests {
                 mean_g: 3e-6,
                 mean_sigma_g: 1e-7,
                 description: "it is above gravity".to_owned(),
+            }),
+            residuals: Some(ResidualsReport {
+                nis: None,
+                autocorrelation: None,
+                lines: None,
+                free_run_rms_g: [1e-5, 2e-5, 3e-5],
+                against: vec![AgainstReport {
+                    abscissa: "time_s".to_owned(),
+                    p_value: [0.5, 0.1, 1e-3],
+                    at: [0, 1, 2].map(|_| vec![0.0, 60.0]),
+                    mean: [0, 1, 2].map(|_| vec![-0.1, 0.1]),
+                }],
             }),
             findings: vec![FindingReport {
                 effect: "gyro_y.g_xx".to_owned(),

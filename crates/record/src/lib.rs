@@ -66,6 +66,7 @@ mod output;
 mod plan_report;
 mod record;
 mod report;
+mod residuals_report;
 mod rows;
 mod source;
 mod suggest;
@@ -95,6 +96,9 @@ pub use report::{
     AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, FitVerdict,
     NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport,
     SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
+};
+pub use residuals_report::{
+    AgainstReport, AutocorrelationReport, LineReport, NisReport, ResidualsReport,
 };
 pub use source::SourceText;
 pub use suggest::nearest_few;

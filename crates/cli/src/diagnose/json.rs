@@ -10,7 +10,8 @@ use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions};
 use gyrocal_diagnosis::{Acceptance, Diagnosis, NoiseFinding, Remainder, Validation, Verdict};
 use gyrocal_record::{
     DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, NotSearchedReport,
-    ParameterReport, RankedReport, RemainderReport, RemainderVerdict, RivalReport, SCHEMA_VERSION,
+    ParameterReport, RankedReport, RemainderReport, RemainderVerdict, ResidualsReport, RivalReport,
+    SCHEMA_VERSION,
 };
 
 use super::filter::Judged;
@@ -27,6 +28,7 @@ pub(super) fn report(
     validation: Option<&Validation>,
     judged: Option<Judged>,
     blind: Vec<NotSearchedReport>,
+    residuals: ResidualsReport,
     seed: u64,
     inputs: &[&Path],
 ) -> Result<DiagnosisReport, Failure> {
@@ -51,6 +53,7 @@ pub(super) fn report(
             Verdict::Clean => DiagnosisVerdict::Clean,
         },
         false_alarm_probability: diagnosis.false_alarm_probability,
+        residuals: Some(residuals),
         norm: diagnosis.norm.as_ref().map(channels::norm),
         allan: diagnosis.stability.as_ref().map(channels::allan),
         gain: gain::report(diagnosis, validation),

@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 use comfy_table::Cell;
 use gyrocal_record::{DiagnosisReport, FindingReport, GainReport, NoiseRatioReport};
 
-use super::Found;
 use super::words::{likelihood, probability, short, value};
+use super::{Found, residuals};
 use crate::noise::told;
 use crate::tables::{right, table};
 use crate::text::bullet;
@@ -21,6 +21,14 @@ pub(super) fn all(found: &Found<'_>) -> String {
     let mut text = String::new();
     if !report.findings.is_empty() {
         let _ = writeln!(text, "\nFindings:\n\n{}", findings(report));
+    }
+    if let Some(shown) = &report.residuals {
+        let _ = writeln!(
+            text,
+            "\n{}\n\n{}",
+            residuals::heading(shown),
+            residuals::rows(shown)
+        );
     }
     if !report.ranking.is_empty() {
         let threshold = report.threshold.map_or_else(String::new, |threshold| {
