@@ -18,10 +18,10 @@ pub struct ResidualsReport {
     pub against: Vec<AgainstReport>,
 }
 
-/// Normalised innovations squared: three degrees of freedom a complete row.
+/// Normalised innovations squared.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NisReport {
-    /// Their mean over rows.
+    /// Their sum over the number of values; 1 if the model is right.
     pub mean: f64,
     /// What it lies in if the model is right, with the false-alarm probability of the diagnosis.
     pub band: [f64; 2],

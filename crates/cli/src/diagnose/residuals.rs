@@ -106,7 +106,10 @@ pub(super) fn rows(report: &ResidualsReport) -> String {
 pub(super) fn heading(report: &ResidualsReport) -> String {
     let nis = report.nis.map_or_else(String::new, |nis| {
         let [low, high] = nis.band;
-        format!("; mean NIS {:.3}, expected {low:.3} to {high:.3}", nis.mean)
+        format!(
+            "; mean NIS of a value {:.3}, expected {low:.3} to {high:.3}",
+            nis.mean
+        )
     });
     let correlation = report
         .autocorrelation

@@ -74,6 +74,28 @@ fn the_hidden_fault_is_named_with_its_size() {
 }
 
 #[test]
+fn residuals_of_the_nominal_model_are_told_and_written() {
+    let (said, folder) = whole();
+    let shown = report(folder, "o.json").residuals.unwrap();
+    // The cross-axis term makes the nominal model miss the record by more than noise explains.
+    let nis = shown.nis.unwrap();
+    assert!(nis.mean > nis.band[1] && nis.p_value < 0.01, "{nis:?}");
+    assert_eq!(shown.autocorrelation.unwrap().correlation.len(), 20);
+    assert!(shown.lines.unwrap()[0].p_value < 1e-6);
+    assert!(shown.free_run_rms_g.iter().all(|rms_g| *rms_g > 2e-5));
+    let abscissae: Vec<&str> = shown.against.iter().map(|a| a.abscissa.as_str()).collect();
+    assert_eq!(abscissae, ["force_x_g", "force_y_g", "force_z_g", "time_s"]);
+    for against in &shown.against {
+        assert!(against.at.iter().all(|at| at.is_sorted()), "{against:?}");
+        assert!(against.mean.iter().all(|mean| mean.len() == 12));
+    }
+    assert!(
+        said.contains("Residuals of the nominal model; mean NIS of a value"),
+        "{said}"
+    );
+}
+
+#[test]
 fn the_norm_says_which_side_and_averaging_what_is_left() {
     let (said, folder) = whole();
     let report = report(folder, "o.json");
