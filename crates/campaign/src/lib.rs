@@ -37,6 +37,7 @@
 mod campaign;
 mod error;
 mod fingerprint;
+mod program;
 mod report;
 pub mod statistics;
 mod store;
@@ -46,6 +47,7 @@ mod trial;
 pub use campaign::{Campaign, Outcome, Progress};
 pub use error::CampaignError;
 pub use fingerprint::Fingerprint;
+pub use program::program;
 pub use report::MonteCarloReport;
 pub use summary::{Banded, CoefficientSummary, Failure, Measured, Summary};
 pub use trial::Trial;

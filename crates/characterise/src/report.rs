@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_campaign::{Campaign, Failure, Fingerprint, Outcome};
+use gyrocal_campaign::{Campaign, Failure, Fingerprint, Outcome, program};
 use gyrocal_diagnosis::DiagnoseOptions;
 use gyrocal_record::Manifest;
 use serde::{Deserialize, Serialize};
@@ -52,6 +52,7 @@ pub struct CellReport {
 pub fn campaign(cell: Cell, seeds: Range<u64>, methods: &[Method]) -> Campaign {
     let names: Vec<&str> = methods.iter().map(|method| method.name()).collect();
     let fingerprint = Fingerprint::new("gyrocal characterise")
+        .with("program", program())
         .with("cell", cell.name())
         .with("model", MODEL_HASH)
         .with("options", format!("{:#?}", DiagnoseOptions::default()))

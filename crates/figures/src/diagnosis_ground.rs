@@ -12,11 +12,10 @@ mod difference;
 #[path = "../../diagnosis/tests/noise/population.rs"]
 mod population;
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
-use gyrocal_campaign::{Campaign, Fingerprint};
+use gyrocal_campaign::Campaign;
 
 use crate::figure::Figure;
+use crate::resumable;
 
 /// Why a figure could not be measured.
 type Error = Box<dyn std::error::Error + Send + Sync>;
@@ -29,31 +28,6 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
-/// A campaign over the records of a cell that goes on where it was stopped. Results are those of
-/// this very program: another build starts afresh.
 fn campaign(cell: &str, seeds: core::ops::Range<u64>, small: bool) -> Result<Campaign, Error> {
-    let program = std::fs::read(std::env::current_exe()?)?;
-    let mut hasher = DefaultHasher::new();
-    program.hash(&mut hasher);
-    let program = format!("{:016x}", hasher.finish());
-    let fingerprint = Fingerprint::new("figures diagnosis-ground")
-        .with("program", &program)
-        .with("cell", cell);
-    let campaign = Campaign::new(seeds, fingerprint);
-    if small {
-        return Ok(campaign);
-    }
-    let directory = gyrocal_freshness::workspace().join("target/figures");
-    std::fs::create_dir_all(&directory)?;
-    let file: String = cell
-        .chars()
-        .map(|letter| {
-            if letter.is_alphanumeric() {
-                letter
-            } else {
-                '-'
-            }
-        })
-        .collect();
-    Ok(campaign.results(directory.join(format!("diagnosis-ground-{file}-{program}.jsonl"))))
+    resumable::campaign("diagnosis-ground", cell, seeds, small)
 }

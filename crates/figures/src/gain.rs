@@ -6,12 +6,13 @@ mod records;
 
 use core::ops::Range;
 
+use gyrocal_campaign::Outcome;
 use gyrocal_campaign::statistics::{Proportion, mean_square_band, median};
-use gyrocal_campaign::{Campaign, Fingerprint, Outcome};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::figure::Figure;
+use crate::resumable;
 use records::{Errors, Extension, Second};
 
 /// Why a figure could not be measured.
@@ -76,12 +77,7 @@ fn cell<T: Serialize + DeserializeOwned + Send>(
         runs
     };
     let seeds = first..first + runs;
-    let campaign = Campaign::new(seeds.clone(), Fingerprint::new("gain").with("cell", name));
-    let campaign = if small {
-        campaign
-    } else {
-        campaign.results(format!("target/gain-{name}.jsonl"))
-    };
+    let campaign = resumable::campaign("gain", name, seeds.clone(), small)?;
     Ok((campaign.run(job, |_| ())?, seeds))
 }
 

@@ -11,6 +11,7 @@ mod measured;
 mod naming;
 mod page;
 mod paper;
+mod resumable;
 mod values;
 
 use std::path::PathBuf;

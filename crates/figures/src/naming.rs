@@ -1,18 +1,15 @@
 //! Causes hidden in simulated records: what is detected, what is named, and what clean records
-//! show. The cells are those of `gyrocal characterise`, and its results serve here too.
+//! show. The cells are those of `gyrocal characterise`.
 
 mod plan;
 
 use gyrocal_characterise::{Cell, Characteristic, Method, Target, campaign, cell_report};
 
 use crate::figure::Figure;
+use crate::resumable::results;
 
 /// Why a figure could not be measured.
 type Error = Box<dyn std::error::Error + Send + Sync>;
-
-/// Where the full version keeps its results: `gyrocal characterise --results` this folder goes on
-/// from them, and the other way round.
-const RESULTS: &str = "target/characteristics";
 
 /// Records of each cell in the small version, which runs everywhere.
 const SMALL_RUNS: [(Cell, u64); 11] = [
@@ -39,10 +36,9 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
                 campaign(cell, seeds.clone(), &[]).run(|seed| cell.examine(seed, &[]), |_| ())?;
             cell_report(cell, &outcome, &seeds)
         } else {
-            std::fs::create_dir_all(RESULTS)?;
             let seeds = 0..cell.full_runs();
             let outcome = campaign(cell, seeds.clone(), &Method::ALL)
-                .results(format!("{RESULTS}/{}.jsonl", cell.name()))
+                .results(results("naming", &cell.name())?)
                 .run(|seed| cell.examine(seed, &Method::ALL), |_| ())?;
             cell_report(cell, &outcome, &seeds)
         };

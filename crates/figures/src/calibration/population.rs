@@ -1,14 +1,13 @@
 //! A population of random records, calibrated by the batch estimator and held against the truth.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use gyrocal_calibration::Options;
 use gyrocal_campaign::statistics::mean;
-use gyrocal_campaign::{Banded, Campaign, Fingerprint, Outcome, Summary, Trial};
+use gyrocal_campaign::{Banded, Outcome, Summary, Trial};
 use gyrocal_truth::Population;
 
 use super::Error;
 use crate::figure::Figure;
+use crate::resumable;
 
 /// Seed of the population, fixed beforehand; no record of it is ever drawn again.
 const SEED: u64 = 20_150_904;
@@ -156,22 +155,11 @@ fn lacking(outcome: &Outcome<Trial>, share: impl Fn(f64) -> f64) -> Vec<f64> {
     outcome.successes().map(|(_, trial)| of(trial)).collect()
 }
 
-/// Runs what has no result yet. Results are those of this very program: another build starts
-/// afresh.
+/// Runs what has no result yet; few records are run afresh each time.
 fn run(records: u64) -> Result<Outcome<Trial>, Error> {
-    let program = std::fs::read(std::env::current_exe()?)?;
-    let mut hasher = DefaultHasher::new();
-    program.hash(&mut hasher);
-    let program = format!("{:016x}", hasher.finish());
-    let directory = gyrocal_freshness::workspace().join("target/figures");
-    std::fs::create_dir_all(&directory)?;
     let population = Population::new(SEED);
     let options = Options::default();
-    let fingerprint = Fingerprint::new("figures calibration")
-        .with("program", &program)
-        .with("population", SEED);
-    Campaign::new(0..records, fingerprint)
-        .results(directory.join(format!("calibration-{program}.jsonl")))
+    resumable::campaign("calibration", "population", 0..records, records == FEW)?
         .run(
             |number| Trial::of(&population.scenario(number), &options),
             |progress| {

@@ -1,9 +1,6 @@
 //! Planned runs, made: what was predicted of sigmas and named sets, beside what they are.
 
-use core::ops::Range;
-
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
-use gyrocal_campaign::{Campaign, Fingerprint};
 use gyrocal_characterise::{Draw, plant_any};
 use gyrocal_diagnosis::plan::{Named, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
@@ -12,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Error;
 use crate::figure::Figure;
+use crate::resumable;
 
 /// Population that the records are drawn from.
 const POPULATION: u64 = 78;
@@ -57,7 +55,8 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         [SIGMA_SEEDS[1], SET_SEEDS[1]]
     };
     let seeds = SIGMA_SEEDS[0]..SIGMA_SEEDS[0] + runs[0];
-    let outcome = campaign("plan-sigmas", seeds.clone(), small).run(sigmas, |_| ())?;
+    let outcome =
+        resumable::campaign("naming", "plan-sigmas", seeds.clone(), small)?.run(sigmas, |_| ())?;
     let ratios: Vec<[f64; 2]> = outcome.successes().map(|(_, case)| case.ratios).collect();
     let least = ratios.iter().map(|r| r[0]).fold(f64::INFINITY, f64::min);
     let most = ratios.iter().map(|r| r[1]).fold(0.0, f64::max);
@@ -74,7 +73,8 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     }
     let failed = outcome.failures().count();
     let seeds = SET_SEEDS[0]..SET_SEEDS[0] + runs[1];
-    let outcome = campaign("plan-sets", seeds.clone(), small).run(sets, |_| ())?;
+    let outcome =
+        resumable::campaign("naming", "plan-sets", seeds.clone(), small)?.run(sets, |_| ())?;
     let cases: Vec<&Sets> = outcome
         .successes()
         .map(|(_, case)| case)
@@ -118,15 +118,6 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         ));
     }
     Ok(figures)
-}
-
-fn campaign(name: &str, seeds: Range<u64>, small: bool) -> Campaign {
-    let campaign = Campaign::new(seeds, Fingerprint::new("naming").with("cell", name));
-    if small {
-        campaign
-    } else {
-        campaign.results(format!("target/{name}.jsonl"))
-    }
 }
 
 fn run(simulation: &Simulation) -> Run<'_> {

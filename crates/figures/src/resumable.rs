@@ -1,0 +1,44 @@
+//! Populations that go on where they were stopped.
+
+use core::ops::Range;
+use std::path::PathBuf;
+
+use gyrocal_campaign::{Campaign, Fingerprint, program};
+
+/// Why a file of results cannot be kept.
+type Error = Box<dyn std::error::Error + Send + Sync>;
+
+/// A campaign over the records of a cell of a topic; the small version keeps nothing. Results are
+/// those of this very program: another build starts afresh.
+pub(crate) fn campaign(
+    topic: &str,
+    cell: &str,
+    seeds: Range<u64>,
+    small: bool,
+) -> Result<Campaign, Error> {
+    let fingerprint = Fingerprint::new(&format!("figures {topic}"))
+        .with("program", program())
+        .with("cell", cell);
+    let campaign = Campaign::new(seeds, fingerprint);
+    if small {
+        return Ok(campaign);
+    }
+    Ok(campaign.results(results(topic, cell)?))
+}
+
+/// Where the results of a cell are kept.
+pub(crate) fn results(topic: &str, cell: &str) -> Result<PathBuf, Error> {
+    let directory = gyrocal_freshness::workspace().join("target/figures");
+    std::fs::create_dir_all(&directory)?;
+    let letters = cell.chars();
+    let cell: String = letters
+        .map(|letter| {
+            if letter.is_alphanumeric() {
+                letter
+            } else {
+                '-'
+            }
+        })
+        .collect();
+    Ok(directory.join(format!("{topic}-{cell}-{}.jsonl", program())))
+}
