@@ -1,5 +1,7 @@
 //! Columns that are no parameters of the model: jumps of the attitude, and shares of a drift.
 
+use std::sync::Arc;
+
 use gyrocal::estimation::batch::Columns;
 
 /// One such column.
@@ -31,12 +33,15 @@ pub enum Column {
         /// Index of the parameter.
         parameter: usize,
         /// One number for each step.
-        steps: Vec<f64>,
+        steps: Arc<[f64]>,
     },
-    /// A change of the readings themselves, of which trajectory and parameters know nothing.
+    /// A change of the readings of one accelerometer, of which trajectory and parameters know
+    /// nothing.
     Readings {
+        /// 0, 1, 2 of x, y, z.
+        axis: usize,
         /// Of each row, g.
-        change_g: Vec<[f64; 3]>,
+        change_g: Arc<[f64]>,
     },
 }
 
@@ -87,9 +92,9 @@ impl Further {
         self.readings
             .iter()
             .map(|place| match &self.columns[*place] {
-                Column::Readings { change_g } => change_g
+                Column::Readings { axis, change_g } if *axis == output => change_g
                     .get(row)
-                    .map_or(0.0, |change_g| self.amplitudes[*place] * change_g[output]),
+                    .map_or(0.0, |change_g| self.amplitudes[*place] * change_g),
                 _ => 0.0,
             })
             .sum()
@@ -144,10 +149,13 @@ impl Columns<3, 3> for Further {
             }
         }
     }
+
     fn output(&self, row: usize, output: usize, direct: &mut [f64]) {
         for place in &self.readings {
-            if let Column::Readings { change_g } = &self.columns[*place] {
-                direct[*place] = change_g.get(row).map_or(0.0, |change_g| change_g[output]);
+            if let Column::Readings { axis, change_g } = &self.columns[*place]
+                && *axis == output
+            {
+                direct[*place] = change_g.get(row).copied().unwrap_or(0.0);
             }
         }
     }

@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod failures;
 
+use std::sync::Arc;
+
 use gyrocal::estimation::batch::{Linearisation, Manifold, Tape};
 use gyrocal::trajectory::{Orientation, turned};
 use gyrocal::{Chart, EstimationError};
@@ -10,9 +12,6 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::problem::Problem;
 use crate::run::Conditions;
-
-/// Rows of a record whose steps are kept between passes, some 700 bytes each.
-const LONGEST_TAPE: usize = 100_000;
 
 /// Steps are halved at most so often when they do not lower the cost.
 const MOST_HALVINGS: usize = 12;
@@ -35,8 +34,8 @@ pub(crate) struct Solution {
     pub(crate) values: usize,
     pub(crate) rows: usize,
     pub(crate) log_variance: f64,
-    /// What the model gave in the last pass over each record, if it was short enough to keep.
-    pub(crate) tapes: Vec<Option<Tape<Orientation, 3>>>,
+    /// What the model gave in the last pass over each record.
+    pub(crate) tapes: Vec<Arc<Tape<3>>>,
     /// Passes that were made.
     pub(crate) iterations: usize,
 }
@@ -62,7 +61,7 @@ struct Point {
     values: usize,
     rows: usize,
     log_variance: f64,
-    tapes: Vec<Option<Tape<Orientation, 3>>>,
+    tapes: Vec<Arc<Tape<3>>>,
 }
 
 /// A step from a point.
@@ -91,6 +90,8 @@ where
             let step = self.step(&point)?;
             iterations += 1;
             let last = step.length < LAST_STEP.max(LAST_SHARE * cost.sqrt());
+            // Long records: the steps of one point at a time.
+            point.tapes.clear();
             let before: Vec<_> = self.legs.iter().map(|leg| leg.points.clone()).collect();
             let values = self.values.clone();
             let mut share = 1.0;
@@ -141,20 +142,14 @@ where
         for (index, leg) in self.legs.iter().enumerate() {
             let parameters = self.parameters(index);
             let (reduced, tape) = self
-                .with_leg(index, &parameters, |pass| {
-                    if leg.points.len() > LONGEST_TAPE {
-                        return pass.reduce(|_| ()).map(|reduced| (reduced, None));
-                    }
-                    pass.reduce_and_keep(|_| ())
-                        .map(|(reduced, tape)| (reduced, Some(tape)))
-                })
+                .with_leg(index, &parameters, |pass| pass.reduce_and_keep(|_| ()))
                 .map_err(|error| Failure::Pass(index, error))?;
             point.trajectory_cost += reduced.trajectory_cost;
             point.values += reduced.values;
             point.rows += reduced.rows;
             point.log_variance += reduced.log_variance;
             add_gram(&mut point.gram, &reduced.gram, &leg.columns());
-            point.tapes.push(tape);
+            point.tapes.push(Arc::new(tape));
         }
         Ok(point)
     }
@@ -192,7 +187,7 @@ where
                     .map(|unknowns| unknowns.iter().map(|unknown| values[*unknown]).sum())
                     .collect();
                 self.with_leg(index, &parameters, |pass| {
-                    let tape = point.tapes[index].as_ref();
+                    let tape = Some(&*point.tapes[index]);
                     Linearisation { tape, ..*pass }.smooth(&change)
                 })
                 .map(|smoothed| smoothed.corrections)

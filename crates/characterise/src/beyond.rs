@@ -125,7 +125,7 @@ pub(crate) fn beyond(
                 .extended
                 .as_ref()
                 .map_or_else(Extension::default, |extended| {
-                    without_lines(extended.extension())
+                    without_unnamed(extended.extension())
                 });
             let length = length(&clean, &simulation, &named)?;
             let off = strength / length;
@@ -207,12 +207,12 @@ fn length(
     Ok(square.sqrt())
 }
 
-/// Lines that the search put into the model are no names: they are what is unexplained.
-fn without_lines(extension: &Extension) -> Extension {
+/// Lines and curves that the search put into the model are no names: they are what is unexplained.
+fn without_unnamed(extension: &Extension) -> Extension {
     let further = &extension.further;
     let mut kept = gyrocal_calibration::Further::default();
     for (column, sigma) in further.columns().iter().zip(further.sigmas()) {
-        if !matches!(column, Column::Course { .. }) {
+        if !matches!(column, Column::Course { .. } | Column::Readings { .. }) {
             kept.extend([column.clone()], *sigma);
         }
     }

@@ -37,7 +37,6 @@ pub(crate) fn judge(
         &simulation.bench,
         &DiagnoseOptions::default(),
     )?;
-    let nominal = fitted(simulation)?;
     let mut columns = Columns::default();
     let truths: Vec<Option<Signature>> = planted
         .iter()
@@ -52,15 +51,29 @@ pub(crate) fn judge(
     } else {
         Vec::new()
     };
-    let bank = Bank::new(&nominal, &columns.further)?;
+    let first_name = found.findings.first().map(|finding| finding.effect);
+    let another = |name| planted.iter().any(|(one, _)| !same(one.effect.id, name));
+    let bank = if !methods.is_empty() || first_name.is_some_and(another) {
+        let declared = found.noise_model == NoiseModel::default();
+        let nominal = if declared {
+            found.nominal.clone()
+        } else {
+            fitted(simulation)?
+        };
+        Some(Bank::new(&nominal, &columns.further)?)
+    } else {
+        None
+    };
     // How near a name is to a hidden effect.
     let cosine = |index: usize, name: &str, signature: Option<&Signature>| {
         let Some((planted, _)) = planted.get(index) else {
             return 0.0;
         };
-        match (&truths[index], signature) {
+        match (&truths[index], signature, &bank) {
             _ if same(name, planted.effect.id) => 1.0,
-            (Some(truth), Some(signature)) => bank.cosine(truth, &planted.sizes, signature),
+            (Some(truth), Some(signature), Some(bank)) => {
+                bank.cosine(truth, &planted.sizes, signature)
+            }
             _ => 0.0,
         }
     };
@@ -83,8 +96,10 @@ pub(crate) fn judge(
         .collect();
     let methods = methods
         .iter()
-        .map(|method| {
-            let (called, chosen) = method.call(&bank, &entries);
+        .zip(core::iter::repeat(&bank))
+        .filter_map(|(method, bank)| Some((method, bank.as_ref()?)))
+        .map(|(method, bank)| {
+            let (called, chosen) = method.call(bank, &entries);
             let first_cosine = chosen.first().map_or(0.0, |entry| {
                 let entry = &entries[*entry];
                 cosine(0, entry.effect.id, Some(&entry.signature))

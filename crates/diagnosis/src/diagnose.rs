@@ -216,18 +216,19 @@ pub fn diagnose<'a>(
     let found = !searched.findings.is_empty();
     let stability = stability(&record.time_s, &remainder.whitened, told).ok();
     let judged = judge(&nominal, &searched, record)?;
-    let gain = if found {
-        let extended = judged.extended.as_ref().unwrap_or(&searched.fitted);
-        let accel_noise_g = bench.accel_noise_g;
-        Some(gain(
-            &nominal,
-            extended,
-            record,
-            &noise_model,
-            accel_noise_g,
-        )?)
-    } else {
-        None
+    let gain = match judged.scores {
+        Some(scores) if found => {
+            let extended = judged.extended.as_ref().unwrap_or(&searched.fitted);
+            let (noise, accel_noise_g) = (&noise_model, bench.accel_noise_g);
+            Some(gain(
+                &nominal,
+                (extended, scores),
+                record,
+                noise,
+                accel_noise_g,
+            )?)
+        }
+        _ => None,
     };
     let verdict = if found || !noise_findings.is_empty() {
         Verdict::EffectsFound

@@ -12,7 +12,7 @@ use gyrocal_record::Record;
 pub use accepted::Acceptance;
 pub(crate) use accepted::judge;
 pub use later::{Compensation, Validation, validate};
-use score::block_log_scores;
+use score::{BLOCKS, block_log_scores};
 
 /// 97.5 % point of the normal distribution.
 const NORMAL_97_5: f64 = 1.959_963_984_540_054;
@@ -74,21 +74,19 @@ impl Gain {
     }
 }
 
-/// Measures what `extended` gains over `nominal` on the record both were fitted to with the same
-/// noise, of which `accel_noise_g` is declared.
+/// Measures what `extended`, with these log scores of the blocks, gains over `nominal` on the record
+/// both were fitted to with the same noise, of which `accel_noise_g` is declared.
 ///
 /// # Errors
 /// As [`Extended::log_evidence_without`].
-pub fn gain(
+pub(crate) fn gain(
     nominal: &Extended<'_>,
-    extended: &Extended<'_>,
+    (extended, scores): (&Extended<'_>, [f64; BLOCKS]),
     record: &Record,
     noise: &NoiseModel,
     accel_noise_g: f64,
 ) -> Result<Gain, CalibrationError> {
-    let scores = block_log_scores(extended)?
-        .into_iter()
-        .zip(block_log_scores(nominal)?);
+    let scores = scores.into_iter().zip(block_log_scores(nominal)?);
     let squares = noise.accel_ratio.iter().map(|ratio| ratio * ratio);
     Ok(Gain {
         block_log_score_nats: scores.map(|(after, before)| after - before).collect(),

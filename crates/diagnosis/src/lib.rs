@@ -44,7 +44,7 @@ mod whiteness;
 pub use dependence::{Bin, Dependence, dependence};
 pub use diagnose::{DiagnoseError, DiagnoseOptions, Diagnosis, Verdict, diagnose, validated};
 pub use error::DiagnosisError;
-pub use gain::{Acceptance, CoefficientShift, Compensation, Gain, Validation, gain, validate};
+pub use gain::{Acceptance, CoefficientShift, Compensation, Gain, Validation, validate};
 pub use noise::{
     AuditOptions, Cleaned, DeclaredNoise, Estimate, Gaps, NoiseAudit, NoiseFinding, Outlier,
     Shares, audit_noise,

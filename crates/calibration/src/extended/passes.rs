@@ -1,6 +1,6 @@
 //! Passes over a record with a fitted model: what signatures, sudden changes and noise would say.
 
-use gyrocal::estimation::batch::{Linearisation, Reduced, Whitened};
+use gyrocal::estimation::batch::{Linearisation, Reduced, Tape, Whitened};
 use gyrocal::{Catalogue, EstimationError};
 use nalgebra::DMatrix;
 
@@ -21,7 +21,7 @@ impl Extended<'_> {
         let mut whitened = vec![[f64::NAN; 3]; self.points().len()];
         self.problem
             .with_leg(0, &parameters, |pass| {
-                let tape = self.solution.tapes[0].as_ref();
+                let tape = Some(&*self.solution.tapes[0]);
                 Linearisation { tape, ..*pass }
                     .reduce(|value| whitened[value.row][value.output] = value.columns[0])
             })
@@ -42,7 +42,7 @@ impl Extended<'_> {
         let mut jumps: Vec<Option<Jump>> = vec![None; self.points().len()];
         self.problem
             .with_leg(0, &parameters, |pass| {
-                let tape = self.solution.tapes[0].as_ref();
+                let tape = Some(&*self.solution.tapes[0]);
                 Linearisation { tape, ..*pass }.jumps(|row, found| {
                     let mut jump = Jump {
                         // Columns are derivatives of the innovations: those of a jump too.
@@ -78,7 +78,7 @@ impl Extended<'_> {
         watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
         let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
-        self.reduced(&all, further, watch)
+        self.reduced(&all, None, further, watch)
     }
 
     /// The same with the parameters of the fit as columns only, in the order of
@@ -91,12 +91,15 @@ impl Extended<'_> {
         let own: Vec<usize> = (0..PARAMETERS)
             .chain(extended.map(|(parameter, _)| *parameter))
             .collect();
-        self.reduced(&own, further, |_| ())
+        // What the columns may follow is active in the fit too.
+        let tape = Some(&*self.solution.tapes[0]);
+        self.reduced(&own, tape, further, |_| ())
     }
 
     fn reduced(
         &self,
         active: &[usize],
+        tape: Option<&Tape<3>>,
         further: &[Column],
         watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
@@ -113,7 +116,9 @@ impl Extended<'_> {
         debug_assert_eq!(own, leg.amplitudes.len());
         let parameters = self.parameters();
         self.problem
-            .with_active(0, &parameters, active, &all, |pass| pass.reduce(watch))
+            .with_active(0, &parameters, active, &all, |pass| {
+                Linearisation { tape, ..*pass }.reduce(watch)
+            })
             .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))
     }
 
@@ -125,7 +130,7 @@ impl Extended<'_> {
         let parameters = self.parameters();
         self.problem
             .with_leg(0, &parameters, |pass| {
-                let tape = self.solution.tapes[0].as_ref();
+                let tape = Some(&*self.solution.tapes[0]);
                 let pass = Linearisation { tape, ..*pass };
                 noise::estimate(|factors| pass.noise_score(factors))
             })

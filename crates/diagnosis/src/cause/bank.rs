@@ -17,61 +17,78 @@ pub(crate) struct Bank {
     pub(crate) raw: DVector<f64>,
 }
 
-impl Bank {
-    /// Of all parameters of the catalogue, then `further` columns. What the model was extended by
-    /// is projected out like the coefficients, but for the values at the places `without`
-    /// (counted like [`Extended::values`]): scores are then those of a model that lacks them.
+/// Sums of products of residual and columns over a record, for a fitted model.
+#[derive(Clone, Debug)]
+pub(crate) struct Products {
+    gram: DMatrix<f64>,
+    /// Columns of the model's own values; column 0 is the residual.
+    nuisance: Vec<usize>,
+    /// Columns of the signatures.
+    signatures: Vec<usize>,
+    values: Vec<f64>,
+    prior_sigma: Vec<f64>,
+}
+
+impl Products {
+    /// One pass with all parameters of the catalogue, then `further` columns, as signatures.
     pub(crate) fn new(
         fitted: &Extended<'_>,
         further: &[Column],
-        without: &[usize],
     ) -> Result<Self, CalibrationError> {
-        let reduced = fitted.signatures(further, |_| ())?;
+        let gram = fitted.signatures(further, |_| ())?.gram;
         let parameters = gyrocal::Catalogue::PARAMETERS;
         let extension = fitted.extension();
-        let own = extension.further.columns().len();
-        // Columns in the Gram matrix: residual, catalogue, the extension's own, then further.
-        let mut nuisance: Vec<usize> = (0..crate::COEFFICIENTS).collect();
-        nuisance.extend(extension.parameters.iter().map(|(parameter, _)| *parameter));
-        nuisance.extend(parameters..parameters + own);
-        let place = |column: usize| {
-            if column < parameters {
-                column + 1
-            } else {
-                column + own + 1
-            }
-        };
-        let columns = parameters + further.len();
-        Self::projected(fitted, &reduced.gram, &nuisance, columns, place, without)
+        // In the Gram matrix: residual, catalogue, the extension's own columns, then further.
+        let further = parameters + extension.further.columns().len();
+        let nuisance = (0..crate::COEFFICIENTS)
+            .chain(extension.parameters.iter().map(|(parameter, _)| *parameter))
+            .chain(parameters..further)
+            .map(|column| column + 1)
+            .collect();
+        let signatures = (1..=parameters).chain(further + 1..gram.nrows()).collect();
+        Ok(Self::of(fitted, gram, nuisance, signatures))
     }
 
-    /// Of `further` columns only, beside what the model has.
+    /// One pass with `further` columns only, beside what the model has.
     pub(crate) fn beside(
         fitted: &Extended<'_>,
         further: &[Column],
     ) -> Result<Self, CalibrationError> {
-        let reduced = fitted.beside(further)?;
+        let gram = fitted.beside(further)?.gram;
         let own = fitted.values().len();
-        let nuisance: Vec<usize> = (0..own).collect();
-        let place = |column: usize| column + own + 1;
-        Self::projected(fitted, &reduced.gram, &nuisance, further.len(), place, &[])
+        let (nuisance, signatures) = ((1..=own).collect(), (own + 1..gram.nrows()).collect());
+        Ok(Self::of(fitted, gram, nuisance, signatures))
     }
 
-    /// From sums of products: residual and columns; `nuisance` are the columns of the model's own
-    /// values, `place` those of the signatures, which begin after the residual.
-    fn projected(
+    fn of(
         fitted: &Extended<'_>,
-        gram: &DMatrix<f64>,
-        nuisance: &[usize],
-        columns: usize,
-        place: impl Fn(usize) -> usize,
-        without: &[usize],
-    ) -> Result<Self, CalibrationError> {
-        let values = fitted.values();
-        let prior_sigma = fitted.prior_sigma();
+        gram: DMatrix<f64>,
+        nuisance: Vec<usize>,
+        signatures: Vec<usize>,
+    ) -> Self {
+        Self {
+            gram,
+            nuisance,
+            signatures,
+            values: fitted.values().to_vec(),
+            prior_sigma: fitted.prior_sigma(),
+        }
+    }
+
+    /// With what the fit takes up of each signature projected out, but for the values at the places
+    /// `without` (counted like [`Extended::values`]): scores are then those of a model that lacks
+    /// them.
+    pub(crate) fn bank(&self, without: &[usize]) -> Result<Bank, CalibrationError> {
+        let Self {
+            gram,
+            nuisance,
+            signatures,
+            values,
+            prior_sigma,
+        } = self;
         let dropped: Vec<(usize, f64)> = without
             .iter()
-            .map(|index| (nuisance[*index] + 1, values[*index]))
+            .map(|index| (nuisance[*index], values[*index]))
             .collect();
         // Score of a column of the Gram matrix, in the model without what was dropped. Columns
         // are derivatives of the innovations, hence the sign.
@@ -89,9 +106,9 @@ impl Bank {
             }
             let weight = prior_sigma[index].powi(-2);
             // Priors have mean zero.
-            gradient.push(score_of(column + 1) - weight * values[index]);
+            gradient.push(score_of(*column) - weight * values[index]);
             precision.push(weight);
-            kept.push(column + 1);
+            kept.push(*column);
         }
         let nuisance = kept;
         let count = nuisance.len();
@@ -100,23 +117,44 @@ impl Bank {
             inner[(i, i)] += precision;
         }
         let cholesky = Cholesky::new(inner).ok_or(CalibrationError::NotPositiveDefinite)?;
-        let cross = DMatrix::from_fn(count, columns, |i, j| gram[(nuisance[i], place(j))]);
+        let columns = signatures.len();
+        let cross = DMatrix::from_fn(count, columns, |i, j| gram[(nuisance[i], signatures[j])]);
         // L⁻¹ of the cross terms: what is projected out is its own product.
         let mut taken = cross;
         let lower = cholesky.l();
         lower.solve_lower_triangular_mut(&mut taken);
         let mut gradient = DVector::from_vec(gradient);
         lower.solve_lower_triangular_mut(&mut gradient);
-        let mut information = DMatrix::from_fn(columns, columns, |i, j| gram[(place(i), place(j))]);
+        let mut information = DMatrix::from_fn(columns, columns, |i, j| {
+            gram[(signatures[i], signatures[j])]
+        });
         let raw = information.diagonal();
         information.gemm_tr(-1.0, &taken, &taken, 1.0);
-        let mut score = DVector::from_fn(columns, |j, _| score_of(place(j)));
+        let mut score = DVector::from_fn(columns, |j, _| score_of(signatures[j]));
         score.gemv_tr(-1.0, &taken, &gradient, 1.0);
-        Ok(Self {
+        Ok(Bank {
             score,
             information,
             raw,
         })
+    }
+}
+
+impl Bank {
+    /// Of all parameters of the catalogue, then `further` columns.
+    pub(crate) fn new(
+        fitted: &Extended<'_>,
+        further: &[Column],
+    ) -> Result<Self, CalibrationError> {
+        Products::new(fitted, further)?.bank(&[])
+    }
+
+    /// Of `further` columns only.
+    pub(crate) fn beside(
+        fitted: &Extended<'_>,
+        further: &[Column],
+    ) -> Result<Self, CalibrationError> {
+        Products::beside(fitted, further)?.bank(&[])
     }
 
     /// Whether the fit leaves enough of a column to be seen.

@@ -28,7 +28,7 @@ pub fn information(
     let Some((further, columns)) = columns(row, record, shape) else {
         return Ok(None);
     };
-    let bank = Bank::new(fitted, &further, &[])?;
+    let bank = Bank::new(fitted, &further)?;
     if columns.is_empty() || !columns.iter().all(|column| bank.visible(*column)) {
         return Ok(None);
     }

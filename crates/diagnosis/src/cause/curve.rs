@@ -1,6 +1,8 @@
 //! Drifts and readings that depend on specific force as no polynomial of the catalogue does: dead
 //! zones, friction, hysteresis about zero. Tried as piecewise linear functions of each component.
 
+use std::sync::Arc;
+
 use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended};
 use gyrocal_record::Record;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -110,50 +112,36 @@ fn spanned(
     ))
 }
 
-/// A weighted sum of columns of one kind, and its mean square.
+/// A weighted sum of columns of one channel, and its mean square.
 fn combination(columns: &[Column], weights: &DVector<f64>) -> Option<(Column, f64)> {
-    let mut sum: Option<Column> = None;
+    let values = |column: &Column| -> Option<Arc<[f64]>> {
+        match column {
+            Column::Course { steps, .. } => Some(Arc::clone(steps)),
+            Column::Readings { change_g, .. } => Some(Arc::clone(change_g)),
+            _ => None,
+        }
+    };
+    let first = columns.first()?;
+    let mut sum = vec![0.0; values(first)?.len()];
     for (column, weight) in columns.iter().zip(weights.iter()) {
-        match (&mut sum, column) {
-            (None, Column::Course { parameter, steps }) => {
-                sum = Some(Column::Course {
-                    parameter: *parameter,
-                    steps: steps.iter().map(|share| weight * share).collect(),
-                });
-            }
-            (None, Column::Readings { change_g }) => {
-                sum = Some(Column::Readings {
-                    change_g: change_g
-                        .iter()
-                        .map(|row| row.map(|change| weight * change))
-                        .collect(),
-                });
-            }
-            (Some(Column::Course { steps: sum, .. }), Column::Course { steps, .. }) => {
-                for (sum, share) in sum.iter_mut().zip(steps) {
-                    *sum += weight * share;
-                }
-            }
-            (Some(Column::Readings { change_g: sum }), Column::Readings { change_g }) => {
-                let values = change_g.as_flattened().iter();
-                for (sum, change) in sum.as_flattened_mut().iter_mut().zip(values) {
-                    *sum += weight * change;
-                }
-            }
-            _ => return None,
+        for (sum, value) in sum.iter_mut().zip(values(column)?.iter()) {
+            *sum += weight * value;
         }
     }
-    let mean_square = match sum.as_ref()? {
-        Column::Course { steps, .. } => {
-            steps.iter().map(|share| share * share).sum::<f64>() / steps.len() as f64
-        }
-        Column::Readings { change_g } => {
-            let squares = change_g.as_flattened().iter().map(|change| change * change);
-            squares.sum::<f64>() / change_g.len() as f64
-        }
+    let mean_square = sum.iter().map(|value| value * value).sum::<f64>() / sum.len() as f64;
+    let sum = sum.into();
+    let column = match *first {
+        Column::Course { parameter, .. } => Column::Course {
+            parameter,
+            steps: sum,
+        },
+        Column::Readings { axis, .. } => Column::Readings {
+            axis,
+            change_g: sum,
+        },
         _ => return None,
     };
-    Some((sum?, mean_square))
+    Some((column, mean_square))
 }
 
 /// Hat functions of a component, in the middle of each step or at each row.
@@ -184,14 +172,8 @@ fn knots(
                 .collect(),
         },
         Channel::Readings(output) => Column::Readings {
-            change_g: force_g
-                .iter()
-                .map(|row| {
-                    let mut change_g = [0.0; 3];
-                    change_g[output] = hat(knot, row[axis]);
-                    change_g
-                })
-                .collect(),
+            axis: output,
+            change_g: force_g.iter().map(|row| hat(knot, row[axis])).collect(),
         },
     };
     Some((0..KNOTS).map(column).collect())

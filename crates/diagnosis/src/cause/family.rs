@@ -1,5 +1,7 @@
 //! Families of signatures: which columns stand for which effect.
 
+use std::sync::Arc;
+
 use gyrocal::EffectRow;
 use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, SHAPES};
 use gyrocal_calibration::{BIASES, Column, Extension};
@@ -338,10 +340,10 @@ pub(super) fn with_shape(
     if id.ends_with(".warmup") {
         let of = |time_constant_h: f64| match warm_up(record, parameter, time_constant_h) {
             Column::Course { steps, .. } => steps,
-            _ => Vec::new(),
+            _ => Arc::default(),
         };
         let (before, after) = (of((1.0 - NEAR) * shape), of((1.0 + NEAR) * shape));
-        let slopes = before.iter().zip(&after);
+        let slopes = before.iter().zip(after.iter());
         let steps = slopes
             .map(|(before, after)| size * (after - before) / (2.0 * NEAR * shape))
             .collect();

@@ -4,11 +4,10 @@ use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS};
 use gyrocal_calibration::{CalibrationError, Column, Extended};
 use gyrocal_record::Record;
 
-use super::bank::{Bank, Joint};
+use super::bank::{Bank, Joint, Products};
 use super::family::{Candidate, Family, Plan, axis_of, equivalent_to, jump, parameter, with_shape};
-use super::null::Null;
+use super::null::{Normals, Null};
 use super::score::Scores;
-use super::search::SearchOptions;
 
 /// Rivals within this difference of penalised statistics belong to the named set: twice a
 /// log-likelihood ratio. Over simulated records with causes five standard deviations large the
@@ -66,37 +65,92 @@ pub(super) struct Accepted {
     pub(super) searched: f64,
 }
 
+/// A model with accepted effects at its best fit, and what its signatures say.
+pub(super) struct Stage<'a> {
+    pub(super) fitted: Extended<'a>,
+    /// With all that is in the model projected out.
+    pub(super) bank: Bank,
+    products: Products,
+    /// Of each accepted effect.
+    own: Vec<Own>,
+}
+
+/// Where an effect of the model is.
+struct Own {
+    /// Its values among those of the fit.
+    places: Vec<usize>,
+    /// Columns of a turn in the step of a knock.
+    turn: Option<[usize; 3]>,
+    /// Columns of size and onset or time constant.
+    shaped: Option<[usize; 2]>,
+}
+
+impl<'a> Stage<'a> {
+    /// Of a model that was fitted with `accepted`.
+    pub(super) fn new(
+        fitted: Extended<'a>,
+        plan: &Plan,
+        record: &Record,
+        accepted: &[Accepted],
+    ) -> Result<Self, CalibrationError> {
+        let mut further = plan.further.clone();
+        let own = accepted
+            .iter()
+            .map(|accepted| {
+                let family = &plan.families[accepted.family];
+                let places = places(&fitted, plan, family);
+                let mut own = Own {
+                    places,
+                    turn: None,
+                    shaped: None,
+                };
+                let first = PARAMETERS.len() + further.len();
+                if let (true, Some(onset_s)) = (family.knock, accepted.shape) {
+                    further.extend(jump(record, onset_s));
+                    own.turn = Some([first, first + 1, first + 2]);
+                }
+                if let ([place], Some(shape), Some(gyro)) =
+                    (own.places.as_slice(), accepted.shape, axis_of(family.id()))
+                {
+                    let size = fitted.values()[*place];
+                    if let Some(columns) = with_shape(record, family.id(), gyro, shape, size) {
+                        further.extend(columns);
+                        own.shaped = Some([first, first + 1]);
+                    }
+                }
+                own
+            })
+            .collect();
+        let products = Products::new(&fitted, &further)?;
+        Ok(Self {
+            bank: products.bank(&[])?,
+            fitted,
+            products,
+            own,
+        })
+    }
+}
+
 /// What is to be said of one accepted effect, the others being in the model, and its statistic as
 /// the test takes it.
 pub(super) fn finding(
-    fitted: &Extended<'_>,
+    stage: &Stage<'_>,
     plan: &Plan,
     record: &Record,
     accepted: &[Accepted],
     index: usize,
-    options: &SearchOptions,
+    normals: &mut Normals,
 ) -> Result<(Finding, f64), CalibrationError> {
+    let fitted = &stage.fitted;
     let own = &accepted[index];
     let family = &plan.families[own.family];
-    let places = places(fitted, plan, family);
-    let mut further = plan.further.clone();
-    if let (true, Some(onset_s)) = (family.knock, own.shape) {
-        further.extend(jump(record, onset_s));
-    }
+    let Own {
+        places,
+        turn,
+        shaped,
+    } = &stage.own[index];
+    let bank = stage.products.bank(places)?;
     // How uncertain the size is with the onset or time constant.
-    let shaped = match (places.as_slice(), own.shape, axis_of(family.id())) {
-        ([place], Some(shape), Some(gyro)) => {
-            let size = fitted.values()[*place];
-            with_shape(record, family.id(), gyro, shape, size)
-        }
-        _ => None,
-    };
-    let shaped = shaped.map(|columns| {
-        let first = PARAMETERS.len() + further.len();
-        further.extend(columns);
-        [first, first + 1]
-    });
-    let bank = Bank::new(fitted, &further, &places)?;
     let shaped = shaped.and_then(|columns| bank.joint(&columns));
     let others: Vec<usize> = accepted
         .iter()
@@ -112,14 +166,13 @@ pub(super) fn finding(
             content.unless(others.contains(&family) || equivalent_to(plan, family, &others))
         })
         .collect();
-    if family.knock {
-        let first = PARAMETERS.len() + plan.further.len();
+    if let Some(turn) = turn {
         families[own.family].candidates = vec![Candidate {
-            columns: (first..first + 3).collect(),
+            columns: turn.to_vec(),
             shape: None,
         }];
     }
-    let null = Null::draw(&bank, &families, options.seed);
+    let null = Null::draw(&bank, &families, normals);
     let scores = Scores::of(&bank, &families, &null, None);
     // What searching in every step reaches is in the place of what three directions do.
     let (best, tested) = if family.knock {
@@ -171,7 +224,7 @@ pub(super) fn finding(
                 sigma: None,
                 unit: "deg/h/sqrt(h)",
             }],
-            _ => estimates(fitted, family, &places, own.shape, shaped.as_ref()),
+            _ => estimates(fitted, family, places, own.shape, shaped.as_ref()),
         },
         z: statistic.max(0.0).sqrt(),
         p_value: own.p_value,

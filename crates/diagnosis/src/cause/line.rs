@@ -150,14 +150,11 @@ fn pair(record: &Record, channel: Channel, period_h: f64) -> [Column; 2] {
                 steps: steps(record, wave),
             },
             Channel::Readings(axis) => Column::Readings {
+                axis,
                 change_g: record
                     .time_s
                     .iter()
-                    .map(|time_s| {
-                        let mut change_g = [0.0; 3];
-                        change_g[axis] = wave(time_s - first_s);
-                        change_g
-                    })
+                    .map(|time_s| wave(time_s - first_s))
                     .collect(),
             },
         }

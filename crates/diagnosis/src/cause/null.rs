@@ -1,6 +1,6 @@
 //! What the statistics reach if the model is right: drawn from their joint distribution.
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::{Cholesky, DMatrix, DMatrixView};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -28,6 +28,9 @@ const EQUAL_SINGLE: f64 = 6.634_896_601_021_214;
 /// probability of a false alarm does not depend on it.
 const PAID: f64 = 0.6;
 
+/// Signatures whose scores are drawn in one product: the triangle's empty half costs little then.
+const PANEL: usize = 32;
+
 /// Null distributions of all families.
 #[derive(Clone, Debug)]
 pub(crate) struct Null {
@@ -40,8 +43,54 @@ pub(crate) struct Null {
     maxima: Vec<f64>,
 }
 
+/// Normal deviates that all draws of one search share: a row of [`DRAWS`] for each signature.
+pub(crate) struct Normals {
+    generator: ChaCha8Rng,
+    values: Vec<f64>,
+}
+
+impl Normals {
+    pub(crate) fn new(seed: u64) -> Self {
+        let mut normals = Self {
+            generator: ChaCha8Rng::seed_from_u64(seed),
+            values: Vec::new(),
+        };
+        normals.grow(1);
+        normals
+    }
+
+    fn grow(&mut self, signatures: usize) {
+        while self.values.len() < signatures * DRAWS {
+            self.values.push(normal(&mut self.generator));
+        }
+    }
+
+    /// Of a knock, which is drawn by itself.
+    fn knock(&self) -> &[f64] {
+        &self.values[..DRAWS]
+    }
+
+    /// Scores of signatures with a correlation of this lower triangular factor: a column each.
+    fn scores(&mut self, lower: &DMatrix<f64>) -> DMatrix<f64> {
+        let count = lower.nrows();
+        self.grow(count + 1);
+        let normals =
+            DMatrixView::from_slice(&self.values[DRAWS..(count + 1) * DRAWS], DRAWS, count);
+        let mut scores = DMatrix::zeros(DRAWS, count);
+        for first in (0..count).step_by(PANEL) {
+            let size = PANEL.min(count - first);
+            // Above the diagonal there is nothing.
+            let known = first + size;
+            let factor = lower.view((first, 0), (size, known)).transpose();
+            let mut panel = scores.columns_mut(first, size);
+            panel.gemm(1.0, &normals.columns(0, known), &factor, 0.0);
+        }
+        scores
+    }
+}
+
 impl Null {
-    pub(crate) fn draw(bank: &Bank, families: &[Family], seed: u64) -> Self {
+    pub(crate) fn draw(bank: &Bank, families: &[Family], normals: &mut Normals) -> Self {
         let mut columns: Vec<usize> = families
             .iter()
             .flat_map(|family| {
@@ -71,32 +120,25 @@ impl Null {
                 maxima: vec![f64::INFINITY],
             };
         };
-        let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        let normals = DMatrix::from_fn(count, DRAWS, |_, _| normal(&mut generator));
-        let scores = cholesky.l() * normals;
-        let place = |column: usize| columns.binary_search(&column).ok();
-        // For each candidate, what turns its scores into its statistic.
-        let mut reached = DMatrix::from_element(families.len(), DRAWS, f64::NEG_INFINITY);
-        for (index, family) in families.iter().enumerate() {
+        let scores = normals.scores(&cholesky.l());
+        let place = |column: &usize| columns.binary_search(column).ok();
+        let mut penalties = vec![0.0; families.len()];
+        let mut maxima = vec![f64::NEG_INFINITY; DRAWS];
+        let mut statistic = vec![0.0; DRAWS];
+        for (family, penalty) in families.iter().zip(&mut penalties) {
+            let mut reached = vec![f64::NEG_INFINITY; DRAWS];
             if let Some(steps) = &family.walk {
-                let places: Option<Vec<usize>> =
-                    steps.iter().map(|column| place(*column)).collect();
+                let places: Option<Vec<usize>> = steps.iter().map(place).collect();
                 let Some(places) = places else { continue };
                 let walk = Walk::new(bank.part(steps).0);
-                let own = DMatrix::from_fn(places.len(), DRAWS, |i, draw| {
-                    scores[(places[i], draw)] / scale[places[i]]
-                });
-                for (draw, statistic) in walk.best_of_each(&own).into_iter().enumerate() {
-                    reached[(index, draw)] = statistic;
+                let mut own = scores.select_columns(&places);
+                for (mut column, place) in own.column_iter_mut().zip(&places) {
+                    column /= scale[*place];
                 }
-                continue;
+                reached = walk.best_of_each(&own);
             }
             for candidate in &family.candidates {
-                let places: Option<Vec<usize>> = candidate
-                    .columns
-                    .iter()
-                    .map(|column| place(*column))
-                    .collect();
+                let places: Option<Vec<usize>> = candidate.columns.iter().map(place).collect();
                 let Some(places) = places else { continue };
                 let size = places.len();
                 let own = DMatrix::from_fn(size, size, |i, j| correlation[(places[i], places[j])]);
@@ -104,61 +146,43 @@ impl Null {
                     continue;
                 };
                 let inverse = own.inverse();
-                for draw in 0..DRAWS {
-                    let mut statistic = 0.0;
-                    for i in 0..size {
-                        for j in 0..size {
-                            statistic += inverse[(i, j)]
-                                * scores[(places[i], draw)]
-                                * scores[(places[j], draw)];
+                statistic.fill(0.0);
+                for (i, one) in places.iter().enumerate() {
+                    for (j, other) in places.iter().enumerate() {
+                        let (one, other) = (scores.column(*one), scores.column(*other));
+                        for ((sum, one), other) in statistic.iter_mut().zip(&one).zip(&other) {
+                            *sum += inverse[(i, j)] * one * other;
                         }
                     }
-                    let best = &mut reached[(index, draw)];
-                    *best = best.max(statistic);
+                }
+                for (best, statistic) in reached.iter_mut().zip(&statistic) {
+                    *best = best.max(*statistic);
                 }
             }
-        }
-        let mut penalties = Vec::with_capacity(families.len());
-        for index in 0..families.len() {
-            let mut row: Vec<f64> = reached.row(index).iter().copied().collect();
-            row.retain(|statistic| statistic.is_finite());
-            row.sort_unstable_by(f64::total_cmp);
-            let at = ((row.len() as f64) * EQUAL_LEVEL) as usize;
-            let quantile = row.get(at).copied().unwrap_or(f64::NEG_INFINITY);
-            penalties.push(if quantile.is_finite() {
-                quantile - EQUAL_SINGLE
-            } else {
-                0.0
-            });
-        }
-        // One signature needs no draws to know its distribution.
-        for (penalty, family) in penalties.iter_mut().zip(families) {
-            if let ([only], None) = (family.candidates.as_slice(), &family.walk)
-                && only.columns.len() == 1
-            {
-                *penalty = 0.0;
+            // One signature needs no draws to know its distribution.
+            let single = matches!(family.candidates.as_slice(), [only] if only.columns.len() == 1);
+            if !single {
+                let mut sorted = reached.clone();
+                let at = (DRAWS as f64 * EQUAL_LEVEL) as usize;
+                let (_, quantile, _) = sorted.select_nth_unstable_by(at, f64::total_cmp);
+                if quantile.is_finite() {
+                    *penalty = *quantile - EQUAL_SINGLE;
+                }
+            }
+            for (maximum, reached) in maxima.iter_mut().zip(&reached) {
+                *maximum = maximum.max(reached - PAID * *penalty);
             }
         }
-        let paid: Vec<f64> = penalties.iter().map(|penalty| PAID * penalty).collect();
-        let mut maxima: Vec<f64> = (0..DRAWS)
-            .map(|draw| {
-                (0..families.len())
-                    .map(|index| reached[(index, draw)] - paid[index])
-                    .fold(f64::NEG_INFINITY, f64::max)
-            })
-            // A knock comes with its own probability, as one more signature.
-            .map(|maximum: f64| {
-                if families.iter().any(|family| family.knock) {
-                    maximum.max(normal(&mut generator).powi(2))
-                } else {
-                    maximum
-                }
-            })
-            .collect();
+        // A knock comes with its own probability, as one more signature.
+        if families.iter().any(|family| family.knock) {
+            for (maximum, normal) in maxima.iter_mut().zip(normals.knock()) {
+                *maximum = maximum.max(normal * normal);
+            }
+        }
         maxima.sort_unstable_by(f64::total_cmp);
         Self {
+            paid: penalties.iter().map(|penalty| PAID * penalty).collect(),
             penalties,
-            paid,
             maxima,
         }
     }

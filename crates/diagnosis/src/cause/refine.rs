@@ -62,10 +62,10 @@ pub(super) fn refined(
             _ => return Ok(Some(shape)),
         }
     }
-    let bank = Bank::new(fitted, &columns, &[])?;
+    let bank = Bank::beside(fitted, &columns)?;
     let finest = (0..columns.len())
         .filter_map(|index| {
-            let joint = bank.joint(&[PARAMETERS.len() + index])?;
+            let joint = bank.joint(&[index])?;
             Some((shapes[index], joint.statistic))
         })
         .max_by(|a, b| a.1.total_cmp(&b.1));

@@ -3,11 +3,10 @@
 use gyrocal_calibration::{CalibrationError, Extended, Extension};
 use gyrocal_record::{Bench, Record};
 
-use super::bank::Bank;
 use super::family::{Family, Plan, Unavailable, equivalent_to, extend};
-use super::finding::{Accepted, Finding, finding};
+use super::finding::{Accepted, Finding, Stage, finding};
 use super::knock;
-use super::null::Null;
+use super::null::{Normals, Null};
 use super::refine::refined;
 use super::score::{RICHER, Ranked, Scores};
 use super::unnamed::{self, Unnamed};
@@ -86,14 +85,15 @@ pub fn search<'a>(
     let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
     let plan = Plan::new(record, bench, &also);
     let base = nominal.extension().clone();
-    let mut fitted = nominal;
+    let mut normals = Normals::new(options.seed);
+    let mut stage = Stage::new(nominal, &plan, record, &[])?;
     let mut accepted: Vec<Accepted> = Vec::new();
     let mut inseparable: Vec<usize> = Vec::new();
     let mut unnamed: Vec<Unnamed> = Vec::new();
     let mut seeking = true;
     let mut first: Option<(Vec<Ranked>, f64)> = None;
     loop {
-        let bank = Bank::new(&fitted, &plan.further, &[])?;
+        let Stage { fitted, bank, .. } = &stage;
         let taken: Vec<usize> = accepted
             .iter()
             .map(|accepted| accepted.family)
@@ -107,9 +107,9 @@ pub fn search<'a>(
                 family.unless(taken.contains(&index) || equivalent_to(&plan, index, &taken))
             })
             .collect();
-        let null = Null::draw(&bank, &families, options.seed);
+        let null = Null::draw(bank, &families, &mut normals);
         let jumps = fitted.jumps()?;
-        let scores = Scores::of(&bank, &families, &null, knock::best(&jumps, record));
+        let scores = Scores::of(bank, &families, &null, knock::best(&jumps, record));
         let threshold = null.threshold(options.false_alarm_probability);
         first.get_or_insert_with(|| (scores.ranking(&families), threshold));
         let best = scores
@@ -126,12 +126,15 @@ pub fn search<'a>(
         let curves = best.is_none_or(|best| families[best.family].walk.is_some());
         if seeking
             && unnamed.len() < MOST_EFFECTS
-            && let Some(other) = unnamed::strongest(&fitted, record, &jumps, curves, stands)?
+            && let Some(other) = unnamed::strongest(fitted, record, &jumps, curves, stands)?
         {
             unnamed.push(other);
-            match fitted.refitted(&extension(&base, &plan, record, &accepted, &unnamed)) {
-                Ok(refitted) => {
-                    fitted = refitted;
+            match fitted
+                .refitted(&extension(&base, &plan, record, &accepted, &unnamed))
+                .and_then(|fitted| Stage::new(fitted, &plan, record, &accepted))
+            {
+                Ok(next) => {
+                    stage = next;
                     continue;
                 }
                 // What cannot be fitted beside the others is left to the tests of what remains.
@@ -144,18 +147,18 @@ pub fn search<'a>(
         let Some(best) = best else {
             break;
         };
-        let shape = refined(&fitted, record, &plan, &best)?;
+        let shape = refined(fitted, record, &plan, &best)?;
         accepted.push(Accepted {
             family: best.family,
             shape,
             p_value: null.probability(scores.largest()),
             searched: best.searched,
         });
-        let refitted = fitted
+        match fitted
             .refitted(&extension(&base, &plan, record, &accepted, &unnamed))
-            .and_then(|refitted| Bank::new(&refitted, &[], &[]).map(|_| refitted));
-        match refitted {
-            Ok(refitted) => fitted = refitted,
+            .and_then(|fitted| Stage::new(fitted, &plan, record, &accepted))
+        {
+            Ok(next) => stage = next,
             // What cannot be fitted beside the others cannot be told from them.
             Err(_) => {
                 accepted.pop();
@@ -169,7 +172,7 @@ pub fn search<'a>(
         let mut findings = Vec::with_capacity(accepted.len());
         let mut weakest: Option<(usize, f64)> = None;
         for index in 0..accepted.len() {
-            let (found, strength) = finding(&fitted, &plan, record, &accepted, index, options)?;
+            let (found, strength) = finding(&stage, &plan, record, &accepted, index, &mut normals)?;
             findings.push(found);
             if weakest.is_none_or(|(_, least)| strength < least) {
                 weakest = Some((index, strength));
@@ -180,13 +183,14 @@ pub fn search<'a>(
                 if strength <= threshold && accepted.len() + unnamed.len() > 1 =>
             {
                 accepted.remove(index);
-                fitted = fitted.refitted(&extension(&base, &plan, record, &accepted, &unnamed))?;
+                let fewer = extension(&base, &plan, record, &accepted, &unnamed);
+                stage = Stage::new(stage.fitted.refitted(&fewer)?, &plan, record, &accepted)?;
             }
             _ => break findings,
         }
     };
     Ok(Searched {
-        fitted,
+        fitted: stage.fitted,
         findings,
         unnamed,
         ranking,

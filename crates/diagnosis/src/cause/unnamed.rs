@@ -1,5 +1,7 @@
 //! What a record shows and the catalogue has no name for: lines, and curves over specific force.
 
+use std::sync::Arc;
+
 use gyrocal_calibration::{CalibrationError, Column, Extended, Jump};
 use gyrocal_record::Record;
 
@@ -147,7 +149,7 @@ pub(super) fn strongest(
 }
 
 /// Numbers for each step that follow a course of time.
-pub(super) fn steps(record: &Record, of: impl Fn(f64) -> f64) -> Vec<f64> {
+pub(super) fn steps(record: &Record, of: impl Fn(f64) -> f64) -> Arc<[f64]> {
     let first_s = record.time_s.first().copied().unwrap_or(0.0);
     let middles = record.time_s.windows(2);
     middles

@@ -65,18 +65,16 @@ impl Walk {
             })
     }
 
-    /// What the best variance gains over none, of scores in columns.
+    /// What the best variance gains over none, of scores in rows.
     pub(crate) fn best_of_each(&self, scores: &DMatrix<f64>) -> Vec<f64> {
-        let squares = self.vectors.tr_mul(scores).map(|along| along * along);
-        let gained = &self.gains * squares;
-        gained
-            .column_iter()
-            .map(|column| {
-                column
-                    .iter()
-                    .zip(self.costs.iter())
-                    .fold(0.0, |best: f64, (gain, cost)| best.max(gain - cost))
-            })
-            .collect()
+        let squares = (scores * &self.vectors).map(|along| along * along);
+        let gained = squares * self.gains.transpose();
+        let mut best = vec![0.0; scores.nrows()];
+        for (gained, cost) in gained.column_iter().zip(self.costs.iter()) {
+            for (best, gain) in best.iter_mut().zip(&gained) {
+                *best = f64::max(*best, gain - cost);
+            }
+        }
+        best
     }
 }

@@ -4,7 +4,7 @@
 use gyrocal_calibration::{CalibrationError, Extended};
 use gyrocal_record::Record;
 
-use super::score::block_log_scores;
+use super::score::{BLOCKS, block_log_scores};
 use crate::cause::Searched;
 
 /// What cross-validation says of a cause.
@@ -21,6 +21,8 @@ pub struct Acceptance {
 pub(crate) struct Judged<'a> {
     /// The extended model; `None` if no cause gains.
     pub(crate) extended: Option<Extended<'a>>,
+    /// Log scores of the blocks with the extended model, or, if no cause gains, with all causes.
+    pub(crate) scores: Option<[f64; BLOCKS]>,
     /// In the order of the findings.
     pub(crate) acceptances: Vec<Acceptance>,
 }
@@ -41,21 +43,33 @@ pub(crate) fn judge<'a>(
             .fitted
             .refitted(&searched.extension_with(record, kept))
     };
+    let mut told: Vec<(Vec<bool>, [f64; BLOCKS])> = Vec::new();
     let acceptances = sieve(count, |kept| {
-        // What cannot be fitted without a cause is held against the nominal model.
-        let scores = match fit(kept) {
-            Ok(fit) => block_log_scores(&fit)?,
-            Err(_) => block_log_scores(nominal)?,
+        let known = told.iter().find(|(other, _)| other == kept);
+        let scores = match known {
+            Some((_, scores)) => *scores,
+            // What cannot be fitted without a cause is held against the nominal model.
+            None => match fit(kept) {
+                Ok(fit) => block_log_scores(&fit)?,
+                Err(_) => block_log_scores(nominal)?,
+            },
         };
+        if known.is_none() {
+            told.push((kept.to_vec(), scores));
+        }
         Ok::<f64, CalibrationError>(scores.iter().sum())
     })?;
-    let kept: Vec<bool> = acceptances.iter().map(|a| a.accepted).collect();
+    let mut kept: Vec<bool> = acceptances.iter().map(|a| a.accepted).collect();
+    let extended = if kept.contains(&true) {
+        Some(fit(&kept)?)
+    } else {
+        kept.fill(true);
+        None
+    };
+    let told = told.into_iter().find(|(other, _)| *other == kept);
     Ok(Judged {
-        extended: if kept.contains(&true) {
-            Some(fit(&kept)?)
-        } else {
-            None
-        },
+        extended,
+        scores: told.map(|(_, scores)| scores),
         acceptances,
     })
 }

@@ -90,13 +90,21 @@ pub(crate) fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
     }
     let first = PARAMETERS.len() + further.len();
     for probe in &probes {
-        further.push(Column::Readings {
-            change_g: change_g(&quiet, probe)?,
-        });
+        let change_g = change_g(&quiet, probe)?;
+        further.extend([0, 1, 2].map(|axis| Column::Readings {
+            axis,
+            change_g: change_g.iter().map(|row| row[axis]).collect(),
+        }));
     }
     let reduced = fitted.signatures(&further, |_| ())?;
     // Column 0 is the residual.
     let gram = reduced.gram.remove_row(0).remove_column(0);
+    // The three readings of a probe change together.
+    let together = DMatrix::from_fn(gram.nrows(), first + probes.len(), |column, place| {
+        let at = column.checked_sub(first).map_or(column, |n| first + n / 3);
+        f64::from(u8::from(at == place))
+    });
+    let gram = together.tr_mul(&gram) * together;
     let left = project(&gram, &fitted.prior_sigma())?;
     let compared = probes.iter().enumerate().map(|(index, probe)| {
         let (a, b) = (signatures[index], first + index);

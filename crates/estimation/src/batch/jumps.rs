@@ -27,10 +27,10 @@ struct Seen<const M: usize> {
     jacobian: [f64; M],
     /// Gain times that deviation.
     gain: [f64; M],
+    row: usize,
     output: usize,
     /// Of that deviation.
     reciprocal: f64,
-    columns: Vec<f64>,
 }
 
 impl<D, S, C, const M: usize, const Y: usize> Linearisation<'_, D, S, C, M, Y>
@@ -49,27 +49,24 @@ where
         mut watch: impl FnMut(usize, &JumpScore<M>),
     ) -> Result<(), EstimationError> {
         let rows = self.points.len();
-        let mut seen: Vec<Vec<Seen<M>>> = Vec::with_capacity(rows);
+        let count = 1 + self.active.len() + self.further.count();
+        let mut seen: Vec<Seen<M>> = Vec::with_capacity(rows * Y);
+        let mut innovations: Vec<f64> = Vec::with_capacity(rows * Y * count);
         let mut transitions = Vec::with_capacity(rows);
         self.forward(
             |whitened: &Whitened<'_>, jacobian, cross| {
                 let reciprocal = 1.0 / whitened.deviation;
-                let entry = Seen {
+                seen.push(Seen {
                     jacobian: jacobian.map(|element| element * reciprocal),
                     gain: cross.map(|element| element * reciprocal),
+                    row: whitened.row,
                     output: whitened.output,
                     reciprocal,
-                    columns: whitened.columns.to_vec(),
-                };
-                while seen.len() <= whitened.row {
-                    seen.push(Vec::new());
-                }
-                seen[whitened.row].push(entry);
+                });
+                innovations.extend_from_slice(whitened.columns);
             },
             |transition| transitions.push(*transition),
         )?;
-        seen.resize_with(rows, Vec::new);
-        let count = 1 + self.active.len() + self.further.count();
         let mut score = JumpScore {
             columns: vec![[0.0; M]; count],
             information: [[0.0; M]; M],
@@ -77,7 +74,8 @@ where
         };
         for row in (1..rows).rev() {
             score.readings.fill(0.0);
-            for output in seen[row].iter().rev() {
+            while let Some(output) = seen.pop_if(|seen| seen.row == row) {
+                let columns = &innovations[seen.len() * count..][..count];
                 // Later innovations see what this update leaves: (I - g h)ᵀ.
                 let mut left = [[0.0; M]; M];
                 for i in 0..M {
@@ -93,8 +91,8 @@ where
                     }
                 }
                 let along: f64 = (0..M).map(|j| output.gain[j] * score.columns[0][j]).sum();
-                score.readings[output.output] = (output.columns[0] - along) * output.reciprocal;
-                for (sum, value) in score.columns.iter_mut().zip(&output.columns) {
+                score.readings[output.output] = (columns[0] - along) * output.reciprocal;
+                for (sum, value) in score.columns.iter_mut().zip(columns) {
                     let along: f64 = (0..M).map(|j| output.gain[j] * sum[j]).sum();
                     for i in 0..M {
                         sum[i] += output.jacobian[i] * (value - along);

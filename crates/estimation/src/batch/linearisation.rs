@@ -45,7 +45,7 @@ where
     /// Further columns, after those of the parameters.
     pub further: &'a C,
     /// What an earlier pass about the same trajectory, with the same parameters active, kept.
-    pub tape: Option<&'a Tape<D::Point, M>>,
+    pub tape: Option<&'a Tape<M>>,
 }
 
 /// What the first pass leaves of a record.
@@ -128,7 +128,7 @@ where
     pub fn reduce_and_keep(
         &self,
         watch: impl FnMut(&Whitened<'_>),
-    ) -> Result<(Reduced<M>, Tape<D::Point, M>), EstimationError> {
+    ) -> Result<(Reduced<M>, Tape<M>), EstimationError> {
         let mut tape = Tape::new(self.points.len().saturating_sub(1), self.active.len());
         let reduced = self.reduce_onto(Some(&mut tape), watch)?;
         Ok((reduced, tape))
@@ -136,7 +136,7 @@ where
 
     fn reduce_onto(
         &self,
-        mut tape: Option<&mut Tape<D::Point, M>>,
+        mut tape: Option<&mut Tape<M>>,
         mut watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<M>, EstimationError> {
         let count = self.active.len() + self.further.count();
@@ -162,11 +162,10 @@ where
             })?;
             reduced.rows += usize::from(reduced.values > before);
             if row + 1 < self.points.len() {
-                let (step, cost) = pass.advance(row)?;
-                reduced.trajectory_cost += cost;
+                let advanced = pass.advance(row)?;
+                reduced.trajectory_cost += advanced.cost;
                 if let Some(tape) = &mut tape {
-                    tape.steps.push(step);
-                    tape.columns.extend_from_slice(&pass.own);
+                    tape.push(&advanced.step, &advanced.jump, &pass.own);
                 }
             }
         }
@@ -196,8 +195,7 @@ where
                 output(whitened, &taken.jacobian, cross);
             })?;
             if row + 1 < self.points.len() {
-                let (advanced, _) = pass.advance(row)?;
-                step(&advanced.moving);
+                step(&pass.advance(row)?.step.moving);
             }
         }
         Ok(())
@@ -232,7 +230,7 @@ where
         points.push(point);
         let further = self.further.count();
         for row in rows.start..rows.end - 1 {
-            let step = pass
+            let (_, predicted) = pass
                 .stepper
                 .advance(self.series, row, &point, self.parameters)?;
             let mut turn = [0.0; M];
@@ -244,7 +242,7 @@ where
             }
             let mut moving = [0.0; M];
             self.model
-                .place(&step.predicted, &mut moving, &mut pass.inputs);
+                .place(&predicted, &mut moving, &mut pass.inputs);
             self.model.correct(&mut moving, &mut pass.inputs, &turn);
             point = self.model.point(&moving, &pass.inputs);
             points.push(point);
@@ -274,8 +272,7 @@ where
         for row in 0..self.points.len() {
             pass.observe(row, |whitened, taken| filter.take(whitened, taken))?;
             if row + 1 < self.points.len() {
-                let (step, _) = pass.advance(row)?;
-                filter.predict(&step);
+                filter.predict(&pass.advance(row)?.step);
             }
         }
         Ok(filter.score)
@@ -295,7 +292,7 @@ where
             corrections[row] = pass.filter.mean();
             if row + 1 < rows {
                 let filtered = pass.filter.covariance;
-                let (step, _) = pass.advance(row)?;
+                let step = pass.advance(row)?.step;
                 let gain = smoother_gain(&filtered, &step.moving, &pass.filter.covariance)
                     .ok_or(NOT_DRIVEN)?;
                 let predicted = pass.filter.mean();

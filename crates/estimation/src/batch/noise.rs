@@ -47,7 +47,7 @@ impl<const M: usize> NoiseFilter<M> {
         }
     }
 
-    pub(crate) fn predict<P>(&mut self, step: &Step<P, M>) {
+    pub(crate) fn predict(&mut self, step: &Step<M>) {
         for (k, (mean, covariance)) in self.mean.iter_mut().zip(&mut self.covariance).enumerate() {
             map_columns(&step.moving, mean, 1);
             *covariance = sandwich(&step.moving, covariance);

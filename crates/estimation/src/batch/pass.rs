@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::filter::{Conditional, cholesky, forward};
 use super::linearisation::{Linearisation, Whitened};
-use super::step::{Step, Stepper, add, map_columns, sandwich};
+use super::step::{Step, Stepper, map_columns, sandwich};
 use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 
@@ -28,6 +28,15 @@ pub(crate) struct Taken<const M: usize> {
     pub(crate) variance: f64,
     /// Of the moving states, before.
     pub(crate) covariance: [[f64; M]; M],
+}
+
+/// A step that was made.
+pub(super) struct Advanced<const M: usize> {
+    pub(super) step: Step<M>,
+    /// From where the model goes to the next point.
+    pub(super) jump: [f64; M],
+    /// What the noise's part adds to the cost of the trajectory.
+    pub(super) cost: f64,
 }
 
 /// A pass in progress.
@@ -71,8 +80,7 @@ where
             || of.parameters.len() != of.model.parameters()
             || of.active.iter().any(|index| *index >= of.parameters.len())
             || of.tape.is_some_and(|tape| {
-                tape.steps.len() + 1 != of.points.len()
-                    || tape.columns.len() != tape.steps.len() * M * of.active.len()
+                tape.steps() + 1 != of.points.len() || tape.active() != of.active.len()
             })
             || change.is_some_and(|change| change.len() != of.active.len() + further)
         {
@@ -231,15 +239,14 @@ where
         &self.drive
     }
 
-    /// The step after a row, from the tape or from the model; leaves its active columns in
-    /// [`Self::own`].
-    fn step(&mut self, row: usize) -> Result<Step<D::Point, M>, EstimationError> {
+    /// The step after a row, from the tape or from the model, and how far the next point is from
+    /// where it goes; leaves its active columns in [`Self::own`].
+    fn step(&mut self, row: usize) -> Result<(Step<M>, [f64; M]), EstimationError> {
         let of = self.of;
         let active = of.active.len();
         if let Some(tape) = of.tape {
-            let first = row * M * active;
-            self.own
-                .copy_from_slice(&tape.columns[first..first + M * active]);
+            let (step, jump, columns) = tape.step(row);
+            self.own.copy_from_slice(columns);
             // Further columns may follow a parameter that is active.
             let p = of.parameters.len();
             for i in 0..M {
@@ -247,12 +254,12 @@ where
                     self.stepper.columns[i * p + index] = *own;
                 }
             }
-            return Ok(tape.steps[row]);
+            return Ok((step, jump));
         }
-        let mut step = self
+        let (mut step, predicted) = self
             .stepper
             .advance(of.series, row, &of.points[row], of.parameters)?;
-        let jump = of.model.difference(&step.predicted, &of.points[row + 1]);
+        let jump = of.model.difference(&predicted, &of.points[row + 1]);
         let p = of.parameters.len();
         if let Some(corrected) = of.model.corrected(&jump) {
             step.correct(&corrected);
@@ -263,28 +270,23 @@ where
                 *own = self.stepper.columns[i * p + index];
             }
         }
-        Ok(step)
+        Ok((step, jump))
     }
 
-    /// Goes on to the next row; returns the transition and what the noise's part adds to the
-    /// cost of the trajectory.
-    pub(super) fn advance(
-        &mut self,
-        row: usize,
-    ) -> Result<(Step<D::Point, M>, f64), EstimationError> {
+    /// Goes on to the next row.
+    pub(super) fn advance(&mut self, row: usize) -> Result<Advanced<M>, EstimationError> {
         let of = self.of;
-        let mut step = self.step(row)?;
-        let mut jump = of.model.difference(&step.predicted, &of.points[row + 1]);
+        let (mut step, predicted_jump) = self.step(row)?;
+        let mut jump = predicted_jump;
         if self.input_factors != [1.0; M] {
-            step.noise = [[0.0; M]; M];
             for (share, factor) in step.shares.iter_mut().zip(self.input_factors) {
                 for element in share.as_flattened_mut() {
                     *element *= factor;
                 }
-                add(&mut step.noise, share);
             }
         }
-        self.filter.predict(&step.moving, &step.noise);
+        let noise = step.noise();
+        self.filter.predict(&step.moving, &noise);
         let (active, further) = (of.active.len(), of.further.count());
         self.drive(row);
         for i in 0..M {
@@ -312,7 +314,10 @@ where
             }
             target[0] += mean - jump[i];
         }
-        let cost = squared(&step.noise, &jump).ok_or(NOT_DRIVEN)?;
-        Ok((step, cost))
+        Ok(Advanced {
+            step,
+            jump: predicted_jump,
+            cost: squared(&noise, &jump).ok_or(NOT_DRIVEN)?,
+        })
     }
 }

@@ -9,24 +9,29 @@ use crate::transition::{Integration, Integrator};
 
 /// What a step does to the moving states, to first order.
 #[derive(Clone, Copy)]
-pub(crate) struct Step<P, const M: usize> {
-    /// Where the model goes from the linearisation point.
-    pub(crate) predicted: P,
+pub(crate) struct Step<const M: usize> {
     /// Moving columns of the transition.
     pub(crate) moving: [[f64; M]; M],
-    /// Covariance of what the noise adds over the step.
-    pub(crate) noise: [[f64; M]; M],
-    /// The share of each noise input in it.
+    /// Covariance of what each noise input adds over the step.
     pub(crate) shares: [[[f64; M]; M]; M],
 }
 
-impl<P, const M: usize> Step<P, M> {
+impl<const M: usize> Step<M> {
+    /// Covariance of what all noise adds over the step.
+    pub(crate) fn noise(&self) -> [[f64; M]; M] {
+        let mut noise = [[0.0; M]; M];
+        for share in &self.shares {
+            add(&mut noise, share);
+        }
+        noise
+    }
+
     /// What was predicted as corrections of another point: the one that a correction of the
     /// prediction, which the noise made, leads to.
     pub(crate) fn correct(&mut self, corrected: &Corrected<M>) {
         self.moving = product(&corrected.point, &self.moving);
-        for covariance in self.shares.iter_mut().chain([&mut self.noise]) {
-            *covariance = sandwich(&corrected.correction, covariance);
+        for share in &mut self.shares {
+            *share = sandwich(&corrected.correction, share);
         }
     }
 }
@@ -68,15 +73,15 @@ where
         }
     }
 
-    /// From `point` at `row` to the next row; leaves the parameter columns in
-    /// [`Self::columns`].
+    /// From `point` at `row` to the next row, and where the model goes; leaves the parameter
+    /// columns in [`Self::columns`].
     pub(crate) fn advance(
         &mut self,
         series: &impl Series<D::Inputs, Y>,
         row: usize,
         point: &D::Point,
         parameters: &[f64],
-    ) -> Result<Step<D::Point, M>, EstimationError> {
+    ) -> Result<(Step<M>, D::Point), EstimationError> {
         let p = parameters.len();
         let (start_s, end_s) = (series.time_s(row), series.time_s(row + 1));
         let interval_s = end_s - start_s;
@@ -97,9 +102,7 @@ where
         let mut moving = [0.0; M];
         self.model.place(point, &mut moving, &mut self.inputs);
         let mut step = Step {
-            predicted: *point,
             moving: identity(),
-            noise: [[0.0; M]; M],
             shares: [[[0.0; M]; M]; M],
         };
         for index in 0..count {
@@ -158,11 +161,7 @@ where
                 }
             }
         }
-        for share in &step.shares {
-            add(&mut step.noise, share);
-        }
-        step.predicted = self.model.point(&moving, &self.inputs);
-        Ok(step)
+        Ok((step, self.model.point(&moving, &self.inputs)))
     }
 }
 

@@ -7,25 +7,81 @@ use super::step::Step;
 /// What the model gave along a trajectory, so that further passes about the same trajectory with
 /// the same parameters need not ask it again. Further columns may follow active parameters only.
 #[derive(Clone)]
-pub struct Tape<P, const M: usize> {
-    pub(crate) steps: Vec<Step<P, M>>,
+pub struct Tape<const M: usize> {
+    /// From where the model goes to the next point.
+    jumps: Vec<[f64; M]>,
+    moving: Vec<[[f64; M]; M]>,
+    /// Lower triangles of the covariances that the noise inputs add.
+    shares: Vec<f64>,
     /// Active parameter columns of each step, M rows of them.
-    pub(crate) columns: Vec<f64>,
+    columns: Vec<f64>,
+    active: usize,
 }
 
-impl<P, const M: usize> core::fmt::Debug for Tape<P, M> {
+impl<const M: usize> core::fmt::Debug for Tape<M> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_struct("Tape")
-            .field("steps", &self.steps.len())
+            .field("steps", &self.steps())
+            .field("active", &self.active)
             .finish()
     }
 }
 
-impl<P, const M: usize> Tape<P, M> {
-    pub(crate) fn new(steps: usize, columns: usize) -> Self {
+impl<const M: usize> Tape<M> {
+    /// Elements of a lower triangle.
+    const TRIANGLE: usize = M * (M + 1) / 2;
+
+    pub(crate) fn new(steps: usize, active: usize) -> Self {
         Self {
-            steps: Vec::with_capacity(steps),
-            columns: Vec::with_capacity(steps * M * columns),
+            jumps: Vec::with_capacity(steps),
+            moving: Vec::with_capacity(steps),
+            shares: Vec::with_capacity(steps * M * Self::TRIANGLE),
+            columns: Vec::with_capacity(steps * M * active),
+            active,
         }
+    }
+
+    pub(crate) fn steps(&self) -> usize {
+        self.jumps.len()
+    }
+
+    /// Number of parameters that were active.
+    pub(crate) fn active(&self) -> usize {
+        self.active
+    }
+
+    pub(crate) fn push(&mut self, step: &Step<M>, jump: &[f64; M], columns: &[f64]) {
+        self.jumps.push(*jump);
+        self.moving.push(step.moving);
+        for share in &step.shares {
+            for (i, row) in share.iter().enumerate() {
+                self.shares.extend_from_slice(&row[..=i]);
+            }
+        }
+        self.columns.extend_from_slice(columns);
+    }
+
+    /// The step after a row, how far the next point is from where it goes, and its columns.
+    pub(crate) fn step(&self, row: usize) -> (Step<M>, [f64; M], &[f64]) {
+        let mut shares = [[[0.0; M]; M]; M];
+        let size = M * Self::TRIANGLE;
+        let mut kept = self.shares[row * size..(row + 1) * size].iter();
+        for share in &mut shares {
+            for i in 0..M {
+                for j in 0..=i {
+                    let element = kept.next().copied().unwrap_or(0.0);
+                    (share[i][j], share[j][i]) = (element, element);
+                }
+            }
+        }
+        let width = M * self.active;
+        (
+            Step {
+                moving: self.moving[row],
+                shares,
+            },
+            self.jumps[row],
+            &self.columns[row * width..(row + 1) * width],
+        )
     }
 }
