@@ -83,6 +83,14 @@ impl Proportion {
         self.hits as f64 / self.trials as f64
     }
 
+    /// Variance of the share, with half a hit and half a miss more: never zero.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        let trials = self.trials as f64 + 1.0;
+        let share = (self.hits as f64 + 0.5) / trials;
+        share * (1.0 - share) / trials
+    }
+
     /// The true share is not lower than this, with at least this confidence.
     ///
     /// # Panics

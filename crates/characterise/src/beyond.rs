@@ -31,6 +31,10 @@ const REACHED: f64 = 1.2;
 /// model fits, but another record. Of a gyro \[deg/h\] and of an accelerometer \[g\].
 const LARGEST_SIZES: [f64; 2] = [0.05, 5e-4];
 
+/// An effect of which less is left beside the named causes, in sigmas, is what they are: a sign that
+/// never switches is a bias.
+const LEAST_LENGTH: f64 = 0.5;
+
 /// An effect and how it depends on its size.
 struct Beyond {
     id: String,
@@ -128,6 +132,9 @@ pub(crate) fn beyond(
                     without_unnamed(extended.extension())
                 });
             let length = length(&clean, &simulation, &named)?;
+            if length < LEAST_LENGTH {
+                break;
+            }
             let off = strength / length;
             corrections += 1;
             if (off - 1.0).abs() < NEAR || corrections > CORRECTIONS {

@@ -15,6 +15,9 @@ const SHOWN: f64 = 0.999;
 /// The same as a point of the normal distribution.
 const SIGMAS_SHOWN: f64 = 3.090_232_306_167_813;
 
+/// Of a two-sided interval.
+const SIGMAS_95: f64 = 1.959_963_984_540_054;
+
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -86,6 +89,23 @@ impl Gathered {
             of.trials == 0 || of.upper_bound(SHOWN) >= least
         };
         self.share(figure, Some(Target::AtLeast(least)), of, Some(holds));
+    }
+
+    /// The average of some shares, each counting the same, that should be no less than something.
+    pub(crate) fn average_at_least(&mut self, figure: &str, least: f64, all: &[Proportion]) {
+        let average = mean(&all.iter().map(Proportion::share).collect::<Vec<_>>());
+        let variance = all.iter().map(Proportion::variance).sum::<f64>();
+        let sigma = variance.sqrt() / all.len() as f64;
+        let up_to = |sigmas: f64| f64::min(average + sigmas * sigma, 1.0);
+        let interval = [f64::max(average - SIGMAS_95 * sigma, 0.0), up_to(SIGMAS_95)];
+        let holds = if self.full {
+            average >= least
+        } else {
+            all.is_empty() || up_to(SIGMAS_SHOWN) >= least
+        };
+        let target = Some(Target::AtLeast(least));
+        let runs = all.iter().map(|of| of.trials).sum();
+        self.push(figure, target, average, Some(interval), runs, Some(holds));
     }
 
     /// A share that should be no more than something.
@@ -194,6 +214,16 @@ mod tests {
         // The upper bound of 27 of 2000 is below 2 %, that of 30 is not.
         let bound = |hits| judged(true, |all| all.bound_at_most("", 0.02, of(hits, 2000)));
         assert_eq!((bound(27), bound(33)), (Some(true), Some(false)));
+        // Each counts the same, whatever its trials.
+        let averaged = |full, all: &[Proportion]| {
+            judged(full, |gathered| gathered.average_at_least("", 0.6, all))
+        };
+        let (all, few) = (of(30, 30), of(2, 10));
+        assert_eq!(averaged(true, &[all, few]), Some(true));
+        assert_eq!(averaged(true, &[all, few, few]), Some(false));
+        // (0.25 + 0.27) / 2 with a sigma of about 0.07.
+        assert_eq!(averaged(false, &[of(5, 20), of(6, 22)]), Some(false));
+        assert_eq!(averaged(false, &[of(0, 1), of(1, 1)]), Some(true));
         // One family of two that misses all of its twenty records.
         let families = [of(20, 20), of(0, 20)];
         assert_eq!(

@@ -1,6 +1,7 @@
 //! The figures of each cell.
 
 use core::ops::Range;
+use std::collections::BTreeMap;
 
 use gyrocal_campaign::Outcome;
 use gyrocal_campaign::statistics::{Proportion, quantile};
@@ -88,6 +89,17 @@ fn share(cases: &[&Case], of: impl Fn(&Case) -> Option<bool>) -> Proportion {
     Proportion::of(cases.iter().filter_map(|case| of(case)))
 }
 
+/// The same for each hidden effect by itself: some are hidden more often than others.
+fn by_effect(cases: &[&Case], of: impl Fn(&Case) -> Option<bool>) -> Vec<Proportion> {
+    let mut effects: BTreeMap<&str, Vec<bool>> = BTreeMap::new();
+    for case in cases {
+        if let (Some(hidden), Some(counts)) = (case.hidden.first(), of(case)) {
+            effects.entry(&hidden.effect).or_default().push(counts);
+        }
+    }
+    effects.into_values().map(Proportion::of).collect()
+}
+
 fn strengths(cases: &[&Case]) -> Vec<f64> {
     let hidden = cases.iter().flat_map(|case| &case.hidden);
     hidden.map(|hidden| hidden.strength).collect()
@@ -113,8 +125,8 @@ fn single(
     first: Option<f64>,
 ) {
     if let Some([average, worst]) = detected {
-        let of = share(cases, |case| Some(case.detected()));
-        gathered.at_least("detected", average, of);
+        let of = by_effect(cases, |case| Some(case.detected()));
+        gathered.average_at_least("detected, average of the effects", average, &of);
         let all: Vec<Proportion> = families(cases).iter().map(|one| one.detected()).collect();
         gathered.none_below("detected, the worst family", worst, &all);
     }
@@ -124,20 +136,17 @@ fn single(
     });
     gathered.at_least("the named set holds the truth", 0.95, in_set);
     set_size(gathered, cases);
-    let first_at = |cosine: f64| {
-        share(cases, move |case| {
-            let hidden = case.hidden.first()?;
-            case.detected().then_some(hidden.first_cosine >= cosine)
-        })
+    let right = |case: &Case, cosine: f64| {
+        let hidden = case.hidden.first()?;
+        case.detected().then_some(hidden.first_cosine >= cosine)
     };
+    let first_at = |cosine: f64| share(cases, move |case| right(case, cosine));
     match first {
-        Some(least) => {
-            gathered.at_least(
-                "the class named first is right",
-                least,
-                first_at(NEAR_PARALLEL),
-            );
-        }
+        Some(least) => gathered.average_at_least(
+            "the class named first is right, average of the effects",
+            least,
+            &by_effect(cases, |case| right(case, NEAR_PARALLEL)),
+        ),
         None => gathered.note("the class named first is right", first_at(NEAR_PARALLEL)),
     }
     gathered.note(

@@ -1,5 +1,6 @@
 //! Drifts and readings that depend on specific force as no polynomial of the catalogue does: dead
-//! zones, friction, hysteresis about zero. Tried as piecewise linear functions of each component.
+//! zones, friction, hysteresis about zero. Tried as piecewise linear functions of each component,
+//! with its sign.
 
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ const KNOTS: usize = 10;
 /// A component that moves by less shows no curve, g.
 const LEAST_RANGE_G: f64 = 0.02;
 
-/// Combinations of knots of which a fit leaves less than this share of the best seen one are not
+/// Combinations of functions of which a fit leaves less than this share of the best seen one are not
 /// tried: constants and low powers, which the coefficients take up.
 const SEEN: f64 = 1e-4;
 
@@ -30,7 +31,7 @@ pub(super) fn strongest(
     // One channel after the other: columns of readings are large.
     for channel in Channel::ALL {
         let columns: Vec<(usize, Vec<Column>)> = (0..3)
-            .filter_map(|axis| Some((axis, knots(record, &force_g, channel, axis)?)))
+            .filter_map(|axis| Some((axis, functions(record, &force_g, channel, axis)?)))
             .collect();
         let all: Vec<Column> = columns
             .iter()
@@ -144,8 +145,9 @@ fn combination(columns: &[Column], weights: &DVector<f64>) -> Option<(Column, f6
     Some((column, mean_square))
 }
 
-/// Hat functions of a component, in the middle of each step or at each row.
-fn knots(
+/// Hat functions of a component and, where it changes its sign, that sign, which they cannot make
+/// up: in the middle of each step or at each row.
+fn functions(
     record: &Record,
     force_g: &[[f64; 3]],
     channel: Channel,
@@ -163,18 +165,30 @@ fn knots(
     let hat = |knot: usize, force_g: f64| {
         (1.0 - ((force_g - least) / spacing - knot as f64).abs()).max(0.0)
     };
-    let column = |knot: usize| match channel {
+    let function = |index: usize, force_g: f64| match index {
+        KNOTS.. => force_g.signum(),
+        knot => hat(knot, force_g),
+    };
+    let column = |index: usize| match channel {
         Channel::Drift(gyro) => Column::Course {
             parameter: BIASES[gyro],
             steps: force_g
                 .windows(2)
-                .map(|pair| hat(knot, 0.5 * (pair[0][axis] + pair[1][axis])))
+                .map(|pair| function(index, 0.5 * (pair[0][axis] + pair[1][axis])))
                 .collect(),
         },
         Channel::Readings(output) => Column::Readings {
             axis: output,
-            change_g: force_g.iter().map(|row| hat(knot, row[axis])).collect(),
+            change_g: force_g
+                .iter()
+                .map(|row| function(index, row[axis]))
+                .collect(),
         },
     };
-    Some((0..KNOTS).map(column).collect())
+    let switches = least < 0.0 && most > 0.0;
+    Some(
+        (0..KNOTS + usize::from(switches))
+            .map(column)
+            .collect(),
+    )
 }

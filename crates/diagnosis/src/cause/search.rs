@@ -123,7 +123,9 @@ pub fn search<'a>(
                 && best
                     .is_none_or(|best| other.equivalent() > scores.penalised(best.family) + RICHER)
         };
-        let curves = best.is_none_or(|best| families[best.family].walk.is_some());
+        // Of what bends where no polynomial does, a polynomial takes up most.
+        let curves =
+            !accepted.is_empty() || best.is_none_or(|best| families[best.family].walk.is_some());
         if seeking
             && unnamed.len() < MOST_EFFECTS
             && let Some(other) = unnamed::strongest(fitted, record, &jumps, curves, stands)?
