@@ -131,7 +131,10 @@ pub(crate) fn beyond(
                 .map_or_else(Extension::default, |extended| {
                     without_unnamed(extended.extension())
                 });
-            let length = length(&clean, &simulation, &named)?;
+            // Nor can it be told where the named causes cannot be fitted without it.
+            let Ok(length) = length(&clean, &simulation, &named) else {
+                break;
+            };
             if length < LEAST_LENGTH {
                 break;
             }

@@ -190,8 +190,15 @@ pub fn diagnose<'a>(
         if !changed {
             break;
         }
-        noise_model.gyro_ratio = ratios;
-        nominal = nominal.with_noise(bench, &noise_model)?;
+        let louder = NoiseModel {
+            gyro_ratio: ratios,
+            ..noise_model.clone()
+        };
+        // What is no noise at all may not be fitted as noise: the search stands as it is.
+        let Ok(refitted) = nominal.with_noise(bench, &louder) else {
+            break;
+        };
+        (nominal, noise_model) = (refitted, louder);
         searched = search(nominal.clone(), record, bench, &search_options)?;
         estimate = searched.fitted.noise()?;
     }

@@ -31,10 +31,7 @@ pub(crate) struct Products {
 
 impl Products {
     /// One pass with all parameters of the catalogue, then `further` columns, as signatures.
-    pub(crate) fn new(
-        fitted: &Extended<'_>,
-        further: &[Column],
-    ) -> Result<Self, CalibrationError> {
+    pub(crate) fn new(fitted: &Extended<'_>, further: &[Column]) -> Result<Self, CalibrationError> {
         let gram = fitted.signatures(further, |_| ())?.gram;
         let parameters = gyrocal::Catalogue::PARAMETERS;
         let extension = fitted.extension();
@@ -142,10 +139,7 @@ impl Products {
 
 impl Bank {
     /// Of all parameters of the catalogue, then `further` columns.
-    pub(crate) fn new(
-        fitted: &Extended<'_>,
-        further: &[Column],
-    ) -> Result<Self, CalibrationError> {
+    pub(crate) fn new(fitted: &Extended<'_>, further: &[Column]) -> Result<Self, CalibrationError> {
         Products::new(fitted, further)?.bank(&[])
     }
 

@@ -186,9 +186,5 @@ fn functions(
         },
     };
     let switches = least < 0.0 && most > 0.0;
-    Some(
-        (0..KNOTS + usize::from(switches))
-            .map(column)
-            .collect(),
-    )
+    Some((0..KNOTS + usize::from(switches)).map(column).collect())
 }

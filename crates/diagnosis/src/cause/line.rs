@@ -2,12 +2,14 @@
 //! record would gain by any course of them; where their spectrum stands out, a line is tried.
 
 use core::f64::consts::TAU;
+use std::sync::Arc;
 
 use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended, Jump};
 use gyrocal_record::Record;
 
 use super::bank::Bank;
-use super::unnamed::{Channel, Pattern, Unnamed, steps};
+use super::unnamed::{Channel, Pattern, Unnamed};
+use crate::noise::median_interval_s;
 use crate::spectrum::{Searched, transformed};
 
 /// Lines that are tried in each channel.
@@ -21,6 +23,9 @@ const BAND: f64 = 1.2;
 
 /// A band has at least so many frequencies of the record.
 const LEAST_BAND_CYCLES: f64 = 6.0;
+
+/// A step of so many usual ones is a gap.
+const LONG_STEP: f64 = 3.0;
 
 /// The frequency is refined on so many points, across one frequency of the record.
 const REFINED: usize = 17;
@@ -61,6 +66,7 @@ pub(super) fn strongest(
 
 /// Periods, h, at which the spectrum of a channel's scores stands out.
 fn standing_out(record: &Record, jumps: &[Option<Jump>], channel: Channel) -> Vec<f64> {
+    let interval_s = median_interval_s(&record.time_s);
     let scores: Vec<(f64, f64)> = jumps
         .iter()
         .enumerate()
@@ -68,14 +74,16 @@ fn standing_out(record: &Record, jumps: &[Option<Jump>], channel: Channel) -> Ve
         .filter_map(|(row, jump)| {
             let jump = (*jump)?;
             let (before_s, here_s) = (record.time_s[row - 1], record.time_s[row]);
-            Some(match channel {
+            match channel {
+                // Over a gap nothing is left of a line.
+                Channel::Drift(_) if here_s - before_s > LONG_STEP * interval_s => None,
                 // A drift turns the platform by itself times the step.
-                Channel::Drift(axis) => (
+                Channel::Drift(axis) => Some((
                     0.5 * (before_s + here_s),
                     jump.score[axis] * (here_s - before_s),
-                ),
-                Channel::Readings(axis) => (here_s, jump.readings[axis]),
-            })
+                )),
+                Channel::Readings(axis) => Some((here_s, jump.readings[axis])),
+            }
         })
         .collect();
     let Some((power, step_hz)) = transformed(&record.time_s, &scores) else {
@@ -139,15 +147,20 @@ fn best(
     Ok(found.min_by(|a, b| a.ln_probability.total_cmp(&b.ln_probability)))
 }
 
-/// Sine and cosine of a period: of a drift in the middle of each step.
+/// Sine and cosine of a period: of a drift their means over each step, which in a gap may have many
+/// periods.
 fn pair(record: &Record, channel: Channel, period_h: f64) -> [Column; 2] {
     let first_s = record.time_s.first().copied().unwrap_or(0.0);
+    let rate = TAU / (3600.0 * period_h);
     [f64::sin, f64::cos].map(|of: fn(f64) -> f64| {
-        let wave = |time_s: f64| of(TAU * time_s / (3600.0 * period_h));
+        let wave = |time_s: f64| of(rate * time_s);
         match channel {
             Channel::Drift(gyro) => Column::Course {
                 parameter: BIASES[gyro],
-                steps: steps(record, wave),
+                steps: steps(record, |middle_s, step_s| {
+                    let half_turn = 0.5 * rate * step_s;
+                    wave(middle_s) * half_turn.sin() / half_turn
+                }),
             },
             Channel::Readings(axis) => Column::Readings {
                 axis,
@@ -159,4 +172,13 @@ fn pair(record: &Record, channel: Channel, period_h: f64) -> [Column; 2] {
             },
         }
     })
+}
+
+/// A number for each step, from its middle since the first row and its length, s.
+fn steps(record: &Record, of: impl Fn(f64, f64) -> f64) -> Arc<[f64]> {
+    let first_s = record.time_s.first().copied().unwrap_or(0.0);
+    let pairs = record.time_s.windows(2);
+    pairs
+        .map(|pair| of(0.5 * (pair[0] + pair[1]) - first_s, pair[1] - pair[0]))
+        .collect()
 }

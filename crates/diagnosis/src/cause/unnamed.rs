@@ -1,7 +1,5 @@
 //! What a record shows and the catalogue has no name for: lines, and curves over specific force.
 
-use std::sync::Arc;
-
 use gyrocal_calibration::{CalibrationError, Column, Extended, Jump};
 use gyrocal_record::Record;
 
@@ -146,13 +144,4 @@ pub(super) fn strongest(
     };
     let found = [line, curve].into_iter().flatten();
     Ok(found.min_by(|a, b| a.ln_probability.total_cmp(&b.ln_probability)))
-}
-
-/// Numbers for each step that follow a course of time.
-pub(super) fn steps(record: &Record, of: impl Fn(f64) -> f64) -> Arc<[f64]> {
-    let first_s = record.time_s.first().copied().unwrap_or(0.0);
-    let middles = record.time_s.windows(2);
-    middles
-        .map(|pair| of(0.5 * (pair[0] + pair[1]) - first_s))
-        .collect()
 }

@@ -241,8 +241,7 @@ where
                 }
             }
             let mut moving = [0.0; M];
-            self.model
-                .place(&predicted, &mut moving, &mut pass.inputs);
+            self.model.place(&predicted, &mut moving, &mut pass.inputs);
             self.model.correct(&mut moving, &mut pass.inputs, &turn);
             point = self.model.point(&moving, &pass.inputs);
             points.push(point);

@@ -256,9 +256,9 @@ where
             }
             return Ok((step, jump));
         }
-        let (mut step, predicted) = self
-            .stepper
-            .advance(of.series, row, &of.points[row], of.parameters)?;
+        let (mut step, predicted) =
+            self.stepper
+                .advance(of.series, row, &of.points[row], of.parameters)?;
         let jump = of.model.difference(&predicted, &of.points[row + 1]);
         let p = of.parameters.len();
         if let Some(corrected) = of.model.corrected(&jump) {
