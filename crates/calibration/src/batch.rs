@@ -183,7 +183,7 @@ where
             let noise = if options.noise {
                 let parameters = problem.parameters(index);
                 let found = problem.with_leg(index, &parameters, |pass| {
-                    let tape = Some(&*solution.tapes[index]);
+                    let tape = solution.tapes[index].as_deref();
                     let pass = Linearisation { tape, ..*pass };
                     noise::estimate(|factors| pass.noise_score(factors))
                 });

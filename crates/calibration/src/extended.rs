@@ -371,7 +371,7 @@ impl<'a> Extended<'a> {
         let reduced = self
             .problem
             .without_rows(0, &parameters, left_out, |pass| {
-                let tape = Some(&*self.solution.tapes[0]);
+                let tape = self.solution.tapes[0].as_deref();
                 Linearisation { tape, ..*pass }.reduce(|_| ())
             })
             .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;

@@ -13,6 +13,9 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use crate::problem::Problem;
 use crate::run::Conditions;
 
+/// Rows of a record whose steps are kept between passes, some 500 bytes each.
+const LONGEST_TAPE: usize = 400_000;
+
 /// Steps are halved at most so often when they do not lower the cost.
 const MOST_HALVINGS: usize = 12;
 
@@ -34,8 +37,8 @@ pub(crate) struct Solution {
     pub(crate) values: usize,
     pub(crate) rows: usize,
     pub(crate) log_variance: f64,
-    /// What the model gave in the last pass over each record.
-    pub(crate) tapes: Vec<Arc<Tape<3>>>,
+    /// What the model gave in the last pass over each record, if it was short enough to keep.
+    pub(crate) tapes: Vec<Option<Arc<Tape<3>>>>,
     /// Passes that were made.
     pub(crate) iterations: usize,
 }
@@ -61,7 +64,7 @@ struct Point {
     values: usize,
     rows: usize,
     log_variance: f64,
-    tapes: Vec<Arc<Tape<3>>>,
+    tapes: Vec<Option<Arc<Tape<3>>>>,
 }
 
 /// A step from a point.
@@ -142,14 +145,20 @@ where
         for (index, leg) in self.legs.iter().enumerate() {
             let parameters = self.parameters(index);
             let (reduced, tape) = self
-                .with_leg(index, &parameters, |pass| pass.reduce_and_keep(|_| ()))
+                .with_leg(index, &parameters, |pass| {
+                    if leg.points.len() > LONGEST_TAPE {
+                        return pass.reduce(|_| ()).map(|reduced| (reduced, None));
+                    }
+                    let (reduced, tape) = pass.reduce_and_keep(|_| ())?;
+                    Ok((reduced, Some(Arc::new(tape))))
+                })
                 .map_err(|error| Failure::Pass(index, error))?;
             point.trajectory_cost += reduced.trajectory_cost;
             point.values += reduced.values;
             point.rows += reduced.rows;
             point.log_variance += reduced.log_variance;
             add_gram(&mut point.gram, &reduced.gram, &leg.columns());
-            point.tapes.push(Arc::new(tape));
+            point.tapes.push(tape);
         }
         Ok(point)
     }
@@ -187,7 +196,7 @@ where
                     .map(|unknowns| unknowns.iter().map(|unknown| values[*unknown]).sum())
                     .collect();
                 self.with_leg(index, &parameters, |pass| {
-                    let tape = Some(&*point.tapes[index]);
+                    let tape = point.tapes[index].as_deref();
                     Linearisation { tape, ..*pass }.smooth(&change)
                 })
                 .map(|smoothed| smoothed.corrections)

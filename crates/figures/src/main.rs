@@ -2,6 +2,7 @@
 //! value, runs, seeds, and whether it holds. The exit code is 1 if one does not.
 
 mod calibration;
+mod cost;
 mod diagnosis_ground;
 mod figure;
 mod gain;

@@ -1,6 +1,7 @@
 //! Causes hidden in simulated records: what is detected, what is named, and what clean records
 //! show. The cells are those of `gyrocal characterise`.
 
+mod cost;
 mod plan;
 
 use gyrocal_characterise::{Cell, Characteristic, Method, Target, campaign, cell_report};
@@ -46,6 +47,7 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         figures.extend(all.map(|characteristic| figure(&report.title, characteristic)));
     }
     figures.extend(plan::figures(small)?);
+    figures.extend(cost::figures(small)?);
     Ok(figures)
 }
 

@@ -21,7 +21,7 @@ impl Extended<'_> {
         let mut whitened = vec![[f64::NAN; 3]; self.points().len()];
         self.problem
             .with_leg(0, &parameters, |pass| {
-                let tape = Some(&*self.solution.tapes[0]);
+                let tape = self.solution.tapes[0].as_deref();
                 Linearisation { tape, ..*pass }
                     .reduce(|value| whitened[value.row][value.output] = value.columns[0])
             })
@@ -42,7 +42,7 @@ impl Extended<'_> {
         let mut jumps: Vec<Option<Jump>> = vec![None; self.points().len()];
         self.problem
             .with_leg(0, &parameters, |pass| {
-                let tape = Some(&*self.solution.tapes[0]);
+                let tape = self.solution.tapes[0].as_deref();
                 Linearisation { tape, ..*pass }.jumps(|row, found| {
                     let mut jump = Jump {
                         // Columns are derivatives of the innovations: those of a jump too.
@@ -92,7 +92,7 @@ impl Extended<'_> {
             .chain(extended.map(|(parameter, _)| *parameter))
             .collect();
         // What the columns may follow is active in the fit too.
-        let tape = Some(&*self.solution.tapes[0]);
+        let tape = self.solution.tapes[0].as_deref();
         self.reduced(&own, tape, further, |_| ())
     }
 
@@ -130,7 +130,7 @@ impl Extended<'_> {
         let parameters = self.parameters();
         self.problem
             .with_leg(0, &parameters, |pass| {
-                let tape = Some(&*self.solution.tapes[0]);
+                let tape = self.solution.tapes[0].as_deref();
                 let pass = Linearisation { tape, ..*pass };
                 noise::estimate(|factors| pass.noise_score(factors))
             })

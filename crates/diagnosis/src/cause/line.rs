@@ -13,7 +13,7 @@ use crate::noise::median_interval_s;
 use crate::spectrum::{Searched, transformed};
 
 /// Lines that are tried in each channel.
-const TRIED: usize = 3;
+const TRIED: usize = 4;
 
 /// Cycles in the record below which a line is a trend.
 const LEAST_CYCLES: f64 = 1.5;
@@ -22,7 +22,10 @@ const LEAST_CYCLES: f64 = 1.5;
 const BAND: f64 = 1.2;
 
 /// A band has at least so many frequencies of the record.
-const LEAST_BAND_CYCLES: f64 = 6.0;
+const LEAST_BAND_CYCLES: f64 = 12.0;
+
+/// Frequencies of the record on each side of a line that its side lobes take.
+const SIDE_LOBES: f64 = 2.0;
 
 /// A step of so many usual ones is a gap.
 const LONG_STEP: f64 = 3.0;
@@ -99,7 +102,8 @@ fn standing_out(record: &Record, jumps: &[Option<Jump>], channel: Channel) -> Ve
         let to = (from + width as usize + 1).min(power.len());
         let mut sorted = power[from..to].to_vec();
         sorted.sort_unstable_by(f64::total_cmp);
-        let level = sorted[sorted.len() / 2].max(f64::MIN_POSITIVE);
+        // Low in the distribution, where a line in the band with its side lobes does not reach.
+        let level = sorted[sorted.len() / 4].max(f64::MIN_POSITIVE);
         for place in from.max(1)..to.min(power.len() - 1) {
             if power[place] >= power[place - 1] && power[place] > power[place + 1] {
                 peaks.push((power[place] / level, place));
@@ -108,10 +112,17 @@ fn standing_out(record: &Record, jumps: &[Option<Jump>], channel: Channel) -> Ve
         from = to;
     }
     peaks.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
-    peaks
+    let mut chosen: Vec<usize> = Vec::with_capacity(TRIED);
+    for (_, place) in peaks {
+        // Not the side lobes of another.
+        let apart = |other: &usize| place.abs_diff(*other) as f64 > SIDE_LOBES * finer;
+        if chosen.len() < TRIED && chosen.iter().all(apart) {
+            chosen.push(place);
+        }
+    }
+    chosen
         .into_iter()
-        .take(TRIED)
-        .map(|(_, place)| 1.0 / (3600.0 * (place as f64 + 1.0) * step_hz))
+        .map(|place| 1.0 / (3600.0 * (place as f64 + 1.0) * step_hz))
         .collect()
 }
 

@@ -123,9 +123,12 @@ pub fn search<'a>(
                 && best
                     .is_none_or(|best| other.equivalent() > scores.penalised(best.family) + RICHER)
         };
-        // Of what bends where no polynomial does, a polynomial takes up most.
-        let curves =
-            !accepted.is_empty() || best.is_none_or(|best| families[best.family].walk.is_some());
+        // Of what bends or switches with a force, a polynomial or one knock takes up most.
+        let curves = !accepted.is_empty()
+            || best.is_none_or(|best| {
+                let family = &families[best.family];
+                family.walk.is_some() || family.knock
+            });
         if seeking
             && unnamed.len() < MOST_EFFECTS
             && let Some(other) = unnamed::strongest(fitted, record, &jumps, curves, stands)?

@@ -1,12 +1,11 @@
 //! What a calibration takes: processor time and memory.
 
-use std::time::Instant;
-
 use gyrocal_calibration::{Options, calibrate};
 use gyrocal_campaign::statistics::median;
 use gyrocal_truth::{Coefficients, Scenario, Simulation, simulate};
 
 use super::Error;
+use crate::cost::{Peak, on_one_core};
 use crate::figure::Figure;
 
 const THREE_DAYS_MS: f64 = 100.0;
@@ -124,41 +123,13 @@ fn three_days(repetitions: usize) -> Result<Figure, Error> {
 
 /// Processor seconds and steps of one calibration.
 fn timed(simulation: &Simulation) -> Result<(f64, usize), Error> {
-    let (begin, begin_cpu_s) = (Instant::now(), thread_s());
-    let found = calibrate(
-        &simulation.record,
-        &simulation.bench,
-        &Options::default(),
-        |_| (),
-    )?;
-    let seconds = match (begin_cpu_s, thread_s()) {
-        (Some(begin_s), Some(end_s)) => end_s - begin_s,
-        _ => begin.elapsed().as_secs_f64(),
-    };
-    Ok((seconds, found.iterations))
-}
-
-/// Processor time of this thread, where the kernel tells it. A calibration runs on one thread.
-fn thread_s() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(nanoseconds * 1e-9)
-}
-
-/// The largest memory that the process held since this was made.
-struct Peak;
-
-impl Peak {
-    fn reset() -> Option<Self> {
-        // 5 resets the peak resident set size, proc(5).
-        std::fs::write("/proc/self/clear_refs", "5").ok()?;
-        Some(Self)
-    }
-
-    fn read_mb(&self) -> Option<f64> {
-        let status = std::fs::read_to_string("/proc/self/status").ok()?;
-        let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-        let kibibytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-        Some(kibibytes * 1024.0 / 1e6)
-    }
+    let (found, seconds) = on_one_core(|| {
+        calibrate(
+            &simulation.record,
+            &simulation.bench,
+            &Options::default(),
+            |_| (),
+        )
+    });
+    Ok((seconds, found?.iterations))
 }

@@ -1,0 +1,89 @@
+//! What a diagnosis takes, and that it is the same each time.
+
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_truth::{Coefficients, Hidden, Scenario, Simulation, simulate};
+
+use super::Error;
+use crate::cost::{Peak, on_one_core};
+use crate::figure::Figure;
+
+const THREE_DAYS_S: f64 = 3.0 * 86_400.0;
+
+/// Of three days sampled each minute, s.
+const MINUTES_S: f64 = 1.0;
+
+/// Of three days sampled each second: s, and memory of the process, MB.
+const SECONDS_S: f64 = 30.0;
+const SECONDS_MB: f64 = 1000.0;
+
+pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let minutes = simulation(60.0)?;
+    let (first, minutes_s) = told(&minutes)?;
+    let (second, again_s) = told(&minutes)?;
+    let mut time = Figure::within(
+        "three days at 60 s with a cause, whole diagnosis on one core",
+        [0.0, MINUTES_S],
+        minutes_s.min(again_s),
+    )
+    .over(2, "1");
+    time.target = format!("<= {MINUTES_S} s");
+    time.measured += " s";
+    let same = Figure::truth(
+        "two diagnoses of one record are the same to the last bit",
+        first == second,
+    );
+    if small {
+        // Times on a machine that does other work as well say little: shown, not judged.
+        time.holds = None;
+        return Ok(vec![time, same]);
+    }
+    let seconds = simulation(1.0)?;
+    let rows = seconds.record.len();
+    let peak = Peak::reset();
+    let (_, seconds_s) = told(&seconds)?;
+    // Where the kernel does not tell, nothing was measured, and so nothing holds.
+    let peak_mb = peak.and_then(|peak| peak.read_mb()).unwrap_or(f64::NAN);
+    let mut long = Figure::within(
+        &format!("three days at 1 s with a cause, {rows} rows, on one core"),
+        [0.0, SECONDS_S],
+        seconds_s,
+    );
+    long.target = format!("<= {SECONDS_S} s");
+    long.measured = format!("{seconds_s:.1} s");
+    let mut memory = Figure::within(
+        "the same: peak memory of the process",
+        [0.0, SECONDS_MB],
+        peak_mb,
+    );
+    memory.target = format!("<= {SECONDS_MB} MB");
+    memory.measured = format!("{peak_mb:.0} MB");
+    Ok(vec![time, same, long, memory])
+}
+
+/// A term of 14 standard deviations at one row a minute.
+fn simulation(interval_s: f64) -> Result<Simulation, Error> {
+    Ok(simulate(&Scenario {
+        seed: 1,
+        coefficients: Coefficients::PAPER_LIKE,
+        interval_s,
+        duration_s: THREE_DAYS_S - interval_s,
+        hidden: vec![Hidden::new("gyro_y.g_z", &[("size", 1e-3)])?],
+        ..Scenario::default()
+    })?)
+}
+
+/// All numbers of a diagnosis, and its time, s.
+fn told(simulation: &Simulation) -> Result<(String, f64), Error> {
+    let options = DiagnoseOptions::default();
+    let (found, seconds) =
+        on_one_core(|| diagnose(&simulation.record, &simulation.bench, &options));
+    let found = found?;
+    let all = (
+        (&found.findings, &found.unnamed, &found.noise_findings),
+        (&found.ranking, found.threshold, &found.acceptances),
+        (&found.gain, &found.noise, &found.remainder),
+        found.nominal.values(),
+    );
+    // Numbers are written with as many digits as tell them from all others.
+    Ok((format!("{all:?}"), seconds))
+}
