@@ -228,8 +228,8 @@ pub fn diagnose<'a>(
             let extended = judged.extended.as_ref().unwrap_or(&searched.fitted);
             let (noise, accel_noise_g) = (&noise_model, bench.accel_noise_g);
             Some(gain(
-                &nominal,
-                (extended, scores),
+                [&nominal, extended],
+                scores,
                 record,
                 noise,
                 accel_noise_g,

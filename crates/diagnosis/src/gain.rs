@@ -12,7 +12,7 @@ use gyrocal_record::Record;
 pub use accepted::Acceptance;
 pub(crate) use accepted::judge;
 pub use later::{Compensation, Validation, validate};
-use score::{BLOCKS, block_log_scores};
+use score::BLOCKS;
 
 /// 97.5 % point of the normal distribution.
 const NORMAL_97_5: f64 = 1.959_963_984_540_054;
@@ -74,19 +74,20 @@ impl Gain {
     }
 }
 
-/// Measures what `extended`, with these log scores of the blocks, gains over `nominal` on the record
-/// both were fitted to with the same noise, of which `accel_noise_g` is declared.
+/// Measures what the second model gains over the first, the nominal one, on the record both were
+/// fitted to with the same noise, of which `accel_noise_g` is declared; `scores` are the log scores
+/// of its blocks with each.
 ///
 /// # Errors
 /// As [`Extended::log_evidence_without`].
 pub(crate) fn gain(
-    nominal: &Extended<'_>,
-    (extended, scores): (&Extended<'_>, [f64; BLOCKS]),
+    [nominal, extended]: [&Extended<'_>; 2],
+    [before, after]: [[f64; BLOCKS]; 2],
     record: &Record,
     noise: &NoiseModel,
     accel_noise_g: f64,
 ) -> Result<Gain, CalibrationError> {
-    let scores = scores.into_iter().zip(block_log_scores(nominal)?);
+    let scores = after.iter().zip(before);
     let squares = noise.accel_ratio.iter().map(|ratio| ratio * ratio);
     Ok(Gain {
         block_log_score_nats: scores.map(|(after, before)| after - before).collect(),

@@ -21,8 +21,9 @@ pub struct Acceptance {
 pub(crate) struct Judged<'a> {
     /// The extended model; `None` if no cause gains.
     pub(crate) extended: Option<Extended<'a>>,
-    /// Log scores of the blocks with the extended model, or, if no cause gains, with all causes.
-    pub(crate) scores: Option<[f64; BLOCKS]>,
+    /// Log scores of the blocks with the nominal model, and with the extended one or, if no cause
+    /// gains, with all causes; `None` without causes.
+    pub(crate) scores: Option<[[f64; BLOCKS]; 2]>,
     /// In the order of the findings.
     pub(crate) acceptances: Vec<Acceptance>,
 }
@@ -43,7 +44,18 @@ pub(crate) fn judge<'a>(
             .fitted
             .refitted(&searched.extension_with(record, kept))
     };
+    if count == 0 {
+        return Ok(Judged {
+            extended: None,
+            scores: None,
+            acceptances: Vec::new(),
+        });
+    }
+    let before = block_log_scores(nominal)?;
     let mut told: Vec<(Vec<bool>, [f64; BLOCKS])> = Vec::new();
+    if searched.unnamed.is_empty() {
+        told.push((vec![false; count], before));
+    }
     let acceptances = sieve(count, |kept| {
         let known = told.iter().find(|(other, _)| other == kept);
         let scores = match known {
@@ -51,7 +63,7 @@ pub(crate) fn judge<'a>(
             // What cannot be fitted without a cause is held against the nominal model.
             None => match fit(kept) {
                 Ok(fit) => block_log_scores(&fit)?,
-                Err(_) => block_log_scores(nominal)?,
+                Err(_) => before,
             },
         };
         if known.is_none() {
@@ -69,7 +81,7 @@ pub(crate) fn judge<'a>(
     let told = told.into_iter().find(|(other, _)| *other == kept);
     Ok(Judged {
         extended,
-        scores: told.map(|(_, scores)| scores),
+        scores: told.map(|(_, after)| [before, after]),
         acceptances,
     })
 }
