@@ -87,13 +87,25 @@ impl Extended<'_> {
     /// # Errors
     /// [`CalibrationError::Pass`].
     pub fn beside(&self, further: &[Column]) -> Result<Reduced<3>, CalibrationError> {
-        let extended = self.extension.parameters.iter();
         let own: Vec<usize> = (0..PARAMETERS)
-            .chain(extended.map(|(parameter, _)| *parameter))
+            .chain(self.extension.parameters.iter().map(|(place, _)| *place))
             .collect();
-        // What the columns may follow is active in the fit too.
+        // What the fit has kept is in the order of the model, each parameter once.
+        let mut active = own.clone();
+        active.sort_unstable();
+        active.dedup();
         let tape = self.solution.tapes[0].as_deref();
-        self.reduced(&own, tape, further, |_| ())
+        let mut reduced = self.reduced(&active, tape, further, |_| ())?;
+        let first = active.len() + 1;
+        let columns: Vec<usize> = core::iter::once(0)
+            .chain(
+                own.iter()
+                    .map(|place| active.partition_point(|other| other < place) + 1),
+            )
+            .chain(first..reduced.gram.ncols())
+            .collect();
+        reduced.gram = reduced.gram.select_rows(&columns).select_columns(&columns);
+        Ok(reduced)
     }
 
     fn reduced(
