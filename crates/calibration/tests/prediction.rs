@@ -116,3 +116,39 @@ fn drift_from_the_first_row_is_the_free_run() {
     assert_eq!((later.len(), turn), (10, [0.0; 3]));
     assert!(fit.drift_from(&fit.parameters(), 100..rows + 1).is_err());
 }
+
+/// The same products by two ways, one of them from what the fit kept of its passes.
+#[test]
+fn columns_beside_a_fit_are_in_the_order_of_its_values() {
+    let simulation = simulation();
+    let nominal = fitted(&simulation);
+    let place = |id: &str| PARAMETERS.iter().position(|p| p.id == id).unwrap();
+    // Not in the order of the model.
+    let later = ["gyro_z.g_xy", "accel_y.scale", "gyro_x.g_y"].map(place);
+    assert!(!later.is_sorted());
+    let extension = Extension {
+        parameters: later.map(|place| (place, f64::INFINITY)).to_vec(),
+        ..nominal.extension().clone()
+    };
+    let fit = nominal.refitted(&extension).unwrap();
+    let onset = [gyrocal_calibration::Column::Onset {
+        parameter: 0,
+        row: 100,
+    }];
+    let all = fit.signatures(&onset, |_| ()).unwrap().gram;
+    let beside = fit.beside(&onset).unwrap().gram;
+    let columns: Vec<usize> = (0..10)
+        .chain(later.map(|place| place + 1))
+        .chain([all.ncols() - 1])
+        .collect();
+    let expected = all.select_rows(&columns).select_columns(&columns);
+    assert_eq!(beside.shape(), expected.shape());
+    for i in 0..columns.len() {
+        for j in 0..columns.len() {
+            let scale = (expected[(i, i)] * expected[(j, j)]).sqrt();
+            // Sums of a thousand products in another order.
+            let error = (beside[(i, j)] - expected[(i, j)]).abs();
+            assert!(error < 1e-12 * scale, "{i} {j}: {error} of {scale}");
+        }
+    }
+}

@@ -112,9 +112,10 @@ pub(crate) fn beyond(
     draw: &mut Draw,
 ) -> Result<Case, CharacteriseError> {
     let clean = simulate(scenario)?;
+    let without = missed(&clean, &Extension::default())?;
     for attempt in 0..TRIES {
         let mut effect = Beyond::draw(number + attempt as u64, scenario, draw);
-        if !scale(scenario, &clean, &mut effect, strength)? {
+        if !scale(scenario, &without, &mut effect, strength)? {
             continue;
         }
         let mut corrections = 0;
@@ -132,9 +133,16 @@ pub(crate) fn beyond(
                     without_unnamed(extended.extension())
                 });
             // Nor can it be told where the named causes cannot be fitted without it.
-            let Ok(length) = length(&clean, &simulation, &named) else {
+            let nothing = named == Extension::default();
+            let without = if nothing {
+                Ok(without.clone())
+            } else {
+                missed(&clean, &named)
+            };
+            let (Ok(without), Ok(with)) = (without, missed(&simulation, &named)) else {
                 break;
             };
+            let length = distance(&without, &with);
             if length < LEAST_LENGTH {
                 break;
             }
@@ -158,7 +166,7 @@ pub(crate) fn beyond(
 /// Brings an effect to a length beside the nominal model; false if it cannot be.
 fn scale(
     scenario: &Scenario,
-    clean: &Simulation,
+    without: &[[f64; 3]],
     effect: &mut Beyond,
     strength: f64,
 ) -> Result<bool, CharacteriseError> {
@@ -166,9 +174,10 @@ fn scale(
         let Ok(simulation) = with(scenario, effect) else {
             return Ok(false);
         };
-        let Ok(length) = length(clean, &simulation, &Extension::default()) else {
+        let Ok(with) = missed(&simulation, &Extension::default()) else {
             return Ok(false);
         };
+        let length = distance(without, &with);
         let off = strength / length;
         if !(1e-4..1e4).contains(&off) {
             return Ok(false);
@@ -191,21 +200,21 @@ fn with(scenario: &Scenario, effect: &Beyond) -> Result<Simulation, Characterise
     })?)
 }
 
-/// What the same model misses of one record and not of the other, in sigmas: the two have the same
-/// noise, and the model is fitted to each.
-fn length(
-    clean: &Simulation,
-    other: &Simulation,
+/// What a model misses of a record, in its standard deviations.
+fn missed(
+    simulation: &Simulation,
     extension: &Extension,
-) -> Result<f64, CharacteriseError> {
-    let whitened = |simulation: &Simulation| -> Result<Vec<[f64; 3]>, CharacteriseError> {
-        let nominal = fitted(simulation)?;
-        if *extension == Extension::default() {
-            return Ok(nominal.whitened()?);
-        }
-        Ok(nominal.refitted(extension)?.whitened()?)
-    };
-    let (without, with) = (whitened(clean)?, whitened(other)?);
+) -> Result<Vec<[f64; 3]>, CharacteriseError> {
+    let nominal = fitted(simulation)?;
+    if *extension == Extension::default() {
+        return Ok(nominal.whitened()?);
+    }
+    Ok(nominal.refitted(extension)?.whitened()?)
+}
+
+/// What the same model misses of one record and not of the other: the two have the same noise, and
+/// the model is fitted to each.
+fn distance(without: &[[f64; 3]], with: &[[f64; 3]]) -> f64 {
     let square: f64 = without
         .iter()
         .flatten()
@@ -214,7 +223,7 @@ fn length(
         .filter(|difference| !difference.is_nan())
         .map(|difference| difference * difference)
         .sum();
-    Ok(square.sqrt())
+    square.sqrt()
 }
 
 /// Lines and curves that the search put into the model are no names: they are what is unexplained.
@@ -263,13 +272,14 @@ mod tests {
             ..scenario(3)
         };
         let clean = simulate(&scenario).unwrap();
+        let without = missed(&clean, &Extension::default()).unwrap();
         let mut scaled = 0;
         for kind in 0..6 {
             let mut effect = Beyond::draw(kind, &scenario, &mut Draw::new(kind, 0));
-            if scale(&scenario, &clean, &mut effect, 10.0).unwrap() {
+            if scale(&scenario, &without, &mut effect, 10.0).unwrap() {
                 scaled += 1;
                 let other = with(&scenario, &effect).unwrap();
-                let length = length(&clean, &other, &Extension::default()).unwrap();
+                let length = distance(&without, &missed(&other, &Extension::default()).unwrap());
                 assert!(
                     (10.0 / REACHED..10.0 * REACHED).contains(&length),
                     "{length}"

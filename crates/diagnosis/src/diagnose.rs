@@ -44,7 +44,7 @@ impl Default for DiagnoseOptions {
 /// Shares of the probability of a false alarm: noise audit, gyro noise, search, remainder. A
 /// twentieth is kept back: thresholds that are drawn and probabilities that hold for long records
 /// are each a little off.
-const SHARES: [f64; 4] = [0.15, 0.05, 0.6, 0.15];
+const SHARES: [f64; 4] = [0.12, 0.03, 0.7, 0.1];
 
 /// Share of what is told of the norm and of averaging; it makes no finding.
 const TOLD: f64 = 0.1;

@@ -21,10 +21,10 @@ const SMALL_RUNS: [(Cell, u64); 11] = [
     (Cell::Single(12), 6),
     (Cell::LogUniform, 4),
     (Cell::Pair, 4),
-    (Cell::Beyond, 4),
     (Cell::Step, 3),
     (Cell::Cubic, 4),
     (Cell::Azimuth, 3),
+    (Cell::Beyond, 4),
 ];
 
 /// All figures of the topic.

@@ -6,7 +6,7 @@ use gyrocal_calibration::{Extended, NoiseModel, Options, Run, pass, settings};
 use gyrocal_record::{Bench, Record};
 
 use super::DiagnoseError;
-use crate::noise::{AuditOptions, DeclaredNoise, NoiseAudit, audit_noise};
+use crate::noise::{AuditOptions, DeclaredNoise, NoiseAudit, audit_noise, runs};
 use crate::series::Innovations;
 
 /// The nominal model of a record with the noise that its audit left.
@@ -75,10 +75,12 @@ fn believed(audit: &NoiseAudit, record: &Record) -> NoiseModel {
     }
 }
 
-/// The audit does not look at the first rows, where the filter has not settled: values there
-/// whose smoothed residual stands off those of its neighbours by more than this get no weight.
+/// The audit does not look at the first rows of a record and of what follows a gap, where the filter
+/// has not settled: values there whose smoothed residual stands off those of its neighbours by more
+/// than this get no weight.
 const STANDS_OFF: f64 = 7.0;
 const EARLY_ROWS: usize = 48;
+const ROWS_AFTER_GAP: usize = 8;
 
 fn leave_out_early(
     noise_model: &mut NoiseModel,
@@ -86,11 +88,18 @@ fn leave_out_early(
     fitted: &Extended<'_>,
     noise_g: f64,
 ) {
-    let rows = record.len().min(EARLY_ROWS);
+    let early = runs(&record.time_s).into_iter().flat_map(|run| {
+        let rows = if run.start == 0 {
+            EARLY_ROWS
+        } else {
+            ROWS_AFTER_GAP
+        };
+        run.start..(run.start + rows).min(run.end)
+    });
     let predicted_g = fitted.predicted_g();
     let residual =
         |row: usize, axis: usize| (record.accel_g[row][axis] - predicted_g[row][axis]) / noise_g;
-    for row in 0..rows {
+    for row in early {
         for axis in 0..3 {
             let from = row.saturating_sub(4);
             let to = (row + 5).min(record.len());

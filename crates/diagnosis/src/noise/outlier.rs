@@ -50,6 +50,13 @@ impl Search {
     }
 }
 
+/// The first row of a run that is judged. With the first samples after a gap the filter makes up for
+/// it; until it has, they stand off their neighbours.
+fn begin(run: &Range<usize>, first: usize) -> usize {
+    let after_gap = if run.start > 0 { REACH } else { 0 };
+    (run.start + after_gap).max(first)
+}
+
 /// Searches a series (unit: declared standard deviation; `NaN` is missing), run by run, from row
 /// `first` on. An outlier is a row, its residual and that over its standard deviation.
 #[allow(clippy::needless_range_loop)] // rows index several series
@@ -60,7 +67,7 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
         against_neighbours(series[row], masked, row, run)
     };
     for run in runs {
-        for row in run.start.max(first)..run.end {
+        for row in begin(run, first)..run.end {
             residuals[row] = judge(&masked, row, run);
         }
     }
@@ -77,7 +84,7 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
         loop {
             let mut found = Vec::new();
             for (index, run) in runs.iter().enumerate() {
-                for row in run.start.max(first)..run.end {
+                for row in begin(run, first)..run.end {
                     let suspect = |row: usize| -> f64 {
                         if masked[row].is_nan() {
                             0.0
@@ -105,8 +112,8 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
             }
             for (row, index) in &found {
                 let run = &runs[*index];
-                for other in row.saturating_sub(REACH).max(run.start.max(first))
-                    ..(row + REACH + 1).min(run.end)
+                for other in
+                    row.saturating_sub(REACH).max(begin(run, first))..(row + REACH + 1).min(run.end)
                 {
                     residuals[other] = judge(&masked, other, run);
                 }
