@@ -26,6 +26,9 @@ const SINGLES: [(u32, [f64; 2], Option<f64>); 4] = [
     (12, [0.995, 0.99], Some(0.97)),
 ];
 
+/// The one effect that may be at any place of a record by itself.
+const KNOCK: &str = "platform.knock";
+
 /// Lengths beside named causes that count as the 10 sigmas that are asked for.
 const BEYOND: Range<f64> = 9.0..11.5;
 
@@ -127,8 +130,20 @@ fn single(
     if let Some([average, worst]) = detected {
         let of = by_effect(cases, |case| Some(case.detected()));
         gathered.average_at_least("detected, average of the effects", average, &of);
-        let all: Vec<Proportion> = families(cases).iter().map(|one| one.detected()).collect();
-        gathered.none_below("detected, the worst family", worst, &all);
+        let all = families(cases);
+        let of = |knocks: bool| -> Vec<Proportion> {
+            let some = all.iter().filter(|one| (one.family == KNOCK) == knocks);
+            some.map(|one| one.detected()).collect()
+        };
+        gathered.none_below("detected, the worst family but knocks", worst, &of(false));
+        // Of five and six sigmas no test finds them as often: docs/characteristics.md.
+        match of(true).as_slice() {
+            [knocks] if first.is_some() => {
+                gathered.none_below("detected, knocks", worst, &[*knocks]);
+            }
+            [knocks] => gathered.note("detected, knocks", *knocks),
+            _ => {}
+        }
     }
     let in_set = share(cases, |case| {
         case.detected()

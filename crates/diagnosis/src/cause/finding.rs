@@ -7,7 +7,7 @@ use gyrocal_record::Record;
 use super::bank::{Bank, Joint, Products};
 use super::family::{Candidate, Family, Plan, axis_of, equivalent_to, jump, parameter, with_shape};
 use super::null::{Normals, Null};
-use super::score::Scores;
+use super::score::{Best, RICHER, Scores};
 
 /// Rivals within this difference of penalised statistics belong to the named set: twice a
 /// log-likelihood ratio. Over simulated records with causes five standard deviations large the
@@ -63,9 +63,12 @@ pub(super) struct Accepted {
     pub(super) p_value: f64,
     /// What its statistic loses for having been looked for in every step.
     pub(super) searched: f64,
+    /// The same with what searching over onsets or time constants reaches.
+    pub(super) penalty: f64,
 }
 
 /// A model with accepted effects at its best fit, and what its signatures say.
+#[derive(Clone)]
 pub(super) struct Stage<'a> {
     pub(super) fitted: Extended<'a>,
     /// With all that is in the model projected out.
@@ -76,6 +79,7 @@ pub(super) struct Stage<'a> {
 }
 
 /// Where an effect of the model is.
+#[derive(Clone)]
 struct Own {
     /// Its values among those of the fit.
     places: Vec<usize>,
@@ -131,16 +135,24 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// What is to be said of one accepted effect, the others being in the model, and its statistic as
-/// the test takes it.
-pub(super) fn finding(
+/// What is to be said of one accepted effect, the others being in the model.
+pub(super) struct Told {
+    pub(super) finding: Finding,
+    /// Its statistic as the test takes it.
+    pub(super) tested: f64,
+    /// An effect that would be named in its place, and by how much it is better.
+    pub(super) better: Option<(Best, f64)>,
+}
+
+/// Tells of one accepted effect, the others being in the model.
+pub(super) fn tell(
     stage: &Stage<'_>,
     plan: &Plan,
     record: &Record,
     accepted: &[Accepted],
     index: usize,
     normals: &mut Normals,
-) -> Result<(Finding, f64), CalibrationError> {
+) -> Result<Told, CalibrationError> {
     let fitted = &stage.fitted;
     let own = &accepted[index];
     let family = &plan.families[own.family];
@@ -181,6 +193,13 @@ pub(super) fn finding(
     } else {
         (scores.penalised(own.family), scores.tested(own.family))
     };
+    // One that explains more since others are in the model.
+    let better = (0..families.len())
+        .filter(|other| *other != own.family)
+        .map(|other| (other, scores.penalised(other) - best))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(_, advantage)| *advantage > RICHER)
+        .and_then(|(other, advantage)| Some((scores.best[other]?, advantage)));
     let mut rivals: Vec<Rival> = (0..families.len())
         .filter(|other| {
             *other != own.family
@@ -231,7 +250,11 @@ pub(super) fn finding(
         rivals,
         equivalents,
     };
-    Ok((finding, tested))
+    Ok(Told {
+        finding,
+        tested,
+        better,
+    })
 }
 
 fn from_joint(effect: &'static gyrocal::EffectRow, joint: &Joint) -> Vec<FoundParameter> {

@@ -4,11 +4,11 @@ use gyrocal_calibration::{CalibrationError, Extended, Extension};
 use gyrocal_record::{Bench, Record};
 
 use super::family::{Family, Plan, Unavailable, equivalent_to, extend};
-use super::finding::{Accepted, Finding, Stage, finding};
+use super::finding::{Accepted, Finding, Stage, tell};
 use super::knock;
 use super::null::{Normals, Null};
 use super::refine::refined;
-use super::score::{RICHER, Ranked, Scores};
+use super::score::{Best, RICHER, Ranked, Scores};
 use super::unnamed::{self, Unnamed};
 
 /// How causes are looked for.
@@ -72,6 +72,44 @@ impl Searched<'_> {
     }
 }
 
+/// When a random walk may be named: it goes where several other causes lead, too.
+enum Walks<'a> {
+    /// Not before those were looked for.
+    Wait,
+    /// They are being looked for.
+    Left(Box<Walking<'a>>),
+    /// Now.
+    Take,
+}
+
+/// Where a search stood when a random walk would have been named.
+struct Walking<'a> {
+    /// What the walk explains, as it compares with other causes.
+    score: f64,
+    threshold: f64,
+    stage: Stage<'a>,
+    accepted: Vec<Accepted>,
+    unnamed: Vec<Unnamed>,
+}
+
+impl Walking<'_> {
+    /// What was found instead explains: twice the logarithm of the likelihood, less what searching
+    /// reaches and, for each cause but the first, what one must reach. `None` if nothing was found.
+    fn instead(
+        &self,
+        stage: &Stage<'_>,
+        accepted: &[Accepted],
+        unnamed: &[Unnamed],
+    ) -> Option<f64> {
+        let found = &accepted[self.accepted.len()..];
+        let count = found.len() + unnamed.len() - self.unnamed.len();
+        let penalties: f64 = found.iter().map(|accepted| accepted.penalty).sum();
+        let more = count.checked_sub(1)? as f64;
+        let explained = self.stage.fitted.cost() - stage.fitted.cost();
+        Some(explained - penalties - more * self.threshold)
+    }
+}
+
 /// Looks for causes in a record, from the nominal model at its best fit.
 ///
 /// # Errors
@@ -92,6 +130,7 @@ pub fn search<'a>(
     let mut unnamed: Vec<Unnamed> = Vec::new();
     let mut seeking = true;
     let mut first: Option<(Vec<Ranked>, f64)> = None;
+    let mut walks = Walks::Wait;
     loop {
         let Stage { fitted, bank, .. } = &stage;
         let taken: Vec<usize> = accepted
@@ -104,7 +143,8 @@ pub fn search<'a>(
             .iter()
             .enumerate()
             .map(|(index, family)| {
-                family.unless(taken.contains(&index) || equivalent_to(&plan, index, &taken))
+                let taken = taken.contains(&index) || equivalent_to(&plan, index, &taken);
+                family.unless(taken || family.walk.is_some() && matches!(walks, Walks::Left(_)))
             })
             .collect();
         let null = Null::draw(bank, &families, &mut normals);
@@ -119,9 +159,13 @@ pub fn search<'a>(
         // there, or if it explains so much more that a name would be a false one. A random walk
         // would swallow any curve.
         let stands = |other: &Unnamed| {
+            let explains_more = |best: Best| {
+                // Several causes together look like a line of the day.
+                !other.is_of_the_day(record)
+                    && other.equivalent() > scores.penalised(best.family) + RICHER
+            };
             other.ln_probability < options.unnamed_probability.ln()
-                && best
-                    .is_none_or(|best| other.equivalent() > scores.penalised(best.family) + RICHER)
+                && best.is_none_or(explains_more)
         };
         // Of what bends or switches with a force, a polynomial or one knock takes up most.
         let curves = !accepted.is_empty()
@@ -149,6 +193,28 @@ pub fn search<'a>(
                 }
             }
         }
+        match (best, walks) {
+            (Some(best), Walks::Wait) if families[best.family].walk.is_some() => {
+                walks = Walks::Left(Box::new(Walking {
+                    score: scores.penalised(best.family) - RICHER,
+                    threshold,
+                    stage: stage.clone(),
+                    accepted: accepted.clone(),
+                    unnamed: unnamed.clone(),
+                }));
+                continue;
+            }
+            (None, Walks::Left(walking)) => {
+                let instead = walking.instead(&stage, &accepted, &unnamed);
+                if instead.is_none_or(|instead| instead < walking.score) {
+                    (stage, accepted) = (walking.stage, walking.accepted);
+                    unnamed = walking.unnamed;
+                }
+                walks = Walks::Take;
+                continue;
+            }
+            (_, as_before) => walks = as_before,
+        }
         let Some(best) = best else {
             break;
         };
@@ -158,6 +224,7 @@ pub fn search<'a>(
             shape,
             p_value: null.probability(scores.largest()),
             searched: best.searched,
+            penalty: best.searched + null.penalties[best.family],
         });
         match fitted
             .refitted(&extension(&base, &plan, record, &accepted, &unnamed))
@@ -172,15 +239,47 @@ pub fn search<'a>(
         }
     }
     let (ranking, threshold) = first.unwrap_or_default();
-    // What was found first may be explained by what was found later.
+    // What was found first may be explained by what was found later, or may have another name
+    // beside it.
+    let mut exchanges = 0;
     let findings = loop {
         let mut findings = Vec::with_capacity(accepted.len());
         let mut weakest: Option<(usize, f64)> = None;
+        let mut better: Option<(usize, Best, f64)> = None;
         for index in 0..accepted.len() {
-            let (found, strength) = finding(&stage, &plan, record, &accepted, index, &mut normals)?;
-            findings.push(found);
-            if weakest.is_none_or(|(_, least)| strength < least) {
-                weakest = Some((index, strength));
+            let told = tell(&stage, &plan, record, &accepted, index, &mut normals)?;
+            findings.push(told.finding);
+            if weakest.is_none_or(|(_, least)| told.tested < least) {
+                weakest = Some((index, told.tested));
+            }
+            if let Some((other, advantage)) = told.better
+                && better.is_none_or(|(.., most)| advantage > most)
+            {
+                better = Some((index, other, advantage));
+            }
+        }
+        if let Some((index, other, _)) = better
+            && exchanges < MOST_EFFECTS
+        {
+            exchanges += 1;
+            let mut others = accepted.clone();
+            let own = others.remove(index);
+            let without = extension(&base, &plan, record, &others, &unnamed);
+            let exchanged = stage.fitted.refitted(&without).and_then(|fitted| {
+                let mut exchanged = accepted.clone();
+                exchanged[index] = Accepted {
+                    family: other.family,
+                    shape: refined(&fitted, record, &plan, &other)?,
+                    searched: other.searched,
+                    ..own
+                };
+                let with = extension(&base, &plan, record, &exchanged, &unnamed);
+                let stage = Stage::new(fitted.refitted(&with)?, &plan, record, &exchanged)?;
+                Ok((stage, exchanged))
+            });
+            if let Ok(exchanged) = exchanged {
+                (stage, accepted) = exchanged;
+                continue;
             }
         }
         match weakest {

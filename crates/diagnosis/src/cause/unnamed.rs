@@ -46,6 +46,8 @@ impl core::fmt::Display for Channel {
     }
 }
 
+const SIDEREAL_DAY_H: f64 = 23.934_47;
+
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// How it goes.
@@ -105,6 +107,20 @@ impl Unnamed {
     /// The value of chi-square with one degree of freedom that is as rare.
     pub(super) fn equivalent(&self) -> f64 {
         single_equivalent(self.ln_probability)
+    }
+
+    /// Whether it is a line with a period that terms of the catalogue have: a sidereal day, its
+    /// half or its third, as far as the record can tell.
+    pub(super) fn is_of_the_day(&self, record: &Record) -> bool {
+        let (Pattern::Line { period_h }, [first_s, .., last_s]) =
+            (self.pattern, record.time_s.as_slice())
+        else {
+            return false;
+        };
+        let half_told_per_h = 1800.0 / (last_s - first_s);
+        (1..=3).any(|harmonic| {
+            (f64::from(harmonic) / SIDEREAL_DAY_H - 1.0 / period_h).abs() < half_told_per_h
+        })
     }
 
     /// In words.
