@@ -94,7 +94,9 @@ struct Walking<'a> {
 
 impl Walking<'_> {
     /// What was found instead explains: twice the logarithm of the likelihood, less what searching
-    /// reaches and, for each cause but the first, what one must reach. `None` if nothing was found.
+    /// reaches and, for each cause but the first, what one must reach. `None` if there are not
+    /// several, as one alone has been compared with the walk before, or not without what has no
+    /// name.
     fn instead(
         &self,
         stage: &Stage<'_>,
@@ -102,11 +104,12 @@ impl Walking<'_> {
         unnamed: &[Unnamed],
     ) -> Option<f64> {
         let found = &accepted[self.accepted.len()..];
-        let count = found.len() + unnamed.len() - self.unnamed.len();
+        if found.len() < 2 || unnamed.len() > self.unnamed.len() {
+            return None;
+        }
         let penalties: f64 = found.iter().map(|accepted| accepted.penalty).sum();
-        let more = count.checked_sub(1)? as f64;
-        let explained = self.stage.fitted.cost() - stage.fitted.cost();
-        Some(explained - penalties - more * self.threshold)
+        let more = (found.len() - 1) as f64 * self.threshold;
+        Some(self.stage.fitted.cost() - stage.fitted.cost() - penalties - more)
     }
 }
 
@@ -259,6 +262,7 @@ pub fn search<'a>(
             }
         }
         if let Some((index, other, _)) = better
+            && accepted.len() > 1
             && exchanges < MOST_EFFECTS
         {
             exchanges += 1;
