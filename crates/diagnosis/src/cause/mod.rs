@@ -19,12 +19,14 @@ mod bound;
 mod curve;
 mod family;
 mod finding;
+mod forward;
 mod knock;
 mod line;
 mod null;
 mod refine;
 mod score;
 mod search;
+mod settle;
 mod unnamed;
 mod walk;
 

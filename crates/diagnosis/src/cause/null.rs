@@ -227,3 +227,32 @@ pub(crate) fn normal(generator: &mut ChaCha8Rng) -> f64 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scores_of_panels_are_the_whole_product() {
+        // Two panels and a part of one.
+        let count = 2 * PANEL + 5;
+        let lower = DMatrix::from_fn(count, count, |i, j| {
+            if j <= i {
+                1.0 / (1.0 + i as f64 + j as f64)
+            } else {
+                0.0
+            }
+        });
+        let mut normals = Normals::new(7);
+        let scores = normals.scores(&lower);
+        let drawn =
+            DMatrix::from_column_slice(DRAWS, count, &normals.values[DRAWS..(count + 1) * DRAWS]);
+        let difference = (scores - drawn * lower.transpose()).amax();
+        // Sums of 69 products of order one in another order.
+        assert!(difference < 1e-13, "{difference}");
+        // More signatures do not change the deviates of the first.
+        let before = normals.values[..DRAWS].to_vec();
+        normals.grow(count + 10);
+        assert_eq!(normals.knock(), before);
+    }
+}

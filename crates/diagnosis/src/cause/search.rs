@@ -1,15 +1,15 @@
-//! The search for causes: forward, with a full fit after each that is found.
+//! The search for causes: what it is asked, how far it is, and what it gives.
 
 use gyrocal_calibration::{CalibrationError, Extended, Extension};
 use gyrocal_record::{Bench, Record};
 
-use super::family::{Family, Plan, Unavailable, equivalent_to, extend};
-use super::finding::{Accepted, Finding, Stage, tell};
-use super::knock;
-use super::null::{Normals, Null};
-use super::refine::refined;
-use super::score::{Best, RICHER, Ranked, Scores};
-use super::unnamed::{self, Unnamed};
+use super::family::{Plan, Unavailable, extend};
+use super::finding::{Accepted, Finding, Stage};
+use super::forward::{Tested, forward};
+use super::null::Normals;
+use super::score::Ranked;
+use super::settle::settle;
+use super::unnamed::Unnamed;
 
 /// How causes are looked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl Default for SearchOptions {
 }
 
 /// More causes than this in one record mean that the catalogue does not hold the one there is.
-const MOST_EFFECTS: usize = 6;
+pub(super) const MOST_EFFECTS: usize = 6;
 
 /// What a search found.
 pub struct Searched<'a> {
@@ -72,47 +72,6 @@ impl Searched<'_> {
     }
 }
 
-/// When a random walk may be named: it goes where several other causes lead, too.
-enum Walks<'a> {
-    /// Not before those were looked for.
-    Wait,
-    /// They are being looked for.
-    Left(Box<Walking<'a>>),
-    /// Now.
-    Take,
-}
-
-/// Where a search stood when a random walk would have been named.
-struct Walking<'a> {
-    /// What the walk explains, as it compares with other causes.
-    score: f64,
-    threshold: f64,
-    stage: Stage<'a>,
-    accepted: Vec<Accepted>,
-    unnamed: Vec<Unnamed>,
-}
-
-impl Walking<'_> {
-    /// What was found instead explains: twice the logarithm of the likelihood, less what searching
-    /// reaches and, for each cause but the first, what one must reach. `None` if there are not
-    /// several, as one alone has been compared with the walk before, or not without what has no
-    /// name.
-    fn instead(
-        &self,
-        stage: &Stage<'_>,
-        accepted: &[Accepted],
-        unnamed: &[Unnamed],
-    ) -> Option<f64> {
-        let found = &accepted[self.accepted.len()..];
-        if found.len() < 2 || unnamed.len() > self.unnamed.len() {
-            return None;
-        }
-        let penalties: f64 = found.iter().map(|accepted| accepted.penalty).sum();
-        let more = (found.len() - 1) as f64 * self.threshold;
-        Some(self.stage.fitted.cost() - stage.fitted.cost() - penalties - more)
-    }
-}
-
 /// Looks for causes in a record, from the nominal model at its best fit.
 ///
 /// # Errors
@@ -124,190 +83,89 @@ pub fn search<'a>(
     options: &SearchOptions,
 ) -> Result<Searched<'a>, CalibrationError> {
     let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
-    let plan = Plan::new(record, bench, &also);
-    let base = nominal.extension().clone();
-    let mut normals = Normals::new(options.seed);
-    let mut stage = Stage::new(nominal, &plan, record, &[])?;
-    let mut accepted: Vec<Accepted> = Vec::new();
-    let mut inseparable: Vec<usize> = Vec::new();
-    let mut unnamed: Vec<Unnamed> = Vec::new();
-    let mut seeking = true;
-    let mut first: Option<(Vec<Ranked>, f64)> = None;
-    let mut walks = Walks::Wait;
-    loop {
-        let Stage { fitted, bank, .. } = &stage;
-        let taken: Vec<usize> = accepted
-            .iter()
-            .map(|accepted| accepted.family)
-            .chain(inseparable.iter().copied())
-            .collect();
-        let families: Vec<Family> = plan
-            .families
-            .iter()
-            .enumerate()
-            .map(|(index, family)| {
-                let taken = taken.contains(&index) || equivalent_to(&plan, index, &taken);
-                family.unless(taken || family.walk.is_some() && matches!(walks, Walks::Left(_)))
-            })
-            .collect();
-        let null = Null::draw(bank, &families, &mut normals);
-        let jumps = fitted.jumps()?;
-        let scores = Scores::of(bank, &families, &null, knock::best(&jumps, record));
-        let threshold = null.threshold(options.false_alarm_probability);
-        first.get_or_insert_with(|| (scores.ranking(&families), threshold));
-        let best = scores
-            .named(&families)
-            .filter(|_| scores.largest() > threshold && accepted.len() < MOST_EFFECTS);
-        // What the catalogue has no name for goes into the model without one: if nothing else is
-        // there, or if it explains so much more that a name would be a false one. A random walk
-        // would swallow any curve.
-        let stands = |other: &Unnamed| {
-            let explains_more = |best: Best| {
-                // Several causes together look like a line of the day.
-                !other.is_of_the_day(record)
-                    && other.equivalent() > scores.penalised(best.family) + RICHER
-            };
-            other.ln_probability < options.unnamed_probability.ln()
-                && best.is_none_or(explains_more)
-        };
-        // Of what bends or switches with a force, a polynomial or one knock takes up most.
-        let curves = !accepted.is_empty()
-            || best.is_none_or(|best| {
-                let family = &families[best.family];
-                family.walk.is_some() || family.knock
-            });
-        if seeking
-            && unnamed.len() < MOST_EFFECTS
-            && let Some(other) = unnamed::strongest(fitted, record, &jumps, curves, stands)?
-        {
-            unnamed.push(other);
-            match fitted
-                .refitted(&extension(&base, &plan, record, &accepted, &unnamed))
-                .and_then(|fitted| Stage::new(fitted, &plan, record, &accepted))
-            {
-                Ok(next) => {
-                    stage = next;
-                    continue;
-                }
-                // What cannot be fitted beside the others is left to the tests of what remains.
-                Err(_) => {
-                    unnamed.pop();
-                    seeking = false;
-                }
-            }
-        }
-        match (best, walks) {
-            (Some(best), Walks::Wait) if families[best.family].walk.is_some() => {
-                walks = Walks::Left(Box::new(Walking {
-                    score: scores.penalised(best.family) - RICHER,
-                    threshold,
-                    stage: stage.clone(),
-                    accepted: accepted.clone(),
-                    unnamed: unnamed.clone(),
-                }));
-                continue;
-            }
-            (None, Walks::Left(walking)) => {
-                let instead = walking.instead(&stage, &accepted, &unnamed);
-                if instead.is_none_or(|instead| instead < walking.score) {
-                    (stage, accepted) = (walking.stage, walking.accepted);
-                    unnamed = walking.unnamed;
-                }
-                walks = Walks::Take;
-                continue;
-            }
-            (_, as_before) => walks = as_before,
-        }
-        let Some(best) = best else {
-            break;
-        };
-        let shape = refined(fitted, record, &plan, &best)?;
-        accepted.push(Accepted {
-            family: best.family,
-            shape,
-            p_value: null.probability(scores.largest()),
-            searched: best.searched,
-            penalty: best.searched + null.penalties[best.family],
-        });
-        match fitted
-            .refitted(&extension(&base, &plan, record, &accepted, &unnamed))
-            .and_then(|fitted| Stage::new(fitted, &plan, record, &accepted))
-        {
-            Ok(next) => stage = next,
-            // What cannot be fitted beside the others cannot be told from them.
-            Err(_) => {
-                accepted.pop();
-                inseparable.push(best.family);
-            }
-        }
-    }
-    let (ranking, threshold) = first.unwrap_or_default();
-    // What was found first may be explained by what was found later, or may have another name
-    // beside it.
-    let mut exchanges = 0;
-    let findings = loop {
-        let mut findings = Vec::with_capacity(accepted.len());
-        let mut weakest: Option<(usize, f64)> = None;
-        let mut better: Option<(usize, Best, f64)> = None;
-        for index in 0..accepted.len() {
-            let told = tell(&stage, &plan, record, &accepted, index, &mut normals)?;
-            findings.push(told.finding);
-            if weakest.is_none_or(|(_, least)| told.tested < least) {
-                weakest = Some((index, told.tested));
-            }
-            if let Some((other, advantage)) = told.better
-                && better.is_none_or(|(.., most)| advantage > most)
-            {
-                better = Some((index, other, advantage));
-            }
-        }
-        if let Some((index, other, _)) = better
-            && accepted.len() > 1
-            && exchanges < MOST_EFFECTS
-        {
-            exchanges += 1;
-            let mut others = accepted.clone();
-            let own = others.remove(index);
-            let without = extension(&base, &plan, record, &others, &unnamed);
-            let exchanged = stage.fitted.refitted(&without).and_then(|fitted| {
-                let mut exchanged = accepted.clone();
-                exchanged[index] = Accepted {
-                    family: other.family,
-                    shape: refined(&fitted, record, &plan, &other)?,
-                    searched: other.searched,
-                    ..own
-                };
-                let with = extension(&base, &plan, record, &exchanged, &unnamed);
-                let stage = Stage::new(fitted.refitted(&with)?, &plan, record, &exchanged)?;
-                Ok((stage, exchanged))
-            });
-            if let Ok(exchanged) = exchanged {
-                (stage, accepted) = exchanged;
-                continue;
-            }
-        }
-        match weakest {
-            Some((index, strength))
-                if strength <= threshold && accepted.len() + unnamed.len() > 1 =>
-            {
-                accepted.remove(index);
-                let fewer = extension(&base, &plan, record, &accepted, &unnamed);
-                stage = Stage::new(stage.fitted.refitted(&fewer)?, &plan, record, &accepted)?;
-            }
-            _ => break findings,
-        }
+    let task = Task {
+        plan: Plan::new(record, bench, &also),
+        base: nominal.extension().clone(),
+        record,
+        options,
     };
+    let mut normals = Normals::new(options.seed);
+    let state = State::new(Stage::new(nominal, &task.plan, record, &[])?);
+    let (mut state, Tested { ranking, threshold }) = forward(&task, state, &mut normals)?;
+    let findings = settle(&task, &mut state, threshold, &mut normals)?;
     Ok(Searched {
-        fitted: stage.fitted,
+        fitted: state.stage.fitted,
         findings,
-        unnamed,
+        unnamed: state.unnamed,
         ranking,
         threshold,
-        unavailable: plan.unavailable.clone(),
-        base,
-        plan,
-        accepted,
+        unavailable: task.plan.unavailable.clone(),
+        base: task.base,
+        plan: task.plan,
+        accepted: state.accepted,
     })
+}
+
+/// What is looked for, and where.
+pub(super) struct Task<'t> {
+    pub(super) plan: Plan,
+    /// What the nominal model has beyond the nine coefficients.
+    pub(super) base: Extension,
+    pub(super) record: &'t Record,
+    pub(super) options: &'t SearchOptions,
+}
+
+impl Task<'_> {
+    /// The model with these effects, fitted from where another one is.
+    pub(super) fn fitted<'a>(
+        &self,
+        from: &Extended<'a>,
+        accepted: &[Accepted],
+        unnamed: &[Unnamed],
+    ) -> Result<Extended<'a>, CalibrationError> {
+        from.refitted(&extension(
+            &self.base,
+            &self.plan,
+            self.record,
+            accepted,
+            unnamed,
+        ))
+    }
+
+    /// The same with all its signatures.
+    pub(super) fn stage<'a>(
+        &self,
+        from: &Extended<'a>,
+        accepted: &[Accepted],
+        unnamed: &[Unnamed],
+    ) -> Result<Stage<'a>, CalibrationError> {
+        let fitted = self.fitted(from, accepted, unnamed)?;
+        Stage::new(fitted, &self.plan, self.record, accepted)
+    }
+}
+
+/// How far a search is.
+#[derive(Clone)]
+pub(super) struct State<'a> {
+    pub(super) stage: Stage<'a>,
+    pub(super) accepted: Vec<Accepted>,
+    /// Families that cannot be fitted beside the accepted ones.
+    pub(super) inseparable: Vec<usize>,
+    pub(super) unnamed: Vec<Unnamed>,
+    /// Whether what has no name is still looked for.
+    pub(super) seeking: bool,
+}
+
+impl<'a> State<'a> {
+    fn new(stage: Stage<'a>) -> Self {
+        Self {
+            stage,
+            accepted: Vec::new(),
+            inseparable: Vec::new(),
+            unnamed: Vec::new(),
+            seeking: true,
+        }
+    }
 }
 
 /// The model that all accepted effects make up.
