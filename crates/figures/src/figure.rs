@@ -34,6 +34,16 @@ impl Figure {
         }
     }
 
+    /// A cost that must not be higher than a limit; one that is not a number was not measured, and
+    /// does not hold.
+    pub(crate) fn at_most(name: &str, limit: f64, measured: f64, unit: &str) -> Self {
+        Self {
+            target: format!("<= {limit} {unit}"),
+            measured: format!("{measured:.2} {unit}"),
+            ..Self::within(name, [0.0, limit], measured)
+        }
+    }
+
     /// A figure that is yes or no.
     pub(crate) fn truth(name: &str, measured: bool) -> Self {
         Self {

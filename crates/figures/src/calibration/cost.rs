@@ -49,20 +49,16 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         per_pass_ns.push(seconds * 1e9 / f64::from(*rows) / iterations as f64);
         let peak_mb = peak.and_then(|peak| peak.read_mb());
         if *rows == 1_000_000 {
-            let mut figure = Figure::within("a million samples", [0.0, MILLION_S], seconds);
-            figure.target = format!("<= {MILLION_S} s");
-            figure.measured = format!("{seconds:.1} s, {iterations} steps");
+            let mut figure = Figure::at_most("a million samples", MILLION_S, seconds, "s");
+            figure.measured += &format!(", {iterations} steps");
             figures.push(figure);
             // Where the kernel does not tell, nothing was measured, and so nothing holds.
-            let measured = peak_mb.unwrap_or(f64::NAN);
-            let mut figure = Figure::within(
+            figures.push(Figure::at_most(
                 "a million samples: peak memory of the process",
-                [0.0, MILLION_MB],
-                measured,
-            );
-            figure.target = format!("<= {MILLION_MB} MB");
-            figure.measured = format!("{measured:.0} MB");
-            figures.push(figure);
+                MILLION_MB,
+                peak_mb.unwrap_or(f64::NAN),
+                "MB",
+            ));
         } else {
             figures.push(Figure::note(
                 &format!("{rows} samples"),
@@ -111,13 +107,13 @@ fn three_days(repetitions: usize) -> Result<Figure, Error> {
         })
         .collect::<Result<Vec<f64>, Error>>()?;
     let milliseconds = median(&times);
-    let mut figure = Figure::within(
+    let mut figure = Figure::at_most(
         "three days at 60 s, all passes, on one core: median",
-        [0.0, THREE_DAYS_MS],
+        THREE_DAYS_MS,
         milliseconds,
+        "ms",
     );
-    figure.target = format!("<= {THREE_DAYS_MS} ms");
-    figure.measured = format!("{milliseconds:.1} ms, {steps} steps");
+    figure.measured += &format!(", {steps} steps");
     Ok(figure.over(repetitions, "1"))
 }
 
