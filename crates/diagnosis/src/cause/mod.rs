@@ -12,7 +12,8 @@
 //! of these correlated statistics exceeds under the nominal model is found by drawing from their
 //! joint distribution (`null`). Families are compared after subtracting what each would reach
 //! by searching alone. An effect that is found is put into the model, which is fitted again, and
-//! the search goes on.
+//! the search goes on (`forward`). At its end names are compared once more, each beside all others
+//! (`settle`).
 
 mod bank;
 mod bound;
