@@ -5,7 +5,7 @@ mod several;
 
 use std::fs;
 
-use crate::folder::{Folder, repository};
+use crate::folder::{Folder, example};
 
 const JSON: [&str; 6] = [
     "calibrate",
@@ -18,13 +18,13 @@ const JSON: [&str; 6] = [
 
 /// Header and the first rows of the record that ships, one a minute.
 fn record(rows: usize) -> String {
-    let whole = fs::read_to_string(repository("examples/data/three_days.csv")).unwrap();
+    let whole = example("three_days.csv");
     let lines: Vec<&str> = whole.lines().take(rows + 1).collect();
     lines.join("\n") + "\n"
 }
 
 fn bench() -> String {
-    fs::read_to_string(repository("examples/data/three_days.bench.toml")).unwrap()
+    example("three_days.bench.toml")
 }
 
 /// The message for these two files.

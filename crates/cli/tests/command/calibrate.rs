@@ -2,13 +2,11 @@
 
 mod findings;
 
-use std::fs;
-
 use gyrocal_record::{Bench, CalibrationReport, Record};
 use gyrocal_truth::Scenario;
 use serde_json::Value;
 
-use crate::folder::{Folder, repository};
+use crate::folder::{Folder, example, repository};
 
 const PLAIN: [&str; 4] = ["calibrate", "r.csv", "--bench", "b.toml"];
 const JSON: [&str; 6] = [
@@ -20,16 +18,11 @@ const JSON: [&str; 6] = [
     "o.json",
 ];
 
-/// The files that ship.
-fn shipped(name: &str) -> String {
-    fs::read_to_string(repository("examples/data").join(name)).unwrap()
-}
-
 /// A folder with the record that ships and its bench description.
 fn folder() -> Folder {
     let folder = Folder::new();
-    folder.put("r.csv", shipped("three_days.csv"));
-    folder.put("b.toml", shipped("three_days.bench.toml"));
+    folder.put("r.csv", example("three_days.csv"));
+    folder.put("b.toml", example("three_days.bench.toml"));
     folder
 }
 
@@ -245,12 +238,12 @@ fn the_filter_of_the_paper_does_not_fit_what_it_did_not_simulate() {
 #[test]
 fn missing_values_and_other_priors_are_honoured() {
     let folder = folder();
-    let mut record = Record::parse(&shipped("three_days.csv"), "r.csv").unwrap();
+    let mut record = Record::parse(&example("three_days.csv"), "r.csv").unwrap();
     for row in (0..record.len()).step_by(3) {
         record.accel_g[row] = [f64::NAN; 3];
     }
     record.write(&folder.path("r.csv")).unwrap();
-    let bench = Bench::parse(&shipped("three_days.bench.toml"), "b.toml").unwrap();
+    let bench = Bench::parse(&example("three_days.bench.toml"), "b.toml").unwrap();
     let mut narrow = bench.clone();
     narrow.prior.gg_sigma_deg_per_h_per_g2 = [1e-6; 3];
     narrow.write(&folder.path("b.toml")).unwrap();
@@ -340,5 +333,5 @@ fn a_wrong_command_line_is_a_usage_error() {
         assert!(said.contains(message), "{line}: {said}");
         assert_eq!(folder.names(), ["b.toml", "r.csv"]);
     }
-    assert_eq!(folder.text("r.csv"), shipped("three_days.csv"));
+    assert_eq!(folder.text("r.csv"), example("three_days.csv"));
 }

@@ -20,8 +20,7 @@ const BENCH: &str = "hidden_fault.bench.toml";
 fn folder() -> Folder {
     let folder = Folder::new();
     for name in [RECORD, BENCH] {
-        let shipped = repository("examples/data").join(name);
-        folder.put(name, fs::read(shipped).unwrap());
+        folder.put_example(name);
     }
     folder
 }
@@ -228,10 +227,7 @@ fn pictures_are_written() {
 fn a_clean_record_is_called_clean() {
     let folder = Folder::new();
     for name in ["three_days.csv", "three_days.bench.toml"] {
-        folder.put(
-            name,
-            fs::read(repository("examples/data").join(name)).unwrap(),
-        );
+        folder.put_example(name);
     }
     let arguments = [
         "diagnose",
@@ -278,11 +274,5 @@ fn the_record_that_ships_is_what_its_scenario_gives() {
         "--bench-out",
         BENCH,
     ]);
-    for name in [RECORD, BENCH] {
-        let shipped = repository("examples/data").join(name);
-        assert!(
-            folder.text(name) == fs::read_to_string(shipped).unwrap(),
-            "{name} differs: run the command in the head of the scenario again"
-        );
-    }
+    folder.assert_examples(&[RECORD, BENCH]);
 }

@@ -26,6 +26,21 @@ impl Folder {
         fs::write(self.path(name), content).unwrap();
     }
 
+    /// Copies an example of the repository's.
+    pub(crate) fn put_example(&self, name: &str) {
+        self.put(name, example(name));
+    }
+
+    /// That the files are those of the examples, which a scenario gives.
+    pub(crate) fn assert_examples(&self, names: &[&str]) {
+        for name in names {
+            assert!(
+                self.text(name) == example(name),
+                "{name} differs: run the command in the head of the scenario again"
+            );
+        }
+    }
+
     pub(crate) fn text(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap()
     }
@@ -78,4 +93,14 @@ pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../..")
         .join(path)
+}
+
+/// The same as an argument of the command.
+pub(crate) fn repository_argument(path: &str) -> String {
+    repository(path).display().to_string()
+}
+
+/// An example that ships.
+pub(crate) fn example(name: &str) -> String {
+    fs::read_to_string(repository("examples/data").join(name)).unwrap()
 }

@@ -1,6 +1,6 @@
 //! `gyrocal import` on the recording that ships with the repository.
 
-use crate::folder::{Folder, repository};
+use crate::folder::{Folder, repository, repository_argument};
 
 const LOG: &str = "tests/data/measured/ring_laser_static/imu.csv";
 const DESCRIPTION: &str = "tests/data/measured/ring_laser_static/log.toml";
@@ -21,14 +21,10 @@ fn arguments<'a>(log: &'a str, description: &'a str) -> [&'a str; 11] {
     ]
 }
 
-fn path(name: &str) -> String {
-    repository(name).display().to_string()
-}
-
 #[test]
 fn the_recorded_unit_feels_the_earth_turn() {
     let folder = Folder::new();
-    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let text = folder.succeed(&arguments(&log, &description));
     assert!(
         text.contains("One attitude determines three numbers"),
@@ -73,7 +69,7 @@ fn the_recorded_unit_feels_the_earth_turn() {
 #[test]
 fn the_record_can_be_calibrated_and_determines_what_one_attitude_determines() {
     let folder = Folder::new();
-    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     folder.succeed(&arguments(&log, &description));
     folder.succeed(&[
         "calibrate",
@@ -114,7 +110,7 @@ fn the_record_can_be_calibrated_and_determines_what_one_attitude_determines() {
 #[test]
 fn in_the_axes_of_its_gyros_one_attitude_leaves_seven_of_nine_combinations_undetermined() {
     let folder = Folder::new();
-    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
     folder.succeed(&[
         "calibrate",
@@ -158,7 +154,7 @@ fn in_the_axes_of_its_gyros_one_attitude_leaves_seven_of_nine_combinations_undet
 #[test]
 fn its_diagnosis_names_no_physical_cause_and_says_what_would_pass_unseen() {
     let folder = Folder::new();
-    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     folder.succeed(&arguments(&log, &description));
     folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
     let json: serde_json::Value = serde_json::from_str(&folder.text("d.json")).unwrap();
@@ -185,7 +181,7 @@ fn its_diagnosis_names_no_physical_cause_and_says_what_would_pass_unseen() {
 #[test]
 fn axes_that_belong_to_another_record_are_refused() {
     let folder = Folder::new();
-    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
     let axes = folder.text("a.csv");
     let calibrate = [

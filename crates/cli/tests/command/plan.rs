@@ -12,8 +12,7 @@ const BENCH: &str = "hidden_fault.bench.toml";
 fn folder() -> Folder {
     let folder = Folder::new();
     for name in [RECORD, BENCH] {
-        let shipped = repository("examples/data").join(name);
-        folder.put(name, fs::read(shipped).unwrap());
+        folder.put_example(name);
     }
     folder
 }

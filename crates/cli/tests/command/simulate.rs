@@ -139,13 +139,7 @@ fn the_record_that_ships_is_what_its_scenario_gives() {
         "--bench-out",
         "three_days.bench.toml",
     ]);
-    for name in ["three_days.csv", "three_days.bench.toml"] {
-        let shipped = repository("examples/data").join(name);
-        assert!(
-            folder.text(name) == fs::read_to_string(shipped).unwrap(),
-            "{name} differs: run the command in the head of the scenario again"
-        );
-    }
+    folder.assert_examples(&["three_days.csv", "three_days.bench.toml"]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! `gyrocal tumble` on the recording that ships with the repository.
 
-use crate::folder::{Folder, repository};
+use crate::folder::{Folder, repository, repository_argument};
 
 const LOG: &str = "tests/data/measured/xsens_38_positions/imu_counts.csv";
 const DESCRIPTION: &str = "tests/data/measured/xsens_38_positions/log.toml";
@@ -16,14 +16,10 @@ fn arguments<'a>(log: &'a str, description: &'a str) -> [&'a str; 6] {
     ]
 }
 
-fn path(name: &str) -> String {
-    repository(name).display().to_string()
-}
-
 #[test]
 fn the_nominal_law_of_the_recorded_instrument_is_wrong_and_cross_axis_terms_are_why() {
     let folder = Folder::new();
-    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let text = folder.succeed(&arguments(&log, &description));
     assert!(text.contains("38 static stops"), "{text}");
     let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
@@ -102,7 +98,7 @@ const PNG_WIDTH_PX: u32 = 1200;
 #[test]
 fn causes_are_drawn_as_the_readme_shows_them() {
     let folder = Folder::new();
-    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let arguments = arguments(&log, &description);
     let text = folder.succeed(&[&arguments[..4], &["--figures", "pictures"]].concat());
     assert!(text.contains("pictures: 2 pictures"), "{text}");
@@ -149,7 +145,7 @@ fn a_log_that_is_never_static_is_told() {
         moving += &(fields.join(",") + "\n");
     }
     folder.put("l.csv", moving);
-    let description = path(DESCRIPTION);
+    let description = repository_argument(DESCRIPTION);
     let errors = folder.fail(&arguments("l.csv", &description));
     assert!(errors.contains("static"), "{errors}");
 }
@@ -238,7 +234,7 @@ fn bad_input_is_told() {
 #[test]
 fn stops_can_be_given_and_too_few_are_told() {
     let folder = Folder::new();
-    let (log, description) = (path(LOG), path(DESCRIPTION));
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let errors = folder.fail(&[
         "tumble",
         &log,

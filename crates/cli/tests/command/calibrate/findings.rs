@@ -2,8 +2,8 @@
 
 use gyrocal_record::{CalibrationMethod, CalibrationReport, FitVerdict, Record};
 
-use super::{JSON, folder, report, shipped, truth, unwrapped};
-use crate::folder::Folder;
+use super::{JSON, folder, report, truth, unwrapped};
+use crate::folder::{Folder, example};
 
 #[test]
 fn a_declared_latitude_sigma_is_in_the_sigmas_as_its_silent_bias_says() {
@@ -12,7 +12,7 @@ fn a_declared_latitude_sigma_is_in_the_sigmas_as_its_silent_bias_says() {
     let known = report(&folder);
     let sigma_deg = 0.001;
     let declared = format!("latitude_deg = 48.2\nlatitude_sigma_deg = {sigma_deg}");
-    let bench = shipped("three_days.bench.toml").replace("latitude_deg = 48.2", &declared);
+    let bench = example("three_days.bench.toml").replace("latitude_deg = 48.2", &declared);
     folder.put("b.toml", bench);
     let said = unwrapped(&folder.succeed(&JSON));
     let considered = report(&folder);
@@ -56,7 +56,7 @@ fn a_bias_of_latitude_is_what_another_latitude_gives() {
     folder.succeed(&JSON);
     let first = report(&folder);
     let error_deg = 2e-4;
-    let bench = shipped("three_days.bench.toml").replace("48.2", &format!("{}", 48.2 - error_deg));
+    let bench = example("three_days.bench.toml").replace("48.2", &format!("{}", 48.2 - error_deg));
     folder.put("b.toml", bench);
     folder.succeed(&JSON);
     let second = report(&folder);
@@ -82,7 +82,7 @@ fn a_bias_of_latitude_is_what_another_latitude_gives() {
 #[test]
 fn noise_is_told_beside_the_declared_unless_it_is_not_wanted() {
     let folder = folder();
-    let doubled = shipped("three_days.bench.toml").replace("accel_g = 1e-5", "accel_g = 2e-5");
+    let doubled = example("three_days.bench.toml").replace("accel_g = 1e-5", "accel_g = 2e-5");
     folder.put("b.toml", doubled);
     let said = unwrapped(&folder.succeed(&JSON));
     assert!(said.contains("Fit: the innovations are smaller"), "{said}");
@@ -108,7 +108,7 @@ fn an_attitude_that_is_not_given_is_found() {
     let folder = folder();
     folder.succeed(&JSON);
     let given = report(&folder);
-    let bench = shipped("three_days.bench.toml");
+    let bench = example("three_days.bench.toml");
     let free: Vec<&str> = bench
         .lines()
         .filter(|line| !line.contains("initial"))
@@ -143,7 +143,7 @@ fn an_attitude_that_is_not_given_is_found() {
 
 /// Rows from..to of the record that ships.
 fn cut(from: usize, to: usize) -> String {
-    let whole = shipped("three_days.csv");
+    let whole = example("three_days.csv");
     let mut lines = whole.lines();
     let header = lines.next().unwrap();
     let rows: Vec<&str> = lines.skip(from).take(to - from).collect();
@@ -155,7 +155,7 @@ fn two_records_are_one_calibration() {
     let folder = folder();
     folder.put("one.csv", cut(0, 1500));
     folder.put("two.csv", cut(1500, 3000));
-    let bench = shipped("three_days.bench.toml");
+    let bench = example("three_days.bench.toml");
     let free: Vec<&str> = bench
         .lines()
         .filter(|line| !line.contains("initial"))
@@ -227,7 +227,7 @@ fn two_records_are_one_calibration() {
 #[test]
 fn bounded_influence_withstands_outliers() {
     let folder = folder();
-    let mut record = Record::parse(&shipped("three_days.csv"), "r.csv").unwrap();
+    let mut record = Record::parse(&example("three_days.csv"), "r.csv").unwrap();
     for row in (7..record.len()).step_by(97) {
         // Ten sigmas, of one sign: a mean would feel it.
         record.accel_g[row][row % 3] += 1e-4;
@@ -266,7 +266,7 @@ fn bounded_influence_withstands_outliers() {
 #[test]
 fn fast_records_are_averaged() {
     let folder = Folder::new();
-    let scenario = shipped("three_days.scenario.toml")
+    let scenario = example("three_days.scenario.toml")
         .replace("duration_s = 259200.0", "duration_s = 86400.0")
         .replace("interval_s = 60.0", "interval_s = 5.0")
         .replace("accel_g = 1e-5", "accel_g = 3e-5");

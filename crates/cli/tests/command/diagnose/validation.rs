@@ -1,17 +1,13 @@
 //! A later record, predicted with what was found in the first.
 
-use std::fs;
-
 use super::{BENCH, RECORD, folder, report};
-use crate::folder::repository;
 
 const SCENARIO: &str = "hidden_fault.scenario.toml";
 
 #[test]
 fn a_later_record_tells_what_the_extended_model_wins() {
     let folder = folder();
-    let scenario = fs::read(repository("examples/data").join(SCENARIO)).unwrap();
-    folder.put(SCENARIO, scenario);
+    folder.put_example(SCENARIO);
     folder.succeed(&["simulate", SCENARIO, "--seed", "40", "--out", "later.csv"]);
     let command = ["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"];
     let later = ["--validate", "later.csv", "--validate-bench", BENCH];
