@@ -1,11 +1,12 @@
 """Functions of a model in the forms that a filter needs: a value, the same with its Jacobians,
 and both at zero angles."""
 
+import random
 from dataclasses import replace
 
 import casadi as ca
 
-from casadi_program import Function, Output, jacobian_output
+from casadi_program import ExportError, Function, Output, jacobian_output
 from layout import drift_noise, theta
 
 NO_NOISE = ca.SX.zeros(3)
@@ -45,13 +46,13 @@ def at_origin(name: str, doc: str, function: Function) -> Function:
 
 
 def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
-                  domain: str, together: tuple = (), derived: tuple = ()) -> list[Function]:
+                  domain: str, together: tuple = (), shorter: tuple = ()) -> list[Function]:
     """Two functions: the value alone, and the value with its Jacobians (shared terms once).
 
     `by` lists (group, unit of the Jacobian). By the groups in `together` the value is
     differentiated in one pass, so that equal columns, such as those of biases and noise, are the
-    same expressions; they are in the order of `by`. `derived` are Jacobians in the order of `by`
-    in a shorter form than differentiating the value gives.
+    same expressions; they are in the order of `by`. `shorter` are the value and its Jacobians, in
+    the order of `by`, in fewer operations than `value` and differentiating it take.
     """
     jacobians = [
         jacobian_output(
@@ -60,8 +61,6 @@ def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
         )
         for group, unit in by
     ]
-    for place, expression in enumerate(derived):
-        jacobians[place] = replace(jacobians[place], expression=expression)
     whole = ca.jacobian(value.expression, ca.vertcat(*[group.sx for group in together]))
     end = 0
     for place, (group, _) in enumerate(by):
@@ -69,6 +68,11 @@ def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
             start, end = end, end + len(group.elements)
             columns = ca.sparsify(whole[:, start:end])
             jacobians[place] = replace(jacobians[place], expression=columns)
+    if shorter:
+        value, *jacobians = [
+            replace(output, expression=_checked(output, expression))
+            for output, expression in zip((value, *jacobians), shorter, strict=True)
+        ]
     return [
         Function(name, doc, source, inputs, [without_noise(value)], domain),
         Function(
@@ -76,3 +80,19 @@ def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
             [without_noise(o) for o in (value, *jacobians)], domain,
         ),
     ]
+
+
+def _checked(output: Output, shorter: ca.SX) -> ca.SX:
+    """`shorter`, which must be another form of the same output: compared at random points."""
+    symbols = ca.symvar(ca.vertcat(ca.vec(output.expression), ca.vec(shorter)))
+    both = ca.Function("both", symbols, [ca.densify(output.expression), ca.densify(shorter)])
+    rng = random.Random(0)
+    for _ in range(8):
+        expected, found = both(*[rng.uniform(-1, 1) for _ in symbols])
+        # Far more than rounding and far less than any term of a model.
+        if not ca.norm_inf(ca.vec(found - expected)) <= 1e-12 * ca.norm_inf(ca.vec(expected)):
+            raise ExportError(
+                f"the shorter form of `{output.name}` gives {found}, its expression {expected}: "
+                "change both or leave the shorter form out"
+            )
+    return shorter

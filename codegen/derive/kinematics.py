@@ -4,9 +4,8 @@ import math
 
 import casadi as ca
 
-from drift import drift_law, drift_rate
+from drift import drift_rate
 from frames import platform_c_chart
-from specific_force import specific_force
 
 DEG_PER_HOUR_IN_RAD_PER_S = math.pi / 180 / 3600
 
@@ -33,14 +32,6 @@ def rate_matrix_inverse(theta: ca.SX) -> ca.SX:
     )
 
 
-def angle_rates_from(theta: ca.SX, rate: ca.SX) -> ca.SX:
-    """W^-1 applied to columns, in fewer operations than by the matrix."""
-    cy, sy = ca.cos(theta[1]), ca.sin(theta[1])
-    cz, sz = ca.cos(theta[2]), ca.sin(theta[2])
-    x = (cz * rate[0, :] - sz * rate[1, :]) / cy
-    return ca.vertcat(x, sz * rate[0, :] + cz * rate[1, :], rate[2, :] - sy * x)
-
-
 def angle_rates(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.SX, f_0: ca.SX) -> ca.SX:
     """f1-f3: W^-1 (omega_d - p_C_0 omega_0), equations (7) and (9), in rad/s.
 
@@ -58,30 +49,3 @@ def angle_rates_of(theta: ca.SX, omega_d: ca.SX, omega_0: ca.SX) -> ca.SX:
 def relative_rate(omega_d: ca.SX, omega: ca.SX) -> ca.SX:
     """Rate relative to the chart, of drift in deg/h and Earth rate in rad/s, in platform axes."""
     return DEG_PER_HOUR_IN_RAD_PER_S * omega_d - omega
-
-
-def angle_rates_jacobians(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.SX,
-                          f_0: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """Jacobians of `angle_rates` by angles, drift coefficients and noise, in two thirds of the
-    operations that differentiating its expressions takes.
-
-    Seen from axes that turn by dphi = W dtheta, a fixed vector v changes by v x dphi; and
-    W theta_dot = relative rate is differentiated as it stands.
-    """
-    a, omega, theta_dot = ca.SX.sym("a", 3), ca.SX.sym("omega", 3), ca.SX.sym("theta_dot", 3)
-    omega_d, w = drift_law(a, drift, noise), rate_matrix(theta)
-    relative = relative_rate(omega_d, omega)
-    turned = (ca.jacobian(relative, a) @ ca.skew(a)
-              + ca.jacobian(relative, omega) @ ca.skew(omega)) @ w
-    by_theta = angle_rates_from(theta, turned - ca.jacobian(w @ theta_dot, theta))
-    by_drift_rate = angle_rates_from(theta, ca.jacobian(relative_rate(a, omega), a))
-    jacobians = [
-        by_theta,
-        by_drift_rate @ ca.jacobian(omega_d, drift),
-        by_drift_rate @ ca.jacobian(omega_d, noise),
-    ]
-    return tuple(ca.sparsify(jacobian) for jacobian in ca.substitute(
-        jacobians, [a, omega, theta_dot],
-        [specific_force(theta, f_0), platform_c_chart(theta) @ omega_0,
-         angle_rates(theta, drift, noise, omega_0, f_0)],
-    ))

@@ -8,8 +8,9 @@ from drift import drift_rate
 from euler_step import euler_step
 from frames import platform_c_chart
 from functions import AWAY_FROM_GIMBAL_LOCK, at_origin, with_jacobian
-from kinematics import angle_rates, angle_rates_jacobians, rate_matrix
+from kinematics import angle_rates, rate_matrix
 from layout import AXES, drift, drift_noise, f_0, omega_0, step, theta
+from nodal import angle_rates_with_jacobians
 from specific_force import specific_force
 
 
@@ -58,7 +59,7 @@ def program() -> Program:
             [(theta, "1/s"), (drift, "rad/s per unit of the coefficient"),
              (drift_noise, "rad/s per deg/h")],
             AWAY_FROM_GIMBAL_LOCK,
-            derived=angle_rates_jacobians(angles, drift.sx, drift_noise.sx, *chart),
+            shorter=angle_rates_with_jacobians(angles, drift.sx, drift_noise.sx, *chart),
         ),
         *with_jacobian(
             "specific_force", "What ideal accelerometers read: h1-h3.",

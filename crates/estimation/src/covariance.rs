@@ -1,9 +1,10 @@
 //! The covariance step on the structure of the model: moving states first, parameters after.
 //!
 //! P is one n × n array by rows. Rows of moving states are complete; of the rows of parameters
-//! only the parameter columns are kept, so the symmetric cross block is stored once. Both
-//! triangles of the parameter block are computed by the same operations in the same order, so
-//! it is symmetric to the last bit without being made so.
+//! only the parameter columns are kept, so the symmetric cross block is stored once. Of the
+//! parameter block what lies left of the diagonal is computed and put to its other side, in
+//! vectors as wide as four: there both triangles come from the same operations in the same order.
+//! So it is symmetric to the last bit without being made so.
 //!
 //! - Prediction: Φ is the identity on the parameters, so the parameter block does not change;
 //!   the moving rows become Φ_mm P_mp + Φ_mp P_pp.
@@ -302,14 +303,13 @@ impl<'a, T: Real, const M: usize, const Y: usize> Pass<'a, T, M, Y> {
         self.projection.update_corner(p, n, &self.head);
         for i in 0..count {
             let weights: [[T; 1]; Y] = load_rows(gain, n, M + i);
-            let row = &mut p[(M + i) * n + M..(M + i + 1) * n];
             let mut column = 0;
-            while column + 4 <= count {
-                downdate::<T, M, Y, 4>(row, n, gain, &weights, column);
+            while column + 4 <= count && column <= i {
+                downdate::<T, M, Y, 4>(p, n, gain, &weights, i, column);
                 column += 4;
             }
-            while column < count {
-                downdate::<T, M, Y, 1>(row, n, gain, &weights, column);
+            while column <= i {
+                downdate::<T, M, Y, 1>(p, n, gain, &weights, i, column);
                 column += 1;
             }
         }
@@ -396,21 +396,28 @@ fn project_columns<T: Real, Z: Zeros, const M: usize, const Y: usize, const W: u
     }
 }
 
-/// Subtracts Vᵀ V from `W` columns of a row of the parameter block.
+/// Subtracts Vᵀ V from `W` columns of row `i` of the parameter block, and puts those that end
+/// before the diagonal to the other side of it too.
 #[inline(always)]
 fn downdate<T: Real, const M: usize, const Y: usize, const W: usize>(
-    row: &mut [T],
+    p: &mut [T],
     n: usize,
     gain: &[T],
     weights: &[[T; 1]; Y],
+    i: usize,
     column: usize,
 ) {
-    let mut value: [T; W] = load(row, column);
+    let mut value: [T; W] = load(p, (M + i) * n + M + column);
     for k in 0..Y {
         let v: [T; W] = load(gain, k * n + M + column);
         value = mul_add(v, -weights[k][0], value);
     }
-    store(row, column, value);
+    store(p, (M + i) * n + M + column, value);
+    if column + W <= i {
+        for (j, element) in value.into_iter().enumerate() {
+            p[(M + column + j) * n + M + i] = element;
+        }
+    }
 }
 
 #[inline(always)]
