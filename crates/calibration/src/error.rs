@@ -93,7 +93,7 @@ pub enum CalibrationError {
     },
     /// The estimate still moved after the last step that was allowed.
     #[error(
-        "the batch estimator did not converge in {iterations} steps (the last one was {last_step} \
+        "the batch estimator did not converge in {iterations} steps (the last one was {last_step:.1} \
          standard deviations long); check latitude, initial angles and units, or give priors \
          nearer to the truth"
     )]

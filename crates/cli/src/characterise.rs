@@ -21,7 +21,7 @@ use crate::{Answer, Failure};
 /// Prints how often causes are detected, named and measured rightly, what clean records show, and
 /// how often the usual methods are right on the same records. The full table takes hours: --cell
 /// and --runs measure a part of it, and with --results, a run that was stopped goes on where it was.
-/// docs/characteristics.md explains every figure.
+/// docs/characteristics.md explains the figures.
 #[derive(Debug, Args)]
 pub(crate) struct CharacteriseArguments {
     /// Only this cell of the table; may be given several times. One of clean, d5, d6, d8, d12, d5-50,

@@ -15,12 +15,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use gyrocal::Platform;
+use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Validation, diagnose, validated};
 use gyrocal_record::{Bench, DiagnosisReport, DiagnosisVerdict, Outputs, Record};
 
 use crate::numbers::probability;
-use crate::outputs::refuse_overlap;
+use crate::outputs::{manifest, refuse_overlap, same_file};
 use crate::pictures;
 use crate::progress::Progress;
 use crate::{Answer, Failure};
@@ -100,6 +101,14 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         .map(PathBuf::as_path)
         .collect();
     refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    if let Some(later) = &arguments.validate
+        && same_file(later, &arguments.record)
+    {
+        return Err(Failure::Usage(format!(
+            "--validate {} is the record itself: a later one has had no part in the models",
+            later.display()
+        )));
+    }
     if arguments.effects.iter().any(|id| id == filter::EFFECT) {
         return Err(Failure::Usage(format!(
             "{} is an error of a filter and not of the record: it is looked for with --filter euler",
@@ -152,10 +161,10 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         validation.as_ref(),
         judged,
         blind,
+        &bench,
         shown,
-        options.seed,
-        &inputs,
-    )?;
+        manifest(MODEL_HASH, options.seed, &inputs)?,
+    );
     let found = Found {
         path: &arguments.record,
         record: &record,

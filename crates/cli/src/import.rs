@@ -197,6 +197,9 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
     text
 }
 
+/// A difference from the Earth's rate that no noise makes.
+const FAR_SIGMAS: f64 = 6.0;
+
 fn rates(text: &mut String, report: &ImportReport) {
     text.push_str("\nRate at which gravity turns in the virtual platform [deg/h]:\n");
     let lines = [
@@ -217,6 +220,14 @@ fn rates(text: &mut String, report: &ImportReport) {
             "  {name:<10} {rate:.4} ± {sigma:.4}, Earth {expected:.4}, difference {:.4}",
             rate - expected
         );
+        if (rate - expected).abs() > FAR_SIGMAS * sigma {
+            let _ = writeln!(
+                text,
+                "  {:<10} far off: check latitude, units and axes in the log description, or the \
+                 gyros' errors",
+                ""
+            );
+        }
     }
     let _ = writeln!(
         text,

@@ -24,7 +24,7 @@ mod tables;
 mod text;
 mod tumble;
 
-use std::io::{IsTerminal as _, Write as _};
+use std::io::{ErrorKind, IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use clap::Parser as _;
@@ -50,9 +50,16 @@ fn main() -> ExitCode {
     };
     match outcome {
         Ok(answer) => {
-            // A reader that has gone away, as in `| head`, is no failure of the work.
-            let _ = std::io::stdout().write_all(answer.text.as_bytes());
-            ExitCode::from(answer.exit_code)
+            let mut stdout = std::io::stdout();
+            let told = stdout.write_all(answer.text.as_bytes());
+            match told.and_then(|()| stdout.flush()) {
+                // A reader that has gone away, as in `| head`, is no failure of the work.
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                    let _ = writeln!(std::io::stderr(), "stdout: cannot be written: {error}");
+                    ExitCode::from(1)
+                }
+                _ => ExitCode::from(answer.exit_code),
+            }
         }
         Err(Failure::Usage(message)) => {
             use clap::CommandFactory as _;

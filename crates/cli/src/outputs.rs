@@ -46,6 +46,11 @@ pub(crate) fn refuse_overlap(
     Ok(())
 }
 
+/// Whether two paths lead to one file.
+pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
+    identity(a) == identity(b)
+}
+
 /// The file behind a path, whether it exists or not.
 fn identity(path: &Path) -> PathBuf {
     if let Ok(whole) = path.canonicalize() {

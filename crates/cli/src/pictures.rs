@@ -5,7 +5,9 @@ use std::path::Path;
 
 use gyrocal_record::Outputs;
 use gyrocal_report::Picture;
-use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use miette::miette;
+#[cfg(feature = "png")]
+use miette::{IntoDiagnostic as _, WrapErr as _};
 
 use crate::Failure;
 
@@ -45,24 +47,26 @@ pub(crate) fn stage(
             folder.display()
         ))
     })?;
+    let mut names = Vec::new();
     for (name, picture) in pictures {
-        let drawn = || format!("the picture {name} of {}", of.display());
-        let svg = picture
-            .to_svg()
-            .into_diagnostic()
-            .wrap_err_with(drawn)
-            .map_err(Failure::Work)?;
+        let svg = match picture.to_svg() {
+            Ok(svg) => svg,
+            Err(reason) => {
+                tracing::warn!(%reason, "no picture {name} of {}", of.display());
+                continue;
+            }
+        };
+        names.push(*name);
         outputs.stage(&folder.join(name).with_extension("svg"), svg.as_bytes())?;
         #[cfg(feature = "png")]
         {
             let png = gyrocal_report::to_png(&svg, WIDTH_PX)
                 .into_diagnostic()
-                .wrap_err_with(drawn)
+                .wrap_err_with(|| format!("the picture {name} of {}", of.display()))
                 .map_err(Failure::Work)?;
             outputs.stage(&folder.join(name).with_extension("png"), &png)?;
         }
     }
-    let names: Vec<&str> = pictures.iter().map(|(name, _)| *name).collect();
     let count = match names.len() {
         1 => "one picture".to_owned(),
         count => format!("{count} pictures"),

@@ -131,7 +131,7 @@ fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleRepo
              {:.1} of {}\n  (p {:.1e}; scatter beyond the standard errors of the stops: {:.0} \
              deg/h, with the nominal law {:.0}).\n  All terms of the catalogue against the \
              nominal law: F({}, {}) = {:.1}, p {:.1e}; against the extended law: F = {:.1}, p \
-             {:.2}.",
+             {:.1e}.",
             gyro.gyro,
             nominal.chi_square,
             nominal.degrees_of_freedom,
@@ -156,7 +156,12 @@ fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleRepo
         }
     }
     if report.findings.is_empty() {
-        text.push_str("\nNothing found that the nominal law leaves out.\n");
+        let _ = writeln!(
+            text,
+            "\nNothing found that the nominal law leaves out, at a probability of false alarm of {}: \
+             the extended law is the nominal one.",
+            arguments.false_alarm
+        );
     } else {
         text.push_str("\nThe nominal law leaves out, in the order of finding:\n");
     }

@@ -200,7 +200,8 @@ impl Description {
                 Some(line) => format!("`{line}`"),
                 None => "a file without it".to_owned(),
             };
-            let expected = error.message().replace('\n', ", ");
+            let found = format!("{found} ({})", error.message().replace('\n', ", "));
+            let expected = "a description of the log";
             let advice = "docs/measured-data.md has every key";
             source.error(InputErrorKind::Syntax, span, found, expected, advice)
         })?;

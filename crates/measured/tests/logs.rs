@@ -155,7 +155,7 @@ fn descriptions_are_refused_where_they_are_wrong() {
         (
             "\"deg/s\"",
             "\"rpm\"",
-            "log.toml:7:8: found `\"rpm\"`, expected unknown variant",
+            "log.toml:7:8: found `\"rpm\"` (unknown variant",
         ),
         (
             "[\"y\", \"-x\", \"z\"]",
@@ -170,7 +170,7 @@ fn descriptions_are_refused_where_they_are_wrong() {
         (
             "zero_counts",
             "zero_count",
-            "log.toml:12:1: found `zero_count`, expected unknown field",
+            "log.toml:12:1: found `zero_count` (unknown field",
         ),
         (
             "unit = \"counts\"",

@@ -68,6 +68,8 @@ pub enum InputErrorKind {
     NotANumber,
     /// Time repeats or goes back.
     Time,
+    /// Readings never change.
+    Stuck,
     /// There are fewer rows than the job needs.
     TooFewRows,
     /// The norm of specific force is far from 1 g.
@@ -92,6 +94,7 @@ impl InputErrorKind {
             Self::FieldCount => "gyrocal::input::field_count",
             Self::NotANumber => "gyrocal::input::not_a_number",
             Self::Time => "gyrocal::input::time",
+            Self::Stuck => "gyrocal::input::stuck",
             Self::TooFewRows => "gyrocal::input::too_few_rows",
             Self::Norm => "gyrocal::input::norm",
             Self::UnknownKey => "gyrocal::input::unknown_key",

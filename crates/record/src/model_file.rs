@@ -53,9 +53,10 @@ impl KnownEffect<'_> {
         match self.kind {
             "term" => None,
             "nominal" => Some("is one of the nine coefficients that every model has"),
-            "noise" => {
-                Some("is noise and no term: tell filters of it by `[noise]` of the bench file")
-            }
+            "noise" => Some(
+                "is noise and no term: a filter is told of white noise by `[noise]` of the bench \
+                     file, and of no other",
+            ),
             "state" => Some(
                 "is a matter of the attitude and no term: every filter estimates the attitude, \
                  so begin the record after it or widen the prior of the angles",

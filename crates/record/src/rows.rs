@@ -16,6 +16,15 @@ const ROW_NORM: std::ops::RangeInclusive<f64> = 0.5..=1.5;
 /// A hundred years: longer records are mistakes in the unit of time, and take ages to integrate.
 const LONGEST_S: f64 = 3.16e9;
 
+/// Gravity sweeps round a platform once a day: rows that are a quarter of it apart do not follow.
+const LONGEST_INTERVAL_S: f64 = 21_600.0;
+
+/// Nothing is known of a platform over a month without a reading, and it takes long to foretell.
+const LONGEST_GAP_S: f64 = 30.0 * 86_400.0;
+
+/// So many equal rows are no noise that was rounded away.
+const STUCK_ROWS: usize = 100;
+
 /// Reads header and rows.
 pub(crate) fn read_rows(source: &SourceText, least: usize) -> Result<Record, Error> {
     let mut lines = Lines::of(source);
@@ -33,6 +42,8 @@ pub(crate) fn read_rows(source: &SourceText, least: usize) -> Result<Record, Err
     let last = places.last().unwrap_or(&first.span);
     refuse_too_few(&record, source, last, least)?;
     check_norms(&record, source, &places)?;
+    check_intervals(&record, source, &places)?;
+    check_stuck(&record, source, &places)?;
     Ok(record)
 }
 
@@ -133,6 +144,59 @@ fn not_a_number(source: &SourceText, field: &Field<'_>, expected: &str) -> Error
     let found = quoted(field.text);
     let span = field.span.clone();
     source.error(InputErrorKind::NotANumber, span, found, expected, "")
+}
+
+fn check_intervals(
+    record: &Record,
+    source: &SourceText,
+    places: &[Range<usize>],
+) -> Result<(), Error> {
+    let intervals_s: Vec<f64> = record.time_s.windows(2).map(|w| w[1] - w[0]).collect();
+    let mut sorted = intervals_s.clone();
+    sorted.sort_by(f64::total_cmp);
+    let median_s = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let (allowed_s, found, expected, advice) = if median_s > LONGEST_INTERVAL_S {
+        (
+            LONGEST_INTERVAL_S,
+            "rows that are mostly farther apart than a quarter of a day",
+            "rows of one platform that gravity sweeps round once a day",
+            "time_s is in seconds: divide milliseconds by 1e3, nanoseconds by 1e9",
+        )
+    } else {
+        (
+            LONGEST_GAP_S,
+            "more than a month without a reading",
+            "a record without such a gap",
+            "cut it there and give `gyrocal calibrate` both parts, each with its bench file",
+        )
+    };
+    let Some(at) = intervals_s
+        .iter()
+        .position(|interval| *interval > allowed_s)
+    else {
+        return Ok(());
+    };
+    Err(source.error(
+        InputErrorKind::Time,
+        places.get(at + 1).cloned().unwrap_or(0..0),
+        format!("{found}, the first after row {}", at + 1),
+        expected,
+        advice,
+    ))
+}
+
+fn check_stuck(record: &Record, source: &SourceText, places: &[Range<usize>]) -> Result<(), Error> {
+    let stuck = record.len() >= STUCK_ROWS && record.accel_g.windows(2).all(|w| w[0] == w[1]);
+    if !stuck {
+        return Ok(());
+    }
+    Err(source.error(
+        InputErrorKind::Stuck,
+        places.first().cloned().unwrap_or(0..0),
+        "readings that never change",
+        "readings of a platform against which gravity turns",
+        "look for accelerometers, or a logger, that hang",
+    ))
 }
 
 fn check_norms(record: &Record, source: &SourceText, places: &[Range<usize>]) -> Result<(), Error> {

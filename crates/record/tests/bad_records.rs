@@ -210,6 +210,35 @@ fn time_that_runs_for_ages_is_suspected_of_its_unit() {
 }
 
 #[test]
+fn rows_too_far_apart_to_follow_a_platform() {
+    let apart = |seconds: &[u32]| {
+        let rows = seconds.iter().map(|time| format!("{time},0,0,1"));
+        format!("{HEADER}\n{}\n", rows.collect::<Vec<_>>().join("\n"))
+    };
+    let error = refused(&apart(&[0, 60_000, 120_000, 180_000]));
+    let words = ["farther apart than a quarter of a day", "after row 1"];
+    assert_says(&error, InputErrorKind::Time, "3:1", &words);
+    assert!(error.advice.contains("milliseconds"), "{}", error.advice);
+    let error = refused(&apart(&[0, 60, 120, 34_560_000, 34_560_060]));
+    let words = ["more than a month without a reading", "after row 3"];
+    assert_says(&error, InputErrorKind::Time, "5:1", &words);
+    assert!(error.advice.contains("cut it there"), "{}", error.advice);
+    // Once an hour, and a week of pause, are rare and no mistake.
+    assert!(Record::parse(&apart(&[0, 3600, 7200, 612_000]), "r.csv").is_ok());
+}
+
+#[test]
+fn readings_that_never_change() {
+    let stuck = |rows: u32| {
+        let rows = (0..rows).map(|row| format!("{},0,0,1", 60 * row));
+        format!("{HEADER}\n{}\n", rows.collect::<Vec<_>>().join("\n"))
+    };
+    let words = ["readings that never change", "gravity turns"];
+    assert_says(&refused(&stuck(100)), InputErrorKind::Stuck, "2:1", &words);
+    assert!(Record::parse(&stuck(99), "r.csv").is_ok());
+}
+
+#[test]
 fn fewer_rows_than_states() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("r.csv");

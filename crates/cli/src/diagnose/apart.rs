@@ -42,8 +42,13 @@ impl Course {
 
 /// Groups of effects around a finding that the record does not tell apart: its exact
 /// equivalents, the rest of its named set, and near twins outside of the search
-/// that was made: `searched` holds the effects that it did hold against the finding.
-pub(super) fn cannot_tell(finding: &FindingReport, searched: &[&str]) -> Vec<CannotTellReport> {
+/// that was made: `searched` holds the effects that it did hold against the finding, and a field
+/// is known or not.
+pub(super) fn cannot_tell(
+    finding: &FindingReport,
+    searched: &[&str],
+    field_is_known: bool,
+) -> Vec<CannotTellReport> {
     let mut groups = Vec::new();
     let named = finding.effect.as_str();
     if !finding.equivalents.is_empty() {
@@ -65,15 +70,20 @@ pub(super) fn cannot_tell(finding: &FindingReport, searched: &[&str]) -> Vec<Can
     }
     let twins = twins_outside(finding, searched);
     if !twins.is_empty() {
+        let possible: Vec<&str> = twins
+            .iter()
+            .map(String::as_str)
+            .filter(|id| field_is_known || Course::of(id) != Course::Field)
+            .collect();
+        let asked = if possible.is_empty() {
+            String::new()
+        } else {
+            format!("--effects {} holds them against it; ", possible.join(","))
+        };
         groups.push(CannotTellReport {
             why: "near twins that the usual search leaves out: at one attitude they look alike"
                 .to_owned(),
-            would_separate: format!(
-                "--effects {} shows how much less likely they are, and the size that each would \
-                 need; {}",
-                twins.join(","),
-                separation(named, &twins)
-            ),
+            would_separate: format!("{asked}{}", separation(named, &twins)),
             members: members(named, twins),
         });
     }
@@ -195,7 +205,7 @@ mod tests {
 
     #[test]
     fn each_group_says_what_would_separate_it() {
-        let latitude = cannot_tell(&finding("site.latitude", &[], &["clock.rate"]), &[]);
+        let latitude = cannot_tell(&finding("site.latitude", &[], &["clock.rate"]), &[], false);
         assert_eq!(latitude.len(), 1);
         assert_eq!(latitude[0].members, ["site.latitude", "clock.rate"]);
         assert!(
@@ -204,19 +214,25 @@ mod tests {
                 .contains("independent astronomic latitude")
         );
 
-        let cross = cannot_tell(&finding("gyro_x.g_y", &["gyro_x.warmup"], &[]), &[]);
+        let cross = cannot_tell(&finding("gyro_x.g_y", &["gyro_x.warmup"], &[]), &[], false);
         assert_eq!(cross[0].members, ["gyro_x.g_y", "gyro_x.warmup"]);
         assert!(cross[0].would_separate.contains("another initial attitude"));
         assert!(cross[0].would_separate.contains("long after switching on"));
         // Axis misalignment and the field are in no usual search.
         assert!(cross[1].members.iter().any(|id| id == "gyro_x.magnetic"));
-        assert!(cross[1].would_separate.contains("--effects"));
+        let asked = |groups: &[CannotTellReport]| {
+            let words = groups.last().map(|group| group.would_separate.clone());
+            words.unwrap_or_default()
+        };
+        assert!(asked(&cross).starts_with("--effects gyro_xy.axis_misalignment holds"));
+        let with_field = cannot_tell(&finding("gyro_x.g_y", &[], &[]), &[], true);
+        assert!(asked(&with_field).contains("gyro_x.magnetic"));
 
         // What was searched for and is no rival is told apart.
         let both = ["gyro_x.magnetic", "gyro_xy.axis_misalignment"];
-        assert!(cannot_tell(&finding("gyro_x.g_y", &[], &[]), &both).is_empty());
+        assert!(cannot_tell(&finding("gyro_x.g_y", &[], &[]), &both, true).is_empty());
 
-        assert!(cannot_tell(&finding("accel_x.noise", &[], &[]), &[]).is_empty());
+        assert!(cannot_tell(&finding("accel_x.noise", &[], &[]), &[], false).is_empty());
     }
 
     #[test]

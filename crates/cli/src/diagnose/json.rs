@@ -2,23 +2,18 @@
 
 mod gain;
 
-use std::path::Path;
-
-use gyrocal::generated::MODEL_HASH;
 use gyrocal::generated::catalogue::EFFECTS;
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions};
 use gyrocal_diagnosis::{Acceptance, Diagnosis, NoiseFinding, Remainder, Validation, Verdict};
 use gyrocal_record::{
-    DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, NotSearchedReport,
-    ParameterReport, RankedReport, RemainderReport, RemainderVerdict, ResidualsReport, RivalReport,
-    SCHEMA_VERSION,
+    Bench, DiagnosisReport, DiagnosisVerdict, EquivalentReport, FindingReport, Manifest,
+    NotSearchedReport, ParameterReport, RankedReport, RemainderReport, RemainderVerdict,
+    ResidualsReport, RivalReport, SCHEMA_VERSION,
 };
 
 use super::filter::Judged;
 use super::{apart, channels};
-use crate::Failure;
 use crate::noise;
-use crate::outputs::manifest;
 
 /// Probability that a named set holds its cause; what [`SearchOptions`] has by default.
 pub(super) const COVERAGE: f64 = 0.95;
@@ -28,10 +23,10 @@ pub(super) fn report(
     validation: Option<&Validation>,
     judged: Option<Judged>,
     blind: Vec<NotSearchedReport>,
+    bench: &Bench,
     residuals: ResidualsReport,
-    seed: u64,
-    inputs: &[&Path],
-) -> Result<DiagnosisReport, Failure> {
+    manifest: Manifest,
+) -> DiagnosisReport {
     let coverage = SearchOptions::default().coverage;
     debug_assert!(coverage == COVERAGE);
     let (filter, of_filter) = match judged {
@@ -42,10 +37,11 @@ pub(super) fn report(
     let causes = diagnosis.findings.iter().zip(&diagnosis.acceptances);
     let causes = causes.map(|(finding, acceptance)| of_cause(finding, *acceptance));
     let findings: Vec<FindingReport> = noise.chain(causes).chain(of_filter).collect();
+    let field_is_known = bench.magnetic_field_gauss.is_some();
     let searched: Vec<&str> = diagnosis.ranking.iter().map(|r| r.effect).collect();
-    Ok(DiagnosisReport {
+    DiagnosisReport {
         schema_version: SCHEMA_VERSION,
-        manifest: manifest(MODEL_HASH, seed, inputs)?,
+        manifest,
         verdict: match diagnosis.verdict {
             _ if !findings.is_empty() => DiagnosisVerdict::EffectsFound,
             Verdict::EffectsFound => DiagnosisVerdict::EffectsFound,
@@ -60,7 +56,7 @@ pub(super) fn report(
         remainder: remainder(&diagnosis.remainder),
         cannot_tell: findings
             .iter()
-            .flat_map(|finding| apart::cannot_tell(finding, &searched))
+            .flat_map(|finding| apart::cannot_tell(finding, &searched, field_is_known))
             .collect(),
         ranking: diagnosis
             .ranking
@@ -72,10 +68,13 @@ pub(super) fn report(
             .collect(),
         threshold: Some(diagnosis.threshold).filter(|threshold| threshold.is_finite()),
         noise: noise::report(&diagnosis.noise),
-        not_searched: blind.into_iter().chain(not_searched(diagnosis)).collect(),
+        not_searched: blind
+            .into_iter()
+            .chain(not_searched(diagnosis, filter.is_some()))
+            .collect(),
         findings,
         filter,
-    })
+    }
 }
 
 fn of_noise(finding: &NoiseFinding) -> FindingReport {
@@ -157,8 +156,9 @@ fn remainder(remainder: &Remainder) -> RemainderReport {
     }
 }
 
-/// Effects of the catalogue that neither the search nor the audit looked at, and why.
-fn not_searched(diagnosis: &Diagnosis<'_>) -> Vec<NotSearchedReport> {
+/// Effects of the catalogue that neither the search nor the audit looked at, and why. A filter was
+/// judged or not.
+fn not_searched(diagnosis: &Diagnosis<'_>, filter_judged: bool) -> Vec<NotSearchedReport> {
     let audited = diagnosis.audit.accel_ratio.is_some();
     let correlated = diagnosis.audit.cleaned.correlation != 0.0;
     EFFECTS
@@ -170,7 +170,10 @@ fn not_searched(diagnosis: &Diagnosis<'_>) -> Vec<NotSearchedReport> {
             let noise = effect.kind == "noise";
             let why = if let Some(unavailable) = unavailable {
                 unavailable.why.clone()
-            } else if ranked || effect.kind == "nominal" {
+            } else if ranked
+                || effect.kind == "nominal"
+                || (id == super::filter::EFFECT && filter_judged)
+            {
                 return None;
             } else if id == super::filter::EFFECT {
                 "an error of a filter: --filter euler".to_owned()

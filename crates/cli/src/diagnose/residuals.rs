@@ -62,7 +62,7 @@ pub(super) fn report(
 }
 
 /// A column for each axis.
-pub(super) fn rows(report: &ResidualsReport) -> String {
+pub(super) fn rows(report: &ResidualsReport, duration_h: f64) -> String {
     let mut table = table(["", "x", "y", "z"]);
     let mut row = |name: String, cells: [String; 3]| {
         let cells = cells.map(right);
@@ -83,7 +83,14 @@ pub(super) fn rows(report: &ResidualsReport) -> String {
     if let Some(lines) = &report.lines {
         row(
             "largest line: period, p".to_owned(),
-            lines.map(|line| format!("{} h, {}", short(line.period_h), probability(line.p_value))),
+            lines.map(|line| {
+                let period = if line.period_h > duration_h {
+                    "longer than the record".to_owned()
+                } else {
+                    format!("{} h", short(line.period_h))
+                };
+                format!("{period}, {}", probability(line.p_value))
+            }),
         );
     }
     for against in &report.against {

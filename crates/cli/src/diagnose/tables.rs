@@ -27,7 +27,7 @@ pub(super) fn all(found: &Found<'_>) -> String {
             text,
             "\n{}\n\n{}",
             residuals::heading(shown),
-            residuals::rows(shown)
+            residuals::rows(shown, found.record.duration_s() / 3600.0)
         );
     }
     if !report.ranking.is_empty() {

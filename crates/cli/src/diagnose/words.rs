@@ -71,10 +71,10 @@ pub(super) fn summary(found: &Found<'_>) -> String {
     if let Some(gain) = &report.gain {
         text.push('\n');
         text.push_str(&paragraph(&gain::gained(gain)));
-        if let Some(words) = gain::later(found, gain) {
-            text.push('\n');
-            text.push_str(&paragraph(&words));
-        }
+    }
+    if let Some(words) = gain::later(found) {
+        text.push('\n');
+        text.push_str(&paragraph(&words));
     }
     text.push('\n');
     text.push_str(&paragraph(&left(found)));
@@ -209,7 +209,8 @@ fn rivals(finding: &FindingReport) -> String {
 
 /// How much less likely a rival is.
 pub(super) fn likelihood(rival: &RivalReport) -> String {
-    let factor = rival.log_likelihood_deficit.exp();
+    // Beyond this a factor says nothing but that there is no comparison.
+    let factor = rival.log_likelihood_deficit.clamp(-50.0, 50.0).exp();
     if factor >= 1.05 {
         format!("{factor:.1} times less likely")
     } else if factor > 0.95 {
@@ -254,7 +255,7 @@ fn left(found: &Found<'_>) -> String {
             remainder.description
         ),
         RemainderVerdict::NotTested => format!(
-            "What is left was not tested for {}: the record is too short.",
+            "What is left was not tested for {}: too few rows without a gap have all three axes.",
             remainder.description
         ),
         _ => format!(

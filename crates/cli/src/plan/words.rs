@@ -100,7 +100,7 @@ fn in_question(aim: Aim, now: &Outlook) -> String {
         format!("Nothing was found in this record that would have to be told apart. {ranked}")
     } else {
         format!(
-            "Found in this record, with nothing that it is not told from: {}. {ranked}",
+            "Found in this record, and told from everything else that was searched: {}. {ranked}",
             named.join(", ")
         )
     }

@@ -288,3 +288,19 @@ fn the_help_documents_the_exit_codes() {
     let said = Folder::new().succeed(&["--help"]);
     assert!(said.contains("Exit codes: 0"), "{said}");
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_answer_that_cannot_be_told_is_a_failure() {
+    let folder = folder();
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = std::process::Command::new(assert_cmd::cargo::cargo_bin("gyrocal"))
+        .current_dir(folder.path(""))
+        .args(PLAIN)
+        .stdout(full)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(errors.contains("stdout: cannot be written"), "{errors}");
+}

@@ -40,7 +40,7 @@ pub(super) fn gained(gain: &GainReport) -> String {
     format!(
         "{predicts} Running freely from the first row it misses the record by {:.2e} g rms instead \
          of {:.2e} g; the accelerometers' noise alone is {:.2e} g, to which that of the gyros adds \
-         with time. Without it the coefficients are off, most of all {}.",
+         with time. In it the coefficients are others than without the effect, most of all {}.",
         rms.after,
         rms.before,
         rms.noise,
@@ -56,7 +56,7 @@ fn shifted(shift: &ShiftReport) -> String {
         [low, high]
     };
     format!(
-        "{} {:+.2e} {} ({:.1} sigma, {low:.1} to {high:.1})",
+        "{} by {:+.2e} {} ({:.1} sigma, {low:.1} to {high:.1})",
         shift.coefficient,
         shift.shift,
         shift.unit,
@@ -65,9 +65,10 @@ fn shifted(shift: &ShiftReport) -> String {
 }
 
 /// What the later record says, if one was given.
-pub(super) fn later(found: &Found<'_>, gain: &GainReport) -> Option<String> {
+pub(super) fn later(found: &Found<'_>) -> Option<String> {
     let path = found.later?.display();
-    let Some(validation) = &gain.validation else {
+    let gain = found.report.gain.as_ref();
+    let Some(validation) = gain.and_then(|gain| gain.validation.as_ref()) else {
         return Some(format!(
             "{path} is predicted by the nominal model alone: no effect is in an extended one."
         ));

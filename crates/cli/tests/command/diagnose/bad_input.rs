@@ -87,7 +87,7 @@ fn what_a_record_is_too_short_to_be_tested_for_is_named() {
     for words in [
         "the record is too short for a spectrum of its noise",
         "What is left was not tested for correlation of neighbouring rows",
-        "No stretch of rows without a gap is long enough for an Allan deviation",
+        "No stretch of rows without a gap and with all axes is long enough for an Allan deviation",
     ] {
         assert!(said.replace('\n', " ").contains(words), "{words}\n{said}");
     }
@@ -100,6 +100,36 @@ fn what_a_record_is_too_short_to_be_tested_for_is_named() {
     };
     assert!(why("accel_x.noise").contains("too short for a spectrum"));
     assert!(why("gyro_y.g_z").contains("too short"));
+}
+
+#[test]
+fn a_record_without_an_axis_is_diagnosed_and_drawn_as_far_as_it_goes() {
+    let folder = shortened(1441);
+    let text = folder.text(RECORD);
+    let mut lines = text.lines();
+    let mut without_z = lines.next().unwrap().to_owned();
+    for line in lines {
+        let (rest, _) = line.rsplit_once(',').unwrap();
+        without_z.push_str(&format!("\n{rest},nan"));
+    }
+    folder.put(RECORD, without_z + "\n");
+    let command = ["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"];
+    let said = folder.succeed(&[&command[..], &["--figures", "figures"]].concat());
+    assert!(said.contains("all three axes"), "{said}");
+    assert!(folder.path("figures/residuals.svg").exists(), "{said}");
+    assert!(!folder.path("figures/autocorrelation.svg").exists());
+    super::report(&folder, "o.json");
+}
+
+#[test]
+fn the_record_itself_validates_nothing() {
+    let folder = folder();
+    let later = ["--validate", RECORD, "--validate-bench", BENCH];
+    let command = ["diagnose", RECORD, "--bench", BENCH];
+    let output = folder.run(&[&command[..], &later].concat());
+    assert_eq!(output.status.code(), Some(2));
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(errors.contains("is the record itself"), "{errors}");
 }
 
 #[test]
