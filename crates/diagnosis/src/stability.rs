@@ -120,7 +120,7 @@ pub fn stability(
         Some((p, axis, point)) if count * p < false_alarm => {
             let course = match point.noise {
                 NoiseType::FlickerRate => NoiseCourse::Flicker,
-                NoiseType::RandomWalkRate => NoiseCourse::Slow,
+                NoiseType::RandomWalkRate | NoiseType::RateRamp => NoiseCourse::Slow,
                 _ => NoiseCourse::LargerWhite,
             };
             (count * p, course, Some((axis, point.tau_s)))

@@ -27,7 +27,7 @@ pub struct AllanPoint {
     pub interval: [f64; 2],
     /// Equivalent degrees of freedom of the variance.
     pub degrees_of_freedom: f64,
-    /// What kind of noise dominates, which decides the degrees of freedom.
+    /// What dominates, which decides the degrees of freedom.
     pub noise: NoiseType,
 }
 
@@ -57,15 +57,21 @@ pub fn allan_deviation(
 ) -> Result<Vec<AllanPoint>, MeasuredError> {
     check(rate, interval_s, averaging, confidence)?;
     let phase = phase(rate, interval_s);
+    let ramp = noise::ramp(rate);
     let mut points: Vec<AllanPoint> = Vec::with_capacity(averaging.len());
     for &averaging in averaging {
         let tau_s = averaging as f64 * interval_s;
         let (sum, count) = second_differences(&phase, averaging);
         let variance = sum / (2.0 * tau_s * tau_s * count as f64);
         // Too few points to tell: as at the averaging time before.
-        let noise = noise::identify(&phase, averaging)
+        let mut noise = noise::identify(&phase, averaging)
             .or(points.last().map(|point| point.noise))
             .unwrap_or(NoiseType::WhiteRate);
+        // Half the variance and more. A random walk has ramps of its own.
+        let of_ramp = 0.5 * (ramp * averaging as f64).powi(2);
+        if of_ramp > 0.5 * variance && noise != NoiseType::RandomWalkRate {
+            noise = NoiseType::RateRamp;
+        }
         let degrees_of_freedom = noise.degrees_of_freedom(phase.len(), averaging);
         let bound = |probability: f64| {
             let quantile = chi_square_quantile(degrees_of_freedom, probability);

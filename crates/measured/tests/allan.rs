@@ -88,6 +88,27 @@ fn the_unit_of_time_is_that_of_the_interval() {
 }
 
 #[test]
+fn a_drift_of_the_rate_is_no_noise() {
+    let drifting = |per_sample: f64| -> Vec<f64> {
+        let noise = nist_series().into_iter().enumerate();
+        noise
+            .map(|(i, value)| value + per_sample * i as f64)
+            .collect()
+    };
+    let averaging = [1, 8, 64, 256];
+    let named = |per_sample: f64| {
+        let points = allan_deviation(&drifting(per_sample), 1.0, &averaging, ONE_SIGMA).unwrap();
+        points.iter().map(|point| point.noise).collect::<Vec<_>>()
+    };
+    use NoiseType::{RateRamp, WhiteRate};
+    assert_eq!(named(0.0), [WhiteRate; 4]);
+    // White noise of 0.29 falls to 0.04 over 64 samples, over which the ramp of 0.002 rises by
+    // 0.13: its part of the deviation is that over the root of two.
+    assert_eq!(named(2e-3), [WhiteRate, WhiteRate, RateRamp, RateRamp]);
+    assert_eq!(named(1.0), [RateRamp; 4]);
+}
+
+#[test]
 fn octaves_end_at_a_third() {
     assert_eq!(octaves(100), [1, 2, 4, 8, 16, 32]);
     assert!(octaves(2).is_empty());

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use super::AllanPoint;
+use super::{AllanPoint, NoiseType};
 
 /// Parts of a noise by their slopes (IEEE Std 952, annex C), in units of the rate and seconds;
 /// zero where a part does not show.
@@ -20,7 +20,8 @@ pub struct NoiseCoefficients {
 }
 
 /// Fits the four parts, none of them negative, by least squares of the relative errors of the
-/// variances, weighted by their degrees of freedom.
+/// variances, weighted by their degrees of freedom. Where a ramp makes most of the deviation it says
+/// nothing of them.
 ///
 /// Points of one record overlap: the parts describe the curve, they are no test of which
 /// exist.
@@ -35,7 +36,7 @@ pub fn noise_coefficients(points: &[AllanPoint]) -> NoiseCoefficients {
     };
     let usable: Vec<&AllanPoint> = points
         .iter()
-        .filter(|point| point.deviation > 0.0)
+        .filter(|point| point.deviation > 0.0 && point.noise != NoiseType::RateRamp)
         .collect();
     let weight = |point: &AllanPoint| {
         (0.5 * point.degrees_of_freedom).sqrt() / (point.deviation * point.deviation)

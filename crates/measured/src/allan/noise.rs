@@ -18,8 +18,10 @@ pub enum NoiseType {
     WhiteRate,
     /// f⁻¹: bias instability.
     FlickerRate,
-    /// f⁻²: rate random walk. Ramps look like it.
+    /// f⁻²: rate random walk.
     RandomWalkRate,
+    /// No noise: the rate drifts by as much from one average to the next.
+    RateRamp,
 }
 
 impl NoiseType {
@@ -32,6 +34,7 @@ impl NoiseType {
             Self::WhiteRate => "white rate (angle random walk)",
             Self::FlickerRate => "flicker of the rate (bias instability)",
             Self::RandomWalkRate => "rate random walk",
+            Self::RateRamp => "ramp of the rate (drift)",
         }
     }
 
@@ -64,7 +67,8 @@ impl NoiseType {
             // degree of freedom whatever the length.
             Self::FlickerRate if averaging == 1 => 2.0 * (n - 2.0).powi(2) / (2.3 * n - 4.9),
             Self::FlickerRate => 1.25 * n * n / (m * (n + 3.0 * m)),
-            Self::RandomWalkRate => {
+            // A ramp is as long as it is: the number is that of the slowest noise.
+            Self::RandomWalkRate | Self::RateRamp => {
                 (n - 2.0) / (m * (n - 3.0).powi(2))
                     * ((n - 1.0).powi(2) - 3.0 * m * (n - 1.0) + 4.0 * m * m)
             }
@@ -95,6 +99,32 @@ pub(crate) fn identify(phase: &[f64], averaging: usize) -> Option<NoiseType> {
         values = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     }
     None
+}
+
+/// Change of the rate from one sample to the next, by least squares, if it is none that white noise
+/// of the rate makes; zero otherwise.
+pub(crate) fn ramp(rate: &[f64]) -> f64 {
+    const SIGMAS: f64 = 5.0;
+    let count = rate.len() as f64;
+    let middle = 0.5 * (count - 1.0);
+    let mean = rate.iter().sum::<f64>() / count;
+    let from_middle = |index: usize| index as f64 - middle;
+    let squares: f64 = (0..rate.len()).map(|i| from_middle(i).powi(2)).sum();
+    let products = rate.iter().enumerate();
+    let slope = products
+        .map(|(i, r)| from_middle(i) * (r - mean))
+        .sum::<f64>()
+        / squares;
+    let left = rate.iter().enumerate();
+    let left: f64 = left
+        .map(|(i, r)| (r - mean - slope * from_middle(i)).powi(2))
+        .sum();
+    let sigma = (left / (count - 2.0) / squares).sqrt();
+    if slope.abs() > SIGMAS * sigma {
+        slope
+    } else {
+        0.0
+    }
 }
 
 fn lag1_autocorrelation(values: &[f64]) -> f64 {
