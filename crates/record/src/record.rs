@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::error::Error;
 use crate::header::{COLUMNS, REQUIRED_COLUMNS};
 use crate::output::write_whole;
-use crate::rows::read_rows;
+use crate::rows::{read_rows, read_rows_of_a_platform};
 use crate::source::SourceText;
 
 /// Accelerometer samples, one a row.
@@ -30,17 +30,17 @@ impl Record {
     ///
     /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Self::read_at_least(path, 1)
+        read_rows(&SourceText::read(path)?)
     }
 
-    /// Reads a record that must have at least some number of rows, as many as a filter has
-    /// states.
+    /// Reads a record of a platform that something is to be estimated from: with at least some
+    /// number of rows, as many as a filter has states, not too far apart, and not all the same.
     ///
     /// # Errors
     ///
     /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
     pub fn read_at_least(path: &Path, rows: usize) -> Result<Self, Error> {
-        read_rows(&SourceText::read(path)?, rows)
+        read_rows_of_a_platform(&SourceText::read(path)?, rows)
     }
 
     /// Parses the text of a record; errors call it `name`.
@@ -49,7 +49,7 @@ impl Record {
     ///
     /// [`Error::Input`] for whatever is wrong in it.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
-        read_rows(&SourceText::new(text, name)?, 1)
+        read_rows(&SourceText::new(text, name)?)
     }
 
     /// Writes the record whole or not at all. Reading it gives the same numbers.

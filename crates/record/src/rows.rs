@@ -26,7 +26,22 @@ const LONGEST_GAP_S: f64 = 30.0 * 86_400.0;
 const STUCK_ROWS: usize = 100;
 
 /// Reads header and rows.
-pub(crate) fn read_rows(source: &SourceText, least: usize) -> Result<Record, Error> {
+pub(crate) fn read_rows(source: &SourceText) -> Result<Record, Error> {
+    Ok(read_with_places(source, 1)?.0)
+}
+
+/// The same for a job that needs at least so many rows, and rows that tell of a platform.
+pub(crate) fn read_rows_of_a_platform(source: &SourceText, least: usize) -> Result<Record, Error> {
+    let (record, places) = read_with_places(source, least)?;
+    check_intervals(&record, source, &places)?;
+    check_stuck(&record, source, &places)?;
+    Ok(record)
+}
+
+fn read_with_places(
+    source: &SourceText,
+    least: usize,
+) -> Result<(Record, Vec<Range<usize>>), Error> {
     let mut lines = Lines::of(source);
     let first = lines.next_line()?.unwrap_or_default();
     let header = Header::parse(source, &first)?;
@@ -42,9 +57,7 @@ pub(crate) fn read_rows(source: &SourceText, least: usize) -> Result<Record, Err
     let last = places.last().unwrap_or(&first.span);
     refuse_too_few(&record, source, last, least)?;
     check_norms(&record, source, &places)?;
-    check_intervals(&record, source, &places)?;
-    check_stuck(&record, source, &places)?;
-    Ok(record)
+    Ok((record, places))
 }
 
 /// A row in which all accelerometers say `nan` counts for nothing.
