@@ -2,8 +2,8 @@
 but not yet about z.
 
 There Earth rate need not be turned about z, W is sparse, and the sines and cosines of z enter
-with the drift alone. Rates and Jacobians are those of kinematics.py, in two thirds of the
-operations that its matrices and the differentiation of its expressions take.
+with the drift alone. Rates and Jacobians are those of kinematics.py, in fewer operations than its
+matrices and the differentiation of its expressions take.
 """
 
 import casadi as ca

@@ -27,6 +27,12 @@ const LAST_STEP: f64 = 1e-4;
 /// shorter step lowers the cost by less than rounding of its sum does.
 const LAST_SHARE: f64 = 1e-6;
 
+/// A step this short, as a share of the root of the cost, from which no shorter one lowers the cost
+/// ends the search too. Far from all noise the gradient of the linear problem is not that of the
+/// cost to the last digits, and it is the cost that has a minimum: the step would have lowered it by
+/// a part in 1e10.
+const FLAT_SHARE: f64 = 1e-5;
+
 /// What the records say, linearised about the solution.
 #[derive(Clone)]
 pub(crate) struct Solution {
@@ -114,7 +120,11 @@ where
                     return Err(moved.err().unwrap_or(Failure::Singular));
                 }
                 if halvings == MOST_HALVINGS {
-                    return Err(Failure::NoDescent { iterations });
+                    if step.length > FLAT_SHARE * cost.sqrt() {
+                        return Err(Failure::NoDescent { iterations });
+                    }
+                    self.take(&before, &values, &step, 0.0);
+                    return Ok(self.solution(self.linearise()?, iterations));
                 }
                 halvings += 1;
                 share *= 0.5;

@@ -92,7 +92,9 @@ fn abscissae(innovations: &Innovations, record: &Record) -> Vec<(Abscissa, Vec<f
     let first_s = innovations.time_s.first().copied().unwrap_or(0.0);
     let times = innovations.time_s.iter().map(|time_s| time_s - first_s);
     all.push((Abscissa::Time, times.collect()));
-    if let Some(temperature) = &record.temperature_c {
+    if let Some(temperature) = &record.temperature_c
+        && record.temperature_changes()
+    {
         all.push((Abscissa::Temperature, temperature.clone()));
     }
     all

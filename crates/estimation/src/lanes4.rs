@@ -53,30 +53,8 @@ pub(crate) fn multiply_add<T: Scalar, const W: usize>(a: [T; W], b: [T; W], c: [
     result
 }
 
-/// A sum of multiples of rows that begins with the first of them: adding to zero is an operation
+/// Product of two small matrices. Each sum begins with its first term: adding to zero is an operation
 /// that a compiler must not leave out.
-#[derive(Clone, Copy)]
-pub(crate) struct Sum<T, const W: usize>(Option<[T; W]>);
-
-impl<T: Scalar, const W: usize> Sum<T, W> {
-    pub(crate) const EMPTY: Self = Self(None);
-
-    /// Adds `row * factor`.
-    #[inline(always)]
-    pub(crate) fn add(&mut self, row: [T; W], factor: T) {
-        self.0 = Some(match self.0 {
-            None => row.map(|value| value * factor),
-            Some(sum) => mul_add(row, factor, sum),
-        });
-    }
-
-    #[inline(always)]
-    pub(crate) fn total(self) -> [T; W] {
-        self.0.unwrap_or([T::from_f64(0.0); W])
-    }
-}
-
-/// Product of two small matrices.
 #[inline(always)]
 pub(crate) fn small_product<T: Scalar, const M: usize>(
     a: &[[T; M]; M],
@@ -84,11 +62,10 @@ pub(crate) fn small_product<T: Scalar, const M: usize>(
 ) -> [[T; M]; M] {
     let mut product = [[T::from_f64(0.0); M]; M];
     for i in 0..M {
-        let mut sum = Sum::EMPTY;
-        for j in 0..M {
-            sum.add(b[j], a[i][j]);
+        product[i] = b[0].map(|value| value * a[i][0]);
+        for j in 1..M {
+            product[i] = mul_add(b[j], a[i][j], product[i]);
         }
-        product[i] = sum.total();
     }
     product
 }

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use gyrocal_freshness::{
-    Outcome, TinyDerivation, codegen, edit, executable, fresh_directory, run, snapshot,
-    system_python,
+    Outcome, TinyDerivation, WorkspaceCopy, codegen, edit, executable, fresh_directory, run,
+    snapshot, system_python,
 };
 
 const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
@@ -281,4 +281,21 @@ fn a_committed_path_that_cannot_be_written() {
     )
     .unwrap();
     case.write(|_| {}).failed_with(&["cannot", "generated"]);
+}
+
+/// One sign in the form of the Jacobians that saves operations.
+#[test]
+fn a_shorter_form_of_something_else() {
+    let copy = WorkspaceCopy::make(SCRATCH, "shorter-form");
+    copy.edit(
+        "codegen/derive/nodal.py",
+        "ca.vertcat(-relative[1], relative[0], 0)",
+        "ca.vertcat(relative[1], relative[0], 0)",
+    );
+    let before = snapshot(&copy.root);
+    run(&mut codegen(&copy.derivation(), &["write"])).failed_with(&[
+        "the shorter form of `theta_dot_d_theta` gives",
+        "change both or leave the shorter form out",
+    ]);
+    assert_eq!(snapshot(&copy.root), before, "something was written");
 }

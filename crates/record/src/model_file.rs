@@ -55,7 +55,7 @@ impl KnownEffect<'_> {
             "nominal" => Some("is one of the nine coefficients that every model has"),
             "noise" => Some(
                 "is noise and no term: a filter is told of white noise by `[noise]` of the bench \
-                     file, and of no other",
+                 file, and of no other",
             ),
             "state" => Some(
                 "is a matter of the attitude and no term: every filter estimates the attitude, \

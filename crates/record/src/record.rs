@@ -43,6 +43,13 @@ impl Record {
         read_rows_of_a_platform(&SourceText::read(path)?, rows)
     }
 
+    /// Whether temperature was logged and changes: only then can anything go with it.
+    #[must_use]
+    pub fn temperature_changes(&self) -> bool {
+        let logged = self.temperature_c.as_deref().unwrap_or_default();
+        logged.windows(2).any(|pair| pair[0] != pair[1])
+    }
+
     /// Parses the text of a record; errors call it `name`.
     ///
     /// # Errors

@@ -89,8 +89,8 @@ pub(super) fn norm_in_words(report: &DiagnosisReport) -> String {
 /// How what is left averages out.
 pub(super) fn allan_in_words(report: &DiagnosisReport) -> String {
     let Some(allan) = &report.allan else {
-        return "No stretch of rows without a gap and with all axes is long enough for an Allan deviation of \
-                it."
+        return "No stretch of rows without a gap and with all axes is long enough for an Allan \
+                deviation of it."
             .to_owned();
     };
     let p = probability(allan.p_value);

@@ -135,6 +135,8 @@ fn an_error_of_an_accelerometer_is_on_the_accelerometers_side() {
     folder.put(RECORD, biased);
     let said = folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"]);
     assert!(said.contains("says: the accelerometers' side"), "{said}");
+    // The nominal model follows it in half a day, as in a wave of more.
+    assert!(said.contains("  longer than the record, "), "{said}");
     assert!(report(&folder, "o.json").norm.unwrap().accelerometers);
 }
 
@@ -183,6 +185,8 @@ fn the_filter_of_the_paper_is_named_for_its_rule() {
     // Exact data: the rule's error is as large as the noise, its NIS some hundreds.
     assert!(filter.nis_mean.unwrap() > 100.0);
     assert!(filter.reference_nis_mean < 4.0);
+    let mut not_searched = report.not_searched.iter();
+    assert!(not_searched.all(|entry| entry.effect != last.effect));
 }
 
 #[test]
@@ -249,6 +253,14 @@ fn a_clean_record_is_called_clean() {
     assert_eq!(value["gain"], serde_json::Value::Null);
     assert_eq!(value["remainder"]["verdict"], "white");
     assert_eq!(value["cannot_tell"], serde_json::json!([]));
+    let not_searched = value["not_searched"].as_array().unwrap();
+    let filters = not_searched
+        .iter()
+        .find(|entry| entry["effect"] == "filter.discretisation");
+    assert_eq!(
+        filters.unwrap()["why"],
+        "an error of a filter: --filter euler"
+    );
     assert_eq!(
         value["manifest"]["inputs"][1]["path"],
         "three_days.bench.toml"

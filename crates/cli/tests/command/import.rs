@@ -67,6 +67,27 @@ fn the_recorded_unit_feels_the_earth_turn() {
 }
 
 #[test]
+fn a_rate_that_is_not_the_earths_is_called_far_off() {
+    let description = std::fs::read_to_string(repository(DESCRIPTION)).unwrap();
+    let folder = Folder::new();
+    folder.put(
+        "l.toml",
+        // Where the horizontal rate is higher by a tenth of a degree an hour, forty sigmas.
+        description.replace("latitude_deg = 34.246048", "latitude_deg = 33.5"),
+    );
+    let text = folder.succeed(&arguments(&repository_argument(LOG), "l.toml"));
+    let lines: Vec<&str> = text.lines().collect();
+    let horizontal = lines
+        .iter()
+        .position(|l| l.starts_with("  horizontal"))
+        .unwrap();
+    assert!(
+        lines[horizontal + 1].contains("far off: check latitude, units and axes"),
+        "{text}"
+    );
+}
+
+#[test]
 fn the_record_can_be_calibrated_and_determines_what_one_attitude_determines() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));

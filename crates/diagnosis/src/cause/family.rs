@@ -280,12 +280,7 @@ pub(crate) fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Opt
             "temperature" if record.temperature_c.is_none() => {
                 return Some("the record has no column `temperature_c`".to_owned());
             }
-            "temperature"
-                if record
-                    .temperature_c
-                    .as_ref()
-                    .is_some_and(|t| never_changes(t)) =>
-            {
+            "temperature" if !record.temperature_changes() => {
                 return Some("the column `temperature_c` never changes".to_owned());
             }
             "field" if bench.magnetic_field_gauss.is_none() => {
@@ -295,10 +290,6 @@ pub(crate) fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Opt
         }
     }
     None
-}
-
-fn never_changes(values: &[f64]) -> bool {
-    values.windows(2).all(|pair| pair[0] == pair[1])
 }
 
 /// Whether a family cannot be told from one that is in the model.

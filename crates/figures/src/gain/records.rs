@@ -2,6 +2,7 @@
 
 use gyrocal_calibration::{Extended, Run};
 use gyrocal_characterise::{Draw, Planted, plant_any};
+use gyrocal_diagnosis::plan::Named;
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, validated};
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{DMatrix, DVector};
@@ -141,6 +142,8 @@ pub(super) struct Second {
     pub(super) gain_nats: Option<f64>,
     /// Angle after a day, arc minutes: nominal, extended, expected of the extended.
     pub(super) after_a_day_arcmin: Option<[f64; 3]>,
+    /// The same of a model that has exactly what was hidden.
+    pub(super) told_arcmin: [f64; 3],
 }
 
 impl Second {
@@ -164,16 +167,30 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
         record: &simulation.record,
         bench: &simulation.bench,
     });
-    let validation = validated(&found, &one, &other, &DiagnoseOptions::default())?;
+    let options = DiagnoseOptions::default();
+    let validation = validated(&found, &one, &other, &options)?;
+    let named = Named {
+        effect: planted.effect.id.to_owned(),
+        shape: planted.shape,
+        rivals: Vec::new(),
+    };
+    let fitted = Named::fitted(&[named], &one, &found.noise_model, &options.calibration)?;
     let accepted = found.findings.iter().zip(&found.acceptances);
+    let accepted = accepted
+        .filter(|(_, acceptance)| acceptance.accepted)
+        .map(|(finding, _)| finding.effect.to_owned())
+        .collect();
+    let told = Diagnosis {
+        extended: Some(fitted),
+        ..found
+    };
+    let of_told = validated(&told, &one, &other, &options)?.ok_or("nothing to validate")?;
     Ok(Second {
         effect: planted.effect.id.to_owned(),
-        accepted: accepted
-            .filter(|(_, acceptance)| acceptance.accepted)
-            .map(|(finding, _)| finding.effect.to_owned())
-            .collect(),
+        accepted,
         gain_nats: validation.as_ref().map(|v| v.gain_nats()),
         after_a_day_arcmin: validation.map(|v| v.compensation.at_end_arcmin()),
+        told_arcmin: of_told.compensation.at_end_arcmin(),
     })
 }
 

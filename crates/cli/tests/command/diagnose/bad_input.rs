@@ -37,6 +37,41 @@ fn an_effect_that_cannot_be_looked_for_is_refused() {
     }
 }
 
+#[test]
+fn a_temperature_that_never_changes_explains_nothing() {
+    let folder = shortened(720);
+    let constant: String = folder
+        .text(RECORD)
+        .lines()
+        .enumerate()
+        .map(|(line, text)| {
+            format!(
+                "{text},{}\n",
+                if line == 0 { "temperature_c" } else { "20" }
+            )
+        })
+        .collect();
+    folder.put(RECORD, constant);
+    let command = ["diagnose", RECORD, "--bench", BENCH];
+    let asked = [&command[..], &["--effects", "gyro_x.temperature"]].concat();
+    let errors = folder.fail(&asked);
+    assert!(
+        errors.contains(
+            "`gyro_x.temperature` cannot be looked for: the column `temperature_c` never"
+        ),
+        "{errors}"
+    );
+    folder.succeed(&[&command[..], &["--json", "o.json"]].concat());
+    let report = super::report(&folder, "o.json");
+    let why = report
+        .not_searched
+        .iter()
+        .find(|e| e.effect == "gyro_x.temperature");
+    assert!(why.unwrap().why.contains("never changes"), "{why:?}");
+    let mut against = report.residuals.unwrap().against.into_iter();
+    assert!(against.all(|against| against.abscissa != "temperature_c"));
+}
+
 /// The record with its first rows only.
 pub(super) fn shortened(rows: usize) -> crate::folder::Folder {
     let folder = folder();

@@ -32,3 +32,21 @@ fn a_later_record_tells_what_the_extended_model_wins() {
     assert!(said.contains("later.csv is predicted better too"), "{said}");
     assert!(said.contains("24.0 h with"), "{said}");
 }
+
+#[test]
+fn a_sound_platform_has_one_model_to_validate() {
+    let folder = folder();
+    for name in ["three_days.csv", "three_days.bench.toml"] {
+        folder.put_example(name);
+    }
+    let command = [
+        "diagnose",
+        "three_days.csv",
+        "--bench",
+        "three_days.bench.toml",
+    ];
+    let later = ["--validate", RECORD, "--validate-bench", BENCH];
+    let said = folder.succeed(&[&command[..], &later].concat());
+    let expected = "hidden_fault.csv is predicted by the nominal model alone: no effect is in";
+    assert!(said.contains(expected), "{said}");
+}
