@@ -9,7 +9,7 @@ use gyrocal_measured::allan::{
     AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
 };
 use gyrocal_measured::{MeasuredError, ResultFile, read_columns};
-use gyrocal_record::{SourceText, write_json};
+use gyrocal_record::{InputErrorKind, SourceText, write_json};
 use serde_json::json;
 
 use crate::Failure;
@@ -80,6 +80,9 @@ fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, MeasuredError> {
         .into_iter()
         .zip(columns)
         .map(|(name, values)| {
+            if values.len() > 1 && values.windows(2).all(|pair| pair[0] == pair[1]) {
+                return Err(constant(&source, name));
+            }
             let values: Vec<f64> = values.iter().map(|value| value * arguments.scale).collect();
             let averaging = octaves(values.len().max(3));
             let points = allan_deviation(&values, interval_s, &averaging, arguments.confidence)?;
@@ -91,6 +94,17 @@ fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, MeasuredError> {
             })
         })
         .collect()
+}
+
+fn constant(source: &SourceText, name: &str) -> MeasuredError {
+    let error = source.error(
+        InputErrorKind::Stuck,
+        0..0,
+        format!("a column `{name}` that never changes"),
+        "samples of a rate, which has noise",
+        "look for a sensor, or a logger, that hangs",
+    );
+    error.into()
 }
 
 fn document(column: &Column<'_>) -> serde_json::Value {

@@ -53,6 +53,19 @@ fn bad_input_is_told() {
         errors.contains("n.csv:3:1: found `x`, expected a finite number"),
         "{errors}"
     );
+    // The other column of the log holds ones.
+    let errors = folder.fail(&[
+        "allan",
+        "l.csv",
+        "--columns",
+        "rate,other",
+        "--rate-hz",
+        "10",
+    ]);
+    assert!(
+        errors.contains("found a column `other` that never changes"),
+        "{errors}"
+    );
     folder.put("s.csv", "rate\n1\n2\n");
     let errors = folder.fail(&["allan", "s.csv", "--columns", "rate", "--rate-hz", "10"]);
     assert!(errors.contains("found 2 samples"), "{errors}");

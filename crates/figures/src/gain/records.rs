@@ -142,15 +142,30 @@ pub(super) struct Second {
     pub(super) gain_nats: Option<f64>,
     /// Angle after a day, arc minutes: nominal, extended, expected of the extended.
     pub(super) after_a_day_arcmin: Option<[f64; 3]>,
-    /// The same of a model that has exactly what was hidden.
+    /// The same of a model that is told what was hidden, onset and time constant too.
     pub(super) told_arcmin: [f64; 3],
 }
+
+/// A nominal error of so many times what noise and the coefficients' own sigmas let one expect.
+const BEYOND_NOISE: f64 = 2.0;
 
 impl Second {
     /// Whether the drift is; a cause that is not found improves nothing.
     pub(super) fn predicted_better(&self) -> bool {
         let angles = self.after_a_day_arcmin;
         angles.is_some_and(|[nominal, extended, _]| extended < nominal)
+    }
+
+    /// Whether a model that is told the cause predicts the drift better.
+    pub(super) fn within_reach(&self) -> bool {
+        let [nominal, told, _] = self.told_arcmin;
+        told < nominal
+    }
+
+    /// Whether the nominal model is wrong by more than chance makes it.
+    pub(super) fn beyond_noise(&self) -> bool {
+        let [nominal, _, expected] = self.told_arcmin;
+        nominal > BEYOND_NOISE * expected
     }
 }
 
