@@ -1,6 +1,7 @@
 //! What each Jacobian is the derivative of, and the proof that none is left out.
 
 use gyrocal_oracle::points::State;
+use gyrocal_oracle::program::Function;
 
 use crate::callable::Callable;
 use crate::functions::{function, generated};
@@ -162,6 +163,12 @@ pub(crate) fn value_function(name: &str) -> Callable {
 }
 
 impl Derivative {
+    /// Its place among the outputs of the function that returns it.
+    pub(crate) fn place(&self, function: &Function) -> usize {
+        let mut outputs = function.outputs.iter();
+        outputs.position(|o| o.name == self.output).unwrap()
+    }
+
     /// Places of the variables in the inputs of the function that is differentiated.
     pub(crate) fn places(&self, state: &State) -> Vec<usize> {
         match self.by {

@@ -5,7 +5,7 @@ use gyrocal_oracle::difference;
 use gyrocal_oracle::points::{Purpose, State, states};
 
 use crate::derivatives::{By, Derivative, derivatives};
-use crate::{STATES, hold, programs};
+use crate::{STATES, hold, named, programs};
 
 /// Truncation at the corner of the range, θy = ±80°, where the pole of 1/cos θy is 0.17 rad
 /// away, is 36 (2^-10 / 0.17)⁶ = 1e-12 of an entry, and some tens of that through the stages
@@ -53,15 +53,8 @@ fn generated_jacobians_agree_with_differences() {
     let programs = programs();
     let comparisons = derivatives().into_iter().map(|derivative| {
         let name = derivative.function.name;
-        let program = programs
-            .iter()
-            .find_map(|program| program.function(name).ok())
-            .unwrap();
-        let index = program
-            .outputs
-            .iter()
-            .position(|o| o.name == derivative.output)
-            .unwrap();
+        let program = named(&programs, name);
+        let index = derivative.place(program);
         let mut comparison = Comparison::new(name, &program.outputs[index], NUMERIC);
         for (point, state) in states.iter().enumerate() {
             let value = (derivative.function.double)(&derivative.function.inputs(state));

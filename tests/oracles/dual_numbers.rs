@@ -6,7 +6,7 @@ use gyrocal_oracle::points::{Purpose, states};
 use crate::callable::dual_jacobian;
 use crate::derivatives::derivatives;
 use crate::interpreted::EXACT;
-use crate::{STATES, hold, programs};
+use crate::{STATES, hold, named, programs};
 
 #[test]
 fn generated_jacobians_agree_with_dual_numbers() {
@@ -14,15 +14,8 @@ fn generated_jacobians_agree_with_dual_numbers() {
     let programs = programs();
     let comparisons = derivatives().into_iter().map(|derivative| {
         let name = derivative.function.name;
-        let program = programs
-            .iter()
-            .find_map(|program| program.function(name).ok())
-            .unwrap();
-        let index = program
-            .outputs
-            .iter()
-            .position(|o| o.name == derivative.output)
-            .unwrap();
+        let program = named(&programs, name);
+        let index = derivative.place(program);
         let mut comparison = Comparison::new(name, &program.outputs[index], EXACT);
         for (point, state) in states.iter().enumerate() {
             let inputs = derivative.function.inputs(state);

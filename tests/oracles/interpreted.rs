@@ -5,7 +5,7 @@ use gyrocal_oracle::points::{Purpose, states};
 
 use crate::derivatives::{value_function, values};
 use crate::functions::{function, generated};
-use crate::{STATES, hold, programs};
+use crate::{STATES, hold, named, programs};
 
 /// Both sides do the same operations but for what the emitter shares or reorders, with 1 ulp
 /// of sine and cosine between the two libraries: 1e-13 is some hundred roundings. A column
@@ -57,10 +57,7 @@ fn values_beside_jacobians_are_those_of_the_value_functions() {
     for (name, output, value_name) in values() {
         let function = function(name);
         let value_function = value_function(value_name);
-        let program = programs
-            .iter()
-            .find_map(|program| program.function(name).ok())
-            .unwrap();
+        let program = named(&programs, name);
         let (first, own) = (&program.outputs[0], program.outputs[0].nonzeros.len());
         assert_eq!(first.name, output, "the value comes first");
         let mut comparison = Comparison::new(name, first, EXACT);

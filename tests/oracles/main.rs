@@ -31,7 +31,7 @@ use gyrocal::generated::{
     CATALOGUE_PROGRAM, ORACLE_PROGRAM, PLATFORM_PROGRAM, STRAPDOWN_PROGRAM, SURVEYED_PROGRAM,
 };
 use gyrocal_oracle::compare::{Comparison, Mismatch};
-use gyrocal_oracle::program::Program;
+use gyrocal_oracle::program::{Function, Program};
 
 /// States at which a function is compared with an oracle.
 const STATES: usize = 10_000;
@@ -52,6 +52,14 @@ fn programs() -> Vec<Program> {
     texts
         .map(|text| qualified(Program::from_json(text).unwrap()))
         .into()
+}
+
+/// A function of any of the programs.
+fn named<'a>(programs: &'a [Program], name: &str) -> &'a Function {
+    let mut found = programs.iter();
+    found
+        .find_map(|program| program.function(name).ok())
+        .unwrap()
 }
 
 fn qualified(mut program: Program) -> Program {

@@ -13,7 +13,7 @@ use crate::derivatives::derivatives;
 use crate::differences::{NUMERIC, steps};
 use crate::functions::function;
 use crate::interpreted::EXACT;
-use crate::programs;
+use crate::{named, programs};
 
 /// States at which a mutant is run: enough that none hides where a term happens to vanish.
 const FEW: usize = 4;
@@ -224,20 +224,13 @@ fn dual_numbers_and_differences_notice_every_spoilt_jacobian() {
     let mut noticed_somewhere: BTreeSet<(&str, usize)> = BTreeSet::new();
     for derivative in derivatives() {
         let name = derivative.function.name;
-        let program = programs
-            .iter()
-            .find_map(|program| program.function(name).ok())
-            .unwrap();
+        let program = named(&programs, name);
         let stride = if program.instructions.len() > 1000 {
             101
         } else {
             1
         };
-        let index = program
-            .outputs
-            .iter()
-            .position(|o| o.name == derivative.output)
-            .unwrap();
+        let index = derivative.place(program);
         let by_dual = |state: &State| {
             let function = derivative.of.dual.unwrap();
             let inputs = derivative.of.inputs(state);
@@ -279,8 +272,7 @@ fn dual_numbers_and_differences_notice_every_spoilt_jacobian() {
     hidden.retain(|place, _| !noticed_somewhere.contains(place));
     for ((name, index), outputs) in hidden {
         let generated = function(name);
-        let mut all = programs.iter();
-        let program = all.find_map(|program| program.function(name).ok()).unwrap();
+        let program = named(&programs, name);
         let instruction = program.instructions[index];
         let inputs: Vec<Vec<f64>> = states.iter().map(|state| generated.inputs(state)).collect();
         assert!(
