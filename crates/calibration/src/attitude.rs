@@ -3,6 +3,7 @@
 use gyrocal::generated::platform::reanchor;
 use gyrocal::trajectory::{Orientation, orientation, turned};
 use gyrocal_record::{Bench, Record};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::error::CalibrationError;
 
@@ -66,14 +67,24 @@ pub(crate) fn trials(record: &Record, bench: &Bench) -> Result<Vec<Trial>, Calib
 }
 
 /// Angles against East-North-Up and their independent standard deviations.
+///
+/// As the second angle goes to 90 degrees, the other two become angles about one axis, and their sigmas
+/// leave a direction without any error. About no axis, therefore, does the attitude count as better known
+/// than the best known angle.
 fn declared(angles_deg: [f64; 3], sigma_deg: [f64; 3]) -> InitialAttitude {
     let at = reanchor(&angles_deg.map(f64::to_radians));
-    let map = at.rotation_d_theta_dense();
-    let variance = sigma_deg.map(|sigma| sigma.to_radians().powi(2));
+    let map = Matrix3::from(at.rotation_d_theta_dense()).transpose();
+    let variance = Vector3::from(sigma_deg.map(|sigma| sigma.to_radians().powi(2)));
+    let of_angles = map * Matrix3::from_diagonal(&variance) * map.transpose();
+    let mut eigen = of_angles.symmetric_eigen();
+    eigen
+        .eigenvalues
+        .apply(|value| *value = value.max(variance.min()));
+    let covariance = eigen.recompose();
     InitialAttitude {
         orientation: orientation(&at.platform_c_chart),
         covariance: core::array::from_fn(|i| {
-            core::array::from_fn(|j| (0..3).map(|l| map[i][l] * variance[l] * map[j][l]).sum())
+            core::array::from_fn(|j| covariance[(i.max(j), i.min(j))])
         }),
     }
 }

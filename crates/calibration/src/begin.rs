@@ -13,6 +13,7 @@ use crate::layout::Layout;
 use crate::problem::{Leg, Problem};
 use crate::result::AzimuthSearch;
 use crate::run::{Rows, Run};
+use crate::spikes::without_spikes;
 use crate::start::{Start, filtered};
 use crate::uncertainty::Uncertainty;
 
@@ -45,6 +46,11 @@ pub(crate) fn begin(
     options: &Options,
     careful: bool,
 ) -> Result<Beginning, CalibrationError> {
+    let record = without_spikes(run.record, settings.accel_noise_g);
+    let run = &Run {
+        record: &record,
+        bench: run.bench,
+    };
     let trials = trials(run.record, run.bench)?;
     if let [only] = trials.as_slice() {
         return Ok(Beginning {

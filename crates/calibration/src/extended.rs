@@ -309,12 +309,6 @@ impl<'a> Extended<'a> {
         self.solution.cost
     }
 
-    /// Number of values used.
-    #[must_use]
-    pub fn value_count(&self) -> usize {
-        self.solution.values
-    }
-
     /// Steps that the fit took.
     #[must_use]
     pub fn iterations(&self) -> usize {

@@ -48,6 +48,7 @@ mod robust;
 mod run;
 mod settings;
 mod solve;
+mod spikes;
 mod start;
 mod streaming;
 mod uncertainty;
@@ -67,6 +68,7 @@ pub use observability::Undetermined;
 pub use result::{AzimuthSearch, Calibration, CoefficientEstimate, RunResult, SiteInfluence};
 pub use run::Run;
 pub use settings::settings;
+pub use spikes::spikes;
 pub use streaming::pass;
 
 /// Number of drift coefficients.

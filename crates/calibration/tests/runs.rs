@@ -349,3 +349,53 @@ fn noise_is_estimated_beside_what_is_declared() {
         }
     }
 }
+
+/// At the pole of the angles two of them turn about one axis. The platform is off by one sigma of
+/// the declared about another axis, about which angles alone would leave it no error at all.
+#[test]
+fn the_pole_of_the_angles_is_an_attitude_like_any_other() {
+    for (seed, angles_deg) in [
+        [0.0, 85.0, 0.0],
+        [0.0, 90.0, 30.0],
+        [10.0, 90.0, 20.0],
+        [45.0, -90.0, 45.0],
+        [1.0, 89.999, 1.0],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let off = [("x_deg", 0.02), ("y_deg", 0.0), ("z_deg", 0.0)];
+        let simulation = simulate(&Scenario {
+            initial: InitialAttitude::AnglesDeg(angles_deg),
+            initial_angles_sigma_deg: [0.02; 3],
+            hidden: vec![Hidden::new("platform.initial_attitude", &off).unwrap()],
+            ..scenario(seed as u64)
+        })
+        .unwrap();
+        let found = found(&simulation, &Options::default());
+        let nees = nees(&found, &Coefficients::PAPER_LIKE);
+        assert!(nees < NEES, "{angles_deg:?}: {nees}");
+        assert_eq!(found.fit.verdict(), Verdict::Consistent, "{angles_deg:?}");
+    }
+}
+
+/// A tenth of g in one row, early or late: no start goes through it, and no weight is left to it.
+#[test]
+fn a_gross_error_of_one_row_harms_no_robust_estimate() {
+    for row in [0, 8, 40, 700, 1440] {
+        let mut simulation = simulate(&scenario(5)).unwrap();
+        let robust = Options {
+            outlier_bound: Some(3.0),
+            ..Options::default()
+        };
+        let sound = found(&simulation, &robust);
+        simulation.record.accel_g[row][2] += 0.1;
+        let spoilt = found(&simulation, &robust);
+        let sigmas = sigmas(&sound);
+        for i in 0..9 {
+            let moved = (spoilt.drift.to_array()[i] - sound.drift.to_array()[i]) / sigmas[i];
+            // One row of 1441 is gone; the first alone tells the attitude of its moment.
+            assert!(moved.abs() < 0.5, "row {row}, {i}: {moved} sigmas");
+        }
+    }
+}

@@ -1,4 +1,5 @@
-//! Scores and information of columns, with what the fit takes up of them projected out.
+//! Scores and information of columns, with what the fit takes up of them projected out. It says how large
+//! what is hidden is, and is written apart from the search that has to find it.
 
 use gyrocal::Platform;
 use gyrocal::generated::catalogue::PARAMETERS;

@@ -268,7 +268,7 @@ fn row(id: &str) -> Option<&'static EffectRow> {
     EFFECTS.iter().find(|effect| effect.id == id)
 }
 
-/// Onset or time constant of a finding, which have no sigma.
+/// Onset or time constant of a finding.
 fn shape_of(finding: &Finding) -> Option<f64> {
     finding
         .parameters

@@ -1,6 +1,7 @@
 //! The whole diagnosis of one record.
 
 mod audited;
+mod unsettled;
 
 use gyrocal_calibration::{CalibrationError, Extended, NoiseEstimate, NoiseModel, Options, Run};
 use gyrocal_record::{Bench, Record};
@@ -16,6 +17,7 @@ use crate::side::{NormVerdict, norm_verdict};
 use crate::significance::two_sided_p;
 use crate::stability::{Stability, stability};
 use audited::{Audited, audited};
+use unsettled::standing_off;
 
 /// How a record is diagnosed.
 #[derive(Clone, Debug, PartialEq)]
@@ -165,7 +167,8 @@ pub fn diagnose<'a>(
         mut nominal,
         mut noise_model,
         innovations,
-        audit,
+        mut audit,
+        suspects,
     } = audited(&run, &declared, audit_share, &options.calibration)?;
     let slow_noise_g = noise_model
         .accel_ratio
@@ -201,6 +204,14 @@ pub fn diagnose<'a>(
         (nominal, noise_model) = (refitted, louder);
         searched = search(nominal.clone(), record, bench, &search_options)?;
         estimate = searched.fitted.noise()?;
+    }
+    if !suspects.is_empty() {
+        // What a cause explains is no outlier.
+        let mut rows: Vec<usize> = suspects.iter().map(|outlier| outlier.row).collect();
+        rows.dedup();
+        let mut outliers = standing_off(record, &rows, &searched.fitted, slow_noise_g);
+        outliers.retain(|one| suspects.iter().any(|other| other.place() == one.place()));
+        audit.add_outliers(outliers, bench.accel_noise_g);
     }
     let mut noise_findings = audit.findings.clone();
     // Between the steps that it is made up from, a walk looks like white noise.

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal_calibration::Run;
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose, validated};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Validation, diagnose, validated};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 /// A day or more at a random attitude.
@@ -46,22 +46,7 @@ fn a_later_record_is_predicted_better_by_what_was_found_in_the_first() {
     let options = DiagnoseOptions::default();
     let found = diagnose(&first.record, &first.bench, &options).unwrap();
     assert_eq!(found.findings[0].effect, "gyro_y.g_z");
-    let run = |of: &Simulation| (of.record.clone(), of.bench.clone());
-    let ((one, its_bench), (other, other_bench)) = (run(&first), run(&later));
-    let validation = validated(
-        &found,
-        &Run {
-            record: &one,
-            bench: &its_bench,
-        },
-        &Run {
-            record: &other,
-            bench: &other_bench,
-        },
-        &options,
-    )
-    .unwrap()
-    .unwrap();
+    let validation = predicted(&found, &first, &later);
     // The effect is some hundred sigmas.
     assert!(
         validation.gain_nats() > 1000.0,
@@ -79,6 +64,45 @@ fn a_later_record_is_predicted_better_by_what_was_found_in_the_first() {
         (left.time_s[0], *left.time_s.last().unwrap()),
         (0.0, 86_400.0)
     );
+}
+
+/// The later record as it is told by what was found in the first.
+fn predicted(found: &Diagnosis<'_>, first: &Simulation, later: &Simulation) -> Validation {
+    let [first, later] = [first, later].map(|simulation| Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    });
+    validated(found, &first, &later, &DiagnoseOptions::default())
+        .unwrap()
+        .unwrap()
+}
+
+/// A record of hours leaves its own attitude open: then no model can be held against it.
+#[test]
+fn a_short_later_record_lets_one_expect_little() {
+    let hidden = [Hidden::new("gyro_y.g_z", &[("size", 0.02)]).unwrap()];
+    let first = simulation(7, 2.0, &hidden);
+    let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default()).unwrap();
+    let (mut squares, mut shortest) = (0.0, f64::INFINITY);
+    let cases = [
+        (0.5, 21),
+        (0.5, 22),
+        (0.5, 23),
+        (6.0, 24),
+        (6.0, 25),
+        (6.0, 26),
+    ];
+    for (hours, seed) in cases {
+        let later = simulation(seed, hours / 24.0, &hidden);
+        let left = predicted(&found, &first, &later).compensation;
+        let [_, extended, expected] = left.at_end_arcmin();
+        squares += (extended / expected).powi(2) / cases.len() as f64;
+        shortest = f64::min(shortest, expected);
+    }
+    // Chi-square with as many degrees of freedom as cases at least, over its expectation: between
+    // 0.06 and 3.7 but for one in a thousand.
+    assert!((0.06..3.7).contains(&squares), "{squares}");
+    assert!(shortest > 0.1, "{shortest}");
 }
 
 #[test]

@@ -54,7 +54,12 @@ impl<'a> Dense<'a> {
         // Equation (6) of the model: the rates of the angles as a rotation in platform axes.
         let ((sy, cy), (sz, cz)) = (angles.y.sin_cos(), angles.z.sin_cos());
         let map = Matrix3::new(cy * cz, sz, 0.0, -cy * sz, cz, 0.0, sy, 0.0, 1.0);
-        let root = map * Matrix3::from_diagonal(&sigma);
+        // About no axis better known than the best known angle.
+        let mut parts = (map * Matrix3::from_diagonal(&sigma)).svd(true, false);
+        parts
+            .singular_values
+            .apply(|value| *value = value.max(sigma.min()));
+        let root = parts.u.expect("asked for") * Matrix3::from_diagonal(&parts.singular_values);
         let prior = &bench.prior;
         let drift_sigma = core::array::from_fn(|i| match i % 3 {
             0 => prior.bias_sigma_deg_per_h[i / 3],

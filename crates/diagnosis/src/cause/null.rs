@@ -7,6 +7,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::bank::Bank;
 use super::family::Family;
 use super::walk::Walk;
+use crate::significance::z_of_two_sided_p;
 
 /// Draws from the joint distribution: the 1 % point of the largest statistic then rests on 40.
 const DRAWS: usize = 4096;
@@ -27,6 +28,9 @@ const EQUAL_SINGLE: f64 = 6.634_896_601_021_214;
 /// distribution about 5): this brings them nearer. The threshold is drawn with it, so that the
 /// probability of a false alarm does not depend on it.
 const PAID: f64 = 0.6;
+
+/// A tail of fewer draws says little: beyond these it is that of one degree of freedom.
+const TAIL: usize = 10;
 
 /// Signatures whose scores are drawn in one product: the triangle's empty half costs little then.
 const PANEL: usize = 32;
@@ -191,6 +195,10 @@ impl Null {
     /// tell, its tail falls like that of chi-square with one degree of freedom.
     pub(crate) fn threshold(&self, probability: f64) -> f64 {
         let count = self.maxima.len() as f64;
+        if probability * count < TAIL as f64 {
+            let (at, share) = self.join();
+            return z_of_two_sided_p(tail(at) * probability / share).powi(2);
+        }
         let at = ((1.0 - probability) * count).floor();
         let index = (at.max(0.0) as usize).min(self.maxima.len() - 1);
         self.maxima[index]
@@ -200,14 +208,18 @@ impl Null {
     pub(crate) fn probability(&self, value: f64) -> f64 {
         let below = self.maxima.partition_point(|maximum| *maximum < value);
         let above = self.maxima.len() - below;
-        if above >= 10 {
+        if above >= TAIL {
             return above as f64 / self.maxima.len() as f64;
         }
-        // Beyond the draws: the tail of one degree of freedom, joined at the tenth largest.
-        let join = self.maxima.len().saturating_sub(10);
-        let at = self.maxima[join];
-        let share = 10.0 / self.maxima.len() as f64;
+        let (at, share) = self.join();
         (share * tail(value) / tail(at)).min(share)
+    }
+
+    /// Where the tail begins that no draws tell, and the probability to be beyond.
+    fn join(&self) -> (f64, f64) {
+        let largest = TAIL.min(self.maxima.len());
+        let share = largest as f64 / self.maxima.len() as f64;
+        (self.maxima[self.maxima.len() - largest], share)
     }
 }
 
@@ -231,6 +243,32 @@ pub(crate) fn normal(generator: &mut ChaCha8Rng) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_threshold_is_exceeded_with_its_probability_however_small() {
+        let mut generator = ChaCha8Rng::seed_from_u64(3);
+        let mut maxima: Vec<f64> = (0..DRAWS).map(|_| normal(&mut generator).powi(2)).collect();
+        maxima.sort_unstable_by(f64::total_cmp);
+        let null = Null {
+            penalties: Vec::new(),
+            paid: Vec::new(),
+            maxima,
+        };
+        let mut before = 0.0;
+        for probability in [0.5, 0.01, 3e-3, 2e-3, 1e-4, 1e-8, 1e-15] {
+            let threshold = null.threshold(probability);
+            assert!(threshold > before, "{probability}: {threshold}");
+            before = threshold;
+            // To a draw of 4096, and where there are none to rounding.
+            let error = null.probability(threshold) - probability;
+            let allowed = if probability > 2.5e-3 {
+                1.0 / 4096.0
+            } else {
+                1e-9 * probability
+            };
+            assert!(error.abs() <= allowed, "{probability}: {error}");
+        }
+    }
 
     #[test]
     fn scores_of_panels_are_the_whole_product() {

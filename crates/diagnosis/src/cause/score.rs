@@ -135,12 +135,12 @@ impl<'a> Scores<'a> {
                 format!("{gyro}.ramp"),
                 "platform.initial_attitude".to_owned(),
             ];
-            let found = families
-                .iter()
-                .position(|family| simpler.iter().any(|id| id == family.id()));
+            let simple = (0..families.len())
+                .filter(|family| simpler.iter().any(|id| id == families[*family].id()))
+                .filter_map(|family| self.best[family])
+                .max_by(|a, b| a.statistic.total_cmp(&b.statistic));
             let richer = self.best[best].map_or(0.0, |best| best.statistic);
-            if let Some(simple) = found
-                && let Some(simple) = self.best[simple]
+            if let Some(simple) = simple
                 && richer - simple.statistic < RICHER
             {
                 return Some(simple);

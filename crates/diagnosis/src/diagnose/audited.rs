@@ -2,11 +2,12 @@
 
 use gyrocal::estimation::Factors;
 use gyrocal::{PlatformFilter, Settings};
-use gyrocal_calibration::{Extended, NoiseModel, Options, Run, pass, settings};
+use gyrocal_calibration::{Extended, NoiseModel, Options, Run, pass, settings, spikes};
 use gyrocal_record::{Bench, Record};
 
 use super::DiagnoseError;
-use crate::noise::{AuditOptions, DeclaredNoise, NoiseAudit, audit_noise, runs};
+use super::unsettled::{standing_off, unsettled};
+use crate::noise::{AuditOptions, DeclaredNoise, NoiseAudit, Outlier, audit_noise};
 use crate::series::Innovations;
 
 /// The nominal model of a record with the noise that its audit left.
@@ -15,6 +16,9 @@ pub(super) struct Audited<'a> {
     pub(super) noise_model: NoiseModel,
     pub(super) innovations: Innovations,
     pub(super) audit: NoiseAudit,
+    /// Values that the audit could not judge and that this model makes nothing of: outliers, if
+    /// no other model does. They are left out.
+    pub(super) suspects: Vec<Outlier>,
 }
 
 /// Audits the noise of a record, believing `before` until then.
@@ -25,22 +29,44 @@ pub(super) fn audited<'a>(
     options: &Options,
 ) -> Result<Audited<'a>, DiagnoseError> {
     let Run { record, bench } = *run;
-    let first = Extended::nominal(run, options, before)?;
-    let innovations = innovations(record, bench, &first)?;
-    let audit = audit_noise(
-        record,
-        &innovations,
+    let gross = spikes(record, bench.accel_noise_g);
+    let whole: Vec<[usize; 2]> = gross
+        .iter()
+        .flat_map(|row| (0..3).map(|axis| [*row, axis]))
+        .collect();
+    let mut noise_model = before.clone();
+    leave_out(&mut noise_model, record.len(), &whole);
+    let first = Extended::nominal(run, options, &noise_model)?;
+    let mut screened = without(record, &whole);
+    let mut seen = innovations(&screened, bench, &first)?;
+    let mut audit = audit_noise(
+        &screened,
+        &seen,
         &DeclaredNoise {
             accel_g: [bench.accel_noise_g; 3],
             gyro_deg_per_h: bench.gyro_noise_deg_per_h,
         },
         &AuditOptions { false_alarm },
     )?;
-    let mut noise_model = NoiseModel {
+    noise_model = NoiseModel {
         gyro_ratio: before.gyro_ratio,
         ..believed(&audit, record)
     };
-    leave_out_early(&mut noise_model, record, &first, bench.accel_noise_g);
+    let noise_g = noise_model
+        .accel_ratio
+        .map(|ratio| ratio * bench.accel_noise_g);
+    let mut suspects = standing_off(record, &unsettled(record, &gross), &first, noise_g);
+    let known = |one: &Outlier| audit.outliers.iter().any(|o| o.place() == one.place());
+    suspects.retain(|one| !known(one));
+    let places: Vec<[usize; 2]> = suspects.iter().map(Outlier::place).collect();
+    if !places.is_empty() {
+        leave_out(&mut noise_model, record.len(), &places);
+        for [row, axis] in &places {
+            audit.cleaned.keep[*row][*axis] = false;
+        }
+        screened = without(&screened, &places);
+        seen = innovations(&screened, bench, &first)?;
+    }
     let nominal = if noise_model == *before {
         first
     } else {
@@ -49,6 +75,7 @@ pub(super) fn audited<'a>(
             // What the model misses by far may look like noise that no fit bears: as declared.
             Err(_) => {
                 noise_model = before.clone();
+                leave_out(&mut noise_model, record.len(), &whole);
                 first
             }
         }
@@ -56,9 +83,32 @@ pub(super) fn audited<'a>(
     Ok(Audited {
         nominal,
         noise_model,
-        innovations,
+        innovations: seen,
         audit,
+        suspects,
     })
+}
+
+/// Gives values, each a row and an axis, no weight.
+fn leave_out(noise_model: &mut NoiseModel, rows: usize, places: &[[usize; 2]]) {
+    if places.is_empty() {
+        return;
+    }
+    let weights = noise_model
+        .weights
+        .get_or_insert_with(|| vec![[1.0; 3]; rows]);
+    for [row, axis] in places {
+        weights[*row][*axis] = 0.0;
+    }
+}
+
+/// A record without some values.
+fn without(record: &Record, places: &[[usize; 2]]) -> Record {
+    let mut screened = record.clone();
+    for [row, axis] in places {
+        screened.accel_g[*row][*axis] = f64::NAN;
+    }
+    screened
 }
 
 /// The noise of the accelerometers as the audit left it.
@@ -79,55 +129,6 @@ fn believed(audit: &NoiseAudit, record: &Record) -> NoiseModel {
                 .map(|keep| keep.map(|keep| f64::from(u8::from(keep))))
                 .collect()
         }),
-    }
-}
-
-/// The audit does not look at the first rows of a record and of what follows a gap, where the filter
-/// has not settled: values there whose smoothed residual stands off those of its neighbours by more
-/// than this get no weight.
-const STANDS_OFF: f64 = 7.0;
-const EARLY_ROWS: usize = 48;
-const ROWS_AFTER_GAP: usize = 8;
-
-fn leave_out_early(
-    noise_model: &mut NoiseModel,
-    record: &Record,
-    fitted: &Extended<'_>,
-    noise_g: f64,
-) {
-    let early = runs(&record.time_s).into_iter().flat_map(|run| {
-        let rows = if run.start == 0 {
-            EARLY_ROWS
-        } else {
-            ROWS_AFTER_GAP
-        };
-        run.start..(run.start + rows).min(run.end)
-    });
-    let predicted_g = fitted.predicted_g();
-    let residual =
-        |row: usize, axis: usize| (record.accel_g[row][axis] - predicted_g[row][axis]) / noise_g;
-    for row in early {
-        for axis in 0..3 {
-            let from = row.saturating_sub(4);
-            let to = (row + 5).min(record.len());
-            let mut around: Vec<f64> = (from..to)
-                .filter(|other| *other != row)
-                .map(|other| residual(other, axis))
-                .filter(|value| value.is_finite())
-                .collect();
-            around.sort_unstable_by(f64::total_cmp);
-            let Some(middle) = around.get(around.len() / 2) else {
-                continue;
-            };
-            let ratio = noise_model.accel_ratio[axis];
-            if (residual(row, axis) - middle).abs() > STANDS_OFF * ratio {
-                let all = record.len();
-                let weights = noise_model
-                    .weights
-                    .get_or_insert_with(|| vec![[1.0; 3]; all]);
-                weights[row][axis] = 0.0;
-            }
-        }
     }
 }
 

@@ -77,6 +77,23 @@ impl Carried {
     }
 }
 
+/// The factor of what a fit knows of its own parameters: a row for each parameter of the catalogue.
+///
+/// # Errors
+/// [`CalibrationError::NotPositiveDefinite`].
+pub(crate) fn factor(fit: &Extended<'_>) -> Result<DMatrix<f64>, CalibrationError> {
+    let cholesky =
+        Cholesky::new(fit.covariance().clone()).ok_or(CalibrationError::NotPositiveDefinite)?;
+    let own = cholesky.l();
+    let further = fit.extension().parameters.iter();
+    let places = (0..COEFFICIENTS).chain(further.map(|(parameter, _)| *parameter));
+    let mut factor = DMatrix::zeros(PARAMETERS.len(), own.ncols());
+    for (value, parameter) in places.enumerate() {
+        factor.set_row(parameter, &own.row(value));
+    }
+    Ok(factor)
+}
+
 /// Shapes that a later record has too: time constants, as onsets are past.
 pub(crate) fn shapes(fit: &Extended<'_>) -> [f64; SHAPES.len()] {
     fit.extension().shapes

@@ -3,7 +3,7 @@
 use gyrocal::trajectory::{Orientation, rotation_between};
 use gyrocal_calibration::{CalibrationError, Expectation, Extended, Extension, Run};
 
-use super::carried::{Carried, shapes};
+use super::carried::{Carried, factor, shapes};
 
 /// Drift is predicted over so long, s, or over the record if that is shorter.
 const HORIZON_S: f64 = 86_400.0;
@@ -40,7 +40,8 @@ pub struct Compensation {
     pub nominal_arcmin: Vec<f64>,
     /// With those of the extended model.
     pub extended_arcmin: Vec<f64>,
-    /// What the covariance of the extended model and the noise of the gyros let one expect.
+    /// What the covariances of the extended model and of the later record's own fit and the noise of
+    /// the gyros let one expect.
     pub expected_arcmin: Vec<f64>,
 }
 
@@ -129,6 +130,7 @@ fn compensation(
     let spare_s = (last_s - first_s - horizon_s).max(0.0);
     let starts = (1 + (spare_s / BETWEEN_STARTS_S) as usize).min(MOST_STARTS);
     let walk = own.walk_rad2_per_s().iter().sum::<f64>();
+    let of_own = factor(own)?;
     let mut squares = [[0.0; 3]; POINTS + 1];
     for start in 0..starts {
         let from_s = first_s + spare_s * start as f64 / (starts.max(2) - 1) as f64;
@@ -146,7 +148,7 @@ fn compensation(
         let predicted = drift(&extended.mean)?;
         add(&mut squares, 0, &places, &drift(&nominal.mean)?, truth);
         add(&mut squares, 1, &places, &predicted, truth);
-        for column in extended.factor.column_iter() {
+        for column in extended.factor.column_iter().chain(of_own.column_iter()) {
             if column.iter().all(|x| *x == 0.0) {
                 continue;
             }

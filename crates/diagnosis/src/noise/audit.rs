@@ -22,6 +22,7 @@ const FIRST_ROW: [usize; 2] = [16, 48];
 
 /// With fewer blocks in all there is no spectrum to speak of.
 const LEAST_BLOCKS: usize = 6;
+const OUTLIERS: &str = "accel.outliers";
 const QUANTISATION: [&str; 3] = [
     "accel_x.quantisation",
     "accel_y.quantisation",
@@ -119,8 +120,7 @@ pub fn audit_noise(
         findings.extend(decided.findings);
         decided.fit
     });
-    findings.sort_by(|a, b| b.z.abs().total_cmp(&a.z.abs()));
-    Ok(NoiseAudit {
+    let mut audit = NoiseAudit {
         findings,
         accel_ratio: fit
             .as_ref()
@@ -136,7 +136,9 @@ pub fn audit_noise(
         outliers,
         gaps: gaps(record, interval_s, runs.len()),
         cleaned,
-    })
+    };
+    audit.sort();
+    Ok(audit)
 }
 
 fn check(
@@ -252,26 +254,26 @@ fn outliers(
         return (Vec::new(), None);
     }
     found.sort_by_key(|outlier| (outlier.row, outlier.axis));
+    let noise_g = declared.accel_g.iter().sum::<f64>() / 3.0;
+    let finding = of_outliers(&found, samples, p_value, noise_g);
+    (found, Some(finding))
+}
+
+/// The finding that `samples` values hold these outliers.
+fn of_outliers(found: &[Outlier], samples: usize, p_value: f64, noise_g: f64) -> NoiseFinding {
     let count = found.len() as f64;
-    let mean = found
-        .iter()
-        .map(|outlier| outlier.size_g.abs())
-        .sum::<f64>()
-        / count;
-    let scatter = found
-        .iter()
-        .map(|outlier| (outlier.size_g.abs() - mean).powi(2))
-        .sum::<f64>();
+    let sizes = || found.iter().map(|outlier| outlier.size_g.abs());
+    let mean = sizes().sum::<f64>() / count;
+    let scatter = sizes().map(|size_g| (size_g - mean).powi(2)).sum::<f64>();
     let fraction = count / samples as f64;
     // One sample has no scatter of its own: that of the noise.
-    let noise_g = declared.accel_g.iter().sum::<f64>() / 3.0;
     let spread = if found.len() > 1 {
         (scatter / (count - 1.0)).sqrt()
     } else {
         noise_g
     };
-    let finding = NoiseFinding {
-        effect: "accel.outliers",
+    NoiseFinding {
+        effect: OUTLIERS,
         parameters: vec![
             Estimate {
                 name: "fraction",
@@ -288,8 +290,44 @@ fn outliers(
         ],
         z: z_of_two_sided_p(p_value),
         p_value,
-    };
-    (found, Some(finding))
+    }
+}
+
+impl NoiseAudit {
+    /// Adds outliers among values that the audit did not look at.
+    pub(crate) fn add_outliers(&mut self, further: Vec<Outlier>, noise_g: f64) {
+        let largest = further.iter().map(|outlier| outlier.deviation.abs());
+        let largest = largest.fold(0.0, f64::max);
+        if further.is_empty() {
+            return;
+        }
+        self.outliers.extend(further);
+        self.outliers
+            .sort_by_key(|outlier| (outlier.row, outlier.axis));
+        let kept = self
+            .cleaned
+            .keep
+            .as_flattened()
+            .iter()
+            .filter(|keep| **keep);
+        let samples = kept.count() + self.outliers.len();
+        let p_value = (samples as f64 * two_sided_p(largest)).min(1.0);
+        let before = self.finding(OUTLIERS).map_or(1.0, |found| found.p_value);
+        self.findings.retain(|finding| finding.effect != OUTLIERS);
+        self.findings.push(of_outliers(
+            &self.outliers,
+            samples,
+            p_value.min(before),
+            noise_g,
+        ));
+        self.sort();
+    }
+
+    /// The strongest finding first.
+    fn sort(&mut self) {
+        self.findings
+            .sort_by(|a, b| b.z.abs().total_cmp(&a.z.abs()));
+    }
 }
 
 fn gaps(record: &Record, interval_s: f64, runs: usize) -> Gaps {

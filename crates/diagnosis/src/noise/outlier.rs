@@ -35,6 +35,13 @@ pub struct Outlier {
     pub deviation: f64,
 }
 
+impl Outlier {
+    /// Row and axis.
+    pub(crate) fn place(&self) -> [usize; 2] {
+        [self.row, self.axis]
+    }
+}
+
 /// Outliers of an axis, its robust standard deviation and the number of samples judged.
 pub(crate) struct Search {
     pub(crate) outliers: Vec<(usize, f64, f64)>,

@@ -83,7 +83,7 @@ pub(super) fn later(found: &Found<'_>) -> Option<String> {
     Some(format!(
         "{scores} A platform compensated by the coefficients of {} would there be off by {:.2} arc \
          minutes after {:.1} h with the extended model and by {:.2} with the nominal one; {:.2} are \
-         to be expected of coefficients as well known and gyros as noisy as these.",
+         to be expected of coefficients and attitudes as well known and gyros as noisy as these.",
         found.path.display(),
         left.extended_arcmin,
         left.after_h,

@@ -1,0 +1,71 @@
+//! Values far off, in rows that the audit of the noise cannot judge.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
+use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
+
+fn simulation(hidden: &[Hidden]) -> Simulation {
+    simulate(&Scenario {
+        seed: 5,
+        coefficients: Coefficients::PAPER_LIKE,
+        initial: InitialAttitude::Random,
+        interval_s: 120.0,
+        duration_s: 2.0 * 86_400.0,
+        hidden: hidden.to_vec(),
+        ..Scenario::default()
+    })
+    .unwrap()
+}
+
+/// A hundred and ten thousand sigmas: the second is more than any fit bears.
+#[test]
+fn an_outlier_is_found_wherever_it_stands() {
+    let sound = simulation(&[]);
+    for (row, size_g) in [
+        (0, 1e-3),
+        (8, 1e-3),
+        (30, 1e-3),
+        (700, 1e-3),
+        (8, 0.1),
+        (700, 0.1),
+        (1440, 0.1),
+    ] {
+        let mut record = sound.record.clone();
+        record.accel_g[row][2] += size_g;
+        let found = diagnose(&record, &sound.bench, &DiagnoseOptions::default()).unwrap();
+        let case = format!("row {row}, {size_g} g");
+        assert_eq!(found.verdict, Verdict::EffectsFound, "{case}");
+        assert!(found.findings.is_empty(), "{case}: {:?}", found.findings);
+        let names: Vec<&str> = found.noise_findings.iter().map(|f| f.effect).collect();
+        assert_eq!(names, ["accel.outliers"], "{case}");
+        let [only] = found.audit.outliers.as_slice() else {
+            panic!("{case}: {:?}", found.audit.outliers)
+        };
+        assert_eq!((only.row, only.axis), (row, 2));
+        // A hundredth is noise; an hour after the start the filter is still settling, too.
+        assert!((only.size_g / size_g - 1.0).abs() < 0.1, "{case}: {only:?}");
+        // It is none of the other things that are said.
+        assert!(!found.norm.unwrap().accelerometers, "{case}");
+        assert!(!found.remainder.unexplained, "{case}");
+    }
+}
+
+/// Beside what the nominal model makes of a large term, sound values stand off; beside what
+/// explains them they do not.
+#[test]
+fn what_a_cause_explains_is_no_outlier() {
+    let term = Hidden::new("gyro_x.g_y", &[("size", 0.05)]).unwrap();
+    let simulation = simulation(&[term]);
+    let found = diagnose(
+        &simulation.record,
+        &simulation.bench,
+        &DiagnoseOptions::default(),
+    );
+    let found = found.unwrap();
+    assert_eq!(found.findings[0].effect, "gyro_x.g_y");
+    assert!(
+        found.audit.outliers.is_empty(),
+        "{:?}",
+        found.audit.outliers
+    );
+}
