@@ -47,8 +47,9 @@ pub(crate) struct TumbleArguments {
     /// How many times the variance of the quietest windows a window at rest may have.
     #[arg(long, value_name = "FACTOR", default_value_t = StopSettings::default().accel_factor)]
     quiet_factor: f64,
-    /// Probability of finding something in data without effects.
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
+    /// Probability of finding something in data without effects, 1e-4 or more; below 0.01 the
+    /// time grows with its inverse.
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
     false_alarm: f64,
     /// Stops in a row that are left out together when the gain is measured.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
@@ -84,6 +85,13 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
     Ok(text)
 }
 
+fn false_alarm(text: &str) -> Result<f64, String> {
+    let value = probability(text)?;
+    SearchSettings::at(value, 1)
+        .map(|settings| settings.false_alarm_probability)
+        .map_err(|error| error.to_string())
+}
+
 fn work(arguments: &TumbleArguments) -> Result<(Prepared, TumbleReport), MeasuredError> {
     let description = Description::read(&arguments.log_description)?;
     let log = Log::read(&arguments.log, &description)?;
@@ -102,11 +110,7 @@ fn work(arguments: &TumbleArguments) -> Result<(Prepared, TumbleReport), Measure
     };
     let prepared = prepare(&log, &description, &stops)?;
     let settings = TumbleSettings {
-        search: SearchSettings {
-            false_alarm_probability: arguments.false_alarm,
-            seed: arguments.seed,
-            ..SearchSettings::default()
-        },
+        search: SearchSettings::at(arguments.false_alarm, arguments.seed)?,
         left_out: arguments.left_out as usize,
         ..TumbleSettings::default()
     };
@@ -242,10 +246,15 @@ fn laws(report: &TumbleReport) -> Table {
 
 fn describe(text: &mut String, finding: &Finding) {
     let [estimate, sigma] = rounded(finding.estimate, finding.sigma);
+    let p_value = match finding.p_value {
+        // Of more permutations than usual.
+        p_value if p_value < 0.001 => format!("{p_value:.0e}"),
+        p_value => format!("{p_value:.3}"),
+    };
     let _ = writeln!(
         text,
-        "  {}  {estimate} ± {sigma} {}  (F {:.0}, p {:.3} for the whole search)",
-        finding.effect, finding.unit, finding.f, finding.p_value
+        "  {}  {estimate} ± {sigma} {}  (F {:.0}, p {p_value} for the whole search)",
+        finding.effect, finding.unit, finding.f
     );
     let rivals: Vec<String> = finding
         .rivals

@@ -17,7 +17,7 @@ pub use controls::{Controls, controls};
 pub use gain::{Gain, gain};
 pub use prepare::{Prepared, SensorReport, prepare};
 pub use rivals::Rival;
-pub use search::{SearchSettings, Step, search};
+pub use search::{LEAST_FALSE_ALARM, SearchSettings, Step, search};
 
 use crate::average::Stop;
 use crate::error::{MeasuredError, Unfit};
@@ -362,10 +362,9 @@ fn finding(
     let law = terms_of(steps, data.gyro);
     let place = law.iter().position(|term| *term == step.term)?;
     let coefficient = gyro.extended.coefficients.get(place)?;
-    let draws = settings.search.permutations;
     let seed = settings.search.seed;
     let data = &data.with_excess_of(&law);
-    let rivals = rivals::rivals(data, &law, step.term, settings.coverage, draws, seed)?;
+    let rivals = rivals::rivals(data, &law, step.term, settings.coverage, seed)?;
     let along = gyro.extended.coefficients.get(1)?.estimate;
     Some(Finding {
         effect: coefficient.name.clone(),

@@ -58,6 +58,29 @@ fn nothing_is_found_in_a_nominal_instrument_more_often_than_chance_allows() {
 }
 
 #[test]
+fn permutations_are_as_many_as_the_probability_asks_for() {
+    let positions = positions(1, 38, |gyro, force| {
+        nominal(gyro, force) + if gyro == 0 { 250.0 * force[2] } else { 0.0 }
+    });
+    for probability in [0.001, 0.0005] {
+        let settings = SearchSettings::at(probability, 1).unwrap();
+        let steps = search(&positions, &all(&positions), &settings);
+        // The term is 250 / (50 / sqrt(38 / 3)), 18 sigmas: no permutation comes near.
+        let [step] = &steps[..] else {
+            panic!("{steps:?}");
+        };
+        assert_eq!((step.gyro, step.term), (0, Term::Cross(2)));
+        assert!(step.p_value <= 0.1 * probability, "{step:?}");
+    }
+    let default = SearchSettings::default();
+    assert_eq!(SearchSettings::at(0.01, default.seed).unwrap(), default);
+    for refused in [0.99e-4, 0.0, -0.1, 1.0, f64::NAN] {
+        let error = SearchSettings::at(refused, 1).unwrap_err();
+        assert_eq!(error.kind(), Some(Unfit::Setting), "{refused}");
+    }
+}
+
+#[test]
 fn what_is_there_is_found_with_its_size_and_its_sigma() {
     let law = |gyro: usize, force: [f64; 3]| {
         let [x, y, z] = force;

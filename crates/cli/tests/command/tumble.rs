@@ -124,6 +124,24 @@ fn causes_are_drawn_as_the_readme_shows_them() {
 }
 
 #[test]
+fn a_rare_false_alarm_does_not_hide_what_is_there() {
+    let folder = Folder::new();
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
+    let arguments = arguments(&log, &description);
+    let text = folder.succeed(&[&arguments[..4], &["--false-alarm", "0.0009"]].concat());
+    // 0.0009 asks for 11111 permutations; the six terms have an F of 43 or more.
+    assert_eq!(
+        text.matches("p 9e-5 for the whole search").count(),
+        6,
+        "{text}"
+    );
+    let output = folder.run(&[&arguments[..4], &["--false-alarm", "1e-5"]].concat());
+    assert_eq!(output.status.code(), Some(2));
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(errors.contains("expected 1e-4 or more"), "{errors}");
+}
+
+#[test]
 fn a_log_that_is_never_static_is_told() {
     // The unit turns in hand all the time: every stop but the turns between them is cut out, and
     // what is left is put together on one clock.

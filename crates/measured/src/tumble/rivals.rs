@@ -33,6 +33,9 @@ pub(crate) struct Rivals {
 /// than that of two terms that are nothing alike.
 const LEAST_LIMIT: f64 = 1.92;
 
+/// Draws of the bootstrap.
+const DRAWS: usize = 999;
+
 /// Terms in place of `term` in a law, whose deficit is within what chance gives the true term in
 /// `coverage` of the draws of a bootstrap: the law with its residuals in another order.
 pub(crate) fn rivals(
@@ -40,7 +43,6 @@ pub(crate) fn rivals(
     law: &[Term],
     term: Term,
     coverage: f64,
-    draws: usize,
     seed: u64,
 ) -> Option<Rivals> {
     let without: Vec<Term> = law.iter().copied().filter(|other| *other != term).collect();
@@ -74,7 +76,7 @@ pub(crate) fn rivals(
     let fitted = &data.rates - &fit.residuals;
     let mut generator = ChaCha12Rng::seed_from_u64(seed);
     let mut order: Vec<usize> = (0..data.len()).collect();
-    let mut deficits_of_truth: Vec<f64> = (0..draws)
+    let mut deficits_of_truth: Vec<f64> = (0..DRAWS)
         .map(|_| {
             shuffle(&mut order, &mut generator);
             let noise = order.iter().map(|i| fit.residuals[*i]);
@@ -84,10 +86,8 @@ pub(crate) fn rivals(
         })
         .collect();
     deficits_of_truth.sort_by(f64::total_cmp);
-    let place = (coverage * draws as f64) as usize;
-    let quantile = deficits_of_truth
-        .get(place.min(draws.saturating_sub(1)))
-        .copied()?;
+    let place = (coverage * DRAWS as f64) as usize;
+    let quantile = deficits_of_truth.get(place.min(DRAWS - 1)).copied()?;
     let limit = quantile.max(LEAST_LIMIT);
     let found = log_likelihoods(&data.rates);
     let mut all: Vec<Rival> = others

@@ -7,13 +7,15 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::Positions;
 use super::basis::Term;
 use super::regression::Whitened;
+use crate::error::{MeasuredError, Unfit};
 
 /// How findings are tested.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
     /// Probability that a search through data without effects finds something.
     pub false_alarm_probability: f64,
-    /// Permutations that the probability is counted over.
+    /// Permutations that the probability is counted over; with n of them none is below
+    /// 1 / (n + 1).
     pub permutations: usize,
     /// Seed of the permutations.
     pub seed: u64,
@@ -23,9 +25,40 @@ impl Default for SearchSettings {
     fn default() -> Self {
         Self {
             false_alarm_probability: 0.01,
-            permutations: 999,
+            permutations: FEWEST_PERMUTATIONS,
             seed: 1,
         }
+    }
+}
+
+const FEWEST_PERMUTATIONS: usize = 999;
+
+/// The least probability of false alarm that can be asked for. The time of a search grows with
+/// its inverse.
+pub const LEAST_FALSE_ALARM: f64 = 1e-4;
+
+impl SearchSettings {
+    /// Settings with so many permutations that the least p-value is a tenth of the probability,
+    /// or less.
+    ///
+    /// # Errors
+    ///
+    /// [`Unfit::Setting`] if the probability is below [`LEAST_FALSE_ALARM`] or not below 1.
+    pub fn at(false_alarm_probability: f64, seed: u64) -> Result<Self, MeasuredError> {
+        if !(LEAST_FALSE_ALARM..1.0).contains(&false_alarm_probability) {
+            return Err(MeasuredError::unfit(
+                Unfit::Setting,
+                format!("a probability of false alarm of {false_alarm_probability:e}"),
+                format!("{LEAST_FALSE_ALARM:e} or more, and less than 1"),
+                "less would take too many permutations of the stops to count",
+            ));
+        }
+        let needed = (10.0 / false_alarm_probability).ceil() as usize - 1;
+        Ok(Self {
+            false_alarm_probability,
+            permutations: needed.max(FEWEST_PERMUTATIONS),
+            seed,
+        })
     }
 }
 
@@ -133,20 +166,9 @@ pub fn search(positions: &Positions, which: &[usize], settings: &SearchSettings)
         let Some((gyro, (term, f))) = best else {
             return steps;
         };
-        let mut order: Vec<usize> = (0..which.len()).collect();
-        let mut as_large = 0;
-        for _ in 0..settings.permutations {
-            shuffle(&mut order, &mut generator);
-            let largest = laws
-                .iter()
-                .filter_map(|law| law.best(&law.permuted(&order)))
-                .fold(0.0, |largest: f64, (_, f)| largest.max(f));
-            as_large += usize::from(largest >= f);
-        }
-        let p_value = (1 + as_large) as f64 / (1 + settings.permutations) as f64;
-        if p_value > settings.false_alarm_probability {
+        let Some(p_value) = chance(&laws, f, settings, &mut generator) else {
             return steps;
-        }
+        };
         steps.push(Step {
             gyro,
             term,
@@ -157,6 +179,34 @@ pub fn search(positions: &Positions, which: &[usize], settings: &SearchSettings)
         terms.push(term);
         laws[gyro] = Law::new(&laws[gyro].data, terms);
     }
+}
+
+/// Probability that the largest F of permuted residuals is `f` or more, if it is no larger than
+/// that of a false alarm.
+fn chance(
+    laws: &[Law],
+    f: f64,
+    settings: &SearchSettings,
+    generator: &mut ChaCha12Rng,
+) -> Option<f64> {
+    let stops = laws.first()?.residuals.len();
+    let mut order: Vec<usize> = (0..stops).collect();
+    let mut p_value = 1.0 / (1 + settings.permutations) as f64;
+    let mut as_large = 0;
+    for _ in 0..settings.permutations {
+        shuffle(&mut order, generator);
+        let largest = laws
+            .iter()
+            .filter_map(|law| law.best(&law.permuted(&order)))
+            .fold(0.0, |largest: f64, (_, f)| largest.max(f));
+        as_large += usize::from(largest >= f);
+        p_value = (1 + as_large) as f64 / (1 + settings.permutations) as f64;
+        // The rest cannot make it smaller.
+        if p_value > settings.false_alarm_probability {
+            return None;
+        }
+    }
+    (p_value <= settings.false_alarm_probability).then_some(p_value)
 }
 
 /// The terms of one gyro after a search.
