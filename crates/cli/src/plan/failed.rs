@@ -16,19 +16,22 @@ pub(super) struct NotPlanned {
     source: PlanError,
 }
 
-/// A diagnosis speaks of another record.
+/// A diagnosis speaks of another record, or was made with another bench file.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[error(
-    "{diagnosis}: a diagnosis of another record; its inputs have SHA-256 {found}, expected \
-     {expected}, that of {record}"
+    "{diagnosis}: a diagnosis {other}; that has SHA-256 {found}, expected {expected}, that of {given}"
 )]
 #[diagnostic(
     code(gyrocal::plan),
-    help("diagnose this record, or leave --diagnosis out: then the command does")
+    help(
+        "diagnose this record with this bench file, or leave --diagnosis out: then the command does"
+    )
 )]
-pub(super) struct OtherRecord {
+pub(super) struct OtherInput {
     pub(super) diagnosis: String,
-    pub(super) record: String,
+    /// What is another one.
+    pub(super) other: &'static str,
+    pub(super) given: String,
     pub(super) found: String,
     pub(super) expected: String,
 }
@@ -65,8 +68,8 @@ impl From<NotPlanned> for Failure {
     }
 }
 
-impl From<OtherRecord> for Failure {
-    fn from(error: OtherRecord) -> Self {
+impl From<OtherInput> for Failure {
+    fn from(error: OtherInput) -> Self {
         Self::Work(error.into())
     }
 }

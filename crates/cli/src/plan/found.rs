@@ -8,7 +8,7 @@ use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_record::{DiagnosisReport, FindingReport, Input};
 
 use super::PlanArguments;
-use super::failed::{NotPlanned, OtherRecord};
+use super::failed::{NotPlanned, OtherInput};
 use crate::Failure;
 use crate::diagnose::NotDiagnosed;
 use crate::extend::diagnosis::read;
@@ -22,7 +22,7 @@ pub(super) struct Known<'a> {
 
 pub(super) fn known<'a>(arguments: &PlanArguments, run: &Run<'a>) -> Result<Known<'a>, Failure> {
     match &arguments.diagnosis {
-        Some(path) => written(path, &arguments.record, run),
+        Some(path) => written(path, arguments, run),
         None => made(arguments, run),
     }
 }
@@ -42,19 +42,13 @@ fn made<'a>(arguments: &PlanArguments, run: &Run<'a>) -> Result<Known<'a>, Failu
     })
 }
 
-fn written<'a>(path: &Path, record: &Path, run: &Run<'a>) -> Result<Known<'a>, Failure> {
+fn written<'a>(
+    path: &Path,
+    arguments: &PlanArguments,
+    run: &Run<'a>,
+) -> Result<Known<'a>, Failure> {
     let report = read(path)?;
-    let expected = Input::of(record)?.sha256;
-    if !report.manifest.inputs.iter().any(|i| i.sha256 == expected) {
-        let found: Vec<_> = report.manifest.inputs.iter().map(|i| &*i.sha256).collect();
-        return Err(OtherRecord {
-            diagnosis: path.display().to_string(),
-            record: record.display().to_string(),
-            found: found.join(" and "),
-            expected,
-        }
-        .into());
-    }
+    check_inputs(path, &report, arguments)?;
     let named: Vec<Named> = report
         .findings
         .iter()
@@ -63,12 +57,40 @@ fn written<'a>(path: &Path, record: &Path, run: &Run<'a>) -> Result<Known<'a>, F
         .collect();
     let noise = noise(&report);
     let fitted = Named::fitted(&named, run, &noise, &Options::default())
-        .map_err(|source| NotPlanned::new(record, source))?;
+        .map_err(|source| NotPlanned::new(&arguments.record, source))?;
     Ok(Known {
         fitted,
         noise,
         named,
     })
+}
+
+/// A diagnosis names its record first and the bench file of it second; a later record and its
+/// bench file may follow.
+fn check_inputs(
+    path: &Path,
+    report: &DiagnosisReport,
+    arguments: &PlanArguments,
+) -> Result<(), Failure> {
+    let given = [
+        (&arguments.record, "of another record"),
+        (&arguments.bench, "with another bench file"),
+    ];
+    for (place, (given, other)) in given.into_iter().enumerate() {
+        let expected = Input::of(given)?.sha256;
+        let found = report.manifest.inputs.get(place);
+        if found.is_none_or(|input| input.sha256 != expected) {
+            return Err(OtherInput {
+                diagnosis: path.display().to_string(),
+                other,
+                given: given.display().to_string(),
+                found: found.map_or_else(|| "none".to_owned(), |input| input.sha256.clone()),
+                expected,
+            }
+            .into());
+        }
+    }
+    Ok(())
 }
 
 fn of_finding(finding: &FindingReport) -> Named {

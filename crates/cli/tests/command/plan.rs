@@ -85,12 +85,27 @@ fn mistakes_are_told() {
         BENCH,
         "--json",
         "other.json",
+        // The record is among the inputs, but is not the one that was diagnosed.
+        "--validate",
+        RECORD,
+        "--validate-bench",
+        BENCH,
     ]);
+    let mut diagnosis: serde_json::Value =
+        serde_json::from_str(&folder.text("other.json")).unwrap();
+    let inputs = &mut diagnosis["manifest"]["inputs"];
+    inputs[0] = inputs[2].clone();
+    inputs[1]["sha256"] = "0".into();
+    folder.put("bench.json", diagnosis.to_string());
     folder.put("no.json", "{}");
-    let cases: [(&[&str], &str); 4] = [
+    let cases: [(&[&str], &str); 5] = [
         (
             &["--diagnosis", "other.json"],
             "a diagnosis of another record",
+        ),
+        (
+            &["--diagnosis", "bench.json"],
+            "a diagnosis with another bench file",
         ),
         (
             &["--diagnosis", "no.json"],
