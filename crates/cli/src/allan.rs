@@ -8,7 +8,7 @@ use comfy_table::Cell;
 use gyrocal_measured::allan::{
     AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
 };
-use gyrocal_measured::{MeasuredError, ResultFile, read_columns};
+use gyrocal_measured::{MeasuredError, ResultFile, Unfit, read_columns};
 use gyrocal_record::{InputErrorKind, SourceText, write_json};
 use serde_json::json;
 
@@ -84,6 +84,9 @@ fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, MeasuredError> {
                 return Err(constant(&source, name));
             }
             let values: Vec<f64> = values.iter().map(|value| value * arguments.scale).collect();
+            if values.iter().any(|value| !value.is_finite()) {
+                return Err(overflow(name, arguments.scale));
+            }
             let averaging = octaves(values.len().max(3));
             let points = allan_deviation(&values, interval_s, &averaging, arguments.confidence)?;
             let noise = noise_coefficients(&points);
@@ -94,6 +97,15 @@ fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, MeasuredError> {
             })
         })
         .collect()
+}
+
+fn overflow(name: &str, scale: f64) -> MeasuredError {
+    MeasuredError::Unfit {
+        kind: Unfit::Setting,
+        found: format!("values of `{name}` that are too large when multiplied by {scale:e}"),
+        expected: "finite numbers".to_owned(),
+        advice: "give a smaller --scale".to_owned(),
+    }
 }
 
 fn constant(source: &SourceText, name: &str) -> MeasuredError {

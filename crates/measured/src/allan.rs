@@ -47,8 +47,8 @@ pub fn octaves(samples: usize) -> Vec<usize> {
 /// # Errors
 ///
 /// [`Unfit::TooShort`] with fewer than three samples an averaging time, [`Unfit::Setting`] for an
-/// interval that is not positive, an averaging of no samples or a confidence that is no
-/// probability.
+/// interval that is not positive, an averaging of no samples, a confidence that is no
+/// probability, and rates or intervals so large or small that a deviation is no finite number.
 pub fn allan_deviation(
     rate: &[f64],
     interval_s: f64,
@@ -78,16 +78,37 @@ pub fn allan_deviation(
             (variance * degrees_of_freedom / quantile).sqrt()
         };
         let tail = 0.5 * (1.0 - confidence);
-        points.push(AllanPoint {
+        let point = AllanPoint {
             tau_s,
             averaging,
             deviation: variance.sqrt(),
             interval: [bound(1.0 - tail), bound(tail)],
             degrees_of_freedom,
             noise,
-        });
+        };
+        refuse_overflow(&point)?;
+        points.push(point);
     }
     Ok(points)
+}
+
+fn refuse_overflow(point: &AllanPoint) -> Result<(), MeasuredError> {
+    let [low, high] = point.interval;
+    if [point.tau_s, point.deviation, low, high]
+        .iter()
+        .all(|value| value.is_finite())
+    {
+        return Ok(());
+    }
+    Err(MeasuredError::unfit(
+        Unfit::Setting,
+        format!(
+            "a deviation of {:e} at an averaging time of {:e} s",
+            point.deviation, point.tau_s
+        ),
+        "finite numbers",
+        "choose a unit of the rate and a sampling rate of a usual size",
+    ))
 }
 
 /// The angle at the ends of the intervals, from zero.

@@ -72,3 +72,29 @@ fn bad_input_is_told() {
     let output = folder.run(&["allan", "l.csv", "--columns", "rate", "--rate-hz", "0"]);
     assert_eq!(output.status.code(), Some(2));
 }
+
+#[test]
+fn numbers_that_overflow_are_refused() {
+    let folder = Folder::new();
+    // A sine, with nothing that would hide an overflow of its squares.
+    let rows = (0..300).map(|row| format!("{}\n", 1e9 * (0.1 * f64::from(row)).sin()));
+    folder.put("l.csv", "rate\n".to_owned() + &rows.collect::<String>());
+    let refused = |rate_hz: &str, scale: &str| {
+        let options = ["--rate-hz", rate_hz, "--scale", scale];
+        folder.fail(&[&["allan", "l.csv", "--columns", "rate"], &options[..]].concat())
+    };
+    for (rate_hz, scale) in [("10", "1e280"), ("1e-308", "1"), ("1e308", "1")] {
+        let errors = refused(rate_hz, scale);
+        assert!(errors.contains("found a deviation of"), "{errors}");
+    }
+    let errors = refused("10", "1e300");
+    let expected = "values of `rate` that are too large when multiplied by 1e300";
+    assert!(errors.contains(expected), "{errors}");
+    // The largest and the least that can be squared.
+    for scale in ["1e140", "1e-165"] {
+        let options = ["--rate-hz", "10", "--scale", scale];
+        let said =
+            folder.succeed(&[&["allan", "l.csv", "--columns", "rate"], &options[..]].concat());
+        assert!(!said.contains("NaN") && !said.contains("inf"), "{said}");
+    }
+}

@@ -28,24 +28,26 @@ pub struct NoiseCoefficients {
 #[must_use]
 pub fn noise_coefficients(points: &[AllanPoint]) -> NoiseCoefficients {
     const PARTS: usize = 4;
-    let shape = |part: usize, tau_s: f64| match part {
-        0 => 3.0 / (tau_s * tau_s),
-        1 => 1.0 / tau_s,
+    let shape = |part: usize, tau: f64| match part {
+        0 => 3.0 / (tau * tau),
+        1 => 1.0 / tau,
         2 => 2.0 * core::f64::consts::LN_2 / core::f64::consts::PI,
-        _ => tau_s / 3.0,
+        _ => tau / 3.0,
     };
     let usable: Vec<&AllanPoint> = points
         .iter()
         .filter(|point| point.deviation > 0.0 && point.noise != NoiseType::RateRamp)
         .collect();
-    let weight = |point: &AllanPoint| {
-        (0.5 * point.degrees_of_freedom).sqrt() / (point.deviation * point.deviation)
+    let Some(first) = usable.first() else {
+        return NoiseCoefficients::default();
     };
-    let ones: Vec<f64> = usable
-        .iter()
-        .map(|p| weight(p) * p.deviation * p.deviation)
-        .collect();
-    let right = DVector::from_vec(ones);
+    // In units of the first point, so that squares of any deviation and time are numbers.
+    let relative = |point: &AllanPoint| {
+        let deviation = point.deviation / first.deviation;
+        (point.tau_s / first.tau_s, deviation * deviation)
+    };
+    let ones = usable.iter().map(|p| (0.5 * p.degrees_of_freedom).sqrt());
+    let right = DVector::from_iterator(usable.len(), ones);
     let mut best: Option<(f64, [f64; PARTS])> = None;
     // Few enough to try every set of parts: the best with no negative one is the solution.
     for set in 1_u8..1 << PARTS {
@@ -54,13 +56,17 @@ pub fn noise_coefficients(points: &[AllanPoint]) -> NoiseCoefficients {
             continue;
         }
         let matrix = DMatrix::from_fn(usable.len(), parts.len(), |row, column| {
-            weight(usable[row]) * shape(parts[column], usable[row].tau_s)
+            let (tau, variance) = relative(usable[row]);
+            right[row] / variance * shape(parts[column], tau)
         });
         // Of comparable size, so that the solution loses no digits.
         let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
         let mut scaled = matrix.clone();
         for (mut column, length) in scaled.column_iter_mut().zip(&lengths) {
             column /= *length;
+        }
+        if scaled.iter().any(|value| !value.is_finite()) {
+            continue;
         }
         let Ok(solution) = scaled.clone().svd(true, true).solve(&right, 1e-12) else {
             continue;
@@ -75,11 +81,13 @@ pub fn noise_coefficients(points: &[AllanPoint]) -> NoiseCoefficients {
             best = Some((cost, variances));
         }
     }
-    let [q, n, b, k] = best.map_or([0.0; PARTS], |(_, variances)| variances.map(f64::sqrt));
+    let [q, n, b, k] = best.map_or([0.0; PARTS], |(_, variances)| {
+        variances.map(|variance| first.deviation * variance.sqrt())
+    });
     NoiseCoefficients {
-        quantisation: q,
-        random_walk: n,
+        quantisation: q * first.tau_s,
+        random_walk: n * first.tau_s.sqrt(),
         bias_instability: b,
-        rate_random_walk: k,
+        rate_random_walk: k / first.tau_s.sqrt(),
     }
 }
