@@ -11,7 +11,7 @@ use gyrocal_record::Outputs;
 
 use crate::Failure;
 use crate::measured::unusable;
-use crate::numbers::positive;
+use crate::numbers::{angle_deg, angle_sigma_deg, positive};
 use crate::outputs::{manifest, refuse_overlap};
 
 /// Make a record from a recording of another kind.
@@ -62,17 +62,18 @@ struct StrapdownArguments {
         long,
         value_name = "DEG",
         requires = "heading_sigma_deg",
-        allow_negative_numbers = true
+        allow_negative_numbers = true,
+        value_parser = angle_deg
     )]
     heading_deg: Option<f64>,
     /// Standard deviation of that heading.
-    #[arg(long, value_name = "DEG", requires = "heading_deg", value_parser = positive)]
+    #[arg(long, value_name = "DEG", requires = "heading_deg", value_parser = angle_sigma_deg)]
     heading_sigma_deg: Option<f64>,
     /// Standard deviation of a gyro's constant error, before the record.
     #[arg(long, value_name = "DEG_PER_H", default_value_t = ImportSettings::default().bias_sigma_deg_per_h, value_parser = positive)]
     bias_sigma_deg_per_h: f64,
     /// Standard deviation of the level, which the accelerometers' own errors set.
-    #[arg(long, value_name = "DEG", default_value_t = ImportSettings::default().level_sigma_deg, value_parser = positive)]
+    #[arg(long, value_name = "DEG", default_value_t = ImportSettings::default().level_sigma_deg, value_parser = angle_sigma_deg)]
     level_sigma_deg: f64,
     /// What was seen, to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]

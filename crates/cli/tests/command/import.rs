@@ -200,6 +200,37 @@ fn its_diagnosis_names_no_physical_cause_and_says_what_would_pass_unseen() {
 }
 
 #[test]
+fn a_heading_that_is_none_is_refused_as_an_option() {
+    let folder = Folder::new();
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
+    let cases = [
+        ("nan", "1", "expected an angle in degrees, from -360 to 360"),
+        (
+            "1e300",
+            "1",
+            "expected an angle in degrees, from -360 to 360",
+        ),
+        (
+            "-30",
+            "nan",
+            "expected degrees, greater than 0 and at most 180",
+        ),
+        (
+            "-30",
+            "181",
+            "expected degrees, greater than 0 and at most 180",
+        ),
+    ];
+    for (heading, sigma, message) in cases {
+        let options = ["--heading-deg", heading, "--heading-sigma-deg", sigma];
+        let output = folder.run(&[&arguments(&log, &description), &options[..]].concat());
+        assert_eq!(output.status.code(), Some(2));
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(errors.contains(message), "{message}\nis not in\n{errors}");
+    }
+}
+
+#[test]
 fn axes_that_belong_to_another_record_are_refused() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));

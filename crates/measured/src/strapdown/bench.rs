@@ -28,17 +28,7 @@ pub(super) fn bench(
     };
     let angles_deg = angles_deg(&fit.turned_platform_c_enu(turn_deg.to_radians()));
     let of_heading = sigma_deg(&angles_deg, &fit.up, heading_sigma_deg);
-    // A bench file knows no correlations: a turn about the vertical by one sigma would be as many
-    // as it moves angles.
-    let moved = of_heading
-        .iter()
-        .filter(|sigma| **sigma > settings.level_sigma_deg);
-    let share = (moved.count().max(1) as f64).sqrt();
-    let sigma_deg = of_heading.map(|of_heading| {
-        (share * of_heading)
-            .min(180.0)
-            .hypot(settings.level_sigma_deg)
-    });
+    let sigma_deg = uncorrelated_deg(&of_heading, settings.level_sigma_deg);
     // A simulated log may have none, which no bench file can say.
     let positive = |value: f64| value.max(1e-9);
     let bias = settings.bias_sigma_deg_per_h;
@@ -51,6 +41,17 @@ pub(super) fn bench(
         positive(gyro_noise_deg_per_h),
     );
     Ok(Bench::parse(&text, "bench")?)
+}
+
+/// Sigmas of angles that an error of heading moves together by `of_heading`, beside errors of the
+/// level.
+///
+/// A bench file knows no correlations. Variances e of the single angles allow a turn by one sigma,
+/// which moves angle i by a_i, if the sum of a_i² / e_i is 1; the least sum of such variances has
+/// e_i = a_i times the sum of all a.
+fn uncorrelated_deg(of_heading: &[f64; 3], level_sigma_deg: f64) -> [f64; 3] {
+    let together: f64 = of_heading.iter().sum();
+    of_heading.map(|moved| (moved * together).sqrt().min(180.0).hypot(level_sigma_deg))
 }
 
 /// Platform angles, rotations about x, then y, then z, of equation (4) in docs/model.md.
@@ -74,5 +75,32 @@ fn sigma_deg(angles_deg: &[f64; 3], up: &[f64; 3], heading_sigma_deg: f64) -> [f
         // Near 90 deg about y no angle is known.
         Some(inverse) => (inverse * turn).map(|error| error.abs().min(180.0)).into(),
         None => [180.0; 3],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::uncorrelated_deg;
+
+    #[test]
+    fn sigmas_grow_with_what_moves_together_and_not_at_a_threshold() {
+        // One angle alone is moved: nothing is added but the level.
+        assert_eq!(uncorrelated_deg(&[0.0, 0.0, 1.0], 0.0), [0.0, 0.0, 1.0]);
+        // All alike: each by the square root of three.
+        let alike = uncorrelated_deg(&[1.0; 3], 0.0);
+        assert!(
+            alike
+                .iter()
+                .all(|sigma| (sigma - 3_f64.sqrt()).abs() < 1e-12)
+        );
+        // Beside a degree about z, movements as large as the level are a hundredth: half a
+        // percent for each of them.
+        for moved in [0.0099, 0.01, 0.0101] {
+            let [x, y, z] = uncorrelated_deg(&[moved, moved, 1.0], 0.01);
+            assert!((1.0..1.011).contains(&z), "{z}");
+            // Still a turn by one sigma, up to the level.
+            let turn = (moved / x).powi(2) + (moved / y).powi(2) + (1.0 / z).powi(2);
+            assert!((0.98..=1.0).contains(&turn), "{turn}");
+        }
     }
 }
