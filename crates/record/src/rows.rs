@@ -25,6 +25,11 @@ const LONGEST_GAP_S: f64 = 30.0 * 86_400.0;
 /// So many equal rows are no noise that was rounded away.
 const STUCK_ROWS: usize = 100;
 
+/// A larger share of the readings of each axis is one value only if the readings are not those of
+/// a platform: gravity sweeps through the steps of the coarsest converter. How often successive
+/// readings are equal says less, since it grows with the rate of samples.
+const STUCK_SHARE: f64 = 0.9;
+
 /// Reads header and rows.
 pub(crate) fn read_rows(source: &SourceText) -> Result<Record, Error> {
     Ok(read_with_places(source, 1)?.0)
@@ -199,17 +204,26 @@ fn check_intervals(
 }
 
 fn check_stuck(record: &Record, source: &SourceText, places: &[Range<usize>]) -> Result<(), Error> {
-    let stuck = record.len() >= STUCK_ROWS && record.accel_g.windows(2).all(|w| w[0] == w[1]);
-    if !stuck {
+    let stuck = (0..3).all(|axis| is_stuck(record, axis));
+    if record.len() < STUCK_ROWS || !stuck {
         return Ok(());
     }
     Err(source.error(
         InputErrorKind::Stuck,
         places.first().cloned().unwrap_or(0..0),
-        "readings that never change",
+        "readings that hardly ever change",
         "readings of a platform against which gravity turns",
         "look for accelerometers, or a logger, that hang",
     ))
+}
+
+/// Whether nearly all values of an axis are one, or there are none.
+fn is_stuck(record: &Record, axis: usize) -> bool {
+    let column = record.accel_g.iter().map(|row| row[axis]);
+    let mut values: Vec<f64> = column.filter(|value| !value.is_nan()).collect();
+    values.sort_by(f64::total_cmp);
+    let equal = values.chunk_by(|a, b| a == b).map(<[f64]>::len);
+    equal.max().unwrap_or(0) as f64 >= STUCK_SHARE * values.len() as f64
 }
 
 fn check_norms(record: &Record, source: &SourceText, places: &[Range<usize>]) -> Result<(), Error> {

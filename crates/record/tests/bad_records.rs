@@ -238,12 +238,45 @@ fn rows_too_far_apart_to_follow_a_platform() {
 }
 
 #[test]
-fn readings_that_never_change() {
-    let stuck = |rows: u32| of_a_platform((0..rows).map(|row| format!("{},0,0,1", 60 * row)));
-    let words = ["readings that never change", "gravity turns"];
-    let error = stuck(100).unwrap_err();
-    assert_says(&error, InputErrorKind::Stuck, "2:1", &words);
-    assert!(stuck(99).is_ok());
+fn readings_that_hardly_ever_change() {
+    let stuck = |rows: u32, other: &str| {
+        of_a_platform((0..rows).map(|row| {
+            let values = if row == 70 { other } else { "0,0,1" };
+            format!("{},{values}", 60 * row)
+        }))
+    };
+    let words = ["readings that hardly ever change", "gravity turns"];
+    // A missing value, an outlier or an axis that was never there makes them no platform's.
+    for other in ["0,0,1", "0,0,nan", "nan,nan,nan", "0.1,0.1,0.9"] {
+        let error = stuck(721, other).unwrap_err();
+        assert_says(&error, InputErrorKind::Stuck, "2:1", &words);
+    }
+    let one_axis = of_a_platform((0..100).map(|row| format!("{row},nan,nan,1")));
+    assert_says(&one_axis.unwrap_err(), InputErrorKind::Stuck, "2:1", &words);
+    assert!(stuck(100, "0,0,1").is_err());
+    assert!(stuck(99, "0,0,1").is_ok());
+}
+
+#[test]
+fn readings_of_a_coarse_converter_change_with_gravity() {
+    // Without noise, which would only make more of them differ: steps of a hundredth of g, read
+    // once a second for three hours, in which gravity turns by 45 deg. Successive readings of
+    // each axis are equal in more than 99 of 100 rows.
+    let coarse = |value: f64| (100.0 * value).round() / 100.0;
+    let row = |time_s: u32| {
+        let angle = (15.0 / 3600.0 * f64::from(time_s)).to_radians();
+        let [x, y, z] = [0.77 * angle.sin(), 0.77 * angle.cos(), 0.64].map(coarse);
+        format!("{time_s},{x},{y},{z}")
+    };
+    assert!(of_a_platform((0..10_800).map(row)).is_ok());
+    // Twenty minutes are the least: steps of three sigmas of 3e-5 g, every ten seconds.
+    let coarse = |value: f64| (1e4 * value).round() / 1e4;
+    let row = |row: u32| {
+        let angle = (15.0 / 3600.0 * f64::from(10 * row)).to_radians();
+        let [x, y, z] = [0.77 * angle.sin(), 0.77 * angle.cos(), 0.64].map(coarse);
+        format!("{},{x},{y},{z}", 10 * row)
+    };
+    assert!(of_a_platform((0..120).map(row)).is_ok());
 }
 
 #[test]
