@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Options;
-use gyrocal_campaign::{Campaign, Fingerprint, MonteCarloReport, Outcome, Summary, Trial};
+use gyrocal_campaign::{Campaign, Fingerprint, MonteCarloReport, Outcome, Summary, Trial, program};
 use gyrocal_record::{Outputs, SCHEMA_VERSION, write_json};
 use gyrocal_truth::{Population, Scenario};
 use miette::miette;
@@ -32,7 +32,8 @@ pub(crate) struct MonteCarloArguments {
     /// The seeds, from A to before B: 0..2000 are two thousand.
     #[arg(long, value_name = "A..B", value_parser = seeds)]
     seeds: Range<u64>,
-    /// Keep each finished run in this file and go on from those that are in it (JSON lines).
+    /// Keep each finished run in this file and go on from those that are in it (JSON lines); those of
+    /// another build of the program are refused.
     #[arg(long, value_name = "FILE.jsonl")]
     results: Option<PathBuf>,
     /// Use this many threads instead of one for each core.
@@ -102,6 +103,7 @@ fn outcome(arguments: &MonteCarloArguments, scenario: Scenario) -> Result<Outcom
     };
     let fingerprint = Fingerprint::new("gyrocal monte-carlo")
         .with("model", MODEL_HASH)
+        .with("program", program())
         .with("options", format!("{options:#?}"))
         .with("population", arguments.population);
     let population = Population {

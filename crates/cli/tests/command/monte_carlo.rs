@@ -263,6 +263,19 @@ fn files_that_are_not_of_this_campaign_are_refused_and_left_alone() {
     );
     assert_eq!(folder.text("runs.jsonl"), kept);
 
+    // Another build may compute otherwise.
+    folder.put("s.toml", SCENARIO);
+    let (before, after) = kept.split_once("[\"program\",\"").unwrap();
+    let (_, after) = after.split_once('"').unwrap();
+    let another = format!("{before}[\"program\",\"0123456789abcdef\"{after}");
+    folder.put("runs.jsonl", &another);
+    let errors = refused(&folder, "--results runs.jsonl");
+    assert!(
+        errors.contains("another campaign, of program `0123456789abcdef`"),
+        "{errors}"
+    );
+    assert_eq!(folder.text("runs.jsonl"), another);
+
     for foreign in ["time_s,accel_x_g\n1,2\n", "no end of line"] {
         folder.put("notes.txt", foreign);
         let errors = refused(&folder, "--results notes.txt");
@@ -273,7 +286,6 @@ fn files_that_are_not_of_this_campaign_are_refused_and_left_alone() {
         assert_eq!(folder.text("notes.txt"), foreign);
     }
 
-    folder.put("s.toml", SCENARIO);
     folder.put("runs.jsonl", kept.replace("\"nees\":", "\"nest\":"));
     let errors = refused(&folder, "--results runs.jsonl");
     assert!(errors.contains("runs.jsonl:2: no result: "), "{errors}");
