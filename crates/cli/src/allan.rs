@@ -15,7 +15,7 @@ use serde_json::json;
 use crate::Failure;
 use crate::measured::unusable;
 use crate::numbers::{positive, probability};
-use crate::outputs::{manifest, refuse_overlap};
+use crate::outputs::{self, manifest};
 use crate::tables::{right, table};
 
 /// Overlapping Allan deviation of columns of a log.
@@ -55,7 +55,7 @@ struct Column<'a> {
 
 /// Runs the command; returns what is to be said on stdout.
 pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
-    refuse_overlap(&[&arguments.log], &[("--json", arguments.json.as_deref())])?;
+    outputs::check(&[&arguments.log], arguments.json.as_deref(), None)?;
     let columns = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
     if let Some(path) = &arguments.json {
         let result = json!({

@@ -16,7 +16,7 @@ use gyrocal_record::{CalibrationMethod, write_json};
 
 use crate::Failure;
 use crate::numbers::positive;
-use crate::outputs::refuse_overlap;
+use crate::outputs;
 use crate::progress::Progress;
 use failed::NotCalibrated;
 use inputs::Measurement;
@@ -154,7 +154,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
         .chain(&arguments.gyro_axes)
         .map(PathBuf::as_path)
         .collect();
-    refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let measurements = inputs::read(&arguments.records, &arguments.benches, arguments.average)?;
     let rows = measurements.iter().map(|m| m.record.len()).sum();
     tracing::info!(records = measurements.len(), rows, "read");

@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_characterise::{Cell, CellReport, CharacteriseReport, Method, campaign, cell_report};
-use gyrocal_record::{Outputs, SCHEMA_VERSION, write_json, write_whole};
+use gyrocal_record::{SCHEMA_VERSION, write_json, write_whole};
 use miette::miette;
 
 use crate::monte_carlo::progress::SeedProgress;
-use crate::outputs::{manifest, refuse_overlap};
+use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
 use crate::{Answer, Failure};
 
 /// Judge the diagnosis by many simulated records with hidden causes.
@@ -71,17 +71,7 @@ const MISSED: u8 = 3;
 
 /// Runs the command; returns what is to be said on stdout.
 pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> {
-    refuse_overlap(
-        &[],
-        &[
-            ("--json", arguments.json.as_deref()),
-            ("--markdown", arguments.markdown.as_deref()),
-        ],
-    )?;
-    for path in [&arguments.json, &arguments.markdown].into_iter().flatten() {
-        // Hours of work are not to end at a folder that is not there; this leaves nothing.
-        Outputs::new().stage(path, b"")?;
-    }
+    check_outputs(arguments)?;
     let methods = methods(&arguments.methods)?;
     if let Some(folder) = &arguments.results {
         std::fs::create_dir_all(folder).map_err(|reason| unusable(folder, &reason))?;
@@ -119,6 +109,28 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> 
     Ok(Answer { text, exit_code })
 }
 
+fn check_outputs(arguments: &CharacteriseArguments) -> Result<(), Failure> {
+    let (json, markdown) = (arguments.json.as_deref(), arguments.markdown.as_deref());
+    // Also those of cells that are not asked for now.
+    let results = arguments.results.iter();
+    let kept: Vec<PathBuf> = results
+        .flat_map(|folder| Cell::ALL.map(|cell| kept(folder, cell)))
+        .collect();
+    let mut outputs: Vec<(&str, Option<&Path>)> = kept
+        .iter()
+        .map(|path| ("--results", Some(&**path)))
+        .collect();
+    outputs.extend([("--json", json), ("--markdown", markdown)]);
+    refuse_overlap(&[], &outputs)?;
+    // Hours of work are not to end at a folder that is not there.
+    refuse_unwritable(&[json, markdown], arguments.results.as_deref())
+}
+
+/// Where the records of a cell are kept.
+fn kept(folder: &Path, cell: Cell) -> PathBuf {
+    folder.join(format!("{}.jsonl", cell.name()))
+}
+
 fn report(
     arguments: &CharacteriseArguments,
     cell: Cell,
@@ -128,7 +140,7 @@ fn report(
     let seeds: Range<u64> = arguments.seed..arguments.seed + runs;
     let mut campaign = campaign(cell, seeds.clone(), methods);
     if let Some(folder) = &arguments.results {
-        campaign = campaign.results(folder.join(format!("{}.jsonl", cell.name())));
+        campaign = campaign.results(kept(folder, cell));
     }
     if let Some(threads) = arguments.threads {
         campaign = campaign.threads(threads);

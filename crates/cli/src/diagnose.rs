@@ -21,7 +21,7 @@ use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Validation, diagnose, valida
 use gyrocal_record::{Bench, DiagnosisReport, DiagnosisVerdict, Outputs, Record};
 
 use crate::numbers::probability;
-use crate::outputs::{manifest, refuse_overlap, same_file};
+use crate::outputs::{self, manifest, same_file};
 use crate::pictures;
 use crate::progress::Progress;
 use crate::{Answer, Failure};
@@ -100,7 +100,11 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         .chain(&arguments.validate_bench)
         .map(PathBuf::as_path)
         .collect();
-    refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    outputs::check(
+        &inputs,
+        arguments.json.as_deref(),
+        arguments.figures.as_deref(),
+    )?;
     if let Some(later) = &arguments.validate
         && same_file(later, &arguments.record)
     {

@@ -11,12 +11,12 @@ use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Options;
 use gyrocal_campaign::{Campaign, Fingerprint, MonteCarloReport, Outcome, Summary, Trial, program};
-use gyrocal_record::{Outputs, SCHEMA_VERSION, write_json};
+use gyrocal_record::{SCHEMA_VERSION, write_json};
 use gyrocal_truth::{Population, Scenario};
 use miette::miette;
 
 use crate::Failure;
-use crate::outputs::{manifest, refuse_overlap};
+use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
 use progress::SeedProgress;
 
 /// Judge the calibration by many simulated records.
@@ -65,10 +65,8 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
         ],
     )?;
     let scenario = Scenario::read(&arguments.scenario)?;
-    if let Some(path) = &arguments.json {
-        // Hours of work are not to end at a folder that is not there; this leaves nothing.
-        Outputs::new().stage(path, b"")?;
-    }
+    // Hours of work are not to end at a folder that is not there.
+    refuse_unwritable(&[arguments.json.as_deref()], None)?;
     let seed = scenario.seed;
     let outcome = outcome(arguments, scenario)?;
     tracing::info!(resumed = outcome.resumed(), "all seeds done");

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use gyrocal_record::{Error, Input, Manifest};
+use gyrocal_record::{Error, Input, Manifest, Outputs};
 
-use crate::Failure;
+use crate::{Failure, pictures};
 
 /// Where a result comes from: this program, this command line, these inputs.
 pub(crate) fn manifest(model_hash: &str, seed: u64, inputs: &[&Path]) -> Result<Manifest, Error> {
@@ -46,12 +46,53 @@ pub(crate) fn refuse_overlap(
     Ok(())
 }
 
+/// Refuses, before the work, outputs that would be lost after it.
+pub(crate) fn check(
+    inputs: &[&Path],
+    json: Option<&Path>,
+    figures: Option<&Path>,
+) -> Result<(), Failure> {
+    refuse_overlap(inputs, &[("--figures", figures), ("--json", json)])?;
+    if let (Some(json), Some(figures)) = (json, figures)
+        && identity(json).parent() == Some(&identity(figures))
+        && pictures::is_one(json)
+    {
+        return Err(Failure::Usage(format!(
+            "--json {} is among the pictures of --figures {}",
+            json.display(),
+            figures.display()
+        )));
+    }
+    refuse_unwritable(&[json], figures)
+}
+
+/// Refuses outputs that cannot be written; `made` is the folder that the command makes for others.
+pub(crate) fn refuse_unwritable(
+    outputs: &[Option<&Path>],
+    made: Option<&Path>,
+) -> Result<(), Failure> {
+    for path in outputs.iter().flatten() {
+        if !made.is_some_and(|made| comes_with(path, made)) {
+            // This leaves nothing.
+            Outputs::new().stage(path, b"")?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether the folder of a file is not there, and will be when another folder is made.
+fn comes_with(path: &Path, made: &Path) -> bool {
+    let path = identity(path);
+    let folder = path.parent().filter(|folder| !folder.exists());
+    folder.is_some_and(|folder| identity(made).starts_with(folder))
+}
+
 /// Whether two paths lead to one file.
 pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
     identity(a) == identity(b)
 }
 
-/// The file behind a path, whether it exists or not.
+/// The file behind a path, whether it or its folders exist or not.
 fn identity(path: &Path) -> PathBuf {
     if let Ok(whole) = path.canonicalize() {
         return whole;
@@ -60,9 +101,9 @@ fn identity(path: &Path) -> PathBuf {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    match (folder.canonicalize(), path.file_name()) {
-        (Ok(folder), Some(name)) => folder.join(name),
-        _ => path.to_owned(),
+    match path.file_name() {
+        Some(name) => identity(folder).join(name),
+        None => path.to_owned(),
     }
 }
 

@@ -32,6 +32,12 @@ const WIDTH_PX: u32 = 1200;
 /// A picture with the name of its files.
 pub(crate) type Named = (&'static str, Box<dyn Picture>);
 
+/// Whether a file has the name of a picture.
+pub(crate) fn is_one(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|form| form == "svg" || form == "png")
+}
+
 /// Writes the pictures of an input beside their names, to be committed with the other outputs;
 /// returns what is to be said.
 pub(crate) fn stage(

@@ -17,7 +17,7 @@ use gyrocal_record::{Bench, Outputs, Record};
 
 use crate::Failure;
 use crate::numbers::{positive, probability};
-use crate::outputs::refuse_overlap;
+use crate::outputs;
 use crate::progress::Progress;
 use failed::NotPlanned;
 use options::{goal, limit, limits, wished_sigma};
@@ -97,7 +97,7 @@ struct Found<'a> {
 pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
     inputs.extend(arguments.diagnosis.as_deref());
-    refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let bench = Bench::read(&arguments.bench)?;
     let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
     tracing::info!(rows = record.len(), "read");

@@ -20,7 +20,7 @@ use gyrocal_record::Outputs;
 use crate::Failure;
 use crate::measured::{interval, unusable};
 use crate::numbers::probability;
-use crate::outputs::{manifest, refuse_overlap};
+use crate::outputs::{self, manifest};
 use crate::pictures;
 use crate::rounding::rounded;
 use crate::tables::{right, table};
@@ -67,19 +67,24 @@ pub(crate) struct TumbleArguments {
 /// Runs the command; returns what is to be said on stdout.
 pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
     let inputs = [&*arguments.log, &*arguments.log_description];
-    refuse_overlap(&inputs, &[("--json", arguments.json.as_deref())])?;
+    outputs::check(
+        &inputs,
+        arguments.json.as_deref(),
+        arguments.figures.as_deref(),
+    )?;
     let (prepared, report) = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
     tracing::info!(?report, "tested");
     let mut outputs = Outputs::new();
+    let mut text = summary(arguments, &prepared, &report);
+    // The folder of pictures first: the result for programs may go there too.
+    if let Some(folder) = &arguments.figures {
+        let pictures = figures::pictures(&arguments.log, &prepared, &report);
+        text += &pictures::stage(&arguments.log, &pictures, folder, &mut outputs)?;
+    }
     if let Some(path) = &arguments.json {
         let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
         let result = serde_json::json!({ "sensors": prepared.sensors(), "test": report });
         outputs.stage_json(path, &ResultFile::new(manifest, result))?;
-    }
-    let mut text = summary(arguments, &prepared, &report);
-    if let Some(folder) = &arguments.figures {
-        let pictures = figures::pictures(&arguments.log, &prepared, &report);
-        text += &pictures::stage(&arguments.log, &pictures, folder, &mut outputs)?;
     }
     outputs.commit()?;
     Ok(text)

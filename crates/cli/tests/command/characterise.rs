@@ -112,6 +112,15 @@ fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
 }
 
 #[test]
+fn a_result_goes_into_the_folder_that_is_made_for_the_records() {
+    let folder = Folder::new();
+    let line = "characterise --cell cubic --runs 1 --method none --results runs --json runs/o.json";
+    folder.succeed(&line.split_whitespace().collect::<Vec<_>>());
+    assert!(folder.path("runs/cubic.jsonl").exists());
+    assert!(folder.text("runs/o.json").contains("\"cubic\""));
+}
+
+#[test]
 fn bad_input_is_refused_before_any_work() {
     let folder = Folder::new();
     let errors = folder.fail(&["characterise", "--json", "nowhere/o.json"]);
@@ -119,6 +128,8 @@ fn bad_input_is_refused_before_any_work() {
         errors.contains("nowhere/o.json: cannot be written"),
         "{errors}"
     );
+    let errors = folder.fail(&["characterise", "--results", "r", "--json", "r/s/o.json"]);
+    assert!(errors.contains("r/s/o.json: cannot be written"), "{errors}");
     folder.put("notes", "a file");
     let errors = folder.fail(&["characterise", "--results", "notes"]);
     assert!(
@@ -140,6 +151,11 @@ fn bad_input_is_refused_before_any_work() {
         ),
         ("--runs 0", "--runs"),
         ("--json o --markdown o", "would overwrite --json o"),
+        // Also where that cell is not asked for, and before the folder is there.
+        (
+            "--cell d5 --results runs --json runs/cubic.jsonl",
+            "--json runs/cubic.jsonl would overwrite --results runs/cubic.jsonl",
+        ),
     ] {
         let line = format!("characterise {more}");
         let output = folder.run(&line.split_whitespace().collect::<Vec<_>>());

@@ -124,6 +124,40 @@ fn causes_are_drawn_as_the_readme_shows_them() {
 }
 
 #[test]
+fn outputs_go_into_a_folder_that_the_command_makes_but_not_over_each_other() {
+    let folder = Folder::new();
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
+    let command = [
+        "tumble",
+        &log,
+        "--log-description",
+        &description,
+        "--stop",
+        "1:50",
+    ];
+    let refused = |more: &[&str]| {
+        let output = folder.run(&[&command, more].concat());
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let errors = refused(&["--figures", "new", "--json", "new/causes.svg"]);
+    let expected = "--json new/causes.svg is among the pictures of --figures new";
+    assert!(errors.contains(expected), "{errors}");
+    let errors = refused(&["--figures", "new", "--json", "new"]);
+    assert!(
+        errors.contains("--json new would overwrite --figures new"),
+        "{errors}"
+    );
+    // One stop is too few, which is found later.
+    let errors = folder.fail(&[&command[..], &["--figures", "n", "--json", "n/s/o.json"]].concat());
+    assert!(errors.contains("n/s/o.json: cannot be written"), "{errors}");
+    let outputs = ["--figures", "new/pictures", "--json", "new/o.json"];
+    folder.succeed(&[&command[..4], &outputs].concat());
+    assert!(folder.path("new/o.json").exists());
+    assert!(folder.path("new/pictures/causes.svg").exists());
+}
+
+#[test]
 fn a_rare_false_alarm_does_not_hide_what_is_there() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));

@@ -184,11 +184,15 @@ fn the_filter_of_the_paper_needs_an_attitude() {
 #[test]
 fn a_wrong_command_line_is_a_usage_error() {
     let folder = folder();
-    let cases: [(&[&str], &str); 4] = [
+    let cases: [(&[&str], &str); 5] = [
         (&["--false-alarm", "0"], "greater than 0 and less than 1"),
         (&["--filter", "rk4"], "[possible values: euler]"),
         (&["--effects", "filter.discretisation"], "--filter euler"),
         (&["--json", RECORD], "would overwrite the input"),
+        (
+            &["--figures", "new", "--json", "./new/residuals.svg"],
+            "--json ./new/residuals.svg is among the pictures of --figures new",
+        ),
     ];
     for (more, message) in cases {
         let arguments = [&["diagnose", RECORD, "--bench", BENCH], more].concat();
@@ -196,6 +200,22 @@ fn a_wrong_command_line_is_a_usage_error() {
         assert_eq!(output.status.code(), Some(2), "{more:?}");
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(errors.contains(message), "{message}\nis not in\n{errors}");
+    }
+}
+
+#[test]
+fn a_result_that_cannot_be_written_is_told_before_the_record_is_read() {
+    let folder = folder();
+    for command in ["calibrate", "diagnose", "plan"] {
+        let mut line = vec![command, "nowhere.csv", "--bench", BENCH];
+        line.extend(["--json", "nowhere/o.json"]);
+        if command == "diagnose" {
+            // No folder of them is left behind either.
+            line.extend(["--figures", "figures"]);
+        }
+        let errors = folder.fail(&line);
+        let expected = "nowhere/o.json: cannot be written";
+        assert!(errors.contains(expected), "{errors}");
     }
 }
 
