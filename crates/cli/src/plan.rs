@@ -20,7 +20,7 @@ use crate::numbers::{positive, probability};
 use crate::outputs;
 use crate::progress::Progress;
 use failed::NotPlanned;
-use options::{goal, limit, limits, wished_sigma};
+use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 
 /// Say from which attitude, and for how long, the next run should be made.
 ///
@@ -97,6 +97,7 @@ struct Found<'a> {
 pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
     inputs.extend(arguments.diagnosis.as_deref());
+    refuse_repeated(&arguments.limits)?;
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let bench = Bench::read(&arguments.bench)?;
     let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
@@ -110,7 +111,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     tracing::info!(named = known.named.len(), "known");
     let goal = goal(arguments);
     let options = PlanOptions {
-        durations_s: arguments.hours.iter().map(|hours| 3600.0 * hours).collect(),
+        durations_s: durations_s(&arguments.hours),
         limits: limits(&arguments.limits, &bench),
         aim: arguments.aim.map(|aim| match aim {
             AimArgument::Set => Aim::Set,

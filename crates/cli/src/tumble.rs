@@ -19,7 +19,7 @@ use gyrocal_record::Outputs;
 
 use crate::Failure;
 use crate::measured::{interval, unusable};
-use crate::numbers::probability;
+use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::pictures;
 use crate::rounding::rounded;
@@ -42,10 +42,12 @@ pub(crate) struct TumbleArguments {
     #[arg(long, value_name = "FROM_S:TO_S", value_parser = interval)]
     stop: Vec<[f64; 2]>,
     /// Stops shorter than this do not count.
-    #[arg(long, value_name = "S", default_value_t = StopSettings::default().shortest_s)]
+    #[arg(long, value_name = "S", default_value_t = StopSettings::default().shortest_s,
+          value_parser = positive, conflicts_with = "stop")]
     shortest_stop_s: f64,
     /// How many times the variance of the quietest windows a window at rest may have.
-    #[arg(long, value_name = "FACTOR", default_value_t = StopSettings::default().accel_factor)]
+    #[arg(long, value_name = "FACTOR", default_value_t = StopSettings::default().accel_factor,
+          value_parser = positive, conflicts_with = "stop")]
     quiet_factor: f64,
     /// Probability of finding something in data without effects, 1e-4 or more; below 0.01 the
     /// time grows with its inverse.
@@ -177,7 +179,7 @@ fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleRepo
     for finding in &report.findings {
         describe(&mut text, finding);
     }
-    worth(&mut text, report);
+    worth(&mut text, arguments, report);
     cannot_tell(&mut text, prepared);
     if let Some(path) = &arguments.json {
         let _ = writeln!(text, "\n{}: the result for programs", path.display());
@@ -299,7 +301,15 @@ fn describe(text: &mut String, finding: &Finding) {
     }
 }
 
-fn worth(text: &mut String, report: &TumbleReport) {
+fn worth(text: &mut String, arguments: &TumbleArguments, report: &TumbleReport) {
+    if report.gain.is_none() && !report.findings.is_empty() {
+        let _ = writeln!(
+            text,
+            "\nWhat the extended law gains at stops that were not used cannot be said: without {} in \
+             a row the other\nstops do not determine it. Give a smaller --left-out.",
+            arguments.left_out
+        );
+    }
     if let Some(gain) = &report.gain {
         let list = |values: [f64; 3]| values.map(|value| format!("{value:.0}")).join(", ");
         let _ = writeln!(

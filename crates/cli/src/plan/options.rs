@@ -4,6 +4,7 @@ use gyrocal_diagnosis::plan::Goal;
 use gyrocal_record::{Bench, GimbalLimits};
 
 use super::PlanArguments;
+use crate::Failure;
 use crate::numbers::positive;
 
 /// Parses `x=-30..30`.
@@ -32,6 +33,29 @@ pub(super) fn wished_sigma(text: &str) -> Result<(String, f64), String> {
         .split_once('=')
         .ok_or("expected ID=SIGMA, as gyro_x.g_x=1e-4")?;
     Ok((id.trim().to_owned(), positive(sigma.trim())?))
+}
+
+/// Refuses limits of which the last would win.
+pub(super) fn refuse_repeated(given: &[(usize, [f64; 2])]) -> Result<(), Failure> {
+    for (axis, key) in GimbalLimits::KEYS.iter().enumerate() {
+        if given.iter().filter(|(other, _)| *other == axis).count() > 1 {
+            return Err(Failure::Usage(format!(
+                "--limits of {key} are given more than once; give one FROM..TO for each axis"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Each duration once, in the order in which they were given.
+pub(super) fn durations_s(hours: &[f64]) -> Vec<f64> {
+    let mut durations_s: Vec<f64> = Vec::with_capacity(hours.len());
+    for duration_s in hours.iter().map(|hours| 3600.0 * hours) {
+        if !durations_s.contains(&duration_s) {
+            durations_s.push(duration_s);
+        }
+    }
+    durations_s
 }
 
 /// Those of the command line before those of the bench.
@@ -65,7 +89,12 @@ pub(super) fn in_words(goal: &Goal) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{limit, wished_sigma};
+    use super::{durations_s, limit, wished_sigma};
+
+    #[test]
+    fn durations_are_those_asked_for_once() {
+        assert_eq!(durations_s(&[24.0, 48.0, 24.0]), [86_400.0, 172_800.0]);
+    }
 
     #[test]
     fn limits_are_read_and_mistakes_refused() {

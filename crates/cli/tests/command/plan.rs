@@ -121,10 +121,18 @@ fn mistakes_are_told() {
         let errors = plan(more);
         assert!(errors.contains(message), "{message}\nis not in\n{errors}");
     }
-    let output = folder.run(&["plan", RECORD, "--bench", BENCH, "--limits", "x=30..-30"]);
-    assert_eq!(output.status.code(), Some(2));
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert!(errors.contains("expected AXIS=FROM..TO"), "{errors}");
+    for (limits, message) in [
+        ("x=30..-30", "expected AXIS=FROM..TO"),
+        (
+            "x=-10..10,y=0..1,x=20..30",
+            "--limits of x are given more than once",
+        ),
+    ] {
+        let output = folder.run(&["plan", RECORD, "--bench", BENCH, "--limits", limits]);
+        assert_eq!(output.status.code(), Some(2));
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(errors.contains(message), "{errors}");
+    }
 }
 
 #[test]

@@ -298,13 +298,26 @@ fn stops_can_be_given_and_too_few_are_told() {
         "56:63",
     ]);
     assert!(errors.contains("found 2 static stops"), "{errors}");
-    let output = folder.run(&[
-        "tumble",
-        &log,
-        "--log-description",
-        &description,
-        "--stop",
-        "5",
-    ]);
-    assert_eq!(output.status.code(), Some(2));
+    for wrong in [
+        &["--stop", "5"][..],
+        &["--shortest-stop-s", "nan"],
+        &["--quiet-factor", "inf"],
+        // They would do nothing to stops that are given.
+        &["--stop", "1:50", "--shortest-stop-s", "3"],
+        &["--stop", "1:50", "--quiet-factor", "3"],
+    ] {
+        let output = folder.run(&[&arguments(&log, &description)[..4], wrong].concat());
+        assert_eq!(output.status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
+fn too_few_stops_to_leave_some_out_are_told() {
+    let folder = Folder::new();
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
+    let arguments = arguments(&log, &description);
+    let text = folder.succeed(&[&arguments[..4], &["--left-out", "1000"]].concat());
+    let expected = "cannot be said: without 1000 in a row";
+    assert!(text.contains(expected), "{text}");
+    assert!(text.contains("Give a smaller --left-out"), "{text}");
 }
