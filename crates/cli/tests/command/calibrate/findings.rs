@@ -6,6 +6,35 @@ use super::{JSON, folder, report, truth, unwrapped};
 use crate::folder::{Folder, example};
 
 #[test]
+fn an_azimuth_is_found_near_a_pole_though_gravity_tells_it_slowly() {
+    let folder = Folder::new();
+    let scenario = example("three_days.scenario.toml");
+    folder.put(
+        "s.toml",
+        scenario.replace("latitude_deg = 48.2", "latitude_deg = 89.0"),
+    );
+    folder.succeed(&[
+        "simulate",
+        "s.toml",
+        "--out",
+        "r.csv",
+        "--bench-out",
+        "b.toml",
+    ]);
+    let bench = folder.text("b.toml");
+    let without: Vec<&str> = bench
+        .lines()
+        .filter(|line| !line.starts_with("initial_angles"))
+        .collect();
+    folder.put("b.toml", without.join("\n"));
+    let said = folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml"]);
+    assert!(said.contains("fits the model within"), "{said}");
+    assert!(said.contains("no other azimuth fits"), "{said}");
+    let said = folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml"]);
+    assert!(said.contains("Nothing is wrong"), "{said}");
+}
+
+#[test]
 fn a_declared_latitude_sigma_is_in_the_sigmas_as_its_silent_bias_says() {
     let folder = folder();
     folder.succeed(&JSON);
