@@ -139,8 +139,8 @@ pub fn calibrate_strapdown(
     options: &Options,
     mut progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    for run in runs {
-        check(run.record)?;
+    for (index, run) in runs.iter().enumerate() {
+        check(run.record).map_err(|error| error.of_record(index, runs.len()))?;
     }
     let rows = runs.iter().map(|run| run.record.len()).collect::<Vec<_>>();
     let attitudes = gyro_axes.iter().map(GyroAxes::len).collect::<Vec<_>>();

@@ -162,7 +162,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
     let gyro_axes = inputs::gyro_axes(&arguments.gyro_axes, &measurements)?;
     let runs: Vec<Run<'_>> = measurements.iter().map(Measurement::run).collect();
     let calibration = calibrate(&runs, &gyro_axes, rows, &options, arguments.method())
-        .map_err(|source| NotCalibrated::new(arguments, source))?;
+        .map_err(|source| NotCalibrated::new(arguments, &runs, source))?;
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
     let found = Found {
         method: arguments.method(),

@@ -135,7 +135,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         also: arguments.effects.clone(),
         ..DiagnoseOptions::default()
     };
-    let failed = |source| NotDiagnosed::new(&arguments.record, source);
+    let failed = |source| NotDiagnosed::new(&arguments.record, &bench, source);
     if arguments.filter.is_some() && bench.initial_angles_deg.is_none() {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
@@ -149,10 +149,10 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     };
     let validation = match &later {
         Some((path, later, later_bench)) => {
+            let failed = |source| NotDiagnosed::new(path, later_bench, source);
             let [first, later] = [(&record, &bench), (later, later_bench)]
                 .map(|(record, bench)| Run { record, bench });
-            validated(&diagnosis, &first, &later, &options)
-                .map_err(|source| NotDiagnosed::new(path, source))?
+            validated(&diagnosis, &first, &later, &options).map_err(failed)?
         }
         None => None,
     };

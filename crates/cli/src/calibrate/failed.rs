@@ -1,14 +1,13 @@
 //! Why there is no calibration, and what to do about it.
 
-use std::path::Path;
-
 use gyrocal::EstimationError;
-use gyrocal_calibration::CalibrationError;
+use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_record::CalibrationMethod;
 use miette::Diagnostic;
 
 use super::CalibrateArguments;
 use crate::Failure;
+use crate::noise::{GYRO_ADVICE, has_tiny_gyro_noise};
 
 /// The records could not be calibrated.
 #[derive(Debug, thiserror::Error, Diagnostic)]
@@ -18,40 +17,56 @@ pub(super) struct NotCalibrated {
     records: String,
     method: CalibrationMethod,
     factorised: bool,
+    /// Whether the bench file says next to nothing of the gyros' noise.
+    tiny_gyro_noise: bool,
     source: CalibrationError,
 }
 
 impl NotCalibrated {
-    pub(super) fn new(arguments: &CalibrateArguments, source: CalibrationError) -> Self {
-        let name = |path: &Path| path.display().to_string();
-        let records = match &source {
-            CalibrationError::Pass { run, .. } => arguments.records.get(run - 1),
-            _ => None,
+    pub(super) fn new(
+        arguments: &CalibrateArguments,
+        runs: &[Run<'_>],
+        source: CalibrationError,
+    ) -> Self {
+        let failed = match place(&source) {
+            Some(place) => place..place + 1,
+            None => 0..arguments.records.len(),
         };
-        let all = || {
-            let names: Vec<String> = arguments.records.iter().map(|path| name(path)).collect();
-            names.join(", ")
-        };
+        let paths = arguments.records.get(failed.clone()).unwrap_or_default();
+        let names: Vec<String> = paths
+            .iter()
+            .map(|path| path.display().to_string())
+            .collect();
+        let runs = runs.get(failed).unwrap_or_default();
         Self {
-            records: records.map_or_else(all, |path| name(path)),
+            records: names.join(", "),
             method: arguments.method(),
             factorised: arguments.factorised,
+            tiny_gyro_noise: runs.iter().any(|run| has_tiny_gyro_noise(run.bench)),
             source,
         }
     }
 
     fn advice(&self) -> &'static str {
+        self.advice_on(&self.source)
+    }
+
+    fn advice_on(&self, why: &CalibrationError) -> &'static str {
         use CalibrationError as Why;
         use EstimationError as Filter;
 
         let batch = self.method == CalibrationMethod::Batch;
-        let lost = match &self.source {
+        let lost = match why {
+            Why::OfSeveral { source, .. } => return self.advice_on(source),
             Why::TooShort { .. } => return "record for longer",
             Why::NoAttitude => {
                 return "leave out --streaming or --paper: the batch estimator finds the attitude";
             }
             Why::NotLevelled | Why::NoAzimuth { .. } => {
                 return "give initial_angles_deg and initial_angles_sigma_deg in [platform]";
+            }
+            Why::NoDescent { .. } | Why::NotConverged { .. } if self.tiny_gyro_noise => {
+                return GYRO_ADVICE;
             }
             Why::NoDescent { .. } | Why::NotConverged { .. } => {
                 return "look for a knock, a restart or a run of bad values in the record: the \
@@ -74,6 +89,16 @@ impl NotCalibrated {
             "the numbers of the bench file are out of proportion to each other or to the record: \
              check [noise], [prior] and initial_angles_sigma_deg"
         }
+    }
+}
+
+/// The place of the record that failed, if one did.
+fn place(why: &CalibrationError) -> Option<usize> {
+    match why {
+        CalibrationError::Pass { run, .. } | CalibrationError::OfSeveral { run, .. } => {
+            Some(run - 1)
+        }
+        _ => None,
     }
 }
 

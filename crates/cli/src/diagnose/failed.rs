@@ -4,9 +4,11 @@ use std::path::Path;
 
 use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::DiagnoseError;
+use gyrocal_record::Bench;
 use miette::Diagnostic;
 
 use crate::Failure;
+use crate::noise::{GYRO_ADVICE, has_tiny_gyro_noise};
 
 /// The record could not be diagnosed.
 #[derive(Debug, thiserror::Error, Diagnostic)]
@@ -14,13 +16,15 @@ use crate::Failure;
 #[diagnostic(code(gyrocal::diagnose), help("{}", self.advice()))]
 pub(crate) struct NotDiagnosed {
     record: String,
+    tiny_gyro_noise: bool,
     source: DiagnoseError,
 }
 
 impl NotDiagnosed {
-    pub(crate) fn new(record: &Path, source: DiagnoseError) -> Self {
+    pub(crate) fn new(record: &Path, bench: &Bench, source: DiagnoseError) -> Self {
         Self {
             record: record.display().to_string(),
+            tiny_gyro_noise: has_tiny_gyro_noise(bench),
             source,
         }
     }
@@ -38,6 +42,11 @@ impl NotDiagnosed {
             }
             Why::Calibration(Fit::NotLevelled | Fit::NoAzimuth { .. }) => {
                 "give initial_angles_deg and initial_angles_sigma_deg in [platform]"
+            }
+            Why::Calibration(Fit::NoDescent { .. } | Fit::NotConverged { .. })
+                if self.tiny_gyro_noise =>
+            {
+                GYRO_ADVICE
             }
             Why::Calibration(Fit::NoDescent { .. } | Fit::NotConverged { .. }) => {
                 "look for a knock, a restart or a run of bad values in the record: `gyrocal \

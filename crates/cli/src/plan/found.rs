@@ -34,7 +34,7 @@ fn made<'a>(arguments: &PlanArguments, run: &Run<'a>) -> Result<Known<'a>, Failu
         ..DiagnoseOptions::default()
     };
     let found = diagnose(run.record, run.bench, &options)
-        .map_err(|source| NotDiagnosed::new(&arguments.record, source))?;
+        .map_err(|source| NotDiagnosed::new(&arguments.record, run.bench, source))?;
     Ok(Known {
         named: found.findings.iter().map(Named::of).collect(),
         noise: found.noise_model,

@@ -280,6 +280,18 @@ fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
 }
 
 #[test]
+fn a_gyro_noise_out_of_proportion_is_told() {
+    let folder = Folder::new();
+    folder.put("r.csv", record(200));
+    folder.put("b.toml", bench().replace("= 0.002", "= 1e-9"));
+    for command in ["calibrate", "diagnose"] {
+        let errors = folder.fail(&[command, "r.csv", "--bench", "b.toml"]);
+        assert_says(&errors, "no shorter step fits");
+        assert_says(&errors, "`gyro_deg_per_h` in [noise] is out of proportion");
+    }
+}
+
+#[test]
 fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
     let folder = Folder::new();
     folder.put("r.csv", record(20));

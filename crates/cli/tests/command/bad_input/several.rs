@@ -31,6 +31,34 @@ fn rows_that_two_records_share_are_refused() {
 }
 
 #[test]
+fn the_record_that_fails_is_named_alone_with_advice_of_its_own() {
+    let folder = Folder::new();
+    folder.put("a.csv", record(100));
+    // Of the later rows the first twenty minutes have no x, so the platform cannot be levelled.
+    let rows = record(200);
+    let mut later = vec![rows.lines().next().unwrap().to_owned()];
+    for (row, line) in rows.lines().skip(101).enumerate() {
+        let mut fields: Vec<&str> = line.split(',').collect();
+        if row <= 20 {
+            fields[1] = "nan";
+        }
+        later.push(fields.join(","));
+    }
+    folder.put("b.csv", later.join("\n"));
+    let bench = bench();
+    let bench: Vec<&str> = bench
+        .lines()
+        .filter(|line| !line.starts_with("initial_angles"))
+        .collect();
+    folder.put("b.toml", bench.join("\n"));
+    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    assert_says(&errors, "× b.csv: no calibration");
+    assert_says(&errors, "record 2 of 2 cannot be calibrated");
+    assert_says(&errors, "the platform cannot be levelled");
+    assert_says(&errors, "help: give initial_angles_deg");
+}
+
+#[test]
 fn bench_files_that_contradict_each_other_are_refused() {
     let folder = Folder::new();
     let sigma = |sigma: &str| {
