@@ -90,11 +90,15 @@ fn at_least(name: &str, least: f64, found: Proportion, small: bool) -> Figure {
     figure
 }
 
+/// Records that could not be diagnosed, if there are any: there must be none.
 fn failures<T>(cell: &str, outcome: &Outcome<T>) -> Option<Figure> {
     let failed = outcome.failures().count();
     let (_, first) = outcome.failures().next()?;
     let name = format!("{cell}: records that could not be diagnosed");
-    Some(Figure::note(&name, format!("{failed} ({first})")))
+    let mut figure = Figure::note(&name, format!("{failed} ({first})"));
+    figure.target = "none".to_owned();
+    figure.holds = Some(false);
+    Some(figure)
 }
 
 /// Extensions of records in which nothing is hidden.
