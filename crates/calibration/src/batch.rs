@@ -20,7 +20,6 @@ use crate::robust;
 use crate::run::{Conditions, Run};
 use crate::settings::level;
 use crate::solve::{Failure, Solution};
-use crate::spikes::spikes;
 use crate::uncertainty::Uncertainty;
 
 /// Steps after which an estimate that still moves is given up.
@@ -149,7 +148,7 @@ where
         leg.rows.gyro_axes = gyro_axes.map(|axes| &axes[index]);
         // Weights of the others are found from where the first solution is.
         if options.outlier_bound.is_some() {
-            for row in spikes(run.record, settings.accel_noise_g) {
+            for row in beginning.spikes {
                 leg.rows.leave_out(row..row + 1);
             }
         }

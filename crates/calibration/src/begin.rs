@@ -13,7 +13,7 @@ use crate::layout::Layout;
 use crate::problem::{Leg, Problem};
 use crate::result::AzimuthSearch;
 use crate::run::{Rows, Run};
-use crate::spikes::without_spikes;
+use crate::spikes::spikes;
 use crate::start::{Start, filtered};
 use crate::uncertainty::Uncertainty;
 
@@ -37,6 +37,8 @@ pub(crate) struct Beginning {
     pub(crate) prior: InitialAttitude,
     pub(crate) start: Start,
     pub(crate) azimuth: Option<AzimuthSearch>,
+    /// Rows that it passes over: see [`spikes`].
+    pub(crate) spikes: Vec<usize>,
 }
 
 /// Finds where to begin; `careful` goes by growing windows whatever the filter says.
@@ -46,17 +48,37 @@ pub(crate) fn begin(
     options: &Options,
     careful: bool,
 ) -> Result<Beginning, CalibrationError> {
-    let record = without_spikes(run.record, settings.accel_noise_g);
-    let run = &Run {
-        record: &record,
+    let spikes = spikes(run.record, settings.accel_noise_g);
+    if spikes.is_empty() {
+        return begin_through(run, settings, options, careful);
+    }
+    let values = spikes
+        .iter()
+        .flat_map(|row| [0, 1, 2].map(|axis| [*row, axis]));
+    let run = Run {
+        record: &run.record.without(values),
         bench: run.bench,
     };
+    Ok(Beginning {
+        spikes,
+        ..begin_through(&run, settings, options, careful)?
+    })
+}
+
+/// The same through all rows.
+fn begin_through(
+    run: &Run<'_>,
+    settings: &Settings<f64>,
+    options: &Options,
+    careful: bool,
+) -> Result<Beginning, CalibrationError> {
     let trials = trials(run.record, run.bench)?;
     if let [only] = trials.as_slice() {
         return Ok(Beginning {
             prior: only.prior,
             start: start(run, run.record.len(), settings, only, options, careful)?,
             azimuth: None,
+            spikes: Vec::new(),
         });
     }
     let (chosen, search) = search(run, settings, &trials, options)?;
@@ -64,6 +86,7 @@ pub(crate) fn begin(
         prior: chosen.prior,
         start: start(run, run.record.len(), settings, &chosen, options, careful)?,
         azimuth: Some(search),
+        spikes: Vec::new(),
     })
 }
 

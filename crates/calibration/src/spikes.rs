@@ -1,12 +1,10 @@
 //! Rows that no platform could have made.
 
-use std::borrow::Cow;
-
 use gyrocal_record::Record;
 
 /// The norm of specific force is that of gravity, whatever the platform does: a row whose norm is off
-/// that of the rows about it by so many standard deviations of the noise is none of a platform. Its
-/// outliers below that harm no start; errors of accelerometers change the norm slowly.
+/// that of the rows about it by so many standard deviations of the noise is none of a platform.
+/// Outliers below that harm no start; errors of accelerometers change the norm slowly.
 const FAR: f64 = 100.0;
 
 /// And by so many times what such differences usually are, where the noise is declared far too small.
@@ -34,19 +32,6 @@ pub fn spikes(record: &Record, noise_g: f64) -> Vec<usize> {
     };
     let limit = f64::max(FAR * noise_g, UNUSUAL * usual);
     (0..off.len()).filter(|row| off[*row] > limit).collect()
-}
-
-/// The record without its spikes, to begin with.
-pub(crate) fn without_spikes(record: &Record, noise_g: f64) -> Cow<'_, Record> {
-    let spikes = spikes(record, noise_g);
-    if spikes.is_empty() {
-        return Cow::Borrowed(record);
-    }
-    let mut screened = record.clone();
-    for row in spikes {
-        screened.accel_g[row] = [f64::NAN; 3];
-    }
-    Cow::Owned(screened)
 }
 
 /// The median of the norms about a row; `NaN` where there are too few.

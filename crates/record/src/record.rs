@@ -50,6 +50,16 @@ impl Record {
         logged.windows(2).any(|pair| pair[0] != pair[1])
     }
 
+    /// The record with some of its values, each a row and an axis, missing.
+    #[must_use]
+    pub fn without(&self, values: impl IntoIterator<Item = [usize; 2]>) -> Self {
+        let mut rest = self.clone();
+        for [row, axis] in values {
+            rest.accel_g[row][axis] = f64::NAN;
+        }
+        rest
+    }
+
     /// Parses the text of a record; errors call it `name`.
     ///
     /// # Errors

@@ -41,6 +41,29 @@ impl Folder {
         }
     }
 
+    /// Takes the initial attitude out of a bench file.
+    pub(crate) fn forget_attitude(&self, bench: &str) {
+        let text = self.text(bench);
+        let lines = text.lines();
+        let rest: Vec<&str> = lines
+            .filter(|line| !line.starts_with("initial_angles"))
+            .collect();
+        self.put(bench, rest.join("\n"));
+    }
+
+    /// Simulates a scenario: `r.csv` and `b.toml`.
+    pub(crate) fn simulate(&self, scenario: &str) {
+        self.put("s.toml", scenario);
+        self.succeed(&[
+            "simulate",
+            "s.toml",
+            "--out",
+            "r.csv",
+            "--bench-out",
+            "b.toml",
+        ]);
+    }
+
     pub(crate) fn text(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap()
     }

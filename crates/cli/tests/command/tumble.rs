@@ -127,16 +127,10 @@ fn causes_are_drawn_as_the_readme_shows_them() {
 fn outputs_go_into_a_folder_that_the_command_makes_but_not_over_each_other() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    let command = [
-        "tumble",
-        &log,
-        "--log-description",
-        &description,
-        "--stop",
-        "1:50",
-    ];
+    let arguments = arguments(&log, &description);
+    let command = &arguments[..4];
     let refused = |more: &[&str]| {
-        let output = folder.run(&[&command, more].concat());
+        let output = folder.run(&[command, more].concat());
         assert_eq!(output.status.code(), Some(2));
         String::from_utf8(output.stderr).unwrap()
     };
@@ -149,10 +143,11 @@ fn outputs_go_into_a_folder_that_the_command_makes_but_not_over_each_other() {
         "{errors}"
     );
     // One stop is too few, which is found later.
-    let errors = folder.fail(&[&command[..], &["--figures", "n", "--json", "n/s/o.json"]].concat());
+    let few = ["--stop", "1:50", "--figures", "n", "--json", "n/s/o.json"];
+    let errors = folder.fail(&[command, &few].concat());
     assert!(errors.contains("n/s/o.json: cannot be written"), "{errors}");
     let outputs = ["--figures", "new/pictures", "--json", "new/o.json"];
-    folder.succeed(&[&command[..4], &outputs].concat());
+    folder.succeed(&[command, &outputs].concat());
     assert!(folder.path("new/o.json").exists());
     assert!(folder.path("new/pictures/causes.svg").exists());
 }
@@ -287,16 +282,8 @@ fn bad_input_is_told() {
 fn stops_can_be_given_and_too_few_are_told() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    let errors = folder.fail(&[
-        "tumble",
-        &log,
-        "--log-description",
-        &description,
-        "--stop",
-        "1:50",
-        "--stop",
-        "56:63",
-    ]);
+    let two = ["--stop", "1:50", "--stop", "56:63"];
+    let errors = folder.fail(&[&arguments(&log, &description)[..4], &two].concat());
     assert!(errors.contains("found 2 static stops"), "{errors}");
     for wrong in [
         &["--stop", "5"][..],

@@ -191,6 +191,16 @@ impl Null {
         }
     }
 
+    /// Nothing is reached by searching.
+    #[cfg(test)]
+    pub(crate) fn of_no_search(families: usize) -> Self {
+        Self {
+            penalties: vec![0.0; families],
+            paid: vec![0.0; families],
+            maxima: vec![0.0],
+        }
+    }
+
     /// What the largest statistic exceeds with a probability. Beyond what draws can
     /// tell, its tail falls like that of chi-square with one degree of freedom.
     pub(crate) fn threshold(&self, probability: f64) -> f64 {

@@ -163,3 +163,52 @@ impl<'a> Scores<'a> {
         ranking
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use gyrocal::generated::catalogue::EFFECTS;
+
+    use super::*;
+
+    fn family(id: &str) -> Option<Family> {
+        Some(Family {
+            effect: EFFECTS.iter().find(|effect| effect.id == id)?,
+            candidates: Vec::new(),
+            walk: None,
+            knock: false,
+        })
+    }
+
+    /// What is named of a warm-up with a statistic of 60 beside a ramp and a wrong first attitude.
+    fn named(ramp: f64, attitude: f64) -> Option<&'static str> {
+        let ids = ["gyro_x.ramp", "platform.initial_attitude", "gyro_x.warmup"];
+        let families: Vec<Family> = ids.into_iter().filter_map(family).collect();
+        let null = Null::of_no_search(families.len());
+        let statistics = [ramp, attitude, 60.0].into_iter().enumerate();
+        let best = statistics.map(|(family, statistic)| {
+            Some(Best {
+                family,
+                candidate: 0,
+                statistic,
+                shape: 0.0,
+                searched: 0.0,
+            })
+        });
+        let scores = Scores {
+            best: best.collect(),
+            null: &null,
+        };
+        Some(families[scores.named(&families)?.family].id())
+    }
+
+    #[test]
+    fn a_warm_up_gives_way_to_the_better_of_the_simpler_effects() {
+        assert_eq!(named(40.0, 40.0), Some("gyro_x.warmup"));
+        assert_eq!(named(58.0, 40.0), Some("gyro_x.ramp"));
+        assert_eq!(named(40.0, 58.0), Some("platform.initial_attitude"));
+        assert_eq!(named(57.0, 58.0), Some("platform.initial_attitude"));
+        // By less than the 5 % point of chi-square, 3.84.
+        assert_eq!(named(56.1, 40.0), Some("gyro_x.warmup"));
+        assert_eq!(named(56.2, 40.0), Some("gyro_x.ramp"));
+    }
+}

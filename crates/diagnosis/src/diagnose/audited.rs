@@ -37,7 +37,7 @@ pub(super) fn audited<'a>(
     let mut noise_model = before.clone();
     leave_out(&mut noise_model, record.len(), &whole);
     let first = Extended::nominal(run, options, &noise_model)?;
-    let mut screened = without(record, &whole);
+    let mut screened = record.without(whole.iter().copied());
     let mut seen = innovations(&screened, bench, &first)?;
     let mut audit = audit_noise(
         &screened,
@@ -64,7 +64,7 @@ pub(super) fn audited<'a>(
         for [row, axis] in &places {
             audit.cleaned.keep[*row][*axis] = false;
         }
-        screened = without(&screened, &places);
+        screened = screened.without(places);
         seen = innovations(&screened, bench, &first)?;
     }
     let nominal = if noise_model == *before {
@@ -100,15 +100,6 @@ fn leave_out(noise_model: &mut NoiseModel, rows: usize, places: &[[usize; 2]]) {
     for [row, axis] in places {
         weights[*row][*axis] = 0.0;
     }
-}
-
-/// A record without some values.
-fn without(record: &Record, places: &[[usize; 2]]) -> Record {
-    let mut screened = record.clone();
-    for [row, axis] in places {
-        screened.accel_g[*row][*axis] = f64::NAN;
-    }
-    screened
 }
 
 /// The noise of the accelerometers as the audit left it.

@@ -296,11 +296,11 @@ fn of_outliers(found: &[Outlier], samples: usize, p_value: f64, noise_g: f64) ->
 impl NoiseAudit {
     /// Adds outliers among values that the audit did not look at.
     pub(crate) fn add_outliers(&mut self, further: Vec<Outlier>, noise_g: f64) {
-        let largest = further.iter().map(|outlier| outlier.deviation.abs());
-        let largest = largest.fold(0.0, f64::max);
         if further.is_empty() {
             return;
         }
+        let largest = further.iter().map(|outlier| outlier.deviation.abs());
+        let largest = largest.fold(0.0, f64::max);
         self.outliers.extend(further);
         self.outliers
             .sort_by_key(|outlier| (outlier.row, outlier.axis));

@@ -98,7 +98,8 @@ impl<const M: usize> Conditional<M> {
     }
 }
 
-/// A gain beyond which Joseph's form loses more to rounding than it saves.
+/// An element of K H beyond which Joseph's form loses more to rounding than it saves: with its square,
+/// here sixteen, it multiplies what rounding has left in P.
 const LARGE_GAIN: f64 = 4.0;
 
 /// Covariance after one output, `cross` being P Hᵀ and `total` the variance of the innovation.

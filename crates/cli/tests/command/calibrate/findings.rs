@@ -9,24 +9,8 @@ use crate::folder::{Folder, example};
 fn an_azimuth_is_found_near_a_pole_though_gravity_tells_it_slowly() {
     let folder = Folder::new();
     let scenario = example("three_days.scenario.toml");
-    folder.put(
-        "s.toml",
-        scenario.replace("latitude_deg = 48.2", "latitude_deg = 89.0"),
-    );
-    folder.succeed(&[
-        "simulate",
-        "s.toml",
-        "--out",
-        "r.csv",
-        "--bench-out",
-        "b.toml",
-    ]);
-    let bench = folder.text("b.toml");
-    let without: Vec<&str> = bench
-        .lines()
-        .filter(|line| !line.starts_with("initial_angles"))
-        .collect();
-    folder.put("b.toml", without.join("\n"));
+    folder.simulate(&scenario.replace("latitude_deg = 48.2", "latitude_deg = 89.0"));
+    folder.forget_attitude("b.toml");
     let said = folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml"]);
     assert!(said.contains("fits the model within"), "{said}");
     assert!(said.contains("no other azimuth fits"), "{said}");
@@ -299,15 +283,7 @@ fn fast_records_are_averaged() {
         .replace("duration_s = 259200.0", "duration_s = 86400.0")
         .replace("interval_s = 60.0", "interval_s = 5.0")
         .replace("accel_g = 1e-5", "accel_g = 3e-5");
-    folder.put("s.toml", scenario);
-    folder.succeed(&[
-        "simulate",
-        "s.toml",
-        "--out",
-        "r.csv",
-        "--bench-out",
-        "b.toml",
-    ]);
+    folder.simulate(&scenario);
     let mut arguments = JSON.to_vec();
     arguments.extend(["--average", "60"]);
     let said = unwrapped(&folder.succeed(&arguments));

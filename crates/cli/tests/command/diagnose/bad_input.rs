@@ -170,13 +170,7 @@ fn the_record_itself_validates_nothing() {
 #[test]
 fn the_filter_of_the_paper_needs_an_attitude() {
     let folder = folder();
-    let bench: String = folder
-        .text(BENCH)
-        .lines()
-        .filter(|line| !line.starts_with("initial_angles"))
-        .map(|line| format!("{line}\n"))
-        .collect();
-    folder.put(BENCH, bench);
+    folder.forget_attitude(BENCH);
     let errors = folder.fail(&["diagnose", RECORD, "--bench", BENCH, "--filter", "euler"]);
     assert!(errors.contains("leave out --filter"), "{errors}");
 }
