@@ -82,13 +82,14 @@ pub mod trajectory;
 pub use anchor::{Anchored, Chart};
 pub use filter::{FactorisedPlatformFilter, PlatformFilter, Settings};
 #[cfg(feature = "catalogue")]
-pub use generated::catalogue::{Catalogue, EFFECTS, EffectRow};
+pub use generated::catalogue::{Catalogue, EFFECTS};
 pub use generated::platform::{Drift, Platform};
 pub use generated::strapdown::Strapdown;
 pub use generated::surveyed::Surveyed;
 pub use gyrocal_estimation::{
     self as estimation, EstimationError, Innovation, Integration, Recentring,
 };
+pub use gyrocal_scalar::effect::{self, Effect};
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};
 pub use surroundings::{ChartInputs, Surroundings};

@@ -13,7 +13,10 @@ import math
 
 import casadi as ca
 
-from effect import Effect, Parameter, others
+from effect import (
+    OTHER_START, Effect, Enters, Equivalence, Experiment, Kind, NoiseProperty, OTHER_INITIAL_STATE,
+    Parameter, others,
+)
 from layout import AXES
 
 DAY_S = 86400
@@ -25,9 +28,37 @@ TUNED_GYRO_STANDARD = "IEEE Std 813-1988"
 ACCELEROMETER_STANDARD = "IEEE Std 1293-2018"
 NOISE_STANDARD = "IEEE Std 952-1997"
 
+SITE_EXPERIMENTS = (
+    OTHER_START,
+    Experiment("MeasureInput", "an independent astronomic latitude and a checked clock"),
+)
+
+SQUARES = Equivalence(
+    "the squares of the three components of specific force add up to gravity squared, so these "
+    "differ by a constant drift and by the square along the input axis, which are estimated "
+    "anyway: the same samples, at any attitude and for ever",
+    "no bench at rest: only specific force of another size, as on a centrifuge; at rest one "
+    "compensates as well as the other",
+)
+EARTH_RATE = Equivalence(
+    "each turns or scales the Earth's rate as the platform sees it, and the three coefficients "
+    "along the input axes take up all but one direction of that: the same samples, at any attitude "
+    "and for ever",
+    "an independent astronomic latitude, or a check of the sampling clock against a time signal; "
+    "the Earth's rate itself is known far better",
+)
+
 
 def _size(unit: str) -> tuple[Parameter]:
     return (Parameter("size", unit),)
+
+
+def _rotation() -> tuple[Parameter, ...]:
+    return tuple(Parameter(i, "deg", f"rotation about platform {i}", RAD_PER_DEG) for i in AXES)
+
+
+def _onset() -> Parameter:
+    return Parameter("onset_s", "s", "time of the change since the first row")
 
 
 def _products(i: str) -> list[str]:
@@ -57,68 +88,76 @@ EFFECTS = [
     # Drift of the gyros.
     *[
         Effect(
-            f"gyro_{i}.g_{j}", "drift",
+            f"gyro_{i}.g_{j}", Kind.CONSTANT, Enters.RATE,
             f"mass unbalance of gyro {i} that specific force along {j} acts on (D_O or D_S)",
             _size("deg/h/g"), 0.05, GYRO_STANDARD,
             lambda p, at, i=i, j=j: {i: p["size"] * at.a[j]},
             near_twins=(f"gyro_{i}{j}.axis_misalignment", f"gyro_{i}.magnetic",
                         f"gyro_{i}.diurnal"),
+            family="gyro_i.g_j",
         )
         for i in AXES for j in others(i)
     ],
     *[
         Effect(
-            f"gyro_{i}.g_{pair}", "drift",
+            f"gyro_{i}.g_{pair}", Kind.CONSTANT, Enters.RATE,
             f"anisoelasticity of gyro {i}: product of specific forces along {pair[0]} and "
             f"{pair[1]} (D_IO, D_IS, D_OS, D_OO or D_SS)",
             _size("deg/h/g^2"), 0.02, GYRO_STANDARD,
             lambda p, at, i=i, pair=pair: {i: p["size"] * (at.a[pair[0]] * at.a[pair[1]])},
             equivalents=_product_twin(i, pair),
+            equivalence=SQUARES if _product_twin(i, pair) else None,
+            family="gyro_i.g_jk",
         )
         for i in AXES for pair in _products(i)
     ],
     *[
         Effect(
-            f"gyro_{i}.g_{i}{i}{i}", "drift",
+            f"gyro_{i}.g_{i}{i}{i}", Kind.CONSTANT, Enters.RATE,
             f"cubic term of gyro {i} along its input axis (D_III)",
             _size("deg/h/g^3"), 0.01, TUNED_GYRO_STANDARD,
             lambda p, at, i=i: {i: p["size"] * at.a[i]**3},
             near_twins=(f"gyro_{i}.g_{i}",),
+            family="gyro_i.g_iii",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"gyro_{i}.ramp", "drift", f"linear ageing of gyro {i}: drift rate ramp (R)",
+            f"gyro_{i}.ramp", Kind.RAMP, Enters.RATE, f"linear ageing of gyro {i}: drift rate ramp (R)",
             _size("deg/h/day"), 0.005, NOISE_STANDARD,
             lambda p, at, i=i: {i: p["size"] * (at.time_s / DAY_S)},
+            family="gyro_i.ramp",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"gyro_{i}.step", "drift", f"sudden change of the drift of gyro {i} that stays",
+            f"gyro_{i}.step", Kind.STEP, Enters.RATE, f"sudden change of the drift of gyro {i} that stays",
             _size("deg/h"), 0.02, "",
             lambda p, at, i=i: {i: p["size"] * _share_after(p["onset_s"], at)},
-            shapes=(Parameter("onset_s", "s", "time of the change since the first row"),),
+            shapes=(_onset(),),
+            family="gyro_i.step",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"gyro_{i}.warmup", "drift", f"warm-up of gyro {i}: drift that decays",
+            f"gyro_{i}.warmup", Kind.EXPONENTIAL, Enters.RATE, f"warm-up of gyro {i}: drift that decays",
             _size("deg/h"), 0.05, GYRO_STANDARD,
             lambda p, at, i=i: {
                 i: p["size"] * ca.exp(-at.time_s / (HOUR_S * p["time_constant_h"]))
             },
             shapes=(Parameter("time_constant_h", "h", "time in which it falls to 1/e"),),
             near_twins=(f"gyro_{i}.ramp", "platform.initial_attitude"),
+            nested=(f"gyro_{i}.ramp", "platform.initial_attitude"),
+            family="gyro_i.warmup",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"gyro_{i}.diurnal", "drift",
+            f"gyro_{i}.diurnal", Kind.PERIODIC, Enters.RATE,
             f"drift of gyro {i} that follows the solar day, as room temperature does",
             (Parameter("sine", "deg/h", "part that begins at zero"),
              Parameter("cosine", "deg/h", "part that begins at its largest")),
@@ -127,156 +166,168 @@ EFFECTS = [
                 i: p["sine"] * ca.sin(2 * math.pi / DAY_S * at.time_s)
                 + p["cosine"] * ca.cos(2 * math.pi / DAY_S * at.time_s)
             },
+            period_s=DAY_S,
             formula=f"omega_d_{i} += gyro_{i}_diurnal_sine*sin(2*pi*time_s/86400) + "
                     f"gyro_{i}_diurnal_cosine*cos(2*pi*time_s/86400)",
+            family="gyro_i.diurnal",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"gyro_{i}.temperature", "drift", f"temperature coefficient of the drift of gyro {i}",
+            f"gyro_{i}.temperature", Kind.REGRESSOR, Enters.RATE, f"temperature coefficient of the drift of gyro {i}",
             _size("deg/h/K"), 0.005, GYRO_STANDARD,
             lambda p, at, i=i: {i: p["size"] * at.temperature_k},
             near_twins=(f"gyro_{i}.diurnal",),
+            family="gyro_i.temperature",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"gyro_{i}.random_walk", "drift", f"rate random walk of gyro {i} (K)",
-            _size("deg/h/sqrt(h)"), 0.001, NOISE_STANDARD, kind="noise",
+            f"gyro_{i}.random_walk", Kind.RANDOM_WALK, Enters.RATE, f"rate random walk of gyro {i} (K)",
+            _size("deg/h/sqrt(h)"), 0.001, NOISE_STANDARD, axes=(i,),
+            family="gyro_i.random_walk",
         )
         for i in AXES
     ],
     # What the accelerometers read.
     *[
         Effect(
-            f"accel_{i}.bias", "output", f"bias of accelerometer {i} (K_0)",
+            f"accel_{i}.bias", Kind.CONSTANT, Enters.OUTPUT, f"bias of accelerometer {i} (K_0)",
             _size("g"), 1e-4, ACCELEROMETER_STANDARD,
             lambda p, at, i=i: {i: p["size"]},
+            family="accel_i.bias",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"accel_{i}.scale", "output", f"scale factor error of accelerometer {i} (K_1)",
+            f"accel_{i}.scale", Kind.CONSTANT, Enters.OUTPUT, f"scale factor error of accelerometer {i} (K_1)",
             _size("1"), 1e-4, ACCELEROMETER_STANDARD,
             lambda p, at, i=i: {i: p["size"] * at.a[i]},
+            family="accel_i.scale",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"accel_{i}.quadratic", "output", f"square term of accelerometer {i} (K_2)",
+            f"accel_{i}.quadratic", Kind.CONSTANT, Enters.OUTPUT, f"square term of accelerometer {i} (K_2)",
             _size("g/g^2"), 2e-5, ACCELEROMETER_STANDARD,
             lambda p, at, i=i: {i: p["size"] * at.a[i]**2},
+            family="accel_i.quadratic",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"accel_{i}{j}.nonorthogonality", "output",
+            f"accel_{i}{j}.nonorthogonality", Kind.CONSTANT, Enters.OUTPUT,
             f"axes of accelerometers {i} and {j} not at a right angle: the symmetric part of "
             "misalignment (delta_o, delta_p)",
             _size("rad"), 1e-4, ACCELEROMETER_STANDARD,
             lambda p, at, i=i, j=j: {i: p["size"] * at.a[j], j: p["size"] * at.a[i]},
+            family="accel_ij.nonorthogonality",
         )
         for i in AXES for j in AXES if i < j
     ],
     *[
         Effect(
-            f"accel_{i}.temperature", "output",
+            f"accel_{i}.temperature", Kind.REGRESSOR, Enters.OUTPUT,
             f"temperature coefficient of the bias of accelerometer {i}",
             _size("g/K"), 1e-5, ACCELEROMETER_STANDARD,
             lambda p, at, i=i: {i: p["size"] * at.temperature_k},
+            family="accel_i.temperature",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"accel_{i}.noise", "output", f"noise of accelerometer {i} other than declared",
+            f"accel_{i}.noise", Kind.NOISE, Enters.OUTPUT, f"noise of accelerometer {i} other than declared",
             (Parameter("ratio", "1", "sigma over the declared one"),), 1.2,
-            ACCELEROMETER_STANDARD, kind="noise",
+            ACCELEROMETER_STANDARD, axes=(i,), noise=NoiseProperty.LEVEL,
+            family="accel_i.noise",
         )
         for i in AXES
     ],
     Effect(
-        "accel.outliers", "output", "isolated samples far outside the noise",
+        "accel.outliers", Kind.NOISE, Enters.OUTPUT, "isolated samples far outside the noise",
         (Parameter("fraction", "1", "share of the samples"),
          Parameter("size", "1", "spread, in declared sigmas")),
-        0.005, "", kind="noise",
+        0.005, "", axes=AXES, noise=NoiseProperty.OUTLIERS,
     ),
     *[
         Effect(
-            f"accel_{i}.quantisation", "output", f"quantisation of accelerometer {i}",
+            f"accel_{i}.quantisation", Kind.NOISE, Enters.OUTPUT, f"quantisation of accelerometer {i}",
             (Parameter("size", "g", "least significant bit"),), 1e-5,
-            ACCELEROMETER_STANDARD, kind="noise",
+            ACCELEROMETER_STANDARD, axes=(i,), noise=NoiseProperty.QUANTISATION,
+            family="accel_i.quantisation",
         )
         for i in AXES
     ],
     *[
         Effect(
-            f"accel_{i}.ramp", "output", f"linear ageing of the bias of accelerometer {i}",
+            f"accel_{i}.ramp", Kind.RAMP, Enters.OUTPUT, f"linear ageing of the bias of accelerometer {i}",
             _size("g/day"), 1e-6, ACCELEROMETER_STANDARD,
             lambda p, at, i=i: {i: p["size"] * (at.time_s / DAY_S)},
             near_twins=(f"accel_{i}.temperature",),
+            family="accel_i.ramp",
         )
         for i in AXES
     ],
     Effect(
-        "accel.coloured_noise", "output", "accelerometer noise that is correlated in time",
+        "accel.coloured_noise", Kind.NOISE, Enters.OUTPUT, "accelerometer noise that is correlated in time",
         (Parameter("correlation", "1", "correlation of neighbouring samples"),), 0.3,
-        ACCELEROMETER_STANDARD, kind="noise",
+        ACCELEROMETER_STANDARD, axes=AXES, noise=NoiseProperty.CORRELATION,
     ),
     *[
         Effect(
-            f"gyro_{i}.noise", "drift", f"white drift noise of gyro {i} other than declared",
+            f"gyro_{i}.noise", Kind.NOISE, Enters.RATE, f"white drift noise of gyro {i} other than declared",
             (Parameter("ratio", "1", "sigma over the declared one"),), 1.2,
-            NOISE_STANDARD, kind="noise",
+            NOISE_STANDARD, axes=(i,), noise=NoiseProperty.LEVEL,
+            family="gyro_i.noise",
         )
         for i in AXES
     ],
     # Where and when.
     Effect(
-        "site.latitude", "site", "error of the astronomic latitude", _size("deg"), 0.005, "",
+        "site.latitude", Kind.CONSTANT, Enters.INPUT, "error of the astronomic latitude", _size("deg"), 0.005, "",
         lambda p, at: {"omega_0": _turned_about_east(RAD_PER_DEG * p["size"], at)},
         # The record sees the angle between Earth rate and gravity and the size of Earth rate only
         # up to omega_0 - k f_0, which the three D_I take up: any two of these are one.
-        equivalents=("clock.rate", "site.earth_rate"),
+        equivalents=("clock.rate", "site.earth_rate"), equivalence=EARTH_RATE,
+        separated_by=SITE_EXPERIMENTS,
         formula="omega_0 -> omega_0 turned about East by site_latitude",
     ),
     Effect(
-        "site.earth_rate", "site", "relative error of the assumed Earth rate", _size("1"), 1e-8,
+        "site.earth_rate", Kind.CONSTANT, Enters.INPUT, "relative error of the assumed Earth rate", _size("1"), 1e-8,
         "", lambda p, at: {"omega_0": (1 + p["size"]) * at.omega_0},
-        equivalents=("clock.rate",), default_search=False,
+        equivalents=("clock.rate",), separated_by=SITE_EXPERIMENTS, default_search=False,
         formula="omega_0 -> (1 + site_earth_rate) omega_0",
     ),
     Effect(
-        "site.gravity", "site",
+        "site.gravity", Kind.CONSTANT, Enters.INPUT,
         "relative error of the assumed gravity: a common scale factor of the accelerometers",
         _size("1"), 5e-5, "", lambda p, at: {"f_0": (1 + p["size"]) * at.f_0},
-        near_twins=tuple(f"accel_{i}.scale" for i in AXES), default_search=False,
+        near_twins=tuple(f"accel_{i}.scale" for i in AXES), separated_by=SITE_EXPERIMENTS,
+        default_search=False,
         formula="f_0 -> (1 + site_gravity) f_0",
     ),
     Effect(
-        "clock.rate", "time",
+        "clock.rate", Kind.CONSTANT, Enters.TIME,
         "relative error of the sampling clock, which runs fast: a second of the record lasts 1 - p",
-        _size("1"), 2e-5, "", lambda p, at: 1 - p["size"],
+        _size("1"), 2e-5, "", lambda p, at: 1 - p["size"], separated_by=SITE_EXPERIMENTS,
     ),
     Effect(
-        "platform.initial_attitude", "state", "attitude at the first sample outside its prior",
-        tuple(Parameter(i, "deg", f"rotation about platform {i}") for i in AXES),
-        0.05, "", kind="state",
+        "platform.initial_attitude", Kind.INITIAL_STATE, Enters.STATE, "attitude at the first sample outside its prior",
+        _rotation(), 0.05, "", axes=AXES,
     ),
     Effect(
-        "platform.knock", "state", "sudden change of attitude of unknown size and time",
-        (*(Parameter(i, "deg", f"rotation about platform {i}") for i in AXES),
-         Parameter("onset_s", "s", "time of the change since the first row")),
-        0.05, "", kind="state",
+        "platform.knock", Kind.STATE_JUMP, Enters.STATE, "sudden change of attitude of unknown size and time",
+        _rotation(), 0.05, "", axes=AXES, shapes=(_onset(),),
     ),
     *[
         Effect(
-            f"gyro_{i}{j}.axis_misalignment", "drift",
+            f"gyro_{i}{j}.axis_misalignment", Kind.CONSTANT, Enters.RATE,
             f"input axis of gyro {i} turned towards platform {j}",
             _size("rad"), 3e-4, GYRO_STANDARD,
             # The gyro feels the rate about j, and the servo loop takes it out about i. Of first
@@ -284,20 +335,25 @@ EFFECTS = [
             # specific force along platform axes, as everywhere.
             lambda p, at, i=i, j=j: {i: -p["size"] * at.drift[j]},
             default_search=False,
+            family="gyro_ij.axis_misalignment",
         )
         for i in AXES for j in others(i)
     ],
     *[
         Effect(
-            f"gyro_{i}.magnetic", "drift", f"drift of gyro {i} from the Earth's magnetic field",
+            f"gyro_{i}.magnetic", Kind.CONSTANT, Enters.RATE, f"drift of gyro {i} from the Earth's magnetic field",
             _size("deg/h/gauss"), 0.01, GYRO_STANDARD,
             lambda p, at, i=i: {i: p["size"] * at.field[i]},
+            separated_by=(
+                OTHER_INITIAL_STATE, Experiment("ChangeInput", "the magnetic field turned or shielded"),
+            ),
             default_search=False,
+            family="gyro_i.magnetic",
         )
         for i in AXES
     ],
     Effect(
-        "filter.discretisation", "filter", "the integration rule of the filter is too coarse",
-        (), 0.0, "", kind="filter", default_search=False,
+        "filter.discretisation", Kind.INTEGRATION, Enters.FILTER, "the integration rule of the filter is too coarse",
+        (), 0.0, "", default_search=False,
     ),
 ]

@@ -1,13 +1,124 @@
-"""What an entry of the catalogue is, and what its expression may be made of."""
+"""An entry of the catalogue: what an effect is, declared in types, and what its term may use."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 
 import casadi as ca
 
 from layout import AXES
+
+
+class Kind(Enum):
+    """How an effect acts over time. Values are the variants of `EffectKind` in Rust."""
+
+    CONSTANT = "Constant"
+    """No explicit function of time."""
+    STEP = "Step"
+    """Zero before an onset, one after it."""
+    FROM_ONSET = "FromOnset"
+    """Zero before an onset, any function of time after it."""
+    EXPONENTIAL = "Exponential"
+    """A function of time with a time constant."""
+    RAMP = "Ramp"
+    """Proportional to time."""
+    PERIODIC = "Periodic"
+    """Periodic in time, with `period_s`."""
+    REGRESSOR = "Regressor"
+    """Proportional to a logged quantity: temperature."""
+    RANDOM_WALK = "RandomWalk"
+    """Integral of white noise."""
+    STATE_JUMP = "StateJump"
+    """Sudden change of moving states at an onset."""
+    INITIAL_STATE = "InitialState"
+    """Error of moving states at the first row, outside their prior."""
+    NOISE = "Noise"
+    """A property of the noise, which `noise` names."""
+    INTEGRATION = "Integration"
+    """The integration rule of a filter."""
+
+
+KINDS_WITH_TERM = {Kind.CONSTANT, Kind.STEP, Kind.FROM_ONSET, Kind.EXPONENTIAL, Kind.RAMP,
+                   Kind.PERIODIC, Kind.REGRESSOR}
+"""Kinds that the symbolic model has a term for."""
+
+KINDS_WITH_WEIGHT = KINDS_WITH_TERM - {Kind.CONSTANT}
+"""Kinds whose terms are explicit functions of time, of a regressor or of a shape."""
+
+
+class NoiseProperty(Enum):
+    """Values are the variants of the enum of the same name in Rust."""
+
+    LEVEL = "Level"
+    OUTLIERS = "Outliers"
+    QUANTISATION = "Quantisation"
+    CORRELATION = "Correlation"
+
+
+class Enters(Enum):
+    """Where an effect enters the model."""
+
+    RATE = "rate"
+    """Drift of gyros: the term gives by axis what is added, deg/h."""
+    OUTPUT = "output"
+    """Readings of accelerometers: the term gives by axis what is added, g."""
+    INPUT = "input"
+    """`omega_0` or `f_0`, or both: the term gives them as the effect makes them."""
+    TIME = "time"
+    """Time itself: the term is a factor on all rates."""
+    STATE = "state"
+    """Moving states: no term."""
+    FILTER = "filter"
+    """The filter and not the model: no term."""
+
+
+class Continuation(Enum):
+    """How an effect continues in a later record. Values are the variants in Rust."""
+
+    BEGINS_ANEW = "BeginsAnew"
+    GOES_ON = "GoesOn"
+    STAYS = "Stays"
+    THIS_RECORD = "ThisRecord"
+
+
+USUAL_CONTINUATION = {
+    Kind.CONSTANT: Continuation.STAYS,
+    Kind.STEP: Continuation.STAYS,
+    Kind.FROM_ONSET: Continuation.GOES_ON,
+    Kind.EXPONENTIAL: Continuation.BEGINS_ANEW,
+    Kind.RAMP: Continuation.GOES_ON,
+    Kind.PERIODIC: Continuation.GOES_ON,
+    Kind.REGRESSOR: Continuation.GOES_ON,
+    Kind.RANDOM_WALK: Continuation.STAYS,
+    Kind.STATE_JUMP: Continuation.THIS_RECORD,
+    Kind.INITIAL_STATE: Continuation.THIS_RECORD,
+    Kind.NOISE: Continuation.STAYS,
+    Kind.INTEGRATION: Continuation.STAYS,
+}
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """An experiment that separates effects: a variant of the enum in Rust, and its object."""
+
+    variant: str
+    of: str = ""
+
+
+OTHER_INITIAL_STATE = Experiment("OtherInitialState")
+OTHER_START = Experiment("OtherStart")
+MEASURE_INITIAL_STATE = Experiment("MeasureInitialState")
+START_LATE = Experiment("StartLate")
+
+
+@dataclass(frozen=True)
+class Equivalence:
+    """Why effects are exact equivalents, and what would separate them."""
+
+    reason: str
+    experiment: str
 
 
 @dataclass(frozen=True)
@@ -17,6 +128,8 @@ class Parameter:
     name: str
     unit: str
     doc: str = "size"
+    scale: float = 1.0
+    """Unit of the model over this unit."""
 
 
 @dataclass(frozen=True)
@@ -47,20 +160,14 @@ class At:
 class Effect:
     """One entry of the catalogue. All parameters are zero in the nominal model.
 
-    `term(p, at)` is the effect as an expression of its parameters `p["size"]`, ... and of `at`.
-    What it returns depends on where the effect enters:
-
-    - `drift`: by axis what is added to the drift of a gyro, deg/h
-    - `output`: by axis what is added to the reading of an accelerometer, g
-    - `site`: `omega_0` or `f_0`, or both, as the effect makes them
-    - `time`: a factor on all rates
-
-    An effect without a term (kind `state`, `noise` or `filter`) is no part of the symbolic
-    model; what reads the table of effects knows it by its id.
+    `term(p, at)` is the effect as an expression of its parameters `p["size"]`, ... and of `at`;
+    `enters` says what it returns. An effect without a term is no part of the symbolic model; the
+    table of effects says the same of it as of the others.
     """
 
     id: str
-    enters: str
+    kind: Kind
+    enters: Enters
     name: str
     """Physical name, with the letter of the literature where there is one."""
     parameters: tuple[Parameter, ...]
@@ -69,13 +176,32 @@ class Effect:
     """Of the first parameter, in its unit: what a sound instrument may have."""
     reference: str = ""
     term: Callable[[dict[str, ca.SX], At], object] | None = None
+    axes: tuple[str, ...] = ()
+    """Axes of the channels or states that an effect without a term enters."""
     shapes: tuple[Parameter, ...] = ()
-    """Parameters that are given, not estimated as states: the term is not linear in them."""
-    kind: str = "term"
+    """Onset (`onset_s`) or time constant (`time_constant_h`): the term is not linear in it."""
+    period_s: float | None = None
+    """Of a periodic effect."""
+    noise: NoiseProperty | None = None
+    """The property of the noise that a noise effect is."""
     equivalents: tuple[str, ...] = ()
-    """Effects that no record whatever can tell from this one; naming it in one entry will do."""
+    """Exact equivalents: effects that no record whatever can distinguish from this one; naming
+    it in one entry will do."""
+    equivalence: Equivalence | None = None
+    """Why they are, in one entry of the class."""
     near_twins: tuple[str, ...] = ()
-    """Effects that a short record can hardly tell from it; naming it in one entry will do."""
+    """Effects that a short record can hardly distinguish from it; naming it in one entry will
+    do."""
+    nested: tuple[str, ...] = ()
+    """Simpler effects that it tends to at an end of its shape: one of them is named in its place
+    unless this one is significantly better."""
+    continues: Continuation | None = None
+    """How it continues in a later record, where that is not usual for its kind."""
+    separated_by: tuple[Experiment, ...] | None = None
+    """Experiments that separate it from others, where they are not usual for its kind."""
+    family: str = ""
+    """Id with letters in the place of axes, `gyro_i.g_jk`, of effects that differ by their axes;
+    the id where there is none."""
     default_search: bool = True
     formula: str = ""
     """Written out only where the expression itself does not read well."""
@@ -91,6 +217,28 @@ class Effect:
     @property
     def has_term(self) -> bool:
         return self.term is not None
+
+    @property
+    def continuation(self) -> Continuation:
+        return self.continues or USUAL_CONTINUATION[self.kind]
+
+    @property
+    def experiments(self) -> tuple[Experiment, ...]:
+        if self.separated_by is not None:
+            return self.separated_by
+        match self.kind:
+            case Kind.NOISE | Kind.INTEGRATION:
+                return ()
+            case Kind.STATE_JUMP | Kind.INITIAL_STATE:
+                return (MEASURE_INITIAL_STATE,)
+            case Kind.EXPONENTIAL:
+                return (OTHER_START, START_LATE)
+            case Kind.REGRESSOR:
+                return (OTHER_START, Experiment("ControlRegressor", "temperature"))
+            case Kind.CONSTANT:
+                return (OTHER_INITIAL_STATE,)
+            case _:
+                return (OTHER_START,)
 
 
 def rust_name(public_id: str) -> str:

@@ -1,93 +1,176 @@
-"""The table of effects: one row for each entry of the catalogue, and for the nominal terms."""
+"""The tables of effects and channels, in the types of `gyrocal_scalar::effect`."""
 
 from __future__ import annotations
 
-import difflib
-
 import casadi as ca
 
-from casadi_program import ExportError, Table
-from effect import At, Effect, by_axis, rust_name
-from layout import AXES, drift
+from casadi_program import Index, Items, Record, Table, Variant, optional
+from effect import Effect, Enters, Equivalence
+from effect_check import Symbols
+from layout import AXES, OUTPUT_CHANNELS, RATE_CHANNELS, Channel, drift
 
-FIELDS = {
-    "id": "public id, such as `gyro_x.g_y`",
-    "kind": "`nominal` or `term` (in the symbolic model), `noise`, `state` or `filter`",
-    "enters": "where it enters: `drift`, `output`, `site`, `time`, `state` or `filter`",
-    "name": "physical name, with the letter of the literature where there is one",
-    "reference": "where the name is from; may be empty",
-    "formula": "the term as the model has it; empty if it has none",
-    "parameters": "names of its parameters in results",
-    "units": "their units",
-    "states": "ids of those parameters that are states of `Catalogue`, in the order of `parameters`",
-    "shapes": "ids of those that are given to `Catalogue` as shapes; they follow the states",
-    "typical_size": "what a sound instrument may have, in the unit of the first parameter",
-    "default_search": "part of a search that was not told what to look for",
-    "needs": "what a record or bench file must have: `temperature`, `field`",
-    "equivalents": "effects that no record can tell from it",
-    "near_twins": "effects that a short record can hardly tell from it",
-}
+MODULE = "effect"
+NOMINAL_REFERENCE = "IEEE Std 517-1974"
+
+EFFECT_FIELDS = (
+    "id", "family", "name", "reference", "formula", "kind", "enters", "parameters", "typical_size",
+    "is_nominal", "default_search", "needs", "equivalents", "equivalence", "near_twins", "nested",
+    "continuation", "separated_by",
+)
+CHANNEL_FIELDS = ("id", "name", "unit", "label", "constant")
 
 
-def effect_table(effects: list[Effect]) -> Table:
-    known = [effect.id for effect in effects] + [element.id for element in drift.elements]
-    for name in known:
-        if known.count(name) > 1:
-            raise ExportError(f"the catalogue has two effects `{name}`")
+class Layout:
+    """Where parameters, shapes and weights of effects stand in the model."""
+
+    def __init__(self, parameters: list[str], shapes: list[str], weights: list[str]):
+        self.parameters, self.shapes, self.weights = parameters, shapes, weights
+
+
+def effect_tables(effects: list[Effect], layout: Layout) -> list[Table]:
+    known = [element.id for element in drift.elements] + [effect.id for effect in effects]
     equivalents = _closed(effects, known, "equivalents", transitive=True)
     twins = _closed(effects, known, "near_twins", transitive=False)
-    rows = [_nominal(place, twins) for place in range(len(drift.elements))]
-    rows += [_row(effect, equivalents, twins) for effect in effects]
-    return Table(
-        "effects", "EffectRow",
-        "Every effect that this project knows, in the order in which exact equivalents are named.",
-        FIELDS, rows,
-    )
+    reasons = _reasons(effects, equivalents)
+    rows = [_nominal(place, twins, layout) for place in range(len(drift.elements))]
+    rows += [_row(effect, equivalents, reasons, twins, layout) for effect in effects]
+    return [
+        Table(
+            "effects", "Effect",
+            "Every effect of the catalogue, in the order in which exact equivalents are named.",
+            dict.fromkeys(EFFECT_FIELDS, ""), rows, MODULE,
+        ),
+        _channels("rates", "Rate channels: the drifts of the gyros.", RATE_CHANNELS, layout),
+        _channels("outputs", "Output channels: the readings of the accelerometers.",
+                  OUTPUT_CHANNELS, layout),
+    ]
 
 
-def _row(effect: Effect, equivalents, twins) -> dict:
-    formula, needs = _formula(effect)
-    states = [effect.state_id(p) for p in effect.parameters] if effect.has_term else []
-    parameters = effect.parameters + effect.shapes
+def _channels(name: str, doc: str, channels: list[Channel], layout: Layout) -> Table:
+    rows = [
+        {"id": c.id, "name": c.name, "unit": c.unit, "label": c.label,
+         "constant": Index(layout.parameters.index(c.constant))}
+        for c in channels
+    ]
+    return Table(name, "Channel", doc, dict.fromkeys(CHANNEL_FIELDS, ""), rows, MODULE)
+
+
+def _row(effect: Effect, equivalents, reasons, twins, layout: Layout) -> dict:
+    formula, needs, axes = _formula(effect)
     return {
         "id": effect.id,
-        "kind": effect.kind,
-        "enters": effect.enters,
+        "family": effect.family or effect.id,
         "name": effect.name,
         "reference": effect.reference,
         "formula": formula,
-        "parameters": [p.name for p in parameters],
-        "units": [p.unit for p in parameters],
-        "states": states,
-        "shapes": [effect.shape_id(p) for p in effect.shapes],
+        "kind": _kind(effect),
+        "enters": _enters(effect, axes),
+        "parameters": Items(tuple(_parameters(effect, layout))),
         "typical_size": effect.typical_size,
+        "is_nominal": False,
         "default_search": effect.default_search,
-        "needs": needs,
+        "needs": Items(tuple(needs)),
         "equivalents": equivalents[effect.id],
+        "equivalence": _equivalence(reasons.get(effect.id)),
         "near_twins": twins[effect.id],
+        "nested": list(effect.nested),
+        "continuation": Variant(f"Continuation::{effect.continuation.value}"),
+        "separated_by": Items(tuple(
+            Variant(f"Experiment::{e.variant}", (e.of,) if e.of else ())
+            for e in effect.experiments
+        )),
     }
 
 
-def _nominal(place: int, twins) -> dict:
+def _kind(effect: Effect) -> Variant:
+    noise = effect.noise
+    arguments = () if noise is None else (Variant(f"NoiseProperty::{noise.value}"),)
+    return Variant(f"EffectKind::{effect.kind.value}", arguments)
+
+
+def _enters(effect: Effect, axes: list[str]) -> Variant:
+    variants = {Enters.RATE: "Rates", Enters.OUTPUT: "Outputs", Enters.STATE: "States"}
+    if effect.enters in variants:
+        indices = Items(tuple(Index(AXES.index(axis)) for axis in axes))
+        return Variant(f"Enters::{variants[effect.enters]}", (indices,))
+    match effect.enters:
+        case Enters.INPUT:
+            return Variant("Enters::Inputs", (tuple(axes),))
+        case Enters.TIME:
+            return Variant("Enters::Time")
+        case Enters.FILTER:
+            return Variant("Enters::Filter")
+
+
+def _parameters(effect: Effect, layout: Layout):
+    for place, p in enumerate(effect.parameters):
+        weight = None
+        if effect.has_term:
+            id = effect.state_id(p)
+            role = Variant("Role::Parameter", (Index(layout.parameters.index(id)),))
+            weight = layout.weights.index(id) if id in layout.weights else None
+        elif effect.enters is Enters.STATE:
+            role = Variant("Role::State", (Index(AXES.index(effect.axes[place])),))
+        else:
+            role = Variant("Role::Noise")
+        yield _parameter(p.name, p.unit, role, p.scale, weight)
+    for p in effect.shapes:
+        id = effect.shape_id(p)
+        index = Index(layout.shapes.index(id)) if id in layout.shapes else None
+        if p.name == "onset_s":
+            role = Variant("Role::Onset", (optional(index),))
+        else:
+            role = Variant("Role::TimeConstant", (index,))
+        yield _parameter(p.name, p.unit, role, p.scale, None)
+
+
+def _parameter(name: str, unit: str, role: Variant, scale: float, weight: int | None) -> Record:
+    return Record("EffectParameter", {
+        "name": name, "unit": unit, "role": role, "scale": scale,
+        "weight": optional(None if weight is None else Index(weight)),
+    })
+
+
+def _nominal(place: int, twins, layout: Layout) -> dict:
     element, axis, power = drift.elements[place], AXES[place // 3], place % 3
     factor = ("", f"*a_{axis}", f"*sq(a_{axis})")[power]
+    role = Variant("Role::Parameter", (Index(layout.parameters.index(element.id)),))
     return {
         "id": element.id,
-        "kind": "nominal",
-        "enters": "drift",
+        "family": ("gyro_i.bias", "gyro_i.g_i", "gyro_i.g_ii")[power],
         "name": element.doc,
-        "reference": "IEEE Std 517-1974",
+        "reference": NOMINAL_REFERENCE,
         "formula": f"omega_d_{axis} += {element.name}{factor}",
-        "parameters": ["size"],
-        "units": [element.unit],
-        "states": [element.id],
-        "shapes": [],
+        "kind": Variant("EffectKind::Constant"),
+        "enters": Variant("Enters::Rates", (Items((Index(AXES.index(axis)),)),)),
+        "parameters": Items((_parameter("size", element.unit, role, 1.0, None),)),
         "typical_size": 1.0,
+        "is_nominal": True,
         "default_search": False,
-        "needs": [],
+        "needs": Items(()),
         "equivalents": [],
+        "equivalence": _equivalence(None),
         "near_twins": twins[element.id],
+        "nested": [],
+        "continuation": Variant("Continuation::Stays"),
+        "separated_by": Items(()),
     }
+
+
+def _equivalence(found: Equivalence | None) -> Record:
+    reason, experiment = ("", "") if found is None else (found.reason, found.experiment)
+    return Record("Equivalence", {"reason": reason, "experiment": experiment})
+
+
+def _reasons(effects: list[Effect], equivalents) -> dict[str, Equivalence]:
+    """The reason of a class of equivalents, for each of its members."""
+    own = {effect.id: effect.equivalence for effect in effects if effect.equivalence}
+    found = dict(own)
+    for id, others in equivalents.items():
+        reasons = [own[other] for other in others if other in own]
+        if id not in found and reasons:
+            found[id] = reasons[0]
+    return found
 
 
 def _closed(effects: list[Effect], known: list[str], field: str, transitive: bool):
@@ -95,12 +178,6 @@ def _closed(effects: list[Effect], known: list[str], field: str, transitive: boo
     found: dict[str, set[str]] = {name: set() for name in known}
     for effect in effects:
         for other in getattr(effect, field):
-            if other not in found:
-                near = difflib.get_close_matches(other, known, 3)
-                raise ExportError(
-                    f"effect `{effect.id}`, {field}: found `{other}`, expected the id of an "
-                    f"effect; the nearest are {', '.join(near) or 'none'}"
-                )
             found[effect.id].add(other)
             found[other].add(effect.id)
     if transitive:
@@ -111,31 +188,23 @@ def _closed(effects: list[Effect], known: list[str], field: str, transitive: boo
             for name, others in found.items()}
 
 
-def _formula(effect: Effect) -> tuple[str, list[str]]:
-    """The term with plain symbols, and what it needs of record and bench."""
+def _formula(effect: Effect) -> tuple[str, list[Variant], list[str]]:
+    """The term with plain symbols, what it needs of record and bench, and where it enters: axes
+    or names of inputs."""
     if not effect.has_term:
-        return "", []
-
-    def vector(name: str) -> ca.SX:
-        return ca.vertcat(*[ca.SX.sym(f"{name}_{i}") for i in AXES])
-
-    field, temperature = vector("b"), ca.SX.sym("temperature_k")
-    at = At(
-        a=by_axis(vector("a")), drift=by_axis(vector("omega_d")), field=by_axis(field),
-        time_s=ca.SX.sym("time_s"), interval_s=ca.SX.sym("interval_s"),
-        temperature_k=temperature,
-        omega_0=vector("omega_0"), f_0=vector("f_0"), east_0=vector("east_0"),
-    )
-    own = {p.name: ca.SX.sym(rust_name(effect.state_id(p))) for p in effect.parameters}
-    own |= {p.name: ca.SX.sym(rust_name(effect.shape_id(p))) for p in effect.shapes}
-    term = effect.term(own, at)
-    parts = list(term.values()) if isinstance(term, dict) else [term]
-    everything = ca.veccat(*parts)
-    needs = [name for name, symbol in (("temperature", temperature), ("field", field))
-             if ca.depends_on(everything, symbol)]
+        return "", [], list(effect.axes)
+    symbols = Symbols(effect)
+    term = symbols.term(effect)
+    axes = list(term) if isinstance(term, dict) else []
+    everything = ca.veccat(*(term.values() if isinstance(term, dict) else [term]))
+    needs = [need for need, symbol in (
+        (Variant("Need::Column", ("temperature_c",)), symbols.temperature_k),
+        (Variant("Need::Key", ("magnetic_field_gauss",)), symbols.field),
+    ) if ca.depends_on(everything, symbol)]
     if effect.formula:
-        return effect.formula, needs
-    if effect.enters == "time":
-        return f"rates -> {term} rates", needs
-    left = {"drift": "omega_d", "output": "e"}[effect.enters]
-    return "; ".join(f"{left}_{axis} += {part}" for axis, part in term.items()), needs
+        return effect.formula, needs, axes
+    if effect.enters is Enters.TIME:
+        return f"rates -> {term} rates", needs, axes
+    left = {Enters.RATE: "omega_d", Enters.OUTPUT: "e"}[effect.enters]
+    text = "; ".join(f"{left}_{axis} += {part}" for axis, part in term.items())
+    return text, needs, axes

@@ -6,19 +6,23 @@ import casadi as ca
 
 from casadi_program import Element, ExportError, Function, Group, Output, Program, Table
 from drift import drift_law
-from effect import At, Effect, by_axis, rust_name
+from effect import KINDS_WITH_WEIGHT, At, Effect, Enters, Parameter, by_axis, rust_name
 from frames import platform_c_chart
 from functions import AWAY_FROM_GIMBAL_LOCK, at_origin, with_jacobian
 from kinematics import angle_rates_of
 from layout import (
-    AXES, conditions, drift, drift_noise, east_0, f_0, field_0, omega_0, platform_c_gyros, theta,
+    AXES, conditions, drift, drift_noise, east_0, f_0, field_0, force, omega_0, platform_c_gyros,
+    theta,
 )
 from specific_force import specific_force
 
 
 def program(name: str, model: str, doc: str, effects: list[Effect],
-            tables: list[Table] = (), strapdown: bool = False) -> Program:
+            tables: list[Table] = (), strapdown: bool = False,
+            with_weights: bool = False) -> Program:
     """The functions of a model, the nominal one with `effects`. Inputs are those it needs.
+
+    `with_weights` adds the function of the weights of terms that depend on time.
 
     With `strapdown` the platform is computed from the outputs of gyros that are fixed to a body.
     """
@@ -37,7 +41,7 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
     output = Output("reading", reading, "g", "what the accelerometers read, up positive",
                     [f"e_{i}" for i in AXES])
     of_output = [parameters] if ca.depends_on(reading, parameters.sx) else []
-    functions = [
+    own = [
         *with_jacobian(
             "dynamics", "Rates of the platform angles under Earth rate and gyro drift.",
             "equations (7) and (9), with the terms of the catalogue",
@@ -54,16 +58,16 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
             "all finite inputs",
         ),
     ]
-    by_name = {function.name: function for function in functions}
+    by_name = {function.name: function for function in own}
     for function, of in (("dynamics", "Rates of the platform angles"),
                          ("accelerometers", "What the accelerometers read")):
-        functions.append(at_origin(
+        own.append(at_origin(
             f"{function}_at_origin_jacobian", f"{of}, with exact Jacobians, at zero angles.",
             by_name[f"{function}_jacobian"],
         ))
-    used = {group.name for function in functions for group in function.inputs}
+    used = {group.name for function in own for group in function.inputs}
     return Program(
-        name, doc, functions,
+        name, doc, own + ([_weights(effects, shapes)] if with_weights else []),
         {
             "name": model,
             "doc": f"{doc} Three angles move, all else is constant.",
@@ -81,6 +85,45 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
 def added_parameters(effects: list[Effect]) -> list[Element]:
     """The parameters after the drift coefficients, in the order in which a model has them."""
     return _parameters(_output_first(effects)).elements[len(drift.elements):]
+
+
+def shape_elements(effects: list[Effect]) -> list[Element]:
+    """Onsets and time constants, in the order in which a model has them."""
+    shapes = _shapes(_output_first(effects))
+    return shapes.elements if shapes else []
+
+
+def weighted(effects: list[Effect]) -> list[tuple[Effect, Parameter]]:
+    """The parameters of terms that are functions of time, of the temperature or of a shape."""
+    return [(effect, p) for effect in _output_first(effects)
+            if effect.kind in KINDS_WITH_WEIGHT for p in effect.parameters]
+
+
+def _weights(effects: list[Effect], shapes: Group | None) -> Function:
+    """What a unit of each of them adds to its channel."""
+    rows = []
+    for effect, parameter in weighted(effects):
+        own = {p.name: ca.SX.sym(p.name) for p in effect.parameters}
+        given = {p.name: shapes[rust_name(effect.shape_id(p))] for p in effect.shapes}
+        at = At(
+            a=by_axis(force.sx), drift={}, field={}, time_s=conditions["time_s"],
+            interval_s=conditions["interval_s"], temperature_k=conditions["temperature_k"],
+            omega_0=omega_0.sx, f_0=f_0.sx, east_0=east_0.sx,
+        )
+        (expression,) = effect.term(own | given, at).values()
+        rows.append(ca.jacobian(expression, own[parameter.name]))
+    output = Output(
+        "weights", ca.vertcat(*rows), "unit of the channel per unit of the parameter",
+        "weights of the parameters",
+        [rust_name(effect.state_id(p)) for effect, p in weighted(effects)],
+    )
+    return Function(
+        "weights",
+        "What a unit of each parameter of a term that is a function of time, of the temperature or "
+        "of a shape adds to its channel.",
+        "the terms of the catalogue", [force, conditions, *([shapes] if shapes else [])],
+        [output], "time constants and the interval greater than zero, all other inputs finite",
+    )
 
 
 def _forms(function: str) -> dict[str, str]:
@@ -145,7 +188,7 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
         own |= {p.name: shapes[rust_name(effect.shape_id(p))] for p in effect.shapes}
         return effect.term(own, at)
 
-    for effect in _entering("site", effects):
+    for effect in _entering(Enters.INPUT, effects):
         at = replace(at, **term(effect))
     force = specific_force(theta.sx, at.f_0)
     field = platform_c_chart(theta.sx) @ field_0.sx
@@ -160,7 +203,7 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
     # Terms that take drifts take those that the others add up to.
     others = ca.SX.sym("omega_d", 3)
     at = replace(at, drift=by_axis(others))
-    added = _sum(term(effect) for effect in _entering("drift", effects))
+    added = _sum(term(effect) for effect in _entering(Enters.RATE, effects))
     plain = ca.vertcat(*[omega_d[n] + sum(e for e in added[i] if not ca.depends_on(e, others))
                          for n, i in enumerate(AXES)])
     of_others = ca.vertcat(*[sum((e for e in added[i] if ca.depends_on(e, others)), ca.SX(0))
@@ -170,14 +213,14 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
         omega_d = -rotation @ omega_d
     rates = angle_rates_of(theta.sx, omega_d, at.omega_0)
     at = along_platform
-    for effect in _entering("time", effects):
+    for effect in _entering(Enters.TIME, effects):
         rates = term(effect) * rates
-    read = _sum(term(effect) for effect in _entering("output", effects))
+    read = _sum(term(effect) for effect in _entering(Enters.OUTPUT, effects))
     reading = ca.vertcat(*[at.a[i] + sum(read[i]) for i in AXES])
     return rates, reading
 
 
-def _entering(where: str, effects: list[Effect]) -> list[Effect]:
+def _entering(where: Enters, effects: list[Effect]) -> list[Effect]:
     return [effect for effect in effects if effect.has_term and effect.enters == where]
 
 

@@ -5,6 +5,8 @@ filter has moved its chart; `platform` is the stabilised platform. Equation numb
 those of Li Zhong, Geophysical and Geochemical Exploration 39(S1), 2015, 28-32.
 """
 
+from dataclasses import dataclass
+
 from casadi_program import Element, Group
 
 AXES = ("x", "y", "z")
@@ -73,6 +75,12 @@ platform_c_gyros = Group(
      for i in AXES for j in AXES],
 )
 
+force = Group(
+    "force",
+    "Specific force along the input axes, up positive.",
+    [Element(f"force_{i}", "g", f"specific force along {i}") for i in AXES],
+)
+
 conditions = Group(
     "conditions",
     "What changes from step to step and is known.",
@@ -83,3 +91,22 @@ conditions = Group(
         Element("temperature_k", "K", "temperature above its mean over the record"),
     ],
 )
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A rate or an output of the model, with the id of the parameter that adds a constant to it."""
+
+    id: str
+    name: str
+    unit: str
+    label: str
+    constant: str
+
+
+RATE_CHANNELS = [
+    Channel(f"gyro_{i}", f"drift of gyro {i}", "deg/h", i, f"gyro_{i}.bias") for i in AXES
+]
+OUTPUT_CHANNELS = [
+    Channel(f"accel_{i}", f"reading of accelerometer {i}", "g", i, f"accel_{i}.bias") for i in AXES
+]

@@ -74,7 +74,7 @@ def _effect(id: str, place: int, ids: list[str]) -> Effect:
         return found
     if found is not None:
         raise ExportError(f"effects: found `{id}`, which is no term of the model (its kind is "
-                          f"{found.kind}), expected effects of kind term")
+                          f"{found.kind.name}), expected effects with a term")
     if id in (element.id for element in drift.elements):
         raise ExportError(f"effects: found `{id}`, which every model has, expected effects "
                           "beside the nominal coefficients")

@@ -86,6 +86,9 @@ def write(programs: list[Program], path: Path) -> None:
     for point in points:
         point["platform_c_gyros"] = _rotation(rng)
         point.update({key: _own(group, point, rng) for key, group in own.items()})
+    forces = random.Random(SEED + 1)
+    for point in points:
+        point["force"] = _unit_vector(forces)
     document = {
         "casadi_version": ca.__version__,
         "inputs": points,

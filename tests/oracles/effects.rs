@@ -5,6 +5,8 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
+use gyrocal::Effect;
+use gyrocal::effect::{Need, Role};
 use gyrocal::generated::{catalogue, platform};
 use gyrocal_oracle::points::{Purpose, State, states};
 use gyrocal_scalar::Element;
@@ -216,24 +218,40 @@ fn without_effects_the_catalogue_is_the_nominal_platform() {
 #[test]
 fn the_table_of_effects_is_complete_and_names_what_is_there() {
     let ids: Vec<&str> = catalogue::EFFECTS.iter().map(|effect| effect.id).collect();
-    let states = catalogue::EFFECTS.iter().flat_map(|effect| effect.states);
-    let mut states: Vec<&str> = states.copied().collect();
-    let mut parameters: Vec<&str> = catalogue::PARAMETERS.iter().map(|p| p.id).collect();
-    states.sort_unstable();
+    let parameters = catalogue::EFFECTS.iter();
+    let mut parameters: Vec<usize> = parameters.flat_map(Effect::model_parameters).collect();
     parameters.sort_unstable();
-    assert_eq!(states, parameters, "each parameter belongs to one effect");
+    let all: Vec<usize> = (0..catalogue::PARAMETERS.len()).collect();
+    assert_eq!(parameters, all, "each parameter belongs to one effect");
     for effect in &catalogue::EFFECTS {
-        let is_term = ["nominal", "term"].contains(&effect.kind);
-        assert_eq!(is_term, !effect.formula.is_empty(), "{}", effect.id);
-        assert_eq!(effect.parameters.len(), effect.units.len(), "{}", effect.id);
-        if is_term {
-            let given = effect.states.len() + effect.shapes.len();
-            assert_eq!(effect.parameters.len(), given, "{}", effect.id);
+        for parameter in effect.parameters {
+            // The id of a parameter of the model begins with that of its effect, and its unit is
+            // the effect's.
+            let element = match parameter.role {
+                Role::Parameter(index) => catalogue::PARAMETERS[index],
+                Role::Onset(Some(index)) | Role::TimeConstant(index) => catalogue::SHAPES[index],
+                _ => {
+                    assert!(!effect.has_term(), "{}", effect.id);
+                    continue;
+                }
+            };
+            assert!(
+                effect.has_term() && element.id.starts_with(effect.id),
+                "{}",
+                effect.id
+            );
+            assert_eq!(element.unit, parameter.unit, "{}", element.id);
         }
-        for shape in effect.shapes {
-            assert!(catalogue::SHAPES.iter().any(|element| element.id == *shape));
+        if !effect.equivalents.is_empty() {
+            let equivalence = effect.equivalence;
+            assert!(!equivalence.reason.is_empty() && !equivalence.experiment.is_empty());
         }
-        for other in effect.equivalents.iter().chain(effect.near_twins) {
+        for other in effect
+            .equivalents
+            .iter()
+            .chain(effect.near_twins)
+            .chain(effect.nested)
+        {
             assert!(ids.contains(other), "{}: {other}", effect.id);
         }
         for equivalent in effect.equivalents {
@@ -252,7 +270,10 @@ fn the_table_of_effects_is_complete_and_names_what_is_there() {
         assert!(ids.contains(&id), "{id}");
     }
     let needs = |id: &str| catalogue::EFFECTS[ids.iter().position(|x| *x == id).unwrap()].needs;
-    assert_eq!(needs("gyro_y.temperature"), ["temperature"]);
-    assert_eq!(needs("gyro_z.magnetic"), ["field"]);
-    assert_eq!(needs("gyro_z.ramp"), [""; 0]);
+    assert_eq!(needs("gyro_y.temperature"), [Need::Column("temperature_c")]);
+    assert_eq!(
+        needs("gyro_z.magnetic"),
+        [Need::Key("magnetic_field_gauss")]
+    );
+    assert_eq!(needs("gyro_z.ramp"), []);
 }

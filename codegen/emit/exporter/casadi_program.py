@@ -14,7 +14,7 @@ Schema version 1
                                  "row_names", "column_names",
                                  "nonzeros": [[row, column]]}],
                     "work_size", "instructions": [[op, ...]]}],
-     "tables":    [{"name", "row", "doc", "fields": [{"name", "doc"}],
+     "tables":    [{"name", "row", "module", "doc", "fields": [{"name", "doc"}],
                     "rows": [[value, ...]]}],          (may be left out)
      "model": null or
         {"name", "doc", "moving", "parameters", "noise", "inputs": [group],
@@ -26,7 +26,13 @@ physical vector). `nonzeros` are the structural nonzeros of an output in the ord
 in which `output` instructions number them.
 
 A *table* holds facts about a program: one record a row, one value for each field. All values
-of a field are strings, numbers, booleans or lists of strings. `row` is the name of a Rust type.
+of a field are strings, numbers, booleans or lists of strings. `row` is the name of a Rust type,
+which the emitter declares. With `module` (null or left out otherwise) the module of that name in
+the scalar crate declares it, and values may be of its types:
+    {"index": 3}                                        an index
+    {"variant": "Shape::Round", "arguments": [value]}   a variant of an enum, `Some` and `None`
+    {"record": "Ring", "fields": {name: value}}         a struct
+    {"list": [value]}                                   a slice
 
 A *model* says which groups and functions play which part. `name` is that of a Rust
 type. `moving` (states with rates), `parameters` (constant states, or null), `noise`
@@ -174,11 +180,14 @@ class Table:
 
     `name` is that of the array, `row` that of its type; `fields` gives the meaning of each
     field by its name; `rows` hold a value for every field: strings, numbers, booleans or lists
-    of strings, of one kind in a field.
+    of strings, of one kind in a field. With `module`, a module of the scalar crate declares the
+    type of a record, and values may also be `Index`, `Variant`, `Record` and `Items`.
     """
 
-    def __init__(self, name: str, row: str, doc: str, fields: dict[str, str], rows: list[dict]):
+    def __init__(self, name: str, row: str, doc: str, fields: dict[str, str], rows: list[dict],
+                 module: str | None = None):
         self.name, self.row, self.doc, self.fields, self.rows = name, row, doc, fields, rows
+        self.module = module
 
     def to_dict(self) -> dict:
         for number, row in enumerate(self.rows):
@@ -190,21 +199,78 @@ class Table:
         kinds = {field: {_kind(self.name, field, row[field]) for row in self.rows}
                  for field in self.fields}
         for name, found in kinds.items():
-            if len(found) > 1:
+            if "typed values" in found and self.module is None:
+                raise ExportError(
+                    f"field `{name}` of table `{self.name}` holds typed values, expected the "
+                    "table to name the module that declares their types"
+                )
+            if len(found) > 1 and self.module is None:
                 raise ExportError(
                     f"field `{name}` of table `{self.name}` holds {', '.join(sorted(found))}, "
                     "expected values of one kind"
                 )
+        module = {} if self.module is None else {"module": self.module}
         return {
             "name": self.name,
             "row": self.row,
+            **module,
             "doc": self.doc,
             "fields": [{"name": name, "doc": doc} for name, doc in self.fields.items()],
             "rows": [[_value(row[name]) for name in self.fields] for row in self.rows],
         }
 
 
+@dataclass(frozen=True)
+class Index:
+    """An index in a table: a number that is an integer in Rust."""
+
+    value: int
+
+    def to_json(self):
+        return {"index": self.value}
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A variant of a Rust enum, `Shape::Round`, with what it holds."""
+
+    path: str
+    arguments: tuple = ()
+
+    def to_json(self):
+        return {"variant": self.path, "arguments": [_value(item) for item in self.arguments]}
+
+
+@dataclass(frozen=True)
+class Record:
+    """A Rust struct with its fields."""
+
+    name: str
+    fields: dict
+
+    def to_json(self):
+        fields = {name: _value(value) for name, value in self.fields.items()}
+        return {"record": self.name, "fields": fields}
+
+
+@dataclass(frozen=True)
+class Items:
+    """A slice of values of one type."""
+
+    items: tuple
+
+    def to_json(self):
+        return {"list": [_value(item) for item in self.items]}
+
+
+def optional(value) -> Variant:
+    """`Some` of a value, or `None`."""
+    return Variant("None") if value is None else Variant("Some", (value,))
+
+
 def _kind(table: str, name: str, value) -> str:
+    if isinstance(value, (Index, Variant, Record, Items)):
+        return "typed values"
     if isinstance(value, bool):
         return "booleans"
     if isinstance(value, (int, float)) and math.isfinite(value):
@@ -221,6 +287,8 @@ def _kind(table: str, name: str, value) -> str:
 
 def _value(value):
     """As it stands in the file: numbers are floats, so that a field has one type."""
+    if isinstance(value, (Index, Variant, Record, Items)):
+        return value.to_json()
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return list(value) if isinstance(value, tuple) else value
     return float(value)

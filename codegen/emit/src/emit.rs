@@ -16,6 +16,8 @@ mod output;
 mod plan;
 mod table;
 
+use std::collections::BTreeSet;
+
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -162,7 +164,19 @@ fn imports(program: &Program, options: &Options) -> Result<TokenStream, Error> {
         Some(_) => quote!(Element, Model, NamedInputs, RatesJacobian #scalar),
         None => quote!(Element #scalar),
     };
-    Ok(quote!(use #colon #tokens::{#names};))
+    let declared: BTreeSet<&str> = program
+        .tables
+        .iter()
+        .filter_map(|table| table.module.as_deref())
+        .collect();
+    let modules = declared.into_iter().map(|module| {
+        let tables = program.tables.iter();
+        let own = tables.filter(|table| table.module.as_deref() == Some(module));
+        let types: BTreeSet<&str> = own.flat_map(table::types).collect();
+        let (module, types) = (items::ident(module), types.into_iter().map(items::ident));
+        quote!(use #colon #tokens::#module::{#(#types),*};)
+    });
+    Ok(quote!(use #colon #tokens::{#names}; #(#modules)*))
 }
 
 /// Constant operands whose result is not finite were left unfolded; say where.

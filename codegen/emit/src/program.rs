@@ -5,6 +5,7 @@
 //! model refers to functions and groups that exist and fit together.
 
 mod check;
+mod context;
 mod model;
 mod names;
 mod operation;

@@ -1,6 +1,6 @@
 //! The cells of the table: what is hidden in their records.
 
-use gyrocal::{EFFECTS, EffectRow};
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_truth::{Scenario, simulate};
 
 use crate::beyond::beyond;
@@ -157,11 +157,10 @@ const EVENLY: f64 = 0.618_033_988_749_894_9;
 
 /// The list that single effects are taken from in turn: every effect, those that have no sister on
 /// another axis three times.
-fn turns(effects: &[&'static EffectRow]) -> Vec<&'static EffectRow> {
+fn turns(effects: &[&'static Effect]) -> Vec<&'static Effect> {
     let mut turns = effects.to_vec();
     for effect in effects {
-        let axes = ["gyro_", "accel_"];
-        if !axes.iter().any(|prefix| effect.id.starts_with(prefix)) {
+        if effect.family == effect.id {
             turns.extend([effect, effect]);
         }
     }
@@ -226,8 +225,8 @@ fn one_of(
     strength: f64,
     draw: &mut Draw,
 ) -> Result<Vec<(Planted, f64)>, CharacteriseError> {
-    let is_kind = |effect: &&EffectRow| ids.contains(&effect.id);
-    let effects: Vec<&'static EffectRow> = EFFECTS.iter().filter(is_kind).collect();
+    let is_kind = |effect: &&Effect| ids.contains(&effect.id);
+    let effects: Vec<&'static Effect> = EFFECTS.iter().filter(is_kind).collect();
     for _ in 0..TRIES {
         let effect = *draw.one_of(&effects);
         let with_shape = (effect, shape(effect, scenario, draw));
@@ -291,9 +290,7 @@ mod tests {
         }
         let even = 1000.0 / effects.len() as f64;
         for effect in searched(&scenario) {
-            let single = !["gyro_", "accel_"]
-                .iter()
-                .any(|kind| effect.id.starts_with(kind));
+            let single = effect.family == effect.id;
             let turns = if single { 3.0 } else { 1.0 };
             let count = counts.get(effect.id).copied().unwrap_or(0) as f64;
             // The golden sequence is off by fewer than two in any interval.

@@ -1,6 +1,7 @@
 //! One record diagnosed and held against what was hidden in it.
 
-use gyrocal::{EFFECTS, EffectRow};
+use gyrocal::effect::Role;
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::NoiseModel;
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, Ranked, SearchOptions, search};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
@@ -207,10 +208,12 @@ fn hidden_case(
         let mut rivals = finding.rivals.iter();
         same(finding.effect, id) || rivals.any(|rival| same(rival.effect, id))
     });
-    let onset_s = parameters.and_then(|parameters| {
+    let shape = planted.effect.shape();
+    let shape = shape.filter(|shape| matches!(shape.role, Role::Onset(_)));
+    let onset_s = parameters.zip(shape).and_then(|(parameters, shape)| {
         let onset = parameters
             .iter()
-            .find(|parameter| parameter.name == "onset_s");
+            .find(|parameter| parameter.name == shape.name);
         onset.map(|onset| onset.estimate)
     });
     let best = found.ranking.first().map_or(0.0, |best| best.statistic);
@@ -219,7 +222,7 @@ fn hidden_case(
         .effect
         .parameters
         .iter()
-        .map(|name| (*name).to_owned());
+        .map(|parameter| parameter.name.to_owned());
     HiddenCase {
         effect: id.to_owned(),
         parameters: names
@@ -264,15 +267,14 @@ fn oracle_set_size(
     Ok(size(&searched.findings))
 }
 
-fn row(id: &str) -> Option<&'static EffectRow> {
+fn row(id: &str) -> Option<&'static Effect> {
     EFFECTS.iter().find(|effect| effect.id == id)
 }
 
 /// Onset or time constant of a finding.
 fn shape_of(finding: &Finding) -> Option<f64> {
-    finding
-        .parameters
-        .last()
-        .filter(|parameter| matches!(parameter.name, "onset_s" | "time_constant_h"))
-        .map(|parameter| parameter.estimate)
+    let shape = row(finding.effect)?.shape()?;
+    let mut parameters = finding.parameters.iter();
+    let found = parameters.find(|parameter| parameter.name == shape.name);
+    found.map(|parameter| parameter.estimate)
 }

@@ -9,7 +9,8 @@ mod ljung_box;
 mod nis;
 mod stls;
 
-use gyrocal::EffectRow;
+use gyrocal::Effect;
+use gyrocal::effect::Role;
 use gyrocal_record::Record;
 use serde::{Deserialize, Serialize};
 
@@ -97,7 +98,7 @@ impl Called {
 /// One effect at one onset or time constant.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry {
-    pub(crate) effect: &'static EffectRow,
+    pub(crate) effect: &'static Effect,
     pub(crate) searched_shape: bool,
     pub(crate) signature: Signature,
 }
@@ -105,7 +106,7 @@ pub(crate) struct Entry {
 /// Every effect that has a signature; those with an onset or a time constant once for each point
 /// of a grid.
 pub(crate) fn library(
-    effects: &[&'static EffectRow],
+    effects: &[&'static Effect],
     record: &Record,
     columns: &mut Columns,
 ) -> Vec<Entry> {
@@ -122,10 +123,10 @@ pub(crate) fn library(
     });
     let mut library = Vec::new();
     for effect in effects {
-        let shapes: Vec<Option<f64>> = match effect.parameters.last() {
-            Some(&"onset_s") => onsets.clone().map(Some).collect(),
-            Some(&"time_constant_h") => time_constants.clone().map(Some).collect(),
-            _ => vec![None],
+        let shapes: Vec<Option<f64>> = match effect.shape().map(|shape| shape.role) {
+            Some(Role::TimeConstant(_)) => time_constants.clone().map(Some).collect(),
+            Some(_) => onsets.clone().map(Some).collect(),
+            None => vec![None],
         };
         for shape in shapes {
             if let Some(signature) = columns.signature(effect, record, shape) {

@@ -1,6 +1,7 @@
 //! Effects of the catalogue at sizes that are numbers of sigmas of their own bounds.
 
-use gyrocal::{EFFECTS, EffectRow};
+use gyrocal::effect::{EffectParameter, Need, Role};
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{Extended, NoiseModel, Options, Run};
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -22,7 +23,7 @@ const SHORTEST_TIME_CONSTANT_H: f64 = 0.5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planted {
     /// The effect.
-    pub effect: &'static EffectRow,
+    pub effect: &'static Effect,
     /// Its sizes, in the units of its table.
     pub sizes: Vec<f64>,
     /// Its onset in s or its time constant in h, if it has one.
@@ -35,19 +36,21 @@ impl Planted {
     /// # Errors
     /// [`gyrocal_truth::Error`] if the simulator has no such effect or refuses a value.
     pub fn hidden(&self) -> Result<Hidden, gyrocal_truth::Error> {
-        let names: &[&str] = if self.effect.kind == "state" {
-            &["x_deg", "y_deg", "z_deg"]
-        } else {
-            self.effect.parameters
+        // The simulator names an angle with its unit.
+        let name = |parameter: &EffectParameter| match parameter.role {
+            Role::State(_) => format!("{}_{}", parameter.name, parameter.unit),
+            _ => parameter.name.to_owned(),
         };
-        let mut parameters: Vec<(&str, f64)> = names
-            .iter()
-            .copied()
-            .zip(self.sizes.iter().copied())
+        let sizes = self.effect.sizes().zip(self.sizes.iter().copied());
+        let shape = self.effect.shape().zip(self.shape);
+        let parameters: Vec<(String, f64)> = sizes
+            .chain(shape)
+            .map(|(parameter, value)| (name(parameter), value))
             .collect();
-        if let (Some(shape), Some(name)) = (self.shape, self.effect.parameters.last()) {
-            parameters.push((name, shape));
-        }
+        let parameters: Vec<(&str, f64)> = parameters
+            .iter()
+            .map(|(name, value)| (name.as_str(), *value))
+            .collect();
         Hidden::new(self.effect.id, &parameters)
     }
 
@@ -70,29 +73,25 @@ impl Planted {
 
 /// The effects of the default search that have a signature and that a scenario's record can show.
 #[must_use]
-pub fn searched(scenario: &Scenario) -> Vec<&'static EffectRow> {
-    let can_show = |effect: &&EffectRow| {
+pub fn searched(scenario: &Scenario) -> Vec<&'static Effect> {
+    let can_show = |effect: &&Effect| {
         effect.default_search
-            && matches!(effect.kind, "term" | "state")
-            && effect.needs.iter().all(|need| match *need {
-                "temperature" => scenario.temperature.is_some(),
-                "field" => scenario.magnetic_field_gauss.is_some(),
-                _ => false,
+            && effect.has_signature()
+            && effect.needs.iter().all(|need| match need {
+                Need::Column(_) => scenario.temperature.is_some(),
+                Need::Key(_) => scenario.magnetic_field_gauss.is_some(),
             })
     };
     EFFECTS.iter().filter(can_show).collect()
 }
 
 /// An onset or a time constant for an effect that has one.
-pub fn shape(effect: &EffectRow, scenario: &Scenario, draw: &mut Draw) -> Option<f64> {
-    match effect.parameters.last() {
-        Some(&"onset_s") => {
-            Some((MARGIN + (1.0 - 2.0 * MARGIN) * draw.uniform()) * scenario.duration_s)
-        }
-        Some(&"time_constant_h") => {
+pub fn shape(effect: &Effect, scenario: &Scenario, draw: &mut Draw) -> Option<f64> {
+    match effect.shape()?.role {
+        Role::TimeConstant(_) => {
             Some(draw.log_uniform([SHORTEST_TIME_CONSTANT_H, 0.25 * duration_h(scenario)]))
         }
-        _ => None,
+        _ => Some((MARGIN + (1.0 - 2.0 * MARGIN) * draw.uniform()) * scenario.duration_s),
     }
 }
 
@@ -121,7 +120,7 @@ pub fn fitted(simulation: &Simulation) -> Result<Extended<'_>, CharacteriseError
 /// As [`simulate`], [`Extended::nominal`] and [`Bank::new`].
 pub fn plant(
     scenario: &Scenario,
-    effects: &[(&'static EffectRow, Option<f64>)],
+    effects: &[(&'static Effect, Option<f64>)],
     strength: f64,
     largest_cosine: f64,
     draw: &mut Draw,
@@ -169,7 +168,7 @@ pub fn plant_any(
 pub fn plant_in(
     clean: &Simulation,
     fitted: &Extended<'_>,
-    effects: &[(&'static EffectRow, Option<f64>)],
+    effects: &[(&'static Effect, Option<f64>)],
     strength: f64,
     largest_cosine: f64,
     draw: &mut Draw,

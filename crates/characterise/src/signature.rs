@@ -1,6 +1,7 @@
 //! Which columns of the linearised model stand for an effect.
 
-use gyrocal::EffectRow;
+use gyrocal::Effect;
+use gyrocal::effect::EffectKind;
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal_calibration::{BIASES, Column};
 use gyrocal_record::Record;
@@ -21,15 +22,12 @@ pub struct Columns {
     pub further: Vec<Column>,
 }
 
-/// The effect that is a jump of the attitude.
-const KNOCK: &str = "platform.knock";
-
 impl Columns {
     /// The signature of an effect; `shape` is its onset in s or its time constant in h. `None` for
     /// what has none: noise, and an effect whose shape is not given.
     pub fn signature(
         &mut self,
-        effect: &EffectRow,
+        effect: &Effect,
         record: &Record,
         shape: Option<f64>,
     ) -> Option<Signature> {
@@ -40,22 +38,17 @@ impl Columns {
                 .time_s
                 .partition_point(|time_s| time_s - first_s < onset_s)
         };
-        let gyro = ["gyro_x.", "gyro_y.", "gyro_z."]
-            .iter()
-            .position(|prefix| effect.id.starts_with(prefix));
-        let further = match (effect.id, shape, gyro) {
-            ("platform.initial_attitude", ..) => {
-                [0, 1, 2].map(|axis| Column::Start { axis }).to_vec()
-            }
-            (KNOCK, Some(onset_s), _) => {
+        let further = match (effect.kind, shape, effect.rate()) {
+            (EffectKind::InitialState, ..) => [0, 1, 2].map(|axis| Column::Start { axis }).to_vec(),
+            (EffectKind::StateJump, Some(onset_s), _) => {
                 let row = rows_before(onset_s).saturating_sub(1).min(last_step);
                 [0, 1, 2].map(|axis| Column::Jump { row, axis }).to_vec()
             }
-            (id, Some(onset_s), Some(gyro)) if id.ends_with(".step") => vec![Column::Onset {
+            (EffectKind::Step, Some(onset_s), Some(gyro)) => vec![Column::Onset {
                 parameter: BIASES[gyro],
                 row: rows_before(onset_s).min(last_step),
             }],
-            (id, Some(time_constant_h), Some(gyro)) if id.ends_with(".warmup") => {
+            (EffectKind::Exponential, Some(time_constant_h), Some(gyro)) => {
                 // In the middle of each step, as the model takes it.
                 let share = |pair: &[f64]| {
                     let middle_s = 0.5 * (pair[0] + pair[1]) - first_s;
@@ -66,9 +59,8 @@ impl Columns {
                     steps: record.time_s.windows(2).map(share).collect(),
                 }]
             }
-            _ if effect.kind == "term" && effect.shapes.is_empty() => {
-                let place = |id: &&str| PARAMETERS.iter().position(|element| element.id == *id);
-                let columns = effect.states.iter().filter_map(place).collect();
+            _ if effect.has_term() && effect.shape().is_none() => {
+                let columns = effect.model_parameters().collect();
                 let scale = 1.0;
                 return Some(Signature { columns, scale });
             }
@@ -77,12 +69,7 @@ impl Columns {
         let first = PARAMETERS.len() + self.further.len();
         let columns = (first..first + further.len()).collect();
         self.further.extend(further);
-        // Attitudes are columns in radians.
-        let scale = if effect.kind == "state" {
-            core::f64::consts::PI / 180.0
-        } else {
-            1.0
-        };
+        let scale = effect.parameters.first().map_or(1.0, |size| size.scale);
         Some(Signature { columns, scale })
     }
 }

@@ -112,7 +112,7 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> String {
     let listed = listed
         .iter()
         .filter(|k| model.effects.iter().any(|id| id == k.id));
-    for id in listed.flat_map(|effect| effect.shapes) {
+    for id in listed.flat_map(|effect| &effect.shapes) {
         if !model.shapes.iter().any(|(given, _)| given == id) {
             let _ = writeln!(
                 text,

@@ -3,6 +3,8 @@
 mod audited;
 mod unsettled;
 
+use gyrocal::effect::{EffectKind, NoiseProperty};
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{CalibrationError, Extended, NoiseEstimate, NoiseModel, Options, Run};
 use gyrocal_record::{Bench, Record};
 
@@ -215,10 +217,10 @@ pub fn diagnose<'a>(
     }
     let mut noise_findings = audit.findings.clone();
     // Between the steps that it is made up from, a walk looks like white noise.
-    let walks = |gyro: &str| {
-        let gyro = gyro.trim_end_matches("noise");
-        let mut found = searched.findings.iter();
-        found.any(|finding| finding.effect.strip_prefix(gyro) == Some("random_walk"))
+    let walks = |noise: &str| {
+        let channel = effect(noise).map(|effect| effect.enters);
+        let mut found = searched.findings.iter().filter_map(|f| effect(f.effect));
+        found.any(|found| found.kind == EffectKind::RandomWalk && Some(found.enters) == channel)
     };
     let gyros = if audit.cleaned.correlation == 0.0 {
         gyro_noise(&estimate, &noise_model, gyro_share)
@@ -305,6 +307,11 @@ pub fn validated(
     Ok(Some(validate(nominal, extended, first, &later_fit, later)?))
 }
 
+/// The effect of the catalogue with this id.
+fn effect(id: &str) -> Option<&'static Effect> {
+    EFFECTS.iter().find(|effect| effect.id == id)
+}
+
 /// Logarithm of a ratio and its standard deviation.
 fn logarithm(ratio: &gyrocal_calibration::NoiseRatio) -> (f64, f64) {
     let [low, high] = ratio.interval;
@@ -330,15 +337,18 @@ fn reckoned(estimate: &NoiseEstimate, believed: &NoiseModel) -> [f64; 3] {
 
 /// Gyro noise that differs from the declared one, with a share of the false alarms for all three.
 fn gyro_noise(estimate: &NoiseEstimate, believed: &NoiseModel, share: f64) -> Vec<NoiseFinding> {
-    const EFFECTS: [&str; 3] = ["gyro_x.noise", "gyro_y.noise", "gyro_z.noise"];
-    (0..3)
-        .filter_map(|axis| {
+    let effects = EFFECTS
+        .iter()
+        .filter(|effect| effect.kind == EffectKind::Noise(NoiseProperty::Level))
+        .filter_map(|effect| Some((effect.rate()?, effect.id)));
+    effects
+        .filter_map(|(axis, effect)| {
             let (value, sigma) = logarithm(&estimate.gyro[axis]);
             let total = value + believed.gyro_ratio[axis].ln();
             let z = total / sigma;
             let p_value = (3.0 * two_sided_p(z)).min(1.0);
             (p_value < share).then(|| NoiseFinding {
-                effect: EFFECTS[axis],
+                effect,
                 parameters: vec![Estimate {
                     name: "ratio",
                     estimate: total.exp(),

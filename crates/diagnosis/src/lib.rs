@@ -24,6 +24,7 @@
 //! It runs no filter, reads and writes no files and prints nothing.
 
 pub mod cause;
+mod continuation;
 mod dependence;
 mod diagnose;
 mod error;

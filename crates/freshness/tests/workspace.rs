@@ -208,10 +208,9 @@ use gyrocal::{Catalogue, EFFECTS};
 
 fn main() {
     let row = EFFECTS.iter().find(|row| row.id == "gyro_x.line").unwrap();
-    println!("{} {} {}", row.kind, row.enters, row.states.join(" "));
-    let places: Vec<usize> = row.states.iter()
-        .map(|id| PARAMETERS.iter().position(|parameter| parameter.id == *id).unwrap())
-        .collect();
+    let places: Vec<usize> = row.model_parameters().collect();
+    let ids: Vec<&str> = places.iter().map(|place| PARAMETERS[*place].id).collect();
+    println!("{:?} {:?} {}", row.kind, row.enters, ids.join(" "));
     let mut inputs = CatalogueInputs::filled(1.0);
     for part in 0..8 {
         inputs.conditions[conditions_index::TIME_S] = 5.3 * 3600.0 * f64::from(part) / 8.0;
@@ -283,7 +282,7 @@ fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
     let mut lines = outcome.stdout.lines();
     assert_eq!(
         lines.next(),
-        Some("term drift gyro_x.line.sine gyro_x.line.cosine")
+        Some("Periodic Rates([0]) gyro_x.line.sine gyro_x.line.cosine")
     );
     let deg_per_h = (1.0_f64 / 3600.0).to_radians();
     for part in 0..8 {

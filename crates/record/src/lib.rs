@@ -85,7 +85,7 @@ pub use gain_report::{
 };
 pub use gimbals::GimbalLimits;
 pub use manifest::{Input, Manifest};
-pub use model_file::{KnownEffect, ModelFile, ParameterEstimate};
+pub use model_file::{KnownEffect, ModelFile, ParameterEstimate, Standing};
 pub use output::{Outputs, write_json, write_whole};
 pub use plan_report::{
     GoalReport, OutlookReport, PlanAim, PlanReport, ProposalReport, SetMemberReport, SetReport,

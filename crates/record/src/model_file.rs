@@ -34,34 +34,49 @@ pub struct ParameterEstimate {
 }
 
 /// What a model file may name: a row of the table of effects, as far as this matters here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KnownEffect<'a> {
     /// Public id.
     pub id: &'a str,
-    /// `term` for those that a model file may name.
-    pub kind: &'a str,
+    /// Whether a model file may name it.
+    pub standing: Standing,
     /// Ids of its parameters.
-    pub states: &'a [&'a str],
+    pub states: Vec<&'a str>,
     /// Ids of its shapes.
-    pub shapes: &'a [&'a str],
+    pub shapes: Vec<&'a str>,
+}
+
+/// Standing of an effect in the symbolic model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// A term that a model file may name.
+    Term,
+    /// A coefficient that every model has.
+    Nominal,
+    /// A property of the noise.
+    Noise,
+    /// A change of the attitude.
+    State,
+    /// A property of the filter.
+    Filter,
 }
 
 impl KnownEffect<'_> {
     /// Why a model file cannot name the effect, as a half sentence; `None` if it can.
     #[must_use]
     pub fn objection(&self) -> Option<&'static str> {
-        match self.kind {
-            "term" => None,
-            "nominal" => Some("is one of the nine coefficients that every model has"),
-            "noise" => Some(
+        match self.standing {
+            Standing::Term => None,
+            Standing::Nominal => Some("is one of the nine coefficients that every model has"),
+            Standing::Noise => Some(
                 "is noise and no term: a filter is told of white noise by `[noise]` of the bench \
                  file, and of no other",
             ),
-            "state" => Some(
+            Standing::State => Some(
                 "is a matter of the attitude and no term: every filter estimates the attitude, \
                  so begin the record after it or widen the prior of the angles",
             ),
-            _ => Some("is a matter of the filter and no term of the model"),
+            Standing::Filter => Some("is a matter of the filter and no term of the model"),
         }
     }
 }
@@ -121,12 +136,12 @@ impl ModelFile {
             let listed = effects(root, known)?;
             let shapes: Vec<&str> = listed
                 .iter()
-                .flat_map(|effect| effect.shapes)
+                .flat_map(|effect| &effect.shapes)
                 .copied()
                 .collect();
             let states: Vec<&str> = listed
                 .iter()
-                .flat_map(|effect| effect.states)
+                .flat_map(|effect| &effect.states)
                 .copied()
                 .collect();
             Ok(Self {

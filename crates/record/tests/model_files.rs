@@ -4,41 +4,43 @@
 
 use std::path::Path;
 
-use gyrocal_record::{Error, InputErrorKind, KnownEffect, ModelFile, ParameterEstimate};
+use gyrocal_record::{Error, InputErrorKind, KnownEffect, ModelFile, ParameterEstimate, Standing};
 
-const fn effect(
+fn effect(
     id: &'static str,
-    kind: &'static str,
-    states: &'static [&'static str],
-    shapes: &'static [&'static str],
+    standing: Standing,
+    states: &[&'static str],
+    shapes: &[&'static str],
 ) -> KnownEffect<'static> {
     KnownEffect {
         id,
-        kind,
-        states,
-        shapes,
+        standing,
+        states: states.to_vec(),
+        shapes: shapes.to_vec(),
     }
 }
 
-const KNOWN: [KnownEffect<'static>; 7] = [
-    effect("gyro_x.bias", "nominal", &["gyro_x.bias"], &[]),
-    effect("gyro_y.g_z", "term", &["gyro_y.g_z"], &[]),
-    effect("gyro_y.g_yz", "term", &["gyro_y.g_yz"], &[]),
-    effect(
-        "gyro_x.warmup",
-        "term",
-        &["gyro_x.warmup"],
-        &["gyro_x.warmup.time_constant_h"],
-    ),
-    effect(
-        "gyro_x.diurnal",
-        "term",
-        &["gyro_x.diurnal.sine", "gyro_x.diurnal.cosine"],
-        &[],
-    ),
-    effect("accel_x.noise", "noise", &[], &[]),
-    effect("platform.knock", "state", &[], &[]),
-];
+fn known() -> [KnownEffect<'static>; 7] {
+    [
+        effect("gyro_x.bias", Standing::Nominal, &["gyro_x.bias"], &[]),
+        effect("gyro_y.g_z", Standing::Term, &["gyro_y.g_z"], &[]),
+        effect("gyro_y.g_yz", Standing::Term, &["gyro_y.g_yz"], &[]),
+        effect(
+            "gyro_x.warmup",
+            Standing::Term,
+            &["gyro_x.warmup"],
+            &["gyro_x.warmup.time_constant_h"],
+        ),
+        effect(
+            "gyro_x.diurnal",
+            Standing::Term,
+            &["gyro_x.diurnal.sine", "gyro_x.diurnal.cosine"],
+            &[],
+        ),
+        effect("accel_x.noise", Standing::Noise, &[], &[]),
+        effect("platform.knock", Standing::State, &[], &[]),
+    ]
+}
 
 const GOOD: &str = "\
 schema_version = 1
@@ -51,7 +53,7 @@ effects = [\"gyro_y.g_z\", \"gyro_x.warmup\"]
 
 #[test]
 fn what_is_written_is_what_is_read() {
-    let model = ModelFile::parse(GOOD, "m.toml", &KNOWN).unwrap();
+    let model = ModelFile::parse(GOOD, "m.toml", &known()).unwrap();
     assert_eq!(model.effects, ["gyro_y.g_z", "gyro_x.warmup"]);
     assert_eq!(
         model.shapes,
@@ -63,22 +65,22 @@ fn what_is_written_is_what_is_read() {
         sigma: 1e-4,
     };
     assert_eq!(model.estimates, [estimate]);
-    let text = model.to_toml(Path::new("m.toml"), &KNOWN).unwrap();
-    assert_eq!(ModelFile::parse(&text, "m.toml", &KNOWN).unwrap(), model);
+    let text = model.to_toml(Path::new("m.toml"), &known()).unwrap();
+    assert_eq!(ModelFile::parse(&text, "m.toml", &known()).unwrap(), model);
 
     let bare = ModelFile {
         effects: vec!["gyro_x.diurnal".to_owned()],
         ..ModelFile::default()
     };
-    let text = bare.to_toml(Path::new("m.toml"), &KNOWN).unwrap();
-    assert_eq!(ModelFile::parse(&text, "m.toml", &KNOWN).unwrap(), bare);
+    let text = bare.to_toml(Path::new("m.toml"), &known()).unwrap();
+    assert_eq!(ModelFile::parse(&text, "m.toml", &known()).unwrap(), bare);
 }
 
 #[test]
 fn what_no_reader_would_take_is_not_written() {
-    let mut model = ModelFile::parse(GOOD, "m.toml", &KNOWN).unwrap();
+    let mut model = ModelFile::parse(GOOD, "m.toml", &known()).unwrap();
     model.estimates[0].sigma = 0.0;
-    let error = model.to_toml(Path::new("m.toml"), &KNOWN).unwrap_err();
+    let error = model.to_toml(Path::new("m.toml"), &known()).unwrap_err();
     assert_eq!(
         error.to_string(),
         "m.toml: not written: found `0.0`, expected a finite number greater than 0"
@@ -191,7 +193,7 @@ fn each_mistake_is_shown_where_it_is() {
     for (right, wrong, kind, message, advice) in cases {
         assert_eq!(GOOD.matches(right).count(), 1, "{right}");
         let text = GOOD.replace(right, wrong);
-        let error = ModelFile::parse(&text, "m.toml", &KNOWN).unwrap_err();
+        let error = ModelFile::parse(&text, "m.toml", &known()).unwrap_err();
         let shown = error.to_string();
         assert!(shown.starts_with(&format!("m.toml:{message}")), "{shown}");
         let Error::Input(input) = error else { panic!() };

@@ -13,6 +13,7 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+pub mod effect;
 mod exponential;
 mod float;
 mod lanes;

@@ -1,6 +1,6 @@
 //! The model section: that its parts exist and fit together.
 
-use super::check::Context;
+use super::context::Context;
 use super::names::is_pascal_case;
 use super::schema::{RawModel, RawModelFunction};
 use super::{Function, Group, Model, ModelFunction, Output};

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::check::{Context, DERIVE_AGAIN};
+use super::context::{Context, DERIVE_AGAIN};
 use super::{Instruction, Output};
 use crate::Error;
 

@@ -26,6 +26,8 @@ pub(super) struct RawProgram {
 pub(super) struct RawTable {
     pub(super) name: String,
     pub(super) row: String,
+    #[serde(default)]
+    pub(super) module: Option<String>,
     pub(super) doc: String,
     pub(super) fields: Vec<RawField>,
     pub(super) rows: Vec<Vec<Value>>,

@@ -1,7 +1,7 @@
 //! Tables: facts about a program, one record a row.
 
-use super::check::{Context, DERIVE_AGAIN};
-use super::names::is_pascal_case;
+use super::context::{Context, DERIVE_AGAIN};
+use super::names::{is_pascal_case, is_snake_case};
 use super::schema::RawTable;
 use crate::Error;
 
@@ -13,6 +13,9 @@ pub struct Table {
     pub name: String,
     /// Name of the type of a record.
     pub row: String,
+    /// Module of the scalar crate that declares this type and those of its fields; the emitter
+    /// declares the type where this is `None`.
+    pub module: Option<String>,
     /// Meaning.
     pub doc: String,
     /// What every record has.
@@ -44,6 +47,8 @@ pub enum Kind {
     Truth,
     /// Any number of texts.
     Texts,
+    /// A value of a type that a module of the scalar crate declares.
+    Typed,
 }
 
 /// A value of a record.
@@ -57,6 +62,14 @@ pub enum Value {
     Truth(bool),
     /// Any number of texts.
     Texts(Vec<String>),
+    /// An index.
+    Index(usize),
+    /// A variant of an enum, by its path, with what it holds.
+    Variant(String, Vec<Value>),
+    /// A struct, by its name, with its fields.
+    Record(String, Vec<(String, Value)>),
+    /// Any number of values of one type.
+    List(Vec<Value>),
 }
 
 impl Value {
@@ -68,6 +81,7 @@ impl Value {
             Self::Number(_) => Kind::Number,
             Self::Truth(_) => Kind::Truth,
             Self::Texts(_) => Kind::Texts,
+            Self::Index(_) | Self::Variant(..) | Self::Record(..) | Self::List(_) => Kind::Typed,
         }
     }
 
@@ -83,9 +97,44 @@ impl Value {
                 let texts = items.iter().map(|item| item.as_str().map(str::to_owned));
                 Some(Self::Texts(texts.collect::<Option<_>>()?))
             }
-            _ => None,
+            serde_json::Value::Object(object) => Self::from_object(object),
+            serde_json::Value::Null => None,
         }
     }
+
+    /// `{"index": 3}`, `{"variant": "Shape::Round", "arguments": [...]}`,
+    /// `{"record": "Ring", "fields": {...}}` or `{"list": [...]}`.
+    fn from_object(object: &serde_json::Map<String, serde_json::Value>) -> Option<Self> {
+        let all = |name: &str| -> Option<Vec<Self>> {
+            let items = object.get(name)?.as_array()?;
+            items.iter().map(Self::from_json).collect()
+        };
+        if let Some(index) = object.get("index") {
+            return Some(Self::Index(usize::try_from(index.as_u64()?).ok()?));
+        }
+        if let Some(path) = object.get("variant") {
+            let path = path.as_str().filter(|path| is_path(path))?;
+            return Some(Self::Variant(path.to_owned(), all("arguments")?));
+        }
+        if let Some(name) = object.get("record") {
+            let name = name.as_str().filter(|name| is_pascal_case(name))?;
+            let fields = object.get("fields")?.as_object()?;
+            let fields = fields.iter().map(|(field, value)| {
+                let value = Self::from_json(value)?;
+                is_snake_case(field).then(|| (field.clone(), value))
+            });
+            return Some(Self::Record(
+                name.to_owned(),
+                fields.collect::<Option<_>>()?,
+            ));
+        }
+        Some(Self::List(all("list")?))
+    }
+}
+
+/// Whether a text is the name of an enum and one of its variants, or of a variant alone.
+fn is_path(text: &str) -> bool {
+    text.split("::").all(is_pascal_case) && text.split("::").count() <= 2
 }
 
 pub(super) fn table(context: &Context<'_>, raw: RawTable) -> Result<Table, Error> {
@@ -95,6 +144,15 @@ pub(super) fn table(context: &Context<'_>, raw: RawTable) -> Result<Table, Error
     }
     let names = raw.fields.iter().map(|field| field.name.as_str());
     context.names(&format!("{place}, fields"), names)?;
+    if let Some(module) = &raw.module
+        && !is_snake_case(module)
+    {
+        return Err(context.name(
+            &place,
+            module,
+            "the name of a Rust module, such as `effect`",
+        ));
+    }
     if raw.fields.is_empty() || raw.rows.is_empty() {
         return Err(context.error(
             &place,
@@ -119,7 +177,16 @@ pub(super) fn table(context: &Context<'_>, raw: RawTable) -> Result<Table, Error
             ));
         }
         for (index, value) in row.iter().enumerate() {
-            if value.kind() != rows[0][index].kind() {
+            let declared_here = raw.module.is_none();
+            if declared_here && value.kind() == Kind::Typed {
+                return Err(context.error(
+                    &format!("{place}, row {number}, field `{}`", raw.fields[index].name),
+                    format!("{value:?}"),
+                    "text, a finite number, true, false or a list of texts",
+                    "name the module that declares the type of the rows",
+                ));
+            }
+            if declared_here && value.kind() != rows[0][index].kind() {
                 return Err(context.error(
                     &format!("{place}, row {number}, field `{}`", raw.fields[index].name),
                     format!("{value:?}"),
@@ -133,6 +200,7 @@ pub(super) fn table(context: &Context<'_>, raw: RawTable) -> Result<Table, Error
     Ok(Table {
         name: raw.name,
         row: raw.row,
+        module: raw.module,
         doc: raw.doc,
         fields: fields
             .map(|(field, value)| Field {
@@ -155,7 +223,7 @@ fn row(
             context.error(
                 place,
                 value,
-                "text, a finite number, true, false or a list of texts",
+                "text, a finite number, true, false, a list of texts or a typed value",
                 DERIVE_AGAIN,
             )
         })

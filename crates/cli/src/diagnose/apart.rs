@@ -1,43 +1,17 @@
 //! What a record does not tell apart, why, and what would separate it.
 
-use gyrocal::generated::catalogue::EFFECTS;
+use gyrocal::effect::{Enters, Experiment, Need};
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_record::{CannotTellReport, FindingReport};
 
-/// What an effect goes with, which another experiment can change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Course {
-    /// Specific force, as the platform turns.
-    Force,
-    /// Time alone.
-    Time,
-    /// The logged temperature.
-    Temperature,
-    /// The first attitude.
-    Start,
-    /// The Earth's field.
-    Field,
-    /// The drift of another gyro.
-    OtherGyro,
-    /// The reading of an accelerometer.
-    Accelerometer,
-    /// Latitude, Earth rate, clock.
-    Site,
+/// Whether it needs data that the bench file does not give.
+fn needs_key(id: &str) -> bool {
+    let mut needs = row(id).into_iter().flat_map(|row| row.needs);
+    needs.any(|need| matches!(need, Need::Key(_)))
 }
 
-impl Course {
-    fn of(effect: &str) -> Self {
-        let (channel, term) = effect.split_once('.').unwrap_or((effect, ""));
-        match term {
-            "temperature" => Self::Temperature,
-            "ramp" | "step" | "warmup" | "diurnal" | "random_walk" => Self::Time,
-            "magnetic" => Self::Field,
-            "axis_misalignment" => Self::OtherGyro,
-            "initial_attitude" | "knock" => Self::Start,
-            _ if channel.starts_with("accel") => Self::Accelerometer,
-            _ if channel == "site" || channel == "clock" => Self::Site,
-            _ => Self::Force,
-        }
-    }
+fn row(id: &str) -> Option<&'static Effect> {
+    EFFECTS.iter().find(|row| row.id == id)
 }
 
 /// Groups of effects around a finding that the record does not tell apart: its exact
@@ -73,7 +47,7 @@ pub(super) fn cannot_tell(
         let possible: Vec<&str> = twins
             .iter()
             .map(String::as_str)
-            .filter(|id| field_is_known || Course::of(id) != Course::Field)
+            .filter(|id| field_is_known || !needs_key(id))
             .collect();
         let asked = if possible.is_empty() {
             String::new()
@@ -95,81 +69,69 @@ fn members(named: &str, others: Vec<String>) -> Vec<String> {
 }
 
 fn exact(named: &str, others: Vec<String>) -> CannotTellReport {
-    let (why, would_separate) = if Course::of(named) == Course::Site {
-        (
-            "each turns or scales the Earth's rate as the platform sees it, and the three \
-             coefficients along the input axes take up all but one direction of that: the same \
-             samples, at any attitude and for ever",
-            "an independent astronomic latitude, or a check of the sampling clock against a time \
-             signal; the Earth's rate itself is known far better",
-        )
-    } else {
-        (
-            "the squares of the three components of specific force add up to gravity squared, so \
-             these differ by a constant drift and by the square along the input axis, which are \
-             estimated anyway: the same samples, at any attitude and for ever",
-            "no bench at rest: only specific force of another size, as on a centrifuge; at rest \
-             one compensates as well as the other",
-        )
-    };
+    let equivalence = row(named).map(|row| row.equivalence);
     CannotTellReport {
         members: members(named, others),
-        why: why.to_owned(),
-        would_separate: would_separate.to_owned(),
+        why: equivalence.map_or("", |found| found.reason).to_owned(),
+        would_separate: equivalence.map_or("", |found| found.experiment).to_owned(),
     }
 }
 
 /// Near twins of the catalogue that the search did not hold against the finding.
 fn twins_outside(finding: &FindingReport, searched: &[&str]) -> Vec<String> {
-    let Some(row) = EFFECTS.iter().find(|row| row.id == finding.effect) else {
+    let Some(named) = row(&finding.effect) else {
         return Vec::new();
     };
-    row.near_twins
+    named
+        .near_twins
         .iter()
-        .filter_map(|id| EFFECTS.iter().find(|effect| effect.id == *id))
-        .filter(|twin| !twin.default_search && twin.kind == "term" && twin.enters == "drift")
+        .filter_map(|id| row(id))
+        .filter(|twin| !twin.default_search && twin.has_term())
+        .filter(|twin| matches!(twin.enters, Enters::Rates(_)))
         .filter(|twin| !searched.contains(&twin.id))
         .map(|twin| twin.id.to_owned())
         .collect()
 }
 
-/// The experiment that changes one and not the other.
+/// The experiments that change one and not the other.
 fn separation(named: &str, others: &[String]) -> String {
-    use Course as C;
-
-    let courses: Vec<Course> = std::iter::once(named)
-        .chain(others.iter().map(String::as_str))
-        .map(Course::of)
+    let ids = std::iter::once(named).chain(others.iter().map(String::as_str));
+    let mut experiments: Vec<Experiment> = ids
+        .filter_map(row)
+        .flat_map(|row| row.separated_by)
+        .copied()
         .collect();
-    let any = |wanted: &[Course]| courses.iter().any(|course| wanted.contains(course));
-    let mut ways: Vec<&str> = Vec::new();
-    if any(&[C::Force, C::Accelerometer, C::OtherGyro, C::Field]) {
-        ways.push(
-            "a second run from another initial attitude, which does far more than a longer run: \
-             what goes with specific force changes its course there, what goes with time does not",
-        );
-    } else if any(&[C::Time, C::Site, C::Temperature]) {
-        ways.push(
-            "a second run from another initial attitude or started at another time of day, which \
-             does far more than a longer run",
-        );
-    }
-    if any(&[C::Start]) {
-        ways.push("an independent measurement of the attitude at the first row");
-    }
-    if any(&[C::Temperature]) {
-        ways.push("a run with the temperature held or stepped on purpose");
-    }
-    if any(&[C::Field]) {
-        ways.push("a run with the magnetic field turned or shielded");
-    }
-    if any(&[C::Site]) {
-        ways.push("an independent astronomic latitude and a checked clock");
-    }
-    if others.iter().any(|id| id.ends_with(".warmup")) || named.ends_with(".warmup") {
-        ways.push("a run that starts long after switching on");
-    }
+    experiments.sort_unstable();
+    experiments.dedup();
+    // Another initial attitude does all that another start does.
+    let turned = experiments.contains(&Experiment::OtherInitialState);
+    experiments.retain(|one| !(turned && *one == Experiment::OtherStart));
+    let ways: Vec<String> = experiments.iter().map(|one| words(*one)).collect();
     ways.join("; ")
+}
+
+fn words(experiment: Experiment) -> String {
+    match experiment {
+        Experiment::OtherInitialState => {
+            "a second run from another initial attitude, which does far more than a longer run: \
+             what goes with specific force changes its course there, what goes with time does not"
+                .to_owned()
+        }
+        Experiment::OtherStart => {
+            "a second run from another initial attitude or started at another time of day, which \
+             does far more than a longer run"
+                .to_owned()
+        }
+        Experiment::MeasureInitialState => {
+            "an independent measurement of the attitude at the first row".to_owned()
+        }
+        Experiment::ControlRegressor(name) => {
+            format!("a run with the {name} held or stepped on purpose")
+        }
+        Experiment::ChangeInput(what) => format!("a run with {what}"),
+        Experiment::MeasureInput(what) => what.to_owned(),
+        Experiment::StartLate => "a run that starts long after switching on".to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -237,7 +199,7 @@ mod tests {
 
     #[test]
     fn every_effect_of_the_search_has_a_way_out() {
-        for effect in EFFECTS.iter().filter(|effect| effect.kind == "term") {
+        for effect in EFFECTS.iter().filter(|effect| effect.has_term()) {
             assert_ne!(separation(effect.id, &[]), "", "{}", effect.id);
         }
     }

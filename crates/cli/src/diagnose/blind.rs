@@ -1,7 +1,7 @@
 //! Which effects a short record could not show.
 
-use gyrocal::EffectRow;
-use gyrocal::generated::catalogue::EFFECTS;
+use gyrocal::effect::Role;
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::Diagnosis;
 use gyrocal_diagnosis::cause::information;
@@ -51,14 +51,11 @@ pub(super) fn blind(
 }
 
 /// An onset in the middle, a time constant of a quarter of the record.
-fn shape(effect: &EffectRow, record: &Record) -> Option<f64> {
+fn shape(effect: &Effect, record: &Record) -> Option<f64> {
     let duration_s = record.duration_s();
-    if effect.id.ends_with(".step") || effect.id == "platform.knock" {
-        Some(0.5 * duration_s)
-    } else if effect.id.ends_with(".warmup") {
-        Some(0.25 * duration_s / 3600.0)
-    } else {
-        None
+    match effect.shape()?.role {
+        Role::TimeConstant(_) => Some(0.25 * duration_s / 3600.0),
+        _ => Some(0.5 * duration_s),
     }
 }
 

@@ -1,11 +1,12 @@
 //! What is told beside the findings: the norm channel, and how noise averages out.
 
+use gyrocal::EFFECTS;
+use gyrocal::effect::EffectKind;
 use gyrocal_diagnosis::{NoiseCourse, NormVerdict, Stability};
 use gyrocal_record::{
     AllanCourse, AllanPointReport, AllanReport, DiagnosisReport, DiagnosisVerdict, NormReport,
 };
 
-use super::filter;
 use super::words::{probability, short};
 
 /// Sigmas of the mean norm below which an error would not be seen.
@@ -68,10 +69,8 @@ pub(super) fn norm_in_words(report: &DiagnosisReport) -> String {
         norm.mean_g, norm.mean_sigma_g
     );
     let physical = report.findings.iter().any(|finding| {
-        !finding.effect.ends_with("noise")
-            && !finding.effect.ends_with(".quantisation")
-            && finding.effect != "accel.outliers"
-            && finding.effect != filter::EFFECT
+        let row = EFFECTS.iter().find(|row| row.id == finding.effect);
+        !row.is_some_and(|row| matches!(row.kind, EffectKind::Noise(_) | EffectKind::Integration))
     });
     if physical || report.verdict == DiagnosisVerdict::Unexplained {
         format!(

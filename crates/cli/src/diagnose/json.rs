@@ -2,7 +2,8 @@
 
 mod gain;
 
-use gyrocal::generated::catalogue::EFFECTS;
+use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, SearchOptions};
 use gyrocal_diagnosis::{Acceptance, Diagnosis, NoiseFinding, Remainder, Validation, Verdict};
 use gyrocal_record::{
@@ -166,20 +167,20 @@ fn not_searched(diagnosis: &Diagnosis<'_>, filter_judged: bool) -> Vec<NotSearch
         .filter_map(|effect| {
             let id = effect.id;
             let unavailable = diagnosis.unavailable.iter().find(|u| u.effect == id);
+            let enters_rates = matches!(effect.enters, Enters::Rates(_));
+            let is_level = effect.kind == EffectKind::Noise(NoiseProperty::Level);
             let ranked = diagnosis.ranking.iter().any(|r| r.effect == id);
-            let noise = effect.kind == "noise";
+            let noise = effect.is_noise();
             let why = if let Some(unavailable) = unavailable {
                 unavailable.why.clone()
-            } else if ranked
-                || effect.kind == "nominal"
-                || (id == super::filter::EFFECT && filter_judged)
+            } else if ranked || effect.is_nominal || (id == super::filter::EFFECT && filter_judged)
             {
                 return None;
             } else if id == super::filter::EFFECT {
                 "an error of a filter: --filter euler".to_owned()
-            } else if correlated && id.starts_with("gyro_") && id.ends_with(".noise") {
+            } else if correlated && is_level && enters_rates {
                 "correlated noise of the accelerometers hides it".to_owned()
-            } else if noise && (audited || effect.enters == "drift" || tested_value_by_value(id)) {
+            } else if noise && (audited || enters_rates || tested_value_by_value(effect)) {
                 return None;
             } else if noise {
                 "the record is too short for a spectrum of its noise".to_owned()
@@ -199,6 +200,9 @@ fn not_searched(diagnosis: &Diagnosis<'_>, filter_judged: bool) -> Vec<NotSearch
 }
 
 /// Outliers and quantisation need no spectrum.
-fn tested_value_by_value(id: &str) -> bool {
-    id == "accel.outliers" || id.ends_with(".quantisation")
+fn tested_value_by_value(effect: &Effect) -> bool {
+    matches!(
+        effect.kind,
+        EffectKind::Noise(NoiseProperty::Outliers | NoiseProperty::Quantisation)
+    )
 }

@@ -1,8 +1,10 @@
 //! Which effects a model file gets, and which it cannot have.
 
-use gyrocal::{EFFECTS, EffectRow};
+use gyrocal::effect::{Enters, Role};
+use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_record::{
-    DiagnosisReport, DiagnosisVerdict, KnownEffect, ModelFile, ParameterEstimate,
+    DiagnosisReport, DiagnosisVerdict, KnownEffect, ModelFile, ParameterEstimate, Standing,
 };
 use miette::{Report, miette};
 
@@ -21,12 +23,23 @@ pub(super) fn known() -> Vec<KnownEffect<'static>> {
     EFFECTS.iter().map(known_effect).collect()
 }
 
-fn known_effect(row: &'static EffectRow) -> KnownEffect<'static> {
+fn known_effect(row: &'static Effect) -> KnownEffect<'static> {
+    let shape = row.shape().and_then(|shape| shape.role.shape_index());
     KnownEffect {
         id: row.id,
-        kind: row.kind,
-        states: row.states,
-        shapes: row.shapes,
+        standing: if row.is_nominal {
+            Standing::Nominal
+        } else if row.has_term() {
+            Standing::Term
+        } else if row.is_noise() {
+            Standing::Noise
+        } else if matches!(row.enters, Enters::States(_)) {
+            Standing::State
+        } else {
+            Standing::Filter
+        },
+        states: row.model_parameters().map(|at| PARAMETERS[at].id).collect(),
+        shapes: shape.into_iter().map(|at| SHAPES[at].id).collect(),
     }
 }
 
@@ -62,17 +75,18 @@ pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Ex
         }
         model.effects.push(finding.effect.clone());
         for found in &finding.parameters {
-            let place = row.parameters.iter().position(|name| *name == found.name);
-            match (place, found.sigma) {
-                (Some(place), Some(sigma)) if place < row.states.len() => {
+            let mut own = row.parameters.iter();
+            let own = own.find(|parameter| parameter.name == found.name);
+            match (own.map(|parameter| parameter.role), found.sigma) {
+                (Some(Role::Parameter(at)), Some(sigma)) => {
                     model.estimates.push(ParameterEstimate {
-                        parameter: row.states[place].to_owned(),
+                        parameter: PARAMETERS[at].id.to_owned(),
                         value: found.estimate,
                         sigma,
                     });
                 }
-                (Some(place), _) if place >= row.states.len() => {
-                    let id = row.shapes[place - row.states.len()];
+                (Some(Role::Onset(Some(at)) | Role::TimeConstant(at)), _) => {
+                    let id = SHAPES[at].id;
                     model.shapes.push((id.to_owned(), found.estimate));
                 }
                 // Without a sigma it is no start of a filter.
@@ -83,7 +97,11 @@ pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Ex
                         "{name}: found the parameter `{}` of `{}`, expected {}",
                         found.name,
                         finding.effect,
-                        row.parameters.join(", ")
+                        row.parameters
+                            .iter()
+                            .map(|own| own.name)
+                            .collect::<Vec<_>>()
+                            .join(", ")
                     ));
                 }
             }
@@ -160,9 +178,11 @@ fn nothing(diagnosis: &DiagnosisReport, extension: &Extension, name: &str) -> Re
     )
 }
 
-fn row(id: &str) -> Result<&'static EffectRow, Report> {
+fn row(id: &str) -> Result<&'static Effect, Report> {
     EFFECTS.iter().find(|row| row.id == id).ok_or_else(|| {
-        let terms = EFFECTS.iter().filter(|row| row.kind == "term");
+        let terms = EFFECTS
+            .iter()
+            .filter(|row| row.has_term() && !row.is_nominal);
         let terms: Vec<&str> = terms.map(|row| row.id).collect();
         let near = gyrocal_record::nearest_few(id, &terms, 3).join("`, `");
         miette!(

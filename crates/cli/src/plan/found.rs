@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use gyrocal::EFFECTS;
+use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
 use gyrocal_calibration::{Extended, NoiseModel, Options, Run};
 use gyrocal_diagnosis::plan::Named;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
@@ -94,11 +96,14 @@ fn check_inputs(
 }
 
 fn of_finding(finding: &FindingReport) -> Named {
-    let walk = finding.effect.ends_with(".random_walk");
-    let shape = finding.parameters.iter().find(|parameter| {
-        matches!(parameter.name.as_str(), "onset_s" | "time_constant_h")
-            || (walk && parameter.name == "size")
+    let row = EFFECTS.iter().find(|row| row.id == finding.effect);
+    // Of a random walk its size.
+    let wanted = row.and_then(|row| {
+        let is_walk = row.kind == EffectKind::RandomWalk;
+        row.shape().or(row.parameters.first().filter(|_| is_walk))
     });
+    let mut found = finding.parameters.iter();
+    let shape = found.find(|parameter| Some(parameter.name.as_str()) == wanted.map(|p| p.name));
     Named {
         effect: finding.effect.clone(),
         shape: shape.map(|parameter| parameter.estimate),
@@ -112,16 +117,22 @@ fn of_finding(finding: &FindingReport) -> Named {
 
 /// Noise other than declared, where the diagnosis found it.
 fn noise(report: &DiagnosisReport) -> NoiseModel {
-    let ratio = |sensor: &str, axis: usize| {
-        let effect = format!("{sensor}_{}.noise", ["x", "y", "z"][axis]);
-        let found = report.findings.iter().find(|f| f.effect == effect);
+    let ratio = |enters: &dyn Fn(Enters) -> bool| {
+        let level = EffectKind::Noise(NoiseProperty::Level);
+        let effect = EFFECTS.iter().find(|e| e.kind == level && enters(e.enters));
+        let mut findings = report.findings.iter();
+        let found = findings.find(|f| effect.is_some_and(|effect| effect.id == f.effect));
         found
             .and_then(|finding| finding.parameters.first())
             .map_or(1.0, |parameter| parameter.estimate)
     };
     NoiseModel {
-        accel_ratio: core::array::from_fn(|axis| ratio("accel", axis)),
-        gyro_ratio: core::array::from_fn(|axis| ratio("gyro", axis)),
+        accel_ratio: core::array::from_fn(|axis| {
+            ratio(&|enters| matches!(enters, Enters::Outputs([at]) if *at == axis))
+        }),
+        gyro_ratio: core::array::from_fn(|axis| {
+            ratio(&|enters| matches!(enters, Enters::Rates([at]) if *at == axis))
+        }),
         weights: None,
     }
 }

@@ -1,13 +1,14 @@
 //! How small an effect a record could show.
 
-use gyrocal::EffectRow;
-use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS};
-use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended};
+use gyrocal::Effect;
+use gyrocal::effect::EffectKind;
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, RATES};
+use gyrocal_calibration::{CalibrationError, Column, Extended};
 use gyrocal_record::Record;
 use nalgebra::DMatrix;
 
 use super::bank::Bank;
-use super::family::{KNOCK, axis_of, jump, parameter, warm_up};
+use super::family::{jump, warm_up};
 
 /// Information of a record on the sizes of an effect, after all that a fit takes up is projected
 /// out, in the units of the effect's table: the inverse is the Cramér-Rao bound. `shape` is the
@@ -32,12 +33,7 @@ pub fn information(
     if columns.is_empty() || !columns.iter().all(|column| bank.visible(*column)) {
         return Ok(None);
     }
-    // Attitudes are columns in radians.
-    let scale = if row.kind == "state" {
-        core::f64::consts::PI / 180.0
-    } else {
-        1.0
-    };
+    let scale = row.parameters.first().map_or(1.0, |size| size.scale);
     Ok(Some(DMatrix::from_fn(
         columns.len(),
         columns.len(),
@@ -45,11 +41,7 @@ pub fn information(
     )))
 }
 
-fn columns(
-    row: &EffectRow,
-    record: &Record,
-    shape: Option<f64>,
-) -> Option<(Vec<Column>, Vec<usize>)> {
+fn columns(row: &Effect, record: &Record, shape: Option<f64>) -> Option<(Vec<Column>, Vec<usize>)> {
     let first_s = record.time_s.first().copied().unwrap_or(0.0);
     let row_at = |time_s: f64| {
         record
@@ -58,19 +50,18 @@ fn columns(
             .min(record.len().saturating_sub(2))
     };
     let base = PARAMETERS.len();
-    let further = match (row.id, shape, axis_of(row.id)) {
-        ("platform.initial_attitude", ..) => [0, 1, 2].map(|axis| Column::Start { axis }).to_vec(),
-        (KNOCK, Some(onset_s), _) => jump(record, onset_s).to_vec(),
-        (id, Some(onset_s), Some(axis)) if id.ends_with(".step") => vec![Column::Onset {
-            parameter: BIASES[axis],
+    let further = match (row.kind, shape, row.rate()) {
+        (EffectKind::InitialState, ..) => [0, 1, 2].map(|axis| Column::Start { axis }).to_vec(),
+        (EffectKind::StateJump, Some(onset_s), _) => jump(record, onset_s).to_vec(),
+        (EffectKind::Step, Some(onset_s), Some(axis)) => vec![Column::Onset {
+            parameter: RATES[axis].constant,
             row: row_at(onset_s),
         }],
-        (id, Some(time_constant_h), Some(axis)) if id.ends_with(".warmup") => {
-            vec![warm_up(record, BIASES[axis], time_constant_h)]
+        (EffectKind::Exponential, Some(time_constant_h), Some(axis)) => {
+            vec![warm_up(record, RATES[axis].constant, time_constant_h)]
         }
-        _ if row.kind == "term" && row.shapes.is_empty() => {
-            let columns = row.states.iter().filter_map(|id| parameter(id)).collect();
-            return Some((Vec::new(), columns));
+        _ if row.has_term() && row.shape().is_none() => {
+            return Some((Vec::new(), row.model_parameters().collect()));
         }
         _ => return None,
     };

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use gyrocal::EffectRow;
-use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, SHAPES};
-use gyrocal_calibration::{BIASES, Column, Extension};
+use gyrocal::Effect;
+use gyrocal::effect::{EffectKind, Need};
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, RATES};
+use gyrocal_calibration::{Column, Extension};
 use gyrocal_record::{Bench, Record};
 
 /// Onsets that a step is looked for at: two and a half percent of the record apart, across
@@ -16,9 +17,6 @@ const TIME_CONSTANTS: usize = 10;
 
 /// The shortest of them, h.
 const SHORTEST_TIME_CONSTANT_H: f64 = 0.3;
-
-/// The one effect that is a jump of the attitude.
-pub(crate) const KNOCK: &str = "platform.knock";
 
 /// One signature, or several that belong together.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +31,7 @@ pub struct Candidate {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Family {
     /// The effect.
-    pub(crate) effect: &'static EffectRow,
+    pub(crate) effect: &'static Effect,
     pub(crate) candidates: Vec<Candidate>,
     /// Of a random walk the columns of steps that it is made up from.
     pub(crate) walk: Option<Vec<usize>>,
@@ -117,72 +115,67 @@ impl Plan {
                 });
                 continue;
             }
-            let axis = axis_of(effect.id);
-            let candidates = if effect.id == "platform.initial_attitude" {
-                let first = base + plan.further.len();
-                plan.further
-                    .extend([0, 1, 2].map(|axis| Column::Start { axis }));
-                vec![Candidate {
-                    columns: (first..first + 3).collect(),
-                    shape: None,
-                }]
-            } else if effect.id.ends_with(".random_walk") {
-                walks.push(effect);
-                continue;
-            } else if effect.id == KNOCK {
-                Vec::new()
-            } else if effect.kind != "term" {
-                continue;
-            } else if let (true, Some(axis)) = (effect.id.ends_with(".step"), axis) {
-                let onsets = plan.onset_rows.clone();
-                onsets
-                    .into_iter()
-                    .map(|row| {
-                        let column = base + plan.further.len();
-                        plan.further.push(Column::Onset {
-                            parameter: BIASES[axis],
-                            row,
-                        });
-                        plan.steps[axis].push(column);
-                        Candidate {
-                            columns: vec![column],
-                            shape: Some(record.time_s[row] - first_s),
-                        }
-                    })
-                    .collect()
-            } else if let (true, Some(axis)) = (effect.id.ends_with(".warmup"), axis) {
-                time_constants_h(last_s - first_s)
+            let candidates = match (effect.kind, effect.rate()) {
+                (EffectKind::InitialState, _) => {
+                    let first = base + plan.further.len();
+                    plan.further
+                        .extend([0, 1, 2].map(|axis| Column::Start { axis }));
+                    vec![Candidate {
+                        columns: (first..first + 3).collect(),
+                        shape: None,
+                    }]
+                }
+                (EffectKind::RandomWalk, _) => {
+                    walks.push(effect);
+                    continue;
+                }
+                (EffectKind::StateJump, _) => Vec::new(),
+                (EffectKind::Step, Some(axis)) => {
+                    let onsets = plan.onset_rows.clone();
+                    onsets
+                        .into_iter()
+                        .map(|row| {
+                            let column = base + plan.further.len();
+                            plan.further.push(Column::Onset {
+                                parameter: RATES[axis].constant,
+                                row,
+                            });
+                            plan.steps[axis].push(column);
+                            Candidate {
+                                columns: vec![column],
+                                shape: Some(record.time_s[row] - first_s),
+                            }
+                        })
+                        .collect()
+                }
+                (EffectKind::Exponential, Some(axis)) => time_constants_h(last_s - first_s)
                     .into_iter()
                     .map(|time_constant_h| {
                         let column = base + plan.further.len();
                         plan.further
-                            .push(warm_up(record, BIASES[axis], time_constant_h));
+                            .push(warm_up(record, RATES[axis].constant, time_constant_h));
                         Candidate {
                             columns: vec![column],
                             shape: Some(time_constant_h),
                         }
                     })
-                    .collect()
-            } else {
-                vec![Candidate {
-                    columns: effect
-                        .states
-                        .iter()
-                        .filter_map(|id| parameter(id))
-                        .collect(),
+                    .collect(),
+                _ if effect.has_term() => vec![Candidate {
+                    columns: effect.model_parameters().collect(),
                     shape: None,
-                }]
+                }],
+                _ => continue,
             };
             plan.families.push(Family {
                 effect,
                 candidates,
                 walk: None,
-                knock: effect.id == KNOCK,
+                knock: effect.kind == EffectKind::StateJump,
             });
         }
         // Last, as what every slow cause looks like.
         for effect in walks {
-            let Some(axis) = axis_of(effect.id) else {
+            let Some(axis) = effect.rate() else {
                 continue;
             };
             plan.families.push(Family {
@@ -217,37 +210,31 @@ pub(crate) fn extend(
     shape: Option<f64>,
 ) {
     let effect = plan.families[family].effect;
-    if let (KNOCK, Some(onset_s)) = (effect.id, shape) {
+    if let (EffectKind::StateJump, Some(onset_s)) = (effect.kind, shape) {
         extension
             .further
             .extend(jump(record, onset_s), f64::INFINITY);
         return;
     }
-    if effect.id == "platform.initial_attitude" {
+    if effect.kind == EffectKind::InitialState {
         let columns = [0, 1, 2].map(|axis| Column::Start { axis });
         extension.further.extend(columns, f64::INFINITY);
         return;
     }
-    if let (true, Some(axis), Some(variance)) = (
-        effect.id.ends_with(".random_walk"),
-        axis_of(effect.id),
-        shape,
-    ) {
+    if let (EffectKind::RandomWalk, Some(axis), Some(variance)) =
+        (effect.kind, effect.rate(), shape)
+    {
         let steps = plan.steps[axis].iter();
         let columns = steps.map(|column| plan.further[column - PARAMETERS.len()].clone());
         extension.further.extend(columns, variance.sqrt());
         return;
     }
-    for id in effect.states {
-        if let Some(parameter) = parameter(id) {
-            extension.parameters.push((parameter, f64::INFINITY));
-        }
+    for parameter in effect.model_parameters() {
+        extension.parameters.push((parameter, f64::INFINITY));
     }
-    for id in effect.shapes {
-        let place = SHAPES.iter().position(|element| element.id == *id);
-        if let (Some(place), Some(shape)) = (place, shape) {
-            extension.shapes[place] = shape;
-        }
+    let place = effect.shape().and_then(|own| own.role.shape_index());
+    if let (Some(place), Some(shape)) = (place, shape) {
+        extension.shapes[place] = shape;
     }
 }
 
@@ -266,25 +253,18 @@ pub(crate) fn parameter(id: &str) -> Option<usize> {
     PARAMETERS.iter().position(|element| element.id == id)
 }
 
-/// 0, 1, 2 of `gyro_x.…`, `gyro_y.…`, `gyro_z.…`.
-pub(crate) fn axis_of(id: &str) -> Option<usize> {
-    ["gyro_x.", "gyro_y.", "gyro_z."]
-        .iter()
-        .position(|prefix| id.starts_with(prefix))
-}
-
 /// What an effect needs and the record or its bench does not have.
-pub(crate) fn missing(effect: &EffectRow, record: &Record, bench: &Bench) -> Option<String> {
+pub(crate) fn missing(effect: &Effect, record: &Record, bench: &Bench) -> Option<String> {
     for need in effect.needs {
-        match *need {
-            "temperature" if record.temperature_c.is_none() => {
-                return Some("the record has no column `temperature_c`".to_owned());
+        match need {
+            Need::Column(name) if record.temperature_c.is_none() => {
+                return Some(format!("the record has no column `{name}`"));
             }
-            "temperature" if !record.temperature_changes() => {
-                return Some("the column `temperature_c` never changes".to_owned());
+            Need::Column(name) if !record.temperature_changes() => {
+                return Some(format!("the column `{name}` never changes"));
             }
-            "field" if bench.magnetic_field_gauss.is_none() => {
-                return Some("the bench file has no `magnetic_field_gauss` in `[site]`".to_owned());
+            Need::Key(key) if bench.magnetic_field_gauss.is_none() => {
+                return Some(format!("the bench file has no `{key}` in `[site]`"));
             }
             _ => {}
         }
@@ -334,13 +314,12 @@ const NEAR: f64 = 0.05;
 /// that change: one column each.
 pub(super) fn with_shape(
     record: &Record,
-    id: &str,
-    gyro: usize,
+    effect: &Effect,
     shape: f64,
     size: f64,
 ) -> Option<[Column; 2]> {
-    let parameter = BIASES[gyro];
-    if id.ends_with(".warmup") {
+    let parameter = RATES[effect.rate()?].constant;
+    if effect.kind == EffectKind::Exponential {
         let of = |time_constant_h: f64| match warm_up(record, parameter, time_constant_h) {
             Column::Course { steps, .. } => steps,
             _ => Arc::default(),
@@ -353,7 +332,7 @@ pub(super) fn with_shape(
         let change = Column::Course { parameter, steps };
         return Some([warm_up(record, parameter, shape), change]);
     }
-    if !id.ends_with(".step") {
+    if effect.kind != EffectKind::Step {
         return None;
     }
     let first_s = record.time_s.first().copied()?;

@@ -1,11 +1,12 @@
 //! What is said of a cause that was found.
 
+use gyrocal::effect::Enters;
 use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS};
 use gyrocal_calibration::{CalibrationError, Column, Extended};
 use gyrocal_record::Record;
 
 use super::bank::{Bank, Joint, Products};
-use super::family::{Candidate, Family, Plan, axis_of, equivalent_to, jump, parameter, with_shape};
+use super::family::{Candidate, Family, Plan, equivalent_to, jump, with_shape};
 use super::null::{Normals, Null};
 use super::score::{Best, RICHER, Scores};
 
@@ -113,11 +114,9 @@ impl<'a> Stage<'a> {
                     further.extend(jump(record, onset_s));
                     own.turn = Some([first, first + 1, first + 2]);
                 }
-                if let ([place], Some(shape), Some(gyro)) =
-                    (own.places.as_slice(), accepted.shape, axis_of(family.id()))
-                {
+                if let ([place], Some(shape)) = (own.places.as_slice(), accepted.shape) {
                     let size = fitted.values()[*place];
-                    if let Some(columns) = with_shape(record, family.id(), gyro, shape, size) {
+                    if let Some(columns) = with_shape(record, family.effect, shape, size) {
                         further.extend(columns);
                         own.shaped = Some([first, first + 1]);
                     }
@@ -221,15 +220,9 @@ pub(super) fn tell(
         .equivalents
         .iter()
         .filter_map(|id| {
-            let columns: Option<Vec<usize>> = EFFECTS
-                .iter()
-                .find(|effect| effect.id == *id)?
-                .states
-                .iter()
-                .map(|id| parameter(id))
-                .collect();
             let row = EFFECTS.iter().find(|effect| effect.id == *id)?;
-            let joint = bank.joint(&columns?)?;
+            let columns: Vec<usize> = row.model_parameters().collect();
+            let joint = bank.joint(&columns)?;
             Some((row.id, from_joint(row, &joint)))
         })
         .collect();
@@ -257,13 +250,13 @@ pub(super) fn tell(
     })
 }
 
-fn from_joint(effect: &'static gyrocal::EffectRow, joint: &Joint) -> Vec<FoundParameter> {
+fn from_joint(effect: &'static gyrocal::Effect, joint: &Joint) -> Vec<FoundParameter> {
     (0..joint.estimate.len())
         .map(|i| FoundParameter {
-            name: effect.parameters[i],
+            name: effect.parameters[i].name,
             estimate: joint.estimate[i],
             sigma: Some(joint.covariance[(i, i)].sqrt()),
-            unit: effect.units[i],
+            unit: effect.parameters[i].unit,
         })
         .collect()
 }
@@ -284,7 +277,7 @@ fn places(fitted: &Extended<'_>, plan: &Plan, family: &Family) -> Vec<usize> {
             .map(|(index, _)| base + index)
             .collect();
     }
-    if family.effect.kind == "state" {
+    if matches!(family.effect.enters, Enters::States(_)) {
         let base = first + extension.parameters.len();
         return extension
             .further
@@ -299,18 +292,13 @@ fn places(fitted: &Extended<'_>, plan: &Plan, family: &Family) -> Vec<usize> {
             .map(|(index, _)| base + index)
             .collect();
     }
-    let states: Vec<Option<usize>> = family
-        .effect
-        .states
-        .iter()
-        .map(|id| parameter(id))
-        .collect();
+    let states: Vec<usize> = family.effect.model_parameters().collect();
     extension
         .parameters
         .iter()
         .enumerate()
         // What the bench declares uncertain has a sigma and is no cause.
-        .filter(|(_, (parameter, sigma))| states.contains(&Some(*parameter)) && sigma.is_infinite())
+        .filter(|(_, (parameter, sigma))| states.contains(parameter) && sigma.is_infinite())
         .map(|(index, _)| first + index)
         .collect()
 }
@@ -324,33 +312,26 @@ fn estimates(
 ) -> Vec<FoundParameter> {
     let effect = family.effect;
     let with_shape = |index: usize| shaped.map(|joint| joint.covariance[(index, index)].sqrt());
-    // Attitudes are estimated in radians.
-    let to_unit = |unit: &str| {
-        if unit == "deg" && effect.kind == "state" {
-            180.0 / core::f64::consts::PI
-        } else {
-            1.0
-        }
-    };
     effect
         .parameters
         .iter()
-        .zip(effect.units)
         .enumerate()
-        .map(|(index, (name, unit))| match places.get(index) {
-            Some(place) => FoundParameter {
-                name,
-                estimate: fitted.values()[*place] * to_unit(unit),
-                sigma: with_shape(index)
-                    .or_else(|| Some(fitted.covariance()[(*place, *place)].sqrt() * to_unit(unit))),
-                unit,
-            },
-            None => FoundParameter {
-                name,
-                estimate: shape.unwrap_or(f64::NAN),
-                sigma: with_shape(index),
-                unit,
-            },
+        .map(|(index, parameter)| {
+            let (estimate, sigma) = match places.get(index) {
+                Some(place) => (
+                    fitted.values()[*place] / parameter.scale,
+                    with_shape(index).or_else(|| {
+                        Some(fitted.covariance()[(*place, *place)].sqrt() / parameter.scale)
+                    }),
+                ),
+                None => (shape.unwrap_or(f64::NAN), with_shape(index)),
+            };
+            FoundParameter {
+                name: parameter.name,
+                estimate,
+                sigma,
+                unit: parameter.unit,
+            }
         })
         .collect()
 }

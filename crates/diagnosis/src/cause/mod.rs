@@ -33,7 +33,7 @@ mod walk;
 
 pub use bound::information;
 pub use family::{Candidate, Family, Plan, Unavailable};
-pub(crate) use family::{KNOCK, axis_of, extend, jump, missing, parameter, warm_up};
+pub(crate) use family::{extend, jump, missing, parameter, warm_up};
 pub(crate) use finding::SET_CONSTANT;
 pub use finding::{Finding, FoundParameter, Rival};
 pub(crate) use null::normal;

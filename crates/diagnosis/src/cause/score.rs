@@ -129,14 +129,10 @@ impl<'a> Scores<'a> {
                 self.best[*other].is_some() && equivalents.contains(&families[*other].id())
             })
             .unwrap_or(best);
-        let gyro = families[best].id().split('.').next().unwrap_or("");
-        if families[best].id().ends_with(".warmup") {
-            let simpler = [
-                format!("{gyro}.ramp"),
-                "platform.initial_attitude".to_owned(),
-            ];
+        let nested = families[best].effect.nested;
+        if !nested.is_empty() {
             let simple = (0..families.len())
-                .filter(|family| simpler.iter().any(|id| id == families[*family].id()))
+                .filter(|family| nested.contains(&families[*family].id()))
                 .filter_map(|family| self.best[family])
                 .max_by(|a, b| a.statistic.total_cmp(&b.statistic));
             let richer = self.best[best].map_or(0.0, |best| best.statistic);

@@ -1,6 +1,6 @@
 //! What a fit to one record says of a later record of the same platform.
 
-use core::f64::consts::{SQRT_2, TAU};
+use core::f64::consts::SQRT_2;
 
 use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
 use gyrocal_calibration::{BIASES, CalibrationError, Column, Expectation, Extended, Run};
@@ -8,8 +8,7 @@ use gyrocal_record::Record;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::COEFFICIENTS;
-
-const SECONDS_PER_DAY: f64 = 86_400.0;
+use crate::continuation::{RecordOffset, continued, shapes};
 
 /// How the parameters of a later record follow from the values of a fit.
 ///
@@ -22,6 +21,8 @@ pub(crate) struct Carried {
     map: DMatrix<f64>,
     /// Standard deviation that a new turn-on adds to each constant drift, deg/h.
     turn_on: [f64; 3],
+    /// Onsets and time constants as the later record has them.
+    pub(crate) shapes: [f64; SHAPES.len()],
 }
 
 impl Carried {
@@ -34,9 +35,11 @@ impl Carried {
         for coefficient in 0..COEFFICIENTS {
             map[(coefficient, coefficient)] = 1.0;
         }
-        let clock = Clock::new(first.record, later);
-        for (offset, (parameter, _)) in extension.parameters.iter().enumerate() {
-            carry(&mut map, *parameter, COEFFICIENTS + offset, &clock);
+        let offset = RecordOffset::between(first.record, later);
+        for (place, (parameter, _)) in extension.parameters.iter().enumerate() {
+            for (target, factor) in continued(*parameter, &offset) {
+                map[(target, COEFFICIENTS + place)] += factor;
+            }
         }
         let base = COEFFICIENTS + extension.parameters.len();
         for (offset, column) in further.iter().enumerate() {
@@ -47,6 +50,7 @@ impl Carried {
         Self {
             map,
             turn_on: first.bench.prior.turn_on_sigma_deg_per_h,
+            shapes: shapes(&extension.shapes, &offset),
         }
     }
 
@@ -94,100 +98,29 @@ pub(crate) fn factor(fit: &Extended<'_>) -> Result<DMatrix<f64>, CalibrationErro
     Ok(factor)
 }
 
-/// Shapes that a later record has too: time constants, as onsets are past.
-pub(crate) fn shapes(fit: &Extended<'_>) -> [f64; SHAPES.len()] {
-    fit.extension().shapes
-}
-
-/// What the clocks and thermometers of two records say of each other.
-struct Clock {
-    /// From the first row of the first record to that of the later one, s.
-    elapsed_s: f64,
-    /// Whether that is read from one clock.
-    goes_on: bool,
-    /// Mean temperature of the later record less that of the first, K.
-    warmer_k: f64,
-}
-
-impl Clock {
-    fn new(first: &Record, later: &Record) -> Self {
-        let ends = |record: &Record| {
-            let first_s = record.time_s.first().copied().unwrap_or(0.0);
-            [first_s, record.time_s.last().copied().unwrap_or(first_s)]
-        };
-        let ([from_s, to_s], [later_s, _]) = (ends(first), ends(later));
-        let goes_on = later_s > to_s;
-        let mean = |record: &Record| {
-            let logged = record.temperature_c.as_ref()?;
-            Some(logged.iter().sum::<f64>() / logged.len().max(1) as f64)
-        };
-        Self {
-            // A clock that began again says nothing: as if one record followed the other.
-            elapsed_s: if goes_on { later_s } else { to_s } - from_s,
-            goes_on,
-            warmer_k: match (mean(first), mean(later)) {
-                (Some(first), Some(later)) => later - first,
-                _ => 0.0,
-            },
-        }
-    }
-}
-
-/// Sets the column of one parameter of the first record.
-fn carry(map: &mut DMatrix<f64>, parameter: usize, column: usize, clock: &Clock) {
-    let id = PARAMETERS[parameter].id;
-    let (channel, term) = id.split_once('.').unwrap_or((id, ""));
-    let constant = format!("{channel}.bias");
-    let constant = PARAMETERS.iter().position(|p| p.id == constant);
-    let mut set = |row: Option<usize>, share: f64| {
-        if let Some(row) = row {
-            map[(row, column)] += share;
-        }
-    };
-    match term {
-        "step" => set(constant, 1.0),
-        "ramp" => {
-            set(Some(parameter), 1.0);
-            set(constant, clock.elapsed_s / SECONDS_PER_DAY);
-        }
-        "temperature" => {
-            set(Some(parameter), 1.0);
-            set(constant, clock.warmer_k);
-        }
-        "diurnal.sine" | "diurnal.cosine" => {
-            if clock.goes_on {
-                let (sine, cosine) = (TAU * clock.elapsed_s / SECONDS_PER_DAY).sin_cos();
-                let other = |name: &str| {
-                    let id = format!("{channel}.{name}");
-                    PARAMETERS.iter().position(|p| p.id == id)
-                };
-                let (own_sine, own_cosine) = (other("diurnal.sine"), other("diurnal.cosine"));
-                if term == "diurnal.sine" {
-                    set(own_sine, cosine);
-                    set(own_cosine, sine);
-                } else {
-                    set(own_sine, -sine);
-                    set(own_cosine, cosine);
-                }
-            }
-        }
-        _ => set(Some(parameter), 1.0),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Shares of the parameters of a later record in one parameter of a first record.
-    fn carried(id: &str, clock: &Clock) -> Vec<(&'static str, f64)> {
-        let place = |id: &str| PARAMETERS.iter().position(|p| p.id == id);
-        let mut map = DMatrix::zeros(PARAMETERS.len(), 1);
-        carry(&mut map, place(id).unwrap_or(usize::MAX), 0, clock);
-        let shares = map.iter().enumerate().filter(|(_, share)| **share != 0.0);
-        shares
-            .map(|(row, share)| (PARAMETERS[row].id, *share))
+    /// Parameters of a later record that one of a first record becomes, with their factors.
+    fn carried(id: &str, offset: &RecordOffset) -> Vec<(&'static str, f64)> {
+        let index = PARAMETERS.iter().position(|p| p.id == id);
+        let mut found = continued(index.unwrap_or(usize::MAX), offset);
+        found.sort_by_key(|(index, _)| *index);
+        let named = found.into_iter();
+        named
+            .map(|(index, factor)| (PARAMETERS[index].id, factor))
             .collect()
+    }
+
+    /// To rounding of the least squares that the factors come from.
+    fn assert_carried(id: &str, offset: &RecordOffset, expected: &[(&str, f64)]) {
+        let found = carried(id, offset);
+        let same = found.len() == expected.len()
+            && found.iter().zip(expected).all(|(found, expected)| {
+                found.0 == expected.0 && (found.1 - expected.1).abs() < 1e-12 * expected.1.abs()
+            });
+        assert!(same, "{id}: {found:?}, expected {expected:?}");
     }
 
     /// A record of an hour with this first row.
@@ -202,43 +135,27 @@ mod tests {
     #[test]
     fn what_changed_stays_and_what_ages_goes_on() {
         // Two days and six hours later, three kelvin warmer.
-        let clock = Clock::new(&record(100.0, 20.0), &record(100.0 + 2.25 * 86_400.0, 23.0));
-        assert_eq!(carried("gyro_y.step", &clock), [("gyro_y.bias", 1.0)]);
-        assert_eq!(carried("gyro_x.g_y", &clock), [("gyro_x.g_y", 1.0)]);
-        assert_eq!(carried("gyro_z.warmup", &clock), [("gyro_z.warmup", 1.0)]);
-        assert_eq!(
-            carried("gyro_x.ramp", &clock),
-            [("gyro_x.bias", 2.25), ("gyro_x.ramp", 1.0)]
-        );
-        assert_eq!(
-            carried("accel_x.temperature", &clock),
-            [("accel_x.bias", 3.0), ("accel_x.temperature", 1.0)]
-        );
+        let (first, later) = (record(100.0, 20.0), record(100.0 + 2.25 * 86_400.0, 23.0));
+        let offset = RecordOffset::between(&first, &later);
+        assert_carried("gyro_y.step", &offset, &[("gyro_y.bias", 1.0)]);
+        assert_carried("gyro_x.g_y", &offset, &[("gyro_x.g_y", 1.0)]);
+        assert_carried("gyro_z.warmup", &offset, &[("gyro_z.warmup", 1.0)]);
+        let ramp = [("gyro_x.bias", 2.25), ("gyro_x.ramp", 1.0)];
+        assert_carried("gyro_x.ramp", &offset, &ramp);
+        let warmer = [("accel_x.bias", 3.0), ("accel_x.temperature", 1.0)];
+        assert_carried("accel_x.temperature", &offset, &warmer);
     }
 
     #[test]
     fn a_wave_of_a_day_goes_on_in_phase() {
-        let clock = Clock::new(&record(0.0, 20.0), &record(2.25 * 86_400.0, 20.0));
+        let offset = RecordOffset::between(&record(0.0, 20.0), &record(2.25 * 86_400.0, 20.0));
         // A quarter of a day on: sin(x + 90°) = cos x, cos(x + 90°) = -sin x.
-        let near = |found: &[(&str, f64)], id: &str| {
-            found
-                .iter()
-                .find(|(other, _)| *other == id)
-                .map_or(0.0, |(_, share)| *share)
-        };
-        let sine = carried("gyro_x.diurnal.sine", &clock);
-        let cosine = carried("gyro_x.diurnal.cosine", &clock);
-        // Sine and cosine of a few turns: roundings of 1e-16.
-        assert!(
-            (near(&sine, "gyro_x.diurnal.cosine") - 1.0).abs() < 1e-14,
-            "{sine:?}"
-        );
-        assert!(
-            (near(&cosine, "gyro_x.diurnal.sine") + 1.0).abs() < 1e-14,
-            "{cosine:?}"
-        );
+        let cosine = [("gyro_x.diurnal.cosine", 1.0)];
+        assert_carried("gyro_x.diurnal.sine", &offset, &cosine);
+        let sine = [("gyro_x.diurnal.sine", -1.0)];
+        assert_carried("gyro_x.diurnal.cosine", &offset, &sine);
         // A clock that began again has lost its phase.
-        let again = Clock::new(&record(0.0, 20.0), &record(0.0, 20.0));
-        assert_eq!(carried("gyro_x.diurnal.sine", &again), []);
+        let again = RecordOffset::between(&record(0.0, 20.0), &record(0.0, 20.0));
+        assert_carried("gyro_x.diurnal.sine", &again, &[]);
     }
 }

@@ -3,7 +3,7 @@
 use gyrocal::trajectory::{Orientation, rotation_between};
 use gyrocal_calibration::{CalibrationError, Expectation, Extended, Extension, Run};
 
-use super::carried::{Carried, factor, shapes};
+use super::carried::{Carried, factor};
 
 /// Drift is predicted over so long, s, or over the record if that is shorter.
 const HORIZON_S: f64 = 86_400.0;
@@ -82,7 +82,7 @@ pub fn validate(
     later: &Run<'_>,
 ) -> Result<Validation, CalibrationError> {
     let carried = [nominal, extended].map(|fit| Carried::new(fit, first, later.record));
-    let own = own_fit(fitted, extended, &carried[1])?;
+    let own = own_fit(fitted, &carried[1])?;
     let [of_nominal, of_extended] = &carried;
     let expected = [
         of_nominal.expectation(nominal)?,
@@ -98,13 +98,9 @@ pub fn validate(
 }
 
 /// The later record's own fit, with all that the extended model says it may show.
-fn own_fit<'b>(
-    fitted: &Extended<'b>,
-    extended: &Extended<'_>,
-    carried: &Carried,
-) -> Result<Extended<'b>, CalibrationError> {
+fn own_fit<'b>(fitted: &Extended<'b>, carried: &Carried) -> Result<Extended<'b>, CalibrationError> {
     let mut extension = Extension {
-        shapes: shapes(extended),
+        shapes: carried.shapes,
         ..fitted.extension().clone()
     };
     let plain = extension.clone();

@@ -1,9 +1,7 @@
 //! One attitude and duration, looked at.
 
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
-use gyrocal_calibration::{
-    BIASES, CalibrationError, Extended, ImaginedRun, NoiseModel, Options, Run,
-};
+use gyrocal_calibration::{CalibrationError, Extended, ImaginedRun, NoiseModel, Options, Run};
 use gyrocal_record::{Bench, GimbalLimits, Record};
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +12,7 @@ use super::present::duration_s as duration_s_of;
 use super::said::{Said, foreseen};
 use super::sigma::sigmas;
 use super::universe::Universe;
-use crate::cause::{axis_of, parameter};
+use crate::continuation::{Phase, RecordOffset, continued};
 
 /// How finely a run is looked at.
 #[derive(Clone, Copy, Debug)]
@@ -279,24 +277,21 @@ impl<'a> Setting<'a> {
     }
 }
 
-/// Parameters at the start of the next run: a step stays, and a ramp has grown.
+/// Parameters at the start of the next run, each named effect as it continues there.
 fn begun(universe: &Universe, parameters: &[f64], first_s: f64) -> Vec<f64> {
+    let offset = RecordOffset {
+        elapsed_s: first_s,
+        phase: Phase::Same,
+        warmer_k: 0.0,
+    };
     let mut begun = parameters.to_vec();
-    for named in universe
-        .cases
-        .iter()
-        .filter_map(|case| case.members.first())
-    {
-        let row = named.suspect.row;
-        let place = row.states.first().and_then(|id| parameter(id));
-        let (Some(axis), Some(place)) = (axis_of(row.id), place) else {
-            continue;
-        };
-        if row.id.ends_with(".step") {
-            begun[BIASES[axis]] += parameters[place];
-            begun[place] = 0.0;
-        } else if row.id.ends_with(".ramp") {
-            begun[BIASES[axis]] += parameters[place] * first_s / 86_400.0;
+    let named = universe.cases.iter();
+    for named in named.filter_map(|case| case.members.first()) {
+        for parameter in named.suspect.row.model_parameters() {
+            begun[parameter] -= parameters[parameter];
+            for (target, factor) in continued(parameter, &offset) {
+                begun[target] += factor * parameters[parameter];
+            }
         }
     }
     begun

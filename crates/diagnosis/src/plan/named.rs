@@ -1,11 +1,12 @@
 //! What was named in a record, as a plan needs it.
 
-use gyrocal::EffectRow;
-use gyrocal::generated::catalogue::EFFECTS;
+use gyrocal::effect::EffectKind;
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{CalibrationError, Extended, Extension, NoiseModel, Options, Run};
 
 use super::error::PlanError;
 use crate::cause::{self, Finding, extend};
+use crate::continuation::recurs;
 
 /// A cause that was named, and what the record does not tell it from.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,11 +23,14 @@ impl Named {
     /// Of a finding of a search.
     #[must_use]
     pub fn of(finding: &Finding) -> Self {
-        let walk = finding.effect.ends_with(".random_walk");
-        let shape = finding.parameters.iter().find(|parameter| {
-            matches!(parameter.name, "onset_s" | "time_constant_h")
-                || (walk && parameter.name == "size")
+        let row = EFFECTS.iter().find(|row| row.id == finding.effect);
+        // Of a random walk its size.
+        let wanted = row.and_then(|row| {
+            let first = row.parameters.first().filter(|_| is_walk(row));
+            row.shape().or(first)
         });
+        let mut found = finding.parameters.iter();
+        let shape = found.find(|parameter| Some(parameter.name) == wanted.map(|p| p.name));
         Self {
             effect: finding.effect.to_owned(),
             shape: shape.map(|parameter| parameter.estimate),
@@ -42,10 +46,10 @@ impl Named {
     #[must_use]
     pub fn is_cause(effect: &str) -> bool {
         let mut effects = EFFECTS.iter();
-        effects.any(|row| row.id == effect && (has_signature(row) || is_walk(row)))
+        effects.any(|row| row.id == effect && (row.has_signature() || is_walk(row)))
     }
 
-    pub(crate) fn row(&self) -> Result<&'static EffectRow, PlanError> {
+    pub(crate) fn row(&self) -> Result<&'static Effect, PlanError> {
         row(&self.effect)
     }
 
@@ -96,19 +100,15 @@ pub(crate) fn extension(
 }
 
 /// A row of the catalogue.
-pub(crate) fn row(effect: &str) -> Result<&'static EffectRow, PlanError> {
+pub(crate) fn row(effect: &str) -> Result<&'static Effect, PlanError> {
     EFFECTS
         .iter()
-        .find(|row| row.id == effect && (has_signature(row) || is_walk(row)))
+        .find(|row| row.id == effect && (row.has_signature() || is_walk(row)))
         .ok_or_else(|| unknown(effect))
 }
 
-fn has_signature(row: &EffectRow) -> bool {
-    matches!(row.kind, "term" | "state")
-}
-
-pub(crate) fn is_walk(row: &EffectRow) -> bool {
-    row.id.ends_with(".random_walk")
+pub(crate) fn is_walk(row: &Effect) -> bool {
+    row.kind == EffectKind::RandomWalk
 }
 
 fn unknown(effect: &str) -> PlanError {
@@ -124,9 +124,7 @@ pub(crate) fn recurring(named: &[Named]) -> Vec<Named> {
         .filter(|named| {
             EFFECTS
                 .iter()
-                .any(|row| row.id == named.effect && row.kind == "term")
-                && !named.effect.ends_with(".step")
-                && !named.effect.ends_with(".ramp")
+                .any(|row| row.id == named.effect && recurs(row))
         })
         .cloned()
         .collect()

@@ -1,7 +1,6 @@
 //! What the record so far says: who is suspected, and with which onset or time constant.
 
-use gyrocal::EffectRow;
-use gyrocal::generated::catalogue::EFFECTS;
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{Extended, Run};
 use gyrocal_record::Record;
 use nalgebra::DVector;
@@ -71,7 +70,7 @@ fn draft(named: &Named, run: &Run<'_>) -> Result<Vec<Suspect>, PlanError> {
         .near_twins
         .iter()
         .filter_map(|id| EFFECTS.iter().find(|effect| effect.id == *id))
-        .filter(|twin| !twin.default_search && twin.kind == "term" && twin.shapes.is_empty())
+        .filter(|twin| !twin.default_search && twin.has_term() && twin.shape().is_none())
         .filter(|twin| cause::missing(twin, run.record, run.bench).is_none());
     for twin in twins {
         if !rows.iter().any(|row| row.id == twin.id) {
@@ -105,7 +104,7 @@ fn draft(named: &Named, run: &Run<'_>) -> Result<Vec<Suspect>, PlanError> {
     Ok(suspects)
 }
 
-fn suspect(row: &'static EffectRow, shape: Option<f64>) -> Suspect {
+fn suspect(row: &'static Effect, shape: Option<f64>) -> Suspect {
     Suspect {
         row,
         shape,

@@ -50,18 +50,12 @@ pub(crate) fn sigmas(
     let mut place = COEFFICIENTS;
     for member in named {
         let row = member.suspect.row;
-        // Attitudes are columns in radians.
-        let scale = if row.kind == "state" {
-            180.0 / core::f64::consts::PI
-        } else {
-            1.0
-        };
         for index in 0..member.places.len() {
             if !member.is_walk() {
                 sizes.push(Forecast {
-                    name: format!("{} {}", row.id, row.parameters[index]),
-                    sigma: scale * variance[place].sqrt(),
-                    unit: row.units[index],
+                    name: format!("{} {}", row.id, row.parameters[index].name),
+                    sigma: variance[place].sqrt() / row.parameters[index].scale,
+                    unit: row.parameters[index].unit,
                 });
             }
             place += 1;

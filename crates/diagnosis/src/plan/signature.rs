@@ -1,11 +1,11 @@
 //! What an effect does in a record, and in the run after it.
 
-use gyrocal::EffectRow;
-use gyrocal_calibration::BIASES;
+use gyrocal::Effect;
+use gyrocal::effect::EffectKind;
+use gyrocal::generated::catalogue::RATES;
 
-use super::named::is_walk;
 use super::piece::Piece;
-use crate::cause::{KNOCK, axis_of, parameter};
+use crate::continuation::{Phase, RecordOffset, continued};
 
 /// A sum of pieces.
 pub(crate) type Sum = Vec<(Piece, f64)>;
@@ -29,7 +29,7 @@ pub(crate) struct Times {
 }
 
 /// The sizes of an effect; `shape` is its onset in s or time constant in h, if it has one.
-pub(crate) fn sizes(row: &EffectRow, shape: Option<f64>, times: &Times) -> Vec<Size> {
+pub(crate) fn sizes(row: &Effect, shape: Option<f64>, times: &Times) -> Vec<Size> {
     let same = |piece: Piece| Size {
         first: vec![(piece.clone(), 1.0)],
         next: vec![(piece, 1.0)],
@@ -38,47 +38,51 @@ pub(crate) fn sizes(row: &EffectRow, shape: Option<f64>, times: &Times) -> Vec<S
         first: vec![(piece, 1.0)],
         next: Vec::new(),
     };
-    if row.id == "platform.initial_attitude" {
-        return (0..3).map(|axis| once(Piece::Start(axis))).collect();
-    }
-    if row.id == KNOCK {
-        let onset_s = shape.unwrap_or(0.0);
-        let jump = |axis| once(Piece::Jump { onset_s, axis });
-        return (0..3).map(jump).collect();
-    }
-    if is_walk(row) {
-        return axis_of(row.id).map_or_else(Vec::new, |axis| walk(BIASES[axis], times));
-    }
-    if let (Some(axis), Some(shape)) = (axis_of(row.id), shape) {
-        let parameter = BIASES[axis];
-        if row.id.ends_with(".step") {
-            let onset = Piece::Onset {
+    let constant = row.rate().map(|rate| RATES[rate].constant);
+    match (row.kind, constant, shape) {
+        (EffectKind::InitialState, ..) => (0..3).map(|axis| once(Piece::Start(axis))).collect(),
+        (EffectKind::StateJump, ..) => {
+            let onset_s = shape.unwrap_or(0.0);
+            (0..3)
+                .map(|axis| once(Piece::Jump { onset_s, axis }))
+                .collect()
+        }
+        (EffectKind::RandomWalk, Some(parameter), _) => walk(parameter, times),
+        (EffectKind::Step, Some(parameter), Some(onset_s)) => vec![Size {
+            first: vec![(Piece::Onset { parameter, onset_s }, 1.0)],
+            next: vec![(Piece::Parameter(parameter), 1.0)],
+        }],
+        (EffectKind::Exponential, Some(parameter), Some(time_constant_h)) => {
+            vec![same(Piece::WarmUp {
                 parameter,
-                onset_s: shape,
+                time_constant_h,
+            })]
+        }
+        _ => {
+            let next = |parameter| {
+                let next = continued(parameter, &times.offset()).into_iter();
+                next.map(|(target, factor)| (Piece::Parameter(target), factor))
             };
-            return vec![Size {
-                first: vec![(onset, 1.0)],
-                next: vec![(Piece::Parameter(parameter), 1.0)],
-            }];
-        }
-        if row.id.ends_with(".warmup") {
-            return vec![same(Piece::WarmUp {
-                parameter,
-                time_constant_h: shape,
-            })];
+            let parameters = row.model_parameters();
+            parameters
+                .map(|parameter| Size {
+                    first: vec![(Piece::Parameter(parameter), 1.0)],
+                    next: next(parameter).collect(),
+                })
+                .collect()
         }
     }
-    let states = row.states.iter().filter_map(|id| parameter(id));
-    let sizes = states.map(|state| same(Piece::Parameter(state)));
-    let mut sizes: Vec<Size> = sizes.collect();
-    // What grows with time has grown when the record ends.
-    if let Some(channel) = row.id.strip_suffix(".ramp")
-        && let (Some(bias), [size]) = (parameter(&format!("{channel}.bias")), sizes.as_mut_slice())
-    {
-        let grown = times.first_s / 86_400.0;
-        size.next.push((Piece::Parameter(bias), grown));
+}
+
+impl Times {
+    /// The next run follows the record at once, at the same time of day.
+    pub(crate) fn offset(&self) -> RecordOffset {
+        RecordOffset {
+            elapsed_s: self.first_s,
+            phase: Phase::Same,
+            warmer_k: 0.0,
+        }
     }
-    sizes
 }
 
 /// Increments at onsets: those of the record stay, the next run has its own. All have one

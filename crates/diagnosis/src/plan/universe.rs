@@ -1,6 +1,6 @@
 //! All unknowns of a record and the run after it, and which of them each question is about.
 
-use gyrocal::EffectRow;
+use gyrocal::Effect;
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal_calibration::{BIASES, Column, Extended, Run, SiteQuantity};
 use nalgebra::{DMatrix, DVector};
@@ -23,7 +23,7 @@ pub(crate) struct Unknown {
 /// A cause in question with the onset or time constant that is best in the record.
 #[derive(Clone, Debug)]
 pub(crate) struct Suspect {
-    pub(crate) row: &'static EffectRow,
+    pub(crate) row: &'static Effect,
     pub(crate) shape: Option<f64>,
     /// How much less likely it makes the record than the cause that is named does, as a
     /// difference of log-likelihoods with searching allowed for.

@@ -5,6 +5,7 @@
 //! filter about the same trajectory as the signature that the generated derivatives give: with
 //! the same whitening the two must be one.
 
+use gyrocal::effect::Role;
 use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, SHAPES};
 use gyrocal_calibration::{BIASES, Column, Extended, Extension, NoiseModel, Options, Run};
 use gyrocal_record::Record;
@@ -150,27 +151,21 @@ fn shape(id: &str, record: &Record) -> f64 {
 /// the first attitude in a search.
 fn probes(record: &Record) -> Result<Vec<Probe>, Error> {
     let mut probes = Vec::new();
-    for effect in EFFECTS
-        .iter()
-        .filter(|effect| ["nominal", "term"].contains(&effect.kind))
-    {
-        let held: Vec<(&str, f64)> = effect
-            .parameters
-            .iter()
-            .skip(effect.states.len())
-            .zip(effect.shapes)
-            .map(|(name, id)| (*name, shape(id, record)))
-            .collect();
-        for (parameter, id) in effect.parameters.iter().zip(effect.states) {
-            let place = PARAMETERS.iter().position(|element| element.id == *id);
+    for effect in EFFECTS.iter().filter(|effect| effect.has_term()) {
+        let own = effect.shape().into_iter();
+        let held: Vec<(&str, f64)> = own.map(|own| (own.name, shape(own.name, record))).collect();
+        for parameter in effect.sizes() {
+            let Role::Parameter(place) = parameter.role else {
+                return Err("an effect without its parameter".into());
+            };
             probes.push(Probe {
-                name: (*id).to_owned(),
+                name: PARAMETERS[place].id.to_owned(),
                 effect: effect.id,
-                parameter,
+                parameter: parameter.name,
                 held: held.clone(),
                 size: effect.typical_size,
                 unit: 1.0,
-                signature: Signature::Parameter(place.ok_or("an effect without its parameter")?),
+                signature: Signature::Parameter(place),
             });
         }
     }
