@@ -41,6 +41,7 @@ const EMITTER: &[(&str, &str)] = embedded![
     "src/lib.rs",
     "src/program.rs",
     "src/program/check.rs",
+    "src/program/context.rs",
     "src/program/model.rs",
     "src/program/names.rs",
     "src/program/operation.rs",
