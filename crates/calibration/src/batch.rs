@@ -9,7 +9,7 @@ use crate::PARAMETERS;
 use crate::begin::{begin, leg};
 use crate::calibrate::Options;
 use crate::error::CalibrationError;
-use crate::fit::Fit;
+use crate::fit::FitStatistics;
 use crate::gyro_axes::GyroAxes;
 use crate::layout::{Layout, SiteQuantity};
 use crate::noise;
@@ -75,7 +75,7 @@ where
         drift: Drift::from_array(core::array::from_fn(|i| problem.values[i])),
         covariance: core::array::from_fn(|i| core::array::from_fn(|j| uncertainty.total[(i, j)])),
         prior_sigma: Drift::from_array(prior_sigma),
-        fit: Fit::of_batch(&solution, &problem.unknowns, &uncertainty),
+        fit: FitStatistics::of_batch(&solution, &problem.unknowns, &uncertainty),
         platform_c_enu: last,
         final_angles_rad: angles_rad(&last),
         iterations: solution.iterations,

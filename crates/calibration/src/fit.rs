@@ -5,39 +5,40 @@ use crate::problem::Unknown;
 use crate::solve::Solution;
 use crate::uncertainty::Uncertainty;
 
-/// Probability with which a record that fits the model is called inconsistent.
+/// False-alarm probability of the consistency test.
 const FALSE_ALARM: f64 = 1e-3;
 
 /// A mean NIS beyond this points at the inputs: first-order integration, the worst fault of a
 /// model seen here, gives 190.
 const GROSS: f64 = 1000.0;
 
-/// How well the innovations agree with the covariance that the filter predicted for them.
+/// Sums of normalised innovations squared (NIS) and of their log-likelihoods: the data of the
+/// consistency test.
 ///
-/// That of a [`crate::Calibration`] has as many rows with a value as the filter has states, or
-/// more.
+/// Those of a [`crate::Calibration`] are of at least as many rows with a value as the filter has
+/// states.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fit {
+pub struct FitStatistics {
     nis_sum: f64,
     values: usize,
     rows: usize,
     log_likelihood: f64,
-    /// Of one pass of the filter, not of a solution that was iterated.
+    /// From one pass of the filter, not from an iterated solution.
     one_pass: bool,
 }
 
-/// What the innovations say of the fit.
+/// Result of the consistency test: mean NIS against its chi-square band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// Innovations are as large as the declared noise explains.
+pub enum Consistency {
+    /// The innovations agree with the covariance computed from the declared noise.
     Consistent,
-    /// They are larger.
-    TooLarge,
-    /// They are smaller.
-    TooSmall,
+    /// The innovations are larger than that covariance: the sigmas are too small.
+    Overconfident,
+    /// The innovations are smaller than that covariance: the sigmas are too large.
+    Underconfident,
 }
 
-impl Fit {
+impl FitStatistics {
     /// Sum of the normalised innovations squared.
     #[must_use]
     pub fn nis_sum(&self) -> f64 {
@@ -68,40 +69,40 @@ impl Fit {
         self.nis_sum / self.rows as f64
     }
 
-    /// The interval that holds [`Self::nis_mean`] of a record that fits, with probability 99.9 %.
+    /// The 99.9 % interval of [`Self::nis_mean`] for a record that fits the model.
     #[must_use]
     pub fn nis_band(&self) -> [f64; 2] {
         chi_square_band(self.values as f64, FALSE_ALARM).map(|bound| bound / self.rows as f64)
     }
 
-    /// Whether [`Self::nis_mean`] lies in [`Self::nis_band`].
+    /// Compares [`Self::nis_mean`] with [`Self::nis_band`].
     #[must_use]
-    pub fn verdict(&self) -> Verdict {
+    pub fn consistency(&self) -> Consistency {
         let [low, high] = self.nis_band();
         match self.nis_mean() {
-            mean if mean < low => Verdict::TooSmall,
-            mean if mean > high => Verdict::TooLarge,
-            _ => Verdict::Consistent,
+            mean if mean < low => Consistency::Underconfident,
+            mean if mean > high => Consistency::Overconfident,
+            _ => Consistency::Consistent,
         }
     }
 
-    /// The verdict in a sentence.
+    /// The result of the consistency test in a sentence.
     #[must_use]
-    pub fn verdict_text(&self) -> String {
+    pub fn consistency_text(&self) -> String {
         let [low, high] = self.nis_band();
         let mean = self.nis_mean();
         let figures = format!("mean NIS {mean:.3}, 99.9 % band {low:.3} to {high:.3}");
-        match self.verdict() {
-            Verdict::Consistent => {
+        match self.consistency() {
+            Consistency::Consistent => {
                 format!("the record fits the model within the declared noise ({figures})")
             }
             // Nothing that a model lacks makes it as large as a mistake in the inputs does.
-            Verdict::TooLarge if mean > GROSS => format!(
+            Consistency::Overconfident if mean > GROSS => format!(
                 "the innovations are far larger than the declared noise explains ({figures}): \
                  check that time is in seconds, that up is positive, and the latitude and initial \
                  angles of the bench file; the coefficients mean nothing"
             ),
-            Verdict::TooLarge => format!(
+            Consistency::Overconfident => format!(
                 "the innovations are larger than the declared noise explains ({figures}): {}; the \
                  sigmas cannot be trusted",
                 if self.one_pass {
@@ -111,14 +112,14 @@ impl Fit {
                     "the model lacks something, or the noise is larger than declared"
                 }
             ),
-            Verdict::TooSmall => format!(
+            Consistency::Underconfident => format!(
                 "the innovations are smaller than the declared noise explains ({figures}): the \
                  noise is smaller than declared; the sigmas are too large"
             ),
         }
     }
 
-    /// Before the first innovation; it has no band yet.
+    /// Sums before the first innovation; they have no band yet.
     pub(crate) fn of_nothing() -> Self {
         Self {
             nis_sum: 0.0,
@@ -129,8 +130,8 @@ impl Fit {
         }
     }
 
-    /// Of a joint solution: the least sum of squares, priors included, has as many degrees of
-    /// freedom as there are values, like the sum of a filter's NIS.
+    /// Statistics of a joint solution. The least sum of squares, priors included, has as many
+    /// degrees of freedom as there are values, like the sum of a filter's NIS.
     pub(crate) fn of_batch(
         solution: &Solution,
         unknowns: &[Unknown],
@@ -195,24 +196,24 @@ mod tests {
     }
 
     #[test]
-    fn the_verdict_follows_the_mean() {
-        let fit = |nis_sum| Fit {
+    fn the_test_compares_the_mean_with_its_band() {
+        let fit = |nis_sum| FitStatistics {
             nis_sum,
             values: 12_000,
             rows: 4_000,
             log_likelihood: 0.0,
             one_pass: true,
         };
-        assert_eq!(fit(12_000.0).verdict(), Verdict::Consistent);
-        assert_eq!(fit(13_000.0).verdict(), Verdict::TooLarge);
-        assert_eq!(fit(11_000.0).verdict(), Verdict::TooSmall);
+        assert_eq!(fit(12_000.0).consistency(), Consistency::Consistent);
+        assert_eq!(fit(13_000.0).consistency(), Consistency::Overconfident);
+        assert_eq!(fit(11_000.0).consistency(), Consistency::Underconfident);
         let one_pass = fit(13_000.0);
-        assert!(one_pass.verdict_text().contains("mean NIS 3.250"));
-        assert!(one_pass.verdict_text().contains("one pass"));
-        let joint = Fit {
+        assert!(one_pass.consistency_text().contains("mean NIS 3.250"));
+        assert!(one_pass.consistency_text().contains("one pass"));
+        let joint = FitStatistics {
             one_pass: false,
             ..one_pass
         };
-        assert!(!joint.verdict_text().contains("one pass"));
+        assert!(!joint.consistency_text().contains("one pass"));
     }
 }

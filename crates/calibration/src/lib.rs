@@ -58,7 +58,7 @@ pub use bound::bound;
 pub use calibrate::{Method, Options, calibrate, calibrate_runs, calibrate_strapdown};
 pub use error::CalibrationError;
 pub use extended::{Estimates, Expectation, Extended, Extension, Jump, NoiseModel};
-pub use fit::{Fit, Verdict, chi_square_band};
+pub use fit::{Consistency, FitStatistics, chi_square_band};
 pub use further::{Column, Further};
 pub use gyro_axes::GyroAxes;
 pub use imagined::{Foreseen, ImaginedRun};

@@ -4,7 +4,7 @@ use gyrocal::Drift;
 use gyrocal::generated::platform::DRIFT;
 
 use crate::PARAMETERS;
-use crate::fit::Fit;
+use crate::fit::FitStatistics;
 use crate::layout::SiteQuantity;
 use crate::noise::NoiseEstimate;
 use crate::observability::{DETERMINED, Undetermined};
@@ -21,7 +21,7 @@ pub struct Calibration {
     /// Standard deviations before the records.
     pub prior_sigma: Drift<f64>,
     /// Agreement of the records with the model.
-    pub fit: Fit,
+    pub fit: FitStatistics,
     /// Platform components from East, North, Up components at the last row of the last record.
     pub platform_c_enu: [[f64; 3]; 3],
     /// The same as platform angles, rad.

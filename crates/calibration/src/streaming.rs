@@ -7,13 +7,13 @@ use gyrocal_record::Record;
 
 use crate::PARAMETERS;
 use crate::error::CalibrationError;
-use crate::fit::Fit;
+use crate::fit::FitStatistics;
 
 /// What the filter holds after the last row.
 pub(crate) struct Filtered {
     pub(crate) drift: Drift<f64>,
     pub(crate) covariance: [[f64; PARAMETERS]; PARAMETERS],
-    pub(crate) fit: Fit,
+    pub(crate) fit: FitStatistics,
     pub(crate) platform_c_enu: [[f64; 3]; 3],
     pub(crate) angles_rad: [f64; 3],
 }
@@ -37,7 +37,7 @@ fn filter_in<F: Form<f64>>(
     settings: &Settings<f64>,
     mut watch: impl FnMut(usize),
 ) -> Result<Filtered, CalibrationError> {
-    let mut fit = Fit::of_nothing();
+    let mut fit = FitStatistics::of_nothing();
     let filter = PlatformFilter::<f64, F>::with_form(settings);
     let filter = pass(record, record.len(), filter, |row, _, innovation| {
         fit.add(innovation);

@@ -1,7 +1,7 @@
 //! Means of fast records against the independent simulator.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)] // a test may stop where it fails
 
-use gyrocal_calibration::{CalibrationError, Options, Verdict, average, calibrate, walk_share};
+use gyrocal_calibration::{CalibrationError, Consistency, Options, average, calibrate, walk_share};
 use gyrocal_record::Record;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 
@@ -131,10 +131,10 @@ fn the_noise_of_means_is_the_declared_one_and_the_coefficients_are_those_of_the_
     assert!((1.6e-4..1.8e-4).contains(&share), "{share}");
     let means = calibrate(&averaged.record, &bench, &Options::default(), |_| ()).unwrap();
     assert_eq!(
-        means.fit.verdict(),
-        Verdict::Consistent,
+        means.fit.consistency(),
+        Consistency::Consistent,
         "{}",
-        means.fit.verdict_text()
+        means.fit.consistency_text()
     );
     let samples = calibrate(&fast.record, &fast.bench, &Options::default(), |_| ()).unwrap();
     for (one, other) in means.coefficients().iter().zip(samples.coefficients()) {

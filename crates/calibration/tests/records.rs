@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use gyrocal::EstimationError;
-use gyrocal_calibration::{CalibrationError, Options, Verdict, calibrate};
+use gyrocal_calibration::{CalibrationError, Consistency, Options, calibrate};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, euler_rule, simulate};
 use nalgebra::{SMatrix, SVector};
@@ -27,7 +27,11 @@ fn clean_records_of_another_simulator_fit() {
             let mean = calibration.fit.nis_mean();
             // 3 ± 0.04 over some thousand rows; S11 passes half a degree from theta_y = 90 deg.
             assert!((2.9..3.1).contains(&mean), "{name}: mean NIS {mean}");
-            assert_eq!(calibration.fit.verdict(), Verdict::Consistent, "{name}");
+            assert_eq!(
+                calibration.fit.consistency(),
+                Consistency::Consistent,
+                "{name}"
+            );
             assert!(
                 calibration.coefficients().iter().all(|c| c.determined),
                 "{name}"
@@ -40,7 +44,7 @@ fn clean_records_of_another_simulator_fit() {
 fn the_paper_s_filter_fails_where_its_single_chart_does() {
     let (record, bench) = case("S11");
     match calibrate(&record, &bench, &Options::of_the_paper(), |_| ()) {
-        Ok(calibration) => assert_eq!(calibration.fit.verdict(), Verdict::TooLarge),
+        Ok(calibration) => assert_eq!(calibration.fit.consistency(), Consistency::Overconfident),
         Err(error) => assert!(matches!(error, CalibrationError::Filter { .. })),
     }
 }
@@ -65,12 +69,16 @@ fn first_order_integration_is_right_only_on_its_own_data() {
     };
     // Euler angles as states are over-confident, so even the rule's own data give 3.0 to 16 by
     // seed (`cargo figures main-job`); the wrong rule gives 180 to 200.
-    assert!(fit(&own).nis_mean() < 20.0, "{}", fit(&own).verdict_text());
-    assert_eq!(fit(&exact).verdict(), Verdict::TooLarge);
+    assert!(
+        fit(&own).nis_mean() < 20.0,
+        "{}",
+        fit(&own).consistency_text()
+    );
+    assert_eq!(fit(&exact).consistency(), Consistency::Overconfident);
     assert!(
         fit(&exact).nis_mean() > 150.0,
         "{}",
-        fit(&exact).verdict_text()
+        fit(&exact).consistency_text()
     );
 }
 
@@ -109,8 +117,8 @@ fn coefficients_and_attitude_of_simulated_records_are_recovered_within_their_sig
         // Chi-square with 9 degrees of freedom exceeds 33.7 once in ten thousand records.
         assert!(nees < 33.7, "seed {seed}: NEES {nees}");
         assert_eq!(
-            calibration.fit.verdict(),
-            Verdict::Consistent,
+            calibration.fit.consistency(),
+            Consistency::Consistent,
             "seed {seed}"
         );
         let expected = simulation.truth.platform_c_enu_last().matrix();

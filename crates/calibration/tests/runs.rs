@@ -8,7 +8,8 @@
 )]
 
 use gyrocal_calibration::{
-    Calibration, CalibrationError, Options, Run, SiteQuantity, Verdict, calibrate, calibrate_runs,
+    Calibration, CalibrationError, Consistency, Options, Run, SiteQuantity, calibrate,
+    calibrate_runs,
 };
 use gyrocal_record::Bench;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
@@ -163,7 +164,7 @@ fn constant_drifts_may_differ_between_turn_ons() {
         simulation
     });
     let found = together(&[&simulations[0], &simulations[1]]);
-    assert_eq!(found.fit.verdict(), Verdict::Consistent);
+    assert_eq!(found.fit.consistency(), Consistency::Consistent);
     assert!(nees(&found, &mean) < NEES);
     let estimate = found.drift.to_array();
     for axis in 0..3 {
@@ -188,7 +189,7 @@ fn constant_drifts_may_differ_between_turn_ons() {
         simulation
     });
     let same = together(&[&same[0], &same[1]]);
-    assert_eq!(same.fit.verdict(), Verdict::TooLarge);
+    assert_eq!(same.fit.consistency(), Consistency::Overconfident);
     assert!(same.runs.iter().all(|run| run.turn_on_deg_per_h.is_none()));
 }
 
@@ -262,7 +263,7 @@ fn outliers_are_bounded() {
             }
         }
         let trusting = found(&simulation, &Options::default());
-        assert_eq!(trusting.fit.verdict(), Verdict::TooLarge);
+        assert_eq!(trusting.fit.consistency(), Consistency::Overconfident);
         let bounding = Options {
             outlier_bound: Some(4.0),
             ..Options::default()
@@ -298,8 +299,8 @@ fn wide_priors_do_not_lead_it_astray() {
             simulation.bench = wide(&simulation.bench, sigma);
             let found = found(&simulation, &Options::default());
             assert_eq!(
-                found.fit.verdict(),
-                Verdict::Consistent,
+                found.fit.consistency(),
+                Consistency::Consistent,
                 "seed {seed}, {sigma}"
             );
             assert!(
@@ -324,7 +325,7 @@ fn a_record_at_one_hertz_is_used_as_it_is() {
     .unwrap();
     let found = found(&simulation, &Options::default());
     assert_eq!(found.fit.rows(), 43_201);
-    assert_eq!(found.fit.verdict(), Verdict::Consistent);
+    assert_eq!(found.fit.consistency(), Consistency::Consistent);
     assert!(nees(&found, &Coefficients::PAPER_LIKE) < NEES);
 }
 
@@ -375,7 +376,11 @@ fn the_pole_of_the_angles_is_an_attitude_like_any_other() {
         let found = found(&simulation, &Options::default());
         let nees = nees(&found, &Coefficients::PAPER_LIKE);
         assert!(nees < NEES, "{angles_deg:?}: {nees}");
-        assert_eq!(found.fit.verdict(), Verdict::Consistent, "{angles_deg:?}");
+        assert_eq!(
+            found.fit.consistency(),
+            Consistency::Consistent,
+            "{angles_deg:?}"
+        );
     }
 }
 

@@ -1,6 +1,6 @@
 //! One simulated record, calibrated and held against its truth.
 
-use gyrocal_calibration::{Calibration, Options, Run, Verdict, bound, calibrate};
+use gyrocal_calibration::{Calibration, Consistency, Options, Run, bound, calibrate};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -73,7 +73,7 @@ impl Trial {
             nis_sum: fit.nis_sum(),
             values: fit.values(),
             rows: fit.rows(),
-            consistent: fit.verdict() == Verdict::Consistent,
+            consistent: fit.consistency() == Consistency::Consistent,
         })
     }
 }

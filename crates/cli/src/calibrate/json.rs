@@ -5,7 +5,7 @@ use std::path::Path;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
-    AzimuthSearch, RunResult, SiteInfluence, SiteQuantity, Undetermined, Verdict,
+    AzimuthSearch, Consistency, RunResult, SiteInfluence, SiteQuantity, Undetermined,
 };
 use gyrocal_record::{
     AzimuthReport, CalibrationReport, Coefficient, FitVerdict, OtherAzimuth, RunReport,
@@ -39,12 +39,12 @@ pub(super) fn report(found: &Found, inputs: &[&Path]) -> Result<CalibrationRepor
         covariance: calibration.covariance.map(Vec::from).to_vec(),
         nis_mean: fit.nis_mean(),
         nis_band: fit.nis_band(),
-        verdict: match fit.verdict() {
-            Verdict::Consistent => FitVerdict::Consistent,
-            Verdict::TooLarge => FitVerdict::TooLarge,
-            Verdict::TooSmall => FitVerdict::TooSmall,
+        verdict: match fit.consistency() {
+            Consistency::Consistent => FitVerdict::Consistent,
+            Consistency::Overconfident => FitVerdict::TooLarge,
+            Consistency::Underconfident => FitVerdict::TooSmall,
         },
-        verdict_text: fit.verdict_text(),
+        verdict_text: fit.consistency_text(),
         iterations: calibration.iterations,
         rows: fit.rows(),
         final_angles_deg: calibration.final_angles_rad.map(f64::to_degrees),

@@ -26,7 +26,7 @@ pub(super) fn summary(found: &Found) -> String {
     text.push('\n');
     text.push_str(&paragraph(&format!(
         "Fit: {}.",
-        calibration.fit.verdict_text()
+        calibration.fit.consistency_text()
     )));
     text.push_str(&determined(found));
     let several = found.measurements.len() > 1;
