@@ -1,4 +1,4 @@
-//! Means of a fast record over intervals, as if each were one sample.
+//! Averages of a fast record over intervals, each used as one sample.
 //!
 //! A mean over an interval is not the value at one time: with m₁ and m₂ the mean distance and
 //! squared distance of its values from the time of the row, it exceeds that value by
@@ -14,8 +14,8 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::error::CalibrationError;
 
-/// Means over longer are no samples: what they leave out of the fourth derivative, and what the
-/// gyro noise turns the platform meanwhile, would no longer be small.
+/// Longest averaging interval, s. Over longer ones neither the fourth derivative that the
+/// correction neglects nor the attitude random walk within an interval is small.
 const LONGEST_INTERVAL_S: f64 = 600.0;
 
 /// Half the window of the polynomial in intervals: the second derivative then adds about 1e-4 of
@@ -29,18 +29,18 @@ const LONGEST_WINDOW_S: f64 = 3600.0;
 /// Coefficients of the polynomial.
 const TERMS: usize = 5;
 
-/// Fewer means than this tell no derivative: nothing is corrected, a mean stands as it is.
+/// Fewest means from which derivatives are estimated; with fewer nothing is corrected.
 const FEWEST_MEANS: usize = 2 * TERMS - 1;
 
-/// A mean counts only if at least this share of the usual number of values is in it.
+/// Least share of the median number of values that a mean needs to be used.
 const ENOUGH: f64 = 0.5;
 
-/// Places of sampling times, as a share of an interval, that count as on its boundary.
+/// Tolerance of the interval boundaries for sampling times, as a share of an interval.
 const ON_BOUNDARY: f64 = 1e-6;
 
-/// A record of means.
+/// A record of averages.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Averaged {
+pub struct AveragedRecord {
     /// The means at the mean times of their values. A row without values stands at the time of
     /// the first row that was averaged, to which the initial attitude belongs.
     pub record: Record,
@@ -49,13 +49,13 @@ pub struct Averaged {
     /// Noise of a mean over that of one value: the root of the mean of one over the number of
     /// values.
     pub noise_ratio: f64,
-    /// Components of means that were left out for too few values: less than half of the usual
-    /// number for that axis.
+    /// Number of components of means left out because they had fewer than half of the median
+    /// number of values of that axis.
     pub left_out: usize,
 }
 
-impl Averaged {
-    /// The bench with the noise of a mean.
+impl AveragedRecord {
+    /// The bench description with the noise of a mean.
     #[must_use]
     pub fn bench(&self, bench: &Bench) -> Bench {
         Bench {
@@ -65,32 +65,36 @@ impl Averaged {
     }
 }
 
-/// Part of the variance of a mean that stands for the platform's own random turning within the
-/// interval, q T / 12 at most, which no noise of a sample tells. The noise is that of one mean.
+/// Share of the variance of a mean that comes from the attitude random walk within the interval,
+/// q T / 12 at most, which the noise of the samples does not include. `bench_of_means` declares
+/// the noise of one mean.
 #[must_use]
-pub fn walk_share(bench_of_means: &Bench, interval_s: f64) -> f64 {
+pub fn attitude_walk_share(bench_of_means: &Bench, interval_s: f64) -> f64 {
     // Held over a minute; in rad²/s.
     let rate = bench_of_means.gyro_noise_deg_per_h.to_radians() / 3600.0;
     let walk = rate * rate * 60.0 * interval_s / 12.0;
     walk / (walk + bench_of_means.accel_noise_g.powi(2))
 }
 
-/// Averages a record over intervals that start at its first row.
+/// Averages a record over intervals; the first one starts at the first row.
 ///
 /// A missing component is left out of its mean; an interval without rows has no mean, so gaps
 /// stay gaps.
 ///
 /// # Errors
-/// [`CalibrationError::AveragingInterval`] if intervals do not hold two rows as a rule, or are
-/// longer than ten minutes; [`CalibrationError::UnequalLengths`].
-pub fn average(record: &Record, interval_s: f64) -> Result<Averaged, CalibrationError> {
+/// [`CalibrationError::AveragingInterval`] if the interval is shorter than two median steps of the
+/// record or longer than ten minutes; [`CalibrationError::UnequalLengths`].
+pub fn average_record(
+    record: &Record,
+    interval_s: f64,
+) -> Result<AveragedRecord, CalibrationError> {
     if record.time_s.len() != record.accel_g.len() {
         return Err(CalibrationError::UnequalLengths {
             times: record.time_s.len(),
             samples: record.accel_g.len(),
         });
     }
-    let least_s = 2.0 * usual_step_s(record);
+    let least_s = 2.0 * median_step_s(record);
     // Written so that NaN is refused.
     if !(interval_s >= least_s * (1.0 - ON_BOUNDARY) && interval_s <= LONGEST_INTERVAL_S) {
         return Err(CalibrationError::AveragingInterval {
@@ -110,7 +114,7 @@ pub fn average(record: &Record, interval_s: f64) -> Result<Averaged, Calibration
 }
 
 /// The median interval between rows.
-fn usual_step_s(record: &Record) -> f64 {
+fn median_step_s(record: &Record) -> f64 {
     let mut steps: Vec<f64> = record
         .time_s
         .windows(2)
@@ -193,7 +197,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count
 }
 
-/// Makes means of too few values missing; returns their number.
+/// Marks means of too few values as missing; returns their number.
 fn leave_out_thin(means: &mut [Mean]) -> usize {
     let mut left_out = 0;
     for axis in 0..3 {
@@ -203,9 +207,9 @@ fn leave_out_thin(means: &mut [Mean]) -> usize {
             .filter(|count| *count > 0)
             .collect();
         counts.sort_unstable();
-        let usual = counts.get(counts.len() / 2).copied().unwrap_or(0) as f64;
+        let median = counts.get(counts.len() / 2).copied().unwrap_or(0) as f64;
         for mean in &mut *means {
-            if mean.count[axis] > 0 && (mean.count[axis] as f64) < ENOUGH * usual {
+            if mean.count[axis] > 0 && (mean.count[axis] as f64) < ENOUGH * median {
                 (mean.count[axis], mean.value[axis]) = (0, f64::NAN);
                 left_out += 1;
             }
@@ -214,7 +218,7 @@ fn leave_out_thin(means: &mut [Mean]) -> usize {
     left_out
 }
 
-/// The values at the times of the rows.
+/// The values at the times of the rows: means less their first and second-order terms.
 fn correct(means: &[Mean], interval_s: f64) -> Vec<[f64; 3]> {
     let half_s = (WINDOW_INTERVALS * interval_s).min(LONGEST_WINDOW_S);
     let (Some(first), Some(last)) = (means.first(), means.last()) else {
@@ -242,8 +246,8 @@ fn correct(means: &[Mean], interval_s: f64) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// First and second derivative of a component at a time, from a polynomial through its means;
-/// zero if there are too few or they lie too badly.
+/// First and second derivative of a component at a time, from a least-squares polynomial through
+/// its means; zero if there are too few of them or the normal equations are singular.
 fn derivatives(means: &[Mean], axis: usize, time_s: f64, half_s: f64) -> [f64; 2] {
     let mut normal = SMatrix::<f64, TERMS, TERMS>::zeros();
     let mut right = SVector::<f64, TERMS>::zeros();
@@ -270,7 +274,7 @@ fn assemble(
     means: &[Mean],
     corrected: Vec<[f64; 3]>,
     left_out: usize,
-) -> Averaged {
+) -> AveragedRecord {
     let mut time_s: Vec<f64> = means.iter().map(|mean| mean.time_s).collect();
     let mut values: Vec<[usize; 3]> = means.iter().map(|mean| mean.count).collect();
     let mut accel_g = corrected;
@@ -298,7 +302,7 @@ fn assemble(
             column.insert(0, *first);
         }
     }
-    Averaged {
+    AveragedRecord {
         record: Record {
             time_s,
             accel_g,

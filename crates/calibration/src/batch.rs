@@ -13,9 +13,9 @@ use crate::fit::FitStatistics;
 use crate::gyro_axes::GyroAxes;
 use crate::layout::{Layout, SiteQuantity};
 use crate::noise;
-use crate::observability::undetermined;
+use crate::observability::unobservable;
 use crate::problem::Problem;
-use crate::result::{AzimuthSearch, Calibration, RunResult, SiteInfluence};
+use crate::result::{AzimuthSearch, Calibration, ConsiderSensitivity, RunResult};
 use crate::robust;
 use crate::run::{Conditions, Run};
 use crate::settings::level;
@@ -80,8 +80,8 @@ where
         final_angles_rad: angles_rad(&last),
         iterations: solution.iterations,
         runs,
-        site: site_influences(&layout, &benches, &uncertainty),
-        undetermined: undetermined(
+        site_sensitivities: site_sensitivities(&layout, &benches, &uncertainty),
+        unobservable: unobservable(
             &uncertainty
                 .conditional
                 .view((0, 0), (PARAMETERS, PARAMETERS))
@@ -148,7 +148,7 @@ where
         leg.rows.gyro_axes = gyro_axes.map(|axes| &axes[index]);
         // Weights of the others are found from where the first solution is.
         if options.outlier_bound.is_some() {
-            for row in beginning.spikes {
+            for row in beginning.gross_errors {
                 leg.rows.leave_out(row..row + 1);
             }
         }
@@ -209,11 +209,11 @@ where
         .collect()
 }
 
-fn site_influences(
+fn site_sensitivities(
     layout: &Layout,
     benches: &[&gyrocal_record::Bench],
     uncertainty: &Uncertainty,
-) -> Vec<SiteInfluence> {
+) -> Vec<ConsiderSensitivity> {
     let Some(bench) = benches.first() else {
         return Vec::new();
     };
@@ -227,7 +227,7 @@ fn site_influences(
                 .iter()
                 .find(|(i, _)| *i == unknown)?;
             let (_, from_record_sigma) = uncertainty.from_records.iter().find(find)?;
-            Some(SiteInfluence {
+            Some(ConsiderSensitivity {
                 quantity,
                 declared_sigma: quantity.declared_sigma(bench),
                 from_record_sigma: *from_record_sigma,

@@ -9,11 +9,11 @@ use crate::batch::MOST_ITERATIONS;
 use crate::calibrate::Options;
 use crate::error::CalibrationError;
 use crate::further::Further;
+use crate::gross_errors::gross_errors;
 use crate::layout::Layout;
 use crate::problem::{Leg, Problem};
 use crate::result::AzimuthSearch;
 use crate::run::{Rows, Run};
-use crate::spikes::spikes;
 use crate::start::{Start, filtered};
 use crate::uncertainty::Uncertainty;
 
@@ -37,8 +37,8 @@ pub(crate) struct Beginning {
     pub(crate) prior: InitialAttitude,
     pub(crate) start: Start,
     pub(crate) azimuth: Option<AzimuthSearch>,
-    /// Rows that it passes over: see [`spikes`].
-    pub(crate) spikes: Vec<usize>,
+    /// Rows that it passes over: see [`gross_errors`].
+    pub(crate) gross_errors: Vec<usize>,
 }
 
 /// Finds where to begin; `careful` goes by growing windows whatever the filter says.
@@ -48,11 +48,11 @@ pub(crate) fn begin(
     options: &Options,
     careful: bool,
 ) -> Result<Beginning, CalibrationError> {
-    let spikes = spikes(run.record, settings.accel_noise_g);
-    if spikes.is_empty() {
+    let gross_errors = gross_errors(run.record, settings.accel_noise_g);
+    if gross_errors.is_empty() {
         return begin_through(run, settings, options, careful);
     }
-    let values = spikes
+    let values = gross_errors
         .iter()
         .flat_map(|row| [0, 1, 2].map(|axis| [*row, axis]));
     let run = Run {
@@ -60,7 +60,7 @@ pub(crate) fn begin(
         bench: run.bench,
     };
     Ok(Beginning {
-        spikes,
+        gross_errors,
         ..begin_through(&run, settings, options, careful)?
     })
 }
@@ -78,7 +78,7 @@ fn begin_through(
             prior: only.prior,
             start: start(run, run.record.len(), settings, only, options, careful)?,
             azimuth: None,
-            spikes: Vec::new(),
+            gross_errors: Vec::new(),
         });
     }
     let (chosen, search) = search(run, settings, &trials, options)?;
@@ -86,7 +86,7 @@ fn begin_through(
         prior: chosen.prior,
         start: start(run, run.record.len(), settings, &chosen, options, careful)?,
         azimuth: Some(search),
-        spikes: Vec::new(),
+        gross_errors: Vec::new(),
     })
 }
 

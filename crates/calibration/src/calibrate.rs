@@ -6,7 +6,7 @@ use crate::error::CalibrationError;
 use crate::gyro_axes::GyroAxes;
 use crate::result::Calibration;
 use crate::run::Run;
-use crate::settings::settings;
+use crate::settings::filter_settings;
 use crate::{PARAMETERS, batch, streaming};
 
 /// How coefficients are estimated.
@@ -183,7 +183,7 @@ fn streaming(
         integration: options.integration,
         recentring: options.recentring,
         longest_step_s: options.longest_step_s,
-        ..settings(run.bench).ok_or(CalibrationError::NoAttitude)?
+        ..filter_settings(run.bench).ok_or(CalibrationError::NoAttitude)?
     };
     let filtered = streaming::filter(run.record, &settings, options.factorised, |row| {
         if row % 1024 == 0 {
@@ -202,8 +202,8 @@ fn streaming(
         final_angles_rad: filtered.angles_rad,
         iterations: 1,
         runs: Vec::new(),
-        site: Vec::new(),
-        undetermined: Vec::new(),
+        site_sensitivities: Vec::new(),
+        unobservable: Vec::new(),
     })
 }
 

@@ -49,10 +49,10 @@ impl SiteQuantity {
         }
     }
 
-    /// An error of which the effect is told where no sigma is declared: 1″ of latitude, a part in
+    /// Error for which biases are reported where no sigma is declared: 1″ of latitude, a part in
     /// 10⁶ of gravity (1 mGal), and of Earth rate 1e-8, its variation with the length of day.
     #[must_use]
-    pub fn small_error(self) -> f64 {
+    pub fn reference_error(self) -> f64 {
         match self {
             Self::Gravity => 1e-6,
             Self::Latitude => 1.0 / 3600.0,

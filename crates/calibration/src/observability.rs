@@ -1,30 +1,27 @@
-//! What a record determines, and which combinations of coefficients it does not.
+//! Observability: combinations of coefficients that a record does not determine.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use gyrocal::generated::platform::DRIFT;
 
-/// A combination whose posterior sigma is not below this share of its prior's counts as not
-/// determined by the record.
+/// Ratio of posterior to prior sigma from which on a coefficient or combination is unobservable.
 pub(crate) const DETERMINED: f64 = 0.1;
 
-/// Parts of a combination smaller than this are not named.
+/// Least weight of a coefficient that [`UnobservableCombination::text`] names.
 const NAMED: f64 = 0.15;
 
-/// A combination of coefficients, in units of their prior sigmas, that a record does not
-/// determine.
+/// A combination of coefficients, each over its prior sigma, that a record does not determine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Undetermined {
-    /// Weight of each coefficient; the sum of squares is 1.
+pub struct UnobservableCombination {
+    /// Weight of each coefficient over its prior sigma; the sum of squares is 1.
     pub weights: Vec<f64>,
-    /// Posterior over prior standard deviation.
-    pub share_of_prior: f64,
+    /// Posterior over prior standard deviation of the combination.
+    pub posterior_to_prior_ratio: f64,
 }
 
-impl Undetermined {
-    /// The combination with names and signs, largest part first, such as
-    /// `0.71 gyro_x.bias - 0.70 gyro_x.g_xx`. Coefficients stand for their ratio to the prior
-    /// sigma.
+impl UnobservableCombination {
+    /// The combination as a formula, largest weight first, such as
+    /// `0.71 gyro_x.bias - 0.70 gyro_x.g_xx`; each coefficient is taken over its prior sigma.
     #[must_use]
     pub fn text(&self) -> String {
         let mut parts: Vec<(usize, f64)> = self.weights.iter().copied().enumerate().collect();
@@ -46,22 +43,29 @@ impl Undetermined {
     }
 }
 
-/// Combinations that `covariance` leaves at a tenth of the prior or more, least determined first.
-pub(crate) fn undetermined(covariance: &DMatrix<f64>, prior_sigma: &[f64]) -> Vec<Undetermined> {
+/// Principal combinations whose posterior sigma is at least a tenth of the prior's, in falling order of the
+/// ratio: eigenvectors of `covariance` scaled by the prior sigmas.
+pub(crate) fn unobservable(
+    covariance: &DMatrix<f64>,
+    prior_sigma: &[f64],
+) -> Vec<UnobservableCombination> {
     let count = prior_sigma.len();
     let scaled = DMatrix::from_fn(count, count, |i, j| {
         covariance[(i, j)] / (prior_sigma[i] * prior_sigma[j])
     });
     let eigen = SymmetricEigen::new(scaled);
-    let mut found: Vec<Undetermined> = (0..count)
+    let mut found: Vec<UnobservableCombination> = (0..count)
         .filter_map(|index| {
-            let share_of_prior = eigen.eigenvalues[index].max(0.0).sqrt();
-            (share_of_prior >= DETERMINED).then(|| Undetermined {
+            let posterior_to_prior_ratio = eigen.eigenvalues[index].max(0.0).sqrt();
+            (posterior_to_prior_ratio >= DETERMINED).then(|| UnobservableCombination {
                 weights: eigen.eigenvectors.column(index).iter().copied().collect(),
-                share_of_prior,
+                posterior_to_prior_ratio,
             })
         })
         .collect();
-    found.sort_by(|a, b| b.share_of_prior.total_cmp(&a.share_of_prior));
+    found.sort_by(|a, b| {
+        b.posterior_to_prior_ratio
+            .total_cmp(&a.posterior_to_prior_ratio)
+    });
     found
 }

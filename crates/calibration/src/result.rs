@@ -1,4 +1,4 @@
-//! What a calibration found.
+//! Result of a calibration.
 
 use gyrocal::Drift;
 use gyrocal::generated::platform::DRIFT;
@@ -7,92 +7,95 @@ use crate::PARAMETERS;
 use crate::fit::FitStatistics;
 use crate::layout::SiteQuantity;
 use crate::noise::NoiseEstimate;
-use crate::observability::{DETERMINED, Undetermined};
+use crate::observability::{DETERMINED, UnobservableCombination};
 
-/// What records said of the gyros.
+/// Drift coefficients estimated from records, with their covariance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// Estimated coefficients: deg/h, deg/h/g, deg/h/g². Where turn-ons differ, constant drifts
-    /// are those of the mean over turn-ons.
+    /// Estimated coefficients: deg/h, deg/h/g, deg/h/g². Where turn-ons differ, the constant drifts
+    /// are their means over turn-ons.
     pub drift: Drift<f64>,
-    /// Covariance of their errors, in the order of the fields; the declared uncertainty of the
-    /// site is in it.
+    /// Covariance of their errors, in the order of the fields; it includes the declared uncertainty
+    /// of the site.
     pub covariance: [[f64; PARAMETERS]; PARAMETERS],
-    /// Standard deviations before the records.
+    /// Standard deviations of the prior.
     pub prior_sigma: Drift<f64>,
-    /// Agreement of the records with the model.
+    /// Statistics of the innovations, for the consistency test.
     pub fit: FitStatistics,
     /// Platform components from East, North, Up components at the last row of the last record.
     pub platform_c_enu: [[f64; 3]; 3],
     /// The same as platform angles, rad.
     pub final_angles_rad: [f64; 3],
-    /// Steps of the batch estimator; 1 of the streaming filter.
+    /// Gauss-Newton steps of the batch estimator; 1 for the streaming filter.
     pub iterations: usize,
-    /// What belongs to each record; empty after the streaming filter.
+    /// Results of each record; empty for the streaming filter.
     pub runs: Vec<RunResult>,
-    /// What errors of the first record's site do; empty after the streaming filter.
-    pub site: Vec<SiteInfluence>,
-    /// Combinations of coefficients that the records do not determine; empty after the streaming
+    /// Sensitivities of the coefficients to the considered parameters of the first record's site;
+    /// empty for the streaming filter.
+    pub site_sensitivities: Vec<ConsiderSensitivity>,
+    /// Combinations of coefficients that the records do not determine; empty for the streaming
     /// filter.
-    pub undetermined: Vec<Undetermined>,
+    pub unobservable: Vec<UnobservableCombination>,
 }
 
-/// What belongs to one record.
+/// Results of one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunResult {
     /// Platform components from East, North, Up components at the first row.
     pub first_platform_c_enu: [[f64; 3]; 3],
     /// The same at the last row.
     pub last_platform_c_enu: [[f64; 3]; 3],
-    /// What this turn-on adds to the constant drifts of gyros x, y, z, and its sigma, deg/h.
+    /// Offset of this turn-on from the mean constant drift of gyros x, y, z, and its sigma, deg/h.
     pub turn_on_deg_per_h: Option<[[f64; 2]; 3]>,
-    /// How the azimuth was found, if the bench did not give it.
+    /// Search for the azimuth, if the bench did not declare the attitude.
     pub azimuth: Option<AzimuthSearch>,
-    /// Noise by maximum likelihood, if it was asked for.
+    /// Maximum-likelihood estimate of the noise, if requested.
     pub noise: Option<NoiseEstimate>,
-    /// Values whose influence was bounded, if outliers were to be bounded.
+    /// Number of values with a Huber weight below 1, if outliers are bounded.
     pub bounded_values: usize,
 }
 
-/// How an unknown azimuth was found.
+/// Search for an unknown azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AzimuthSearch {
-    /// Starts that were tried.
+    /// Number of azimuths tried.
     pub starts: usize,
-    /// How much less likely the best solution with another azimuth is, as a difference of
-    /// log-likelihoods; infinite if all starts led to one solution.
+    /// Log-likelihood of the best solution less that of the best one with another azimuth;
+    /// infinite if all azimuths led to one solution.
     pub margin: f64,
-    /// That other azimuth relative to the one that was chosen, rad.
+    /// That other azimuth relative to the best, rad.
     pub other_rad: f64,
 }
 
 impl AzimuthSearch {
-    /// Whether the record cannot tell the two azimuths apart: a likelihood ratio below 20.
+    /// The two azimuths are not distinguishable: their likelihood ratio is below 20.
     #[must_use]
     pub fn is_ambiguous(&self) -> bool {
         self.margin < 3.0
     }
 }
 
-/// What an error of something known of the site does.
+/// Sensitivity of the estimates to a considered parameter of the site: a parameter that keeps its
+/// assumed value and whose uncertainty enters the covariance (Schmidt).
 #[derive(Clone, Debug, PartialEq)]
-pub struct SiteInfluence {
-    /// What is in error.
+pub struct ConsiderSensitivity {
+    /// The considered parameter.
     pub quantity: SiteQuantity,
-    /// The standard deviation that the bench declares.
+    /// Standard deviation that the bench declares; `None` if the parameter counts as exact.
     pub declared_sigma: Option<f64>,
-    /// The standard deviation that the record alone gives it; infinite if it says nothing.
+    /// Standard deviation of the parameter if it were estimated from the records without a prior;
+    /// infinite if it is unobservable.
     pub from_record_sigma: f64,
-    /// Bias of each coefficient when the true quantity exceeds the assumed one by a unit.
+    /// Bias of each coefficient when the true value exceeds the assumed one by a unit.
     pub bias_per_unit: [f64; PARAMETERS],
 }
 
-impl SiteInfluence {
-    /// The error that its effect is told for: the declared sigma, or a small one.
+impl ConsiderSensitivity {
+    /// Error for which biases are reported: the declared sigma, or [`SiteQuantity::reference_error`].
     #[must_use]
-    pub fn error(&self) -> f64 {
+    pub fn assumed_error(&self) -> f64 {
         self.declared_sigma
-            .unwrap_or_else(|| self.quantity.small_error())
+            .unwrap_or_else(|| self.quantity.reference_error())
     }
 }
 
@@ -103,13 +106,13 @@ pub struct CoefficientEstimate {
     pub id: &'static str,
     /// Unit of estimate and sigma.
     pub unit: &'static str,
-    /// Meaning in a few words.
+    /// Meaning in a phrase.
     pub meaning: &'static str,
     /// The estimate.
     pub estimate: f64,
     /// Standard deviation of its error.
     pub sigma: f64,
-    /// Whether the record, and not the prior, determined it.
+    /// True if the records determined the coefficient: its sigma is below a tenth of the prior's.
     pub determined: bool,
 }
 

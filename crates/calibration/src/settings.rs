@@ -4,7 +4,7 @@ use gyrocal_record::Bench;
 /// What the streaming filter starts from according to a bench description; `None` if that does
 /// not say how the platform lies.
 #[must_use]
-pub fn settings(bench: &Bench) -> Option<Settings<f64>> {
+pub fn filter_settings(bench: &Bench) -> Option<Settings<f64>> {
     let angles_deg = bench.initial_angles_deg?;
     Some(Settings {
         angles_rad: angles_deg.map(f64::to_radians),

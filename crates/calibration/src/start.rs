@@ -9,7 +9,7 @@ use gyrocal_record::Record;
 use crate::PARAMETERS;
 use crate::attitude::InitialAttitude;
 use crate::error::CalibrationError;
-use crate::streaming::pass;
+use crate::streaming::run_filter;
 
 /// What one pass of the filter leaves.
 pub(crate) struct Start {
@@ -50,7 +50,7 @@ fn filtered_in<F: Form<f64>>(
     let filter = PlatformFilter::<f64, F>::at_attitude(settings, &attitude.orientation, &sigma_rad);
     let mut points = Vec::with_capacity(rows);
     let (mut nis, mut values) = (0.0, 0);
-    let filter = pass(record, rows, filter, |_, filter, innovation| {
+    let filter = run_filter(record, rows, filter, |_, filter, innovation| {
         nis += innovation.nis;
         values += innovation.degrees_of_freedom();
         points.push(filter.kernel().inputs().orientation());

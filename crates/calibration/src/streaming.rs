@@ -1,4 +1,4 @@
-//! One pass of the streaming filter over a record.
+//! The streaming filter over a record.
 
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{Covariance, Factors};
@@ -9,7 +9,7 @@ use crate::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fit::FitStatistics;
 
-/// What the filter holds after the last row.
+/// Estimates of the filter after the last row.
 pub(crate) struct Filtered {
     pub(crate) drift: Drift<f64>,
     pub(crate) covariance: [[f64; PARAMETERS]; PARAMETERS],
@@ -18,7 +18,7 @@ pub(crate) struct Filtered {
     pub(crate) angles_rad: [f64; 3],
 }
 
-/// Filters a record; `watch` is called after each row with its number.
+/// Runs the streaming filter over a record; `watch` is called after each row with its number.
 pub(crate) fn filter(
     record: &Record,
     settings: &Settings<f64>,
@@ -39,7 +39,7 @@ fn filter_in<F: Form<f64>>(
 ) -> Result<Filtered, CalibrationError> {
     let mut fit = FitStatistics::of_nothing();
     let filter = PlatformFilter::<f64, F>::with_form(settings);
-    let filter = pass(record, record.len(), filter, |row, _, innovation| {
+    let filter = run_filter(record, record.len(), filter, |row, _, innovation| {
         fit.add(innovation);
         watch(row);
     })?;
@@ -52,13 +52,13 @@ fn filter_in<F: Form<f64>>(
     })
 }
 
-/// Takes a filter over the first rows of a record; `watch` sees each row, the filter after it and
-/// what the row said.
+/// Runs a filter over the first `rows` rows of a record. `watch` gets each row number, the filter
+/// after the update, and the innovation.
 ///
 /// # Errors
-/// [`CalibrationError::Filter`] with the row at which the filter stopped; the first if it could
-/// not be made.
-pub fn pass<F: Form<f64>>(
+/// [`CalibrationError::Filter`] with the row at which the filter stopped; the first row if
+/// `filter` is an error.
+pub fn run_filter<F: Form<f64>>(
     record: &Record,
     rows: usize,
     filter: Result<PlatformFilter<f64, F>, EstimationError>,

@@ -1,7 +1,9 @@
 //! Means of fast records against the independent simulator.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)] // a test may stop where it fails
 
-use gyrocal_calibration::{CalibrationError, Consistency, Options, average, calibrate, walk_share};
+use gyrocal_calibration::{
+    CalibrationError, Consistency, Options, attitude_walk_share, average_record, calibrate,
+};
 use gyrocal_record::Record;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 
@@ -48,7 +50,7 @@ fn largest_error(record: &Record, means: &Record) -> f64 {
 fn a_mean_is_the_value_at_its_time() {
     let record = fast(0.0, 0.0, 6.0).record;
     for interval_s in [10.0, 60.0, 300.0, 600.0] {
-        let averaged = average(&record, interval_s).unwrap();
+        let averaged = average_record(&record, interval_s).unwrap();
         // A row without values, at the first time, keeps the place of the initial attitude.
         assert_eq!(averaged.record.time_s[0], record.time_s[0]);
         assert!(
@@ -92,7 +94,7 @@ fn missing_values_do_not_pull_a_mean_and_gaps_stay() {
         accel_g: kept.iter().map(|row| record.accel_g[*row]).collect(),
         temperature_c: Some(kept.iter().map(|row| *row as f64).collect()),
     };
-    let averaged = average(&record, 60.0).unwrap();
+    let averaged = average_record(&record, 60.0).unwrap();
     let means = &averaged.record;
     // Left to itself a mean of z would be off by up to w · 15 s = 1e-3 g; a thousandth of the
     // slope is left.
@@ -123,11 +125,11 @@ fn missing_values_do_not_pull_a_mean_and_gaps_stay() {
 #[test]
 fn the_noise_of_means_is_the_declared_one_and_the_coefficients_are_those_of_the_samples() {
     let fast = fast(1e-4, 0.002, 30.0);
-    let averaged = average(&fast.record, 60.0).unwrap();
+    let averaged = average_record(&fast.record, 60.0).unwrap();
     assert!((averaged.noise_ratio * 60.0_f64.sqrt() - 1.0).abs() < 1e-12);
     let bench = averaged.bench(&fast.bench);
     // (0.002 deg/h over a minute)² 60 s / 12 over (1e-4 g / √60)²: 1.7e-4.
-    let share = walk_share(&bench, 60.0);
+    let share = attitude_walk_share(&bench, 60.0);
     assert!((1.6e-4..1.8e-4).contains(&share), "{share}");
     let means = calibrate(&averaged.record, &bench, &Options::default(), |_| ()).unwrap();
     assert_eq!(
@@ -150,7 +152,7 @@ fn the_noise_of_means_is_the_declared_one_and_the_coefficients_are_those_of_the_
 fn intervals_that_make_no_sense_are_refused() {
     let record = fast(1e-5, 0.002, 0.2).record;
     for interval_s in [0.0, -60.0, 1.0, 601.0, f64::INFINITY, f64::NAN] {
-        match average(&record, interval_s) {
+        match average_record(&record, interval_s) {
             Err(CalibrationError::AveragingInterval {
                 least_s, most_s, ..
             }) => {

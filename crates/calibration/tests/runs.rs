@@ -220,7 +220,7 @@ fn a_wrong_latitude_biases_as_predicted() {
         let [before, after] =
             [clean, shifted].map(|scenario| found(&simulate(&scenario).unwrap(), &options));
         let influence = before
-            .site
+            .site_sensitivities
             .iter()
             .find(|influence| influence.quantity == SiteQuantity::Latitude)
             .unwrap();

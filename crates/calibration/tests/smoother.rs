@@ -9,7 +9,7 @@
 mod dense;
 
 use dense::Dense;
-use gyrocal_calibration::{CalibrationError, Options, Run, bound, calibrate};
+use gyrocal_calibration::{CalibrationError, Options, Run, calibrate, cramer_rao_bound};
 use gyrocal_record::Prior;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 
@@ -135,7 +135,7 @@ fn the_bound_is_the_covariance_at_the_truth() {
             .named()
             .map(|(_, value, _)| value);
         let attitudes = true_attitudes(&simulation);
-        let bound = bound(&Run { record, bench }, &attitudes, &drift).unwrap();
+        let bound = cramer_rao_bound(&Run { record, bench }, &attitudes, &drift).unwrap();
         let found = calibrate(record, bench, &Options::default(), |_| ()).unwrap();
         for i in 0..9 {
             let ratio = (found.covariance[i][i] / bound[i][i]).sqrt();
@@ -159,7 +159,7 @@ fn the_bound_grows_with_what_is_not_known() {
     let attitudes = true_attitudes(&simulation);
     let record = &simulation.record;
     let of = |bench: &gyrocal_record::Bench| {
-        let covariance = bound(&Run { record, bench }, &attitudes, &drift).unwrap();
+        let covariance = cramer_rao_bound(&Run { record, bench }, &attitudes, &drift).unwrap();
         core::array::from_fn::<f64, 9, _>(|i| covariance[i][i])
     };
     let known = of(&simulation.bench);
@@ -183,7 +183,7 @@ fn the_bound_needs_an_attitude_for_each_row() {
             record: &simulation.record,
             bench: &simulation.bench,
         };
-        bound(&run, attitudes, &[0.0; 9])
+        cramer_rao_bound(&run, attitudes, &[0.0; 9])
     };
     of(&simulation, &attitudes).unwrap();
     for wrong in [&attitudes[1..], &[]] {

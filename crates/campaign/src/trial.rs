@@ -1,6 +1,6 @@
 //! One simulated record, calibrated and held against its truth.
 
-use gyrocal_calibration::{Calibration, Consistency, Options, Run, bound, calibrate};
+use gyrocal_calibration::{Calibration, Consistency, Options, Run, calibrate, cramer_rao_bound};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -95,7 +95,7 @@ fn bound_sigma(simulation: &Simulation) -> Result<Option<[f64; 9]>, CampaignErro
         record: &simulation.record,
         bench: &simulation.bench,
     };
-    let covariance = bound(&run, &platform_c_enu, &drift)?;
+    let covariance = cramer_rao_bound(&run, &platform_c_enu, &drift)?;
     Ok(Some(core::array::from_fn(|i| covariance[i][i].sqrt())))
 }
 

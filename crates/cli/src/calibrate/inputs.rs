@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use gyrocal::Platform;
-use gyrocal_calibration::{GyroAxes, Run, average, walk_share};
+use gyrocal_calibration::{GyroAxes, Run, attitude_walk_share, average_record};
 use gyrocal_measured::strapdown::read_axes;
 use gyrocal_record::{AveragedReport, Bench, Record, SourceText};
 use miette::miette;
@@ -34,8 +34,9 @@ impl Measurement {
 
     /// Share of the variance of a mean that is the platform's own random turning meanwhile.
     pub(super) fn walk_share(&self) -> f64 {
-        self.averaged
-            .map_or(0.0, |averaged| walk_share(&self.bench, averaged.interval_s))
+        self.averaged.map_or(0.0, |averaged| {
+            attitude_walk_share(&self.bench, averaged.interval_s)
+        })
     }
 }
 
@@ -184,7 +185,7 @@ fn shared_rows(one: &Record, other: &Record) -> Option<(usize, usize)> {
 }
 
 fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Failure> {
-    let averaged = average(&measurement.record, interval_s).map_err(|error| {
+    let averaged = average_record(&measurement.record, interval_s).map_err(|error| {
         Failure::Work(miette!(
             help = "choose --average between these, or leave it out",
             "{}: {error}",

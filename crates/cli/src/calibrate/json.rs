@@ -5,7 +5,8 @@ use std::path::Path;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
-    AzimuthSearch, Consistency, RunResult, SiteInfluence, SiteQuantity, Undetermined,
+    AzimuthSearch, ConsiderSensitivity, Consistency, RunResult, SiteQuantity,
+    UnobservableCombination,
 };
 use gyrocal_record::{
     AzimuthReport, CalibrationReport, Coefficient, FitVerdict, OtherAzimuth, RunReport,
@@ -49,20 +50,20 @@ pub(super) fn report(found: &Found, inputs: &[&Path]) -> Result<CalibrationRepor
         rows: fit.rows(),
         final_angles_deg: calibration.final_angles_rad.map(f64::to_degrees),
         method: found.method,
-        undetermined: calibration.undetermined.iter().map(undetermined).collect(),
+        undetermined: calibration.unobservable.iter().map(undetermined).collect(),
         runs: runs
             .map(|(measurement, run)| of_run(measurement, run))
             .collect(),
-        site: calibration.site.iter().map(site).collect(),
+        site: calibration.site_sensitivities.iter().map(site).collect(),
         first_record_sigmas: found.first_alone.clone(),
     })
 }
 
-fn undetermined(combination: &Undetermined) -> UndeterminedReport {
+fn undetermined(combination: &UnobservableCombination) -> UndeterminedReport {
     UndeterminedReport {
         text: combination.text(),
         weights: combination.weights.clone(),
-        share_of_prior: combination.share_of_prior,
+        share_of_prior: combination.posterior_to_prior_ratio,
     }
 }
 
@@ -95,7 +96,7 @@ fn azimuth(search: &AzimuthSearch) -> AzimuthReport {
     }
 }
 
-fn site(influence: &SiteInfluence) -> SiteReport {
+fn site(influence: &ConsiderSensitivity) -> SiteReport {
     let (quantity, unit) = match influence.quantity {
         SiteQuantity::Latitude => ("latitude", "deg"),
         SiteQuantity::EarthRate => ("earth_rate", "1"),

@@ -1,7 +1,7 @@
 //! The tables below the words.
 
 use comfy_table::Cell;
-use gyrocal_calibration::{Calibration, SiteInfluence, SiteQuantity};
+use gyrocal_calibration::{Calibration, ConsiderSensitivity, SiteQuantity};
 
 use super::Found;
 use super::words::site_error;
@@ -42,9 +42,14 @@ pub(super) fn silent_biases(calibration: &Calibration) -> String {
         SiteQuantity::EarthRate,
         SiteQuantity::Gravity,
     ];
-    let influences: Vec<&SiteInfluence> = order
+    let influences: Vec<&ConsiderSensitivity> = order
         .iter()
-        .filter_map(|quantity| calibration.site.iter().find(|i| i.quantity == *quantity))
+        .filter_map(|quantity| {
+            calibration
+                .site_sensitivities
+                .iter()
+                .find(|i| i.quantity == *quantity)
+        })
         .collect();
     let header = influences
         .iter()
@@ -52,7 +57,7 @@ pub(super) fn silent_biases(calibration: &Calibration) -> String {
     let mut table = table(["coefficient".to_owned()].into_iter().chain(header));
     for (index, coefficient) in calibration.coefficients().into_iter().enumerate() {
         let shifts = influences.iter().flat_map(|influence| {
-            let shift = influence.bias_per_unit[index] * influence.error();
+            let shift = influence.bias_per_unit[index] * influence.assumed_error();
             [
                 right(format!("{shift:+.1e}")),
                 right(format!("{:+.2}", shift / coefficient.sigma)),

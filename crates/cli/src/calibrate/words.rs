@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use gyrocal::generated::surveyed::parameters_index as index;
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
-    AzimuthSearch, Calibration, NoiseRatio, RunResult, SiteInfluence, SiteQuantity,
+    AzimuthSearch, Calibration, ConsiderSensitivity, NoiseRatio, RunResult, SiteQuantity,
 };
 use gyrocal_record::CalibrationMethod;
 
@@ -54,7 +54,7 @@ pub(super) fn summary(found: &Found) -> String {
             "\nSigmas before and after the other records:\n\n{table}"
         );
     }
-    if !calibration.site.is_empty() {
+    if !calibration.site_sensitivities.is_empty() {
         let of = if several {
             "the first record's site"
         } else {
@@ -136,7 +136,7 @@ fn determined(found: &Found) -> String {
             no.join(", ")
         ),
     });
-    let combinations = &found.calibration.undetermined;
+    let combinations = &found.calibration.unobservable;
     if !combinations.is_empty() {
         text.push_str(&paragraph(
             "Undetermined combinations, each coefficient over its prior sigma, and what is left \
@@ -147,7 +147,7 @@ fn determined(found: &Found) -> String {
                 text,
                 "  {}: {:.0} %",
                 combination.text(),
-                100.0 * combination.share_of_prior
+                100.0 * combination.posterior_to_prior_ratio
             );
         }
     }
@@ -254,7 +254,7 @@ fn site(found: &Found) -> String {
     }
     let calibration = &found.calibration;
     let latitude = calibration
-        .site
+        .site_sensitivities
         .iter()
         .find(|influence| influence.quantity == SiteQuantity::Latitude);
     latitude.map_or_else(String::new, |influence| {
@@ -271,7 +271,7 @@ fn site(found: &Found) -> String {
     })
 }
 
-fn assumed_latitude(calibration: &Calibration, influence: &SiteInfluence) -> String {
+fn assumed_latitude(calibration: &Calibration, influence: &ConsiderSensitivity) -> String {
     if let Some(sigma) = influence.declared_sigma {
         return format!(
             "Latitude counts as known to {:.3} arcsec (latitude_sigma_deg); the sigmas include what \
@@ -279,7 +279,9 @@ fn assumed_latitude(calibration: &Calibration, influence: &SiteInfluence) -> Str
             3600.0 * sigma
         );
     }
-    let shifts = influence.bias_per_unit.map(|bias| bias * influence.error());
+    let shifts = influence
+        .bias_per_unit
+        .map(|bias| bias * influence.assumed_error());
     let coefficients = calibration.coefficients();
     let in_sigmas = |index: usize| (shifts[index] / coefficients[index].sigma).abs();
     let most = (0..shifts.len()).max_by(|a, b| in_sigmas(*a).total_cmp(&in_sigmas(*b)));
@@ -298,7 +300,7 @@ fn assumed_latitude(calibration: &Calibration, influence: &SiteInfluence) -> Str
     )
 }
 
-fn told_latitude(influence: &SiteInfluence) -> String {
+fn told_latitude(influence: &ConsiderSensitivity) -> String {
     let told = influence.from_record_sigma;
     if !told.is_finite() {
         return "would tell nothing of it.".to_owned();
@@ -314,8 +316,8 @@ fn told_latitude(influence: &SiteInfluence) -> String {
 }
 
 /// The error that the table of silent biases tells the effect of.
-pub(super) fn site_error(influence: &SiteInfluence) -> String {
-    let error = influence.error();
+pub(super) fn site_error(influence: &ConsiderSensitivity) -> String {
+    let error = influence.assumed_error();
     let size = match influence.quantity {
         SiteQuantity::Latitude => format!("latitude +{:.3} arcsec", 3600.0 * error),
         SiteQuantity::EarthRate => format!("Earth rate +{error:.1e}"),

@@ -2,7 +2,9 @@
 
 use gyrocal::estimation::Factors;
 use gyrocal::{PlatformFilter, Settings};
-use gyrocal_calibration::{Extended, NoiseModel, Options, Run, pass, settings, spikes};
+use gyrocal_calibration::{
+    Extended, NoiseModel, Options, Run, filter_settings, gross_errors, run_filter,
+};
 use gyrocal_record::{Bench, Record};
 
 use super::DiagnoseError;
@@ -29,7 +31,7 @@ pub(super) fn audited<'a>(
     options: &Options,
 ) -> Result<Audited<'a>, DiagnoseError> {
     let Run { record, bench } = *run;
-    let gross = spikes(record, bench.accel_noise_g);
+    let gross = gross_errors(record, bench.accel_noise_g);
     let whole: Vec<[usize; 2]> = gross
         .iter()
         .flat_map(|row| (0..3).map(|axis| [*row, axis]))
@@ -129,7 +131,7 @@ fn innovations(
     bench: &Bench,
     fitted: &Extended<'_>,
 ) -> Result<Innovations, DiagnoseError> {
-    let base = settings(&Bench {
+    let base = filter_settings(&Bench {
         initial_angles_deg: Some([0.0; 3]),
         initial_angles_sigma_deg: [0.01; 3],
         ..bench.clone()
@@ -148,7 +150,7 @@ fn innovations(
     );
     let mut innovations = Innovations::default();
     let mut refused = None;
-    pass(record, record.len(), filter, |row, filter, innovation| {
+    run_filter(record, record.len(), filter, |row, filter, innovation| {
         let residual_g = core::array::from_fn(|axis| {
             if innovation.observed[axis] {
                 innovation.residual[axis]

@@ -1,7 +1,7 @@
 //! One attitude and duration, looked at.
 
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
-use gyrocal_calibration::{CalibrationError, Extended, ImaginedRun, NoiseModel, Options, Run};
+use gyrocal_calibration::{CalibrationError, Extended, NoiseModel, Options, PlannedRun, Run};
 use gyrocal_record::{Bench, GimbalLimits, Record};
 use nalgebra::{DMatrix, DVector};
 
@@ -219,8 +219,8 @@ impl<'a> Setting<'a> {
         bench: &'b Bench,
         start: Orientation,
         parameters: &'b [f64],
-    ) -> ImaginedRun<'b> {
-        ImaginedRun {
+    ) -> PlannedRun<'b> {
+        PlannedRun {
             run: Run { record, bench },
             start,
             parameters,

@@ -1,7 +1,7 @@
 //! What a run says of columns.
 
 use gyrocal::generated::catalogue::PARAMETERS;
-use gyrocal_calibration::{CalibrationError, Extended, ImaginedRun, Options};
+use gyrocal_calibration::{CalibrationError, Extended, Options, PlannedRun};
 use gyrocal_record::Record;
 use nalgebra::{DMatrix, DVector};
 
@@ -63,14 +63,15 @@ impl Said {
 
 /// Information of a run that has not been made on the amplitudes of pieces, from a row on.
 pub(crate) fn foreseen(
-    run: &ImaginedRun<'_>,
+    run: &PlannedRun<'_>,
     pieces: &[Piece],
     first: usize,
     points: Vec<gyrocal::trajectory::Orientation>,
     options: &Options,
 ) -> Result<DMatrix<f64>, CalibrationError> {
     let columns = Columns::new(pieces, run.run.record);
-    let all = run.foresee(points, &columns.active, &columns.further, first, options)?;
+    let all =
+        run.predicted_information(points, &columns.active, &columns.further, first, options)?;
     let count = pieces.len();
     let value = |i: usize, j: usize| {
         let (a, b) = (columns.places[i], columns.places[j]);

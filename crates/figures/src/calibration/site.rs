@@ -100,7 +100,7 @@ fn bias() -> Result<Figure, Error> {
         });
         let (clean, wrong) = (clean?, wrong?);
         let influence = clean
-            .site
+            .site_sensitivities
             .iter()
             .find(|influence| influence.quantity == SiteQuantity::Latitude)
             .ok_or("the influence of latitude is missing")?;

@@ -157,7 +157,7 @@ fn combinations(measured: &mut Measured, report: &ImportReport, calibration: &Ca
             sigma / before,
         ));
     }
-    let undetermined = calibration.undetermined.len();
+    let undetermined = calibration.unobservable.len();
     measured.values.put("table_combinations", table.text());
     measured
         .values

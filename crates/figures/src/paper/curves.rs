@@ -1,7 +1,7 @@
 //! Figures 2 to 4 and two more: estimates against time, innovations, and final estimates.
 
 use gyrocal::{PlatformFilter, Settings};
-use gyrocal_calibration::{Options, settings};
+use gyrocal_calibration::{Options, filter_settings};
 use gyrocal_report::{
     After, Comparison, Convergence, ConvergingCoefficient, Estimate, Picture, Quantity, Residuals,
 };
@@ -59,7 +59,7 @@ impl Track {
             integration: options.integration,
             recentring: options.recentring,
             longest_step_s: options.longest_step_s,
-            ..settings(&simulation.bench).ok_or("the bench does not give the attitude")?
+            ..filter_settings(&simulation.bench).ok_or("the bench does not give the attitude")?
         };
         let mut filter = PlatformFilter::<f64>::new(&settings)?;
         let mut track = Self {

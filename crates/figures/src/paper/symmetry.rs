@@ -88,7 +88,7 @@ fn arc_second(measured: &mut Measured) -> Result<(), Error> {
     };
     let (before, after) = (batch(&right)?, batch(&wrong)?);
     let latitude = before
-        .site
+        .site_sensitivities
         .iter()
         .find(|influence| influence.quantity == SiteQuantity::Latitude)
         .ok_or("the batch estimator says nothing of latitude")?;

@@ -1,4 +1,4 @@
-//! What no estimator can do better than: the Cramér-Rao bound.
+//! Cramér-Rao bound of the coefficients.
 
 use gyrocal::trajectory::orientation;
 use gyrocal::{Anchored, Settings, Surveyed};
@@ -14,25 +14,26 @@ use crate::problem::Problem;
 use crate::run::Run;
 use crate::settings::level;
 
-/// Cramér-Rao bound of the nine coefficients: the covariance that no estimator of them falls
-/// below, if noise and prior are what the bench declares.
+/// Cramér-Rao bound of the nine coefficients: the least covariance of any estimator, for noise and
+/// prior as the bench declares them. Returned in the order of [`gyrocal::Drift`], in the units of
+/// the coefficients.
 ///
-/// It is the inverse of the information of the record, linearised along the true trajectory and
-/// with the true coefficients, plus that of the prior (Van Trees, *Detection, Estimation, and
+/// The bound is the inverse of the information of the record, linearised about the true trajectory
+/// and the true coefficients, plus that of the prior (Van Trees, *Detection, Estimation, and
 /// Modulation Theory* I, 1968, section 2.4); the attitudes at all rows are eliminated. Latitude,
-/// Earth rate and gravity are unknowns with the sigmas that the bench declares; without a sigma
-/// they count as known.
+/// Earth rate and gravity are unknowns with the sigmas that the bench declares, and known without
+/// a sigma.
 ///
-/// `platform_c_enu` is the attitude at each row, platform components from East, North, Up
-/// components, and `drift` the true coefficients in the order of the result. The samples do not
-/// matter, but for which of them are missing.
+/// `platform_c_enu` is the true attitude at each row, platform components from East, North, Up
+/// components; `drift` are the true coefficients in the order of the result. Of the samples only
+/// missing values matter.
 ///
 /// # Errors
 /// [`CalibrationError::UnequalLengths`] of the record; [`CalibrationError::NotLevelled`] if the
 /// bench gives no attitude and the record neither; [`CalibrationError::Pass`] if there is not one
 /// attitude for each row, or the record cannot be passed over;
 /// [`CalibrationError::NotPositiveDefinite`] if the information has no inverse.
-pub fn bound(
+pub fn cramer_rao_bound(
     run: &Run<'_>,
     platform_c_enu: &[[[f64; 3]; 3]],
     drift: &[f64; PARAMETERS],

@@ -1,4 +1,4 @@
-//! What a run that has not been made would say.
+//! Predicted information of a planned run.
 
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
@@ -15,12 +15,12 @@ use crate::run::{Rows, Run};
 use crate::settings::level;
 use crate::solve::Failure;
 
-/// A run that has not been made: from its first attitude the platform goes where the model takes
-/// it.
+/// A run that has not been made. Its trajectory is the noise-free solution of the model from the
+/// first attitude.
 #[derive(Clone, Debug)]
-pub struct ImaginedRun<'a> {
-    /// Its rows and its bench. Values of accelerometers do not matter, but for those of the first
-    /// rows if the bench does not give the attitude, and for which are missing.
+pub struct PlannedRun<'a> {
+    /// Times, missing values and bench of the run. Accelerometer values are used only to level the
+    /// platform if the bench does not declare the attitude.
     pub run: Run<'a>,
     /// Attitude at the first row.
     pub start: Orientation,
@@ -28,25 +28,25 @@ pub struct ImaginedRun<'a> {
     pub parameters: &'a [f64],
     /// Onsets and time constants, as [`Catalogue`] takes them.
     pub shapes: [f64; catalogue::SHAPES.len()],
-    /// The noise that is expected; weights do not matter.
+    /// The expected noise; weights are not used.
     pub noise: &'a NoiseModel,
 }
 
-/// What it would say.
+/// Predicted information of a run, and the trajectory that it is linearised about.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Foreseen {
-    /// Information on the amplitudes of columns, those of parameters first; the attitudes at all
-    /// rows are eliminated.
+pub struct PredictedInformation {
+    /// Information matrix of the amplitudes of the columns, those of parameters first; the
+    /// attitudes at all rows are eliminated.
     pub information: DMatrix<f64>,
     /// Attitude at each row.
     pub points: Vec<Orientation>,
 }
 
-impl ImaginedRun<'_> {
-    /// Where the platform goes, noise aside.
+impl PlannedRun<'_> {
+    /// Attitude at each row without noise.
     ///
     /// # Errors
-    /// As [`crate::bound`].
+    /// As [`crate::cramer_rao_bound`].
     pub fn trajectory(&self, options: &Options) -> Result<Vec<Orientation>, CalibrationError> {
         let none = Further::default();
         let points = vec![self.start; self.run.record.len()];
@@ -56,19 +56,19 @@ impl ImaginedRun<'_> {
             .map_err(|source| CalibrationError::from(Failure::Pass(0, source)))
     }
 
-    /// Information of the rows from `first` on, given those before, on the parameters `active`
-    /// of [`Catalogue`] and on further columns, along a trajectory.
+    /// Information of the rows from `first` on, given the earlier ones, on the parameters `active`
+    /// of [`Catalogue`] and on further columns, along the trajectory `points`.
     ///
     /// # Errors
-    /// As [`crate::bound`].
-    pub fn foresee(
+    /// As [`crate::cramer_rao_bound`].
+    pub fn predicted_information(
         &self,
         points: Vec<Orientation>,
         active: &[usize],
         columns: &[Column],
         first: usize,
         options: &Options,
-    ) -> Result<Foreseen, CalibrationError> {
+    ) -> Result<PredictedInformation, CalibrationError> {
         let further = Further::new(columns.to_vec());
         let count = active.len() + columns.len();
         let problem = self.problem(points, options)?;
@@ -83,7 +83,7 @@ impl ImaginedRun<'_> {
                 })
             })
             .map_err(|source| CalibrationError::from(Failure::Pass(0, source)))?;
-        Ok(Foreseen {
+        Ok(PredictedInformation {
             information: reduced.gram.view((1, 1), (count, count)) - earlier,
             points: problem
                 .legs
