@@ -1,4 +1,4 @@
-//! Where a platform may lie when the first row is taken.
+//! Prior of the attitude at the first row.
 
 use gyrocal::generated::platform::reanchor;
 use gyrocal::trajectory::{Orientation, orientation, turned};
@@ -7,44 +7,50 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::CalibrationError;
 
-/// Azimuths that are tried when none is given: a filter finds its way from 8° beside the truth.
-/// From 15° one record of two days at latitude 70° in five leads all of them astray.
+/// Number of azimuths tried when none is declared, one every 15°. A filter converges from 8° off the
+/// truth; with 15° all of them diverge in one of five records of two days at latitude 70°.
 const AZIMUTHS: usize = 24;
 
-/// Standard deviation about a trial azimuth for the pass that ranks the trials, rad.
-const TRIAL_AZIMUTH_SIGMA_RAD: f64 = 0.26;
+/// Standard deviation of the azimuth for the filters that rank the hypotheses, rad.
+const HYPOTHESIS_AZIMUTH_SIGMA_RAD: f64 = 0.26;
 
 /// Standard deviation of an unknown azimuth, rad: that of a uniform one is 1.81.
 const UNKNOWN_AZIMUTH_SIGMA_RAD: f64 = 1.81;
 
-/// Standard deviation of a tilt that the first samples have to tell, rad.
+/// Standard deviation of a tilt that is estimated from the first samples, rad.
 const UNKNOWN_TILT_SIGMA_RAD: f64 = 0.1;
 
-/// An attitude before the record, with the covariance of its error as a rotation vector in
-/// platform axes.
+/// Prior of the first attitude: its mean, and the covariance of its error as a rotation vector in
+/// platform axes, rad².
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct InitialAttitude {
+pub(crate) struct AttitudePrior {
     pub(crate) orientation: Orientation,
     pub(crate) covariance: [[f64; 3]; 3],
 }
 
-/// What there is to try: what the joint solution takes as prior, and what the filter starts from.
-pub(crate) struct Trial {
-    pub(crate) prior: InitialAttitude,
-    pub(crate) start: InitialAttitude,
+/// A hypothesis on the first attitude.
+#[derive(Clone, Copy)]
+pub(crate) struct AttitudeHypothesis {
+    /// Prior of the joint solution.
+    pub(crate) prior: AttitudePrior,
+    /// Prior of the filter that gives the initial trajectory.
+    pub(crate) start: AttitudePrior,
 }
 
-/// The declared attitude, or the azimuths to try above a level found from the first samples.
-pub(crate) fn trials(record: &Record, bench: &Bench) -> Result<Vec<Trial>, CalibrationError> {
+/// The declared attitude, or one hypothesis for each azimuth tried, levelled by the first samples.
+pub(crate) fn attitude_hypotheses(
+    record: &Record,
+    bench: &Bench,
+) -> Result<Vec<AttitudeHypothesis>, CalibrationError> {
     if let Some(angles_deg) = bench.initial_angles_deg {
         let prior = declared(angles_deg, bench.initial_angles_sigma_deg);
-        return Ok(vec![Trial {
+        return Ok(vec![AttitudeHypothesis {
             prior,
             start: prior,
         }]);
     }
     let up = level(record).ok_or(CalibrationError::NotLevelled)?;
-    // Any horizontal direction will do as the first azimuth.
+    // The first azimuth is arbitrary.
     let smallest = (0..3).min_by(|a, b| up[*a].abs().total_cmp(&up[*b].abs()));
     let mut north = [0.0; 3];
     north[smallest.unwrap_or(0)] = 1.0;
@@ -58,20 +64,20 @@ pub(crate) fn trials(record: &Record, bench: &Bench) -> Result<Vec<Trial>, Calib
         .map(|index| {
             let angle = core::f64::consts::TAU * index as f64 / AZIMUTHS as f64;
             let orientation = turned(&first, &up.map(|component| component * angle));
-            Trial {
-                prior: about(orientation, UNKNOWN_AZIMUTH_SIGMA_RAD),
-                start: about(orientation, TRIAL_AZIMUTH_SIGMA_RAD),
+            AttitudeHypothesis {
+                prior: levelled_prior(orientation, UNKNOWN_AZIMUTH_SIGMA_RAD),
+                start: levelled_prior(orientation, HYPOTHESIS_AZIMUTH_SIGMA_RAD),
             }
         })
         .collect())
 }
 
-/// Angles against East-North-Up and their independent standard deviations.
+/// Prior from angles against East-North-Up and their independent standard deviations.
 ///
-/// As the second angle goes to 90 degrees, the other two become angles about one axis, and their sigmas
-/// leave a direction without any error. About no axis, therefore, does the attitude count as better known
-/// than the best known angle.
-fn declared(angles_deg: [f64; 3], sigma_deg: [f64; 3]) -> InitialAttitude {
+/// As the second angle tends to 90 degrees, the other two become angles about one axis and their
+/// sigmas leave a direction without error. The variance about every axis is therefore at least that
+/// of the best known angle.
+fn declared(angles_deg: [f64; 3], sigma_deg: [f64; 3]) -> AttitudePrior {
     let at = reanchor(&angles_deg.map(f64::to_radians));
     let map = Matrix3::from(at.rotation_d_theta_dense()).transpose();
     let variance = Vector3::from(sigma_deg.map(|sigma| sigma.to_radians().powi(2)));
@@ -81,7 +87,7 @@ fn declared(angles_deg: [f64; 3], sigma_deg: [f64; 3]) -> InitialAttitude {
         .eigenvalues
         .apply(|value| *value = value.max(variance.min()));
     let covariance = eigen.recompose();
-    InitialAttitude {
+    AttitudePrior {
         orientation: orientation(&at.platform_c_chart),
         covariance: core::array::from_fn(|i| {
             core::array::from_fn(|j| covariance[(i.max(j), i.min(j))])
@@ -89,12 +95,12 @@ fn declared(angles_deg: [f64; 3], sigma_deg: [f64; 3]) -> InitialAttitude {
     }
 }
 
-/// An attitude whose tilt is nearly unknown and whose azimuth is known to some sigma.
-fn about(orientation: Orientation, azimuth_sigma_rad: f64) -> InitialAttitude {
+/// Prior with the tilt's sigma of an estimated level and a given sigma of the azimuth.
+fn levelled_prior(orientation: Orientation, azimuth_sigma_rad: f64) -> AttitudePrior {
     let up = orientation[1];
     let tilt = UNKNOWN_TILT_SIGMA_RAD.powi(2);
     let excess = azimuth_sigma_rad.powi(2) - tilt;
-    InitialAttitude {
+    AttitudePrior {
         orientation,
         covariance: core::array::from_fn(|i| {
             core::array::from_fn(|j| excess * up[i] * up[j] + if i == j { tilt } else { 0.0 })
@@ -104,8 +110,8 @@ fn about(orientation: Orientation, azimuth_sigma_rad: f64) -> InitialAttitude {
 
 /// Direction of specific force in platform axes, from the first row that has all components.
 fn level(record: &Record) -> Option<[f64; 3]> {
-    // A platform turns with a degree in four minutes at most: rows soon after the first tell its
-    // tilt well within the sigma that is given to it.
+    // A platform turns by a degree in four minutes at most: a row of the first 20 minutes gives the
+    // tilt well within its sigma.
     let first_s = *record.time_s.first()?;
     let row = record
         .accel_g

@@ -1,33 +1,51 @@
-//! The batch estimator: from filtered trajectories to the joint solution.
+//! The batch estimator: initial guess, Gauss-Newton solution and covariance of several runs.
 
 use gyrocal::estimation::Manifold;
 use gyrocal::estimation::batch::Linearisation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
 use gyrocal::{Chart, Drift, Recentring, Settings};
+use gyrocal_record::Bench;
 
-use crate::PARAMETERS;
-use crate::begin::{begin, leg};
-use crate::calibrate::Options;
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fit::FitStatistics;
 use crate::gyro_axes::GyroAxes;
+use crate::initial_guess::initial_guess;
 use crate::layout::{Layout, SiteQuantity};
-use crate::noise;
+use crate::noise::{self, NoiseEstimate};
 use crate::observability::unobservable;
+use crate::options::Options;
 use crate::problem::Problem;
 use crate::result::{AzimuthSearch, Calibration, ConsiderSensitivity, RunResult};
-use crate::robust;
+use crate::robust::solve_robust;
 use crate::run::{Conditions, Run};
 use crate::settings::level;
-use crate::solve::{Failure, Solution};
+use crate::single_run::run_problem;
+use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
 
-/// Steps after which an estimate that still moves is given up.
-pub(crate) const MOST_ITERATIONS: usize = 50;
+/// The runs to be calibrated together, and how.
+struct Task<'a, 'b, D> {
+    model: &'a D,
+    runs: &'b [Run<'a>],
+    gyro_axes: Option<&'a [GyroAxes]>,
+    layout: &'b Layout,
+    options: &'b Options,
+}
+
+/// The joint problem at its solution.
+struct Solved<'a, D, I> {
+    problem: Problem<'a, D, I>,
+    solution: Solution,
+    /// Search for the azimuth of each run whose bench does not declare the attitude.
+    azimuths: Vec<Option<AzimuthSearch>>,
+    /// Number of values with a Huber weight below 1 in each run.
+    bounded: Vec<usize>,
+}
 
 /// Calibrates on whole records with a model whose parameters are those of
-/// [`gyrocal::Surveyed`]; `gyro_axes`, one for each run, for models in which gyros do not lie
-/// along the platform's axes.
+/// [`gyrocal::Surveyed`]. `gyro_axes`, one for each run, are given for models in which the gyros do
+/// not lie along the platform's axes.
 pub(crate) fn calibrate<D, I>(
     model: &D,
     runs: &[Run<'_>],
@@ -41,32 +59,19 @@ where
 {
     let benches: Vec<_> = runs.iter().map(|run| run.bench).collect();
     let layout = Layout::new(&benches);
-    let solve = |careful: bool, progress: &mut dyn FnMut(usize)| {
-        let (mut problem, azimuths) =
-            problem(model, runs, gyro_axes, &layout, options, careful, progress)?;
-        let (solution, bounded) = match options.outlier_bound {
-            Some(bound) => robust::solve(&mut problem, bound, MOST_ITERATIONS),
-            None => problem
-                .solve(MOST_ITERATIONS, |_| ())
-                .map(|solution| (solution, vec![0; runs.len()])),
-        }
-        .map_err(CalibrationError::from)?;
-        Ok::<_, CalibrationError>((problem, azimuths, solution, bounded))
-    };
-    // One pass of the filter is start enough for nearly every record.
-    let (problem, azimuths, solution, bounded) =
-        solve(false, progress).or_else(|_| solve(true, progress))?;
-    let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
-        .ok_or(CalibrationError::NotPositiveDefinite)?;
-    let runs = run_results(
-        &problem,
-        &solution,
-        &layout,
-        &uncertainty,
-        azimuths,
-        &bounded,
+    let task = &Task {
+        model,
+        runs,
+        gyro_axes,
+        layout: &layout,
         options,
-    )?;
+    };
+    // The filtered trajectory is a sufficient initial guess for nearly every record.
+    let solved = solve(task, false, progress).or_else(|_| solve(task, true, progress))?;
+    let (problem, solution) = (&solved.problem, &solved.solution);
+    let uncertainty = Uncertainty::new(&problem.unknowns, solution)
+        .ok_or(CalibrationError::NotPositiveDefinite)?;
+    let runs = run_results(&solved, &layout, &uncertainty, options)?;
     let last = runs
         .last()
         .map_or([[0.0; 3]; 3], |run| run.last_platform_c_enu);
@@ -75,7 +80,7 @@ where
         drift: Drift::from_array(core::array::from_fn(|i| problem.values[i])),
         covariance: core::array::from_fn(|i| core::array::from_fn(|j| uncertainty.total[(i, j)])),
         prior_sigma: Drift::from_array(prior_sigma),
-        fit: FitStatistics::of_batch(&solution, &problem.unknowns, &uncertainty),
+        fit: FitStatistics::of_batch(solution, &problem.unknowns, &uncertainty),
         platform_c_enu: last,
         final_angles_rad: angles_rad(&last),
         iterations: solution.iterations,
@@ -91,29 +96,51 @@ where
     })
 }
 
-/// A joint problem, and how the azimuth of each record was found.
-type Started<'a, D, I> = (Problem<'a, D, I>, Vec<Option<AzimuthSearch>>);
-
-/// The joint problem at its start.
-fn problem<'a, D, I>(
-    model: &'a D,
-    runs: &[Run<'a>],
-    gyro_axes: Option<&'a [GyroAxes]>,
-    layout: &Layout,
-    options: &Options,
+/// Solves the joint problem; `careful` makes the initial guesses by growing windows.
+fn solve<'a, D, I>(
+    task: &Task<'a, '_, D>,
     careful: bool,
     progress: &mut dyn FnMut(usize),
-) -> Result<Started<'a, D, I>, CalibrationError>
+) -> Result<Solved<'a, D, I>, CalibrationError>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
+    let (mut problem, azimuths) = problem_at_guess(task, careful, progress)?;
+    let (solution, bounded) = match task.options.outlier_bound {
+        Some(bound) => solve_robust(&mut problem, bound)?,
+        None => (problem.solve(MAX_ITERATIONS)?, vec![0; task.runs.len()]),
+    };
+    Ok(Solved {
+        problem,
+        solution,
+        azimuths,
+        bounded,
+    })
+}
+
+/// The joint problem at its initial guess, and the search for each run's azimuth.
+fn problem_at_guess<'a, D, I>(
+    task: &Task<'a, '_, D>,
+    careful: bool,
+    progress: &mut dyn FnMut(usize),
+) -> Result<(Problem<'a, D, I>, Vec<Option<AzimuthSearch>>), CalibrationError>
+where
+    D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
+    I: Conditions,
+{
+    let Task {
+        runs,
+        layout,
+        options,
+        ..
+    } = *task;
     let mut problem = Problem {
-        model,
+        model: task.model,
         integration: options.integration,
         longest_step_s: options.longest_step_s,
         unknowns: layout.unknowns.clone(),
-        legs: Vec::with_capacity(runs.len()),
+        runs: Vec::with_capacity(runs.len()),
         values: vec![0.0; layout.unknowns.len()],
     };
     let mut weights = [0.0; PARAMETERS];
@@ -125,93 +152,97 @@ where
             longest_step_s: options.longest_step_s,
             ..level(run.bench)
         };
-        let beginning = begin(run, &settings, options, careful)
+        let guess = initial_guess(run, &settings, options, careful)
             .map_err(|error| error.of_record(index, runs.len()))?;
-        let start = beginning.start;
-        // The filter's drifts are those of gyros along the platform's axes.
-        if gyro_axes.is_none() {
+        let start = guess.start;
+        // Weighted means of the filters' drifts, which are those of gyros along the platform's axes.
+        if task.gyro_axes.is_none() {
             for (i, sum) in weights.iter_mut().enumerate() {
                 let weight: f64 = start.sigma[i].powi(-2);
                 *sum += weight;
                 problem.values[i] += (start.drift[i] - problem.values[i]) * weight / *sum;
             }
         }
-        let prior = beginning.prior;
-        let mut leg = leg(
+        let mut run_problem = run_problem(
             run,
             run.record.len(),
             &settings,
-            &prior,
+            &guess.prior,
             start.points,
-            layout.sums(index),
+            layout.parameter_unknowns(index),
         );
-        leg.rows.gyro_axes = gyro_axes.map(|axes| &axes[index]);
-        // Weights of the others are found from where the first solution is.
+        run_problem.rows.gyro_axes = task.gyro_axes.map(|axes| &axes[index]);
+        // The weights of other outliers are found from the first solution.
         if options.outlier_bound.is_some() {
-            for row in beginning.gross_errors {
-                leg.rows.leave_out(row..row + 1);
+            for row in guess.gross_errors {
+                run_problem.rows.exclude(row..row + 1);
             }
         }
-        problem.legs.push(leg);
-        azimuths.push(beginning.azimuth);
+        problem.runs.push(run_problem);
+        azimuths.push(guess.azimuth);
         progress(run.record.len());
     }
     Ok((problem, azimuths))
 }
 
 fn run_results<D, I>(
-    problem: &Problem<'_, D, I>,
-    solution: &Solution,
+    solved: &Solved<'_, D, I>,
     layout: &Layout,
     uncertainty: &Uncertainty,
-    azimuths: Vec<Option<AzimuthSearch>>,
-    bounded: &[usize],
     options: &Options,
 ) -> Result<Vec<RunResult>, CalibrationError>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
-    azimuths
-        .into_iter()
-        .enumerate()
-        .map(|(index, azimuth)| {
-            let points = &problem.legs[index].points;
-            let attitude = |point: Option<&_>| point.map_or([[0.0; 3]; 3], platform_c_enu);
-            let turn_on_deg_per_h = layout.turn_ons[index].map(|first| {
-                core::array::from_fn(|axis| {
-                    let unknown = first + axis;
-                    let place = uncertainty.estimated.iter().position(|e| *e == unknown);
-                    let variance = place.map_or(f64::NAN, |i| uncertainty.total[(i, i)]);
-                    [problem.values[unknown], variance.sqrt()]
-                })
-            });
-            let noise = if options.noise {
-                let parameters = problem.parameters(index);
-                let found = problem.with_leg(index, &parameters, |pass| {
-                    let tape = solution.tapes[index].as_deref();
-                    let pass = Linearisation { tape, ..*pass };
-                    noise::estimate(|factors| pass.noise_score(factors))
-                });
-                Some(found.map_err(|error| CalibrationError::from(Failure::Pass(index, error)))?)
-            } else {
-                None
-            };
-            Ok(RunResult {
-                first_platform_c_enu: attitude(points.first()),
-                last_platform_c_enu: attitude(points.last()),
-                turn_on_deg_per_h,
-                azimuth,
-                noise,
-                bounded_values: bounded[index],
+    let problem = &solved.problem;
+    let attitude = |point: Option<&_>| point.map_or([[0.0; 3]; 3], platform_c_enu);
+    let results = problem.runs.iter().enumerate().map(|(index, run)| {
+        let turn_on_deg_per_h = layout.turn_ons[index].map(|first| {
+            core::array::from_fn(|axis| {
+                let unknown = first + axis;
+                let place = uncertainty.estimated.iter().position(|e| *e == unknown);
+                let variance = place.map_or(f64::NAN, |i| uncertainty.total[(i, i)]);
+                [problem.values[unknown], variance.sqrt()]
             })
+        });
+        let noise = options.noise.then(|| noise_estimate(solved, index));
+        Ok(RunResult {
+            first_platform_c_enu: attitude(run.points.first()),
+            last_platform_c_enu: attitude(run.points.last()),
+            turn_on_deg_per_h,
+            azimuth: solved.azimuths[index],
+            noise: noise.transpose()?,
+            bounded_values: solved.bounded[index],
         })
-        .collect()
+    });
+    results.collect()
 }
 
+/// Maximum-likelihood estimate of a run's noise at the solution.
+fn noise_estimate<D, I>(
+    solved: &Solved<'_, D, I>,
+    index: usize,
+) -> Result<NoiseEstimate, CalibrationError>
+where
+    D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
+    I: Conditions,
+{
+    let parameters = solved.problem.parameters(index);
+    solved
+        .problem
+        .with_run(index, &parameters, |pass| {
+            let tape = solved.solution.tapes[index].as_deref();
+            let pass = Linearisation { tape, ..*pass };
+            noise::estimate(|factors| pass.noise_score(factors))
+        })
+        .map_err(|error| CalibrationError::pass(index, error))
+}
+
+/// Sensitivities of the coefficients to the considered parameters of the first run's site.
 fn site_sensitivities(
     layout: &Layout,
-    benches: &[&gyrocal_record::Bench],
+    benches: &[&Bench],
     uncertainty: &Uncertainty,
 ) -> Vec<ConsiderSensitivity> {
     let Some(bench) = benches.first() else {
@@ -221,19 +252,17 @@ fn site_sensitivities(
         .into_iter()
         .filter_map(|quantity| {
             let unknown = layout.site_unknown(quantity);
-            let find = |(index, _): &&(usize, _)| *index == unknown;
-            let (_, taken) = uncertainty
-                .sensitivities
+            let considered = uncertainty
+                .considered
                 .iter()
-                .find(|(i, _)| *i == unknown)?;
-            let (_, from_record_sigma) = uncertainty.from_records.iter().find(find)?;
+                .find(|c| c.unknown == unknown)?;
             Some(ConsiderSensitivity {
                 quantity,
                 declared_sigma: quantity.declared_sigma(bench),
-                from_record_sigma: *from_record_sigma,
-                // An error that is there and not assumed is taken for the opposite of what
-                // assuming it would change.
-                bias_per_unit: core::array::from_fn(|i| -taken[i]),
+                from_record_sigma: considered.from_records_sigma,
+                // A true value above the assumed one biases the estimates by the opposite of what
+                // assuming the larger value would change.
+                bias_per_unit: core::array::from_fn(|i| -considered.sensitivity[i]),
             })
         })
         .collect()

@@ -4,15 +4,15 @@ use gyrocal::trajectory::orientation;
 use gyrocal::{Anchored, Settings, Surveyed};
 use nalgebra::{Cholesky, DMatrix};
 
-use crate::PARAMETERS;
-use crate::attitude::trials;
-use crate::begin::leg;
-use crate::calibrate::Options;
+use crate::attitude::attitude_hypotheses;
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::layout::Layout;
+use crate::options::Options;
 use crate::problem::Problem;
 use crate::run::Run;
 use crate::settings::level;
+use crate::single_run::run_problem;
 
 /// Cramér-Rao bound of the nine coefficients: the least covariance of any estimator, for noise and
 /// prior as the bench declares them. Returned in the order of [`gyrocal::Drift`], in the units of
@@ -45,46 +45,48 @@ pub fn cramer_rao_bound(
         });
     }
     let layout = Layout::new(&[run.bench]);
-    // The truth does not depend on how an estimator integrates.
+    // The integration rule has no influence: the bound is linearised about the truth.
     let options = Options::default();
     let settings = Settings {
         integration: options.integration,
         longest_step_s: options.longest_step_s,
         ..level(run.bench)
     };
-    // All trials have the same covariance: it does not depend on azimuth.
-    let prior = trials(run.record, run.bench)?
+    // All hypotheses have the same covariance: it does not depend on azimuth.
+    let prior = attitude_hypotheses(run.record, run.bench)?
         .first()
-        .map(|trial| trial.prior)
+        .map(|hypothesis| hypothesis.prior)
         .ok_or(CalibrationError::NotLevelled)?;
     let points = platform_c_enu.iter().map(orientation).collect();
     let mut values = vec![0.0; layout.unknowns.len()];
     values[..PARAMETERS].copy_from_slice(drift);
-    let sums = layout.sums(0);
+    let parameter_unknowns = layout.parameter_unknowns(0);
     let problem = Problem {
         model: &Anchored(Surveyed),
         integration: options.integration,
         longest_step_s: options.longest_step_s,
-        legs: vec![leg(
+        runs: vec![run_problem(
             run,
             run.record.len(),
             &settings,
             &prior,
             points,
-            sums.clone(),
+            parameter_unknowns.clone(),
         )],
         unknowns: layout.unknowns,
         values,
     };
     let reduced = problem
-        .with_leg(0, &problem.parameters(0), |pass| pass.reduce(|_| ()))
-        .map_err(|source| CalibrationError::Pass { run: 1, source })?;
-    // Columns are the parameters of the model; of one run each is one unknown.
-    let sigma: Vec<f64> = sums
+        .with_run(0, &problem.parameters(0), |pass| pass.reduce(|_| ()))
+        .map_err(|source| CalibrationError::pass(0, source))?;
+    // Columns are the parameters of the model; in a single run each of them is one unknown.
+    let sigma: Vec<f64> = parameter_unknowns
         .iter()
         .map(|unknowns| unknowns.iter().map(|i| problem.unknowns[*i].sigma).sum())
         .collect();
-    let unknown: Vec<usize> = (0..sums.len()).filter(|i| sigma[*i] > 0.0).collect();
+    let unknown: Vec<usize> = (0..parameter_unknowns.len())
+        .filter(|i| sigma[*i] > 0.0)
+        .collect();
     let information = DMatrix::from_fn(unknown.len(), unknown.len(), |i, j| {
         let (a, b) = (unknown[i], unknown[j]);
         let own = if i == j { sigma[a].powi(-2) } else { 0.0 };

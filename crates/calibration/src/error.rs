@@ -1,7 +1,5 @@
 use gyrocal::EstimationError;
 
-use crate::solve::Failure;
-
 /// Why a record could not be calibrated.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -137,6 +135,14 @@ pub enum CalibrationError {
 }
 
 impl CalibrationError {
+    /// A failed pass over the record of this index, counted from 0.
+    pub(crate) fn pass(index: usize, source: EstimationError) -> Self {
+        Self::Pass {
+            run: index + 1,
+            source,
+        }
+    }
+
     /// Says which of several records an error is about, `index` counted from 0.
     pub(crate) fn of_record(self, index: usize, runs: usize) -> Self {
         if runs == 1 {
@@ -146,26 +152,6 @@ impl CalibrationError {
             run: index + 1,
             runs,
             source: Box::new(self),
-        }
-    }
-}
-
-impl From<Failure> for CalibrationError {
-    fn from(failure: Failure) -> Self {
-        match failure {
-            Failure::Pass(run, source) => Self::Pass {
-                run: run + 1,
-                source,
-            },
-            Failure::NoDescent { iterations } => Self::NoDescent { iterations },
-            Failure::NotConverged {
-                iterations,
-                last_step,
-            } => Self::NotConverged {
-                iterations,
-                last_step,
-            },
-            Failure::Singular => Self::NotPositiveDefinite,
         }
     }
 }

@@ -10,17 +10,16 @@ use gyrocal::{Anchored, Catalogue, Chart, Recentring, Settings};
 use gyrocal_record::Bench;
 use nalgebra::DMatrix;
 
-use crate::PARAMETERS;
-use crate::batch::MOST_ITERATIONS;
-use crate::begin::begin;
-use crate::calibrate::Options;
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::further::Further;
+use crate::initial_guess::initial_guess;
 use crate::layout::SiteQuantity;
-use crate::problem::{Leg, Problem, Unknown};
-use crate::run::{Rows, Run};
+use crate::options::Options;
+use crate::problem::{Problem, RunProblem, Unknown};
+use crate::run::{Run, WeightedRows};
 use crate::settings::level;
-use crate::solve::{Failure, Solution};
+use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
 
 pub use prediction::{Estimates, Expectation};
@@ -125,28 +124,28 @@ impl<'a> Extended<'a> {
             ..level(run.bench)
         };
         let fit = |careful| {
-            let beginning = begin(run, &settings, options, careful)?;
+            let beginning = initial_guess(run, &settings, options, careful)?;
             let extension = of_site(run.bench);
             let mut values = beginning.start.drift.to_vec();
             values.resize(PARAMETERS + extension.parameters.len(), 0.0);
             let accel_noise_g = noise
                 .accel_ratio
                 .map(|ratio| ratio * settings.accel_noise_g);
-            let mut rows = Rows::new(run.record, run.record.len(), accel_noise_g);
+            let mut rows = WeightedRows::new(run.record, run.record.len(), accel_noise_g);
             rows.weights.clone_from(&noise.weights);
             let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
             if let Some(field_gauss) = run.bench.magnetic_field_gauss {
                 chart.set_field_gauss(field_gauss);
             }
             let density = settings.drift_noise_density();
-            let leg = Leg {
+            let leg = RunProblem {
                 rows,
                 chart,
                 noise_density: noise.gyro_ratio.map(|ratio| ratio * ratio * density),
                 prior: beginning.prior.orientation,
                 prior_covariance: beginning.prior.covariance,
                 points: beginning.start.points,
-                sums: Vec::new(),
+                parameter_unknowns: Vec::new(),
                 further: Further::default(),
                 amplitudes: Vec::new(),
             };
@@ -161,7 +160,7 @@ impl<'a> Extended<'a> {
                     .chain(extension.parameters.iter().map(|(_, sigma)| *sigma))
                     .map(Unknown::estimated)
                     .collect(),
-                legs: vec![leg],
+                runs: vec![leg],
                 values,
             };
             Self::solved(problem, extension)
@@ -181,10 +180,10 @@ impl<'a> Extended<'a> {
     fn refitted_with(
         &self,
         extension: &Extension,
-        change: impl FnOnce(&mut Leg<'a, CatalogueInputs<f64>>),
+        change: impl FnOnce(&mut RunProblem<'a, CatalogueInputs<f64>>),
     ) -> Result<Self, CalibrationError> {
         let before = self.parameters();
-        let leg = &self.problem.legs[0];
+        let leg = &self.problem.runs[0];
         let mut unknowns = self.problem.unknowns[..PARAMETERS].to_vec();
         let mut values = self.problem.values[..PARAMETERS].to_vec();
         for (parameter, sigma) in &extension.parameters {
@@ -209,20 +208,20 @@ impl<'a> Extended<'a> {
             integration: self.problem.integration,
             longest_step_s: self.problem.longest_step_s,
             unknowns,
-            legs: vec![Leg {
-                rows: leg.rows.again(),
+            runs: vec![RunProblem {
+                rows: leg.rows.clone(),
                 chart,
                 noise_density: leg.noise_density,
                 prior: leg.prior,
                 prior_covariance: leg.prior_covariance,
                 points: leg.points.clone(),
-                sums: Vec::new(),
+                parameter_unknowns: Vec::new(),
                 further: Further::default(),
                 amplitudes: Vec::new(),
             }],
             values,
         };
-        change(&mut problem.legs[0]);
+        change(&mut problem.runs[0]);
         Self::solved(problem, extension.clone())
     }
 
@@ -254,15 +253,13 @@ impl<'a> Extended<'a> {
         let first = PARAMETERS + extension.parameters.len();
         let last = first + extension.further.columns().len();
         problem.values.resize(last, 0.0);
-        let leg = &mut problem.legs[0];
-        leg.sums = sums;
+        let leg = &mut problem.runs[0];
+        leg.parameter_unknowns = sums;
         leg.further = extension.further.clone();
         leg.amplitudes = (first..last).collect();
         leg.further
             .set_amplitudes(problem.values[first..].iter().copied());
-        let solution = problem
-            .solve(MOST_ITERATIONS, |_| ())
-            .map_err(CalibrationError::from)?;
+        let solution = problem.solve(MAX_ITERATIONS)?;
         let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
             .ok_or(CalibrationError::NotPositiveDefinite)?;
         Ok(Self {
@@ -318,7 +315,7 @@ impl<'a> Extended<'a> {
     /// Smoothed attitude at each row.
     #[must_use]
     pub fn points(&self) -> &[Orientation] {
-        &self.problem.legs[0].points
+        &self.problem.runs[0].points
     }
 
     /// All parameters of [`Catalogue`]: those that are not estimated are zero.
@@ -342,8 +339,8 @@ impl<'a> Extended<'a> {
         let parameters = self.parameters();
         let points = self
             .problem
-            .with_leg(0, &parameters, |pass| pass.free_run())
-            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+            .with_run(0, &parameters, |pass| pass.free_run())
+            .map_err(|error| CalibrationError::pass(0, error))?;
         Ok(self.problem.outputs(0, &points))
     }
 }

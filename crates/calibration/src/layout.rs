@@ -1,19 +1,17 @@
-//! Which unknowns a joint calibration has, and in which order.
+//! Unknowns of a joint calibration and their order: the coefficients, the errors of each site, the
+//! turn-on offsets of each run.
 
 use gyrocal::generated::surveyed::parameters_index as index;
 use gyrocal_record::Bench;
 
-use crate::PARAMETERS;
+use crate::coefficients::{BIASES, PARAMETERS};
 use crate::problem::Unknown;
 use crate::settings::level;
-
-/// Indices of the constant drifts of gyros x, y, z among the coefficients.
-pub const BIASES: [usize; 3] = [index::GYRO_X_BIAS, index::GYRO_Y_BIAS, index::GYRO_Z_BIAS];
 
 /// Turn-on sigma of a gyro whose turn-ons are declared equal while those of others differ.
 const SAME_DEG_PER_H: f64 = 1e-9;
 
-/// What is known of the site but for an error, in the order in which the model has it.
+/// A parameter of the site that is considered and not estimated, in the order of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SiteQuantity {
@@ -26,7 +24,7 @@ pub enum SiteQuantity {
 }
 
 impl SiteQuantity {
-    /// All of them.
+    /// All quantities.
     pub const ALL: [Self; 3] = [Self::Gravity, Self::Latitude, Self::EarthRate];
 
     /// Public id of its error in the catalogue.
@@ -70,19 +68,19 @@ impl SiteQuantity {
     }
 }
 
-/// The coefficients come first, then the errors of each site, then, for each run, what its
-/// turn-on adds to the constant drifts, if turn-ons differ.
+/// Unknowns of a joint calibration: the coefficients, then the errors of each site, then, if turn-ons
+/// differ, the offsets of each run's constant drifts from their means.
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
     pub(crate) unknowns: Vec<Unknown>,
     /// Index of the first unknown of each run's site.
     sites: Vec<usize>,
-    /// Index of the first turn-on of each run.
+    /// Index of the first turn-on offset of each run.
     pub(crate) turn_ons: Vec<Option<usize>>,
 }
 
 impl Layout {
-    /// For runs on these benches; the first one's prior holds for all.
+    /// Unknowns of runs on these benches; the prior of the first bench holds for all.
     pub(crate) fn new(benches: &[&Bench]) -> Self {
         let turn_on = benches
             .first()
@@ -129,22 +127,23 @@ impl Layout {
         }
     }
 
-    /// For each parameter of the model in a run, the unknowns whose sum it is.
-    pub(crate) fn sums(&self, run: usize) -> Vec<Vec<usize>> {
-        let mut sums: Vec<Vec<usize>> = (0..PARAMETERS).map(|parameter| vec![parameter]).collect();
-        sums.resize(gyrocal::Surveyed::PARAMETERS, Vec::new());
+    /// For each parameter of the model the unknowns whose sum it is in a run.
+    pub(crate) fn parameter_unknowns(&self, run: usize) -> Vec<Vec<usize>> {
+        let mut unknowns: Vec<Vec<usize>> =
+            (0..PARAMETERS).map(|parameter| vec![parameter]).collect();
+        unknowns.resize(gyrocal::Surveyed::PARAMETERS, Vec::new());
         for (offset, quantity) in SiteQuantity::ALL.into_iter().enumerate() {
-            sums[quantity.parameter()].push(self.sites[run] + offset);
+            unknowns[quantity.parameter()].push(self.sites[run] + offset);
         }
         if let Some(first) = self.turn_ons[run] {
             for (axis, bias) in BIASES.into_iter().enumerate() {
-                sums[bias].push(first + axis);
+                unknowns[bias].push(first + axis);
             }
         }
-        sums
+        unknowns
     }
 
-    /// Index of the first site's quantity among the unknowns.
+    /// Index of a quantity of the first run's site among the unknowns.
     pub(crate) fn site_unknown(&self, quantity: SiteQuantity) -> usize {
         self.sites[0]
             + SiteQuantity::ALL

@@ -29,9 +29,12 @@
 
 mod attitude;
 mod averaging;
+mod azimuth;
 mod batch;
-mod begin;
 mod calibrate;
+mod coefficients;
+#[cfg(test)]
+mod convergence_tests;
 mod cramer_rao;
 mod error;
 mod extended;
@@ -39,22 +42,26 @@ mod fit;
 mod further;
 mod gross_errors;
 mod gyro_axes;
+mod initial_guess;
+mod initial_trajectory;
 mod layout;
 mod noise;
 mod observability;
+mod options;
 mod planned_run;
 mod problem;
 mod result;
 mod robust;
 mod run;
 mod settings;
+mod single_run;
 mod solve;
-mod start;
 mod streaming;
 mod uncertainty;
 
 pub use averaging::{AveragedRecord, attitude_walk_share, average_record};
-pub use calibrate::{Method, Options, calibrate, calibrate_runs, calibrate_strapdown};
+pub use calibrate::{calibrate, calibrate_runs, calibrate_strapdown};
+pub use coefficients::BIASES;
 pub use cramer_rao::cramer_rao_bound;
 pub use error::CalibrationError;
 pub use extended::{Estimates, Expectation, Extended, Extension, Jump, NoiseModel};
@@ -62,14 +69,12 @@ pub use fit::{Consistency, FitStatistics, chi_square_band};
 pub use further::{Column, Further};
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;
-pub use layout::{BIASES, SiteQuantity};
+pub use layout::SiteQuantity;
 pub use noise::{NoiseEstimate, NoiseRatio};
 pub use observability::UnobservableCombination;
+pub use options::{Method, Options};
 pub use planned_run::{PlannedRun, PredictedInformation};
 pub use result::{AzimuthSearch, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult};
 pub use run::Run;
 pub use settings::filter_settings;
 pub use streaming::run_filter;
-
-/// Number of drift coefficients.
-const PARAMETERS: usize = gyrocal::Platform::PARAMETERS;

@@ -5,15 +5,14 @@ use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Chart};
 use nalgebra::DMatrix;
 
-use crate::attitude::trials;
-use crate::calibrate::Options;
+use crate::attitude::attitude_hypotheses;
 use crate::error::CalibrationError;
 use crate::extended::NoiseModel;
 use crate::further::{Column, Further};
-use crate::problem::{Leg, Problem};
-use crate::run::{Rows, Run};
+use crate::options::Options;
+use crate::problem::{Problem, RunProblem};
+use crate::run::{Run, WeightedRows};
 use crate::settings::level;
-use crate::solve::Failure;
 
 /// A run that has not been made. Its trajectory is the noise-free solution of the model from the
 /// first attitude.
@@ -53,7 +52,7 @@ impl PlannedRun<'_> {
         let problem = self.problem(points, options)?;
         problem
             .with_active(0, self.parameters, &[], &none, |pass| pass.free_run())
-            .map_err(|source| CalibrationError::from(Failure::Pass(0, source)))
+            .map_err(|source| CalibrationError::pass(0, source))
     }
 
     /// Information of the rows from `first` on, given the earlier ones, on the parameters `active`
@@ -82,13 +81,13 @@ impl PlannedRun<'_> {
                     }
                 })
             })
-            .map_err(|source| CalibrationError::from(Failure::Pass(0, source)))?;
+            .map_err(|source| CalibrationError::pass(0, source))?;
         Ok(PredictedInformation {
             information: reduced.gram.view((1, 1), (count, count)) - earlier,
             points: problem
-                .legs
+                .runs
                 .into_iter()
-                .flat_map(|leg| leg.points)
+                .flat_map(|run| run.points)
                 .collect(),
         })
     }
@@ -100,10 +99,10 @@ impl PlannedRun<'_> {
     ) -> Result<Problem<'_, Anchored<Catalogue>, CatalogueInputs<f64>>, CalibrationError> {
         let Run { record, bench } = self.run;
         let settings = level(bench);
-        // All trials have the same covariance: it does not depend on azimuth.
-        let prior_covariance = trials(record, bench)?
+        // All hypotheses have the same covariance: it does not depend on azimuth.
+        let prior_covariance = attitude_hypotheses(record, bench)?
             .first()
-            .map(|trial| trial.prior.covariance)
+            .map(|hypothesis| hypothesis.prior.covariance)
             .ok_or(CalibrationError::NotLevelled)?;
         let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
         if let Some(field_gauss) = bench.magnetic_field_gauss {
@@ -121,14 +120,14 @@ impl PlannedRun<'_> {
             longest_step_s: options.longest_step_s,
             unknowns: Vec::new(),
             values: Vec::new(),
-            legs: vec![Leg {
-                rows: Rows::new(record, record.len(), noise_g),
+            runs: vec![RunProblem {
+                rows: WeightedRows::new(record, record.len(), noise_g),
                 chart,
                 noise_density: self.noise.gyro_ratio.map(|ratio| ratio * ratio * density),
                 prior: self.start,
                 prior_covariance,
                 points,
-                sums: Vec::new(),
+                parameter_unknowns: Vec::new(),
                 further: Further::default(),
                 amplitudes: Vec::new(),
             }],

@@ -1,25 +1,30 @@
-//! Several records and the parameters they share, as one problem.
+//! The joint least-squares problem of several runs: their trajectories and the unknowns that they
+//! share.
+//!
+//! In every run each parameter of the model is a sum of unknowns ([`RunProblem::parameter_unknowns`]):
+//! a constant drift is that of the mean turn-on plus the offset of the run's own.
 
 use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Chart, Integration};
 
 use crate::further::Further;
-use crate::run::{Conditions, Rows};
+use crate::run::{Conditions, WeightedRows};
 
-/// One parameter of the joint problem.
+/// One unknown of the joint problem.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unknown {
     /// Mean of its prior.
     pub(crate) prior: f64,
     /// Standard deviation of its prior.
     pub(crate) sigma: f64,
-    /// Whether it keeps its prior mean and only widens the covariance of the others.
+    /// True if it is considered: it keeps its prior mean, and its variance enters the covariance of
+    /// the others.
     pub(crate) considered: bool,
 }
 
 impl Unknown {
-    /// Estimated from zero.
+    /// An estimated unknown of prior mean zero.
     pub(crate) fn estimated(sigma: f64) -> Self {
         Self {
             prior: 0.0,
@@ -28,7 +33,7 @@ impl Unknown {
         }
     }
 
-    /// Held at zero; 0 is the sigma of what counts as known.
+    /// A considered unknown of value zero; without a sigma it counts as known.
     pub(crate) fn considered(sigma: Option<f64>) -> Self {
         Self {
             prior: 0.0,
@@ -38,29 +43,38 @@ impl Unknown {
     }
 }
 
-/// One record within the joint problem.
+/// One run within the joint problem.
 #[derive(Clone)]
-pub(crate) struct Leg<'a, I> {
-    pub(crate) rows: Rows<'a>,
+pub(crate) struct RunProblem<'a, I> {
+    /// The samples with the covariance of their noise.
+    pub(crate) rows: WeightedRows<'a>,
+    /// Inputs of the model at the site.
     pub(crate) chart: Chart<f64, I>,
+    /// Spectral density of each gyro's white noise, (deg/h)² s.
     pub(crate) noise_density: [f64; 3],
-    /// Attitude that the bench declares for the first row.
+    /// Prior mean of the attitude at the first row.
     pub(crate) prior: Orientation,
+    /// Covariance of the prior's error, a rotation vector in platform axes, rad².
     pub(crate) prior_covariance: [[f64; 3]; 3],
-    /// Attitude at each row.
+    /// Present attitude at each row.
     pub(crate) points: Vec<Orientation>,
-    /// For each parameter of the model the unknowns whose sum it is; none if it is zero for
-    /// good.
-    pub(crate) sums: Vec<Vec<usize>>,
-    /// Columns beside the model's parameters, and the unknown that is the amplitude of each.
+    /// For each parameter of the model the unknowns whose sum it is; a parameter without unknowns is
+    /// zero.
+    pub(crate) parameter_unknowns: Vec<Vec<usize>>,
+    /// Columns that are no parameters of the model.
     pub(crate) further: Further,
+    /// The unknown that is the amplitude of each of them.
     pub(crate) amplitudes: Vec<usize>,
 }
 
-impl<I> Leg<'_, I> {
-    /// For each column the unknowns whose sum it is.
-    pub(crate) fn columns(&self) -> Vec<&[usize]> {
-        let parameters = self.sums.iter().filter(|unknowns| !unknowns.is_empty());
+impl<I> RunProblem<'_, I> {
+    /// For each column of a pass the unknowns whose sum its amplitude is: active parameters first,
+    /// then further columns.
+    pub(crate) fn column_unknowns(&self) -> Vec<&[usize]> {
+        let parameters = self
+            .parameter_unknowns
+            .iter()
+            .filter(|unknowns| !unknowns.is_empty());
         parameters
             .map(Vec::as_slice)
             .chain(self.amplitudes.iter().map(core::slice::from_ref))
@@ -68,15 +82,15 @@ impl<I> Leg<'_, I> {
     }
 }
 
-/// All records, and what they have in common.
+/// The joint problem of all runs.
 #[derive(Clone)]
 pub(crate) struct Problem<'a, D, I> {
     pub(crate) model: &'a D,
     pub(crate) integration: Integration,
     pub(crate) longest_step_s: f64,
     pub(crate) unknowns: Vec<Unknown>,
-    pub(crate) legs: Vec<Leg<'a, I>>,
-    /// Every unknown's present value.
+    pub(crate) runs: Vec<RunProblem<'a, I>>,
+    /// Present value of every unknown.
     pub(crate) values: Vec<f64>,
 }
 
@@ -85,72 +99,68 @@ where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
-    /// The parameters of the model in one record.
-    pub(crate) fn parameters(&self, leg: usize) -> Vec<f64> {
-        self.legs[leg]
-            .sums
+    /// The parameters of the model in one run.
+    pub(crate) fn parameters(&self, run: usize) -> Vec<f64> {
+        self.runs[run]
+            .parameter_unknowns
             .iter()
             .map(|unknowns| unknowns.iter().map(|index| self.values[*index]).sum())
             .collect()
     }
 
-    /// Outputs that the model gives at each row of a record for these attitudes.
-    pub(crate) fn outputs(&self, leg: usize, points: &[Orientation]) -> Vec<[f64; 3]> {
-        let parameters = self.parameters(leg);
-        let leg = &self.legs[leg];
-        let (mut chart, mut moving) = (leg.chart, [0.0; 3]);
+    /// Specific force of the model at each row of a run for the attitudes `points`, g.
+    pub(crate) fn outputs(&self, run: usize, points: &[Orientation]) -> Vec<[f64; 3]> {
+        let parameters = self.parameters(run);
+        let run = &self.runs[run];
+        let (mut chart, mut moving) = (run.chart, [0.0; 3]);
         points
             .iter()
             .enumerate()
             .map(|(row, point)| {
                 self.model.place(point, &mut moving, &mut chart);
-                Series::<Chart<f64, I>, 3>::at(&leg.rows, row, &mut chart);
+                Series::<Chart<f64, I>, 3>::at(&run.rows, row, &mut chart);
                 let mut outputs_g = self.model.output(&moving, &parameters, &chart);
                 for (output, reading_g) in outputs_g.iter_mut().enumerate() {
-                    *reading_g += leg.further.reading_g(row, output);
+                    *reading_g += run.further.reading_g(row, output);
                 }
                 outputs_g
             })
             .collect()
     }
 
-    pub(crate) fn with_leg<R>(
+    /// Makes a pass over a run with its own columns.
+    pub(crate) fn with_run<R>(
         &self,
         index: usize,
         parameters: &[f64],
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, Further, 3, 3>) -> R,
+        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, Further, 3, 3>) -> R,
     ) -> R {
-        self.with_columns(index, parameters, &self.legs[index].further, pass)
+        self.with_columns(index, parameters, &self.runs[index].further, pass)
     }
 
-    /// A pass over a record with these columns beside those of its parameters.
+    /// Makes a pass over a run with the columns of its parameters and `further` ones.
     pub(crate) fn with_columns<R, C: Columns<3, 3>>(
         &self,
         index: usize,
         parameters: &[f64],
         further: &C,
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, C, 3, 3>) -> R,
+        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, C, 3, 3>) -> R,
     ) -> R {
-        let active: Vec<usize> = (0..parameters.len())
-            .filter(|parameter| !self.legs[index].sums[*parameter].is_empty())
-            .collect();
-        self.with_active(index, parameters, &active, further, pass)
+        self.with_active(index, parameters, &self.active(index), further, pass)
     }
 
-    /// A pass over a record as if some of its rows had no value.
+    /// Makes a pass over a run without the values of some rows.
     pub(crate) fn without_rows<R>(
         &self,
         index: usize,
         parameters: &[f64],
         left_out: core::ops::Range<usize>,
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, Further, 3, 3>) -> R,
+        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, Further, 3, 3>) -> R,
     ) -> R {
-        let mut rows = self.legs[index].rows.again();
-        rows.leave_out(left_out);
-        let active: Vec<usize> = (0..parameters.len())
-            .filter(|parameter| !self.legs[index].sums[*parameter].is_empty())
-            .collect();
-        let further = &self.legs[index].further;
+        let mut rows = self.runs[index].rows.clone();
+        rows.exclude(left_out);
+        let active = self.active(index);
+        let further = &self.runs[index].further;
         self.with_active(index, parameters, &active, further, |all| {
             pass(&Linearisation {
                 series: &rows,
@@ -159,31 +169,39 @@ where
         })
     }
 
-    /// A pass over a record with any parameters as columns.
+    /// Makes a pass over a run with the columns of the `active` parameters and `further` ones.
     pub(crate) fn with_active<R, C: Columns<3, 3>>(
         &self,
         index: usize,
         parameters: &[f64],
         active: &[usize],
         further: &C,
-        pass: impl FnOnce(&Linearisation<'_, D, Rows<'_>, C, 3, 3>) -> R,
+        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, C, 3, 3>) -> R,
     ) -> R {
-        let leg = &self.legs[index];
+        let run = &self.runs[index];
         pass(&Linearisation {
             model: self.model,
-            inputs: leg.chart,
-            series: &leg.rows,
+            inputs: run.chart,
+            series: &run.rows,
             integration: self.integration,
             longest_step_s: self.longest_step_s,
-            noise_density: leg.noise_density,
-            prior: leg.prior,
-            prior_covariance: leg.prior_covariance,
-            points: &leg.points,
+            noise_density: run.noise_density,
+            prior: run.prior,
+            prior_covariance: run.prior_covariance,
+            points: &run.points,
             parameters,
             active,
             further,
             tape: None,
         })
+    }
+
+    /// Indices of the parameters of the model that have an unknown in a run.
+    fn active(&self, index: usize) -> Vec<usize> {
+        let unknowns = &self.runs[index].parameter_unknowns;
+        (0..unknowns.len())
+            .filter(|parameter| !unknowns[*parameter].is_empty())
+            .collect()
     }
 
     /// Indices of the unknowns that are estimated.
@@ -193,7 +211,8 @@ where
             .collect()
     }
 
-    /// Twice the cost of the unknowns' distance from their priors.
+    /// The priors' part of twice the cost: squared distances of the estimated unknowns from their
+    /// prior means over their variances.
     pub(crate) fn prior_cost(&self) -> f64 {
         self.unknowns
             .iter()

@@ -3,7 +3,7 @@
 use gyrocal::Drift;
 use gyrocal::generated::platform::DRIFT;
 
-use crate::PARAMETERS;
+use crate::coefficients::PARAMETERS;
 use crate::fit::FitStatistics;
 use crate::layout::SiteQuantity;
 use crate::noise::NoiseEstimate;

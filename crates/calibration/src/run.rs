@@ -1,4 +1,4 @@
-//! A record as the batch engine reads it.
+//! A run, and its rows as the batch estimator reads them.
 
 use gyrocal::estimation::batch::Series;
 use gyrocal::generated::catalogue::{CatalogueInputs, conditions_index};
@@ -9,14 +9,14 @@ use gyrocal_record::{Bench, Record};
 
 use crate::gyro_axes::GyroAxes;
 
-/// Inputs that may depend on time, on temperature and on how the gyros lie.
+/// Model inputs that may depend on time, temperature and the axes of the gyros.
 pub(crate) trait Conditions: ChartInputs<f64> {
     /// Sets time since the first row (of the middle of an interval, or of a row), the length of
     /// the interval, and temperature about its mean.
     fn set_conditions(&mut self, time_s: f64, interval_s: f64, temperature_k: f64);
 
-    /// Sets the matrix, by rows, from components along the gyros' axes to those along the
-    /// platform's, where these are not the same.
+    /// Sets the matrix, by rows, from components along the gyros' axes to components along the
+    /// platform's; does nothing in models whose gyros lie along the platform's axes.
     fn set_gyro_axes(&mut self, _platform_c_gyros: &[f64; 9]) {}
 }
 
@@ -45,27 +45,28 @@ impl Conditions for CatalogueInputs<f64> {
 pub struct Run<'a> {
     /// The samples.
     pub record: &'a Record,
-    /// What is known of the bench.
+    /// The bench description.
     pub bench: &'a Bench,
 }
 
-/// The rows of a record with the noise that is believed of them.
+/// The first rows of a record with the noise variance and weight of each value.
 #[derive(Clone, Debug)]
-pub(crate) struct Rows<'a> {
+pub(crate) struct WeightedRows<'a> {
     record: &'a Record,
-    /// How many rows, from the first, are looked at.
+    /// Number of rows used, from the first.
     rows: usize,
-    /// Variance of an output whose weight is 1.
+    /// Variance of a value of weight 1, g².
     variance_g2: [f64; 3],
     /// Mean temperature over the record, if it was logged.
     mean_temperature_c: f64,
-    /// Weight of each row's outputs, if some are not trusted.
+    /// Weight of each value if not all are 1: a value of weight 0 is left out.
     pub(crate) weights: Option<Vec<[f64; 3]>>,
-    /// How the gyros lie, if not along the platform's axes.
+    /// Axes of the gyros, if not those of the platform.
     pub(crate) gyro_axes: Option<&'a GyroAxes>,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> WeightedRows<'a> {
+    /// The first `rows` rows with weight 1 and the noise `noise_g` of each accelerometer.
     pub(crate) fn new(record: &'a Record, rows: usize, noise_g: [f64; 3]) -> Self {
         Self {
             record,
@@ -89,16 +90,8 @@ impl<'a> Rows<'a> {
             })
     }
 
-    /// The same rows once more.
-    pub(crate) fn again(&self) -> Self {
-        Self {
-            weights: self.weights.clone(),
-            ..*self
-        }
-    }
-
-    /// Gives the values of some rows no weight.
-    pub(crate) fn leave_out(&mut self, rows: core::ops::Range<usize>) {
+    /// Gives the values of some rows weight 0.
+    pub(crate) fn exclude(&mut self, rows: core::ops::Range<usize>) {
         let count = self.rows;
         let weights = self.weights.get_or_insert_with(|| vec![[1.0; 3]; count]);
         for weight in &mut weights[rows] {
@@ -106,17 +99,18 @@ impl<'a> Rows<'a> {
         }
     }
 
+    /// Sets the standard deviation of values of weight 1.
     pub(crate) fn set_noise(&mut self, noise_g: [f64; 3]) {
         self.variance_g2 = noise_g.map(|sigma| sigma * sigma);
     }
 
-    /// Standard deviation of an output whose weight is 1.
+    /// Standard deviation of a value of weight 1, g.
     pub(crate) fn declared_noise_g(&self) -> [f64; 3] {
         self.variance_g2.map(f64::sqrt)
     }
 }
 
-impl<I: Conditions> Series<Chart<f64, I>, 3> for Rows<'_> {
+impl<I: Conditions> Series<Chart<f64, I>, 3> for WeightedRows<'_> {
     fn rows(&self) -> usize {
         self.rows
     }

@@ -1,70 +1,62 @@
-//! Gauss-Newton on the trajectories of several records and the parameters they share.
-
-#[cfg(test)]
-mod failures;
+//! Gauss-Newton iteration on the trajectories of all records and the parameters that they share:
+//! equations (3) to (6) of the [crate documentation](crate).
 
 use std::sync::Arc;
 
+use gyrocal::Chart;
 use gyrocal::estimation::batch::{Linearisation, Manifold, Tape};
 use gyrocal::trajectory::{Orientation, turned};
-use gyrocal::{Chart, EstimationError};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use crate::error::CalibrationError;
 use crate::problem::Problem;
 use crate::run::Conditions;
 
-/// Rows of a record whose steps are kept between passes, some 500 bytes each.
+/// Steps after which an estimate that still moves is given up.
+pub(crate) const MAX_ITERATIONS: usize = 50;
+
+/// Longest record whose linearised steps are kept between passes, in rows of some 500 bytes each.
 const LONGEST_TAPE: usize = 400_000;
 
-/// Steps are halved at most so often when they do not lower the cost.
-const MOST_HALVINGS: usize = 12;
+/// Most halvings of a step that does not lower the cost.
+const MAX_HALVINGS: usize = 12;
 
-/// The step is the last one if it is shorter than this, in standard deviations of the whole
-/// problem: what is left after it is smaller by the curvature of a chart over such a step.
+/// Length of a step, in standard deviations of the whole problem, below which it is the last one:
+/// the error left after it is smaller by the curvature of a chart over such a step.
 const LAST_STEP: f64 = 1e-4;
 
-/// The same for records that the model does not fit, as a share of the root of the cost: a
-/// shorter step lowers the cost by less than rounding of its sum does.
+/// The same limit for records that the model does not fit, as a share of the root of the cost: a
+/// shorter step lowers the cost by less than the rounding error of its sum.
 const LAST_SHARE: f64 = 1e-6;
 
-/// A step this short, as a share of the root of the cost, from which no shorter one lowers the cost
-/// ends the search too. Far from all noise the gradient of the linear problem is not that of the
-/// cost to the last digits, and it is the cost that has a minimum: the step would have lowered it by
-/// a part in 1e10.
+/// Length of a step, as a share of the root of the cost, below which the iteration ends if no
+/// shortened step lowers the cost. Where residuals are far larger than the noise, the gradient of the
+/// linearised problem differs from that of the cost in the last digits; such a step would lower the
+/// cost by a part in 1e10.
 const FLAT_SHARE: f64 = 1e-5;
 
-/// What the records say, linearised about the solution.
+/// The records linearised about the solution.
 #[derive(Clone)]
 pub(crate) struct Solution {
-    /// Information of the records on all unknowns, without their priors.
+    /// Information matrix of all unknowns from the records, priors not included.
     pub(crate) information: DMatrix<f64>,
-    /// Twice the cost: sum of squares of everything over its variance.
+    /// Twice the cost (1): the sum of all squares over their variances.
     pub(crate) cost: f64,
+    /// Number of accelerometer values used.
     pub(crate) values: usize,
+    /// Number of rows with at least one of them.
     pub(crate) rows: usize,
+    /// Sum of the logarithms of the innovation variances.
     pub(crate) log_variance: f64,
-    /// What the model gave in the last pass over each record, if it was short enough to keep.
+    /// Linearised steps of the last pass over each record that is short enough.
     pub(crate) tapes: Vec<Option<Arc<Tape<3>>>>,
-    /// Passes that were made.
+    /// Gauss-Newton steps made.
     pub(crate) iterations: usize,
 }
 
-/// Why there is no solution.
-#[derive(Debug)]
-pub(crate) enum Failure {
-    /// A pass could not be made over the record of this number.
-    Pass(usize, EstimationError),
-    /// No shortened step lowered the cost.
-    NoDescent { iterations: usize },
-    /// Too many steps.
-    NotConverged { iterations: usize, last_step: f64 },
-    /// Information plus prior is not positive definite.
-    Singular,
-}
-
-/// The problem linearised where it stands.
-struct Point {
-    /// Of residual and unknowns: sums over the records.
+/// The problem linearised about its present values.
+struct Linearised {
+    /// Gram matrix (3) of residual and unknowns, summed over the records.
     gram: DMatrix<f64>,
     trajectory_cost: f64,
     values: usize,
@@ -73,10 +65,13 @@ struct Point {
     tapes: Vec<Option<Arc<Tape<3>>>>,
 }
 
-/// A step from a point.
+/// A Gauss-Newton step.
 struct Step {
+    /// Change of every unknown.
     values: DVector<f64>,
+    /// Correction of the attitude at every row of every record, rad.
     corrections: Vec<Vec<[f64; 3]>>,
+    /// Length (6), in standard deviations of the whole problem.
     length: f64,
 }
 
@@ -85,13 +80,9 @@ where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
-    /// Iterates to convergence, in at most `most_iterations` steps. `progress` is called after
-    /// each.
-    pub(crate) fn solve(
-        &mut self,
-        most_iterations: usize,
-        mut progress: impl FnMut(usize),
-    ) -> Result<Solution, Failure> {
+    /// Iterates to convergence in at most `max_iterations` steps; steps that do not lower the cost
+    /// are halved.
+    pub(crate) fn solve(&mut self, max_iterations: usize) -> Result<Solution, CalibrationError> {
         let mut point = self.linearise()?;
         let mut cost = point.trajectory_cost + self.prior_cost();
         let mut iterations = 0;
@@ -101,12 +92,12 @@ where
             let last = step.length < LAST_STEP.max(LAST_SHARE * cost.sqrt());
             // Long records: the steps of one point at a time.
             point.tapes.clear();
-            let before: Vec<_> = self.legs.iter().map(|leg| leg.points.clone()).collect();
+            let before: Vec<_> = self.runs.iter().map(|run| run.points.clone()).collect();
             let values = self.values.clone();
             let mut share = 1.0;
             let mut halvings = 0;
             loop {
-                self.take(&before, &values, &step, share);
+                self.apply(&step, share, &before, &values);
                 let moved = self.linearise();
                 // A model may leave its domain on the way: that step was too long.
                 if let Ok(moved) = moved {
@@ -116,25 +107,24 @@ where
                         (point, cost) = (moved, moved_cost);
                         break;
                     }
-                } else if halvings == MOST_HALVINGS {
-                    return Err(moved.err().unwrap_or(Failure::Singular));
+                } else if halvings == MAX_HALVINGS {
+                    return Err(moved.err().unwrap_or(CalibrationError::NotPositiveDefinite));
                 }
-                if halvings == MOST_HALVINGS {
+                if halvings == MAX_HALVINGS {
                     if step.length > FLAT_SHARE * cost.sqrt() {
-                        return Err(Failure::NoDescent { iterations });
+                        return Err(CalibrationError::NoDescent { iterations });
                     }
-                    self.take(&before, &values, &step, 0.0);
+                    self.apply(&step, 0.0, &before, &values);
                     return Ok(self.solution(self.linearise()?, iterations));
                 }
                 halvings += 1;
                 share *= 0.5;
             }
-            progress(iterations);
             if last {
                 return Ok(self.solution(point, iterations));
             }
-            if iterations == most_iterations {
-                return Err(Failure::NotConverged {
+            if iterations == max_iterations {
+                return Err(CalibrationError::NotConverged {
                     iterations,
                     last_step: step.length,
                 });
@@ -142,39 +132,40 @@ where
         }
     }
 
-    fn linearise(&self) -> Result<Point, Failure> {
+    /// One pass over each record: equation (3).
+    fn linearise(&self) -> Result<Linearised, CalibrationError> {
         let size = self.unknowns.len() + 1;
-        let mut point = Point {
+        let mut point = Linearised {
             gram: DMatrix::zeros(size, size),
             trajectory_cost: 0.0,
             values: 0,
             rows: 0,
             log_variance: 0.0,
-            tapes: Vec::with_capacity(self.legs.len()),
+            tapes: Vec::with_capacity(self.runs.len()),
         };
-        for (index, leg) in self.legs.iter().enumerate() {
+        for (index, run) in self.runs.iter().enumerate() {
             let parameters = self.parameters(index);
             let (reduced, tape) = self
-                .with_leg(index, &parameters, |pass| {
-                    if leg.points.len() > LONGEST_TAPE {
+                .with_run(index, &parameters, |pass| {
+                    if run.points.len() > LONGEST_TAPE {
                         return pass.reduce(|_| ()).map(|reduced| (reduced, None));
                     }
                     let (reduced, tape) = pass.reduce_and_keep(|_| ())?;
                     Ok((reduced, Some(Arc::new(tape))))
                 })
-                .map_err(|error| Failure::Pass(index, error))?;
+                .map_err(|error| CalibrationError::pass(index, error))?;
             point.trajectory_cost += reduced.trajectory_cost;
             point.values += reduced.values;
             point.rows += reduced.rows;
             point.log_variance += reduced.log_variance;
-            add_gram(&mut point.gram, &reduced.gram, &leg.columns());
+            add_gram(&mut point.gram, &reduced.gram, &run.column_unknowns());
             point.tapes.push(tape);
         }
         Ok(point)
     }
 
-    /// The Gauss-Newton step.
-    fn step(&self, point: &Point) -> Result<Step, Failure> {
+    /// The Gauss-Newton step: equations (4) to (6).
+    fn step(&self, point: &Linearised) -> Result<Step, CalibrationError> {
         let estimated = self.estimated();
         let count = estimated.len();
         let mut information = DMatrix::zeros(count, count);
@@ -189,28 +180,28 @@ where
             }
             information[(i, i)] += weight;
         }
-        let cholesky = Cholesky::new(information).ok_or(Failure::Singular)?;
+        let cholesky = Cholesky::new(information).ok_or(CalibrationError::NotPositiveDefinite)?;
         let change = cholesky.solve(&gradient);
-        // Cost of the trajectory now, less the least cost of the linear problem.
+        // Cost of the present trajectory less the least cost of the linearised problem.
         let decrease = point.trajectory_cost - point.gram[(0, 0)] + change.dot(&gradient);
         let mut values = DVector::zeros(self.unknowns.len());
         for (a, change) in estimated.iter().zip(change.iter()) {
             values[*a] = *change;
         }
-        let corrections = (0..self.legs.len())
+        let corrections = (0..self.runs.len())
             .map(|index| {
                 let parameters = self.parameters(index);
-                let change: Vec<f64> = self.legs[index]
-                    .columns()
+                let change: Vec<f64> = self.runs[index]
+                    .column_unknowns()
                     .iter()
                     .map(|unknowns| unknowns.iter().map(|unknown| values[*unknown]).sum())
                     .collect();
-                self.with_leg(index, &parameters, |pass| {
+                self.with_run(index, &parameters, |pass| {
                     let tape = point.tapes[index].as_deref();
                     Linearisation { tape, ..*pass }.smooth(&change)
                 })
                 .map(|smoothed| smoothed.corrections)
-                .map_err(|error| Failure::Pass(index, error))
+                .map_err(|error| CalibrationError::pass(index, error))
             })
             .collect::<Result<_, _>>()?;
         Ok(Step {
@@ -220,7 +211,8 @@ where
         })
     }
 
-    fn take(&mut self, before: &[Vec<Orientation>], values: &[f64], step: &Step, share: f64) {
+    /// Applies a share of a step to the trajectories and values before it.
+    fn apply(&mut self, step: &Step, share: f64, before: &[Vec<Orientation>], values: &[f64]) {
         for (value, (before, change)) in self
             .values
             .iter_mut()
@@ -228,24 +220,24 @@ where
         {
             *value = before + share * change;
         }
-        for leg in &mut self.legs {
-            let amplitudes = leg.amplitudes.iter().map(|unknown| self.values[*unknown]);
-            leg.further.set_amplitudes(amplitudes);
+        for run in &mut self.runs {
+            let amplitudes = run.amplitudes.iter().map(|unknown| self.values[*unknown]);
+            run.further.set_amplitudes(amplitudes);
         }
-        for (leg, (before, corrections)) in self
-            .legs
+        for (run, (before, corrections)) in self
+            .runs
             .iter_mut()
             .zip(before.iter().zip(&step.corrections))
         {
             for (point, (before, correction)) in
-                leg.points.iter_mut().zip(before.iter().zip(corrections))
+                run.points.iter_mut().zip(before.iter().zip(corrections))
             {
                 *point = turned(before, &correction.map(|angle| share * angle));
             }
         }
     }
 
-    fn solution(&self, point: Point, iterations: usize) -> Solution {
+    fn solution(&self, point: Linearised, iterations: usize) -> Solution {
         let count = self.unknowns.len();
         Solution {
             information: point.gram.view((1, 1), (count, count)).into_owned(),
@@ -259,14 +251,15 @@ where
     }
 }
 
-/// Adds a record's Gram matrix, whose columns are the model's parameters, to that of the unknowns.
-pub(crate) fn add_gram(total: &mut DMatrix<f64>, gram: &DMatrix<f64>, sums: &[&[usize]]) {
-    let size = sums.len() + 1;
+/// Adds a record's Gram matrix, whose columns are parameters of the model, to that of the unknowns;
+/// `unknowns` has for each column the unknowns whose sum it is.
+pub(crate) fn add_gram(total: &mut DMatrix<f64>, gram: &DMatrix<f64>, unknowns: &[&[usize]]) {
+    let size = unknowns.len() + 1;
     // Column 0 is the residual in both.
     let targets = |column: usize| -> Vec<usize> {
         match column.checked_sub(1) {
             None => vec![0],
-            Some(parameter) => sums[parameter].iter().map(|unknown| unknown + 1).collect(),
+            Some(parameter) => unknowns[parameter].iter().map(|index| index + 1).collect(),
         }
     };
     let targets: Vec<Vec<usize>> = (0..size).map(targets).collect();

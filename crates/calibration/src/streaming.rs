@@ -5,7 +5,7 @@ use gyrocal::estimation::{Covariance, Factors};
 use gyrocal::{Drift, EstimationError, Innovation, PlatformFilter, Settings};
 use gyrocal_record::Record;
 
-use crate::PARAMETERS;
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fit::FitStatistics;
 

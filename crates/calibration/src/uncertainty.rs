@@ -1,4 +1,5 @@
-//! Covariance of what is estimated, with the uncertainty of what is only considered.
+//! Covariance of the estimates, with the uncertainty of considered parameters: equation (7) of the
+//! [crate documentation](crate).
 //!
 //! A considered parameter keeps its value; its uncertainty enters the covariance of the others
 //! through their sensitivity to it (Schmidt; Bierman, *Factorization Methods*, 1977, ch. VIII).
@@ -8,20 +9,29 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use crate::problem::Unknown;
 use crate::solve::Solution;
 
+/// A considered unknown.
+#[derive(Clone)]
+pub(crate) struct Considered {
+    /// Its index.
+    pub(crate) unknown: usize,
+    /// Derivatives of the estimates with respect to its assumed value.
+    pub(crate) sensitivity: DVector<f64>,
+    /// Its standard deviation if it were estimated from the records without a prior; infinite if it
+    /// is unobservable.
+    pub(crate) from_records_sigma: f64,
+}
+
 /// Covariances of the joint solution.
 #[derive(Clone)]
 pub(crate) struct Uncertainty {
     /// Indices of the unknowns that are estimated, in the order of the matrices.
     pub(crate) estimated: Vec<usize>,
-    /// Covariance if everything considered were known.
+    /// Covariance if the considered unknowns were known.
     pub(crate) conditional: DMatrix<f64>,
-    /// Covariance with what is considered.
+    /// Covariance that includes the uncertainty of the considered unknowns.
     pub(crate) total: DMatrix<f64>,
-    /// Derivatives of the estimates with respect to each considered unknown, by its index.
-    pub(crate) sensitivities: Vec<(usize, DVector<f64>)>,
-    /// What the records alone say of each considered unknown: its standard deviation if it were
-    /// estimated with no prior of its own.
-    pub(crate) from_records: Vec<(usize, f64)>,
+    /// The considered unknowns.
+    pub(crate) considered: Vec<Considered>,
     cholesky: Cholesky<f64, Dyn>,
 }
 
@@ -42,35 +52,35 @@ impl Uncertainty {
         let mut conditional = cholesky.inverse();
         conditional.fill_upper_triangle_with_lower_triangle();
         let mut total = conditional.clone();
-        let mut sensitivities = Vec::with_capacity(considered.len());
-        let mut from_records = Vec::with_capacity(considered.len());
-        for index in considered {
-            let cross = DVector::from_fn(count, |i, _| solution.information[(estimated[i], index)]);
-            // A unit more of it than assumed is taken for this much of the others, and an
-            // assumed value that is off by a unit shifts the estimates by as much.
-            let taken = -cholesky.solve(&cross);
-            let left = solution.information[(index, index)] + cross.dot(&taken);
-            // What is left cancels to rounding where the record says nothing.
-            let floor = solution.information[(index, index)] * f64::EPSILON * count as f64 * 100.0;
-            from_records.push((
-                index,
-                if left > floor {
-                    left.powf(-0.5)
-                } else {
-                    f64::INFINITY
-                },
-            ));
-            let sigma = unknowns[index].sigma;
-            total += sigma * sigma * &taken * taken.transpose();
-            sensitivities.push((index, taken));
-        }
+        let considered = considered
+            .into_iter()
+            .map(|unknown| {
+                let own = solution.information[(unknown, unknown)];
+                let cross =
+                    DVector::from_fn(count, |i, _| solution.information[(estimated[i], unknown)]);
+                let sensitivity = -cholesky.solve(&cross);
+                let information = own + cross.dot(&sensitivity);
+                // Of an unobservable quantity only the rounding error of this difference is left.
+                let floor = own * f64::EPSILON * count as f64 * 100.0;
+                let sigma = unknowns[unknown].sigma;
+                total += sigma * sigma * &sensitivity * sensitivity.transpose();
+                Considered {
+                    unknown,
+                    from_records_sigma: if information > floor {
+                        information.powf(-0.5)
+                    } else {
+                        f64::INFINITY
+                    },
+                    sensitivity,
+                }
+            })
+            .collect();
         total.fill_upper_triangle_with_lower_triangle();
         Some(Self {
             estimated,
             conditional,
             total,
-            sensitivities,
-            from_records,
+            considered,
             cholesky,
         })
     }

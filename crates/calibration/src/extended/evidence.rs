@@ -5,7 +5,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::Extended;
 use crate::error::CalibrationError;
-use crate::solve::{Failure, add_gram};
+use crate::solve::add_gram;
 
 /// How much wider than its estimate is large the prior of an unknown is that has none.
 const WIDE: f64 = 100.0;
@@ -29,12 +29,16 @@ impl Extended<'_> {
                 let tape = self.solution.tapes[0].as_deref();
                 Linearisation { tape, ..*pass }.reduce(|_| ())
             })
-            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+            .map_err(|error| CalibrationError::pass(0, error))?;
         let unknowns = &self.problem.unknowns;
         let count = unknowns.len();
         // The pass has the parameters in the order of the model.
         let mut gram = DMatrix::zeros(count + 1, count + 1);
-        add_gram(&mut gram, &reduced.gram, &self.problem.legs[0].columns());
+        add_gram(
+            &mut gram,
+            &reduced.gram,
+            &self.problem.runs[0].column_unknowns(),
+        );
         let mut information = gram.view((1, 1), (count, count)).into_owned();
         let mut gradient = DVector::zeros(count);
         let mut prior = 0.0;

@@ -5,11 +5,10 @@ use gyrocal::{Catalogue, EstimationError};
 use nalgebra::DMatrix;
 
 use super::{Extended, Jump};
-use crate::PARAMETERS;
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::further::{Column, Further};
 use crate::noise::{self, NoiseEstimate};
-use crate::solve::Failure;
 
 impl Extended<'_> {
     /// Whitened innovations of the fit, row by row; NaN where there is no value.
@@ -20,12 +19,12 @@ impl Extended<'_> {
         let parameters = self.parameters();
         let mut whitened = vec![[f64::NAN; 3]; self.points().len()];
         self.problem
-            .with_leg(0, &parameters, |pass| {
+            .with_run(0, &parameters, |pass| {
                 let tape = self.solution.tapes[0].as_deref();
                 Linearisation { tape, ..*pass }
                     .reduce(|value| whitened[value.row][value.output] = value.columns[0])
             })
-            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+            .map_err(|error| CalibrationError::pass(0, error))?;
         Ok(whitened)
     }
 
@@ -41,7 +40,7 @@ impl Extended<'_> {
         let count = covariance.nrows();
         let mut jumps: Vec<Option<Jump>> = vec![None; self.points().len()];
         self.problem
-            .with_leg(0, &parameters, |pass| {
+            .with_run(0, &parameters, |pass| {
                 let tape = self.solution.tapes[0].as_deref();
                 Linearisation { tape, ..*pass }.jumps(|row, found| {
                     let mut jump = Jump {
@@ -61,7 +60,7 @@ impl Extended<'_> {
                     jumps[row] = Some(jump);
                 })
             })
-            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+            .map_err(|error| CalibrationError::pass(0, error))?;
         Ok(jumps)
     }
 
@@ -115,7 +114,7 @@ impl Extended<'_> {
         further: &[Column],
         watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
-        let leg = &self.problem.legs[0];
+        let leg = &self.problem.runs[0];
         let own = self.extension.further.columns().len();
         let mut columns = self.extension.further.columns().to_vec();
         columns.extend_from_slice(further);
@@ -131,7 +130,7 @@ impl Extended<'_> {
             .with_active(0, &parameters, active, &all, |pass| {
                 Linearisation { tape, ..*pass }.reduce(watch)
             })
-            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))
+            .map_err(|error| CalibrationError::pass(0, error))
     }
 
     /// Noise by maximum likelihood, over what the fit believes.
@@ -141,11 +140,11 @@ impl Extended<'_> {
     pub fn noise(&self) -> Result<NoiseEstimate, CalibrationError> {
         let parameters = self.parameters();
         self.problem
-            .with_leg(0, &parameters, |pass| {
+            .with_run(0, &parameters, |pass| {
                 let tape = self.solution.tapes[0].as_deref();
                 let pass = Linearisation { tape, ..*pass };
                 noise::estimate(|factors| pass.noise_score(factors))
             })
-            .map_err(|error: EstimationError| CalibrationError::from(Failure::Pass(0, error)))
+            .map_err(|error: EstimationError| CalibrationError::pass(0, error))
     }
 }

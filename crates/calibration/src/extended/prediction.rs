@@ -7,10 +7,9 @@ use gyrocal::trajectory::Orientation;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::Extended;
-use crate::PARAMETERS;
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::further::Further;
-use crate::solve::Failure;
 
 /// 1 deg/h in rad/s.
 const RAD_PER_S: f64 = core::f64::consts::PI / (180.0 * 3600.0);
@@ -50,12 +49,12 @@ impl Extended<'_> {
             })
             .collect();
         let mut fixed = Further::new(self.extension.further.columns().to_vec());
-        let amplitudes = self.problem.legs[0].amplitudes.iter();
+        let amplitudes = self.problem.runs[0].amplitudes.iter();
         fixed.set_amplitudes(amplitudes.map(|unknown| self.problem.values[*unknown]));
         let reduced = self
             .problem
             .with_active(0, &here, &active, &fixed, |pass| pass.reduce(|_| ()))
-            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+            .map_err(|error| CalibrationError::pass(0, error))?;
         let count = active.len();
         let information = reduced.gram.view((1, 1), (count, count)).into_owned();
         let off = DVector::from_fn(count, |i, _| expected.mean[active[i]] - here[active[i]]);
@@ -100,13 +99,13 @@ impl Extended<'_> {
             .with_active(0, parameters, &none, &Further::default(), |pass| {
                 pass.free_run_over(rows)
             })
-            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))
+            .map_err(|error| CalibrationError::pass(0, error))
     }
 
     /// Variance that the gyros' white noise adds to the attitude about each axis, rad²/s.
     #[must_use]
     pub fn walk_rad2_per_s(&self) -> [f64; 3] {
-        self.problem.legs[0]
+        self.problem.runs[0]
             .noise_density
             .map(|density| density * RAD_PER_S * RAD_PER_S)
     }
@@ -119,14 +118,14 @@ impl Extended<'_> {
     /// [`CalibrationError::Pass`].
     pub fn convergence(&self, rows: &[usize]) -> Result<Vec<Option<Estimates>>, CalibrationError> {
         let count = self.problem.unknowns.len();
-        let columns = self.problem.legs[0].columns();
+        let columns = self.problem.runs[0].column_unknowns();
         let mut gram = DMatrix::<f64>::zeros(count, count);
         let mut gradient = DVector::<f64>::zeros(count);
         let mut found = Vec::with_capacity(rows.len());
         let mut unknowns = vec![0.0; count];
         let parameters = self.parameters();
         self.problem
-            .with_leg(0, &parameters, |pass| {
+            .with_run(0, &parameters, |pass| {
                 pass.reduce(|value| {
                     while rows.get(found.len()).is_some_and(|row| *row < value.row) {
                         found.push(self.estimates(&gram, &gradient));
@@ -145,7 +144,7 @@ impl Extended<'_> {
                     }
                 })
             })
-            .map_err(|error| CalibrationError::from(Failure::Pass(0, error)))?;
+            .map_err(|error| CalibrationError::pass(0, error))?;
         while found.len() < rows.len() {
             found.push(self.estimates(&gram, &gradient));
         }

@@ -1,4 +1,4 @@
-//! Tests of far starts, and of how the solver gives up.
+//! Convergence from poor initial guesses, and failures of the iteration.
 #![allow(clippy::unwrap_used)]
 
 use gyrocal::generated::surveyed::SurveyedInputs;
@@ -6,16 +6,15 @@ use gyrocal::{Anchored, Recentring, Settings, Surveyed};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};
 
-use super::Failure;
-use crate::attitude::trials;
-use crate::begin::alone;
-use crate::calibrate::Options;
-use crate::calibrate_runs;
+use crate::attitude::attitude_hypotheses;
+use crate::calibrate::calibrate_runs;
 use crate::error::CalibrationError;
+use crate::initial_trajectory::InitialTrajectory;
+use crate::options::Options;
 use crate::problem::Problem;
 use crate::run::Run;
 use crate::settings::level;
-use crate::start::Start;
+use crate::single_run::single_run_problem;
 
 fn day(seed: u64) -> (Record, Bench) {
     let simulation = simulate(&Scenario {
@@ -37,30 +36,30 @@ fn settings(bench: &Bench) -> Settings<f64> {
     }
 }
 
-/// A problem that begins at a drift, on the trajectory that goes with it.
-fn beginning<'a>(
+/// A problem at given drift coefficients and the noise-free trajectory that belongs to them.
+fn problem_at<'a>(
     run: &Run<'a>,
     settings: &Settings<f64>,
     drift: [f64; 9],
 ) -> Problem<'a, Anchored<Surveyed>, SurveyedInputs<f64>> {
-    let prior = trials(run.record, run.bench).unwrap()[0].prior;
+    let prior = attitude_hypotheses(run.record, run.bench).unwrap()[0].prior;
     let rows = run.record.len();
-    let start = Start {
+    let start = InitialTrajectory {
         points: vec![prior.orientation; rows],
         drift,
         sigma: [1.0; 9],
         nis_mean: 0.0,
     };
     let options = Options::default();
-    let mut problem = alone(run, rows, settings, &prior, &start, &options);
+    let mut problem = single_run_problem(run, rows, settings, &prior, &start, &options);
     let parameters = problem.parameters(0);
-    let points = problem.with_leg(0, &parameters, |pass| pass.free_run());
-    problem.legs[0].points = points.unwrap();
+    let points = problem.with_run(0, &parameters, |pass| pass.free_run());
+    problem.runs[0].points = points.unwrap();
     problem
 }
 
 #[test]
-fn a_start_far_away_leads_to_the_same_solution() {
+fn a_poor_initial_guess_converges_to_the_same_solution() {
     let (record, bench) = day(1);
     let run = Run {
         record: &record,
@@ -70,8 +69,8 @@ fn a_start_far_away_leads_to_the_same_solution() {
         // Drifts that turn the platform by `offset` times a day more than they do.
         let mut drift = [0.0; 9];
         (drift[0], drift[1]) = (offset, offset);
-        let mut problem = beginning(&run, &settings(&bench), drift);
-        let solution = problem.solve(50, |_| ()).unwrap();
+        let mut problem = problem_at(&run, &settings(&bench), drift);
+        let solution = problem.solve(50).unwrap();
         (problem.values, solution)
     };
     let (near, least) = solved(0.1);
@@ -88,44 +87,47 @@ fn a_start_far_away_leads_to_the_same_solution() {
 }
 
 #[test]
-fn what_no_step_mends_is_told() {
+fn a_guess_too_far_from_the_solution_is_an_error_with_advice() {
     let (record, bench) = day(1);
     let run = Run {
         record: &record,
         bench: &bench,
     };
-    // Twenty degrees an hour: more than a turn in a day, beyond what steps find back from.
+    // Twenty degrees an hour: more than a turn in a day, from which the iteration does not converge.
     let mut drift = [0.0; 9];
     (drift[0], drift[1]) = (20.0, 20.0);
-    let mut problem = beginning(&run, &settings(&bench), drift);
-    let failure = problem.solve(50, |_| ()).err().unwrap();
-    let said = CalibrationError::from(failure).to_string();
+    let mut problem = problem_at(&run, &settings(&bench), drift);
+    let failure = problem.solve(50).err().unwrap();
+    let message = failure.to_string();
     assert!(
-        said.contains("no shorter step") || said.contains("did not converge"),
-        "{said}"
+        message.contains("no shorter step") || message.contains("did not converge"),
+        "{message}"
     );
-    assert!(said.contains("check latitude, initial angles"), "{said}");
+    assert!(
+        message.contains("check latitude, initial angles"),
+        "{message}"
+    );
 }
 
 #[test]
-fn steps_that_do_not_end_are_given_up() {
+fn an_iteration_that_does_not_converge_is_an_error() {
     let (record, bench) = day(2);
     let run = Run {
         record: &record,
         bench: &bench,
     };
-    let mut problem = beginning(&run, &settings(&bench), [0.2; 9]);
-    let failure = problem.solve(1, |_| ()).err().unwrap();
+    let mut problem = problem_at(&run, &settings(&bench), [0.2; 9]);
+    let failure = problem.solve(1).err().unwrap();
     assert!(
-        matches!(failure, Failure::NotConverged { iterations: 1, last_step } if last_step > 1.0),
+        matches!(failure, CalibrationError::NotConverged { iterations: 1, last_step } if last_step > 1.0),
         "{failure:?}"
     );
-    let said = CalibrationError::from(failure).to_string();
-    assert!(said.contains("did not converge in 1 steps"), "{said}");
+    let message = failure.to_string();
+    assert!(message.contains("did not converge in 1 steps"), "{message}");
 }
 
 #[test]
-fn the_record_that_cannot_be_taken_is_named() {
+fn the_error_of_several_records_names_the_record() {
     let (record, bench) = day(3);
     let short = Record {
         time_s: record.time_s[..5].to_vec(),

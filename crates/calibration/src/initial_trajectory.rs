@@ -1,4 +1,4 @@
-//! A trajectory near enough to the solution for Gauss-Newton steps to begin.
+//! Initial trajectory of the Gauss-Newton iteration: the filtered attitudes of a record.
 
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{Covariance, Factors};
@@ -6,46 +6,48 @@ use gyrocal::trajectory::Orientation;
 use gyrocal::{EstimationError, PlatformFilter, Settings};
 use gyrocal_record::Record;
 
-use crate::PARAMETERS;
-use crate::attitude::InitialAttitude;
+use crate::attitude::AttitudePrior;
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::streaming::run_filter;
 
-/// What one pass of the filter leaves.
-pub(crate) struct Start {
+/// Filtered attitudes of a record, and the coefficients after its last row.
+pub(crate) struct InitialTrajectory {
     /// Filtered attitude at each row.
     pub(crate) points: Vec<Orientation>,
+    /// Coefficients: deg/h, deg/h/g, deg/h/g².
     pub(crate) drift: [f64; PARAMETERS],
+    /// Their standard deviations.
     pub(crate) sigma: [f64; PARAMETERS],
     /// Mean NIS over the values used, 1 expected.
     pub(crate) nis_mean: f64,
 }
 
-/// Filters the first `rows` rows from an attitude, on the factors of the covariance if the
-/// covariance itself loses its digits.
-pub(crate) fn filtered(
+/// Filters the first `rows` rows from an attitude; on the factors of the covariance if the
+/// covariance itself loses its precision.
+pub(crate) fn filtered_trajectory(
     record: &Record,
     rows: usize,
     settings: &Settings<f64>,
-    attitude: &InitialAttitude,
-) -> Result<Start, CalibrationError> {
-    match filtered_in::<Covariance>(record, rows, settings, attitude) {
+    attitude: &AttitudePrior,
+) -> Result<InitialTrajectory, CalibrationError> {
+    match filtered_in_form::<Covariance>(record, rows, settings, attitude) {
         Err(CalibrationError::Filter {
             source:
                 EstimationError::LostPrecision { .. } | EstimationError::NotPositiveDefinite { .. },
             ..
-        }) => filtered_in::<Factors>(record, rows, settings, attitude),
+        }) => filtered_in_form::<Factors>(record, rows, settings, attitude),
         other => other,
     }
 }
 
-fn filtered_in<F: Form<f64>>(
+fn filtered_in_form<F: Form<f64>>(
     record: &Record,
     rows: usize,
     settings: &Settings<f64>,
-    attitude: &InitialAttitude,
-) -> Result<Start, CalibrationError> {
-    // The filter takes independent sigmas about the axes: near enough for a start.
+    attitude: &AttitudePrior,
+) -> Result<InitialTrajectory, CalibrationError> {
+    // The filter takes independent sigmas about the axes: near enough for an initial guess.
     let sigma_rad = core::array::from_fn(|i| attitude.covariance[i][i].sqrt());
     let filter = PlatformFilter::<f64, F>::at_attitude(settings, &attitude.orientation, &sigma_rad);
     let mut points = Vec::with_capacity(rows);
@@ -55,7 +57,7 @@ fn filtered_in<F: Form<f64>>(
         values += innovation.degrees_of_freedom();
         points.push(filter.kernel().inputs().orientation());
     })?;
-    Ok(Start {
+    Ok(InitialTrajectory {
         points,
         drift: filter.drift().to_array(),
         sigma: filter.drift_sigma().to_array(),
