@@ -4,7 +4,9 @@
 //! A program of its own, because a second form in the same one changes what the compiler
 //! inlines into the first.
 
-use gyrocal::{FactorisedPlatformFilter, Integration, Settings, Site};
+use gyrocal::{
+    Discretisation, FactorisedPlatformFilter, FilterSettings, InitialAttitude, Integration, Site,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -16,11 +18,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "rk4" => Integration::RK4,
         other => return Err(format!("expected euler or rk4, found {other}").into()),
     };
-    let settings = Settings {
-        integration,
-        ..Settings::level_at(Site::at_latitude_deg(39.1))
+    let settings = FilterSettings {
+        discretisation: Discretisation {
+            integration,
+            ..Discretisation::default()
+        },
+        ..FilterSettings::at_site(Site::at_latitude_deg(39.1))
     };
-    let mut filter = FactorisedPlatformFilter::<f64>::factorised(&settings)?;
+    let mut filter =
+        FactorisedPlatformFilter::<f64>::factorised(&settings, &InitialAttitude::aligned())?;
     let sample = [0.0, 0.0, 1.0];
     let mut nis_sum = 0.0;
     for _ in 0..steps.parse::<u32>()? {

@@ -1,7 +1,7 @@
 //! Runs a number of filter steps and nothing else, for profilers and instruction counters:
 //! `cargo run --release --example filter_steps -- euler|rk4 STEPS`.
 
-use gyrocal::{Integration, PlatformFilter, Settings, Site};
+use gyrocal::{Discretisation, FilterSettings, InitialAttitude, Integration, PlatformFilter, Site};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -13,11 +13,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "rk4" => Integration::RK4,
         other => return Err(format!("expected euler or rk4, found {other}").into()),
     };
-    let settings = Settings {
-        integration,
-        ..Settings::level_at(Site::at_latitude_deg(39.1))
+    let settings = FilterSettings {
+        discretisation: Discretisation {
+            integration,
+            ..Discretisation::default()
+        },
+        ..FilterSettings::at_site(Site::at_latitude_deg(39.1))
     };
-    let mut filter = PlatformFilter::<f64>::new(&settings)?;
+    let mut filter = PlatformFilter::<f64>::new(&settings, &InitialAttitude::aligned())?;
     let sample = [0.0, 0.0, 1.0];
     let mut nis_sum = 0.0;
     for _ in 0..steps.parse::<u32>()? {

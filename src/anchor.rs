@@ -1,12 +1,12 @@
 use gyrocal_scalar::{Model, RatesJacobian, Real, Recentre};
 
+use crate::chart_vectors::{ChartInputs, ChartVectors};
 use crate::generated::platform::{PlatformInputs, reanchor};
 use crate::rotation::{cross, dot, rotate, turned_by};
 use crate::site::Site;
-use crate::surroundings::{ChartInputs, Surroundings};
 
-/// A chart fixed to the Earth: how it lies, and the inputs `I` of a generated model along its
-/// axes: Earth rate, specific force, and what else the model takes.
+/// A chart fixed to the Earth: its orientation, and the inputs `I` of a generated model along its
+/// axes, such as Earth rate and specific force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chart<T, I = PlatformInputs<T>> {
     inputs: I,
@@ -53,18 +53,18 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
             field_gauss: [zero; 3],
             turns: 0,
         };
-        chart.refresh();
+        chart.update_inputs();
         chart
     }
 
-    /// What the generated model takes: Earth rate in rad/s, specific force in g, ….
+    /// Inputs of the generated model: Earth rate in rad/s, specific force in g, ….
     #[must_use]
     pub fn inputs(&self) -> &I {
         &self.inputs
     }
 
-    /// The same, to set what no chart gives: conditions and shapes of an extended model. What
-    /// lies fixed to the Earth is set again whenever the chart moves.
+    /// Inputs that a caller sets: conditions and shapes of an extended model. Vectors fixed to the
+    /// Earth are overwritten whenever the chart moves.
     #[must_use]
     pub fn inputs_mut(&mut self) -> &mut I {
         &mut self.inputs
@@ -73,7 +73,7 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
     /// Sets the magnetic field of the Earth: its East, North and Up components, gauss.
     pub fn set_field_gauss(&mut self, east_north_up: [T; 3]) {
         self.field_gauss = east_north_up;
-        self.refresh();
+        self.update_inputs();
     }
 
     /// Matrix that takes components along East, North, Up to components along the chart.
@@ -83,21 +83,21 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
         core::array::from_fn(|i| [east[i], self.north[i], self.up[i]])
     }
 
-    /// Unit vectors North and Up along the chart axes: all that changes when the chart moves.
+    /// Unit vectors North and Up along the chart axes.
     #[must_use]
     pub fn orientation(&self) -> [[T; 3]; 2] {
         [self.north, self.up]
     }
 
-    /// Lays the chart so that North and Up, orthogonal unit vectors, have these components.
-    pub fn lay(&mut self, [north, up]: &[[T; 3]; 2]) {
+    /// Sets the orientation of the chart: the components of North and Up, orthogonal unit vectors.
+    pub fn set_orientation(&mut self, [north, up]: &[[T; 3]; 2]) {
         (self.north, self.up) = (*north, *up);
-        self.refresh();
+        self.update_inputs();
     }
 
-    /// Turns the chart: `matrix` takes old components to new ones.
+    /// Rotates the chart: `matrix` takes old components to new ones.
     #[inline(always)]
-    fn turn(&mut self, matrix: &[[T; 3]; 3]) {
+    fn rotate(&mut self, matrix: &[[T; 3]; 3]) {
         self.north = rotate(matrix, &self.north);
         self.up = rotate(matrix, &self.up);
         self.turns = self.turns.wrapping_add(1);
@@ -106,12 +106,13 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
         if self.turns & 63 == 0 {
             self.orthonormalise();
         }
-        self.refresh();
+        self.update_inputs();
     }
 
+    /// Computes the inputs of the model along the axes of the chart.
     #[inline(always)]
-    fn refresh(&mut self) {
-        self.inputs.surround(&Surroundings {
+    fn update_inputs(&mut self) {
+        self.inputs.set_from_chart(&ChartVectors {
             north: &self.north,
             up: &self.up,
             earth_rate: &self.earth_rate,
@@ -254,7 +255,7 @@ where
     #[inline(always)]
     fn recentre(&self, moving: &mut [T; 3], chart: &mut Self::Inputs) -> Option<[[T; 3]; 3]> {
         let at = reanchor(moving);
-        chart.turn(&at.platform_c_chart);
+        chart.rotate(&at.platform_c_chart);
         *moving = [T::from_f64(0.0); 3];
         Some(at.rotation_d_theta_dense())
     }
@@ -268,6 +269,6 @@ where
 
     #[inline(always)]
     fn correct(&self, _moving: &mut [T; 3], chart: &mut Self::Inputs, correction: &[T; 3]) {
-        chart.turn(&turned_by(correction));
+        chart.rotate(&turned_by(correction));
     }
 }

@@ -1,85 +1,15 @@
 use gyrocal_estimation::form::Form;
-use gyrocal_estimation::{
-    ArrayStorage, Covariance, EstimationError, Factors, Filter, Innovation, Integration, Recentring,
-};
+use gyrocal_estimation::{ArrayStorage, Covariance, EstimationError, Factors, Filter, Innovation};
 use gyrocal_scalar::Real;
 
 use crate::anchor::{Anchored, Chart};
 use crate::generated::platform::{Drift, Platform, reanchor};
+use crate::initial_attitude::InitialAttitude;
 use crate::rotation::angles;
-use crate::site::Site;
-
-/// Duration over which the declared drift noise is held, s.
-const HELD_S: f64 = 60.0;
+use crate::settings::FilterSettings;
 
 /// Most parts that one interval is divided into: years of two-minute steps.
 const MOST_PARTS: f64 = 1e6;
-
-/// What a filter starts from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings<T> {
-    /// Where the platform stands.
-    pub site: Site<T>,
-    /// Platform angles against East-North-Up at the first sample, rad.
-    pub angles_rad: [T; 3],
-    /// Their standard deviations, rad. At theta_y = ±90° the angles leave one rotation open,
-    /// which then counts as known: start from another description of the attitude.
-    pub angles_sigma_rad: [T; 3],
-    /// Expected drift coefficients: deg/h, deg/h/g, deg/h/g².
-    pub drift: Drift<T>,
-    /// Their standard deviations.
-    pub drift_sigma: Drift<T>,
-    /// Standard deviation of one accelerometer sample, g.
-    pub accel_noise_g: T,
-    /// Standard deviation of the drift noise held over one minute, deg/h; the noise is white,
-    /// so over Δt it is this times √(60 s / Δt).
-    pub drift_noise_deg_per_h: T,
-    /// How the angles are integrated over a step.
-    pub integration: Integration,
-    /// When the chart moves.
-    pub recentring: Recentring<T>,
-    /// Longest interval that is integrated in one step, s; longer ones are divided.
-    pub longest_step_s: T,
-}
-
-impl<T: Real> Settings<T> {
-    /// A levelled and aligned platform (0.01 deg), coefficients unknown to 1 deg/h (per g, per
-    /// g²), 1e-5 g, 0.002 deg/h, RK4 steps of at most two minutes, chart moved at every step.
-    #[must_use]
-    pub fn level_at(site: Site<T>) -> Self {
-        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        Self {
-            site,
-            angles_rad: [zero; 3],
-            angles_sigma_rad: [T::from_f64(0.01_f64.to_radians()); 3],
-            drift: Drift::from_array([zero; Platform::PARAMETERS]),
-            drift_sigma: Drift::from_array([one; Platform::PARAMETERS]),
-            accel_noise_g: T::from_f64(1e-5),
-            drift_noise_deg_per_h: T::from_f64(0.002),
-            integration: Integration::RK4,
-            recentring: Recentring::EveryStep,
-            longest_step_s: T::from_f64(120.0),
-        }
-    }
-
-    /// Spectral density of the drift noise, (deg/h)² s: what is declared is held over a minute.
-    #[must_use]
-    pub fn drift_noise_density(&self) -> T {
-        self.drift_noise_deg_per_h * self.drift_noise_deg_per_h * T::from_f64(HELD_S)
-    }
-
-    /// The paper's own filter, equations (14) to (23): Euler angles as states in one chart,
-    /// one Euler step a sample. It is consistent with data simulated by the same rule only.
-    #[must_use]
-    pub fn of_the_paper(self) -> Self {
-        Self {
-            integration: Integration::EULER,
-            recentring: Recentring::Never,
-            longest_step_s: T::from_f64(f64::INFINITY),
-            ..self
-        }
-    }
-}
 
 type PlatformKernel<T, F> =
     Filter<T, Anchored<Platform>, Chart<T>, ArrayStorage<T, 3, 3, { Platform::STATES }>, 3, 3, F>;
@@ -101,11 +31,11 @@ pub struct PlatformFilter<T = f64, F = Covariance> {
 /// the one for controllers that compute in single precision.
 ///
 /// ```
-/// use gyrocal::{FactorisedPlatformFilter, Settings, Site};
+/// use gyrocal::{FactorisedPlatformFilter, FilterSettings, InitialAttitude, Site};
 ///
 /// # fn main() -> Result<(), gyrocal::EstimationError> {
-/// let settings = Settings::<f32>::level_at(Site::at_latitude_deg(39.1));
-/// let mut filter = FactorisedPlatformFilter::factorised(&settings)?;
+/// let settings = FilterSettings::<f32>::at_site(Site::at_latitude_deg(39.1));
+/// let mut filter = FactorisedPlatformFilter::factorised(&settings, &InitialAttitude::aligned())?;
 /// filter.update(&[0.0, 0.0, 1.0])?;
 /// # Ok(())
 /// # }
@@ -117,8 +47,11 @@ impl<T: Real> PlatformFilter<T, Covariance> {
     ///
     /// # Errors
     /// As [`Self::with_form`].
-    pub fn new(settings: &Settings<T>) -> Result<Self, EstimationError> {
-        Self::with_form(settings)
+    pub fn new(
+        settings: &FilterSettings<T>,
+        attitude: &InitialAttitude<T>,
+    ) -> Result<Self, EstimationError> {
+        Self::with_form(settings, attitude)
     }
 }
 
@@ -127,8 +60,11 @@ impl<T: Real> FactorisedPlatformFilter<T> {
     ///
     /// # Errors
     /// As [`Self::with_form`].
-    pub fn factorised(settings: &Settings<T>) -> Result<Self, EstimationError> {
-        Self::with_form(settings)
+    pub fn factorised(
+        settings: &FilterSettings<T>,
+        attitude: &InitialAttitude<T>,
+    ) -> Result<Self, EstimationError> {
+        Self::with_form(settings, attitude)
     }
 }
 
@@ -138,42 +74,14 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
     /// # Errors
     /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::InvalidArgument`] if a
     /// sigma or noise is not positive.
-    pub fn with_form(settings: &Settings<T>) -> Result<Self, EstimationError> {
-        Self::in_chart(
-            settings,
-            Chart::east_north_up(settings.site),
-            &settings.angles_rad,
-            &settings.angles_sigma_rad,
-        )
-    }
-
-    /// As [`Self::with_form`] for any initial attitude, angles near θy = ±90° included:
-    /// components of North and Up (orthogonal unit vectors) along the platform axes, and the
-    /// standard deviations of the attitude's error as a rotation about these axes, rad. The
-    /// angles of the settings are not used.
-    ///
-    /// # Errors
-    /// As [`Self::with_form`].
-    pub fn at_attitude(
-        settings: &Settings<T>,
-        north_and_up: &[[T; 3]; 2],
-        rotation_sigma_rad: &[T; 3],
-    ) -> Result<Self, EstimationError> {
-        let mut chart = Chart::east_north_up(settings.site);
-        chart.lay(north_and_up);
-        Self::in_chart(settings, chart, &[T::from_f64(0.0); 3], rotation_sigma_rad)
-    }
-
-    fn in_chart(
-        settings: &Settings<T>,
-        chart: Chart<T>,
-        angles_rad: &[T; 3],
-        angles_sigma_rad: &[T; 3],
+    pub fn with_form(
+        settings: &FilterSettings<T>,
+        attitude: &InitialAttitude<T>,
     ) -> Result<Self, EstimationError> {
         let (zero, noise) = (T::from_f64(0.0), settings.drift_noise_deg_per_h);
         if !(settings.accel_noise_g.is_positive()
             && noise.is_positive()
-            && settings.longest_step_s.is_positive())
+            && settings.discretisation.longest_step_s.is_positive())
         {
             return Err(EstimationError::InvalidArgument {
                 expected: "positive noise and a positive longest step",
@@ -185,20 +93,22 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
             all[3..].copy_from_slice(&parameters);
             all
         };
+        let mut chart = Chart::east_north_up(settings.site);
+        let angles = attitude.place(&mut chart);
         let kernel = Filter::with_form(
             Anchored(Platform),
             chart,
-            settings.integration,
-            settings.recentring,
+            settings.discretisation.integration,
+            settings.discretisation.recentring,
             ArrayStorage::new(),
-            &join(angles_rad, settings.drift.to_array()),
-            &join(angles_sigma_rad, settings.drift_sigma.to_array()),
+            &join(&angles.angles_rad, settings.drift.to_array()),
+            &join(&angles.sigma_rad, settings.drift_sigma.to_array()),
         )?;
         Ok(Self {
             kernel,
             accel_variance_g2: [settings.accel_noise_g * settings.accel_noise_g; 3],
             drift_density: [settings.drift_noise_density(); 3],
-            longest_step_s: settings.longest_step_s,
+            longest_step_s: settings.discretisation.longest_step_s,
         })
     }
 

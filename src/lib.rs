@@ -35,14 +35,15 @@
 //! # Example
 //!
 //! ```
-//! use gyrocal::{PlatformFilter, Settings, Site};
+//! use gyrocal::{FilterSettings, InitialAttitude, PlatformFilter, Site};
 //!
 //! # fn main() -> Result<(), gyrocal::EstimationError> {
-//! let mut filter = PlatformFilter::new(&Settings::<f64> {
+//! let settings = FilterSettings::<f64> {
 //!     accel_noise_g: 1e-5,
 //!     drift_noise_deg_per_h: 0.002,
-//!     ..Settings::level_at(Site::at_latitude_deg(39.1))
-//! })?;
+//!     ..FilterSettings::at_site(Site::at_latitude_deg(39.1))
+//! };
+//! let mut filter = PlatformFilter::new(&settings, &InitialAttitude::aligned())?;
 //! filter.update(&[0.0, 0.0, 1.0])?; // the first sample belongs to the initial attitude
 //! let innovation = filter.step(60.0, &[0.003_4, 0.0, 0.999_99])?;
 //! assert!(innovation.nis < 16.3, "NIS of three components, 99.9 %");
@@ -71,16 +72,20 @@
 #![no_std]
 
 mod anchor;
+mod chart_vectors;
 mod filter;
 pub mod generated;
+mod initial_attitude;
 mod rotation;
+mod settings;
 mod site;
-mod surroundings;
+
 #[cfg(feature = "batch")]
 pub mod trajectory;
 
 pub use anchor::{Anchored, Chart};
-pub use filter::{FactorisedPlatformFilter, PlatformFilter, Settings};
+pub use chart_vectors::{ChartInputs, ChartVectors};
+pub use filter::{FactorisedPlatformFilter, PlatformFilter};
 #[cfg(feature = "catalogue")]
 pub use generated::catalogue::{Catalogue, EFFECTS};
 pub use generated::platform::{Drift, Platform};
@@ -91,8 +96,9 @@ pub use gyrocal_estimation::{
 };
 pub use gyrocal_scalar::effect::{self, Effect};
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
+pub use initial_attitude::{ChartAngles, InitialAttitude};
+pub use settings::{Discretisation, FilterSettings};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};
-pub use surroundings::{ChartInputs, Surroundings};
 
 /// The example of the README, as it stands there.
 #[cfg(doctest)]

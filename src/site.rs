@@ -3,7 +3,7 @@ use gyrocal_scalar::Scalar;
 /// Sidereal rotation rate of the Earth in rad/s (WGS 84, NIMA TR8350.2).
 pub const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;
 
-/// Where the platform stands: what its surroundings do to gyros and accelerometers.
+/// Site of the platform: latitude, Earth rate and gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site<T> {
     /// Astronomic latitude in rad, north positive.

@@ -5,8 +5,8 @@ use gyrocal_estimation::{Corrected, Manifold};
 use gyrocal_scalar::{Model, Recentre};
 
 use crate::anchor::{Anchored, Chart};
+use crate::chart_vectors::ChartInputs;
 use crate::rotation::{cross, mean_turn, rotation_vector, turned_by};
-use crate::surroundings::ChartInputs;
 
 /// An attitude: unit vectors North and Up along the platform axes.
 pub type Orientation = [[f64; 3]; 2];
@@ -29,7 +29,7 @@ where
     #[inline]
     fn place(&self, point: &Orientation, moving: &mut [f64; 3], chart: &mut Chart<f64, D::Inputs>) {
         *moving = [0.0; 3];
-        chart.lay(point);
+        chart.set_orientation(point);
     }
 
     #[inline]

@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use gyrocal::scalar::Model;
-use gyrocal::{Anchored, Drift, Integration, Platform, PlatformFilter, Settings, Site};
+use gyrocal::{
+    Anchored, Drift, FilterSettings, InitialAttitude, Integration, Platform, PlatformFilter, Site,
+};
 use gyrocal_truth::{Attitude, Coefficients, Population};
 
 const STEP_S: f64 = 60.0;
@@ -27,17 +29,15 @@ fn drift_of(coefficients: &Coefficients) -> Drift<f64> {
 }
 
 /// A filter that knows the platform.
-fn settings_of(platform: &gyrocal_truth::Platform) -> Settings<f64> {
+fn settings_of(platform: &gyrocal_truth::Platform) -> FilterSettings<f64> {
     let site = Site {
         gravity_g: platform.specific_force_at_rest_g,
         ..Site::at_latitude_deg(platform.latitude_deg)
     };
-    Settings {
-        angles_rad: platform.initial_platform_c_enu.angles_rad(),
-        angles_sigma_rad: [1e-9; 3],
+    FilterSettings {
         drift: drift_of(&platform.coefficients),
         drift_sigma: Drift::from_array([1e-9; Platform::PARAMETERS]),
-        ..Settings::level_at(site)
+        ..FilterSettings::at_site(site)
     }
 }
 
@@ -45,9 +45,13 @@ fn settings_of(platform: &gyrocal_truth::Platform) -> Settings<f64> {
 ///
 /// The filter takes no measurement, so its states move as the generated rates say. Its samples
 /// are taken twice: from its attitude, and from the generated output in its chart.
-fn worst(platform: &gyrocal_truth::Platform, settings: &Settings<f64>) -> (f64, usize) {
+fn worst(platform: &gyrocal_truth::Platform, settings: &FilterSettings<f64>) -> (f64, usize) {
     let gravity_g = settings.site.gravity_g;
-    let mut filter = PlatformFilter::new(settings).unwrap();
+    let attitude = InitialAttitude::Angles {
+        angles_rad: platform.initial_platform_c_enu.angles_rad(),
+        sigma_rad: [1e-9; 3],
+    };
+    let mut filter = PlatformFilter::new(settings, &attitude).unwrap();
     let mut worst = (0.0, 0);
     let truth = platform.specific_force_g(&minutes());
     for (step, expected) in truth.iter().enumerate() {
@@ -140,7 +144,7 @@ fn a_slightly_wrong_model_does_not_follow() {
     let mut latitude = exact;
     latitude.site.latitude_rad += 1e-7;
     let mut rule = exact;
-    rule.integration = Integration::Euler { substeps: 64 };
+    rule.discretisation.integration = Integration::Euler { substeps: 64 };
     for wrong in [drift, latitude, rule] {
         let (difference, _) = worst(&platform, &wrong);
         assert!(difference > 10.0 * TOLERANCE_G, "{difference:e}");

@@ -6,8 +6,8 @@ use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{ArrayStorage, Covariance, Factors, Filter, Storage, VecStorage};
 use gyrocal::scalar::Model;
 use gyrocal::{
-    Anchored, Chart, FactorisedPlatformFilter, Integration, Platform, PlatformFilter, Recentring,
-    Settings, Site,
+    Anchored, Chart, FactorisedPlatformFilter, FilterSettings, InitialAttitude, Integration,
+    Platform, PlatformFilter, Recentring, Site,
 };
 use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
@@ -200,10 +200,11 @@ fn a_chart_that_moves_now_and_then_agrees_with_one_that_moves_at_every_step() {
 
 #[test]
 fn single_precision_follows_double_precision() {
-    let settings = Settings::level_at(Site::at_latitude_deg(39.1));
-    let single = Settings::<f32>::level_at(Site::at_latitude_deg(39.1));
-    let mut double = PlatformFilter::<f64>::new(&settings).unwrap();
-    let mut single = FactorisedPlatformFilter::factorised(&single).unwrap();
+    let settings = FilterSettings::at_site(Site::at_latitude_deg(39.1));
+    let single = FilterSettings::<f32>::at_site(Site::at_latitude_deg(39.1));
+    let mut double = PlatformFilter::<f64>::new(&settings, &InitialAttitude::aligned()).unwrap();
+    let mut single =
+        FactorisedPlatformFilter::factorised(&single, &InitialAttitude::aligned()).unwrap();
     let mut truth = double.clone();
     for _ in 0..300 {
         truth.predict(60.0).unwrap();
@@ -235,8 +236,8 @@ fn single_precision_follows_double_precision() {
 
 #[test]
 fn long_gaps_are_divided_and_equal_many_short_steps() {
-    let settings = Settings::level_at(Site::at_latitude_deg(39.1));
-    let mut gap = PlatformFilter::<f64>::new(&settings).unwrap();
+    let settings = FilterSettings::at_site(Site::at_latitude_deg(39.1));
+    let mut gap = PlatformFilter::<f64>::new(&settings, &InitialAttitude::aligned()).unwrap();
     let mut steps = gap.clone();
     gap.predict(7200.0).unwrap();
     for _ in 0..60 {

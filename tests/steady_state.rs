@@ -13,7 +13,10 @@ use allocation_counter::measure;
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{ArrayStorage, Covariance, Factors, Filter, Storage, VecStorage};
 use gyrocal::scalar::{Real, Recentre};
-use gyrocal::{Anchored, Chart, Integration, Platform, PlatformFilter, Recentring, Settings, Site};
+use gyrocal::{
+    Anchored, Chart, Discretisation, FilterSettings, InitialAttitude, Integration, Platform,
+    PlatformFilter, Recentring, Site,
+};
 
 use extended_platform::ExtendedPlatform;
 
@@ -116,13 +119,17 @@ fn no_step_allocates() {
 
 /// What every call of the filter of a platform allocates, in the number type `T`.
 fn calls_of<T: Real, F: Form<T>>(integration: Integration) -> u64 {
-    let settings = Settings {
-        integration,
-        ..Settings::level_at(Site::at_latitude_deg(39.1))
+    let settings = FilterSettings {
+        discretisation: Discretisation {
+            integration,
+            ..Discretisation::default()
+        },
+        ..FilterSettings::at_site(Site::at_latitude_deg(39.1))
     };
     let samples = SAMPLES.map(|sample| sample.map(T::from_f64));
     allocations(|| {
-        let mut filter = PlatformFilter::<T, F>::with_form(&settings).unwrap();
+        let mut filter =
+            PlatformFilter::<T, F>::with_form(&settings, &InitialAttitude::aligned()).unwrap();
         for sample in samples.iter().cycle().take(STEPS) {
             filter.step(T::from_f64(60.0), sample).unwrap();
             filter.predict(T::from_f64(1000.0)).unwrap();

@@ -15,7 +15,10 @@ use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gyrocal::estimation::dense::DenseFilter;
-use gyrocal::{Anchored, Chart, Integration, Platform, PlatformFilter, Recentring, Settings, Site};
+use gyrocal::{
+    Anchored, Chart, Discretisation, FilterSettings, InitialAttitude, Integration, Platform,
+    PlatformFilter, Recentring, Site,
+};
 use nalgebra::{SMatrix, SVector};
 
 /// Interval between samples, s.
@@ -24,7 +27,7 @@ const STEP_S: f64 = 60.0;
 const DENSITY: [f64; 3] = [2.4e-4; 3];
 /// Variance of one sample of 1e-5 g.
 const VARIANCE: [f64; 3] = [1e-10; 3];
-/// Angle and coefficient sigmas of [`Settings::level_at`], squared.
+/// Angle and coefficient sigmas of [`InitialAttitude::aligned`] and [`FilterSettings::at_site`], squared.
 const PRIOR_VARIANCE: [f64; 12] = {
     let angle = 0.01 / 180.0 * std::f64::consts::PI;
     let a = angle * angle;
@@ -37,7 +40,11 @@ fn chart() -> Chart<f64> {
 
 /// Ten hours of noise-free samples of a platform without drift, far from gimbal lock.
 fn samples() -> Vec<[f64; 3]> {
-    let mut truth = PlatformFilter::new(&Settings::level_at(Site::at_latitude_deg(39.1))).unwrap();
+    let mut truth = PlatformFilter::new(
+        &FilterSettings::at_site(Site::at_latitude_deg(39.1)),
+        &InitialAttitude::aligned(),
+    )
+    .unwrap();
     (0..600)
         .map(|_| {
             truth.predict(STEP_S).unwrap();
@@ -77,11 +84,14 @@ fn filter_step(criterion: &mut Criterion) {
             .warm_up_time(Duration::from_millis(500))
             .measurement_time(Duration::from_secs(2));
 
-        let settings = Settings {
-            integration,
-            ..Settings::level_at(Site::at_latitude_deg(39.1))
+        let settings = FilterSettings {
+            discretisation: Discretisation {
+                integration,
+                ..Discretisation::default()
+            },
+            ..FilterSettings::at_site(Site::at_latitude_deg(39.1))
         };
-        let start = PlatformFilter::new(&settings).unwrap();
+        let start = PlatformFilter::new(&settings, &InitialAttitude::aligned()).unwrap();
         group.bench_function("generated", |bencher| {
             bencher.iter_custom(|iterations| {
                 time(iterations, &samples, &start, |filter, sample| {

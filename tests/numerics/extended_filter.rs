@@ -3,7 +3,9 @@
 use std::hint::black_box;
 
 use gyrocal::estimation::{Filter, VecStorage};
-use gyrocal::{Chart, Integration, PlatformFilter, Recentring, Settings, Site};
+use gyrocal::{
+    Chart, FilterSettings, InitialAttitude, Integration, PlatformFilter, Recentring, Site,
+};
 
 use super::extended_platform::ExtendedPlatform;
 
@@ -21,7 +23,8 @@ type ExtendedFilter = Filter<f64, ExtendedPlatform, Chart<f64>, VecStorage<f64>,
 /// Noise-free samples of a platform without drift.
 pub(crate) fn samples(count: usize) -> Result<Vec<[f64; 3]>, gyrocal::EstimationError> {
     let site = Site::at_latitude_deg(LATITUDE_DEG);
-    let mut truth = PlatformFilter::new(&Settings::level_at(site))?;
+    let mut truth =
+        PlatformFilter::new(&FilterSettings::at_site(site), &InitialAttitude::aligned())?;
     let mut samples = Vec::with_capacity(count);
     for _ in 0..count {
         truth.predict(STEP_S)?;

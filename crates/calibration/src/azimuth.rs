@@ -1,6 +1,6 @@
 //! Search for an unknown azimuth by multiple starts.
 
-use gyrocal::Settings;
+use gyrocal::FilterSettings;
 use gyrocal::trajectory::{Orientation, rotation_between};
 
 use crate::attitude::{AttitudeHypothesis, AttitudePrior};
@@ -36,7 +36,7 @@ struct HypothesisSolution<'a> {
 /// solution of the largest likelihood is chosen. Returns its hypothesis, moved to the solution.
 pub(crate) fn search_azimuth(
     run: &Run<'_>,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     hypotheses: &[AttitudeHypothesis],
     options: &Options,
 ) -> Result<(AttitudeHypothesis, AzimuthSearch), CalibrationError> {
@@ -70,7 +70,7 @@ pub(crate) fn search_azimuth(
 fn ranked_solutions<'a>(
     run: &Run<'_>,
     rows: usize,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     hypotheses: &'a [AttitudeHypothesis],
     options: &Options,
 ) -> Vec<HypothesisSolution<'a>> {
@@ -96,7 +96,7 @@ fn ranked_solutions<'a>(
 fn solve_from<'a>(
     run: &Run<'_>,
     rows: usize,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     hypothesis: &'a AttitudeHypothesis,
     start: &InitialTrajectory,
     options: &Options,

@@ -3,7 +3,7 @@
 use gyrocal::estimation::Manifold;
 use gyrocal::estimation::batch::Linearisation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
-use gyrocal::{Chart, Drift, Recentring, Settings};
+use gyrocal::{Chart, Drift};
 use gyrocal_record::Bench;
 
 use crate::coefficients::PARAMETERS;
@@ -19,7 +19,7 @@ use crate::problem::Problem;
 use crate::result::{AzimuthSearch, Calibration, ConsiderSensitivity, RunResult};
 use crate::robust::solve_robust;
 use crate::run::{Conditions, Run};
-use crate::settings::level;
+use crate::settings::filter_settings;
 use crate::single_run::run_problem;
 use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
@@ -137,8 +137,8 @@ where
     } = *task;
     let mut problem = Problem {
         model: task.model,
-        integration: options.integration,
-        longest_step_s: options.longest_step_s,
+        integration: options.discretisation.integration,
+        longest_step_s: options.discretisation.longest_step_s,
         unknowns: layout.unknowns.clone(),
         runs: Vec::with_capacity(runs.len()),
         values: vec![0.0; layout.unknowns.len()],
@@ -146,12 +146,7 @@ where
     let mut weights = [0.0; PARAMETERS];
     let mut azimuths = Vec::with_capacity(runs.len());
     for (index, run) in runs.iter().enumerate() {
-        let settings = Settings {
-            integration: options.integration,
-            recentring: Recentring::EveryStep,
-            longest_step_s: options.longest_step_s,
-            ..level(run.bench)
-        };
+        let settings = filter_settings(run.bench, options.moving_chart());
         let guess = initial_guess(run, &settings, options, careful)
             .map_err(|error| error.of_record(index, runs.len()))?;
         let start = guess.start;

@@ -1,4 +1,4 @@
-use gyrocal::{Anchored, Platform, Settings, Strapdown, Surveyed};
+use gyrocal::{Anchored, Platform, Strapdown, Surveyed};
 use gyrocal_record::{Bench, Record};
 use nalgebra::SMatrix;
 
@@ -8,7 +8,7 @@ use crate::gyro_axes::GyroAxes;
 use crate::options::{Method, Options};
 use crate::result::Calibration;
 use crate::run::Run;
-use crate::settings::filter_settings;
+use crate::settings::{declared_attitude, filter_settings};
 use crate::{batch, streaming};
 
 /// Estimates the nine coefficients from a record.
@@ -110,13 +110,10 @@ fn streaming(
     options: &Options,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    let settings = Settings {
-        integration: options.integration,
-        recentring: options.recentring,
-        longest_step_s: options.longest_step_s,
-        ..filter_settings(run.bench).ok_or(CalibrationError::NoAttitude)?
-    };
-    let filtered = streaming::filter(run.record, &settings, options.factorised, |row| {
+    let settings = filter_settings(run.bench, options.discretisation);
+    let attitude = declared_attitude(run.bench).ok_or(CalibrationError::NoAttitude)?;
+    let form = options.factorised;
+    let filtered = streaming::filter(run.record, &settings, &attitude, form, |row| {
         if row % 1024 == 0 {
             progress(row);
         }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use gyrocal::generated::surveyed::SurveyedInputs;
-use gyrocal::{Anchored, Recentring, Settings, Surveyed};
+use gyrocal::{Anchored, Discretisation, FilterSettings, Surveyed};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};
 
@@ -13,7 +13,7 @@ use crate::initial_trajectory::InitialTrajectory;
 use crate::options::Options;
 use crate::problem::Problem;
 use crate::run::Run;
-use crate::settings::level;
+use crate::settings::filter_settings;
 use crate::single_run::single_run_problem;
 
 fn day(seed: u64) -> (Record, Bench) {
@@ -29,17 +29,14 @@ fn day(seed: u64) -> (Record, Bench) {
     (simulation.record, simulation.bench)
 }
 
-fn settings(bench: &Bench) -> Settings<f64> {
-    Settings {
-        recentring: Recentring::EveryStep,
-        ..level(bench)
-    }
+fn settings(bench: &Bench) -> FilterSettings<f64> {
+    filter_settings(bench, Discretisation::default())
 }
 
 /// A problem at given drift coefficients and the noise-free trajectory that belongs to them.
 fn problem_at<'a>(
     run: &Run<'a>,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     drift: [f64; 9],
 ) -> Problem<'a, Anchored<Surveyed>, SurveyedInputs<f64>> {
     let prior = attitude_hypotheses(run.record, run.bench).unwrap()[0].prior;

@@ -1,7 +1,7 @@
 //! Cramér-Rao bound of the coefficients.
 
 use gyrocal::trajectory::orientation;
-use gyrocal::{Anchored, Settings, Surveyed};
+use gyrocal::{Anchored, Surveyed};
 use nalgebra::{Cholesky, DMatrix};
 
 use crate::attitude::attitude_hypotheses;
@@ -11,7 +11,7 @@ use crate::layout::Layout;
 use crate::options::Options;
 use crate::problem::Problem;
 use crate::run::Run;
-use crate::settings::level;
+use crate::settings::filter_settings;
 use crate::single_run::run_problem;
 
 /// Cramér-Rao bound of the nine coefficients: the least covariance of any estimator, for noise and
@@ -47,11 +47,7 @@ pub fn cramer_rao_bound(
     let layout = Layout::new(&[run.bench]);
     // The integration rule has no influence: the bound is linearised about the truth.
     let options = Options::default();
-    let settings = Settings {
-        integration: options.integration,
-        longest_step_s: options.longest_step_s,
-        ..level(run.bench)
-    };
+    let settings = filter_settings(run.bench, options.discretisation);
     // All hypotheses have the same covariance: it does not depend on azimuth.
     let prior = attitude_hypotheses(run.record, run.bench)?
         .first()
@@ -63,8 +59,8 @@ pub fn cramer_rao_bound(
     let parameter_unknowns = layout.parameter_unknowns(0);
     let problem = Problem {
         model: &Anchored(Surveyed),
-        integration: options.integration,
-        longest_step_s: options.longest_step_s,
+        integration: options.discretisation.integration,
+        longest_step_s: options.discretisation.longest_step_s,
         runs: vec![run_problem(
             run,
             run.record.len(),

@@ -6,7 +6,7 @@ mod prediction;
 
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
-use gyrocal::{Anchored, Catalogue, Chart, Recentring, Settings};
+use gyrocal::{Anchored, Catalogue, Chart, Discretisation};
 use gyrocal_record::Bench;
 use nalgebra::DMatrix;
 
@@ -18,7 +18,7 @@ use crate::layout::SiteQuantity;
 use crate::options::Options;
 use crate::problem::{Problem, RunProblem, Unknown};
 use crate::run::{Run, WeightedRows};
-use crate::settings::level;
+use crate::settings::filter_settings;
 use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
 
@@ -117,12 +117,7 @@ impl<'a> Extended<'a> {
         options: &Options,
         noise: &NoiseModel,
     ) -> Result<Self, CalibrationError> {
-        let settings = Settings {
-            integration: options.integration,
-            recentring: Recentring::EveryStep,
-            longest_step_s: options.longest_step_s,
-            ..level(run.bench)
-        };
+        let settings = filter_settings(run.bench, options.moving_chart());
         let fit = |careful| {
             let beginning = initial_guess(run, &settings, options, careful)?;
             let extension = of_site(run.bench);
@@ -151,8 +146,8 @@ impl<'a> Extended<'a> {
             };
             let problem = Problem {
                 model: &Anchored(Catalogue),
-                integration: options.integration,
-                longest_step_s: options.longest_step_s,
+                integration: options.discretisation.integration,
+                longest_step_s: options.discretisation.longest_step_s,
                 unknowns: settings
                     .drift_sigma
                     .to_array()
@@ -230,7 +225,7 @@ impl<'a> Extended<'a> {
     /// # Errors
     /// As [`Self::refitted`].
     pub fn with_noise(&self, bench: &Bench, noise: &NoiseModel) -> Result<Self, CalibrationError> {
-        let density = level(bench).drift_noise_density();
+        let density = filter_settings(bench, Discretisation::default()).drift_noise_density();
         self.refitted_with(&self.extension, |leg| {
             leg.rows
                 .set_noise(noise.accel_ratio.map(|ratio| ratio * bench.accel_noise_g));

@@ -1,6 +1,6 @@
 //! Initial guess of the Gauss-Newton iteration for one run.
 
-use gyrocal::Settings;
+use gyrocal::FilterSettings;
 
 use crate::attitude::{AttitudePrior, attitude_hypotheses};
 use crate::azimuth::search_azimuth;
@@ -26,7 +26,7 @@ pub(crate) struct InitialGuess {
 /// the filter does not diverge.
 pub(crate) fn initial_guess(
     run: &Run<'_>,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     options: &Options,
     careful: bool,
 ) -> Result<InitialGuess, CalibrationError> {
@@ -49,7 +49,7 @@ pub(crate) fn initial_guess(
 
 fn guess_from_all_rows(
     run: &Run<'_>,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     options: &Options,
     careful: bool,
 ) -> Result<InitialGuess, CalibrationError> {

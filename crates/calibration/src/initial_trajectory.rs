@@ -3,7 +3,7 @@
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{Covariance, Factors};
 use gyrocal::trajectory::Orientation;
-use gyrocal::{EstimationError, PlatformFilter, Settings};
+use gyrocal::{EstimationError, FilterSettings, InitialAttitude, PlatformFilter};
 use gyrocal_record::Record;
 
 use crate::attitude::AttitudePrior;
@@ -28,7 +28,7 @@ pub(crate) struct InitialTrajectory {
 pub(crate) fn filtered_trajectory(
     record: &Record,
     rows: usize,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     attitude: &AttitudePrior,
 ) -> Result<InitialTrajectory, CalibrationError> {
     match filtered_in_form::<Covariance>(record, rows, settings, attitude) {
@@ -44,12 +44,15 @@ pub(crate) fn filtered_trajectory(
 fn filtered_in_form<F: Form<f64>>(
     record: &Record,
     rows: usize,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     attitude: &AttitudePrior,
 ) -> Result<InitialTrajectory, CalibrationError> {
     // The filter takes independent sigmas about the axes: near enough for an initial guess.
-    let sigma_rad = core::array::from_fn(|i| attitude.covariance[i][i].sqrt());
-    let filter = PlatformFilter::<f64, F>::at_attitude(settings, &attitude.orientation, &sigma_rad);
+    let attitude = InitialAttitude::Orientation {
+        north_and_up: attitude.orientation,
+        sigma_rad: core::array::from_fn(|i| attitude.covariance[i][i].sqrt()),
+    };
+    let filter = PlatformFilter::<f64, F>::with_form(settings, &attitude);
     let mut points = Vec::with_capacity(rows);
     let (mut nis, mut values) = (0.0, 0);
     let filter = run_filter(record, rows, filter, |_, filter, innovation| {

@@ -6,7 +6,7 @@ use gyrocal_record::Bench;
 
 use crate::coefficients::{BIASES, PARAMETERS};
 use crate::problem::Unknown;
-use crate::settings::level;
+use crate::settings::drift_prior_sigma;
 
 /// Turn-on sigma of a gyro whose turn-ons are declared equal while those of others differ.
 const SAME_DEG_PER_H: f64 = 1e-9;
@@ -87,10 +87,10 @@ impl Layout {
             .map_or([0.0; 3], |bench| bench.prior.turn_on_sigma_deg_per_h);
         let differ = benches.len() > 1 && turn_on.iter().any(|sigma| *sigma > 0.0);
         let mut prior = benches.first().map_or([1.0; PARAMETERS], |bench| {
-            level(bench).drift_sigma.to_array()
+            drift_prior_sigma(bench).to_array()
         });
         if let (true, Some(bench)) = (differ, benches.first()) {
-            // `level` gives the prior of one turn-on; this is that of their mean.
+            // The prior of the mean over turn-ons, not that of one turn-on.
             for (axis, bias) in BIASES.into_iter().enumerate() {
                 prior[bias] = bench.prior.bias_sigma_deg_per_h[axis];
             }

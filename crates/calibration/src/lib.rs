@@ -76,5 +76,5 @@ pub use options::{Method, Options};
 pub use planned_run::{PlannedRun, PredictedInformation};
 pub use result::{AzimuthSearch, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult};
 pub use run::Run;
-pub use settings::filter_settings;
+pub use settings::{declared_attitude, filter_settings};
 pub use streaming::run_filter;

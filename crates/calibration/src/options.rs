@@ -1,44 +1,41 @@
-use gyrocal::{Integration, Recentring};
+//! Options of the estimators.
 
-/// How coefficients are estimated.
+use gyrocal::{Discretisation, Recentring};
+
+/// Estimator of the coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// Iterated smoothing of whole records.
+    /// Batch estimator: iterated smoothing of whole records.
     Batch,
-    /// One pass of the filter that a controller embeds.
+    /// Streaming filter, as a controller embeds it.
     Streaming,
 }
 
-/// How records are read.
+/// Options of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How coefficients are estimated.
+    /// Estimator of the coefficients.
     pub method: Method,
-    /// How the angles are integrated over a step.
-    pub integration: Integration,
-    /// When the chart of the streaming filter moves; the batch estimator moves it at every step.
-    pub recentring: Recentring<f64>,
-    /// Longest interval integrated in one step, s; longer ones are divided.
-    pub longest_step_s: f64,
-    /// Whether the streaming filter carries the covariance as its factors: slower, for priors
-    /// that are too wide otherwise.
+    /// Discretisation of the model. The batch estimator moves the chart at every step, whatever
+    /// [`Discretisation::recentring`] says.
+    pub discretisation: Discretisation<f64>,
+    /// True if the streaming filter carries the covariance as its factors: slower, for very wide
+    /// priors.
     pub factorised: bool,
-    /// Whether the batch estimator also estimates the noise by maximum likelihood.
+    /// True if the batch estimator also estimates the noise by maximum likelihood.
     pub noise: bool,
-    /// Standard deviations of the noise beyond which the batch estimator bounds the influence
-    /// of a value (Huber's weights); `None` trusts every value.
+    /// Residual, in standard deviations of the noise, beyond which the batch estimator reduces the
+    /// weight of a value (Huber); `None` gives every value its full weight.
     pub outlier_bound: Option<f64>,
 }
 
 impl Default for Options {
-    /// The batch estimator with RK4, chart moved at every step, steps of at most two minutes, the covariance itself.
+    /// The batch estimator with the default discretisation, without an estimate of the noise.
     fn default() -> Self {
         Self {
             method: Method::Batch,
-            integration: Integration::RK4,
-            recentring: Recentring::EveryStep,
-            longest_step_s: 120.0,
+            discretisation: Discretisation::default(),
             factorised: false,
             noise: false,
             outlier_bound: None,
@@ -47,7 +44,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// One pass of the streaming filter.
+    /// The streaming filter.
     #[must_use]
     pub fn streaming() -> Self {
         Self {
@@ -56,17 +53,20 @@ impl Options {
         }
     }
 
-    /// The paper's own filter: Euler angles in one chart, one Euler step a sample.
+    /// The paper's filter: Euler angles as states in one chart, one Euler step a sample.
     #[must_use]
-    pub fn of_the_paper() -> Self {
+    pub fn paper_baseline() -> Self {
         Self {
-            method: Method::Streaming,
-            integration: Integration::EULER,
-            recentring: Recentring::Never,
-            longest_step_s: f64::INFINITY,
-            factorised: false,
-            noise: false,
-            outlier_bound: None,
+            discretisation: Discretisation::paper_baseline(),
+            ..Self::streaming()
+        }
+    }
+
+    /// The discretisation with the chart moved at every step.
+    pub(crate) fn moving_chart(&self) -> Discretisation<f64> {
+        Discretisation {
+            recentring: Recentring::EveryStep,
+            ..self.discretisation
         }
     }
 }

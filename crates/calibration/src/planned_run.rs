@@ -12,7 +12,7 @@ use crate::further::{Column, Further};
 use crate::options::Options;
 use crate::problem::{Problem, RunProblem};
 use crate::run::{Run, WeightedRows};
-use crate::settings::level;
+use crate::settings::filter_settings;
 
 /// A run that has not been made. Its trajectory is the noise-free solution of the model from the
 /// first attitude.
@@ -98,7 +98,7 @@ impl PlannedRun<'_> {
         options: &Options,
     ) -> Result<Problem<'_, Anchored<Catalogue>, CatalogueInputs<f64>>, CalibrationError> {
         let Run { record, bench } = self.run;
-        let settings = level(bench);
+        let settings = filter_settings(bench, options.moving_chart());
         // All hypotheses have the same covariance: it does not depend on azimuth.
         let prior_covariance = attitude_hypotheses(record, bench)?
             .first()
@@ -116,8 +116,8 @@ impl PlannedRun<'_> {
             .map(|ratio| ratio * settings.accel_noise_g);
         Ok(Problem {
             model: &Anchored(Catalogue),
-            integration: options.integration,
-            longest_step_s: options.longest_step_s,
+            integration: options.discretisation.integration,
+            longest_step_s: options.discretisation.longest_step_s,
             unknowns: Vec::new(),
             values: Vec::new(),
             runs: vec![RunProblem {

@@ -2,7 +2,7 @@
 
 use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::trajectory::Orientation;
-use gyrocal::{Anchored, Chart, ChartInputs, Drift, Settings, Surveyed};
+use gyrocal::{Anchored, Chart, ChartInputs, Drift, FilterSettings, Surveyed};
 
 use crate::attitude::{AttitudeHypothesis, AttitudePrior};
 use crate::error::CalibrationError;
@@ -25,7 +25,7 @@ const FIRST_WINDOW: usize = 16;
 pub(crate) fn run_problem<'a, I: ChartInputs<f64>>(
     run: &Run<'a>,
     rows: usize,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     prior: &AttitudePrior,
     points: Vec<Orientation>,
     parameter_unknowns: Vec<Vec<usize>>,
@@ -47,7 +47,7 @@ pub(crate) fn run_problem<'a, I: ChartInputs<f64>>(
 pub(crate) fn single_run_problem<'a>(
     run: &Run<'a>,
     rows: usize,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     prior: &AttitudePrior,
     start: &InitialTrajectory,
     options: &Options,
@@ -57,8 +57,8 @@ pub(crate) fn single_run_problem<'a>(
     values[..start.drift.len()].copy_from_slice(&start.drift);
     Problem {
         model: &Anchored(Surveyed),
-        integration: options.integration,
-        longest_step_s: options.longest_step_s,
+        integration: options.discretisation.integration,
+        longest_step_s: options.discretisation.longest_step_s,
         runs: vec![run_problem(
             run,
             rows,
@@ -76,7 +76,7 @@ pub(crate) fn single_run_problem<'a>(
 /// `careful` is set, that of [`windowed_trajectory`].
 pub(crate) fn initial_trajectory(
     run: &Run<'_>,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     hypothesis: &AttitudeHypothesis,
     options: &Options,
     careful: bool,
@@ -96,7 +96,7 @@ pub(crate) fn initial_trajectory(
 pub(crate) fn windowed_trajectory(
     run: &Run<'_>,
     all: usize,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
     hypothesis: &AttitudeHypothesis,
     options: &Options,
 ) -> Result<InitialTrajectory, CalibrationError> {

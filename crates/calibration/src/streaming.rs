@@ -2,7 +2,9 @@
 
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{Covariance, Factors};
-use gyrocal::{Drift, EstimationError, Innovation, PlatformFilter, Settings};
+use gyrocal::{
+    Drift, EstimationError, FilterSettings, InitialAttitude, Innovation, PlatformFilter,
+};
 use gyrocal_record::Record;
 
 use crate::coefficients::PARAMETERS;
@@ -21,24 +23,26 @@ pub(crate) struct Filtered {
 /// Runs the streaming filter over a record; `watch` is called after each row with its number.
 pub(crate) fn filter(
     record: &Record,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
+    attitude: &InitialAttitude<f64>,
     factorised: bool,
     watch: impl FnMut(usize),
 ) -> Result<Filtered, CalibrationError> {
     if factorised {
-        filter_in::<Factors>(record, settings, watch)
+        filter_in::<Factors>(record, settings, attitude, watch)
     } else {
-        filter_in::<Covariance>(record, settings, watch)
+        filter_in::<Covariance>(record, settings, attitude, watch)
     }
 }
 
 fn filter_in<F: Form<f64>>(
     record: &Record,
-    settings: &Settings<f64>,
+    settings: &FilterSettings<f64>,
+    attitude: &InitialAttitude<f64>,
     mut watch: impl FnMut(usize),
 ) -> Result<Filtered, CalibrationError> {
     let mut fit = FitStatistics::of_nothing();
-    let filter = PlatformFilter::<f64, F>::with_form(settings);
+    let filter = PlatformFilter::<f64, F>::with_form(settings, attitude);
     let filter = run_filter(record, record.len(), filter, |row, _, innovation| {
         fit.add(innovation);
         watch(row);

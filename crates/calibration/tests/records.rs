@@ -43,7 +43,7 @@ fn clean_records_of_another_simulator_fit() {
 #[test]
 fn the_paper_s_filter_fails_where_its_single_chart_does() {
     let (record, bench) = case("S11");
-    match calibrate(&record, &bench, &Options::of_the_paper(), |_| ()) {
+    match calibrate(&record, &bench, &Options::paper_baseline(), |_| ()) {
         Ok(calibration) => assert_eq!(calibration.fit.consistency(), Consistency::Overconfident),
         Err(error) => assert!(matches!(error, CalibrationError::Filter { .. })),
     }
@@ -59,7 +59,7 @@ fn scenario() -> Scenario {
 
 #[test]
 fn first_order_integration_is_right_only_on_its_own_data() {
-    let paper = Options::of_the_paper();
+    let paper = Options::paper_baseline();
     let own = euler_rule(&scenario()).unwrap();
     let exact = simulate(&scenario()).unwrap();
     let fit = |simulation: &gyrocal_truth::Simulation| {

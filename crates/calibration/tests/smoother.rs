@@ -9,6 +9,7 @@
 mod dense;
 
 use dense::Dense;
+use gyrocal::Discretisation;
 use gyrocal_calibration::{CalibrationError, Options, Run, calibrate, cramer_rao_bound};
 use gyrocal_record::Prior;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
@@ -38,12 +39,15 @@ fn short(seed: u64, change: impl Fn(&mut Scenario)) -> Simulation {
 fn assert_dense(simulation: &Simulation) {
     let options = Options {
         // Short parts: the two integrate by different rules.
-        longest_step_s: 30.0,
+        discretisation: Discretisation {
+            longest_step_s: 30.0,
+            ..Discretisation::default()
+        },
         ..Options::default()
     };
     let (record, bench) = (&simulation.record, &simulation.bench);
     let found = calibrate(record, bench, &options, |_| ()).unwrap();
-    let dense = Dense::new(Run { record, bench }, options.longest_step_s).solve();
+    let dense = Dense::new(Run { record, bench }, options.discretisation.longest_step_s).solve();
     let drift = found.drift.to_array();
     for i in 0..9 {
         let sigma = dense.covariance[(i, i)].sqrt();

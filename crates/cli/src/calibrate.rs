@@ -84,7 +84,7 @@ impl CalibrateArguments {
     fn options(&self) -> Options {
         let options = match self.method() {
             CalibrationMethod::Streaming => Options::streaming(),
-            CalibrationMethod::Paper => Options::of_the_paper(),
+            CalibrationMethod::Paper => Options::paper_baseline(),
             _ => Options::default(),
         };
         Options {

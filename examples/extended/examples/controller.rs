@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use gyrocal::{PlatformFilter, Settings, Site};
+use gyrocal::{FilterSettings, InitialAttitude, PlatformFilter, Site};
 use gyrocal_extended::Controller;
 use gyrocal_record::{Bench, Record};
 
@@ -20,9 +20,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("expected two arguments: RECORD.csv and BENCH.toml".into());
     };
     let record = Record::read(Path::new(record))?;
-    let settings = settings(&Bench::read(Path::new(bench))?)?;
-    let mut nominal = PlatformFilter::new(&settings)?;
-    let mut extended = Controller::new(&settings)?;
+    let bench = Bench::read(Path::new(bench))?;
+    let settings = FilterSettings {
+        accel_noise_g: bench.accel_noise_g,
+        drift_noise_deg_per_h: bench.gyro_noise_deg_per_h,
+        ..FilterSettings::at_site(Site::at_latitude_deg(bench.latitude_deg))
+    };
+    let attitude = attitude(&bench)?;
+    let mut nominal = PlatformFilter::new(&settings, &attitude)?;
+    let mut extended = Controller::new(&settings, &attitude)?;
 
     println!("hours alone   nominal off by   extended off by   torque it sends, deg/h");
     let mut next_line_s = 0.0;
@@ -57,16 +63,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What both filters start from.
-fn settings(bench: &Bench) -> Result<Settings<f64>, &'static str> {
+/// The declared attitude of both filters.
+fn attitude(bench: &Bench) -> Result<InitialAttitude<f64>, &'static str> {
     let angles_deg = bench.initial_angles_deg;
     let angles_deg = angles_deg.ok_or("expected initial_angles_deg in the bench file")?;
-    Ok(Settings {
+    Ok(InitialAttitude::Angles {
         angles_rad: angles_deg.map(f64::to_radians),
-        angles_sigma_rad: bench.initial_angles_sigma_deg.map(f64::to_radians),
-        accel_noise_g: bench.accel_noise_g,
-        drift_noise_deg_per_h: bench.gyro_noise_deg_per_h,
-        ..Settings::level_at(Site::at_latitude_deg(bench.latitude_deg))
+        sigma_rad: bench.initial_angles_sigma_deg.map(f64::to_radians),
     })
 }
 

@@ -1,6 +1,8 @@
 use gyrocal::estimation::{ArrayStorage, Filter};
 use gyrocal::scalar::{Model, NamedInputs};
-use gyrocal::{Anchored, Chart, EstimationError, Innovation, Platform, Real, Settings};
+use gyrocal::{
+    Anchored, Chart, EstimationError, FilterSettings, InitialAttitude, Innovation, Platform, Real,
+};
 
 use crate::extended::{Extended, ExtendedInputs, START};
 
@@ -13,9 +15,6 @@ pub type ExtendedFilter<T> = Filter<
     3,
     3,
 >;
-
-/// Duration over which the declared drift noise is held, s.
-const HELD_S: f64 = 60.0;
 
 /// 1 rad/s in deg/h.
 const DEG_PER_H: f64 = 3600.0 * 180.0 / core::f64::consts::PI;
@@ -35,31 +34,35 @@ impl<T: Real + Default> Controller<T> {
     ///
     /// # Errors
     /// [`EstimationError`] if the settings are refused.
-    pub fn new(settings: &Settings<T>) -> Result<Self, EstimationError> {
+    pub fn new(
+        settings: &FilterSettings<T>,
+        attitude: &InitialAttitude<T>,
+    ) -> Result<Self, EstimationError> {
         let zero = T::from_f64(0.0);
         let (mut state, mut sigma) = ([zero; Extended::STATES], [zero; Extended::STATES]);
         let (nominal, effects) = (3..3 + Platform::PARAMETERS, 3 + Platform::PARAMETERS..);
-        state[..3].copy_from_slice(&settings.angles_rad);
-        sigma[..3].copy_from_slice(&settings.angles_sigma_rad);
+        let mut chart = Chart::for_model(settings.site);
+        let angles = attitude.place(&mut chart);
+        state[..3].copy_from_slice(&angles.angles_rad);
+        sigma[..3].copy_from_slice(&angles.sigma_rad);
         state[nominal.clone()].copy_from_slice(&settings.drift.to_array());
         sigma[nominal].copy_from_slice(&settings.drift_sigma.to_array());
         for (index, start) in effects.zip(&START) {
             state[index] = T::from_f64(start.value);
             sigma[index] = T::from_f64(start.sigma);
         }
-        let noise = settings.drift_noise_deg_per_h;
         Ok(Self {
             filter: Filter::new(
                 Anchored(Extended),
-                Chart::for_model(settings.site),
-                settings.integration,
-                settings.recentring,
+                chart,
+                settings.discretisation.integration,
+                settings.discretisation.recentring,
                 ArrayStorage::new(),
                 &state,
                 &sigma,
             )?,
             accel_variance_g2: [settings.accel_noise_g * settings.accel_noise_g; 3],
-            drift_density: [noise * noise * T::from_f64(HELD_S); 3],
+            drift_density: [settings.drift_noise_density(); 3],
             time_s: zero,
         })
     }

@@ -4,7 +4,7 @@
     reason = "a test may stop at what must not happen"
 )]
 
-use gyrocal::{PlatformFilter, Settings, Site};
+use gyrocal::{FilterSettings, InitialAttitude, PlatformFilter, Site};
 use gyrocal_extended::Controller;
 use gyrocal_truth::{Scenario, simulate};
 
@@ -20,13 +20,13 @@ fn a_day_without_samples_is_predicted_to_a_tenth_of_the_nominal_error() {
     scenario.seed += 1;
     let record = simulate(&scenario).unwrap().record;
     let bench = scenario.bench();
-    let settings = Settings {
+    let settings = FilterSettings::at_site(Site::at_latitude_deg(bench.latitude_deg));
+    let attitude = InitialAttitude::Angles {
         angles_rad: bench.initial_angles_deg.unwrap().map(f64::to_radians),
-        angles_sigma_rad: bench.initial_angles_sigma_deg.map(f64::to_radians),
-        ..Settings::level_at(Site::at_latitude_deg(bench.latitude_deg))
+        sigma_rad: bench.initial_angles_sigma_deg.map(f64::to_radians),
     };
-    let mut nominal = PlatformFilter::new(&settings).unwrap();
-    let mut extended = Controller::new(&settings).unwrap();
+    let mut nominal = PlatformFilter::new(&settings, &attitude).unwrap();
+    let mut extended = Controller::new(&settings, &attitude).unwrap();
     let (mut of_nominal, mut of_extended) = (0.0, 0.0);
     for (row, sample) in record.accel_g.iter().enumerate() {
         if row == 0 {

@@ -9,7 +9,7 @@
 use core::mem::{align_of, size_of};
 use core::panic::PanicInfo;
 
-use gyrocal::{FactorisedPlatformFilter, Settings, Site};
+use gyrocal::{FactorisedPlatformFilter, FilterSettings, InitialAttitude, Site};
 
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
@@ -37,9 +37,8 @@ pub unsafe extern "C" fn gyrocal_filter_start(
     place: *mut FactorisedPlatformFilter<f32>,
     latitude_deg: f64,
 ) -> bool {
-    match FactorisedPlatformFilter::factorised(&Settings::level_at(Site::at_latitude_deg(
-        latitude_deg,
-    ))) {
+    let settings = FilterSettings::at_site(Site::at_latitude_deg(latitude_deg));
+    match FactorisedPlatformFilter::factorised(&settings, &InitialAttitude::aligned()) {
         Ok(filter) => {
             // SAFETY: the caller vouches for size, alignment and validity.
             unsafe { place.write(filter) };

@@ -31,7 +31,7 @@ pub(super) fn judge(record: &Record, bench: &Bench) -> Result<Judged, Calibratio
         reference_nis_mean: own.nis_mean(),
         stopped: None,
     };
-    let paper = match calibrate(record, bench, &Options::of_the_paper(), |_| ()) {
+    let paper = match calibrate(record, bench, &Options::paper_baseline(), |_| ()) {
         Ok(calibration) => calibration.fit,
         Err(CalibrationError::Filter {
             row,

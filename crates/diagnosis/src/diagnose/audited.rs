@@ -1,7 +1,7 @@
 //! The nominal model of a record with the noise that the audit finds in it.
 
 use gyrocal::estimation::Factors;
-use gyrocal::{PlatformFilter, Settings};
+use gyrocal::{Discretisation, Drift, FilterSettings, InitialAttitude, PlatformFilter};
 use gyrocal_calibration::{
     Extended, NoiseModel, Options, Run, filter_settings, gross_errors, run_filter,
 };
@@ -11,6 +11,10 @@ use super::DiagnoseError;
 use super::unsettled::{standing_off, unsettled};
 use crate::noise::{AuditOptions, DeclaredNoise, NoiseAudit, Outlier, audit_noise};
 use crate::series::Innovations;
+
+/// Standard deviation given to the fitted first attitude about each axis, deg: wide against the noise
+/// of a sample, so that the first rows correct the attitude.
+const FITTED_ATTITUDE_SIGMA_DEG: f64 = 0.01;
 
 /// The nominal model of a record with the noise that its audit left.
 pub(super) struct Audited<'a> {
@@ -131,23 +135,15 @@ fn innovations(
     bench: &Bench,
     fitted: &Extended<'_>,
 ) -> Result<Innovations, DiagnoseError> {
-    let base = filter_settings(&Bench {
-        initial_angles_deg: Some([0.0; 3]),
-        initial_angles_sigma_deg: [0.01; 3],
-        ..bench.clone()
-    });
-    let Some(base) = base else {
-        return Ok(Innovations::default());
+    let settings = FilterSettings {
+        drift: Drift::from_array(core::array::from_fn(|i| fitted.values()[i])),
+        ..filter_settings(bench, Discretisation::default())
     };
-    let settings = Settings {
-        drift: gyrocal::Drift::from_array(core::array::from_fn(|i| fitted.values()[i])),
-        ..base
+    let attitude = InitialAttitude::Orientation {
+        north_and_up: fitted.points()[0],
+        sigma_rad: [FITTED_ATTITUDE_SIGMA_DEG.to_radians(); 3],
     };
-    let filter = PlatformFilter::<f64, Factors>::at_attitude(
-        &settings,
-        &fitted.points()[0],
-        &settings.angles_sigma_rad,
-    );
+    let filter = PlatformFilter::<f64, Factors>::with_form(&settings, &attitude);
     let mut innovations = Innovations::default();
     let mut refused = None;
     run_filter(record, record.len(), filter, |row, filter, innovation| {

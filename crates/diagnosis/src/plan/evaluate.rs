@@ -1,5 +1,6 @@
 //! One attitude and duration, looked at.
 
+use gyrocal::Discretisation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
 use gyrocal_calibration::{CalibrationError, Extended, NoiseModel, Options, PlannedRun, Run};
 use gyrocal_record::{Bench, GimbalLimits, Record};
@@ -80,7 +81,10 @@ impl<'a> Setting<'a> {
             noise,
             limits,
             options: Options {
-                longest_step_s: options.longest_step_s.max(LONGEST_STEP_S),
+                discretisation: Discretisation {
+                    longest_step_s: options.discretisation.longest_step_s.max(LONGEST_STEP_S),
+                    ..options.discretisation
+                },
                 ..options
             },
             next_parameters: begun(universe, &parameters, duration_s_of(run.record)),

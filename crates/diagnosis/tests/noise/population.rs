@@ -1,6 +1,6 @@
 //! Records with noise that is not as declared, and the innovations of the streaming filter.
 
-use gyrocal::{Drift, PlatformFilter, Settings, Site};
+use gyrocal::{Drift, FilterSettings, InitialAttitude, PlatformFilter, Site};
 use gyrocal_diagnosis::{DeclaredNoise, Innovations};
 use gyrocal_record::Record;
 use gyrocal_truth::{Population, Scenario, Term, simulate_with};
@@ -92,15 +92,17 @@ pub(crate) fn case(population: &Population, number: u64, fault: Fault, terms: &[
 
 /// The innovations of the streaming filter with what the bench file of a scenario declares.
 pub(crate) fn innovations(record: &Record, scenario: &Scenario) -> Innovations {
-    let settings = Settings {
+    let attitude = InitialAttitude::Angles {
         angles_rad: scenario.declared_angles_deg().map(f64::to_radians),
-        angles_sigma_rad: scenario.initial_angles_sigma_deg.map(f64::to_radians),
+        sigma_rad: scenario.initial_angles_sigma_deg.map(f64::to_radians),
+    };
+    let settings = FilterSettings {
         drift_sigma: Drift::from_array([1.0; 9]),
         accel_noise_g: scenario.accel_noise_g,
         drift_noise_deg_per_h: scenario.gyro_noise_deg_per_h,
-        ..Settings::level_at(Site::at_latitude_deg(scenario.latitude_deg))
+        ..FilterSettings::at_site(Site::at_latitude_deg(scenario.latitude_deg))
     };
-    let mut filter = PlatformFilter::<f64>::new(&settings).unwrap();
+    let mut filter = PlatformFilter::<f64>::new(&settings, &attitude).unwrap();
     let mut innovations = Innovations::default();
     let mut before_s = record.time_s[0];
     for (time_s, sample) in record.time_s.iter().zip(&record.accel_g) {

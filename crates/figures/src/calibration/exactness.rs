@@ -1,5 +1,6 @@
 //! The batch estimator against least squares on dense matrices.
 
+use gyrocal::Discretisation;
 use gyrocal_calibration::{Options, Run, calibrate};
 use gyrocal_truth::{Population, simulate};
 
@@ -23,7 +24,10 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
     population.duration_days = [ROWS * interval_s / 86_400.0; 2];
     let options = Options {
         // Short parts: the two integrate by different rules.
-        longest_step_s: interval_s,
+        discretisation: Discretisation {
+            longest_step_s: interval_s,
+            ..Discretisation::default()
+        },
         ..Options::default()
     };
     let (mut estimates, mut sigmas) = (0.0_f64, 0.0_f64);
@@ -36,7 +40,7 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
             record: &simulation.record,
             bench: &simulation.bench,
         };
-        let dense = Dense::new(run, options.longest_step_s).solve();
+        let dense = Dense::new(run, options.discretisation.longest_step_s).solve();
         let drift = found.drift.to_array();
         for (i, (estimate, expected)) in drift.iter().zip(dense.drift).enumerate() {
             let sigma = dense.covariance[(i, i)].sqrt();

@@ -5,8 +5,8 @@ use std::hint::black_box;
 use gyrocal::estimation::dense::DenseFilter;
 use gyrocal::estimation::form::Form;
 use gyrocal::{
-    Anchored, Chart, EstimationError, FactorisedPlatformFilter, Platform, PlatformFilter,
-    Recentring, Settings, Site,
+    Anchored, Chart, Discretisation, EstimationError, FactorisedPlatformFilter, FilterSettings,
+    InitialAttitude, Platform, PlatformFilter, Recentring, Site,
 };
 use nalgebra::{SMatrix, SVector};
 
@@ -28,18 +28,23 @@ pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
     let site = Site::at_latitude_deg(39.1);
     let mut figures = Vec::new();
     for (rule, integration) in RULES {
-        let settings = Settings {
-            integration,
-            ..Settings::level_at(site)
+        let settings = FilterSettings {
+            discretisation: Discretisation {
+                integration,
+                ..Discretisation::default()
+            },
+            ..FilterSettings::at_site(site)
         };
-        let ours = PlatformFilter::new(&settings)?;
-        let factors = FactorisedPlatformFilter::factorised(&settings)?;
-        let angle = settings.angles_sigma_rad[0];
+        let attitude = InitialAttitude::aligned();
+        let ours = PlatformFilter::new(&settings, &attitude)?;
+        let factors = FactorisedPlatformFilter::factorised(&settings, &attitude)?;
+        let mut chart = Chart::east_north_up(site);
+        let angle = attitude.place(&mut chart).sigma_rad[0];
         let variances: [f64; 12] =
             core::array::from_fn(|i| if i < 3 { angle * angle } else { 1.0 });
         let dense = DenseFilter::<_, _, 3, 3, 12>::new(
             Anchored(Platform),
-            Chart::east_north_up(site),
+            chart,
             integration,
             Recentring::Never,
             SVector::zeros(),

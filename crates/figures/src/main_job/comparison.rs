@@ -1,6 +1,6 @@
 //! The paper's filter against exact integration, and Euler angles against a moving chart.
 
-use gyrocal::{Integration, Recentring};
+use gyrocal::{Discretisation, Integration, Recentring};
 use gyrocal_calibration::Options;
 use gyrocal_truth::{Coefficients, Scenario, euler_rule, simulate};
 use rayon::prelude::*;
@@ -41,13 +41,19 @@ fn scenario(seed: u64, days: f64) -> Scenario {
 
 /// Three days of the paper's bench: the rule that made the data and the rule of the filter.
 fn rules() -> Result<Vec<Figure>, Error> {
-    let paper = Options::of_the_paper();
+    let paper = Options::paper_baseline();
     let fine_euler = Options {
-        integration: Integration::Euler { substeps: 64 },
+        discretisation: Discretisation {
+            integration: Integration::Euler { substeps: 64 },
+            ..paper.discretisation
+        },
         ..paper
     };
     let rk4 = Options {
-        integration: Integration::RK4,
+        discretisation: Discretisation {
+            integration: Integration::RK4,
+            ..paper.discretisation
+        },
         ..paper
     };
     let rows = [
@@ -126,7 +132,10 @@ fn coordinates() -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for (name, recentring, limit) in rows {
         let options = Options {
-            recentring,
+            discretisation: Discretisation {
+                recentring,
+                ..Discretisation::default()
+            },
             ..Options::streaming()
         };
         let nees = SEEDS

@@ -1,6 +1,6 @@
 //! How honest the covariance is, by the coordinates in which it is carried.
 
-use gyrocal::Recentring;
+use gyrocal::{Discretisation, Recentring};
 use gyrocal_calibration::Options;
 use gyrocal_campaign::statistics::{mean, median, quantile};
 
@@ -23,7 +23,10 @@ const CONSISTENT: [f64; 2] = [6.4, 10.3];
 
 pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     let streaming = |recentring| Options {
-        recentring,
+        discretisation: Discretisation {
+            recentring,
+            ..Discretisation::default()
+        },
         ..Options::streaming()
     };
     let ways = [

@@ -1,7 +1,7 @@
 //! Figures 2 to 4 and two more: estimates against time, innovations, and final estimates.
 
-use gyrocal::{PlatformFilter, Settings};
-use gyrocal_calibration::{Options, filter_settings};
+use gyrocal::PlatformFilter;
+use gyrocal_calibration::{Options, declared_attitude, filter_settings};
 use gyrocal_report::{
     After, Comparison, Convergence, ConvergingCoefficient, Estimate, Picture, Quantity, Residuals,
 };
@@ -32,8 +32,8 @@ pub(super) fn pictures() -> Result<Vec<Named>, Error> {
     let by_rule = Data::PaperRule.simulate(&scenario)?;
     let exact = Data::Exact.simulate(&scenario)?;
     let tracks = [
-        Track::of(&by_rule, &Options::of_the_paper())?,
-        Track::of(&exact, &Options::of_the_paper())?,
+        Track::of(&by_rule, &Options::paper_baseline())?,
+        Track::of(&exact, &Options::paper_baseline())?,
         Track::of(&exact, &Options::streaming())?,
     ];
     let judged = ways()[1..]
@@ -55,13 +55,10 @@ pub(super) fn pictures() -> Result<Vec<Named>, Error> {
 impl Track {
     fn of(simulation: &Simulation, options: &Options) -> Result<Self, Error> {
         let record = &simulation.record;
-        let settings = Settings {
-            integration: options.integration,
-            recentring: options.recentring,
-            longest_step_s: options.longest_step_s,
-            ..filter_settings(&simulation.bench).ok_or("the bench does not give the attitude")?
-        };
-        let mut filter = PlatformFilter::<f64>::new(&settings)?;
+        let settings = filter_settings(&simulation.bench, options.discretisation);
+        let attitude = declared_attitude(&simulation.bench)
+            .ok_or("the bench file declares no initial attitude")?;
+        let mut filter = PlatformFilter::<f64>::new(&settings, &attitude)?;
         let mut track = Self {
             time_s: Vec::new(),
             estimate: Vec::new(),

@@ -1,6 +1,6 @@
 //! First-order integration: its error without any noise, and how many sub-steps it would need.
 
-use gyrocal::Integration;
+use gyrocal::{Discretisation, Integration};
 use gyrocal_calibration::Options;
 use gyrocal_campaign::statistics::{median, root_mean_square};
 
@@ -79,7 +79,10 @@ fn sub_steps(measured: &mut Measured) -> Result<(), Error> {
         .chain([("RK4, one step".to_owned(), Integration::RK4)])
     {
         let options = Options {
-            integration,
+            discretisation: Discretisation {
+                integration,
+                ..Discretisation::default()
+            },
             ..Options::streaming()
         };
         let runs = judge_all(Data::Exact, PAPER_DAYS, &options)?;

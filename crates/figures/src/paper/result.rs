@@ -30,14 +30,14 @@ pub(super) fn ways() -> [Way; 4] {
             name: "paper's filter, data by its own rule",
             key: "own_rule",
             data: Data::PaperRule,
-            options: Options::of_the_paper(),
+            options: Options::paper_baseline(),
             nis: [2.9, 3.3],
         },
         Way {
             name: "paper's filter, exact data",
             key: "paper",
             data: Data::Exact,
-            options: Options::of_the_paper(),
+            options: Options::paper_baseline(),
             // Far beyond chance: what a wrong rule must be seen as.
             nis: [100.0, f64::INFINITY],
         },

@@ -8,7 +8,8 @@
 use gyrocal::estimation::{ArrayStorage, Filter};
 use gyrocal::generated::catalogue::{CatalogueInputs, PARAMETERS as CATALOGUE_PARAMETERS};
 use gyrocal::{
-    Anchored, Catalogue, Chart, Drift, Integration, Platform, Recentring, Settings, Site,
+    Anchored, Catalogue, Chart, Drift, FilterSettings, InitialAttitude, Integration, Platform,
+    Recentring, Site,
 };
 use gyrocal_extended::Controller;
 use gyrocal_extended::extended::{Extended, PARAMETERS, START};
@@ -44,31 +45,46 @@ fn places() -> [usize; Extended::STATES] {
     })
 }
 
-pub(crate) fn settings(angles_rad: [f64; 3], drift: Drift<f64>) -> Settings<f64> {
-    Settings {
-        angles_rad,
+pub(crate) fn settings(drift: Drift<f64>) -> FilterSettings<f64> {
+    FilterSettings {
         drift,
         accel_noise_g: 1e-5,
         drift_noise_deg_per_h: 0.002,
-        ..Settings::level_at(Site::at_latitude_deg(39.1))
+        ..FilterSettings::at_site(Site::at_latitude_deg(39.1))
+    }
+}
+
+/// Angles known to 0.01 deg.
+pub(crate) fn attitude(angles_rad: [f64; 3]) -> InitialAttitude<f64> {
+    InitialAttitude::Angles {
+        angles_rad,
+        sigma_rad: [0.01_f64.to_radians(); 3],
     }
 }
 
 /// The same start with the effects of the catalogue, all but those of the model file pinned.
-fn catalogue_filter(settings: &Settings<f64>) -> CatalogueFilter {
+fn catalogue_filter(
+    settings: &FilterSettings<f64>,
+    attitude: &InitialAttitude<f64>,
+) -> CatalogueFilter {
     let (mut state, mut sigma) = ([0.0; Catalogue::STATES], [NOTHING; Catalogue::STATES]);
     let places = places();
     let nominal = settings.drift.to_array().into_iter();
     let nominal = nominal.zip(settings.drift_sigma.to_array());
-    let angles = settings.angles_rad.into_iter();
-    let known = angles.zip(settings.angles_sigma_rad).chain(nominal);
+    let mut chart = Chart::for_model(settings.site);
+    let angles = attitude.place(&mut chart);
+    let known = angles
+        .angles_rad
+        .into_iter()
+        .zip(angles.sigma_rad)
+        .chain(nominal);
     let effects = START.iter().map(|start| (start.value, start.sigma));
     for (place, (value, deviation)) in places.into_iter().zip(known.chain(effects)) {
         (state[place], sigma[place]) = (value, deviation);
     }
     Filter::new(
         Anchored(Catalogue),
-        Chart::for_model(settings.site),
+        chart,
         Integration::RK4,
         Recentring::EveryStep,
         ArrayStorage::new(),
@@ -105,9 +121,10 @@ fn differences(extended: &Controller<f64>, catalogue: &CatalogueFilter) -> [f64;
 pub(crate) fn after_one_step() -> [f64; 2] {
     // Angles of any size, coefficients of a bad gyro.
     let drift = [0.41, -0.13, 0.04, -0.29, 0.21, -0.07, 0.15, 0.09, 0.02];
-    let settings = settings([0.4, -0.6, 1.1], Drift::from_array(drift));
-    let mut extended = Controller::new(&settings).unwrap();
-    let mut catalogue = catalogue_filter(&settings);
+    let settings = settings(Drift::from_array(drift));
+    let attitude = attitude([0.4, -0.6, 1.1]);
+    let mut extended = Controller::new(&settings, &attitude).unwrap();
+    let mut catalogue = catalogue_filter(&settings, &attitude);
     let sample = extended.expected_g();
     extended.take(0.0, &sample).unwrap();
     catalogue.update(&sample, &VARIANCE).unwrap();
@@ -125,9 +142,10 @@ pub(crate) fn after_three_days() -> [f64; 2] {
     let scenario = Scenario::parse(FAULT, "fault.scenario.toml").unwrap();
     let record = simulate(&scenario).unwrap().record;
     let angles = [10.0_f64, -20.0, 35.0].map(f64::to_radians);
-    let settings = settings(angles, Drift::from_array([0.0; Platform::PARAMETERS]));
-    let mut extended = Controller::new(&settings).unwrap();
-    let mut catalogue = catalogue_filter(&settings);
+    let settings = settings(Drift::from_array([0.0; Platform::PARAMETERS]));
+    let attitude = attitude(angles);
+    let mut extended = Controller::new(&settings, &attitude).unwrap();
+    let mut catalogue = catalogue_filter(&settings, &attitude);
     for (row, sample) in record.accel_g.iter().take(4321).enumerate() {
         if row == 0 {
             extended.take(0.0, sample).unwrap();

@@ -2,9 +2,9 @@ use gyrocal_scalar::{NamedInputs, Real};
 
 use crate::rotation::cross;
 
-/// What lies fixed to the Earth, along the axes of a chart.
+/// Vectors fixed to the Earth, resolved along the axes of a chart.
 #[derive(Clone, Copy, Debug)]
-pub struct Surroundings<'a, T> {
+pub struct ChartVectors<'a, T> {
     pub(crate) north: &'a [T; 3],
     pub(crate) up: &'a [T; 3],
     /// Horizontal (north) and vertical component of Earth rate, rad/s.
@@ -14,7 +14,7 @@ pub struct Surroundings<'a, T> {
     pub(crate) field_gauss: &'a [T; 3],
 }
 
-impl<T: Real> Surroundings<'_, T> {
+impl<T: Real> ChartVectors<'_, T> {
     /// Earth rate, rad/s.
     #[inline(always)]
     #[must_use]
@@ -84,12 +84,12 @@ pub trait ChartInputs<T>: Copy {
     #[must_use]
     fn unset() -> Self;
 
-    /// Sets what lies fixed to the Earth. A chart calls it whenever it has moved.
-    fn surround(&mut self, surroundings: &Surroundings<'_, T>);
+    /// Sets the inputs that are vectors fixed to the Earth. A chart calls it whenever it has moved.
+    fn set_from_chart(&mut self, vectors: &ChartVectors<'_, T>);
 }
 
-/// Every generated model is given what its groups of these names ask for. The others start at one
-/// of their unit, where no term divides by zero.
+/// A generated model gets the vectors that its groups of inputs are named after. Its other inputs
+/// start at one of their unit, where no term divides by zero.
 impl<T: Real, I: NamedInputs<T>> ChartInputs<T> for I {
     #[inline(always)]
     fn unset() -> Self {
@@ -97,19 +97,19 @@ impl<T: Real, I: NamedInputs<T>> ChartInputs<T> for I {
     }
 
     #[inline(always)]
-    fn surround(&mut self, surroundings: &Surroundings<'_, T>) {
-        // The names are constants: nothing of this is left to be done at run time.
+    fn set_from_chart(&mut self, vectors: &ChartVectors<'_, T>) {
+        // The names are constants: the compiler resolves the comparisons.
         if let Some(group) = self.group_mut("omega_0") {
-            group.copy_from_slice(&surroundings.omega_0());
+            group.copy_from_slice(&vectors.omega_0());
         }
         if let Some(group) = self.group_mut("f_0") {
-            group.copy_from_slice(&surroundings.f_0());
+            group.copy_from_slice(&vectors.f_0());
         }
         if let Some(group) = self.group_mut("east_0") {
-            group.copy_from_slice(&surroundings.east_0());
+            group.copy_from_slice(&vectors.east_0());
         }
         if let Some(group) = self.group_mut("field_0") {
-            group.copy_from_slice(&surroundings.field_0());
+            group.copy_from_slice(&vectors.field_0());
         }
     }
 }
