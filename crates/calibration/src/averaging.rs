@@ -12,6 +12,7 @@ use core::ops::Range;
 use gyrocal_record::{Bench, Record};
 use nalgebra::{SMatrix, SVector};
 
+use crate::check::check_lengths;
 use crate::error::CalibrationError;
 
 /// Longest averaging interval, s. Over longer ones neither the fourth derivative that the
@@ -88,12 +89,7 @@ pub fn average_record(
     record: &Record,
     interval_s: f64,
 ) -> Result<AveragedRecord, CalibrationError> {
-    if record.time_s.len() != record.accel_g.len() {
-        return Err(CalibrationError::UnequalLengths {
-            times: record.time_s.len(),
-            samples: record.accel_g.len(),
-        });
-    }
+    check_lengths(record)?;
     let least_s = 2.0 * median_step_s(record);
     // Written so that NaN is refused.
     if !(interval_s >= least_s * (1.0 - ON_BOUNDARY) && interval_s <= LONGEST_INTERVAL_S) {

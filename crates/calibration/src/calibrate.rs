@@ -1,7 +1,10 @@
-use gyrocal::{Anchored, Platform, Strapdown, Surveyed};
+//! Entry points of the calibration.
+
+use gyrocal::{Anchored, Strapdown, Surveyed};
 use gyrocal_record::{Bench, Record};
 use nalgebra::SMatrix;
 
+use crate::check::check_record;
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::gyro_axes::GyroAxes;
@@ -13,7 +16,7 @@ use crate::{batch, streaming};
 
 /// Estimates the nine coefficients from a record.
 ///
-/// `progress` is called now and then with the number of rows done.
+/// `progress` is called at intervals with the number of rows done.
 ///
 /// # Errors
 /// As [`calibrate_runs`].
@@ -26,25 +29,23 @@ pub fn calibrate(
     calibrate_runs(&[Run { record, bench }], options, progress)
 }
 
-/// Estimates the nine coefficients from the records of several runs of one platform, each with
-/// its own initial attitude and start.
+/// Estimates the nine coefficients from the records of several runs of one platform, each with its
+/// own initial attitude and time origin.
 ///
 /// # Errors
 /// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`] of a record, as
 /// [`CalibrationError::OfSeveral`] if there are several;
 /// [`CalibrationError::Filter`] with the row at which the filter stopped;
 /// [`CalibrationError::NotConverged`] and [`CalibrationError::NoDescent`] of the batch
-/// estimator; [`CalibrationError::NotPositiveDefinite`] if the covariance that was found is
-/// none; [`CalibrationError::NoAttitude`] and [`CalibrationError::OneRecord`] of the streaming
+/// estimator; [`CalibrationError::NotPositiveDefinite`] if the covariance found is not positive
+/// definite; [`CalibrationError::NoAttitude`] and [`CalibrationError::OneRecord`] of the streaming
 /// filter.
 pub fn calibrate_runs(
     runs: &[Run<'_>],
     options: &Options,
     mut progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    for (index, run) in runs.iter().enumerate() {
-        check(run.record).map_err(|error| error.of_record(index, runs.len()))?;
-    }
+    check_records(runs)?;
     match (options.method, runs) {
         (Method::Batch, _) => {
             batch::calibrate(&Anchored(Surveyed), runs, None, options, &mut progress)
@@ -54,12 +55,12 @@ pub fn calibrate_runs(
     }
 }
 
-/// Estimates the nine coefficients of a strapdown unit's gyros, in their own axes, from the
-/// records of the space-stable platform that was computed from their outputs: one record or
-/// several of one unit, each with the axes of its gyros. Always by the batch estimator.
+/// Estimates the nine coefficients of a strapdown unit's gyros, in their own axes, from records of
+/// the space-stable platform computed from their outputs. Each record has the axes of its gyros in
+/// `gyro_axes`. The batch estimator is used, whatever the options say.
 ///
-/// Coefficients are errors of the gyros' outputs. In one attitude, however long, all of a gyro's
-/// are one number; records in other attitudes tell them apart.
+/// The coefficients are errors of the gyros' outputs. In a single attitude only one combination of
+/// each gyro's coefficients is observable; records in several attitudes separate them.
 ///
 /// # Errors
 /// [`CalibrationError::GyroAxes`] if there is not one attitude of the gyros for each row;
@@ -70,9 +71,7 @@ pub fn calibrate_strapdown(
     options: &Options,
     mut progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
-    for (index, run) in runs.iter().enumerate() {
-        check(run.record).map_err(|error| error.of_record(index, runs.len()))?;
-    }
+    check_records(runs)?;
     let rows = runs.iter().map(|run| run.record.len()).collect::<Vec<_>>();
     let attitudes = gyro_axes.iter().map(GyroAxes::len).collect::<Vec<_>>();
     if rows != attitudes {
@@ -85,26 +84,14 @@ pub fn calibrate_strapdown(
     batch::calibrate(model, runs, Some(gyro_axes), options, &mut progress)
 }
 
-/// A row in which all accelerometers say `NaN` counts for nothing.
-fn check(record: &Record) -> Result<(), CalibrationError> {
-    if record.time_s.len() != record.accel_g.len() {
-        return Err(CalibrationError::UnequalLengths {
-            times: record.time_s.len(),
-            samples: record.accel_g.len(),
-        });
-    }
-    let measured = |row: &&[f64; 3]| row.iter().any(|component| !component.is_nan());
-    let found = record.accel_g.iter().filter(measured).count();
-    if found < Platform::STATES {
-        return Err(CalibrationError::TooShort {
-            found,
-            expected: Platform::STATES,
-        });
+fn check_records(runs: &[Run<'_>]) -> Result<(), CalibrationError> {
+    for (index, run) in runs.iter().enumerate() {
+        check_record(run.record).map_err(|error| error.of_record(index, runs.len()))?;
     }
     Ok(())
 }
 
-/// One pass of the streaming filter.
+/// Calibrates with the streaming filter.
 fn streaming(
     run: &Run<'_>,
     options: &Options,
@@ -135,7 +122,7 @@ fn streaming(
     })
 }
 
-/// Cholesky's factorisation is the test; it does not depend on the units of the coefficients.
+/// True if a Cholesky factorisation exists, which does not depend on the units of the coefficients.
 fn is_positive_definite(covariance: &[[f64; PARAMETERS]; PARAMETERS]) -> bool {
     SMatrix::<f64, PARAMETERS, PARAMETERS>::from(*covariance)
         .cholesky()

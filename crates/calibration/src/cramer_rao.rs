@@ -5,6 +5,7 @@ use gyrocal::{Anchored, Surveyed};
 use nalgebra::{Cholesky, DMatrix};
 
 use crate::attitude::attitude_hypotheses;
+use crate::check::check_lengths;
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::layout::Layout;
@@ -38,12 +39,7 @@ pub fn cramer_rao_bound(
     platform_c_enu: &[[[f64; 3]; 3]],
     drift: &[f64; PARAMETERS],
 ) -> Result<[[f64; PARAMETERS]; PARAMETERS], CalibrationError> {
-    if run.record.time_s.len() != run.record.accel_g.len() {
-        return Err(CalibrationError::UnequalLengths {
-            times: run.record.time_s.len(),
-            samples: run.record.accel_g.len(),
-        });
-    }
+    check_lengths(run.record)?;
     let layout = Layout::new(&[run.bench]);
     // The integration rule has no influence: the bound is linearised about the truth.
     let options = Options::default();

@@ -1,18 +1,20 @@
+//! Errors of this crate.
+
 use gyrocal::EstimationError;
 
-/// Why a record could not be calibrated.
+/// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CalibrationError {
-    /// The record has fewer rows with a measured value than the filter has states.
+    /// The record has fewer rows with a measured value than the model has states.
     #[error(
         "the record has {found} rows with a value of an accelerometer, expected at least \
          {expected}, the number of states; record for longer"
     )]
     TooShort {
-        /// Rows in which an accelerometer has a value.
+        /// Number of rows in which an accelerometer has a value.
         found: usize,
-        /// Rows that are needed.
+        /// Least number of such rows.
         expected: usize,
     },
     /// The columns of the record differ in length.
@@ -23,7 +25,7 @@ pub enum CalibrationError {
         /// Number of accelerometer samples.
         samples: usize,
     },
-    /// Rows of the records, and attitudes of the gyros that go with them, are not as many.
+    /// The numbers of rows and of attitudes of the gyros differ.
     #[error(
         "{rows} rows and {attitudes} attitudes of the gyros, expected one attitude for each row of \
          each record"
@@ -34,98 +36,99 @@ pub enum CalibrationError {
         /// Number of attitudes.
         attitudes: usize,
     },
-    /// The filter could not go on; the source says why.
+    /// The filter stopped at a row; the source is its error.
     #[error("the filter stopped at row {row} of the data (t = {time_s} s)")]
     Filter {
         /// Row of the data, counted from 1.
         row: usize,
         /// Time of that row, s.
         time_s: f64,
-        /// What the filter said.
+        /// Error of the filter.
         source: EstimationError,
     },
-    /// The streaming filter needs to be told how the platform lies.
+    /// The bench description declares no initial attitude, which the streaming filter needs.
     #[error(
         "the bench file gives no initial angles, which the streaming filter needs; give \
          `initial_angles_deg` or use the batch estimator"
     )]
     NoAttitude,
-    /// The streaming filter reads one record.
+    /// Several records were given to the streaming filter, which takes one.
     #[error("{found} records, the streaming filter reads one; use the batch estimator")]
     OneRecord {
         /// Number of records.
         found: usize,
     },
-    /// The bench does not say how the platform lies, and no early row tells where up is.
+    /// The bench description declares no initial attitude, and no early row has all three
+    /// accelerometers, from which the platform could be levelled.
     #[error(
         "the bench file gives no initial angles, and no row of the first 20 minutes has all three \
          accelerometers, so the platform cannot be levelled; give `initial_angles_deg` or record \
          all axes from the start"
     )]
     NotLevelled,
-    /// No azimuth that was tried led to a solution.
+    /// No solution was found from any azimuth.
     #[error(
         "none of {starts} azimuths that were tried fits the record; give `initial_angles_deg`, or \
          check the latitude and that up is positive"
     )]
     NoAzimuth {
-        /// Azimuths that were tried.
+        /// Number of azimuths tried.
         starts: usize,
     },
-    /// A pass over a record could not be made; the source says why.
+    /// A pass of the batch estimator over a record failed; the source is its error.
     #[error("the batch estimator could not pass over record {run}")]
     Pass {
         /// Number of the record, counted from 1.
         run: usize,
-        /// What it said.
+        /// Error of the pass.
         source: EstimationError,
     },
-    /// No step lowered the cost any more, though the solution was not reached.
+    /// No shortened step lowered the cost before convergence.
     #[error(
         "the batch estimator stopped after {iterations} steps: no shorter step fits the record \
          better; check latitude, initial angles and units, or give priors nearer to the truth"
     )]
     NoDescent {
-        /// Steps that were made.
+        /// Number of steps made.
         iterations: usize,
     },
-    /// The estimate still moved after the last step that was allowed.
+    /// The iteration did not converge within the largest number of steps.
     #[error(
         "the batch estimator did not converge in {iterations} steps (the last one was {last_step:.1} \
          standard deviations long); check latitude, initial angles and units, or give priors \
          nearer to the truth"
     )]
     NotConverged {
-        /// Steps that were made.
+        /// Number of steps made.
         iterations: usize,
         /// Length of the last one in standard deviations of the whole problem.
         last_step: f64,
     },
-    /// One of several records could not be taken; the source says why.
+    /// One of several records has an error; the source is that error.
     #[error("record {run} of {runs} cannot be calibrated")]
     OfSeveral {
         /// Number of the record, counted from 1.
         run: usize,
         /// Number of records.
         runs: usize,
-        /// What is wrong with it.
+        /// Error of the record.
         source: Box<CalibrationError>,
     },
-    /// Rows cannot be averaged over such intervals.
+    /// The averaging interval is out of range.
     #[error(
         "means over {found_s} s were asked for, expected from {least_s} s, two rows of the record, \
          to {most_s} s"
     )]
     AveragingInterval {
-        /// The interval that was asked for, s.
+        /// The requested interval, s.
         found_s: f64,
         /// The shortest, s.
         least_s: f64,
         /// The longest, s.
         most_s: f64,
     },
-    /// Rounding left the coefficients a covariance that no errors can have: variances are
-    /// positive, but that of some combination of coefficients is not.
+    /// The covariance of the coefficients is not positive definite: rounding errors exceed the
+    /// variance of a combination of coefficients.
     #[error(
         "the covariance of the coefficients is not positive definite after the last row: the \
          prior is too wide for what the record says; narrow it, record for longer, or carry the \
@@ -143,7 +146,7 @@ impl CalibrationError {
         }
     }
 
-    /// Says which of several records an error is about, `index` counted from 0.
+    /// Adds the number of the record, `index` counted from 0, if there are several.
     pub(crate) fn of_record(self, index: usize, runs: usize) -> Self {
         if runs == 1 {
             return self;

@@ -1,3 +1,5 @@
+//! Consistency of innovations with their predicted covariance.
+
 use gyrocal::Innovation;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -8,8 +10,8 @@ use crate::uncertainty::Uncertainty;
 /// False-alarm probability of the consistency test.
 const FALSE_ALARM: f64 = 1e-3;
 
-/// A mean NIS beyond this points at the inputs: first-order integration, the worst fault of a
-/// model seen here, gives 190.
+/// Mean NIS above which the message points to wrong inputs: first-order integration, the largest
+/// model error among the figures, gives 190.
 const GROSS: f64 = 1000.0;
 
 /// Sums of normalised innovations squared (NIS) and of their log-likelihoods: the data of the

@@ -1,6 +1,6 @@
-//! How gyros lie that are fixed to a body, in the axes of the platform computed from them.
+//! Axes of strapdown gyros in the platform that is computed from their outputs.
 
-/// For each row of a record the rotation from the gyros' axes to those of the platform.
+/// Rotation from the gyros' axes to those of the platform at each row of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GyroAxes {
     /// Unit quaternions (w, x, y, z), of which neighbours lie in one half-space.
@@ -14,7 +14,7 @@ impl GyroAxes {
     pub fn new(platform_q_gyros: &[[f64; 4]]) -> Self {
         let mut before = [1.0, 0.0, 0.0, 0.0];
         let unit = platform_q_gyros.iter().map(|q| {
-            // Both signs are one rotation; what lies between two is a matter of signs.
+            // Both signs are one rotation, but interpolation needs neighbours of one sign.
             let sign = if dot(q, &before) < 0.0 { -1.0 } else { 1.0 };
             let scale = sign / dot(q, q).sqrt();
             before = q.map(|component| scale * component);
@@ -31,14 +31,14 @@ impl GyroAxes {
         self.platform_q_gyros.len()
     }
 
-    /// Whether there are no rows.
+    /// True if there are no rows.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.platform_q_gyros.is_empty()
     }
 
-    /// The direction cosine matrix, by rows, at some share of the way from a row to the next.
-    /// Between rows the rotation is taken as uniform but for (turn)²/24 of it.
+    /// Direction cosine matrix, by rows, at a share of the interval from a row to the next. The
+    /// interpolated rotation is uniform to (angle)²/24 of it.
     pub(crate) fn between(&self, row: usize, share: f64) -> [f64; 9] {
         let from = &self.platform_q_gyros[row];
         let to = self.platform_q_gyros.get(row + 1).unwrap_or(from);

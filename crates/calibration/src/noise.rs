@@ -1,20 +1,20 @@
-//! Noise by maximum likelihood, beside what the bench declares.
+//! Maximum-likelihood estimate of the noise relative to the declared noise.
 
 use gyrocal::estimation::EstimationError;
 use gyrocal::estimation::batch::NoiseScore;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Steps of Fisher's scoring; four bring a variance that is off by a factor of a hundred within
+/// Most steps of Fisher's scoring; four bring a variance that is off by a factor of a hundred within
 /// a hundredth of its sigma.
-const MOST_STEPS: usize = 12;
+const MAX_STEPS: usize = 12;
 
-/// The longest step in the logarithm of a variance.
-const LONGEST_STEP: f64 = 2.0;
+/// Largest step in the logarithm of a variance.
+const LARGEST_STEP: f64 = 2.0;
 
 /// 97.5 % point of the normal distribution.
 const NORMAL_97_5: f64 = 1.959_963_984_540_054;
 
-/// An estimated standard deviation over the declared one.
+/// Ratio of an estimated standard deviation to the declared one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseRatio {
     /// The estimate.
@@ -23,7 +23,7 @@ pub struct NoiseRatio {
     pub interval: [f64; 2],
 }
 
-/// Noise of a run's instruments over what its bench declares.
+/// Noise of a run's instruments relative to the declared noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseEstimate {
     /// Of the accelerometers x, y, z.
@@ -38,11 +38,11 @@ pub(crate) fn estimate(
 ) -> Result<NoiseEstimate, EstimationError> {
     let mut logarithm = DVector::<f64>::zeros(6);
     let mut sigma = DVector::<f64>::repeat(6, f64::INFINITY);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let factors: Vec<f64> = logarithm.iter().map(|value| value.exp()).collect();
         let found = score(&factors)?;
-        // A noise that is far below the others' leaves no trace: its logarithm stays near the
-        // declared one by a prior of a factor of e^10, which weighs nothing where there is one.
+        // A noise far below the others is unobservable: a prior of e^10 about the declared one keeps
+        // its logarithm finite and has no weight where the noise is observable.
         let prior = 1e-2;
         let mut information = DMatrix::from_row_slice(6, 6, &found.information);
         let mut gradient = DVector::from_vec(found.gradient);
@@ -56,7 +56,7 @@ pub(crate) fn estimate(
         let step = cholesky.solve(&gradient);
         let inverse = cholesky.inverse();
         sigma = inverse.diagonal().map(f64::sqrt);
-        logarithm += step.map(|step| step.clamp(-LONGEST_STEP, LONGEST_STEP));
+        logarithm += step.map(|step| step.clamp(-LARGEST_STEP, LARGEST_STEP));
         if step
             .iter()
             .zip(sigma.iter())

@@ -1,8 +1,7 @@
 //! Whether effects that were asked for exist, and can be looked for.
 
-use gyrocal::Platform;
 use gyrocal::generated::catalogue::EFFECTS;
-use gyrocal_calibration::CalibrationError;
+use gyrocal_calibration::check_record;
 use gyrocal_record::{Bench, Record};
 
 use crate::cause::missing;
@@ -32,16 +31,7 @@ pub(crate) fn check(
             });
         }
     }
-    let measured = |row: &&[f64; 3]| row.iter().any(|component| !component.is_nan());
-    let found = record.accel_g.iter().filter(measured).count();
-    if found < Platform::STATES {
-        return Err(CalibrationError::TooShort {
-            found,
-            expected: Platform::STATES,
-        }
-        .into());
-    }
-    Ok(())
+    Ok(check_record(record)?)
 }
 
 /// The nearest ids as the end of a sentence.
@@ -63,6 +53,8 @@ fn nearest(typed: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use gyrocal_calibration::CalibrationError;
+
     use super::*;
 
     fn record() -> Record {
