@@ -135,7 +135,7 @@ fn combinations(measured: &mut Measured, report: &ImportReport, calibration: &Ca
         "error of the gyros toward",
         "estimate, deg/h",
         "sigma",
-        "sigma before the record",
+        "prior sigma",
     ]);
     for (name, direction) in [("north", 1), ("up", 2), ("east", 0)] {
         let [estimate, sigma, before] = along(report, calibration, direction);
@@ -228,7 +228,7 @@ fn choices(measured: &mut Measured, log: &Log, description: &Description) -> Res
         "noise of a row, g",
         "correlation of rows",
         "horizontal less Earth's, deg/h",
-        "diagnosis finds",
+        "findings",
     ]);
     let mut differences = Vec::new();
     let mut named = 0;

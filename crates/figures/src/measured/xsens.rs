@@ -93,12 +93,12 @@ fn laws(measured: &mut Measured, report: &TumbleReport) {
 
 fn findings(measured: &mut Measured, report: &TumbleReport) {
     let mut table = Table::new([
-        "cause",
+        "effect",
         "size, deg/h/g",
         "F",
-        "p of the whole search",
-        "rivals",
-        "nearest that is ruled out",
+        "family-wise p",
+        "alternatives",
+        "nearest excluded effect",
     ]);
     for finding in &report.findings {
         let rivals: Vec<String> = finding.rivals.iter().map(rival).collect();
@@ -191,7 +191,7 @@ fn rival(rival: &gyrocal_measured::tumble::Rival) -> String {
 fn gain(measured: &mut Measured, report: &TumbleReport) -> Result<(), Error> {
     let gain = report.gain.as_ref().ok_or("no gain of the extended law")?;
     let nats = gain.cross_validated_log_score_nats;
-    let mut table = Table::new(["rms at stops that were not used, deg/h", "x", "y", "z"]);
+    let mut table = Table::new(["rms on held-out stops, deg/h", "x", "y", "z"]);
     for (name, rms) in [
         ("nominal law", gain.rms_before_deg_per_h),
         ("extended law", gain.rms_after_deg_per_h),
