@@ -1,4 +1,4 @@
-//! `gyrocal allan`: columns of a log in, Allan deviations with confidence intervals out.
+//! `gyrocal allan`: Allan deviations with confidence intervals of columns of a log.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ use crate::tables::{right, table};
 /// Overlapping Allan deviation of columns of a log.
 ///
 /// Each column is a rate sampled at equal intervals. Confidence intervals are those of NIST SP
-/// 1065, by the degrees of freedom of the noise that dominates at each averaging time.
+/// 1065, with the degrees of freedom of the dominant noise type at each averaging time.
 #[derive(Debug, Args)]
 pub(crate) struct AllanArguments {
     /// The log (CSV) with a header row.
@@ -29,19 +29,19 @@ pub(crate) struct AllanArguments {
     /// The columns.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
     columns: Vec<String>,
-    /// Samples a second.
+    /// Samples per second.
     #[arg(long, value_name = "HZ", value_parser = positive)]
     rate_hz: f64,
-    /// What a value is multiplied by, as 206264.8 for deg/h from rad/s.
+    /// Factor of the values, for example 206264.8 for deg/h from rad/s.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
     scale: f64,
-    /// The unit of the scaled values, for the output.
+    /// Unit of the scaled values, for the output.
     #[arg(long, value_name = "UNIT", default_value = "units of the column")]
     unit: String,
-    /// Probability that an interval holds the deviation.
+    /// Confidence level of the intervals.
     #[arg(long, value_name = "P", default_value_t = 0.683, value_parser = probability)]
     confidence: f64,
-    /// The result to write for programs (JSON).
+    /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
 }
@@ -53,7 +53,7 @@ struct Column<'a> {
     noise: NoiseCoefficients,
 }
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
     outputs::check(&[&arguments.log], arguments.json.as_deref(), None)?;
     let columns = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
@@ -114,7 +114,7 @@ fn constant(source: &SourceText, name: &str) -> MeasuredError {
         0..0,
         format!("a column `{name}` that never changes"),
         "samples of a rate, which has noise",
-        "look for a sensor, or a logger, that hangs",
+        "check the sensor and the logger",
     );
     error.into()
 }
@@ -154,9 +154,9 @@ fn summary(arguments: &AllanArguments, columns: &[Column<'_>]) -> String {
         let noise = &column.noise;
         let _ = writeln!(
             text,
-            "{}: overlapping Allan deviation [{}], confidence {}\n\n{}\n\nParts by slope: \
+            "{}: overlapping Allan deviation [{}], confidence {}\n\n{}\n\nNoise coefficients: \
              quantisation {:.3e} × s, random walk {:.3e} × √s, bias instability {:.3e},\nrate \
-             random walk {:.3e} / √s (0: does not show).\n",
+             random walk {:.3e} / √s (0: not visible).\n",
             column.name,
             arguments.unit,
             arguments.confidence,

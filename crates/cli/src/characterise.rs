@@ -1,4 +1,4 @@
-//! `gyrocal characterise`: how often the diagnosis is right, beside other methods.
+//! `gyrocal characterise`: operating characteristics of the diagnosis and of baseline methods.
 
 mod sheet;
 
@@ -16,11 +16,11 @@ use crate::monte_carlo::progress::SeedProgress;
 use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
 use crate::{Answer, Failure};
 
-/// Judge the diagnosis by many simulated records with hidden causes.
+/// Measure the operating characteristics of the diagnosis on simulated records with hidden effects.
 ///
-/// Prints how often causes are detected, named and measured rightly, what clean records show, and
-/// how often the usual methods are right on the same records. The full table takes hours: --cell
-/// and --runs measure a part of it, and with --results, a run that was stopped goes on where it was.
+/// Prints the rates of detection, identification and interval coverage, the false alarms on
+/// fault-free records, and the same for baseline methods. The full table takes hours: --cell and
+/// --runs measure a part of it, and with --results an interrupted run continues.
 /// docs/characteristics.md explains the figures.
 #[derive(Debug, Args)]
 pub(crate) struct CharacteriseArguments {
@@ -28,48 +28,48 @@ pub(crate) struct CharacteriseArguments {
     /// pair, beyond, step, cubic, azimuth.
     #[arg(long = "cell", value_name = "NAME", value_parser = cell)]
     cells: Vec<Cell>,
-    /// Records of each cell instead of 1000 (clean: 2000), on which targets must be met; on fewer
-    /// they must not be shown to be missed.
+    /// Records per cell; default 1000 (clean: 2000), on which targets must be met; on fewer they
+    /// must not be significantly missed.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     runs: Option<u64>,
-    /// The first seed of each cell.
+    /// First seed of each cell.
     #[arg(
         long, value_name = "S", default_value_t = 0,
         value_parser = clap::value_parser!(u64).range(..1_000_000_000_000)
     )]
     seed: u64,
-    /// Keep each finished record in CELL.jsonl of this folder and go on from those that are there.
+    /// Keep each finished record in CELL.jsonl of this folder, and continue from those that exist.
     #[arg(long, value_name = "DIR")]
     results: Option<PathBuf>,
-    /// Compare with this method; may be given several times. One of nis, ljung-box, bic, stls, none;
-    /// all four otherwise.
+    /// Only this baseline method; may be given several times. One of nis, ljung-box, bic, stls,
+    /// none; default: all four.
     #[arg(long = "method", value_name = "NAME", value_parser = method)]
     methods: Vec<Asked>,
-    /// Use this many threads instead of one for each core.
+    /// Number of threads; default: one per core.
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
-    /// The result to write for programs (JSON).
+    /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    /// The tables to write as a page of documentation.
+    /// Write the tables as Markdown.
     #[arg(long, value_name = "OUT.md")]
     markdown: Option<PathBuf>,
-    /// Exit with 3 if a figure does not hold.
+    /// Exit code 3 if a figure misses its target.
     #[arg(long)]
     exit_code: bool,
 }
 
-/// What --method was given.
+/// Value of `--method`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Asked {
     Method(Method),
     None,
 }
 
-/// Exit code of --exit-code if a figure does not hold.
+/// Exit code of `--exit-code` if a figure misses its target.
 const MISSED: u8 = 3;
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> {
     check_outputs(arguments)?;
     let methods = methods(&arguments.methods)?;
@@ -95,7 +95,7 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> 
     let manifest = manifest(MODEL_HASH, arguments.seed, &[])?;
     if let Some(path) = &arguments.markdown {
         write_whole(path, sheet::page(&reports, &manifest.command).as_bytes())?;
-        text.push_str(&format!("{}: the tables as a page\n", path.display()));
+        text.push_str(&format!("{}: the tables as Markdown\n", path.display()));
     }
     if let Some(path) = &arguments.json {
         let report = CharacteriseReport {
@@ -111,7 +111,7 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> 
 
 fn check_outputs(arguments: &CharacteriseArguments) -> Result<(), Failure> {
     let (json, markdown) = (arguments.json.as_deref(), arguments.markdown.as_deref());
-    // Also those of cells that are not asked for now.
+    // Including cells that are not requested.
     let results = arguments.results.iter();
     let kept: Vec<PathBuf> = results
         .flat_map(|folder| Cell::ALL.map(|cell| kept(folder, cell)))
@@ -122,11 +122,11 @@ fn check_outputs(arguments: &CharacteriseArguments) -> Result<(), Failure> {
         .collect();
     outputs.extend([("--json", json), ("--markdown", markdown)]);
     refuse_overlap(&[], &outputs)?;
-    // Hours of work are not to end at a folder that is not there.
+    // A missing folder must not end hours of work.
     refuse_unwritable(&[json, markdown], arguments.results.as_deref())
 }
 
-/// Where the records of a cell are kept.
+/// File of the kept records of a cell.
 fn kept(folder: &Path, cell: Cell) -> PathBuf {
     folder.join(format!("{}.jsonl", cell.name()))
 }
@@ -182,12 +182,12 @@ fn method(name: &str) -> Result<Asked, String> {
     })
 }
 
-/// The methods in their own order, whatever order they were asked for in.
+/// The requested methods in their own order.
 fn methods(asked: &[Asked]) -> Result<Vec<Method>, Failure> {
     let none = asked.contains(&Asked::None);
     if none && asked.iter().any(|asked| *asked != Asked::None) {
         return Err(Failure::Usage(
-            "--method none and another method; give either".to_owned(),
+            "--method none excludes other methods".to_owned(),
         ));
     }
     let is_asked = |method: &Method| asked.is_empty() || asked.contains(&Asked::Method(*method));

@@ -13,17 +13,17 @@ use crate::plan::PlanArguments;
 use crate::simulate::SimulateArguments;
 use crate::tumble::TumbleArguments;
 
-/// Gyro drift calibration of inertially stabilised platforms.
+/// Calibration and diagnosis of gyro drift of inertially stabilised platforms.
 #[derive(Debug, Parser)]
 #[command(
     name = "gyrocal",
     version,
     about,
-    after_help = "Exit codes: 0 the answer was written, 1 an input or the work failed, \
+    after_help = "Exit codes: 0 the result was written, 1 an input or the computation failed, \
                   2 the command line is wrong."
 )]
 pub(crate) struct Cli {
-    /// Say more on stderr; -vv and -vvv say still more.
+    /// More messages on stderr; -vv and -vvv for still more.
     #[arg(short, long, action = ArgAction::Count, global = true)]
     pub(crate) verbose: u8,
     #[command(subcommand)]

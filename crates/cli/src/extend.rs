@@ -1,4 +1,4 @@
-//! `gyrocal extend`: what a diagnosis found in, the model file of an extended filter out.
+//! `gyrocal extend`: the model file of an extended filter from a diagnosis.
 
 pub(crate) mod diagnosis;
 mod effects;
@@ -17,25 +17,26 @@ use effects::{Extension, known, of_diagnosis, of_list};
 
 /// Write the model file of an extended filter.
 ///
-/// Takes what `gyrocal diagnose --json` found, or a list of effects of the catalogue. A package
-/// that embeds a filter derives its model from the file when it is built: docs/extending.md.
+/// Takes the findings of `gyrocal diagnose --json`, or a list of effects of the catalogue. A
+/// package that embeds a filter derives its model from the file when it is built:
+/// docs/extending.md.
 #[derive(Debug, Args)]
 pub(crate) struct ExtendArguments {
-    /// The diagnosis (JSON), as `gyrocal diagnose --json` writes it.
+    /// Result of `gyrocal diagnose --json`.
     #[arg(required_unless_present = "effects", conflicts_with = "effects")]
     diagnosis: Option<PathBuf>,
     /// Effects of the catalogue instead of a diagnosis.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     effects: Option<Vec<String>>,
-    /// The model file to write (TOML); the model is called as it is up to its first dot.
+    /// Write the model file (TOML); its name up to the first dot is that of the model.
     #[arg(long, value_name = "NAME.model.toml")]
     out: PathBuf,
-    /// The result to write for programs (JSON).
+    /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
 }
 
-/// The result for programs.
+/// The JSON result.
 #[derive(Debug, Serialize)]
 struct ExtensionReport {
     schema_version: u32,
@@ -44,14 +45,14 @@ struct ExtensionReport {
     left_out: Vec<LeftOut>,
 }
 
-/// A finding that is in no model file.
+/// A finding without a place in the model file.
 #[derive(Debug, Serialize)]
 struct LeftOut {
     effect: String,
     why: String,
 }
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &ExtendArguments) -> Result<String, Failure> {
     let inputs: Vec<&Path> = arguments.diagnosis.iter().map(PathBuf::as_path).collect();
     refuse_overlap(
@@ -116,12 +117,12 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> String {
         if !model.shapes.iter().any(|(given, _)| given == id) {
             let _ = writeln!(
                 text,
-                "  {id} is an input of the model; give it under [shapes] to build it in"
+                "  {id} is an input of the model; give it in [shapes] to build it in"
             );
         }
     }
     for (id, others) in &extension.equivalents {
-        let _ = writeln!(text, "  no record tells {id} from {}", others.join(", "));
+        let _ = writeln!(text, "  exact equivalents of {id}: {}", others.join(", "));
     }
     for (id, why) in &extension.left_out {
         let _ = writeln!(text, "  left out: {id} {why}");

@@ -1,5 +1,5 @@
-//! `gyrocal import strapdown`: a log of a strapdown unit at rest in, a record of the space-stable
-//! platform that it can be computed to be, and its bench description, out.
+//! `gyrocal import strapdown`: record and bench description of an analytic platform from the log of
+//! a strapdown unit at rest.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use crate::measured::unusable;
 use crate::numbers::{angle_deg, angle_sigma_deg, positive};
 use crate::outputs::{manifest, refuse_overlap};
 
-/// Make a record from a recording of another kind.
+/// Make a record from a log of another kind of instrument.
 #[derive(Debug, Args)]
 pub(crate) struct ImportArguments {
     #[command(subcommand)]
@@ -28,36 +28,36 @@ enum Kind {
 
 /// A strapdown unit on a static base, as an analytic space-stable platform.
 ///
-/// Integrates the gyros' increments with a coning correction and turns the accelerometers'
-/// outputs into the axes that the gyros hold in inertial space. Says which rows are disturbed,
-/// at what rate gravity turns against what the Earth makes it, and what one attitude determines.
+/// Integrates the increments of the gyros with a coning correction and resolves the outputs of the
+/// accelerometers along the axes that the gyros hold in inertial space. Reports disturbed rows, the
+/// rate of gravity in the platform compared with Earth rate, and what one attitude determines.
 #[derive(Debug, Args)]
 struct StrapdownArguments {
     /// The log (CSV) with a header row.
     log: PathBuf,
-    /// What its columns mean (TOML); docs/measured-data.md has every key.
+    /// Description of its columns (TOML); docs/measured-data.md has every key.
     #[arg(long, value_name = "LOG.toml")]
     log_description: PathBuf,
-    /// The record to write (CSV).
+    /// Write the record (CSV).
     #[arg(long, value_name = "RECORD.csv")]
     out: PathBuf,
-    /// The bench description to write (TOML), which `calibrate` wants beside the record.
+    /// Write the bench description (TOML), which `calibrate` and `diagnose` need with the record.
     #[arg(long, value_name = "BENCH.toml")]
     bench_out: Option<PathBuf>,
-    /// The attitude of the gyros in the virtual platform at each row (CSV), which `calibrate
-    /// --gyro-axes` wants.
+    /// Write the attitude of the gyros in the analytic platform at each row (CSV), the input of
+    /// `calibrate --gyro-axes`.
     #[arg(long, value_name = "AXES.csv")]
     axes_out: Option<PathBuf>,
     /// Interval over which specific force is averaged into one row.
     #[arg(long, value_name = "S", default_value_t = ImportSettings::default().averaging_s, value_parser = positive)]
     averaging_s: f64,
-    /// A row is disturbed if it scatters more than this many times as much as the median row.
+    /// Threshold of disturbed rows: standard deviation over that of the median row.
     #[arg(long, value_name = "FACTOR", default_value_t = ImportSettings::default().quiet_factor, value_parser = positive)]
     quiet_factor: f64,
     /// Keep the values of disturbed rows instead of writing `nan`.
     #[arg(long)]
     keep_disturbed: bool,
-    /// Heading of body y, clockwise from north, where it is known by other means.
+    /// Heading of body y, clockwise from north, if known by other means.
     #[arg(
         long,
         value_name = "DEG",
@@ -69,18 +69,18 @@ struct StrapdownArguments {
     /// Standard deviation of that heading.
     #[arg(long, value_name = "DEG", requires = "heading_deg", value_parser = angle_sigma_deg)]
     heading_sigma_deg: Option<f64>,
-    /// Standard deviation of a gyro's constant error, before the record.
+    /// Prior standard deviation of the constant error of a gyro.
     #[arg(long, value_name = "DEG_PER_H", default_value_t = ImportSettings::default().bias_sigma_deg_per_h, value_parser = positive)]
     bias_sigma_deg_per_h: f64,
-    /// Standard deviation of the level, which the accelerometers' own errors set.
+    /// Standard deviation of the level, set by the errors of the accelerometers.
     #[arg(long, value_name = "DEG", default_value_t = ImportSettings::default().level_sigma_deg, value_parser = angle_sigma_deg)]
     level_sigma_deg: f64,
-    /// What was seen, to write for programs (JSON).
+    /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
 }
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &ImportArguments) -> Result<String, Failure> {
     match &arguments.kind {
         Kind::Strapdown(arguments) => strapdown(arguments),
@@ -143,7 +143,7 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
         .map(|[from_s, to_s]| to_s - from_s)
         .sum();
     let mut text = format!(
-        "{}: {} samples over {:.1} s into {} rows of {} s\n\n",
+        "{}: {} samples over {:.1} s averaged to {} rows of {} s\n\n",
         arguments.log.display(),
         report.samples,
         report.duration_s,
@@ -152,8 +152,8 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
     );
     let _ = writeln!(
         text,
-        "Median row: samples scatter by {:.1} deg/h and {:.2e} g. Disturbed, more than {} times \
-         that: {disturbed:.0} s,\n{}",
+        "Standard deviation of the samples of the median row: {:.1} deg/h and {:.2e} g. Disturbed \
+         rows (more than\n{} times that): {disturbed:.0} s, {}",
         report.gyro_scatter_deg_per_h,
         report.accel_scatter_g,
         arguments.quiet_factor,
@@ -173,36 +173,36 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
     }
     let _ = writeln!(
         text,
-        "Norm of specific force: {:.6} of the log's unit; the record is in units of it, since the \
-         accelerometers'\ncommon scale and gravity cannot be told apart.",
+        "Mean magnitude of specific force: {:.6} in the unit of the log; it is the unit of the record, \
+         since the common\nscale of the accelerometers and gravity are not distinguishable.",
         report.norm_g
     );
     rates(&mut text, report);
     let _ = writeln!(
         text,
-        "\nNoise: {:.2e} g a row (successive rows correlate by {:.2}), gyros at most {:.4} deg/h \
-         over one minute.",
+        "\nNoise: {:.2e} g per row (correlation of successive rows {:.2}), gyros at most {:.4} deg/h \
+         held over one minute.",
         report.accel_noise_g, report.accel_noise_correlation, report.gyro_noise_deg_per_h
     );
     determined(&mut text, report);
     let _ = writeln!(text, "\n{}: the record", arguments.out.display());
     if let Some(path) = &arguments.bench_out {
-        let _ = writeln!(text, "{}: its bench description", path.display());
+        let _ = writeln!(text, "{}: the bench description", path.display());
     }
     if let Some(path) = &arguments.axes_out {
-        let _ = writeln!(text, "{}: the axes of its gyros", path.display());
+        let _ = writeln!(text, "{}: the axes of the gyros", path.display());
     }
     if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "{}: what was seen, for programs", path.display());
+        let _ = writeln!(text, "{}: the result for programs", path.display());
     }
     text
 }
 
-/// A difference from the Earth's rate that no noise makes.
+/// Threshold of a difference from Earth rate beyond noise, in standard deviations.
 const FAR_SIGMAS: f64 = 6.0;
 
 fn rates(text: &mut String, report: &ImportReport) {
-    text.push_str("\nRate at which gravity turns in the virtual platform [deg/h]:\n");
+    text.push_str("\nRate of gravity in the analytic platform [deg/h]:\n");
     let lines = [
         (
             "horizontal",
@@ -224,15 +224,15 @@ fn rates(text: &mut String, report: &ImportReport) {
         if (rate - expected).abs() > FAR_SIGMAS * sigma {
             let _ = writeln!(
                 text,
-                "  {:<10} far off: check latitude, units and axes in the log description, or the \
-                 gyros' errors",
+                "  {:<10} far off: check latitude, units and axes in the log description, and the \
+                 gyros",
                 ""
             );
         }
     }
     let _ = writeln!(
         text,
-        "Heading of body y by the gyros: {:.3} deg from north",
+        "Heading of body y from the gyros: {:.3} deg from north",
         report.heading_deg
     );
 }
@@ -249,11 +249,11 @@ fn determined(text: &mut String, report: &ImportReport) {
     let east_per_heading = report.horizontal_rate_deg_per_h[0].to_radians();
     let _ = writeln!(
         text,
-        "\nOne attitude determines three numbers of the gyros' errors e_x, e_y, e_z, each of them \
-         bias and all terms in\nspecific force together:\n  north  {}\n  up     {}\n  east   {}\n\
-         North and up are the differences above. East cannot be told from the heading: one \
-         degree of heading is\n{east_per_heading:.4} deg/h. Bias, g_i and g_ii of a gyro cannot \
-         be told apart.",
+        "\nOne attitude determines three combinations of the gyro errors e_x, e_y, e_z, each of which \
+         is the sum of bias\nand all terms in specific force:\n  north  {}\n  up     {}\n  east   \
+         {}\nNorth and up are the differences above. East is not distinguishable from the heading: \
+         one degree of heading\nis {east_per_heading:.4} deg/h. Bias, g_i and g_ii of a gyro are not \
+         distinguishable.",
         combination(1),
         combination(2),
         combination(0),

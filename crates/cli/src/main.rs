@@ -1,7 +1,11 @@
-//! The command `gyrocal`.
+//! The command `gyrocal`: calibration and diagnosis of gyro drift from records of an inertially
+//! stabilised platform.
 //!
-//! Exit codes: 0 when the answer was written, 1 when an input or the work failed, 2 when the
-//! command line is wrong.
+//! Each subcommand is a module: arguments, calls of the libraries, tables and text, JSON, pictures.
+//! Files are written whole or not at all. Statistics and estimation are in the libraries.
+//!
+//! Exit codes: 0 the result was written, 1 an input or the computation failed, 2 the command line
+//! is wrong.
 
 mod allan;
 mod calibrate;
@@ -51,9 +55,9 @@ fn main() -> ExitCode {
     match outcome {
         Ok(answer) => {
             let mut stdout = std::io::stdout();
-            let told = stdout.write_all(answer.text.as_bytes());
-            match told.and_then(|()| stdout.flush()) {
-                // A reader that has gone away, as in `| head`, is no failure of the work.
+            let written = stdout.write_all(answer.text.as_bytes());
+            match written.and_then(|()| stdout.flush()) {
+                // A closed pipe, as in `| head`, is not a failure.
                 Err(error) if error.kind() != ErrorKind::BrokenPipe => {
                     let _ = writeln!(std::io::stderr(), "stdout: cannot be written: {error}");
                     ExitCode::from(1)
@@ -74,12 +78,12 @@ fn main() -> ExitCode {
     }
 }
 
-/// What a command has to say.
+/// Result of a command.
 #[derive(Debug)]
 struct Answer {
-    /// What goes to stdout.
+    /// Text for stdout.
     text: String,
-    /// 0 unless the command was asked to speak to scripts.
+    /// 0 unless `--exit-code` asks for another one.
     exit_code: u8,
 }
 
@@ -89,10 +93,10 @@ impl From<String> for Answer {
     }
 }
 
-/// Why a command did not do what it was asked for.
+/// Failure of a command.
 #[derive(Debug)]
 enum Failure {
-    /// The command line contradicts itself.
+    /// The command line is contradictory.
     Usage(String),
     /// An input is wrong or an output cannot be written.
     Work(Report),
@@ -120,10 +124,10 @@ fn start_logging(verbose: u8) {
         .init();
 }
 
-/// Lines are wrapped for people only: scripts look for `file:line:column` in one piece.
+/// Lines are wrapped on a terminal only: scripts search for an unbroken `file:line:column`.
 fn show_errors_plainly() {
     let wrap = std::io::stderr().is_terminal();
-    // It fails if a handler is there already, and then that one serves.
+    // Fails if a handler is installed already, which is then used.
     let _ = miette::set_hook(Box::new(move |_| {
         let options = MietteHandlerOpts::new()
             .terminal_links(false)

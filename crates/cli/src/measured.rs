@@ -1,4 +1,4 @@
-//! What commands on recordings of real sensors have in common.
+//! Shared parts of the commands on logs of real sensors.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use miette::Diagnostic;
 
 use crate::Failure;
 
-/// An error of a log as the command tells it.
+/// An error of a log as a failure of the command.
 pub(crate) fn unusable(log: &Path, error: MeasuredError) -> Failure {
     match error {
         MeasuredError::File(error) => error.into(),

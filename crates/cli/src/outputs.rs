@@ -1,4 +1,4 @@
-//! What commands have in common about the files that they name.
+//! Checks of the input and output files of a command, and the manifest.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use gyrocal_record::{Error, Input, Manifest, Outputs};
 
 use crate::{Failure, pictures};
 
-/// Where a result comes from: this program, this command line, these inputs.
+/// Origin of a result: program, command line, inputs.
 pub(crate) fn manifest(model_hash: &str, seed: u64, inputs: &[&Path]) -> Result<Manifest, Error> {
     Ok(Manifest {
         program: "gyrocal".to_owned(),
@@ -21,7 +21,7 @@ pub(crate) fn manifest(model_hash: &str, seed: u64, inputs: &[&Path]) -> Result<
     })
 }
 
-/// Refuses an output that is an input too, and two outputs in one file.
+/// Refuses an output that is also an input, and two outputs in one file.
 pub(crate) fn refuse_overlap(
     inputs: &[&Path],
     outputs: &[(&str, Option<&Path>)],
@@ -46,7 +46,7 @@ pub(crate) fn refuse_overlap(
     Ok(())
 }
 
-/// Refuses, before the work, outputs that would be lost after it.
+/// Refuses, before the computation, outputs that would be lost after it.
 pub(crate) fn check(
     inputs: &[&Path],
     json: Option<&Path>,
@@ -66,21 +66,21 @@ pub(crate) fn check(
     refuse_unwritable(&[json], figures)
 }
 
-/// Refuses outputs that cannot be written; `made` is the folder that the command makes for others.
+/// Refuses outputs that cannot be written; `made` is the folder that the command creates for others.
 pub(crate) fn refuse_unwritable(
     outputs: &[Option<&Path>],
     made: Option<&Path>,
 ) -> Result<(), Failure> {
     for path in outputs.iter().flatten() {
         if !made.is_some_and(|made| comes_with(path, made)) {
-            // This leaves nothing.
+            // Staging without a commit writes nothing.
             Outputs::new().stage(path, b"")?;
         }
     }
     Ok(())
 }
 
-/// Whether the folder of a file is not there, and will be when another folder is made.
+/// Whether the folder of a file does not exist yet, and is created with another folder.
 fn comes_with(path: &Path, made: &Path) -> bool {
     let path = identity(path);
     let folder = path.parent().filter(|folder| !folder.exists());
@@ -107,7 +107,7 @@ fn identity(path: &Path) -> PathBuf {
     }
 }
 
-/// The command line as one could type it, whatever the program's own path.
+/// The command line as typed, with `gyrocal` for the path of the program.
 fn command_line() -> String {
     let arguments = std::env::args_os().skip(1).map(|argument| {
         let argument = argument.to_string_lossy();

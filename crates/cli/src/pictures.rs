@@ -13,19 +13,19 @@ use crate::Failure;
 
 /// The help of `--figures`.
 pub(crate) const HELP: &str = if cfg!(feature = "png") {
-    "Write pictures of it into this folder, as SVG and PNG"
+    "Write pictures to this folder, as SVG and PNG"
 } else {
-    "Write pictures of it into this folder, as SVG; PNG needs a build with --features png"
+    "Write pictures to this folder, as SVG; PNG needs a build with --features png"
 };
 
-/// Forms in which pictures are written.
+/// File formats of the pictures.
 const FORMS: &str = if cfg!(feature = "png") {
     "as SVG and PNG"
 } else {
     "as SVG (PNG needs a build with --features png)"
 };
 
-/// Width of the PNGs, px: that of the SVGs and a quarter, for sharp letters.
+/// Width of the PNGs, px: 1.25 times that of the SVGs, for sharp letters.
 #[cfg(feature = "png")]
 const WIDTH_PX: u32 = 1200;
 
@@ -38,8 +38,8 @@ pub(crate) fn is_one(path: &Path) -> bool {
         .is_some_and(|form| form == "svg" || form == "png")
 }
 
-/// Writes the pictures of an input beside their names, to be committed with the other outputs;
-/// returns what is to be said.
+/// Stages the pictures of an input, to be committed with the other outputs; returns the text for
+/// stdout.
 pub(crate) fn stage(
     of: &Path,
     pictures: &[Named],

@@ -1,4 +1,4 @@
-//! `gyrocal plan`: a record in, the next run that says most out.
+//! `gyrocal plan`: the most informative next run for a record.
 
 mod failed;
 mod found;
@@ -22,33 +22,33 @@ use crate::progress::Progress;
 use failed::NotPlanned;
 use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 
-/// Say from which attitude, and for how long, the next run should be made.
+/// Find the attitude and duration of the most informative next run.
 ///
-/// Looks through the attitudes that the gimbals allow for the run that shrinks the named set of
-/// causes most, or the sigmas of the coefficients, and tells what record and run will leave
-/// together. What was found is diagnosed first unless a diagnosis is given.
+/// Searches the attitudes within the gimbal limits for the run that reduces the confidence sets of
+/// the findings most, or the sigmas of the coefficients, and predicts the joint result of record
+/// and run. The record is diagnosed first unless a diagnosis is given.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Exit codes: 0 the answer was written, 1 an input or the work failed, 2 the \
-                        command line is wrong."
+    after_help = "Exit codes: 0 the result was written, 1 an input or the computation failed, \
+                  2 the command line is wrong."
 )]
 pub(crate) struct PlanArguments {
-    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c.
+    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and optionally temperature_c.
     #[arg(value_name = "RECORD.csv")]
     record: PathBuf,
     /// The bench description (TOML).
     #[arg(long, value_name = "BENCH.toml")]
     bench: PathBuf,
-    /// What `gyrocal diagnose --json` wrote of this record; without it the record is diagnosed.
+    /// Result of `gyrocal diagnose --json` for this record; without it the record is diagnosed.
     #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["effects", "false_alarm"])]
     diagnosis: Option<PathBuf>,
-    /// The result to write for programs (JSON).
+    /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    /// Durations of the next run, h; as long as the record if none is given.
+    /// Durations of the next run, h; default: that of the record.
     #[arg(long, value_name = "H,H", value_delimiter = ',', value_parser = positive)]
     hours: Vec<f64>,
-    /// Limits of the platform angles in the whole run, deg: x=-30..30,y=-60..60. They go before
+    /// Limits of the platform angles during the whole run, deg: x=-30..30,y=-60..60. They override
     /// those of the bench file.
     #[arg(
         long,
@@ -58,42 +58,42 @@ pub(crate) struct PlanArguments {
         allow_hyphen_values = true
     )]
     limits: Vec<(usize, [f64; 2])>,
-    /// What runs are ranked by; by sets if there is one with rivals.
+    /// Criterion of the ranking; default: set, if a finding has alternatives.
     #[arg(long, value_enum)]
     aim: Option<AimArgument>,
     /// Also find the shortest run after which a coefficient has this sigma: gyro_x.g_x=1e-4.
     #[arg(long, value_name = "ID=SIGMA", value_delimiter = ',', value_parser = wished_sigma)]
     sigma: Vec<(String, f64)>,
-    /// Also find the shortest run after which one name is left of each set, with 95 %.
+    /// Also find the shortest run after which one effect stays in each confidence set, with 95 %.
     #[arg(long)]
     one_name: bool,
-    /// Look for these effects too when the record is diagnosed.
+    /// Also test these effects (not in the default search) when the record is diagnosed.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     effects: Vec<String>,
-    /// Probability that a sound record shows anything when it is diagnosed.
+    /// Family-wise false-alarm probability of the diagnosis.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
 }
 
-/// What runs are ranked by.
+/// Criterion of the ranking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum AimArgument {
-    /// What is left of the named sets, then the sigmas.
+    /// Expected size of the confidence sets, then the standard deviations.
     Set,
-    /// The sigmas of the nine coefficients.
+    /// Standard deviations of the nine coefficients.
     Sigmas,
 }
 
-/// What there is to tell.
+/// The plan with its inputs.
 struct Found<'a> {
     arguments: &'a PlanArguments,
     record: &'a Record,
     planned: Planned,
-    /// The goal in words, if there is one.
+    /// The goal as text, if there is one.
     wish: Option<String>,
 }
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
     inputs.extend(arguments.diagnosis.as_deref());

@@ -1,20 +1,20 @@
-//! A progress bar for work that takes long enough to wonder.
+//! Progress bar of long computations.
 
 use std::io::IsTerminal as _;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// How long the work must take before the bar appears.
+/// Delay before the bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Rows that take a second or two.
+/// Number of rows that take a second or two.
 const MANY_ROWS: usize = 20_000;
 
-/// How often the time that has passed is renewed.
+/// Interval at which the elapsed time is updated.
 const TICK: Duration = Duration::from_millis(200);
 
-/// A bar that appears after a second if stderr is a terminal, and goes when it is dropped.
+/// A bar that appears after a second if stderr is a terminal, and disappears when dropped.
 #[derive(Debug)]
 pub(crate) struct Progress {
     started: Instant,
@@ -35,8 +35,8 @@ impl Progress {
         }
     }
 
-    /// Of work on so many rows that does not tell how far it is: shows the time that has passed,
-    /// from the start if the rows are many.
+    /// For work without progress reports: shows the elapsed time, from the start if there are many
+    /// rows.
     pub(crate) fn waiting(label: &'static str, rows: usize) -> Self {
         let mut progress = Self::new(label, rows);
         if progress.wanted && rows >= MANY_ROWS {
@@ -50,9 +50,9 @@ impl Progress {
         progress
     }
 
-    /// Tells how much is done.
+    /// Reports the number of rows done.
     pub(crate) fn reach(&mut self, done: usize) {
-        // The clock is asked now and then only: rows take a microsecond each.
+        // The clock is read every 256 rows only: a row takes a microsecond.
         if !self.wanted || !done.is_multiple_of(256) {
             return;
         }

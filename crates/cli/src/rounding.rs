@@ -1,4 +1,4 @@
-//! Estimates as people write them: with as many digits as their standard deviation allows.
+//! Rounding of estimates to the digits that their standard deviation supports.
 
 /// Estimate and sigma with the decimals that show two significant digits of the sigma.
 pub(crate) fn rounded(estimate: f64, sigma: f64) -> [String; 2] {

@@ -1,4 +1,4 @@
-//! `gyrocal simulate`: a scenario in, a record and its bench description out.
+//! `gyrocal simulate`: a record and its bench description from a scenario.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,35 +12,35 @@ use crate::Failure;
 use crate::outputs::{manifest, refuse_overlap};
 use crate::progress::Progress;
 
-/// Simulate a record from a scenario: known coefficients, bench and sampling.
+/// Simulate a record from a scenario with known coefficients, bench and sampling.
 ///
-/// Tables [[hidden]] of the scenario hide effects in the record that the bench description does
-/// not tell of; docs/formats.md lists them.
+/// Tables [[hidden]] of the scenario are hidden effects: the record has them, and the bench
+/// description does not declare them; docs/formats.md lists them.
 ///
-/// The simulator is independent of the model that `calibrate` uses. Same scenario and seed,
+/// The simulator is independent of the model of `calibrate`. The same scenario and seed give the
 /// same record, bit for bit.
 #[derive(Debug, Args)]
 pub(crate) struct SimulateArguments {
-    /// The scenario (TOML); examples/data/three_days.scenario.toml is one.
+    /// The scenario (TOML), for example examples/data/three_days.scenario.toml.
     scenario: PathBuf,
-    /// The record to write (CSV).
+    /// Write the record (CSV).
     #[arg(long, value_name = "RECORD.csv")]
     out: PathBuf,
-    /// The bench description to write (TOML), which `calibrate` wants beside the record.
+    /// Write the bench description (TOML), which `calibrate` and `diagnose` need with the record.
     #[arg(long, value_name = "BENCH.toml")]
     bench_out: Option<PathBuf>,
-    /// Use this seed instead of the scenario's.
+    /// Seed; default: that of the scenario.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=SEED_MAX))]
     seed: Option<u64>,
-    /// The truth behind the record to write (JSON).
+    /// Write the true coefficients, attitudes and hidden effects (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
 }
 
-/// The largest integer of TOML, so that a seed can be written into a scenario.
+/// The largest integer of TOML, so that a seed fits into a scenario file.
 const SEED_MAX: u64 = i64::MAX as u64;
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &SimulateArguments) -> Result<String, Failure> {
     refuse_overlap(
         &[&arguments.scenario],
@@ -120,13 +120,13 @@ fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simu
     );
     if !simulation.truth.hidden.is_empty() {
         let ids: Vec<&str> = simulation.truth.hidden.iter().map(Hidden::id).collect();
-        let _ = writeln!(text, "hidden in it: {}", ids.join(", "));
+        let _ = writeln!(text, "hidden effects: {}", ids.join(", "));
     }
     if let Some(path) = &arguments.bench_out {
-        let _ = writeln!(text, "{}: its bench description", path.display());
+        let _ = writeln!(text, "{}: bench description", path.display());
     }
     if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "{}: the truth behind it", path.display());
+        let _ = writeln!(text, "{}: the truth", path.display());
     }
     text
 }

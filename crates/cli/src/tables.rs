@@ -1,4 +1,4 @@
-//! How tables look.
+//! Layout of tables.
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table, TableStyle};
 
@@ -13,7 +13,7 @@ pub(crate) fn table(header: impl Into<Row>) -> Table {
     table
 }
 
-/// A number, its digits below those of the others.
+/// A right-aligned number.
 pub(crate) fn right(text: impl Into<String>) -> Cell {
     Cell::new(text.into()).set_alignment(CellAlignment::Right)
 }

@@ -1,9 +1,9 @@
-//! Words in lines that a terminal shows whole.
+//! Word wrap for a terminal.
 
-/// Letters in a line.
+/// Characters per line.
 const LINE: usize = 100;
 
-/// Words in lines, with a line break at the end.
+/// Wrapped text with a line break at the end.
 pub(crate) fn paragraph(words: &str) -> String {
     lines("", "", words)
 }
@@ -18,7 +18,7 @@ pub(crate) fn bullet(words: &str) -> String {
     lines(" - ", "   ", words)
 }
 
-/// Only spaces part words: what has several of them, as a path may, keeps them.
+/// Breaks at single spaces only; several spaces in a row, as in a path, are kept.
 fn lines(first: &str, next: &str, words: &str) -> String {
     let mut text = first.to_owned();
     let mut column = first.chars().count();

@@ -1,5 +1,4 @@
-//! `gyrocal tumble`: a log with static stops in many attitudes in, the drift law and what it
-//! leaves out of it out.
+//! `gyrocal tumble`: multi-position test of gyros from a log with static stops in many attitudes.
 
 mod figures;
 
@@ -25,35 +24,34 @@ use crate::pictures;
 use crate::rounding::rounded;
 use crate::tables::{right, table};
 
-/// Test gyros in many static attitudes: fit the drift law and say what it leaves out.
+/// Multi-position test: fit the drift law to static stops and find missing terms.
 ///
-/// Stops are found in the log or given, gyro outputs are fitted to specific force, and terms of
-/// the catalogue are added while they are better than chance. Says what could be taken for each
-/// of them, what the extended law is worth at stops that were not used, and what is found in
-/// shuffled stops.
+/// Stops are detected in the log or given. Gyro outputs are fitted to specific force, and terms of
+/// the catalogue are added while they are significant. Reports the alternatives of each term, the
+/// gain of the extended law on held-out stops, and the findings in permuted stops.
 #[derive(Debug, Args)]
 pub(crate) struct TumbleArguments {
     /// The log (CSV) with a header row.
     log: PathBuf,
-    /// What its columns mean (TOML); docs/measured-data.md has every key.
+    /// Description of its columns (TOML); docs/measured-data.md has every key.
     #[arg(long, value_name = "LOG.toml")]
     log_description: PathBuf,
-    /// A stop, in place of those that are found; may be repeated.
+    /// A stop, instead of those detected; may be repeated.
     #[arg(long, value_name = "FROM_S:TO_S", value_parser = interval)]
     stop: Vec<[f64; 2]>,
-    /// Stops shorter than this do not count.
+    /// Shortest stop.
     #[arg(long, value_name = "S", default_value_t = StopSettings::default().shortest_s,
           value_parser = positive, conflicts_with = "stop")]
     shortest_stop_s: f64,
-    /// How many times the variance of the quietest windows a window at rest may have.
+    /// Threshold of a static window: variance over that of the quietest windows.
     #[arg(long, value_name = "FACTOR", default_value_t = StopSettings::default().accel_factor,
           value_parser = positive, conflicts_with = "stop")]
     quiet_factor: f64,
-    /// Probability of finding something in data without effects, 1e-4 or more; below 0.01 the
-    /// time grows with its inverse.
+    /// Family-wise false-alarm probability, 1e-4 or more; below 0.01 the time grows with its
+    /// inverse.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
     false_alarm: f64,
-    /// Stops in a row that are left out together when the gain is measured.
+    /// Successive stops that are held out together to measure the gain.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
     left_out: u32,
     /// Seed of the permutations.
@@ -61,12 +59,12 @@ pub(crate) struct TumbleArguments {
     seed: u64,
     #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
-    /// The result to write for programs (JSON).
+    /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
 }
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
     let inputs = [&*arguments.log, &*arguments.log_description];
     outputs::check(
@@ -138,9 +136,9 @@ fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleRepo
         let test = &gyro.nominal_against_catalogue;
         let _ = writeln!(
             text,
-            "{}: the nominal law leaves chi-square {:.0} of {} degrees of freedom, the extended \
-             {:.1} of {}\n  (p {:.1e}; scatter beyond the standard errors of the stops: {:.0} \
-             deg/h, with the nominal law {:.0}).\n  All terms of the catalogue against the \
+            "{}: chi-square {:.0} with the nominal law ({} degrees of freedom), {:.1} with the \
+             extended law ({}; p {:.1e}).\n  Scatter beyond the standard errors of the stops: {:.0} \
+             deg/h, with the nominal law {:.0} deg/h.\n  All terms of the catalogue against the \
              nominal law: F({}, {}) = {:.1}, p {:.1e}; against the extended law: F = {:.1}, p \
              {:.1e}.",
             gyro.gyro,
@@ -162,25 +160,25 @@ fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleRepo
             let names = gyro.undetermined.join(", ");
             let _ = writeln!(
                 text,
-                "  These attitudes do not determine {names} beside the others."
+                "  Not identifiable from these attitudes, given the others: {names}."
             );
         }
     }
     if report.findings.is_empty() {
         let _ = writeln!(
             text,
-            "\nNothing found that the nominal law leaves out, at a probability of false alarm of {}: \
-             the extended law is the nominal one.",
+            "\nNo significant term beyond the nominal law (false-alarm probability {}): the extended \
+             law is the nominal one.",
             arguments.false_alarm
         );
     } else {
-        text.push_str("\nThe nominal law leaves out, in the order of finding:\n");
+        text.push_str("\nSignificant terms beyond the nominal law, in the order of finding:\n");
     }
     for finding in &report.findings {
         describe(&mut text, finding);
     }
-    worth(&mut text, arguments, report);
-    cannot_tell(&mut text, prepared);
+    held_out_gain(&mut text, arguments, report);
+    not_identifiable(&mut text, prepared);
     if let Some(path) = &arguments.json {
         let _ = writeln!(text, "\n{}: the result for programs", path.display());
     }
@@ -193,12 +191,12 @@ fn sensors(text: &mut String, prepared: &Prepared) {
         let [x, y, z] = outputs;
         let _ = writeln!(
             text,
-            "Accelerometers, by the norm at the stops: {x:.1}, {y:.1}, {z:.1} counts per g."
+            "Accelerometers, from the magnitude at the stops: {x:.1}, {y:.1}, {z:.1} counts per g."
         );
     }
     let _ = writeln!(
         text,
-        "Norm of specific force: 1 g within {:.1e} g rms.",
+        "Magnitude of specific force: 1 g within {:.1e} g rms.",
         sensors.norm_rms_g
     );
     if let (Some(outputs), Some(angles), Some(rms), Some(turns)) = (
@@ -211,9 +209,9 @@ fn sensors(text: &mut String, prepared: &Prepared) {
         let [ax, ay, az] = angles;
         let _ = writeln!(
             text,
-            "Gyros, by {} turns between stops: {x:.5}, {y:.5}, {z:.5} outputs per rad/s, input \
+            "Gyros, from {} turns between stops: {x:.5}, {y:.5}, {z:.5} outputs per rad/s, input \
              axes {ax:.3}, {ay:.3}, {az:.3} rad\nfrom those of the accelerometers; gravity \
-             carried over within {rms:.1e} g rms.",
+             predicted over the turns within {rms:.1e} g rms.",
             turns.turns,
         );
     }
@@ -260,7 +258,7 @@ fn describe(text: &mut String, finding: &Finding) {
     };
     let _ = writeln!(
         text,
-        "  {}  {estimate} ± {sigma} {}  (F {:.0}, p {p_value} for the whole search)",
+        "  {}  {estimate} ± {sigma} {}  (F = {:.0}, family-wise p = {p_value})",
         finding.effect, finding.unit, finding.f
     );
     let rivals: Vec<String> = finding
@@ -274,39 +272,39 @@ fn describe(text: &mut String, finding: &Finding) {
         })
         .collect();
     if rivals.is_empty() {
-        text.push_str("    no other term of the catalogue could stand for it");
+        text.push_str("    no alternative in the catalogue");
     } else {
-        let _ = write!(text, "    could also be {}", rivals.join(", "));
+        let _ = write!(text, "    alternatives: {}", rivals.join(", "));
     }
     if let Some(nearest) = &finding.nearest_ruled_out {
         let _ = write!(
             text,
-            "; ruled out at least by {:.1} nats ({})",
-            nearest.log_likelihood_deficit, nearest.effect
+            "; nearest excluded term: {} ({:.1} nats)",
+            nearest.effect, nearest.log_likelihood_deficit
         );
     }
     text.push('\n');
     if !finding.equivalents.is_empty() {
         let _ = writeln!(
             text,
-            "    the same as {} with the opposite sign, in any attitude",
+            "    exact equivalent, with the opposite sign: {}",
             finding.equivalents.join(", ")
         );
     }
     if let Some(angle) = finding.misalignment_needed_rad {
         let _ = writeln!(
             text,
-            "    as a misalignment of the accelerometers it would have to be {angle:.1} rad"
+            "    as a misalignment of the accelerometers: {angle:.1} rad"
         );
     }
 }
 
-fn worth(text: &mut String, arguments: &TumbleArguments, report: &TumbleReport) {
+fn held_out_gain(text: &mut String, arguments: &TumbleArguments, report: &TumbleReport) {
     if report.gain.is_none() && !report.findings.is_empty() {
         let _ = writeln!(
             text,
-            "\nWhat the extended law gains at stops that were not used cannot be said: without {} in \
-             a row the other\nstops do not determine it. Give a smaller --left-out.",
+            "\nThe gain of the extended law on held-out stops cannot be measured: without {} successive \
+             stops the others\ndo not determine it. Give a smaller --left-out.",
             arguments.left_out
         );
     }
@@ -314,9 +312,9 @@ fn worth(text: &mut String, arguments: &TumbleArguments, report: &TumbleReport) 
         let list = |values: [f64; 3]| values.map(|value| format!("{value:.0}")).join(", ");
         let _ = writeln!(
             text,
-            "\nAt stops that were not used ({} blocks of up to {}, searched and fitted without \
-             them), the extended law gains\n{:.1} ± {:.1} nats of log score; errors rms of \
-             gyros x, y, z: {} deg/h, before {},\nstandard errors of the stops {}.",
+            "\nOn held-out stops ({} blocks of up to {}, searched and fitted without them) the \
+             extended law improves the\npredictive log score by {:.1} ± {:.1} nats. Rms errors of \
+             gyros x, y, z: {} deg/h, nominal law {},\nstandard errors of the stops {}.",
             gain.blocks,
             gain.left_out,
             gain.cross_validated_log_score_nats,
@@ -328,20 +326,24 @@ fn worth(text: &mut String, arguments: &TumbleArguments, report: &TumbleReport) 
         let found: Vec<String> = gain
             .found_in_blocks
             .iter()
-            .map(|(name, blocks)| format!("{name} in {blocks}"))
+            .map(|(name, blocks)| format!("{name} {blocks}"))
             .collect();
-        let _ = writeln!(text, "Found again without a block: {}.", found.join(", "));
+        let _ = writeln!(
+            text,
+            "Blocks without which each term is found again: {}.",
+            found.join(", ")
+        );
     }
     let controls = &report.controls;
     let names = |names: &[String]| match names {
-        [] => "nothing".to_owned(),
+        [] => "none".to_owned(),
         names => names.join(", "),
     };
     let _ = writeln!(
         text,
-        "\nControls: something found in {} of {} data sets with the stops shuffled; with the \
-         axes renamed,\nthe findings are {} under their new names; with the axes of the \
-         accelerometers alone renamed,\n{} that is not there.",
+        "\nControls: findings in {} of {} data sets with permuted stops; with all axes renamed, the \
+         findings\nare {} under their new names; with only the axes of the accelerometers renamed, \
+         spurious\nfindings: {}.",
         controls.shuffles_with_findings,
         controls.shuffles,
         if controls.renamed_as_expected {
@@ -353,19 +355,19 @@ fn worth(text: &mut String, arguments: &TumbleArguments, report: &TumbleReport) 
     );
 }
 
-fn cannot_tell(text: &mut String, prepared: &Prepared) {
+fn not_identifiable(text: &mut String, prepared: &Prepared) {
     text.push_str(
-        "\nCannot be told: squares along all three axes from the bias (they sum to 1 g²); what \
-         else depends on the\nattitude to gravity alone, such as convection in the unit, from \
-         its specific force.\n",
+        "\nNot distinguishable: squares along all three axes and the bias (they sum to 1 g²); other \
+         effects of the\nattitude to gravity, such as convection in the unit, and sensitivity to \
+         specific force.\n",
     );
     match prepared.instrument.latitude_deg {
         Some(_) => text.push_str(
-            "Earth rate: its vertical part is taken off; its horizontal part counts as scatter, \
-             the heading being unknown.\n",
+            "Earth rate: the vertical part is subtracted; the horizontal part counts as scatter, since \
+             the heading is unknown.\n",
         ),
         None => text.push_str(
-            "Earth rate is not taken off, no latitude being given: each g_i holds up to 15.04 \
+            "Earth rate is not subtracted, since no latitude is given: each g_i contains up to 15.04 \
              deg/h/g of it, and the\nscatter up to as much.\n",
         ),
     }

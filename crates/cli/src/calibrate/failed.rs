@@ -1,4 +1,4 @@
-//! Why there is no calibration, and what to do about it.
+//! Errors of `gyrocal calibrate`, with advice.
 
 use gyrocal::EstimationError;
 use gyrocal_calibration::{CalibrationError, Run};
@@ -17,7 +17,7 @@ pub(super) struct NotCalibrated {
     records: String,
     method: CalibrationMethod,
     factorised: bool,
-    /// Whether the bench file says next to nothing of the gyros' noise.
+    /// Whether the bench file declares an implausibly small gyro noise.
     tiny_gyro_noise: bool,
     source: CalibrationError,
 }
@@ -69,8 +69,8 @@ impl NotCalibrated {
                 return GYRO_ADVICE;
             }
             Why::NoDescent { .. } | Why::NotConverged { .. } => {
-                return "look for a knock, a restart or a run of bad values in the record: the \
-                        verdict of --streaming says how badly one pass fits";
+                return "check the record for an attitude jump, a restart or a run of bad values: \
+                        --streaming shows the misfit of one pass";
             }
             Why::NotPositiveDefinite => true,
             Why::Filter { source, .. } | Why::Pass { source, .. } => matches!(
@@ -83,11 +83,11 @@ impl NotCalibrated {
             "the paper's filter fails where the second platform angle comes near 90 deg: leave \
              out --paper"
         } else if lost && !batch && !self.factorised {
-            "the prior is very wide against the noise: give [prior] and initial_angles_sigma_deg \
-             the sizes that are believed, or carry the covariance as factors with --factorised"
+            "the prior is very wide against the noise: give realistic values of [prior] and \
+             initial_angles_sigma_deg, or use the factorised covariance (--factorised)"
         } else {
-            "the numbers of the bench file are out of proportion to each other or to the record: \
-             check [noise], [prior] and initial_angles_sigma_deg"
+            "the values of the bench file are implausible, or inconsistent with the record: check \
+             [noise], [prior] and initial_angles_sigma_deg"
         }
     }
 }

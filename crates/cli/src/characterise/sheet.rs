@@ -1,4 +1,4 @@
-//! The tables of `gyrocal characterise`, for a terminal and for a page.
+//! The tables of `gyrocal characterise`, for a terminal and as Markdown.
 
 use std::fmt::Write as _;
 
@@ -12,11 +12,11 @@ use crate::text::paragraph;
 /// Failed records that are shown; the JSON has all.
 const FAILURES_SHOWN: usize = 5;
 
-/// A heading, what columns are, and the cells of the rows.
+/// A table with its heading and explanation.
 struct Sheet {
     heading: &'static str,
     words: &'static str,
-    /// Columns with text, from the left; the others hold numbers.
+    /// Number of columns with text, from the left; the others are numbers.
     text_columns: usize,
     header: Vec<&'static str>,
     rows: Vec<Vec<String>>,
@@ -52,13 +52,13 @@ pub(super) fn text(reports: &[CellReport]) -> String {
         }
         if report.failures.len() > FAILURES_SHOWN {
             let more = report.failures.len() - FAILURES_SHOWN;
-            let _ = writeln!(text, "{}: {more} more could not be examined", report.cell);
+            let _ = writeln!(text, "{}: {more} more records failed", report.cell);
         }
     }
     text
 }
 
-/// All tables as a page of documentation.
+/// All tables as Markdown.
 pub(super) fn page(reports: &[CellReport], command: &str) -> String {
     let mut page = format!(
         "# Operating characteristics\n\nPrinted by `{command}`. \
@@ -111,8 +111,8 @@ fn figures(reports: &[CellReport]) -> Sheet {
     });
     Sheet {
         heading: "Figures",
-        words: "Intervals are 95 %. On fewer records than 1000 (clean: 2000) a figure holds that is \
-                not shown to miss its target.",
+        words: "Intervals are 95 %. On fewer records than 1000 (clean: 2000) a figure holds unless it \
+                misses its target significantly.",
         text_columns: 3,
         header: vec![
             "records", "figure", "holds", "target", "measured", "interval", "runs", "seeds",
@@ -143,12 +143,12 @@ fn families(reports: &[CellReport]) -> Sheet {
         })
     });
     Sheet {
-        heading: "By family",
-        words: "i, j, k stand for axes. What is behind the column of detections is a share of these.",
+        heading: "By effect",
+        words: "i, j, k stand for axes. Columns after the detections are proportions of the detections.",
         text_columns: 2,
         header: vec![
             "records",
-            "family",
+            "effect",
             "runs",
             "detected, %",
             "set holds it, %",
@@ -180,11 +180,11 @@ fn comparison(reports: &[CellReport]) -> Sheet {
         }
     }
     Sheet {
-        heading: "Beside other methods, on the same records",
-        words: "Detected: something is said to be wrong, on clean records a false alarm. What is behind \
-                that column is a share of these: the first name is of the right class; all that is \
-                hidden is named (by gyrocal in a set); more causes are named than are hidden. nis and \
-                ljung-box give no names.",
+        heading: "Comparison with baseline methods, on the same records",
+        words: "Detected: the method reports a fault, on fault-free records a false alarm. The next \
+                columns are proportions of the detections: the first name is of the right class; all \
+                hidden effects are named (by gyrocal in a confidence set); more effects are named than \
+                hidden. nis and ljung-box do not identify.",
         text_columns: 2,
         header: vec![
             "records",
@@ -194,7 +194,7 @@ fn comparison(reports: &[CellReport]) -> Sheet {
             "class first, %",
             "all named, %",
             "too many, %",
-            "causes",
+            "names",
         ],
         rows,
     }

@@ -1,4 +1,4 @@
-//! Why there is no diagnosis, and what to do about it.
+//! Errors of `gyrocal diagnose`, with advice.
 
 use std::path::Path;
 
@@ -49,12 +49,12 @@ impl NotDiagnosed {
                 GYRO_ADVICE
             }
             Why::Calibration(Fit::NoDescent { .. } | Fit::NotConverged { .. }) => {
-                "look for a knock, a restart or a run of bad values in the record: `gyrocal \
-                 calibrate --streaming` says how badly one pass fits"
+                "check the record for an attitude jump, a restart or a run of bad values: `gyrocal \
+                 calibrate --streaming` shows the misfit of one pass"
             }
             _ => {
-                "the numbers of the bench file may be out of proportion to each other or to the \
-                 record: check [noise], [prior] and initial_angles_sigma_deg"
+                "the values of the bench file may be implausible, or inconsistent with the record: \
+                 check [noise], [prior] and initial_angles_sigma_deg"
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What a diagnosis found, read from its file.
+//! Reads the result of a diagnosis.
 
 use std::path::Path;
 
@@ -11,8 +11,8 @@ struct Versioned {
     schema_version: u32,
 }
 
-/// Reads the result of `gyrocal diagnose --json`. The version comes first: what another one has
-/// in it may be called otherwise.
+/// Reads the result of `gyrocal diagnose --json`. The version is checked first: keys of another
+/// version may differ.
 pub(crate) fn read(path: &Path) -> Result<DiagnosisReport, Error> {
     let source = SourceText::read(path)?;
     let text = source.text();
@@ -24,7 +24,7 @@ pub(crate) fn read(path: &Path) -> Result<DiagnosisReport, Error> {
             InputErrorKind::OutOfRange,
             place..place,
             format!("schema_version {}", versioned.schema_version),
-            format!("{SCHEMA_VERSION}, the version that this program knows"),
+            format!("{SCHEMA_VERSION}, the version of this program"),
             "write it again with `gyrocal diagnose` of this version",
         ));
     }
@@ -38,8 +38,8 @@ fn no_diagnosis(source: &SourceText, error: &serde_json::Error) -> Error {
     source.error(
         InputErrorKind::Syntax,
         place..place,
-        format!("JSON that is no result of a diagnosis ({reason})"),
-        "what `gyrocal diagnose --json` writes",
+        format!("JSON that is not the result of a diagnosis ({reason})"),
+        "the result of `gyrocal diagnose --json`",
         "write it again with `gyrocal diagnose`",
     )
 }

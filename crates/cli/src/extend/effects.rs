@@ -1,4 +1,4 @@
-//! Which effects a model file gets, and which it cannot have.
+//! Effects of a model file, and findings that it cannot have.
 
 use gyrocal::effect::{Enters, Role};
 use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
@@ -8,17 +8,17 @@ use gyrocal_record::{
 };
 use miette::{Report, miette};
 
-/// A model file and what is to be said of how it came about.
+/// A model file, with the findings left out and the exact equivalents.
 #[derive(Debug)]
 pub(super) struct Extension {
     pub(super) model: ModelFile,
-    /// What was found and is in no model file, each with the reason as a half sentence.
+    /// Findings left out, each with the reason as a clause.
     pub(super) left_out: Vec<(String, String)>,
-    /// What is in it with what no record can tell it from.
+    /// Effects of the model with their exact equivalents.
     pub(super) equivalents: Vec<(String, Vec<String>)>,
 }
 
-/// What a model file may name.
+/// Effects that a model file may name.
 pub(super) fn known() -> Vec<KnownEffect<'static>> {
     EFFECTS.iter().map(known_effect).collect()
 }
@@ -43,7 +43,7 @@ fn known_effect(row: &'static Effect) -> KnownEffect<'static> {
     }
 }
 
-/// The model of what a diagnosis found.
+/// The model of the findings of a diagnosis.
 pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Extension, Report> {
     let mut extension = Extension {
         model: ModelFile::default(),
@@ -58,8 +58,8 @@ pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Ex
             continue;
         }
         if finding.accepted == Some(false) {
-            let why = "does not help to predict the record: it is not in the extended model of the \
-                       diagnosis, --effects builds it in all the same";
+            let why = "has no predictive gain: it is not in the extended model of the diagnosis; \
+                       --effects includes it anyway";
             extension
                 .left_out
                 .push((finding.effect.clone(), why.to_owned()));
@@ -67,7 +67,7 @@ pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Ex
         }
         let model = &mut extension.model;
         if model.effects.contains(&finding.effect) {
-            let again = "was found once more, and a model has it once";
+            let again = "was found more than once, and a model has it once";
             extension
                 .left_out
                 .push((finding.effect.clone(), again.to_owned()));
@@ -89,7 +89,7 @@ pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Ex
                     let id = SHAPES[at].id;
                     model.shapes.push((id.to_owned(), found.estimate));
                 }
-                // Without a sigma it is no start of a filter.
+                // Without a sigma it is not an initial value of a filter.
                 (Some(_), _) => {}
                 (None, _) => {
                     return Err(miette!(
@@ -136,7 +136,7 @@ pub(super) fn of_list(ids: &[String]) -> Result<Extension, Report> {
         if let Some(other) = model.effects.iter().find(same) {
             return Err(miette!(
                 help = "keep one of them",
-                "--effects: no record whatever tells `{id}` from `{other}`"
+                "--effects: `{id}` and `{other}` are exact equivalents, which no record distinguishes"
             ));
         }
         if !row.equivalents.is_empty() {
@@ -157,24 +157,25 @@ fn nothing(diagnosis: &DiagnosisReport, extension: &Extension, name: &str) -> Re
         let (verdict, help) = match diagnosis.verdict {
             DiagnosisVerdict::Unexplained => (
                 "unexplained",
-                "what the catalogue lacks is added to it first: docs/adding-a-term.md",
+                "add the missing effect to the catalogue first: docs/adding-a-term.md",
             ),
             _ => (
                 "clean",
-                "the nine coefficients explain the record: the model needs no extension",
+                "the nominal model fits the record and needs no extension",
             ),
         };
         return miette!(
             help = help,
-            "{name}: found the verdict `{verdict}` and no finding, expected an effect to extend \
-             the model by"
+            "{name}: found the verdict `{verdict}` and no finding, expected an effect of the \
+             extended model"
         );
     }
     let reasons = extension.left_out.iter();
     let reasons: Vec<String> = reasons.map(|(id, why)| format!("`{id}` {why}")).collect();
     miette!(
         help = reasons.join("\n"),
-        "{name}: found nothing that is a term of the model, expected an effect to extend it by"
+        "{name}: found no finding that is a term of the model, expected an effect of the extended \
+         model"
     )
 }
 

@@ -1,4 +1,4 @@
-//! Why there is no plan, and what to do about it.
+//! Errors of `gyrocal plan`, with advice.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ pub(super) struct NotPlanned {
     source: PlanError,
 }
 
-/// A diagnosis speaks of another record, or was made with another bench file.
+/// A diagnosis is of another record, or was made with another bench file.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[error(
     "{diagnosis}: a diagnosis {other}; that has SHA-256 {found}, expected {expected}, that of {given}"
@@ -24,12 +24,12 @@ pub(super) struct NotPlanned {
 #[diagnostic(
     code(gyrocal::plan),
     help(
-        "diagnose this record with this bench file, or leave --diagnosis out: then the command does"
+        "diagnose this record with this bench file, or leave --diagnosis out: the command then diagnoses it"
     )
 )]
 pub(super) struct OtherInput {
     pub(super) diagnosis: String,
-    /// What is another one.
+    /// The input that differs.
     pub(super) other: &'static str,
     pub(super) given: String,
     pub(super) found: String,
@@ -55,8 +55,8 @@ impl NotPlanned {
                 "give shorter --hours, or wider --limits or [gimbal_limits_deg]"
             }
             _ => {
-                "the record cannot be fitted with what was found in it: `gyrocal diagnose` says \
-                 what that is"
+                "the model with the findings cannot be fitted to the record: `gyrocal diagnose` \
+                 lists the findings"
             }
         }
     }

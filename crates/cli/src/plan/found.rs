@@ -1,4 +1,4 @@
-//! What was found in the record: from a diagnosis that was written, or by making one.
+//! Findings of the record: read from a diagnosis file, or by a diagnosis.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::Failure;
 use crate::diagnose::NotDiagnosed;
 use crate::extend::diagnosis::read;
 
-/// What a plan starts from.
+/// Starting point of a plan.
 pub(super) struct Known<'a> {
     pub(super) fitted: Extended<'a>,
     pub(super) noise: NoiseModel,
@@ -67,8 +67,8 @@ fn written<'a>(
     })
 }
 
-/// A diagnosis names its record first and the bench file of it second; a later record and its
-/// bench file may follow.
+/// The inputs of a diagnosis are its record and bench file; a later record and its bench file may
+/// follow.
 fn check_inputs(
     path: &Path,
     report: &DiagnosisReport,
@@ -115,7 +115,7 @@ fn of_finding(finding: &FindingReport) -> Named {
     }
 }
 
-/// Noise other than declared, where the diagnosis found it.
+/// Noise model with the ratios that the diagnosis found.
 fn noise(report: &DiagnosisReport) -> NoiseModel {
     let ratio = |enters: &dyn Fn(Enters) -> bool| {
         let level = EffectKind::Noise(NoiseProperty::Level);

@@ -1,4 +1,4 @@
-//! The result for programs.
+//! The JSON result.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Limits and goals, as they are typed and as they are told.
+//! Limits and goals of the command line.
 
 use gyrocal_diagnosis::plan::Goal;
 use gyrocal_record::{Bench, GimbalLimits};
@@ -35,7 +35,7 @@ pub(super) fn wished_sigma(text: &str) -> Result<(String, f64), String> {
     Ok((id.trim().to_owned(), positive(sigma.trim())?))
 }
 
-/// Refuses limits of which the last would win.
+/// Refuses repeated limits of one axis.
 pub(super) fn refuse_repeated(given: &[(usize, [f64; 2])]) -> Result<(), Failure> {
     for (axis, key) in GimbalLimits::KEYS.iter().enumerate() {
         if given.iter().filter(|(other, _)| *other == axis).count() > 1 {
@@ -47,7 +47,7 @@ pub(super) fn refuse_repeated(given: &[(usize, [f64; 2])]) -> Result<(), Failure
     Ok(())
 }
 
-/// Each duration once, in the order in which they were given.
+/// Each duration once, in the order given.
 pub(super) fn durations_s(hours: &[f64]) -> Vec<f64> {
     let mut durations_s: Vec<f64> = Vec::with_capacity(hours.len());
     for duration_s in hours.iter().map(|hours| 3600.0 * hours) {
@@ -58,7 +58,7 @@ pub(super) fn durations_s(hours: &[f64]) -> Vec<f64> {
     durations_s
 }
 
-/// Those of the command line before those of the bench.
+/// Limits of the command line, then those of the bench.
 pub(super) fn limits(given: &[(usize, [f64; 2])], bench: &Bench) -> GimbalLimits {
     let mut limits = bench.gimbal_limits;
     for (axis, ends) in given {
@@ -74,7 +74,7 @@ pub(super) fn goal(arguments: &PlanArguments) -> Goal {
     }
 }
 
-/// A goal in words.
+/// A goal as text.
 pub(super) fn in_words(goal: &Goal) -> Option<String> {
     let mut wishes: Vec<String> = goal
         .sigmas
@@ -82,7 +82,7 @@ pub(super) fn in_words(goal: &Goal) -> Option<String> {
         .map(|(id, sigma)| format!("a sigma of {id} of at most {sigma:e}"))
         .collect();
     if goal.one_name {
-        wishes.push("one name in each set, with a probability of 95 %".to_owned());
+        wishes.push("one member in each confidence set with a probability of 95 %".to_owned());
     }
     (!wishes.is_empty()).then(|| wishes.join(" and "))
 }

@@ -1,4 +1,4 @@
-//! The tables below the words.
+//! The tables below the text.
 
 use std::fmt::Write as _;
 
@@ -9,11 +9,11 @@ use super::Found;
 use super::words::{hours, percent};
 use crate::tables::{right, table};
 
-/// All tables with their heads.
+/// All tables with their headings.
 pub(super) fn all(found: &Found<'_>) -> String {
     let planned = &found.planned;
     let mut text = format!(
-        "\nRuns, for each duration the best first:\n\n{}\n",
+        "\nRuns for each duration, the best first:\n\n{}\n",
         runs(found)
     );
     let best = planned.proposals.first();
@@ -23,20 +23,19 @@ pub(super) fn all(found: &Found<'_>) -> String {
     });
     let Some(best) = best else { return text };
     let columns: Vec<(&str, &Outlook)> = std::iter::once(("now", &planned.now))
-        .chain(longer.map(|longer| ("going on", &longer.outlook)))
+        .chain(longer.map(|longer| ("present attitude", &longer.outlook)))
         .chain([("best run", &best.outlook)])
         .collect();
     let _ = writeln!(
         text,
-        "\nSigmas now, and after {} more:\n\n{}",
+        "\nStandard deviations now, and after {} more:\n\n{}",
         hours(best.duration_s),
         sigmas(&columns)
     );
     if planned.now.sets.iter().any(|set| set.members.len() > 1) {
         let _ = writeln!(
             text,
-            "\nProbability that the named cause and its rival are told apart, whichever of the two \
-             it is:\n\n{}",
+            "\nDiscrimination probability of the named effect and each alternative:\n\n{}",
             members(&columns[1..])
         );
     }
@@ -51,14 +50,20 @@ fn runs(found: &Found<'_>) -> String {
         .sets
         .iter()
         .filter(|set| set.members.len() > 1)
-        .map(|set| format!("left of {} around {}", set.members.len(), set.effect))
+        .map(|set| {
+            format!(
+                "mean size of set {} (now {})",
+                set.effect,
+                set.members.len()
+            )
+        })
         .collect();
     header.extend(sets.iter().map(String::as_str));
     let mut table = table(header);
     let row = |run: &Proposal| {
         let angles = match run.angles_deg {
             Some(angles) => angles.map(|angle| right(format!("{angle:.0}°"))),
-            None => [Cell::new("going on"), Cell::new(""), Cell::new("")],
+            None => [Cell::new("present"), Cell::new(""), Cell::new("")],
         };
         let sets = run.outlook.sets.iter().zip(&planned.now.sets);
         let sizes = sets
@@ -111,7 +116,7 @@ fn sigmas(columns: &[(&str, &Outlook)]) -> String {
 }
 
 fn members(columns: &[(&str, &Outlook)]) -> String {
-    let header = ["named", "rival"]
+    let header = ["named", "alternative"]
         .into_iter()
         .chain(columns.iter().map(|(name, _)| *name));
     let mut table = table(header.collect::<Vec<_>>());

@@ -1,13 +1,14 @@
-//! The first screen: which run to make, and what it will leave, in words.
+//! The first screen: the recommended run and its predicted result.
 
 use gyrocal_diagnosis::plan::{Aim, Outlook, Proposal, SetForecast};
 
 use super::{Found, tables};
 use crate::text::{bullet, paragraph};
 
-/// A member is as good as told apart with this probability, and hardly below the other.
-const SURELY: f64 = 0.95;
-const HARDLY: f64 = 0.5;
+/// Probability above which two effects count as distinguished.
+const DISTINGUISHED: f64 = 0.95;
+/// Probability below which two effects count as not distinguished.
+const NOT_DISTINGUISHED: f64 = 0.5;
 
 pub(super) fn summary(found: &Found<'_>) -> String {
     let planned = &found.planned;
@@ -17,7 +18,7 @@ pub(super) fn summary(found: &Found<'_>) -> String {
         found.record.len(),
         found.record.duration_s() / 86_400.0
     );
-    text.push_str(&paragraph(&in_question(planned.aim, &planned.now)));
+    text.push_str(&paragraph(&question(planned.aim, &planned.now)));
     for (index, duration_s) in durations(found).into_iter().enumerate() {
         let of_it = |p: &&Proposal| p.duration_s == duration_s;
         let mut runs = planned.proposals.iter().filter(of_it);
@@ -27,25 +28,25 @@ pub(super) fn summary(found: &Found<'_>) -> String {
         text.push_str(&paragraph(&recommended(best, index == 0)));
         for set in &best.outlook.sets {
             if set.members.len() > 1 {
-                text.push_str(&bullet(&left(set)));
+                text.push_str(&bullet(&expected_set(set)));
             }
         }
         text.push_str(&bullet(&sigmas(&best.outlook)));
         if let Some(going_on) = going_on {
-            text.push_str(&paragraph(&instead(&going_on.outlook)));
+            text.push_str(&paragraph(&present_attitude(&going_on.outlook)));
         }
     }
     if let (Some(wish), Some(reached)) = (&found.wish, &planned.reached) {
         text.push('\n');
         text.push_str(&paragraph(&match &reached.run {
-            _ if reached.already => format!("This record alone has {wish}."),
+            _ if reached.already => format!("This record alone meets the goal: {wish}."),
             Some(run) => format!(
-                "The shortest run that was found for {wish}: {} from {}.",
+                "Shortest run that meets the goal ({wish}): {} from {}.",
                 hours(run.duration_s),
                 attitude(run)
             ),
             None => format!(
-                "No run of up to {} that was looked at reaches {wish}.",
+                "No run of up to {} among those examined meets the goal: {wish}.",
                 hours(reached.longest_s)
             ),
         }));
@@ -53,8 +54,8 @@ pub(super) fn summary(found: &Found<'_>) -> String {
     for class in &planned.inseparable {
         text.push('\n');
         text.push_str(&paragraph(&format!(
-            "No run tells {} apart: the same samples, at any attitude and for ever. Nothing is \
-             planned for that; `gyrocal diagnose` says what else would separate them.",
+            "No run distinguishes {}: they are exact equivalents. `gyrocal diagnose` describes the \
+             experiment that would.",
             class.join(" and ")
         )));
     }
@@ -62,7 +63,7 @@ pub(super) fn summary(found: &Found<'_>) -> String {
     text
 }
 
-/// Durations in the order in which they were asked for.
+/// Durations in the order of the request.
 pub(super) fn durations(found: &Found<'_>) -> Vec<f64> {
     let mut durations: Vec<f64> = Vec::new();
     for proposal in &found.planned.proposals {
@@ -73,7 +74,7 @@ pub(super) fn durations(found: &Found<'_>) -> Vec<f64> {
     durations
 }
 
-fn in_question(aim: Aim, now: &Outlook) -> String {
+fn question(aim: Aim, now: &Outlook) -> String {
     let sets: Vec<String> = now
         .sets
         .iter()
@@ -83,24 +84,24 @@ fn in_question(aim: Aim, now: &Outlook) -> String {
                 .iter()
                 .map(|member| member.effect)
                 .collect();
-            format!("{} or else {}", set.effect, rivals.join(", "))
+            format!("{} (alternatives {})", set.effect, rivals.join(", "))
         })
         .collect();
     let named: Vec<&str> = now.sets.iter().map(|set| set.effect).collect();
     let ranked = match aim {
-        Aim::Set => "Runs are ranked by how many of these they leave, then by the sigmas.",
+        Aim::Set => "Runs are ranked by the expected size of these sets, then by the sigmas.",
         _ => "Runs are ranked by the sigmas of the nine coefficients.",
     };
     if !sets.is_empty() {
         format!(
-            "What this record does not tell apart: {}. {ranked}",
+            "Not distinguished by this record: {}. {ranked}",
             sets.join("; ")
         )
     } else if named.is_empty() {
-        format!("Nothing was found in this record that would have to be told apart. {ranked}")
+        format!("The diagnosis of this record has no findings. {ranked}")
     } else {
         format!(
-            "Found in this record, and told from everything else that was searched: {}. {ranked}",
+            "Findings without alternatives: {}. {ranked}",
             named.join(", ")
         )
     }
@@ -108,41 +109,46 @@ fn in_question(aim: Aim, now: &Outlook) -> String {
 
 fn recommended(best: &Proposal, first: bool) -> String {
     format!(
-        "{} {} for {}. Together with this record it will, on average:",
+        "{} {} from {}. Expected result of record and run together:",
         if first {
-            "Make the next run from"
+            "Recommended next run:"
         } else {
-            "Or from"
+            "Alternatively"
         },
-        attitude(best),
-        hours(best.duration_s)
+        hours(best.duration_s),
+        attitude(best)
     )
 }
 
-fn left(set: &SetForecast) -> String {
-    let told = |test: &dyn Fn(f64) -> bool| -> Vec<String> {
+fn expected_set(set: &SetForecast) -> String {
+    let members = |test: &dyn Fn(f64) -> bool| -> Vec<String> {
         set.members[1..]
             .iter()
             .filter(|member| test(member.told_apart))
             .map(|member| format!("{} ({})", member.effect, percent(member.told_apart)))
             .collect()
     };
-    let surely = told(&|p| p >= SURELY);
-    let perhaps = told(&|p| (HARDLY..SURELY).contains(&p));
-    let hardly = told(&|p| p < HARDLY);
     let mut words = format!(
-        "leave {:.2} of the {} that may be the cause, one alone with a probability of {}",
+        "confidence set of {}: {:.2} of {} members stay on average, one alone with a probability \
+         of {}",
+        set.effect,
         set.mean_size,
         set.members.len(),
         percent(set.one_left)
     );
     for (list, verb) in [
-        (surely, "tell"),
-        (perhaps, "perhaps tell"),
-        (hardly, "hardly tell"),
+        (members(&|p| p >= DISTINGUISHED), "distinguished from"),
+        (
+            members(&|p| (NOT_DISTINGUISHED..DISTINGUISHED).contains(&p)),
+            "possibly distinguished from",
+        ),
+        (
+            members(&|p| p < NOT_DISTINGUISHED),
+            "not distinguished from",
+        ),
     ] {
         if !list.is_empty() {
-            words.push_str(&format!("; {verb} {} from {}", set.effect, list.join(", ")));
+            words.push_str(&format!("; {verb} {}", list.join(", ")));
         }
     }
     words
@@ -150,30 +156,32 @@ fn left(set: &SetForecast) -> String {
 
 fn sigmas(outlook: &Outlook) -> String {
     format!(
-        "shrink the sigmas of the nine coefficients to {:.2} of what they are (geometric mean)",
+        "sigmas of the nine coefficients: {:.2} of the present ones (geometric mean)",
         outlook.sigma_ratio
     )
 }
 
-fn instead(outlook: &Outlook) -> String {
+fn present_attitude(outlook: &Outlook) -> String {
     let sets: Vec<String> = outlook
         .sets
         .iter()
         .filter(|set| set.members.len() > 1)
-        .map(|set| format!("leave {:.2} of {}", set.mean_size, set.members.len()))
+        .map(|set| {
+            format!(
+                "{:.2} of {} members stay, ",
+                set.mean_size,
+                set.members.len()
+            )
+        })
         .collect();
-    let sets = if sets.is_empty() {
-        String::new()
-    } else {
-        format!("{} and ", sets.join(", "))
-    };
     format!(
-        "Going on in the present attitude for as long would {sets}shrink the sigmas to {:.2}.",
+        "The same duration in the present attitude: {}sigmas {:.2}.",
+        sets.concat(),
         outlook.sigma_ratio
     )
 }
 
-/// Platform angles in words.
+/// Platform angles as text.
 pub(super) fn attitude(run: &Proposal) -> String {
     match run.angles_deg {
         Some([x, y, z]) => format!("platform angles x {x:.0}°, y {y:.0}°, z {z:.0}°"),
@@ -191,7 +199,7 @@ pub(super) fn hours(duration_s: f64) -> String {
     }
 }
 
-/// A probability in percent, never all of it.
+/// A probability in percent, never 100 %.
 pub(super) fn percent(p: f64) -> String {
     if p > 0.99 {
         "over 99 %".to_owned()

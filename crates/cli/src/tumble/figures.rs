@@ -8,7 +8,7 @@ use gyrocal_report::{After, Contribution, Contributions, Residuals};
 use crate::pictures::Named;
 use crate::rounding::rounded;
 
-/// What each cause does, and what the laws leave; only the latter if nothing was found.
+/// Contribution of each finding, and residuals of the laws; only the latter without findings.
 pub(super) fn pictures(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Vec<Named> {
     let mut pictures: Vec<Named> = Vec::new();
     if let Some(causes) = causes(log, prepared, report) {
@@ -84,7 +84,7 @@ fn contribution(
     })
 }
 
-/// What a term multiplies, by its name: `gyro_x.g_yz` multiplies forces along y and z.
+/// Regressor of a term, by its name: `gyro_x.g_yz` multiplies forces along y and z.
 fn abscissa(effect: &str) -> (String, String) {
     match effect.split_once(".g_").map(|(_, axes)| axes) {
         Some(axis) if axis.len() == 1 => (format!("specific force {axis}"), "g".to_owned()),

@@ -268,7 +268,7 @@ fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
             assert_says(&errors, &format!("the filter stopped at {row}\n"));
             assert_says(
                 &errors,
-                "help: the numbers of the bench file are out of proportion",
+                "help: the values of the bench file are implausible",
             );
         }
         let folder = Folder::new();

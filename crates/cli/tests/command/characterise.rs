@@ -147,7 +147,7 @@ fn bad_input_is_refused_before_any_work() {
         ),
         (
             "--method none --method nis",
-            "--method none and another method",
+            "--method none excludes other methods",
         ),
         ("--runs 0", "--runs"),
         ("--json o --markdown o", "would overwrite --json o"),

@@ -108,7 +108,7 @@ fn a_list_of_effects_is_a_model_without_estimates() {
         "effects = [\"gyro_z.step\", \"gyro_x.g_yy\"]\n",
     );
     assert_says(&said, "gyro_z.step.onset_s is an input of the model");
-    assert_says(&said, "no record tells gyro_x.g_yy from gyro_x.g_zz");
+    assert_says(&said, "exact equivalents of gyro_x.g_yy: gyro_x.g_zz");
 }
 
 #[test]
@@ -120,7 +120,10 @@ fn what_gives_no_model_says_why() {
     );
     let noise = finding("accel_x.noise", &[("ratio", 1.4)]);
     let said = refused(&diagnosis("effects-found", &[noise]));
-    assert_says(&said, "d.json: found nothing that is a term of the model");
+    assert_says(
+        &said,
+        "d.json: found no finding that is a term of the model",
+    );
     assert_says(&said, "`accel_x.noise` is noise and no term");
     let unknown = finding("gyro_y.gz", &[("size", 0.05)]);
     let said = refused(&diagnosis("effects-found", &[unknown]));
@@ -139,7 +142,7 @@ fn a_file_that_is_no_diagnosis_is_shown_where_it_is_wrong() {
     let said = refused(&good.replace("\"findings\": []", "\"findings\": 3"));
     // Fields are written in the order of the alphabet: line 5 has the findings.
     assert_says(&said, "d.json:5:");
-    assert_says(&said, "expected what `gyrocal diagnose --json` writes");
+    assert_says(&said, "expected the result of `gyrocal diagnose --json`");
     let said = refused(&good.replace("\"schema_version\": 1", "\"schema_version\": 2"));
     assert_says(&said, "found schema_version 2, expected 1");
     // Another version may have other fields, and is still told for what it is.
@@ -147,7 +150,10 @@ fn a_file_that_is_no_diagnosis_is_shown_where_it_is_wrong() {
     assert_says(&said, "found schema_version 2, expected 1");
     let said = refused(&good.replace("\"clean\"", "\"fine\""));
     assert_says(&said, "unknown variant `fine`");
-    assert_says(&refused("{"), "d.json:1:1: found JSON that is no result");
+    assert_says(
+        &refused("{"),
+        "d.json:1:1: found JSON that is not the result",
+    );
 }
 
 #[test]
@@ -161,7 +167,7 @@ fn lists_that_no_model_can_have_are_refused() {
         ("gyro_y.g_z,gyro_y.g_z", "found `gyro_y.g_z` twice"),
         (
             "gyro_x.g_yy,gyro_x.g_zz",
-            "no record whatever tells `gyro_x.g_zz` from `gyro_x.g_yy`",
+            "`gyro_x.g_zz` and `gyro_x.g_yy` are exact equivalents",
         ),
         ("accel.outliers", "`[noise]` of the bench file"),
     ];

@@ -27,7 +27,7 @@ fn the_recorded_unit_feels_the_earth_turn() {
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let text = folder.succeed(&arguments(&log, &description));
     assert!(
-        text.contains("One attitude determines three numbers"),
+        text.contains("One attitude determines three combinations"),
         "{text}"
     );
     let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();

@@ -39,12 +39,15 @@ fn a_run_is_planned_from_a_diagnosis() {
     ];
     let said = folder.succeed(&arguments);
     assert!(
-        said.contains("Make the next run from platform angles x"),
+        said.contains("Recommended next run: 24 h from platform angles x"),
         "{said}"
     );
-    assert!(said.contains("Going on in the present attitude"), "{said}");
     assert!(
-        said.contains("The shortest run that was found for a sigma of gyro_x.g_x"),
+        said.contains("The same duration in the present attitude"),
+        "{said}"
+    );
+    assert!(
+        said.contains("Shortest run that meets the goal (a sigma of gyro_x.g_x"),
         "{said}"
     );
     assert!(said.contains("gyro_y.g_z size"), "{said}");
@@ -109,7 +112,7 @@ fn mistakes_are_told() {
         ),
         (
             &["--diagnosis", "no.json"],
-            "JSON that is no result of a diagnosis",
+            "JSON that is not the result of a diagnosis",
         ),
         (&["--hours", "0.1"], "a run of 360 s was asked for"),
         (

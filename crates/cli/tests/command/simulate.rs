@@ -81,7 +81,7 @@ size = 1e-4
     let (clean, said_clean) = simulate(format!("{SCENARIO}[temperature]\n"));
     let (faulty, said_faulty) = simulate(format!("{SCENARIO}{hidden}"));
     assert!(!said_clean.contains("hidden"), "{said_clean}");
-    let line = "\nhidden in it: gyro_y.g_z, accel_x.temperature\n";
+    let line = "\nhidden effects: gyro_y.g_z, accel_x.temperature\n";
     assert!(said_faulty.contains(line), "{said_faulty}");
     assert_eq!(faulty.text("b.toml"), clean.text("b.toml"));
     let (record, other) = (faulty.text("r.csv"), clean.text("r.csv"));
