@@ -1,4 +1,4 @@
-//! The model file: which effects of the catalogue a model of a user's own has.
+//! Model files: effects of the catalogue in an extended model.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,16 +9,16 @@ use crate::report::SCHEMA_VERSION;
 use crate::suggest::{any_of, nearest_few};
 use crate::tables::{Bound, Document, Table};
 
-/// What a model file says: the effects of a model beside the nine drift coefficients, and what a
-/// record told of them.
+/// Content of a model file: the effects of a model in addition to the nine drift coefficients, and
+/// their estimates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModelFile {
     /// Ids of the effects, each once.
     pub effects: Vec<String>,
     /// Ids of shapes (onsets, time constants) with the values that are built into the model.
-    /// Those that are not here stay inputs of the model.
+    /// Others stay inputs of the model.
     pub shapes: Vec<(String, f64)>,
-    /// Where filters start. Parameters that are not here start at zero with a wide prior.
+    /// Initial values of filters. Other parameters start at zero with a wide prior.
     pub estimates: Vec<ParameterEstimate>,
 }
 
@@ -33,7 +33,7 @@ pub struct ParameterEstimate {
     pub sigma: f64,
 }
 
-/// What a model file may name: a row of the table of effects, as far as this matters here.
+/// An effect that a model file may name: the relevant fields of its row in the table of effects.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KnownEffect<'a> {
     /// Public id.
@@ -62,21 +62,21 @@ pub enum Standing {
 }
 
 impl KnownEffect<'_> {
-    /// Why a model file cannot name the effect, as a half sentence; `None` if it can.
+    /// Reason why a model file cannot name the effect, as a clause; `None` if it can.
     #[must_use]
     pub fn objection(&self) -> Option<&'static str> {
         match self.standing {
             Standing::Term => None,
             Standing::Nominal => Some("is one of the nine coefficients that every model has"),
             Standing::Noise => Some(
-                "is noise and no term: a filter is told of white noise by `[noise]` of the bench \
-                 file, and of no other",
+                "is noise and not a term: filters take white noise from `[noise]` of the bench file, \
+                 and model no other",
             ),
             Standing::State => Some(
-                "is a matter of the attitude and no term: every filter estimates the attitude, \
-                 so begin the record after it or widen the prior of the angles",
+                "concerns the attitude and is not a term: every filter estimates the attitude, so \
+                 start the record after it or widen the prior of the angles",
             ),
-            Standing::Filter => Some("is a matter of the filter and no term of the model"),
+            Standing::Filter => Some("concerns the filter and is not a term of the model"),
         }
     }
 }
