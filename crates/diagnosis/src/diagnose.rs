@@ -11,11 +11,11 @@ use gyrocal_record::{Bench, Record};
 use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, Unnamed, search};
 use crate::error::DiagnosisError;
 use crate::gain::{Acceptance, Gain, Validation, gain, judge, validate};
+use crate::magnitude_test::{MagnitudeTest, magnitude_test};
 use crate::noise::{Estimate, NoiseAudit, NoiseFinding};
 use crate::remainder::{Remainder, TESTS, remainder};
 use crate::request;
 use crate::series::Innovations;
-use crate::side::{NormVerdict, norm_verdict};
 use crate::significance::two_sided_p;
 use crate::stability::{Stability, stability};
 use audited::{Audited, audited};
@@ -83,7 +83,7 @@ pub struct Diagnosis<'a> {
     pub false_alarm_probability: f64,
     /// What the norm of specific force says, which no gyro enters; `None` if there are too few
     /// complete rows.
-    pub norm: Option<NormVerdict>,
+    pub norm: Option<MagnitudeTest>,
     /// How what is left averages out; `None` without a stretch that is long enough.
     pub stability: Option<Stability>,
     /// What is wrong with the noise.
@@ -176,7 +176,7 @@ pub fn diagnose<'a>(
         .accel_ratio
         .map(|ratio| ratio * bench.accel_noise_g);
     let told = TOLD * options.false_alarm_probability;
-    let norm = norm_verdict(&audit.cleaned.apply(record), bench, &slow_noise_g, told).ok();
+    let norm = magnitude_test(&audit.cleaned.apply(record), bench, &slow_noise_g, told).ok();
     let search_options = SearchOptions {
         false_alarm_probability: search_share,
         unnamed_probability: remainder_share / TESTS,

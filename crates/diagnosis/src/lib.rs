@@ -6,8 +6,8 @@
 //! ([`gyrocal_record::Record`]) and the [`Innovations`] that a filter made of it.
 //!
 //! - [`nis`], [`autocorrelation`], [`periodogram`], [`dependence`]: the usual tests.
-//! - [`norm_channel`]: |E|², which sees accelerometer errors only, without any filter;
-//!   [`norm_verdict`] says which side it speaks for.
+//! - [`magnitude_channel`]: |E|², which sees accelerometer errors only, without any filter;
+//!   [`magnitude_test`] says which side it speaks for.
 //! - [`stability`]: Allan deviation of innovations, whether they average out.
 //! - [`audit_noise`]: is the noise as declared? Robust, with one false-alarm probability for all.
 //!
@@ -29,14 +29,14 @@ mod dependence;
 mod diagnose;
 mod error;
 mod gain;
+mod magnitude;
+mod magnitude_test;
 mod noise;
-mod norm;
 pub mod plan;
 mod remainder;
 mod request;
 mod residuals;
 mod series;
-mod side;
 mod significance;
 mod spectrum;
 mod stability;
@@ -46,15 +46,15 @@ pub use dependence::{Bin, Dependence, dependence};
 pub use diagnose::{DiagnoseError, DiagnoseOptions, Diagnosis, Verdict, diagnose, validated};
 pub use error::DiagnosisError;
 pub use gain::{Acceptance, CoefficientShift, Compensation, Gain, Validation, validate};
+pub use magnitude::{MagnitudeChannel, magnitude_channel};
+pub use magnitude_test::{MagnitudeTest, magnitude_test};
 pub use noise::{
     AuditOptions, Cleaned, DeclaredNoise, Estimate, Gaps, NoiseAudit, NoiseFinding, Outlier,
     Shares, audit_noise,
 };
-pub use norm::{NormChannel, norm_channel};
 pub use remainder::{Remainder, remainder};
 pub use residuals::{Abscissa, Residuals, residuals};
 pub use series::Innovations;
-pub use side::{NormVerdict, norm_verdict};
 pub use significance::{two_sided_p, z_of_two_sided_p};
 pub use spectrum::{Line, Periodogram, periodogram, strongest};
 pub use stability::{NoiseCourse, Stability, stability};

@@ -1,7 +1,7 @@
 //! The statistics of residuals on white innovations, and on such that are not.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
-use gyrocal_diagnosis::{autocorrelation, nis, norm_channel, periodogram, strongest};
+use gyrocal_diagnosis::{autocorrelation, magnitude_channel, nis, periodogram, strongest};
 use gyrocal_record::Record;
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -121,17 +121,17 @@ fn the_norm_sees_accelerometers_whatever_the_attitude() {
             temperature_c: None,
         }
     };
-    let clean = norm_channel(&record(0.0, 1.0), &[sigma_g; 3], 1.0, 10).unwrap();
+    let clean = magnitude_channel(&record(0.0, 1.0), &[sigma_g; 3], 1.0, 10).unwrap();
     // One seed: probabilities of ordinary size.
     assert!(clean.mean_p_value > 1e-3 && clean.variance_p_value > 1e-3);
     assert!(clean.on_component.iter().all(|on| on.p_value > 1e-3));
     // |E|² has twice the noise of a component, along specific force.
     assert!((clean.sigma_g2[7] / (2.0 * sigma_g) - 1.0).abs() < 1e-4);
-    let biased = norm_channel(&record(bias_g, 1.0), &[sigma_g; 3], 1.0, 10).unwrap();
+    let biased = magnitude_channel(&record(bias_g, 1.0), &[sigma_g; 3], 1.0, 10).unwrap();
     // 2 b a_x: 0.2 sigma a_x, so 0.2 sqrt(5000 / 3) = 8 sigmas, on x and on x alone.
     assert!(biased.on_component[0].p_value < 1e-6);
     assert!(biased.on_component[1].p_value > 1e-3 && biased.on_component[2].p_value > 1e-3);
-    let noisy = norm_channel(&record(0.0, 1.2), &[sigma_g; 3], 1.0, 10).unwrap();
+    let noisy = magnitude_channel(&record(0.0, 1.2), &[sigma_g; 3], 1.0, 10).unwrap();
     // 5000 values: the variance 1.44 is known to 2 %.
     assert!((noisy.variance_ratio - 1.44).abs() < 0.12 && noisy.variance_p_value < 1e-9);
 }

@@ -1,7 +1,7 @@
 //! What is told without being a finding: which side the norm speaks for, and how noise averages.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
-use gyrocal_diagnosis::{NoiseCourse, norm_verdict, stability};
+use gyrocal_diagnosis::{NoiseCourse, magnitude_test, stability};
 use gyrocal_record::{Bench, Record};
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -67,7 +67,7 @@ fn sound_records_are_told_of_no_more_often_than_they_may() {
     let (mut of_norm, mut of_averages) = (0, 0);
     for seed in 0..RECORDS {
         let sound = record(seed, |_, _| [0.0; 3]);
-        let norm = norm_verdict(&sound, &bench, &[SIGMA_G; 3], FALSE_ALARM).unwrap();
+        let norm = magnitude_test(&sound, &bench, &[SIGMA_G; 3], FALSE_ALARM).unwrap();
         of_norm += u32::from(norm.accelerometers);
         let white = Normals::of_seed(seed).white();
         let found = stability(&minutes(), &white, FALSE_ALARM).unwrap();
@@ -92,14 +92,14 @@ fn errors_of_accelerometers_are_told_by_what_they_go_with() {
         ),
     ];
     for (error_g, words) in cases {
-        let norm = norm_verdict(&record(1, error_g), &bench(""), &[SIGMA_G; 3], 1e-3).unwrap();
+        let norm = magnitude_test(&record(1, error_g), &bench(""), &[SIGMA_G; 3], 1e-3).unwrap();
         assert!(norm.accelerometers);
         assert!(norm.description.contains(words), "{}", norm.description);
     }
     // Where gravity itself is uncertain, its error is none of the accelerometers.
     let scaled = record(1, |_, a| a.map(|a| 3e-6 * a));
     let uncertain = bench("gravity_relative_sigma = 1e-4");
-    let norm = norm_verdict(&scaled, &uncertain, &[SIGMA_G; 3], 1e-3).unwrap();
+    let norm = magnitude_test(&scaled, &uncertain, &[SIGMA_G; 3], 1e-3).unwrap();
     assert!(!norm.accelerometers, "{norm:?}");
 }
 

@@ -2,7 +2,7 @@
 
 use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
-use gyrocal_diagnosis::{NoiseCourse, NormVerdict, Stability};
+use gyrocal_diagnosis::{MagnitudeTest, NoiseCourse, Stability};
 use gyrocal_record::{
     AllanCourse, AllanPointReport, AllanReport, DiagnosisReport, DiagnosisVerdict, NormReport,
 };
@@ -14,7 +14,7 @@ const SEEN: f64 = 4.0;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-pub(super) fn norm(verdict: &NormVerdict) -> NormReport {
+pub(super) fn norm(verdict: &MagnitudeTest) -> NormReport {
     NormReport {
         accelerometers: verdict.accelerometers,
         p_value: verdict.p_value,

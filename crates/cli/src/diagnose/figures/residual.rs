@@ -2,7 +2,7 @@
 
 use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::{
-    Autocorrelation, Dependence, DiagnosisError, Periodogram, autocorrelation, norm_channel,
+    Autocorrelation, Dependence, DiagnosisError, Periodogram, autocorrelation, magnitude_channel,
     periodogram,
 };
 use gyrocal_report::{
@@ -259,7 +259,7 @@ pub(super) fn autocorrelations(found: &Found<'_>) -> Result<Box<dyn Picture>, Di
 pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
     let noise_g = [found.bench.accel_noise_g; 3];
     let gravity_g = found.bench.specific_force_at_rest();
-    let norm = norm_channel(found.record, &noise_g, gravity_g, BINS)?;
+    let norm = magnitude_channel(found.record, &noise_g, gravity_g, BINS)?;
     let panel = |abscissa: String, unit: &str, scale: f64, dependence: &Dependence| {
         let first = if unit == "days" {
             found.record.time_s.first().copied().unwrap_or(0.0)

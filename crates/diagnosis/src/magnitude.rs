@@ -1,7 +1,7 @@
-//! The norm channel: |E|² against gravity squared.
+//! The magnitude channel: |E|² of the accelerometer outputs E against gravity squared.
 //!
-//! It does not depend on attitude, hence neither on the gyros nor on any filter: what is wrong
-//! with it is wrong with the accelerometers, or with gravity.
+//! It depends neither on the attitude nor on the gyros nor on a filter (docs/method.md, equation
+//! 18): a deviation is an error of the accelerometers, or of gravity.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -11,52 +11,52 @@ use crate::dependence::{Dependence, dependence};
 use crate::error::DiagnosisError;
 use crate::significance::two_sided_p;
 
-/// The norm of each sample, and what is expected of it.
+/// |E|² of each sample against its expectation.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NormChannel {
-    /// (|E|² − g²  − the variances) over its standard deviation, row by row; `NaN` where a
-    /// component is missing. Of accelerometers without error it is white, of variance one.
+pub struct MagnitudeChannel {
+    /// (|E|² − g² − Σ σ²) over its standard deviation, row by row; `NaN` where a component is
+    /// missing. White with variance 1 for accelerometers as declared.
     pub normalised: Vec<f64>,
-    /// Standard deviation of |E|² of each row from the declared noise \[g²\]: 2 σ for equal ones.
+    /// Standard deviation of |E|² of each row from the declared noise \[g²\]: 2 σ if all are equal.
     pub sigma_g2: Vec<f64>,
     /// Number of complete rows.
     pub values: usize,
-    /// Mean of |E|² − g² − the variances \[g²\].
+    /// Mean of |E|² − g² − Σ σ² \[g²\].
     pub mean_g2: f64,
     /// Standard deviation of that mean.
     pub mean_sigma_g2: f64,
-    /// Probability of a mean as far from zero.
+    /// Two-sided p-value of the mean.
     pub mean_p_value: f64,
-    /// Variance about the mean over that declared.
+    /// Variance about the mean over the declared variance.
     pub variance_ratio: f64,
-    /// Probability of a variance as far from the declared one, on either side.
+    /// Two-sided p-value of the variance.
     pub variance_p_value: f64,
-    /// Dependence on each component of specific force: scale, bias, non-linearity.
+    /// Binned means over each component of specific force: scale, bias, non-linearity.
     pub on_component: [Dependence; 3],
-    /// Dependence on time.
+    /// Binned means over time.
     pub on_time: Dependence,
-    /// Dependence on temperature, if it was logged and varies.
+    /// Binned means over temperature, if it was logged and varies.
     pub on_temperature: Option<Dependence>,
 }
 
-/// The norm channel of a record with the declared noise of each accelerometer; gravity is 1
-/// unless the bench file says otherwise.
+/// The magnitude channel of a record with the declared noise of each accelerometer; `gravity_g` is
+/// 1 unless the bench file gives local and unit gravity.
 ///
 /// # Errors
 ///
-/// [`DiagnosisError::TooShort`] with fewer than two complete rows a bin, and those of
+/// [`DiagnosisError::TooShort`] with fewer than two complete rows per bin, and the errors of
 /// [`dependence`].
-pub fn norm_channel(
+pub fn magnitude_channel(
     record: &Record,
     accel_noise_g: &[f64; 3],
     gravity_g: f64,
     bins: usize,
-) -> Result<NormChannel, DiagnosisError> {
+) -> Result<MagnitudeChannel, DiagnosisError> {
     let variances = accel_noise_g.map(|sigma| sigma * sigma);
     let expected_g2 = gravity_g * gravity_g + variances.iter().sum::<f64>();
     let of_row = |row: &[f64; 3]| {
         let square: f64 = row.iter().map(|a| a * a).sum();
-        // d|E|² = 2 a·v to first order; |v|² adds 2 Σ σ⁴, which is nothing but for huge noise.
+        // d|E|² = 2 a·v to first order; |v|² adds 2 Σ σ⁴, which matters for huge noise only.
         let linear: f64 = row
             .iter()
             .zip(&variances)
@@ -76,7 +76,7 @@ pub fn norm_channel(
     let spread = ChiSquared::new(values.saturating_sub(1) as f64);
     let Ok(spread) = spread else {
         return Err(DiagnosisError::TooShort {
-            test: "the norm channel",
+            test: "the magnitude test",
             found: values,
             expected: 2,
         });
@@ -99,7 +99,7 @@ pub fn norm_channel(
         .temperature_c
         .as_ref()
         .filter(|column| column.iter().any(|value| *value != column[0]));
-    Ok(NormChannel {
+    Ok(MagnitudeChannel {
         values,
         mean_g2,
         mean_sigma_g2,

@@ -1,51 +1,54 @@
-//! Which side an error is on: what the norm channel says before any cause is looked for.
+//! Specific-force magnitude test: separates errors of the accelerometers from errors of gyros,
+//! attitude and site (docs/method.md, equation 18).
 
 use gyrocal_record::{Bench, Record};
 
 use crate::dependence::Dependence;
 use crate::error::DiagnosisError;
-use crate::norm::{NormChannel, norm_channel};
+use crate::magnitude::{MagnitudeChannel, magnitude_channel};
 
-/// Most bins of a dependence, and how many complete rows each should have.
+/// Largest number of bins, and number of complete rows per bin.
 const MOST_BINS: usize = 24;
 const ROWS_A_BIN: usize = 20;
 
-/// A component that sweeps over less than this many sigmas of its noise is sorted into bins by that
-/// noise, which is in the norm too.
-const SWEPT: f64 = 3000.0;
+/// Smallest range of a component, in standard deviations of its noise, over which binned means are
+/// tested. In a smaller range the noise sorts the values into bins, and correlates with the
+/// magnitude.
+const LEAST_RANGE_SIGMAS: f64 = 3000.0;
 
-/// What the norm of specific force says of the accelerometers.
+/// Result of the magnitude test.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NormVerdict {
-    /// Whether the accelerometers, or gravity, are other than declared.
+pub struct MagnitudeTest {
+    /// Whether the accelerometers, or gravity, differ from what is declared.
     pub accelerometers: bool,
-    /// Probability of a norm as far from gravity by chance, all its tests together.
+    /// p-value with a Bonferroni bound over all its tests.
     pub p_value: f64,
-    /// Mean of |E| less gravity \[g\]; zero where gravity is itself declared uncertain.
+    /// Mean of |E| less gravity \[g\]; zero if gravity is declared uncertain.
     pub mean_g: f64,
-    /// Its standard deviation \[g\].
+    /// Standard deviation of that mean \[g\].
     pub mean_sigma_g: f64,
-    /// What stands out; empty if nothing does.
+    /// The most significant deviation; empty if none is significant.
     pub description: String,
-    /// The channel that was tested.
-    pub channel: NormChannel,
+    /// The tested channel.
+    pub channel: MagnitudeChannel,
 }
 
-/// Tests the norm of a record of which outliers are gone: its mean, its dependence on each
-/// component, on time and on temperature, with one probability of a false alarm for all.
+/// Tests the magnitude in a record without outliers: its mean, and binned means over each
+/// component, time and temperature, at the family-wise false-alarm probability `false_alarm`.
 ///
-/// `accel_noise_g` is what white noise as strong as the accelerometers' over long times would be.
-/// If the bench declares gravity uncertain, the mean of the norm stands for it.
+/// `accel_noise_g` is the standard deviation of white noise with the long-term power of the
+/// accelerometer noise. If the bench declares gravity uncertain, the mean of the magnitude is used
+/// for it.
 ///
 /// # Errors
 ///
 /// [`DiagnosisError::TooShort`] with too few complete rows.
-pub fn norm_verdict(
+pub fn magnitude_test(
     record: &Record,
     bench: &Bench,
     accel_noise_g: &[f64; 3],
     false_alarm: f64,
-) -> Result<NormVerdict, DiagnosisError> {
+) -> Result<MagnitudeTest, DiagnosisError> {
     let complete = |row: &&[f64; 3]| row.iter().all(|value| !value.is_nan());
     let rows: Vec<&[f64; 3]> = record.accel_g.iter().filter(complete).collect();
     let bins = (rows.len() / ROWS_A_BIN).clamp(1, MOST_BINS);
@@ -61,7 +64,7 @@ pub fn norm_verdict(
     } else {
         bench.specific_force_at_rest()
     };
-    let channel = norm_channel(record, accel_noise_g, gravity_g, bins)?;
+    let channel = magnitude_channel(record, accel_noise_g, gravity_g, bins)?;
     // d|E|² = 2 |E| d|E|.
     let mean_g = channel.mean_g2 / (2.0 * gravity_g);
     let mean_sigma_g = channel.mean_sigma_g2 / (2.0 * gravity_g);
@@ -89,7 +92,7 @@ pub fn norm_verdict(
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
             (low.min(value), high.max(value))
         });
-        if high - low < SWEPT * accel_noise_g[axis] {
+        if high - low < LEAST_RANGE_SIGMAS * accel_noise_g[axis] {
             continue;
         }
         let axis = ["x", "y", "z"][axis];
@@ -100,14 +103,14 @@ pub fn norm_verdict(
         depends("temperature", found);
     }
     let count = tests.len() as f64;
-    // Probabilities may underflow: of those the largest statistic.
+    // Where probabilities underflow, the largest statistic decides.
     let strongest = tests
         .into_iter()
         .min_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
     let (least, words) = strongest.map_or((1.0, String::new()), |(p, _, words)| (p, words));
     let p_value = (count * least).min(1.0);
     let accelerometers = p_value < false_alarm;
-    Ok(NormVerdict {
+    Ok(MagnitudeTest {
         accelerometers,
         p_value,
         mean_g,
