@@ -1,7 +1,9 @@
-//! The noise audit: is the noise as declared, and if not, in what way.
+//! The noise audit: tests of the declared noise, before the search for physical effects.
 //!
-//! It comes before any physical cause is looked for, and works on what no physical cause reaches:
-//! the values themselves, single samples against their neighbours, and cosines within an hour.
+//! It uses features that no slow physical effect changes: the values themselves (quantisation),
+//! single samples against their neighbours (outliers), and the spectrum on time scales below an
+//! hour (variance and correlation of the accelerometer noise). The noise of the gyros, a random
+//! walk there, is a free nuisance parameter.
 
 mod audit;
 mod block;

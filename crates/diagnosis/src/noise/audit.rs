@@ -1,4 +1,4 @@
-//! The audit in its order: lattice, outliers, spectrum.
+//! The audit: quantisation, outliers, spectrum, in this order.
 
 use gyrocal_record::Record;
 
@@ -13,14 +13,16 @@ use crate::error::DiagnosisError;
 use crate::series::Innovations;
 use crate::significance::{two_sided_p, z_of_two_sided_p};
 
-/// A step below this part of the noise changes its variance by 2 % or less, its size by 1 %.
+/// Smallest quantisation step tested for, in standard deviations of the noise: it increases the
+/// variance by 2 %, the standard deviation by 1 %.
 const LEAST_STEP: f64 = 0.5;
-/// Rows at the start in which the filter's prediction jumps from sample to sample: a row for each
-/// twelve seconds of the interval, within these limits. At long intervals an unknown drift moves
-/// the platform by hundreds of standard deviations from row to row.
+/// Limits of the number of rows at the start that are not tested for outliers, one per twelve
+/// seconds of the sampling interval. The prediction of the unsettled filter jumps there from sample
+/// to sample: at long intervals an unknown drift moves the platform by hundreds of standard
+/// deviations per row.
 const FIRST_ROW: [usize; 2] = [16, 48];
 
-/// With fewer blocks in all there is no spectrum to speak of.
+/// Smallest number of blocks of all axes for a spectrum.
 const LEAST_BLOCKS: usize = 6;
 const OUTLIERS: &str = "accel.outliers";
 const QUANTISATION: [&str; 3] = [
@@ -29,25 +31,24 @@ const QUANTISATION: [&str; 3] = [
     "accel_z.quantisation",
 ];
 
-/// The noise that the bench file declares and the filter used.
+/// The declared noise, used by the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeclaredNoise {
-    /// Standard deviation of one sample of each accelerometer.
+    /// Standard deviation of one sample of each accelerometer \[g\].
     pub accel_g: [f64; 3],
-    /// Standard deviation of the white gyro noise as held over one minute.
+    /// Standard deviation of the white gyro noise, held over one minute \[deg/h\].
     pub gyro_deg_per_h: f64,
 }
 
-/// What the audit may do.
+/// Options of the audit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AuditOptions {
-    /// Probability of any finding on a record whose noise is as declared.
+    /// Family-wise false-alarm probability of the audit.
     pub false_alarm: f64,
 }
 
 impl Default for AuditOptions {
-    /// One record in four hundred: with the remainder of one in a hundred left to the physical
-    /// search.
+    /// 0.0025: a quarter of 0.01, of which the rest is left to the search.
     fn default() -> Self {
         Self {
             false_alarm: 0.0025,
@@ -55,13 +56,13 @@ impl Default for AuditOptions {
     }
 }
 
-/// Looks at the noise of a record of which a filter has made innovations with the noise declared.
+/// Audits the noise of a record, given the innovations of a filter with the declared noise.
 ///
 /// # Errors
 ///
-/// [`DiagnosisError::UnequalLengths`] of record and innovations and
-/// [`DiagnosisError::InvalidArgument`] for noise that is not positive or a probability that is
-/// none. A record too short for a test is no error: the audit says `None` there.
+/// [`DiagnosisError::UnequalLengths`] of record and innovations, and
+/// [`DiagnosisError::InvalidArgument`] for noise that is not positive or a false-alarm probability
+/// outside (0, 1). A record too short for a test is not an error: its result is `None`.
 pub fn audit_noise(
     record: &Record,
     innovations: &Innovations,
@@ -184,8 +185,8 @@ fn check(
     }
 }
 
-/// Variance that the gyros' noise adds to the open-loop residual over one interval, in declared
-/// variances: an angle across specific force moves an output, one about it does not.
+/// Variance that the gyro noise adds to the open-loop residual over one interval, in declared
+/// variances. Only rotations perpendicular to specific force change an output.
 fn walk_variance(
     innovations: &Innovations,
     declared: &DeclaredNoise,
@@ -248,7 +249,7 @@ fn outliers(
                 }),
         );
     }
-    // The probability that any of the samples of mere noise is as far out.
+    // Bonferroni bound over all samples.
     let p_value = (samples as f64 * single_p).min(1.0);
     if found.is_empty() || p_value > share {
         return (Vec::new(), None);
@@ -259,14 +260,14 @@ fn outliers(
     (found, Some(finding))
 }
 
-/// The finding that `samples` values hold these outliers.
+/// The finding of these outliers among `samples` values.
 fn of_outliers(found: &[Outlier], samples: usize, p_value: f64, noise_g: f64) -> NoiseFinding {
     let count = found.len() as f64;
     let sizes = || found.iter().map(|outlier| outlier.size_g.abs());
     let mean = sizes().sum::<f64>() / count;
     let scatter = sizes().map(|size_g| (size_g - mean).powi(2)).sum::<f64>();
     let fraction = count / samples as f64;
-    // One sample has no scatter of its own: that of the noise.
+    // A single outlier has no scatter: that of the noise is used.
     let spread = if found.len() > 1 {
         (scatter / (count - 1.0)).sqrt()
     } else {
@@ -294,7 +295,7 @@ fn of_outliers(found: &[Outlier], samples: usize, p_value: f64, noise_g: f64) ->
 }
 
 impl NoiseAudit {
-    /// Adds outliers among values that the audit did not look at.
+    /// Adds outliers among values that the audit did not test.
     pub(crate) fn add_outliers(&mut self, further: Vec<Outlier>, noise_g: f64) {
         if further.is_empty() {
             return;
@@ -323,7 +324,7 @@ impl NoiseAudit {
         self.sort();
     }
 
-    /// The strongest finding first.
+    /// Sorts the findings by significance.
     fn sort(&mut self) {
         self.findings
             .sort_by(|a, b| b.z.abs().total_cmp(&a.z.abs()));

@@ -1,21 +1,22 @@
-//! Blocks of rows seen in cosines that a smooth trajectory does not touch.
+//! Discrete cosine transform of blocks of rows, with low orders removed: a smooth trajectory does
+//! not enter.
 
-/// Degree of the polynomial that is taken out of each block: what is smooth.
+/// Degree of the polynomial that is removed from each block.
 const DEGREE: usize = 3;
-/// Blocks with a smaller part of their values say nothing.
+/// Smallest fraction of present values in a block.
 const LEAST_PRESENT: f64 = 0.75;
 
-/// An orthonormal basis of a block without its polynomials: cosines of rising frequency.
+/// Orthonormal basis of a block: cosines of increasing frequency, orthogonal to its polynomials.
 pub(crate) struct Basis {
     polynomials: Vec<Vec<f64>>,
     cosines: Vec<Vec<f64>>,
     /// Autocorrelation of each cosine vector at the lags 0, 1, …, [`LAGS`].
     lags: Vec<Vec<f64>>,
-    /// Power of a random walk of unit step in each vector.
+    /// Power of a random walk with unit variance of its steps in each cosine.
     walk: Vec<f64>,
 }
 
-/// Correlations beyond this lag do not count: 0.95 to this power is below 0.04.
+/// Largest lag of the autocorrelations: 0.95 to this power is below 0.04.
 const LAGS: usize = 63;
 
 impl Basis {
@@ -33,7 +34,7 @@ impl Basis {
         });
         let mut vectors: Vec<Vec<f64>> = Vec::new();
         for mut vector in powers.chain(waves) {
-            // Twice: one pass of Gram and Schmidt leaves rounding.
+            // Twice: one Gram-Schmidt pass leaves rounding errors.
             for _ in 0..2 {
                 for earlier in &vectors {
                     let along = dot(earlier, &vector);
@@ -66,13 +67,13 @@ impl Basis {
         self.cosines.len()
     }
 
-    /// Power in a cosine of a random walk with unit variance of its steps.
+    /// Power of a random walk with unit variance of its steps in a cosine.
     pub(crate) fn walk(&self, cosine: usize) -> f64 {
         self.walk[cosine]
     }
 
-    /// Power in a cosine, and its derivative, of noise of unit variance with correlation
-    /// `correlation` from one row to the next, decaying geometrically.
+    /// Power in a cosine of first-order autoregressive noise of unit variance, and its derivative by
+    /// the correlation from row to row.
     pub(crate) fn coloured(&self, cosine: usize, correlation: f64) -> [f64; 2] {
         let lags = &self.lags[cosine];
         let (mut power, mut slope, mut factor) = (lags[0], 0.0, 1.0);
@@ -84,8 +85,8 @@ impl Basis {
         [power, slope]
     }
 
-    /// Squared coefficients of a block and its part of values that are present, or `None` if
-    /// too many values are `NaN`.
+    /// Squared coefficients of a block and its fraction of present values; `None` if too many values
+    /// are `NaN`.
     pub(crate) fn powers(&self, block: &[f64]) -> Option<(Vec<f64>, f64)> {
         let missing: Vec<usize> = (0..block.len())
             .filter(|row| block[*row].is_nan())
@@ -96,8 +97,8 @@ impl Basis {
         }
         let mut filled = block.to_vec();
         missing.iter().for_each(|row| filled[*row] = 0.0);
-        // Missing values become those of the polynomial through the others. Each pass closes the
-        // gap by a factor below their part in the polynomial, one half at the very worst.
+        // Missing values are replaced by the polynomial through the others. Each pass reduces the
+        // error by their share in the polynomial, at worst one half.
         for pass in 0.. {
             let along: Vec<f64> = self.polynomials.iter().map(|p| dot(p, &filled)).collect();
             if missing.is_empty() || pass == 30 {
@@ -136,7 +137,7 @@ fn autocorrelation(vector: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// A walk is the sum of its earlier steps, so a step weighs as much as all later rows together.
+/// Power of a random walk in a vector: each step enters all later rows.
 fn walk_power(vector: &[f64]) -> f64 {
     let mut later = 0.0;
     vector

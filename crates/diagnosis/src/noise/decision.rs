@@ -1,4 +1,5 @@
-//! Which explanation of the spectrum is the right one.
+//! Selection of the noise model that explains the spectrum: likelihood-ratio tests of variance and
+//! correlation.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -7,29 +8,29 @@ use super::likelihood::{Bins, CORRELATION, NoiseFit, NoiseModel, fit};
 use super::spectrum::Spectrum;
 use crate::significance::{two_sided_p, z_of_two_sided_p};
 
-/// A correlation of less changes nothing that matters, however significant.
+/// Smallest correlation that is reported: less is immaterial, however significant.
 const LEAST_CORRELATION: f64 = 0.01;
-/// Nor does a ratio closer to one than this.
+/// Smallest deviation of a ratio from 1 that is reported.
 const LEAST_EXCESS: f64 = 0.005;
-/// On a lattice coarser than this part of the noise, rounding errors depend on where between two
-/// values the platform stands, and are not white while it stands there.
-const COARSE: f64 = 1.0;
-/// An explanation that the data contradict no more than this is as good as a richer one.
-const SIMPLE: f64 = 0.01;
+/// Quantisation step in standard deviations of the noise beyond which rounding errors are not white:
+/// they depend on the position of the platform between two values.
+const COARSE_STEP: f64 = 1.0;
+/// p-value above which a simpler model is not rejected against a richer one.
+const NOT_REJECTED_P: f64 = 0.01;
 
 const NOISE: [&str; 3] = ["accel_x.noise", "accel_y.noise", "accel_z.noise"];
 
-/// What was decided of the spectrum.
+/// The selected noise model.
 pub(crate) struct Decision {
     pub(crate) findings: Vec<NoiseFinding>,
     pub(crate) fit: NoiseFit,
-    /// Variance ratios without quantisation that were found, else one.
+    /// Variance ratios without quantisation; 1 where none was found.
     pub(crate) variance: [f64; 3],
     pub(crate) correlation: f64,
 }
 
-/// Compares explanations of the spectrum. The random walk is free in all of them: whatever the
-/// gyros' noise is, and whatever slow cause there is, is not laid on the accelerometers.
+/// Compares noise models of the spectrum. The random walk is a free parameter of all of them, so
+/// that gyro noise and slow effects are not attributed to the accelerometers.
 pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Shares) -> Decision {
     const WHITE: [bool; 5] = [true, true, true, false, true];
     const COLOURED: [bool; 5] = [true; 5];
@@ -47,16 +48,16 @@ pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Share
     };
 
     let mut findings = Vec::new();
-    // Two ways to be called coloured, with half of the share each: to fit significantly better
-    // with a correlation than without, or to be explained by the correlation alone where the
-    // declared variances are not enough, though others with a stronger walk would do as well.
+    // Correlation is reported in two cases, each with half of the share: the fit is significantly
+    // better with than without it; or the declared variances are rejected and the correlation
+    // alone explains the spectrum, even if a larger random walk would do so too.
     let half = 0.5 * shares.coloured_noise;
     let of_correlation = gain(&coloured, &white);
     let alone = fit(spectrum, &bins, start, [false, false, false, true, false]);
     let walking = fit(spectrum, &bins, start, [false, false, false, false, true]);
     let declared_p = chi_squared_p(gain(&coloured, &walking).powi(2), 4.0);
     let alone_p = chi_squared_p(gain(&coloured, &alone).powi(2), 4.0);
-    let is_simplest = declared_p < half && alone_p > SIMPLE;
+    let is_simplest = declared_p < half && alone_p > NOT_REJECTED_P;
     let (coloured, z) = if is_simplest && two_sided_p(of_correlation) >= half {
         (alone, z_of_two_sided_p(declared_p))
     } else {
@@ -77,7 +78,7 @@ pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Share
             p_value: two_sided_p(z),
         });
     }
-    // Variances are called wrong only if no correlation would explain as much.
+    // A variance is reported only if no correlation explains as much.
     let (best, free) = if is_coloured {
         (&coloured, COLOURED)
     } else {
@@ -94,8 +95,8 @@ pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Share
             };
             held(best, free).min(held(&full, COLOURED))
         };
-        // Of correlated noise, either the variance or that of its driving noise may be what was
-        // declared: with one finding less, both are simpler explanations.
+        // The declared variance of correlated noise may be that of the noise or that of its driving
+        // noise: either is a simpler explanation, with one finding less.
         let mut z = against(1.0);
         let mut nearest: f64 = 1.0;
         if is_coloured {
@@ -106,7 +107,7 @@ pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Share
             }
         }
         let found = best.model.values[axis];
-        let coarse = if quantisation[axis] * 12.0 > COARSE * COARSE {
+        let coarse = if quantisation[axis] * 12.0 > COARSE_STEP * COARSE_STEP {
             quantisation[axis]
         } else {
             0.0
@@ -140,7 +141,7 @@ fn chi_squared_p(value: f64, degrees: f64) -> f64 {
     ChiSquared::new(degrees).map_or(1.0, |distribution| distribution.sf(value))
 }
 
-/// The white fit with what the coloured one says of the correlation, for information.
+/// The white fit with the correlation of the coloured fit, for information.
 fn white_with(white: &NoiseFit, coloured: &NoiseFit) -> NoiseFit {
     let mut fit = white.clone();
     fit.model.values[CORRELATION] = coloured.model.values[CORRELATION];
@@ -148,13 +149,13 @@ fn white_with(white: &NoiseFit, coloured: &NoiseFit) -> NoiseFit {
     fit
 }
 
-/// Standard deviation over the declared one, from a ratio of variances.
+/// Ratio of standard deviations from a ratio of variances.
 pub(crate) fn ratio(fit: &NoiseFit, parameter: usize) -> Estimate {
     let estimate = fit.model.values[parameter].max(0.0).sqrt();
     Estimate {
         name: "ratio",
         estimate,
-        // Near zero the variance knows more than its root: the root of its sigma then.
+        // Near zero the sigma of the root is bounded by the root of the sigma of the variance.
         sigma: fit.sigma[parameter] / (2.0 * estimate).max(fit.sigma[parameter].sqrt()),
         unit: "1",
     }

@@ -1,13 +1,13 @@
-//! What the audit found.
+//! Results of the audit.
 
 use super::outlier::Outlier;
 
-/// A number that was found, with its standard deviation.
+/// An estimate with its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// What it is: `ratio`, `fraction`, `size`, `correlation`.
+    /// Name of the parameter: `ratio`, `fraction`, `size`, `correlation`.
     pub name: &'static str,
-    /// The number.
+    /// The estimate.
     pub estimate: f64,
     /// Its standard deviation.
     pub sigma: f64,
@@ -15,30 +15,29 @@ pub struct Estimate {
     pub unit: &'static str,
 }
 
-/// One thing that is wrong with the noise.
+/// A deviation of the noise from the declared one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseFinding {
     /// Id of the effect in the catalogue.
     pub effect: &'static str,
     /// Its parameters.
     pub parameters: Vec<Estimate>,
-    /// Significance in standard deviations; of a ratio below one it is negative.
+    /// Significance in standard deviations; negative for a ratio below 1.
     pub z: f64,
-    /// Probability of as much or more on a record whose noise is as declared, its share of the
-    /// search included.
+    /// p-value over all tests of this kind.
     pub p_value: f64,
 }
 
-/// Which tests were made, and what each may claim of the false alarms.
+/// Shares of the tests in the false-alarm probability of the audit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shares {
-    /// Of outliers, all samples together.
+    /// Outliers, all samples together.
     pub outliers: f64,
-    /// Of the noise of the three accelerometers together.
+    /// Variance of the noise of the three accelerometers together.
     pub accel_noise: f64,
-    /// Of the correlation.
+    /// Correlation.
     pub coloured_noise: f64,
-    /// Kept for the noise of the gyros, which needs the likelihood of the filter.
+    /// Reserved for the noise of the gyros, which needs the likelihood of the filter.
     pub gyro_noise: f64,
 }
 
@@ -56,26 +55,26 @@ impl Shares {
     }
 }
 
-/// What the noise is, whether or not it is as declared, and what became of the record.
+/// Result of the audit: findings, estimates of the noise, and the cleaned record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseAudit {
-    /// What is wrong, the strongest first.
+    /// Findings, the most significant first.
     pub findings: Vec<NoiseFinding>,
     /// Standard deviation of the noise of each accelerometer over the declared one, without
-    /// outliers and quantisation; `None` if the record is too short to tell.
+    /// outliers and quantisation; `None` if the record is too short.
     pub accel_ratio: Option<[Estimate; 3]>,
     /// Correlation of the accelerometers' noise from one row to the next.
     pub correlation: Option<Estimate>,
-    /// Standard deviation of the gyros' noise over the declared one as the accelerometers see it
-    /// within an hour, a rough figure: a nuisance here.
+    /// Standard deviation of the gyro noise over the declared one, from the accelerometers on time
+    /// scales below an hour: a rough estimate of a nuisance parameter.
     pub gyro_ratio: Option<Estimate>,
-    /// Least significant bit of each accelerometer, where it matters \[g\].
+    /// Quantisation step of each accelerometer, if found \[g\].
     pub quantisation_g: [Option<f64>; 3],
     /// Outliers.
     pub outliers: Vec<Outlier>,
     /// Gaps and missing values.
     pub gaps: Gaps,
-    /// How to look at the record from here on.
+    /// Values and noise to use from here on.
     pub cleaned: Cleaned,
 }
 
@@ -84,31 +83,31 @@ pub struct NoiseAudit {
 pub struct Gaps {
     /// Number of intervals longer than one and a half median ones.
     pub count: usize,
-    /// Time in them beyond a median interval.
+    /// Time in them beyond a median interval \[s\].
     pub missing_s: f64,
-    /// Longest interval between rows.
+    /// Longest interval between rows \[s\].
     pub longest_s: f64,
     /// Fraction of the values of existing rows that are missing.
     pub missing_values: f64,
 }
 
-/// What later stages use in place of record and declared noise.
+/// Values and noise model for later stages, instead of record and declared noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cleaned {
-    /// Which values count, row by row: those that exist and are no outliers.
+    /// Values to use, row by row: those that exist and are not outliers.
     pub keep: Vec<[bool; 3]>,
-    /// Standard deviation of a sample over the declared one, with quantisation; exactly 1 where
-    /// nothing was found.
+    /// Standard deviation of a sample over the declared one, quantisation included; exactly 1
+    /// without a finding.
     pub sample_ratio: [f64; 3],
-    /// Correlation from one row to the next; exactly 0 if none was found.
+    /// Correlation from row to row; exactly 0 without a finding.
     pub correlation: f64,
-    /// Standard deviation over the declared one of white noise that is as strong as this noise
-    /// over long times: what a physical search, whose signatures are slow, has to reckon with.
+    /// Standard deviation, over the declared one, of white noise with the same long-term power: the
+    /// noise level for the search, whose signatures are slow.
     pub slow_ratio: [f64; 3],
 }
 
 impl Cleaned {
-    /// The record with `NaN` for values that do not count.
+    /// The record with `NaN` for values that are not used.
     #[must_use]
     pub fn apply(&self, record: &gyrocal_record::Record) -> gyrocal_record::Record {
         let mut cleaned = record.clone();

@@ -1,52 +1,58 @@
-//! The least significant bit, found from the values themselves.
+//! Detection of quantisation: the least significant bit, from the values themselves.
 
-/// Values are on a lattice if their distance from it is below this part of its step.
-const NEAR: f64 = 0.05;
-/// Part of the steps between neighbouring values that must be whole.
-const MOST: f64 = 0.98;
-/// Fewer steps than this prove nothing.
-const LEAST_STEPS: usize = 20;
-/// Nor do steps that are all of one size, as those of a steady trend are: so many values must
-/// repeat, or be apart by another multiple than most.
-const LEAST_OTHERS: usize = 10;
+/// Largest distance from a lattice point, as a fraction of the step, of a value on the lattice.
+const TOLERANCE: f64 = 0.05;
+/// Smallest fraction of the differences of sorted values that are multiples of the step.
+const LEAST_MULTIPLES: f64 = 0.98;
+/// Smallest number of differences.
+const LEAST_DIFFERENCES: usize = 20;
+/// Smallest number of values that repeat, or whose difference is another multiple than the most
+/// frequent one: the equal increments of a steady trend are not evidence.
+const LEAST_OTHER_MULTIPLES: usize = 10;
 
-/// A lattice that values lie on.
+/// Lattice of quantised values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lattice {
-    /// Its step.
+    /// Step.
     pub(crate) step: f64,
-    /// Standard deviation of that.
+    /// Standard deviation of the step.
     pub(crate) sigma: f64,
-    /// How many standard deviations of chance the steps between values are whole.
+    /// Significance of the number of differences that are multiples of the step, in standard
+    /// deviations of chance.
     pub(crate) z: f64,
 }
 
-/// The widest lattice on which values lie, if its step is `least` or more.
+/// The coarsest lattice of the values, if its step is `least` or more.
 ///
-/// Sorted, values are apart by whole multiples of the step. The smallest distances give the step,
-/// larger ones refine it. Values of continuous distribution have distances of any size, and the
-/// smallest are far below what matters.
+/// Differences of sorted quantised values are multiples of the step. The smallest differences give
+/// the step, larger ones refine it. Values with a continuous distribution have differences of any
+/// size, the smallest far below `least`.
 ///
-/// Rows at equal intervals of a platform that turns uniformly lie on a lattice too, which no
-/// converter made: there each value is the mean of its neighbours to within much less than a step.
+/// Samples at equal intervals of a uniformly rotating platform also have equal increments, without
+/// quantisation. There each value is the mean of its neighbours to much less than a step.
 pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Lattice> {
     let in_order: Vec<f64> = values.collect();
     let mut sorted: Vec<f64> = in_order.iter().copied().filter(|v| !v.is_nan()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
-    // Below this, two values are the same one with rounding of a printed decimal.
-    let same = NEAR * least;
+    // Below this, two values differ by the rounding of printed decimals only.
+    let same = TOLERANCE * least;
     let mut steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let apart = steps.len();
     steps.retain(|step| *step > same);
     let repeated = apart - steps.len();
     steps.sort_unstable_by(f64::total_cmp);
-    if steps.len() < LEAST_STEPS || steps[0] < least * (1.0 - NEAR) {
+    if steps.len() < LEAST_DIFFERENCES || steps[0] < least * (1.0 - TOLERANCE) {
         return None;
     }
     let step = common_divisor(&steps)?;
     let off = |distance: &&f64| ((**distance / step) - (**distance / step).round()).abs();
-    let near = steps.iter().filter(|distance| off(distance) < NEAR).count();
-    if (near as f64) < MOST * steps.len() as f64 || repeated + others(&steps, step) < LEAST_OTHERS {
+    let near = steps
+        .iter()
+        .filter(|distance| off(distance) < TOLERANCE)
+        .count();
+    if (near as f64) < LEAST_MULTIPLES * steps.len() as f64
+        || repeated + others(&steps, step) < LEAST_OTHER_MULTIPLES
+    {
         return None;
     }
     if is_smooth(&in_order, step) {
@@ -60,20 +66,20 @@ pub(crate) fn find(values: impl Iterator<Item = f64>, least: f64) -> Option<Latt
         .iter()
         .map(|distance| (distance / step).round().powi(2))
         .sum();
-    // By chance a step is near a whole one with probability 2 NEAR.
+    // By chance a difference is near a multiple with probability 2 TOLERANCE.
     let count = steps.len() as f64;
-    let chance = 2.0 * NEAR;
+    let chance = 2.0 * TOLERANCE;
     Some(Lattice {
         step,
-        // Neighbouring distances share a value; that they do is within this factor.
+        // The factor 2 bounds the correlation of neighbouring differences, which share a value.
         sigma: (2.0 * squares / count / weight).sqrt(),
         z: (near as f64 - count * chance) / (count * chance * (1.0 - chance)).sqrt(),
     })
 }
 
-/// Whether values run on in equal steps, with no trace of having been rounded to multiples of
-/// `step`: that would make second differences of up to 0.7 steps rms, and of 0.3 where the steps
-/// are nearly whole multiples. Values that stand still are no evidence.
+/// Whether values have equal increments without rounding to multiples of `step`. Rounding would give
+/// second differences of up to 0.7 steps rms, and of 0.3 if the increments are nearly multiples.
+/// Constant values are not evidence.
 fn is_smooth(in_order: &[f64], step: f64) -> bool {
     const SMOOTH: f64 = 0.1;
     let (mut squares, mut moved, mut count) = (0.0, 0.0, 0.0_f64);
@@ -88,7 +94,7 @@ fn is_smooth(in_order: &[f64], step: f64) -> bool {
     moved > step * count && squares < (SMOOTH * step).powi(2) * count
 }
 
-/// How many of the steps, which rise, are another multiple than most.
+/// Number of the differences, sorted, that are another multiple than the most frequent one.
 fn others(steps: &[f64], step: f64) -> usize {
     let multiple = |distance: &f64| (distance / step).round();
     let most = steps
@@ -98,16 +104,16 @@ fn others(steps: &[f64], step: f64) -> usize {
     steps.len() - most.unwrap_or(0)
 }
 
-/// The step that the smallest distances suggest, refined with larger ones in turn.
+/// The step suggested by the smallest differences, refined with larger ones in turn.
 fn common_divisor(steps: &[f64]) -> Option<f64> {
     let candidates = [1.0, 2.0, 3.0, 4.0].map(|part| steps[0] / part);
-    // The smallest distance is one step in all but tiny records; else it is a few.
+    // The smallest difference is one step except in tiny records, where it is a few.
     candidates.into_iter().find_map(|candidate| {
         let (mut products, mut squares, mut step) = (0.0, 0.0, candidate);
         let mut whole = 0;
         for distance in steps {
             let count = (distance / step).round();
-            // As long as the count is certain.
+            // Only if the multiple is unambiguous.
             if (distance / step - count).abs() < 0.2 {
                 whole += 1;
                 products += distance * count;
@@ -115,7 +121,7 @@ fn common_divisor(steps: &[f64]) -> Option<f64> {
                 step = products / squares;
             }
         }
-        (whole as f64 >= MOST * steps.len() as f64).then_some(step)
+        (whole as f64 >= LEAST_MULTIPLES * steps.len() as f64).then_some(step)
     })
 }
 

@@ -1,4 +1,4 @@
-//! Which noise explains the spectrum: variances, correlation, random walk.
+//! Maximum-likelihood fit of the noise to the spectrum: variances, correlation, random walk.
 
 use super::spectrum::Spectrum;
 
@@ -9,19 +9,19 @@ pub(crate) const CORRELATION: usize = 3;
 /// Index of the random walk's variance over the declared one.
 pub(crate) const WALK: usize = 4;
 
-/// Largest correlation that is looked for.
+/// Largest correlation of the fit.
 const LARGEST_CORRELATION: f64 = 0.95;
-/// Largest random walk that is looked for, in declared variances.
+/// Largest random walk of the fit, in declared variances.
 const LARGEST_WALK: f64 = 1e6;
-/// A cosine with more power than the fit explains, by this many standard deviations, is a line
-/// and no noise.
-const LINE: f64 = 5.5;
+/// Excess power of a cosine over the fit, in standard deviations, beyond which it is a line and not
+/// noise.
+const LINE_SIGMAS: f64 = 5.5;
 
 /// Parameters of the noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NoiseModel {
-    /// Variance of x, y, z without quantisation over the declared one; correlation from one row
-    /// to the next; variance of the random walk over the declared one.
+    /// Variances of x, y, z without quantisation over the declared one; correlation from row to row;
+    /// variance of the random walk over the declared one.
     pub(crate) values: [f64; PARAMETERS],
     /// Variance that quantisation adds to each axis, in declared variances.
     pub(crate) quantisation: [f64; 3],
@@ -32,11 +32,11 @@ pub(crate) struct NoiseModel {
 pub(crate) struct NoiseFit {
     pub(crate) model: NoiseModel,
     pub(crate) log_likelihood: f64,
-    /// Standard deviations; zero of what was held.
+    /// Standard deviations; zero for fixed parameters.
     pub(crate) sigma: [f64; PARAMETERS],
 }
 
-/// The cosines that count.
+/// Selected cosines.
 pub(crate) struct Bins(Vec<[bool; 3]>);
 
 impl NoiseModel {
@@ -48,7 +48,7 @@ impl NoiseModel {
         }
     }
 
-    /// Expected power in a cosine and its derivatives.
+    /// Expected power in a cosine, and its derivatives by the parameters.
     fn power(&self, spectrum: &Spectrum, axis: usize, cosine: usize) -> (f64, [f64; PARAMETERS]) {
         let sums = &spectrum.axes[axis];
         let (ratio, correlation, walk) = (
@@ -83,12 +83,12 @@ impl Bins {
         Self(vec![[true; 3]; spectrum.basis.len()])
     }
 
-    /// Without those in which more power stands than a fit explains.
+    /// All cosines without lines: those whose power exceeds the fit.
     pub(crate) fn without_lines(spectrum: &Spectrum, model: &NoiseModel) -> Self {
         let usual = |axis: usize, cosine: usize| {
             let expected = model.power(spectrum, axis, cosine).0;
             let excess = spectrum.axes[axis].power[cosine] / expected - 1.0;
-            excess < LINE * (2.0 / spectrum.axes[axis].blocks as f64).sqrt()
+            excess < LINE_SIGMAS * (2.0 / spectrum.axes[axis].blocks as f64).sqrt()
         };
         let cosines = 0..spectrum.basis.len();
         Self(
@@ -99,10 +99,10 @@ impl Bins {
     }
 }
 
-/// Maximises the likelihood over the parameters that are free, from a start.
+/// Maximises the likelihood over the free parameters, from an initial value.
 ///
-/// The coefficients of a block are taken as independent and normal, which they are for white
-/// noise and a random walk up to the degree of the polynomial.
+/// The coefficients of a block are taken as independent and normal, which holds for white noise,
+/// and for a random walk up to the degree of the polynomial.
 pub(crate) fn fit(
     spectrum: &Spectrum,
     bins: &Bins,
@@ -143,7 +143,7 @@ pub(crate) fn fit(
 
 type Evaluation = (f64, [f64; PARAMETERS], [[f64; PARAMETERS]; PARAMETERS]);
 
-/// Logarithm of the likelihood, its gradient and Fisher's information.
+/// Log-likelihood, its gradient and the Fisher information.
 fn evaluate(spectrum: &Spectrum, bins: &Bins, model: &NoiseModel) -> Evaluation {
     let mut log_likelihood = 0.0;
     let mut score = [0.0; PARAMETERS];
@@ -167,7 +167,7 @@ fn evaluate(spectrum: &Spectrum, bins: &Bins, model: &NoiseModel) -> Evaluation 
     (log_likelihood, score, information)
 }
 
-/// Information⁻¹ score over the free parameters; what has no information is held.
+/// J⁻¹ s over the free parameters; parameters without information are fixed.
 fn solve(
     information: &[[f64; PARAMETERS]; PARAMETERS],
     right: &[f64; PARAMETERS],

@@ -1,17 +1,17 @@
-//! Residuals as they would be had the filter not corrected itself.
+//! Open-loop residuals: innovations with the feedback of the filter undone.
 
 use crate::series::Innovations;
 
-/// Measured specific force against a prediction into which no single sample was fed back, in
-/// declared standard deviations: the accelerometer noise, plus a random walk from the gyros'
-/// noise, plus whatever is smooth. `NaN` where a component is missing.
+/// Measured specific force less a prediction without feedback of single samples, in declared
+/// standard deviations: the accelerometer noise, plus a random walk from the gyro noise, plus a
+/// smooth part. `NaN` where a component is missing.
 ///
-/// An update moves the predicted output by (S − R) S⁻¹ e. Adding these corrections up again
-/// gives a residual in which the noise of a sample stands at that sample alone, where innovations
-/// carry it on with the opposite sign. Corrections are held while the platform turns: carried
-/// along with it they would sweep round, and those from the first rows, when the drift is not
-/// known, are large. What is left by holding them, and by what an update changes of the drift, is
-/// smooth once the filter has settled.
+/// An update changes the predicted output by (S − R) S⁻¹ e. The sum of the innovation and all
+/// previous corrections is a residual in which the noise of a sample appears at that sample alone;
+/// innovations have it in later rows too, with the opposite sign. Corrections are kept constant in
+/// platform axes while the platform rotates: rotated with it they would vary, and those of the first
+/// rows, with unknown drift, are large. The error of this, and the effect of updates on the drift,
+/// are smooth once the filter has settled.
 pub(crate) fn open_loop(innovations: &Innovations, accel_noise_g: &[f64; 3]) -> Vec<[f64; 3]> {
     let mut corrections_g = [0.0; 3];
     let rows = innovations.residual_g.iter();
@@ -30,7 +30,7 @@ pub(crate) fn open_loop(innovations: &Innovations, accel_noise_g: &[f64; 3]) -> 
         .collect()
 }
 
-/// Ranges of rows without a gap: intervals between rows are below 1.5 times their median.
+/// Ranges of rows without a gap, with all intervals below 1.5 times their median.
 pub(crate) fn runs(time_s: &[f64]) -> Vec<core::ops::Range<usize>> {
     let longest = 1.5 * median_interval_s(time_s);
     let mut runs = Vec::new();
@@ -44,13 +44,13 @@ pub(crate) fn runs(time_s: &[f64]) -> Vec<core::ops::Range<usize>> {
     runs
 }
 
-/// Median of the intervals between rows; infinite without any.
+/// Median interval between rows; infinite for less than two rows.
 pub(crate) fn median_interval_s(time_s: &[f64]) -> f64 {
     let mut intervals: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     median(&mut intervals).unwrap_or(f64::INFINITY)
 }
 
-/// Median of some values, which are reordered; the upper one of an even number.
+/// Median of values, which are reordered; the upper one of an even number.
 pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)

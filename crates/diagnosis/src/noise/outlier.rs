@@ -1,4 +1,4 @@
-//! Isolated samples far outside the noise.
+//! Detection of outliers: isolated samples far outside the noise.
 
 use core::ops::Range;
 
@@ -6,19 +6,19 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::open_loop::median;
 
-/// Rows on either side that a sample is compared with.
+/// Number of rows on either side of a sample in the comparison.
 const REACH: usize = 8;
-/// Values on each side for a comparison with that side alone.
+/// Number of values of a comparison with one side alone.
 const SIDE: usize = 8;
-/// Fewer on a side than this: a quadratic cannot be trusted at its end.
+/// Smallest number of values on a side for the quadratic fit.
 const LEAST_SIDE: usize = 3;
-/// A sample is isolated if it stands this many standard deviations from the line through either
-/// side alone. The first sample after a step or a kink does not: one in four hundred of them.
-const ISOLATED: f64 = 3.0;
-/// Beyond this many standard deviations a sample is rather an outlier than noise, once there are
-/// outliers: with half a percent of them at 8 sigma the probabilities meet at 4.7, with fewer or
-/// smaller ones elsewhere, and at 4.5 noise alone is taken for one once in 150 000 samples.
-const LIKELY: f64 = 4.5;
+/// Smallest distance of an isolated sample from the line through either side alone, in standard
+/// deviations. Of the first samples after a step or a kink one in four hundred exceeds it.
+const ISOLATED_SIGMAS: f64 = 3.0;
+/// Distance in standard deviations beyond which a sample is more likely an outlier than noise, given
+/// that there are outliers: with half a percent of them at 8 sigma the densities are equal at 4.7.
+/// Noise alone exceeds 4.5 once in 150 000 samples.
+const OUTLIER_SIGMAS: f64 = 4.5;
 /// Median absolute deviation of normal noise of unit variance.
 const NORMAL_MAD: f64 = 0.674_489_750_196_081_7;
 
@@ -29,9 +29,9 @@ pub struct Outlier {
     pub row: usize,
     /// Axis: 0, 1, 2 for x, y, z.
     pub axis: usize,
-    /// How far the sample is from its neighbours.
+    /// Distance of the sample from its neighbours \[g\].
     pub size_g: f64,
-    /// The same in standard deviations of the noise as it was found to be.
+    /// The same in standard deviations of the estimated noise.
     pub deviation: f64,
 }
 
@@ -42,30 +42,31 @@ impl Outlier {
     }
 }
 
-/// Outliers of an axis, its robust standard deviation and the number of samples judged.
+/// Outliers of an axis and the number of samples tested.
 pub(crate) struct Search {
     pub(crate) outliers: Vec<(usize, f64, f64)>,
     pub(crate) samples: usize,
 }
 
 impl Search {
-    /// Probability that a sample of mere noise is as far out as this: Student's, for the scale
-    /// comes from the samples themselves. Neighbouring residuals share samples, and count half.
+    /// Two-sided p-value of a deviation of one sample, by Student's distribution, since the scale is
+    /// estimated from the samples. Neighbouring residuals share samples and count half.
     pub(crate) fn single_p(&self, deviation: f64) -> f64 {
         let degrees = (0.5 * self.samples as f64).max(1.0);
         StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |student| 2.0 * student.sf(deviation.abs()))
     }
 }
 
-/// The first row of a run that is judged. With the first samples after a gap the filter makes up for
-/// it; until it has, they stand off their neighbours.
+/// First tested row of a run. After a gap the filter settles again, and the first samples deviate
+/// from their neighbours.
 fn begin(run: &Range<usize>, first: usize) -> usize {
     let after_gap = if run.start > 0 { REACH } else { 0 };
     (run.start + after_gap).max(first)
 }
 
 /// Searches a series (unit: declared standard deviation; `NaN` is missing), run by run, from row
-/// `first` on. An outlier is a row, its residual and that over its standard deviation.
+/// `first` on. An outlier is given by its row, its residual, and the residual over its standard
+/// deviation.
 #[allow(clippy::needless_range_loop)] // rows index several series
 pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Search {
     let mut masked = series.to_vec();
@@ -87,7 +88,7 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
     let scale = robust_scale(&mut sizes);
     let mut flagged: Vec<(usize, usize)> = Vec::new();
     if scale > 0.0 {
-        // The largest of a neighbourhood first: it spoils the fit of the others.
+        // The largest of a neighbourhood first: it distorts the fit of the others.
         loop {
             let mut found = Vec::new();
             for (index, run) in runs.iter().enumerate() {
@@ -102,7 +103,7 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
                     let own = suspect(row);
                     let neighbours =
                         row.saturating_sub(REACH).max(run.start)..(row + REACH + 1).min(run.end);
-                    let largest = own > LIKELY
+                    let largest = own > OUTLIER_SIGMAS
                         && neighbours
                             .clone()
                             .all(|other| other == row || suspect(other) <= own);
@@ -136,7 +137,7 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
                 .as_ref()
                 .map(|r| (*row, r.value, r.value / (r.spread * scale)))
         })
-        .filter(|(_, _, deviation)| deviation.abs() > LIKELY)
+        .filter(|(_, _, deviation)| deviation.abs() > OUTLIER_SIGMAS)
         .collect();
     Search { outliers, samples }
 }
@@ -144,7 +145,7 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
 #[derive(Clone, Debug)]
 struct Residual {
     value: f64,
-    /// Its standard deviation if that of a sample is one.
+    /// Its standard deviation for samples of unit variance.
     spread: f64,
 }
 
@@ -154,7 +155,7 @@ impl Residual {
     }
 }
 
-/// A value against the quadratic through its neighbours on both sides, itself left out.
+/// Residual of a value from the quadratic through its neighbours on both sides, without itself.
 fn against_neighbours(
     value: f64,
     masked: &[f64],
@@ -184,7 +185,7 @@ fn against_neighbours(
     if sides[0] < LEAST_SIDE || sides[1] < LEAST_SIDE {
         return at_an_end(value, masked, row, run);
     }
-    // Value of the quadratic in the middle: the first row of the inverse of the moments.
+    // Value of the quadratic at the sample: first row of the inverse of the moments.
     let [m0, m1, m2, m3, m4] = moments;
     let cofactors = [m2 * m4 - m3 * m3, m2 * m3 - m1 * m4, m1 * m3 - m2 * m2];
     let determinant = m0 * cofactors[0] + m1 * cofactors[1] + m2 * cofactors[2];
@@ -196,7 +197,7 @@ fn against_neighbours(
     })
 }
 
-/// At the end of a run there is one side only: its mean.
+/// Residual at the end of a run, from the mean of one side.
 fn at_an_end(value: f64, masked: &[f64], row: usize, run: &Range<usize>) -> Option<Residual> {
     let mut near: Vec<f64> = Vec::new();
     for one_side in [
@@ -215,10 +216,10 @@ fn at_an_end(value: f64, masked: &[f64], row: usize, run: &Range<usize>) -> Opti
     })
 }
 
-/// Standard deviation of absolute values that are normal but for a few: the median says which
-/// are, and their root mean square is less uncertain by half.
+/// Robust standard deviation of normal absolute values with a few outliers: root mean square of the
+/// values within four sigmas by the median. Half as uncertain as the median itself.
 fn robust_scale(sizes: &mut [f64]) -> f64 {
-    /// Variance of a standard normal variable that is known to lie within 4.
+    /// Variance of a standard normal variable truncated at 4.
     const WITHIN_FOUR: f64 = 0.998_929;
     let rough = median(sizes).unwrap_or(0.0) / NORMAL_MAD;
     let (count, sum) = sizes
@@ -237,14 +238,14 @@ fn robust_scale(sizes: &mut [f64]) -> f64 {
 fn is_isolated(value: f64, masked: &[f64], row: usize, run: &Range<usize>, scale: f64) -> bool {
     let far = |near: &[(f64, f64)]| {
         robust_line(near)
-            .is_none_or(|(line, spread)| (value - line).abs() > ISOLATED * spread * scale)
+            .is_none_or(|(line, spread)| (value - line).abs() > ISOLATED_SIGMAS * spread * scale)
     };
     let before = (run.start..row).rev();
     far(&side(masked, before, row)) && far(&side(masked, row + 1..run.end, row))
 }
 
-/// The line through the medians of Theil and Sen at zero, and the standard deviation there of a
-/// sample against it; two wild values of eight move it little. `None` if there are too few.
+/// Theil-Sen line at zero, and the standard deviation of the difference of a sample there; robust
+/// against two of eight values. `None` with too few values.
 fn robust_line(near: &[(f64, f64)]) -> Option<(f64, f64)> {
     if near.len() < LEAST_SIDE {
         return None;
@@ -267,7 +268,7 @@ fn robust_line(near: &[(f64, f64)]) -> Option<(f64, f64)> {
     Some((line, (1.0 + 1.0 / count + middle * middle / width).sqrt()))
 }
 
-/// The nearest values on one side, with their distance in rows.
+/// The nearest values on one side, with their distances in rows.
 fn side(masked: &[f64], rows: impl Iterator<Item = usize>, from: usize) -> Vec<(f64, f64)> {
     rows.take(2 * SIDE)
         .map(|row| (row as f64 - from as f64, masked[row]))

@@ -1,4 +1,4 @@
-//! The spectrum of the accelerometers' noise, gathered from blocks.
+//! Spectrum of the accelerometer noise, averaged over blocks.
 
 use super::block::Basis;
 use super::open_loop::median;
@@ -7,13 +7,13 @@ use super::open_loop::median;
 const MOST_ROWS: usize = 64;
 /// Rows of the shortest block.
 const LEAST_ROWS: usize = 16;
-/// A block is no longer than this: what is not smooth in an hour is noise.
+/// Longest block: variations within about an hour are noise.
 const LONGEST_BLOCK_S: f64 = 4000.0;
-/// The filter finds the drift during these rows, and its prediction is not smooth.
+/// Rows in which the filter settles and its prediction is not smooth.
 pub(crate) const SETTLING_ROWS: usize = 32;
-/// Blocks with more power than the median one by this many standard deviations are left out:
-/// a knock, a gap in the power. Of noise alone less than one in a million is.
-const WILD: f64 = 7.0;
+/// Excess power of a block over the median, in standard deviations, beyond which it is left out (an
+/// attitude jump, a power failure). Of noise alone less than one block in a million exceeds it.
+const EXCESS_POWER_SIGMAS: f64 = 7.0;
 
 /// Sums over blocks, axis by axis.
 pub(crate) struct Spectrum {
@@ -28,11 +28,11 @@ pub(crate) struct AxisSpectrum {
     pub(crate) blocks: usize,
     /// Squared coefficient of each cosine, summed.
     pub(crate) power: Vec<f64>,
-    /// Squares of the part of values present, summed: how much of a spectrum is seen.
+    /// Sum of the squared fractions of present values: observed part of the spectrum.
     pub(crate) seen: f64,
-    /// How much of the variance is scattered over the whole spectrum by values that are missing.
+    /// Part of the variance that missing values spread over the whole spectrum.
     pub(crate) scattered: f64,
-    /// Variances of the random walk's steps, times the part seen.
+    /// Sum of the variances of the steps of the random walk, times the observed part.
     pub(crate) walk: f64,
 }
 
@@ -97,7 +97,7 @@ impl AxisSpectrum {
     fn gather(mut blocks: Vec<Block>, cosines: usize) -> Self {
         let mut totals: Vec<f64> = blocks.iter().map(Block::total).collect();
         let usual = median(&mut totals).unwrap_or(0.0);
-        let most = usual * (1.0 + WILD * (2.0 / cosines as f64).sqrt());
+        let most = usual * (1.0 + EXCESS_POWER_SIGMAS * (2.0 / cosines as f64).sqrt());
         blocks.retain(|block| block.total() <= most);
         let mut sums = Self {
             power: vec![0.0; cosines],
