@@ -10,7 +10,7 @@ use gyrocal_scalar::{RatesJacobian, Recentre};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
 use crate::error::EstimationError;
-use crate::filter::Recentring;
+use crate::recentring::Recentring;
 use crate::transition::Integration;
 
 /// Dense extended Kalman filter with `N` states, `M` of them moving, and `Y` outputs.

@@ -5,11 +5,9 @@ use gyrocal_scalar::{Real, Recentre};
 use crate::covariance::Covariance;
 use crate::error::EstimationError;
 use crate::form::{Form, Numbers, Transition};
-use crate::innovation::Innovation;
-use crate::observe::{Sensor, check_noise};
+use crate::recentring::Recentring;
 use crate::storage::{Storage, View};
-use crate::transition::{Integration, Integrator};
-use crate::zeros::Known;
+use crate::transition::Integration;
 
 /// The part of the buffers that belongs to the covariance.
 macro_rules! numbers {
@@ -24,28 +22,8 @@ macro_rules! numbers {
     };
 }
 
-/// When the chart of the moving states is moved to the estimate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Recentring<T> {
-    /// At every step, and corrections are applied on the manifold: the consistent choice.
-    EveryStep,
-    /// When a moving state leaves ±limit; in between, corrections are added to coordinates.
-    Beyond(T),
-    /// Never: coordinates of the first chart all along.
-    Never,
-}
-
-impl<T: Real> Recentring<T> {
-    #[inline(always)]
-    pub(crate) fn wanted<const M: usize>(self, moving: &[T; M]) -> bool {
-        match self {
-            Self::EveryStep => true,
-            Self::Beyond(limit) => moving.iter().any(|state| state.abs() > limit),
-            Self::Never => false,
-        }
-    }
-}
+mod predict;
+mod update;
 
 /// Continuous-discrete extended Kalman filter on a generated model.
 ///
@@ -180,180 +158,7 @@ where
         F::predict::<M, false>(&mut numbers!(buffers), &transition, &())
     }
 
-    /// Predicts over `dt` seconds with noise of the given spectral densities (unit of the
-    /// noise input squared, times seconds).
-    ///
-    /// The noise is held over the step: its variance is density / dt.
-    ///
-    /// # Errors
-    /// [`EstimationError::InvalidArgument`] if `dt` is not positive;
-    /// [`EstimationError::NotFinite`] or [`EstimationError::NotPositiveDefinite`] if the
-    /// prediction left the numbers.
-    #[inline]
-    pub fn predict(&mut self, dt: T, noise_density: &[T; M]) -> Result<(), EstimationError> {
-        if !(dt.is_positive() && dt.is_finite()) {
-            return Err(EstimationError::InvalidArgument {
-                expected: "a positive step",
-            });
-        }
-        let (n, at_origin) = (self.storage.states(), self.at_origin());
-        let buffers = self.storage.buffers();
-        let (moving_slice, parameters) = buffers.state.split_at_mut(M);
-        let mut moving = to_array(moving_slice);
-        let derivatives = Integrator {
-            model: &self.model,
-            inputs: &self.inputs,
-            parameters,
-            columns: buffers.transition,
-            stages: buffers.stages,
-            at_origin,
-        }
-        .integrate(self.integration, dt, &mut moving);
-        if !moving.iter().all(|state| state.is_finite()) {
-            return Err(EstimationError::NotFinite {
-                quantity: "a predicted moving state",
-            });
-        }
-        let mut map = None;
-        if self.recentring.wanted(&moving) {
-            map = self.model.recentre(&mut moving, &mut self.inputs);
-        }
-        let mut noise = derivatives.noise;
-        if let Some(same) = self.model.noise_parameters() {
-            for (i, row) in noise.iter_mut().enumerate() {
-                for (noise, parameter) in row.iter_mut().zip(same) {
-                    *noise = buffers.transition[i * (n - M) + parameter];
-                }
-            }
-        }
-        moving_slice.copy_from_slice(&moving);
-        self.moving_transition = derivatives.moving;
-        self.map = map;
-        let transition = Transition {
-            moving: derivatives.moving,
-            parameters: &buffers.transition[..M * (n - M)],
-            noise,
-            variance: noise_density.map(|density| density / dt),
-            map,
-        };
-        let numbers = &mut numbers!(buffers);
-        if F::USES_ZEROS && at_origin && self.integration == Integration::EULER {
-            F::predict::<M, true>(
-                numbers,
-                &transition,
-                &Known::<T, D, M, Y, true>::of(&self.model),
-            )
-        } else {
-            F::predict::<M, false>(
-                numbers,
-                &transition,
-                &Known::<T, D, M, Y, false>::of(&self.model),
-            )
-        }
-    }
-
-    /// Updates with a measurement of the outputs, NaN where a component is missing.
-    ///
-    /// # Errors
-    /// [`EstimationError::InvalidNoise`]; [`EstimationError::LostPrecision`];
-    /// [`EstimationError::NotFinite`] if the innovation is not finite;
-    /// [`EstimationError::NotPositiveDefinite`] if a variance is not positive afterwards.
-    #[inline]
-    pub fn update(
-        &mut self,
-        measured: &[T; Y],
-        noise_variance: &[T; Y],
-    ) -> Result<Innovation<T, Y>, EstimationError> {
-        if self.at_origin() {
-            self.update_with::<true>(measured, noise_variance)
-        } else {
-            self.update_elsewhere(measured, noise_variance)
-        }
-    }
-
-    /// A function of its own: the step from the origin is then not inlined together with it.
-    #[inline(never)]
-    fn update_elsewhere(
-        &mut self,
-        measured: &[T; Y],
-        noise_variance: &[T; Y],
-    ) -> Result<Innovation<T, Y>, EstimationError> {
-        self.update_with::<false>(measured, noise_variance)
-    }
-
-    #[inline(always)]
-    fn update_with<const AT_ORIGIN: bool>(
-        &mut self,
-        measured: &[T; Y],
-        noise_variance: &[T; Y],
-    ) -> Result<Innovation<T, Y>, EstimationError> {
-        check_noise(noise_variance)?;
-        let buffers = self.storage.buffers();
-        let (moving_slice, parameters) = buffers.state.split_at_mut(M);
-        let mut moving = to_array(moving_slice);
-        let sensor = Sensor {
-            model: &self.model,
-            inputs: &self.inputs,
-            at_origin: AT_ORIGIN,
-        };
-        let observation = sensor.observe(
-            &moving,
-            parameters,
-            buffers.output,
-            measured,
-            noise_variance,
-        );
-        let (model, inputs, recentring) = (&self.model, &mut self.inputs, self.recentring);
-        let innovation = F::update(
-            &mut numbers!(buffers),
-            parameters,
-            &observation,
-            &Known::<T, D, M, Y, AT_ORIGIN>::of(&self.model),
-            |correction| match recentring {
-                Recentring::EveryStep => model.correct(&mut moving, inputs, correction),
-                _ => moving = add(&moving, correction),
-            },
-        )?;
-        moving_slice.copy_from_slice(&moving);
-        Ok(innovation)
-    }
-
-    /// As [`Self::update`], but a measurement whose NIS exceeds `largest_nis` is not used.
-    /// Returns the innovation and whether the measurement was used. A NaN limit uses nothing.
-    ///
-    /// # Errors
-    /// As [`Self::update`].
-    pub fn update_gated(
-        &mut self,
-        measured: &[T; Y],
-        noise_variance: &[T; Y],
-        largest_nis: T,
-    ) -> Result<(Innovation<T, Y>, bool), EstimationError> {
-        check_noise(noise_variance)?;
-        let at_origin = self.at_origin();
-        let buffers = self.storage.buffers();
-        let (moving, parameters) = buffers.state.split_at(M);
-        let sensor = Sensor {
-            model: &self.model,
-            inputs: &self.inputs,
-            at_origin,
-        };
-        let observation = sensor.observe(
-            &to_array(moving),
-            parameters,
-            buffers.output,
-            measured,
-            noise_variance,
-        );
-        let innovation = F::innovation(&mut numbers!(buffers), &observation)?;
-        if innovation.nis > largest_nis || largest_nis.is_nan() {
-            return Ok((innovation, false));
-        }
-        self.update(measured, noise_variance)
-            .map(|innovation| (innovation, true))
-    }
-
-    /// Whether the moving states are zero between calls.
+    /// True if the moving states are zero between calls.
     #[inline(always)]
     fn at_origin(&self) -> bool {
         self.recentring == Recentring::EveryStep && self.model.has_chart()
@@ -420,13 +225,4 @@ fn to_array<T: Copy + Default, const M: usize>(slice: &[T]) -> [T; M] {
     let mut array = [T::default(); M];
     array.copy_from_slice(slice);
     array
-}
-
-#[inline(always)]
-fn add<T: Real, const M: usize>(a: &[T; M], b: &[T; M]) -> [T; M] {
-    let mut sum = *a;
-    for (sum, b) in sum.iter_mut().zip(b) {
-        *sum = *sum + *b;
-    }
-    sum
 }

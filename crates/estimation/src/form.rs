@@ -11,7 +11,7 @@ use crate::innovation::Innovation;
 /// Both know that Φ is the identity on the parameters, and that H is zero but for the moving
 /// states and the first q parameters.
 pub trait Form<T: Real> {
-    /// Whether a prediction gains from knowing which elements of Φ are zero.
+    /// True if a prediction is faster when zero elements of Φ are known.
     const USES_ZEROS: bool;
 
     /// Independent errors of the given variances.
@@ -22,8 +22,8 @@ pub trait Form<T: Real> {
 
     /// P ← W (Φ P Φᵀ + Γ diag(variance) Γᵀ) Wᵀ, W being the map on the moving states.
     ///
-    /// `zeros` says which products can be left out; with `SPARSE` there are enough of them among
-    /// the parameter columns of Φ to look at each element.
+    /// `zeros` declares which products can be left out; with `SPARSE` there are enough of them among
+    /// the parameter columns of Φ to test each element.
     ///
     /// # Errors
     /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::NotFinite`].
@@ -58,39 +58,39 @@ pub trait Form<T: Real> {
     ) -> Result<Innovation<T, Y>, EstimationError>;
 }
 
-/// Which elements of a linearised step are those of a unit matrix whatever the state is: zero, and
-/// one on the diagonal. What is said of an element must be a constant, for the compiler to leave
-/// products out; by default nothing is known.
+/// Elements of a linearised step that equal those of a unit matrix for every state: zero, and one
+/// on the diagonal. The answers must be constants, so that the compiler leaves products out; by
+/// default nothing is known.
 pub trait Zeros {
-    /// Whether element (i, j) of the moving columns of Φ is any other number.
+    /// False if element (i, j) of the moving columns of Φ is that of a unit matrix.
     #[inline(always)]
     fn moves(&self, i: usize, j: usize) -> bool {
         let _ = (i, j);
         true
     }
 
-    /// Whether element (i, j) of the parameter columns of Φ is not zero.
+    /// False if element (i, j) of the parameter columns of Φ is zero.
     #[inline(always)]
     fn enters(&self, i: usize, j: usize) -> bool {
         let _ = (i, j);
         true
     }
 
-    /// Whether element (i, k) of Γ is not zero.
+    /// False if element (i, k) of Γ is zero.
     #[inline(always)]
     fn drives(&self, i: usize, k: usize) -> bool {
         let _ = (i, k);
         true
     }
 
-    /// Whether element (k, j) of the moving columns of H is not zero.
+    /// False if element (k, j) of the moving columns of H is zero.
     #[inline(always)]
     fn shows(&self, k: usize, j: usize) -> bool {
         let _ = (k, j);
         true
     }
 
-    /// Whether element (i, j) of W is any other number.
+    /// False if element (i, j) of W is that of a unit matrix.
     #[inline(always)]
     fn maps(&self, i: usize, j: usize) -> bool {
         let _ = (i, j);
@@ -127,7 +127,7 @@ pub struct Transition<'a, T, const M: usize> {
     pub noise: [[T; M]; M],
     /// Variance of each noise input.
     pub variance: [T; M],
-    /// W: what moving the chart after the step does to errors of the moving states.
+    /// W: map of the moving states' errors to the chart after the step.
     pub map: Option<[[T; M]; M]>,
 }
 
@@ -143,6 +143,6 @@ pub struct Observation<'a, T, const M: usize, const Y: usize> {
     pub variance: [T; Y],
     /// Measured minus predicted output.
     pub residual: [T; Y],
-    /// Which outputs were observed.
+    /// True for each output that was observed.
     pub observed: [bool; Y],
 }

@@ -57,20 +57,22 @@ mod factor;
 mod filter;
 pub mod form;
 mod innovation;
-mod lanes4;
 mod manifold;
 mod observe;
 mod projection;
+mod recentring;
 mod storage;
 mod transition;
+mod unrolled;
 mod zeros;
 
 pub use covariance::Covariance;
 pub use error::EstimationError;
 pub use factor::Factors;
-pub use filter::{Filter, Recentring};
+pub use filter::Filter;
 pub use innovation::Innovation;
 pub use manifold::{Corrected, Manifold};
+pub use recentring::Recentring;
 #[cfg(feature = "alloc")]
 pub use storage::VecStorage;
 pub use storage::{ArrayStorage, Buffers, Storage, View};

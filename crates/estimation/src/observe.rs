@@ -5,7 +5,7 @@ use gyrocal_scalar::{Real, Recentre};
 use crate::error::EstimationError;
 use crate::form::Observation;
 
-/// What turns a measurement into an observation.
+/// Model and inputs that turn a measurement into an observation.
 pub(crate) struct Sensor<'a, D, I> {
     pub(crate) model: &'a D,
     pub(crate) inputs: &'a I,

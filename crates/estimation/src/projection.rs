@@ -5,7 +5,7 @@ use gyrocal_scalar::Real;
 use crate::error::EstimationError;
 use crate::form::{Observation, Zeros};
 use crate::innovation::Innovation;
-use crate::lanes4::{load, mul_add, store};
+use crate::unrolled::{load, mul_add, store};
 
 /// Largest ratio of H P Hᵀ to R, output by output, up to which the moving block is updated by
 /// subtraction: that costs a variance at most two bits more than the binary logarithm of this.
@@ -272,12 +272,12 @@ fn bad_pivot<T: Real, const Y: usize>(pivots: &[T; Y]) -> EstimationError {
 }
 
 #[inline(always)]
-pub(crate) fn is_variance<T: Real>(value: T) -> bool {
+fn is_variance<T: Real>(value: T) -> bool {
     value.is_positive() && value.is_finite()
 }
 
 #[cold]
-pub(crate) fn not_positive<T: Real>(value: T, state: usize) -> EstimationError {
+fn not_positive<T: Real>(value: T, state: usize) -> EstimationError {
     if value.is_finite() {
         EstimationError::NotPositiveDefinite { state }
     } else {
@@ -285,4 +285,28 @@ pub(crate) fn not_positive<T: Real>(value: T, state: usize) -> EstimationError {
             quantity: "the covariance",
         }
     }
+}
+
+/// Checks that the first `count` variances of P are positive and finite.
+#[inline(always)]
+pub(crate) fn check_diagonal<T: Real>(
+    p: &[T],
+    n: usize,
+    count: usize,
+) -> Result<(), EstimationError> {
+    let mut bad = 0_u32;
+    // Several sums, as one would be a chain.
+    let mut sums = [T::from_f64(0.0); 4];
+    for i in 0..count {
+        let variance = p[i * n + i];
+        bad |= u32::from(!variance.is_positive());
+        sums[i % 4] = sums[i % 4] + variance;
+    }
+    let sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    // A sum of positive numbers is finite only if all of them are.
+    if bad == 0 && sum.is_finite() {
+        return Ok(());
+    }
+    let state = (0..count).find(|i| !is_variance(p[i * n + i])).unwrap_or(0);
+    Err(not_positive(p[state * n + state], state))
 }

@@ -4,7 +4,7 @@
 
 use gyrocal_scalar::{Model, RatesJacobian, Scalar};
 
-use crate::lanes4::{load, load_rows, mul_add, small_product, store};
+use crate::unrolled::{load, load_rows, mul_add, small_product, store};
 
 /// How the rates are integrated over a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl Integration {
 /// Derivatives of the moving states at the end of a step, except the parameter columns of Φ,
 /// which are in [`crate::Buffers::transition`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Transition<T, const M: usize> {
+pub(crate) struct Derivatives<T, const M: usize> {
     /// Moving columns of Φ.
     pub(crate) moving: [[T; M]; M],
     /// Γ: effect of noise held over the step. Zero for a model whose noise enters as parameters
@@ -46,7 +46,7 @@ pub(crate) struct Transition<T, const M: usize> {
     pub(crate) noise: [[T; M]; M],
 }
 
-/// What integration starts from and works on.
+/// Model, inputs and workspace of an integration.
 pub(crate) struct Integrator<'a, T, D, I, const M: usize, const Y: usize> {
     pub(crate) model: &'a D,
     pub(crate) inputs: &'a I,
@@ -55,7 +55,7 @@ pub(crate) struct Integrator<'a, T, D, I, const M: usize, const Y: usize> {
     pub(crate) columns: &'a mut [T],
     /// Workspace of 4 × M × p numbers whose structural zeros are zero.
     pub(crate) stages: &'a mut [T],
-    /// Whether the moving states start at zero, where models have a shorter Jacobian.
+    /// True if the moving states start at zero, where models have a shorter Jacobian.
     pub(crate) at_origin: bool,
 }
 
@@ -71,7 +71,7 @@ where
         integration: Integration,
         dt: T,
         moving: &mut [T; M],
-    ) -> Transition<T, M> {
+    ) -> Derivatives<T, M> {
         let count = integration.substeps();
         let h = if count == 1 {
             dt
@@ -98,9 +98,9 @@ where
         nodes: &[T; ORDER],
         weights: &[T; ORDER],
         moving: &mut [T; M],
-    ) -> Transition<T, M> {
+    ) -> Derivatives<T, M> {
         let zero = [[T::from_f64(0.0); M]; M];
-        let mut transition = Transition {
+        let mut transition = Derivatives {
             moving: zero,
             noise: zero,
         };
@@ -121,8 +121,8 @@ where
         nodes: &[T; ORDER],
         weights: &[T; ORDER],
         mut moving: [T; M],
-        mut transition: Transition<T, M>,
-    ) -> ([T; M], Transition<T, M>) {
+        mut transition: Derivatives<T, M>,
+    ) -> ([T; M], Derivatives<T, M>) {
         for _ in 0..count {
             self.substep(false, nodes, weights, &mut moving, &mut transition);
         }
@@ -138,7 +138,7 @@ where
         nodes: &[T; ORDER],
         weights: &[T; ORDER],
         moving: &mut [T; M],
-        transition: &mut Transition<T, M>,
+        transition: &mut Derivatives<T, M>,
     ) {
         let p = self.parameters.len();
         let zero = T::from_f64(0.0);

@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 use gyrocal_scalar::{Real, Recentre};
 
 use crate::form::Zeros;
-use crate::lanes4::mul_add;
+use crate::unrolled::mul_add;
 
 /// The zeros that a model knows of: those of its map to another chart, and, with `AT_ORIGIN`,
 /// those of what consists of the Jacobians at the origin of the chart alone: of a transition of

@@ -13,18 +13,20 @@ mod chain;
 mod common;
 #[path = "batch/density.rs"]
 mod density;
+#[path = "batch/invalid_arguments.rs"]
+mod invalid_arguments;
 #[path = "batch/least_squares.rs"]
 mod least_squares;
+#[path = "batch/noise.rs"]
+mod noise;
 
 use chain::{Chain, Disturbances, VARIANCE, solve};
-use common::Pendulum;
 use density::Density;
-use gyrocal_estimation::batch::{Columns, Linearisation, NoColumns};
+use gyrocal_estimation::batch::{Linearisation, NoColumns};
 use gyrocal_estimation::{EstimationError, Integration};
+use invalid_arguments::Pass;
 use least_squares::LeastSquares;
-use nalgebra::{DMatrix, DVector};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha12Rng;
+use nalgebra::DMatrix;
 
 /// Rounding, and a derivative by differences of fourth order, over some dozen rows; 1e-9 was seen.
 const SAME_SIGMAS: f64 = 1e-7;
@@ -128,101 +130,6 @@ fn the_cost_of_a_trajectory_counts_prior_noise_and_outputs() {
 }
 
 #[test]
-fn the_score_of_the_noise_is_the_gradient_of_its_likelihood() {
-    let chain = Chain::measured(9);
-    let trajectory = chain.trajectory();
-    let parameters = chain.parameters();
-    let score = |factors: &[f64; 4]| {
-        chain
-            .linearised(&trajectory, &parameters, &[], &NoColumns)
-            .noise_score(factors)
-            .unwrap()
-    };
-    let at = [1.3, 0.6, 2.0, 1.0];
-    let found = score(&at);
-    // The second noise input drives nothing: nothing can be said of it.
-    assert_eq!(found.gradient[3], 0.0);
-    for k in 0..3 {
-        let likelihood = |logarithm: f64| {
-            let mut factors = at;
-            factors[k] *= logarithm.exp();
-            score(&factors).log_likelihood
-        };
-        let step = 1e-3;
-        let by_difference = (8.0 * (likelihood(step) - likelihood(-step)) - likelihood(2.0 * step)
-            + likelihood(-2.0 * step))
-            / (12.0 * step);
-        // Rounding of a likelihood of some hundreds over the step: 1e-10.
-        assert!(
-            (found.gradient[k] - by_difference).abs() < 1e-7 * (1.0 + by_difference.abs()),
-            "{k}: {} {by_difference}",
-            found.gradient[k]
-        );
-    }
-}
-
-#[test]
-fn the_information_on_the_noise_is_that_of_the_joint_gaussian() {
-    let mut chain = Chain::measured(2);
-    let trajectory = chain.trajectory();
-    let parameters = chain.parameters();
-    let problem = Density { chain: &chain };
-    let (_, covariance) = problem.outputs_given_parameters();
-    let shares = problem.shares_of_the_noise();
-    let cholesky = covariance.clone().cholesky().unwrap();
-    // I = tr(S⁻¹ S_k S⁻¹ S_l) / 2 of normal data with covariance S.
-    let whitened: Vec<DMatrix<f64>> = shares.iter().map(|share| cholesky.solve(share)).collect();
-    let expected = |k: usize, l: usize| 0.5 * (&whitened[k] * &whitened[l]).trace();
-    let draws = 400;
-    let mut rng = ChaCha12Rng::seed_from_u64(1);
-    let mut sums = [[[0.0; 2]; 3]; 3];
-    let mut gradients = [[0.0; 2]; 3];
-    for _ in 0..draws {
-        let normals = DVector::from_fn(covariance.nrows(), |_, _| normal(&mut rng));
-        chain.set_residuals(&trajectory, &(cholesky.l() * normals));
-        let score = chain
-            .linearised(&trajectory, &parameters, &[], &NoColumns)
-            .noise_score(&[1.0; 4])
-            .unwrap();
-        for k in 0..3 {
-            add(&mut gradients[k], score.gradient[k]);
-            for l in 0..3 {
-                let found = score.information[k * 4 + l];
-                assert_eq!(found, score.information[l * 4 + k]);
-                add(&mut sums[k][l], found);
-            }
-        }
-    }
-    for k in 0..3 {
-        // The mean score vanishes, its variance is the information; 5 standard errors.
-        let allowed = 5.0 * (expected(k, k) / f64::from(draws)).sqrt();
-        let mean = gradients[k][0] / f64::from(draws);
-        assert!(mean.abs() < allowed, "{k}: {mean} beyond {allowed}");
-        for l in 0..3 {
-            let mean = sums[k][l][0] / f64::from(draws);
-            let variance = sums[k][l][1] / f64::from(draws) - mean * mean;
-            // 5 standard errors, and rounding where the information does not depend on the data.
-            let allowed = 5.0 * (variance.max(0.0) / f64::from(draws)).sqrt() + 1e-7;
-            let off = mean - expected(k, l);
-            assert!(off.abs() < allowed, "{k}, {l}: {off} beyond {allowed}");
-            // The test tells a missing term: the expectation is known to a tenth.
-            assert!(k != l || allowed < 0.1 * expected(k, k));
-        }
-    }
-}
-
-fn add(sums: &mut [f64; 2], value: f64) {
-    sums[0] += value;
-    sums[1] += value * value;
-}
-
-/// Box and Muller.
-fn normal(rng: &mut ChaCha12Rng) -> f64 {
-    let [a, b]: [f64; 2] = [rng.random(), rng.random()];
-    (-2.0 * (1.0 - a).ln()).sqrt() * (core::f64::consts::TAU * b).cos()
-}
-
-#[test]
 fn results_are_symmetric_to_the_last_bit() {
     let chain = Chain::measured(1);
     let trajectory = chain.trajectory();
@@ -316,122 +223,6 @@ fn passes_on_a_tape_are_the_same() {
             Err(EstimationError::InvalidArgument { .. })
         ));
     }
-}
-
-type Pass<'a, C = NoColumns> = Linearisation<'a, Pendulum, Chain, C, 2, 2>;
-
-#[track_caller]
-fn assert_refused<C: Columns<2, 2>>(pass: &Pass<'_, C>, expected: &str) {
-    for error in [
-        pass.reduce(|_| ()).err(),
-        pass.smooth(&vec![0.0; pass.active.len()]).err(),
-        pass.noise_score(&[1.0; 4]).err(),
-    ] {
-        assert!(
-            error.is_some_and(|error| error.to_string().contains(expected)),
-            "{error:?}"
-        );
-    }
-}
-
-#[test]
-fn arguments_without_meaning_are_errors() {
-    let mut chain = Chain::measured(0);
-    let trajectory = chain.trajectory();
-    let parameters = chain.parameters();
-    let all = [0, 1, 2, 3];
-    let good = chain.linearised(&trajectory, &parameters, &all, &NoColumns);
-    good.reduce(|_| ()).unwrap();
-    let shape = "one point a row";
-    assert_refused(
-        &Pass {
-            points: &trajectory[1..],
-            ..good
-        },
-        shape,
-    );
-    assert_refused(
-        &Pass {
-            points: &[],
-            ..good
-        },
-        shape,
-    );
-    assert_refused(
-        &Pass {
-            parameters: &parameters[1..],
-            ..good
-        },
-        shape,
-    );
-    assert_refused(
-        &Pass {
-            active: &[4],
-            ..good
-        },
-        shape,
-    );
-    assert!(good.smooth(&[0.0; 3]).is_err(), "a change for each column");
-    assert!(
-        good.noise_score(&[1.0; 3]).is_err(),
-        "a factor for each noise"
-    );
-
-    let driven = "noise that drives every moving state";
-    assert_refused(
-        &Pass {
-            noise_density: [0.0; 2],
-            ..good
-        },
-        driven,
-    );
-    // In one part, noise of the torque moves angle and rate along one line only.
-    assert_refused(
-        &Pass {
-            longest_step_s: f64::INFINITY,
-            ..good
-        },
-        driven,
-    );
-    let flat = [[1.0, 1.0], [1.0, 1.0]];
-    assert_refused(
-        &Pass {
-            prior_covariance: flat,
-            ..good
-        },
-        driven,
-    );
-    assert_refused(
-        &Pass {
-            longest_step_s: 1e-9,
-            ..good
-        },
-        "at most a million",
-    );
-
-    let mut lost = trajectory.clone();
-    lost[6] = [f64::NAN; 2];
-    let pass = Pass {
-        points: &lost,
-        ..good
-    };
-    assert!(matches!(
-        pass.reduce(|_| ()),
-        Err(EstimationError::NotFinite { .. } | EstimationError::InvalidArgument { .. })
-    ));
-    for time_s in [f64::NAN, chain.times_s[4], chain.times_s[3]] {
-        let kept = chain.times_s[5];
-        chain.times_s[5] = time_s;
-        let pass = chain.linearised(&trajectory, &parameters, &all, &NoColumns);
-        assert_refused(&pass, "times that rise");
-        chain.times_s[5] = kept;
-    }
-    chain.variance = [1e-4, 0.0];
-    let pass = chain.linearised(&trajectory, &parameters, &all, &NoColumns);
-    assert_eq!(
-        pass.reduce(|_| ()).err(),
-        Some(EstimationError::InvalidNoise { output: 1 })
-    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What a sudden change of the moving states would explain, at every step at once.
+//! Scores of a jump of the moving states, for every step in one backward pass.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,16 +12,16 @@ use crate::error::EstimationError;
 /// residuals: de Jong, Penzer, J. Amer. Statist. Assoc. 93, 1998).
 #[derive(Clone, Debug, PartialEq)]
 pub struct JumpScore<const M: usize> {
-    /// Sum of products of the innovations with the derivatives of later innovations, sign of a
-    /// score; then the same of each column, whose product with the jump's own derivatives it is.
+    /// Score of the jump: sum of products of the innovations with their derivatives by the jump. Then,
+    /// for each column, the sum of products of its innovations with those derivatives.
     pub columns: Vec<[f64; M]>,
     /// Information on the jump if all columns were known.
     pub information: [[f64; M]; M],
-    /// Of each output of the row, score of a change of that reading; zero where there is none.
+    /// Score of a change of each reading of the row; zero for a missing one.
     pub readings: Vec<f64>,
 }
 
-/// What the backward pass needs of one output.
+/// Quantities of one output for the backward pass.
 struct Seen<const M: usize> {
     /// Jacobian over the standard deviation of the innovation.
     jacobian: [f64; M],
@@ -39,8 +39,8 @@ where
     S: Series<D::Inputs, Y>,
     C: Columns<M, Y>,
 {
-    /// Passes forward and backward over the record; `watch` gets each row but the first, last
-    /// row first, with what a jump in the step before it would explain.
+    /// Passes forward and backward over the record. `watch` gets each row but the first, in falling
+    /// order, with the score of a jump in the step before it.
     ///
     /// # Errors
     /// As [`Self::reduce`].

@@ -15,7 +15,7 @@ use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 use crate::transition::Integration;
 
-/// Everything that a pass over a record is made from.
+/// Inputs of a pass over a record, linearised about a trajectory.
 pub struct Linearisation<'a, D, S, C, const M: usize, const Y: usize>
 where
     D: Manifold<M, Y>,
@@ -44,11 +44,11 @@ where
     pub active: &'a [usize],
     /// Further columns, after those of the parameters.
     pub further: &'a C,
-    /// What an earlier pass about the same trajectory, with the same parameters active, kept.
+    /// Steps kept by an earlier pass about the same trajectory with the same active parameters.
     pub tape: Option<&'a Tape<M>>,
 }
 
-/// What the first pass leaves of a record.
+/// Result of the first pass over a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduced<const M: usize> {
     /// [`Gram`] matrix of residual and columns. The columns are derivatives of the innovations:
@@ -60,9 +60,8 @@ pub struct Reduced<const M: usize> {
     pub rows: usize,
     /// Sum of the natural logarithms of the innovations' variances.
     pub log_variance: f64,
-    /// Twice the cost of the trajectory itself: squares of output residuals, of what the noise
-    /// must have done between points, and of the first point's distance from its prior, each
-    /// over its covariance.
+    /// Twice the cost of the trajectory itself: squares of output residuals, of the noise between
+    /// points, and of the first point's distance from its prior, each over its covariance.
     pub trajectory_cost: f64,
     /// Deviation of the last point, then its derivatives by columns: M rows of 1 + columns.
     pub last: Vec<f64>,
@@ -83,7 +82,7 @@ pub struct Whitened<'a> {
     pub columns: &'a [f64],
 }
 
-/// What the second pass gives.
+/// Result of the second pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothed<const M: usize> {
     /// Correction of every point of the trajectory.
@@ -121,7 +120,7 @@ where
         self.reduce_onto(None, watch)
     }
 
-    /// As [`Self::reduce`], and keeps what the model gave for later passes.
+    /// As [`Self::reduce`], and keeps the linearised steps for later passes.
     ///
     /// # Errors
     /// As [`Self::reduce`].
@@ -175,8 +174,8 @@ where
         Ok(reduced)
     }
 
-    /// A pass that tells of each output its Jacobian and its covariance with the moving states,
-    /// and of each step its transition.
+    /// A pass that hands each output's Jacobian and covariance with the moving states to `output`,
+    /// and each step's transition to `step`.
     pub(crate) fn forward(
         &self,
         mut output: impl FnMut(&Whitened<'_>, &[f64; M], [f64; M]),
@@ -201,8 +200,8 @@ where
         Ok(())
     }
 
-    /// Where the model goes by itself from the first point: the trajectory without measurements
-    /// and without noise, further columns with their amplitudes included.
+    /// Open-loop simulation: the trajectory of the model from the first point, without measurements
+    /// and without noise; further columns enter with their amplitudes.
     ///
     /// # Errors
     /// As [`Self::reduce`].
@@ -249,9 +248,9 @@ where
         Ok(points)
     }
 
-    /// What the record says of its noise: gradient and information of the likelihood, the
-    /// trajectory and all columns held where they are. `factors` multiply the declared
-    /// variances: first those of the outputs, then those of the noise inputs.
+    /// Gradient and information of the likelihood with respect to the noise, the trajectory and all
+    /// columns held fixed. `factors` multiply the declared variances: first those of the outputs,
+    /// then those of the noise inputs.
     ///
     /// # Errors
     /// As [`Self::reduce`], and [`EstimationError::InvalidArgument`] if there is not one factor

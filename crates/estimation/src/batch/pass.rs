@@ -19,7 +19,7 @@ fn squared<const M: usize>(matrix: &[[f64; M]; M], vector: &[f64; M]) -> Option<
     Some(forward(&lower, vector).iter().map(|x| x * x).sum())
 }
 
-/// How an output was taken: what the filter does not keep.
+/// Quantities of an update that the filter does not keep.
 pub(crate) struct Taken<const M: usize> {
     /// Square of the residual at the linearisation point over the output's noise variance.
     pub(super) cost: f64,
@@ -30,12 +30,12 @@ pub(crate) struct Taken<const M: usize> {
     pub(crate) covariance: [[f64; M]; M],
 }
 
-/// A step that was made.
+/// A step to the next row.
 pub(super) struct Advanced<const M: usize> {
     pub(super) step: Step<M>,
-    /// From where the model goes to the next point.
+    /// Difference from the predicted point to the next one.
     pub(super) jump: [f64; M],
-    /// What the noise's part adds to the cost of the trajectory.
+    /// Part of the trajectory's cost that the noise of the step adds.
     pub(super) cost: f64,
 }
 
@@ -50,9 +50,9 @@ where
     /// Inputs at the rows.
     pub(super) inputs: D::Inputs,
     pub(super) prior_cost: f64,
-    /// What the declared variances of the outputs are multiplied by.
+    /// Factors of the declared variances of the outputs.
     pub(super) factors: [f64; Y],
-    /// What the densities of the noise inputs are multiplied by.
+    /// Factors of the densities of the noise inputs.
     pub(super) input_factors: [f64; M],
     /// Active parameter columns of the last step, M rows of them.
     pub(super) own: Vec<f64>,
@@ -133,7 +133,7 @@ where
         })
     }
 
-    /// Takes the outputs of a row; `used` gets each of them, and how it was taken.
+    /// Updates with the outputs of a row; `used` gets each of them and its quantities.
     pub(super) fn observe(
         &mut self,
         row: usize,
@@ -144,33 +144,12 @@ where
         if measured.iter().all(|value| value.is_nan()) {
             return Ok(());
         }
-        let mut moving = [0.0; M];
-        of.model
-            .place(&of.points[row], &mut moving, &mut self.inputs);
-        of.series.at(row, &mut self.inputs);
-        let q = of.model.output_parameters();
         let mut d_moving = [[0.0; M]; Y];
-        let predicted = if of.model.has_chart() {
-            of.model.output_jacobian_at_origin(
-                of.parameters,
-                &self.inputs,
-                &mut d_moving,
-                &mut self.d_parameters,
-            )
-        } else {
-            of.model.output_jacobian(
-                &moving,
-                of.parameters,
-                &self.inputs,
-                &mut d_moving,
-                &mut self.d_parameters,
-            )
-        };
+        let predicted = self.predicted(row, &mut d_moving);
         let mut variance = of.series.noise_variance(row);
         for (variance, factor) in variance.iter_mut().zip(self.factors) {
             *variance *= factor;
         }
-        let active = of.active.len();
         for output in 0..Y {
             if measured[output].is_nan() {
                 continue;
@@ -190,24 +169,7 @@ where
                 variance: variance[output],
                 covariance: self.filter.covariance,
             };
-            let direct_parameters = &self.d_parameters[output * q..(output + 1) * q];
-            let whitened = &mut self.filter.whitened;
-            whitened[0] = residual;
-            if let Some(change) = self.change {
-                for (index, change) in of.active.iter().zip(change) {
-                    whitened[0] -= direct_parameters.get(*index).unwrap_or(&0.0) * change;
-                }
-                for (direct, change) in self.direct.iter().zip(&change[active..]) {
-                    whitened[0] -= direct * change;
-                }
-            } else {
-                for (value, index) in whitened[1..].iter_mut().zip(of.active) {
-                    *value = -direct_parameters.get(*index).unwrap_or(&0.0);
-                }
-                for (value, direct) in whitened[1 + active..].iter_mut().zip(&self.direct) {
-                    *value = -direct;
-                }
-            }
+            self.set_direct_derivatives(output, residual);
             let deviation = self.filter.update(&d_moving[output], variance[output])?;
             let seen = Whitened {
                 row,
@@ -220,7 +182,59 @@ where
         Ok(())
     }
 
-    /// What a unit of each further column does over the step just made.
+    /// Predicted outputs of a row, with their derivatives by the moving states in `d_moving` and by
+    /// the parameters in [`Self::d_parameters`].
+    fn predicted(&mut self, row: usize, d_moving: &mut [[f64; M]; Y]) -> [f64; Y] {
+        let of = self.of;
+        let mut moving = [0.0; M];
+        of.model
+            .place(&of.points[row], &mut moving, &mut self.inputs);
+        of.series.at(row, &mut self.inputs);
+        if of.model.has_chart() {
+            of.model.output_jacobian_at_origin(
+                of.parameters,
+                &self.inputs,
+                d_moving,
+                &mut self.d_parameters,
+            )
+        } else {
+            of.model.output_jacobian(
+                &moving,
+                of.parameters,
+                &self.inputs,
+                d_moving,
+                &mut self.d_parameters,
+            )
+        }
+    }
+
+    /// Sets residual and direct derivatives of an output, from which the filter makes a whitened
+    /// row.
+    fn set_direct_derivatives(&mut self, output: usize, residual: f64) {
+        let of = self.of;
+        let q = of.model.output_parameters();
+        let active = of.active.len();
+        let direct_parameters = &self.d_parameters[output * q..(output + 1) * q];
+        let whitened = &mut self.filter.whitened;
+        whitened[0] = residual;
+        if let Some(change) = self.change {
+            for (index, change) in of.active.iter().zip(change) {
+                whitened[0] -= direct_parameters.get(*index).unwrap_or(&0.0) * change;
+            }
+            for (direct, change) in self.direct.iter().zip(&change[active..]) {
+                whitened[0] -= direct * change;
+            }
+        } else {
+            for (value, index) in whitened[1..].iter_mut().zip(of.active) {
+                *value = -direct_parameters.get(*index).unwrap_or(&0.0);
+            }
+            for (value, direct) in whitened[1 + active..].iter_mut().zip(&self.direct) {
+                *value = -direct;
+            }
+        }
+    }
+
+    /// Change of the moving states by a unit of each further column over the step just made.
     pub(super) fn drive(&mut self, row: usize) -> &[f64] {
         let further = self.of.further.count();
         if further > 0 {
@@ -239,8 +253,8 @@ where
         &self.drive
     }
 
-    /// The step after a row, from the tape or from the model, and how far the next point is from
-    /// where it goes; leaves its active columns in [`Self::own`].
+    /// The step after a row, from the tape or from the model, and the difference from the predicted
+    /// point to the next one; leaves its active columns in [`Self::own`].
     fn step(&mut self, row: usize) -> Result<(Step<M>, [f64; M]), EstimationError> {
         let of = self.of;
         let active = of.active.len();
@@ -273,7 +287,7 @@ where
         Ok((step, jump))
     }
 
-    /// Goes on to the next row.
+    /// Predicts to the next row.
     pub(super) fn advance(&mut self, row: usize) -> Result<Advanced<M>, EstimationError> {
         let of = self.of;
         let (mut step, predicted_jump) = self.step(row)?;

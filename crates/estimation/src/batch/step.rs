@@ -1,23 +1,26 @@
-//! One step of the chain: from a point to the next row, with all derivatives.
+//! One step of the trajectory: from a point to the next row, with all derivatives.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use super::{Corrected, Manifold, Series};
 use crate::error::EstimationError;
-use crate::transition::{Integration, Integrator};
+use crate::transition::{Derivatives, Integration, Integrator};
 
-/// What a step does to the moving states, to first order.
+/// Most parts of one interval; more are a mistake in the times or in the longest step.
+const MAX_PARTS: f64 = 1e6;
+
+/// Derivatives of a step by the moving states, and the covariance of its noise.
 #[derive(Clone, Copy)]
 pub(crate) struct Step<const M: usize> {
     /// Moving columns of the transition.
     pub(crate) moving: [[f64; M]; M],
-    /// Covariance of what each noise input adds over the step.
+    /// Covariance that each noise input adds over the step.
     pub(crate) shares: [[[f64; M]; M]; M],
 }
 
 impl<const M: usize> Step<M> {
-    /// Covariance of what all noise adds over the step.
+    /// Covariance that all noise adds over the step.
     pub(crate) fn noise(&self) -> [[f64; M]; M] {
         let mut noise = [[0.0; M]; M];
         for share in &self.shares {
@@ -26,8 +29,8 @@ impl<const M: usize> Step<M> {
         noise
     }
 
-    /// What was predicted as corrections of another point: the one that a correction of the
-    /// prediction, which the noise made, leads to.
+    /// Transforms the derivatives to corrections of the point that a correction of the prediction
+    /// leads to.
     pub(crate) fn correct(&mut self, corrected: &Corrected<M>) {
         self.moving = product(&corrected.point, &self.moving);
         for share in &mut self.shares {
@@ -36,7 +39,7 @@ impl<const M: usize> Step<M> {
     }
 }
 
-/// Carries points over steps; owns the numbers that a step works on.
+/// Integrates points over steps; owns the workspace of a step.
 pub(crate) struct Stepper<'a, D, I, const M: usize, const Y: usize> {
     pub(crate) model: &'a D,
     pub(crate) inputs: I,
@@ -73,8 +76,8 @@ where
         }
     }
 
-    /// From `point` at `row` to the next row, and where the model goes; leaves the parameter
-    /// columns in [`Self::columns`].
+    /// Integrates from `point` at `row` to the next row. Returns the derivatives of the step and the
+    /// point that the model predicts; leaves the parameter columns in [`Self::columns`].
     pub(crate) fn advance(
         &mut self,
         series: &impl Series<D::Inputs, Y>,
@@ -82,22 +85,9 @@ where
         point: &D::Point,
         parameters: &[f64],
     ) -> Result<(Step<M>, D::Point), EstimationError> {
-        let p = parameters.len();
         let (start_s, end_s) = (series.time_s(row), series.time_s(row + 1));
         let interval_s = end_s - start_s;
-        if !(interval_s > 0.0 && interval_s.is_finite()) {
-            return Err(EstimationError::InvalidArgument {
-                expected: "times that rise",
-            });
-        }
-        let parts = interval_s / self.longest_step_s;
-        if parts > MOST_PARTS {
-            return Err(EstimationError::InvalidArgument {
-                expected: "an interval of at most a million longest steps",
-            });
-        }
-        let whole = parts as usize;
-        let count = (whole + usize::from(parts > whole as f64)).max(1);
+        let count = parts(interval_s, self.longest_step_s)?;
         let part_s = interval_s / count as f64;
         let mut moving = [0.0; M];
         self.model.place(point, &mut moving, &mut self.inputs);
@@ -108,65 +98,105 @@ where
         for index in 0..count {
             let from_s = start_s + part_s * index as f64;
             series.over(row, from_s, from_s + part_s, &mut self.inputs);
-            let target = if index == 0 {
-                &mut self.columns
-            } else {
-                &mut self.part
-            };
-            let mut transition = Integrator {
-                model: self.model,
-                inputs: &self.inputs,
-                parameters,
-                columns: target,
-                stages: &mut self.stages,
-                at_origin: self.model.has_chart(),
-            }
-            .integrate(self.integration, part_s, &mut moving);
-            if !moving.iter().all(|state| state.is_finite()) {
-                return Err(EstimationError::NotFinite {
-                    quantity: "a predicted moving state",
-                });
-            }
-            if let Some(map) = self.model.recentre(&mut moving, &mut self.inputs) {
-                transition.moving = product(&map, &transition.moving);
-                transition.noise = product(&map, &transition.noise);
-                map_columns(&map, target, p);
-            }
-            if let Some(same) = self.model.noise_parameters() {
-                for (i, row) in transition.noise.iter_mut().enumerate() {
-                    for (noise, parameter) in row.iter_mut().zip(same) {
-                        *noise = target[i * p + parameter];
-                    }
-                }
-            }
-            if index > 0 {
-                map_columns(&transition.moving, &mut self.columns, p);
-                for (sum, value) in self.columns.iter_mut().zip(&self.part) {
-                    *sum += value;
-                }
-                step.moving = product(&transition.moving, &step.moving);
-                for share in &mut step.shares {
-                    *share = sandwich(&transition.moving, share);
-                }
-            } else {
-                step.moving = transition.moving;
-            }
-            for (input, share) in step.shares.iter_mut().enumerate() {
-                let variance = self.noise_density[input] / part_s;
-                for i in 0..M {
-                    for j in 0..M {
-                        share[i][j] +=
-                            transition.noise[i][input] * variance * transition.noise[j][input];
-                    }
-                }
-            }
+            let first = index == 0;
+            let derivatives = self.integrate_part(first, part_s, &mut moving, parameters)?;
+            self.add_part(first, part_s, &derivatives, &mut step);
         }
         Ok((step, self.model.point(&moving, &self.inputs)))
     }
+
+    /// Integrates the moving states over a part of an interval and moves the chart; leaves the
+    /// parameter columns of the first part in [`Self::columns`], those of others in `part`.
+    fn integrate_part(
+        &mut self,
+        first: bool,
+        part_s: f64,
+        moving: &mut [f64; M],
+        parameters: &[f64],
+    ) -> Result<Derivatives<f64, M>, EstimationError> {
+        let p = parameters.len();
+        let target = if first {
+            &mut self.columns
+        } else {
+            &mut self.part
+        };
+        let mut derivatives = Integrator {
+            model: self.model,
+            inputs: &self.inputs,
+            parameters,
+            columns: target,
+            stages: &mut self.stages,
+            at_origin: self.model.has_chart(),
+        }
+        .integrate(self.integration, part_s, moving);
+        if !moving.iter().all(|state| state.is_finite()) {
+            return Err(EstimationError::NotFinite {
+                quantity: "a predicted moving state",
+            });
+        }
+        if let Some(map) = self.model.recentre(moving, &mut self.inputs) {
+            derivatives.moving = product(&map, &derivatives.moving);
+            derivatives.noise = product(&map, &derivatives.noise);
+            map_columns(&map, target, p);
+        }
+        if let Some(same) = self.model.noise_parameters() {
+            for (i, row) in derivatives.noise.iter_mut().enumerate() {
+                for (noise, parameter) in row.iter_mut().zip(same) {
+                    *noise = target[i * p + parameter];
+                }
+            }
+        }
+        Ok(derivatives)
+    }
+
+    /// Chains the derivatives of a part to those of the step so far.
+    fn add_part(
+        &mut self,
+        first: bool,
+        part_s: f64,
+        derivatives: &Derivatives<f64, M>,
+        step: &mut Step<M>,
+    ) {
+        if first {
+            step.moving = derivatives.moving;
+        } else {
+            map_columns(&derivatives.moving, &mut self.columns, self.part.len() / M);
+            for (sum, value) in self.columns.iter_mut().zip(&self.part) {
+                *sum += value;
+            }
+            step.moving = product(&derivatives.moving, &step.moving);
+            for share in &mut step.shares {
+                *share = sandwich(&derivatives.moving, share);
+            }
+        }
+        for (input, share) in step.shares.iter_mut().enumerate() {
+            let variance = self.noise_density[input] / part_s;
+            for i in 0..M {
+                for j in 0..M {
+                    share[i][j] +=
+                        derivatives.noise[i][input] * variance * derivatives.noise[j][input];
+                }
+            }
+        }
+    }
 }
 
-/// More parts of one interval than this are a mistake in the times or in the longest step.
-const MOST_PARTS: f64 = 1e6;
+/// Number of equal parts, none longer than `longest_step_s`, that an interval is divided into.
+fn parts(interval_s: f64, longest_step_s: f64) -> Result<usize, EstimationError> {
+    if !(interval_s > 0.0 && interval_s.is_finite()) {
+        return Err(EstimationError::InvalidArgument {
+            expected: "times that rise",
+        });
+    }
+    let parts = interval_s / longest_step_s;
+    if parts > MAX_PARTS {
+        return Err(EstimationError::InvalidArgument {
+            expected: "an interval of at most a million longest steps",
+        });
+    }
+    let whole = parts as usize;
+    Ok((whole + usize::from(parts > whole as f64)).max(1))
+}
 
 fn identity<const M: usize>() -> [[f64; M]; M] {
     let mut matrix = [[0.0; M]; M];

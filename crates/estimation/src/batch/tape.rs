@@ -4,11 +4,11 @@ use alloc::vec::Vec;
 
 use super::step::Step;
 
-/// What the model gave along a trajectory, so that further passes about the same trajectory with
-/// the same parameters need not ask it again. Further columns may follow active parameters only.
+/// Linearised steps along a trajectory, kept for further passes about the same trajectory with the
+/// same active parameters. Further columns may follow active parameters only.
 #[derive(Clone)]
 pub struct Tape<const M: usize> {
-    /// From where the model goes to the next point.
+    /// Difference from the predicted point to the next one, for each step.
     jumps: Vec<[f64; M]>,
     moving: Vec<[[f64; M]; M]>,
     /// Lower triangles of the covariances that the noise inputs add.

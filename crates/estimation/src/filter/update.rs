@@ -1,0 +1,128 @@
+use gyrocal_scalar::{Real, Recentre};
+
+use super::{Filter, to_array};
+use crate::error::EstimationError;
+use crate::form::{Form, Numbers};
+use crate::innovation::Innovation;
+use crate::observe::{Sensor, check_noise};
+use crate::recentring::Recentring;
+use crate::storage::Storage;
+use crate::zeros::Known;
+
+impl<T, D, S, const M: usize, const Y: usize, F> Filter<T, D, D::Inputs, S, M, Y, F>
+where
+    T: Real,
+    D: Recentre<T, M, Y>,
+    S: Storage<T>,
+    F: Form<T>,
+{
+    /// Updates with a measurement of the outputs, NaN where a component is missing.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidNoise`]; [`EstimationError::LostPrecision`];
+    /// [`EstimationError::NotFinite`] if the innovation is not finite;
+    /// [`EstimationError::NotPositiveDefinite`] if a variance is not positive afterwards.
+    #[inline]
+    pub fn update(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        if self.at_origin() {
+            self.update_with::<true>(measured, noise_variance)
+        } else {
+            self.update_elsewhere(measured, noise_variance)
+        }
+    }
+
+    /// A function of its own: the step from the origin is then not inlined together with it.
+    #[inline(never)]
+    fn update_elsewhere(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        self.update_with::<false>(measured, noise_variance)
+    }
+
+    #[inline(always)]
+    fn update_with<const AT_ORIGIN: bool>(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        check_noise(noise_variance)?;
+        let buffers = self.storage.buffers();
+        let (moving_slice, parameters) = buffers.state.split_at_mut(M);
+        let mut moving = to_array(moving_slice);
+        let sensor = Sensor {
+            model: &self.model,
+            inputs: &self.inputs,
+            at_origin: AT_ORIGIN,
+        };
+        let observation = sensor.observe(
+            &moving,
+            parameters,
+            buffers.output,
+            measured,
+            noise_variance,
+        );
+        let (model, inputs, recentring) = (&self.model, &mut self.inputs, self.recentring);
+        let innovation = F::update(
+            &mut numbers!(buffers),
+            parameters,
+            &observation,
+            &Known::<T, D, M, Y, AT_ORIGIN>::of(&self.model),
+            |correction| match recentring {
+                Recentring::EveryStep => model.correct(&mut moving, inputs, correction),
+                _ => moving = add(&moving, correction),
+            },
+        )?;
+        moving_slice.copy_from_slice(&moving);
+        Ok(innovation)
+    }
+
+    /// As [`Self::update`], but a measurement whose NIS exceeds `largest_nis` is not used.
+    /// Returns the innovation and whether the measurement was used. A NaN limit uses nothing.
+    ///
+    /// # Errors
+    /// As [`Self::update`].
+    pub fn update_gated(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+        largest_nis: T,
+    ) -> Result<(Innovation<T, Y>, bool), EstimationError> {
+        check_noise(noise_variance)?;
+        let at_origin = self.at_origin();
+        let buffers = self.storage.buffers();
+        let (moving, parameters) = buffers.state.split_at(M);
+        let sensor = Sensor {
+            model: &self.model,
+            inputs: &self.inputs,
+            at_origin,
+        };
+        let observation = sensor.observe(
+            &to_array(moving),
+            parameters,
+            buffers.output,
+            measured,
+            noise_variance,
+        );
+        let innovation = F::innovation(&mut numbers!(buffers), &observation)?;
+        if innovation.nis > largest_nis || largest_nis.is_nan() {
+            return Ok((innovation, false));
+        }
+        self.update(measured, noise_variance)
+            .map(|innovation| (innovation, true))
+    }
+}
+
+#[inline(always)]
+fn add<T: Real, const M: usize>(a: &[T; M], b: &[T; M]) -> [T; M] {
+    let mut sum = *a;
+    for (sum, b) in sum.iter_mut().zip(b) {
+        *sum = *sum + *b;
+    }
+    sum
+}
