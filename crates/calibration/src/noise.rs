@@ -26,9 +26,9 @@ pub struct NoiseRatio {
 /// Noise of a run's instruments relative to the declared noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseEstimate {
-    /// Of the accelerometers x, y, z.
+    /// Accelerometers x, y, z.
     pub accel: [NoiseRatio; 3],
-    /// Of the gyros x, y, z.
+    /// Gyros x, y, z.
     pub gyro: [NoiseRatio; 3],
 }
 

@@ -63,7 +63,7 @@ pub struct AzimuthSearch {
     /// Log-likelihood of the best solution less that of the best one with another azimuth;
     /// infinite if all azimuths led to one solution.
     pub margin: f64,
-    /// That other azimuth relative to the best, rad.
+    /// Azimuth of that other solution relative to the best, rad.
     pub other_rad: f64,
 }
 

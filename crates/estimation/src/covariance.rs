@@ -4,7 +4,7 @@
 //! only the parameter columns are kept, so the symmetric cross block is stored once. Of the
 //! parameter block what lies left of the diagonal is computed and put to its other side, in
 //! vectors as wide as four: there both triangles come from the same operations in the same order.
-//! So it is symmetric to the last bit without being made so.
+//! So it is symmetric to the last bit without symmetrisation.
 //!
 //! - Prediction: Φ is the identity on the parameters, so the parameter block does not change;
 //!   the moving rows become Φ_mm P_mp + Φ_mp P_pp.
@@ -12,7 +12,7 @@
 //!   P ← P - Vᵀ V. Where a measurement removes nearly all of a wide prior, the moving block is
 //!   updated in Joseph form, which cannot lose definiteness by cancellation.
 //!
-//! What the model knows to be zero in Φ, H and the map to the next chart is left out: see
+//! Structural zeros of Φ, H and the map to the next chart are left out: see
 //! [`Zeros`].
 //!
 //! A variance that is not positive afterwards is an error; nothing is repaired.

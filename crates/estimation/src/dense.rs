@@ -17,7 +17,7 @@ use crate::transition::Integration;
 #[derive(Clone, Debug)]
 pub struct DenseFilter<D, I, const M: usize, const Y: usize, const N: usize> {
     model: D,
-    /// What the model depends on besides its state; it carries the chart.
+    /// Inputs of the model besides its state; they carry the chart.
     pub inputs: I,
     /// The state: moving states, then parameters.
     pub state: SVector<f64, N>,

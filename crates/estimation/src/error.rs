@@ -26,12 +26,12 @@ pub enum EstimationError {
     /// A prediction or an innovation is infinite or NaN: the model was evaluated outside its
     /// domain, or the prior is too wide for the step.
     NotFinite {
-        /// What was computed.
+        /// The quantity.
         quantity: &'static str,
     },
     /// An argument has no meaning; the filter is unchanged.
     InvalidArgument {
-        /// Which argument, and what was expected.
+        /// The argument and its expected value.
         expected: &'static str,
     },
 }

@@ -189,13 +189,13 @@ where
         self.covariance(i, i).sqrt()
     }
 
-    /// What the model depends on besides its state; it carries the chart.
+    /// Inputs of the model besides its state; they carry the chart.
     #[must_use]
     pub fn inputs(&self) -> &D::Inputs {
         &self.inputs
     }
 
-    /// The inputs, to change what is held over the next step.
+    /// The inputs, to set values that are held over the next step.
     pub fn inputs_mut(&mut self) -> &mut D::Inputs {
         &mut self.inputs
     }
@@ -212,8 +212,8 @@ where
         &self.moving_transition
     }
 
-    /// What moving the chart after the last step did to errors of the moving states: it
-    /// multiplies the moving rows of the transition from the left. `None` where it did not move.
+    /// Map of the moving states' errors by which the chart moved after the last step: it multiplies
+    /// the moving rows of the transition from the left. `None` if the chart did not move.
     #[must_use]
     pub fn chart_map(&self) -> Option<&[[T; M]; M]> {
         self.map.as_ref()

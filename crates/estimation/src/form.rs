@@ -1,4 +1,4 @@
-//! How the error covariance is carried: as P itself or as factors.
+//! Forms of the error covariance: P itself, or its factors.
 
 use gyrocal_scalar::Real;
 

@@ -2,12 +2,12 @@ use gyrocal_scalar::Real;
 
 use crate::error::EstimationError;
 
-/// What one measurement said: the innovation and its predicted covariance.
+/// The innovation of one measurement and its predicted covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Innovation<T, const Y: usize> {
     /// Measured minus predicted output; zero where nothing was observed.
     pub residual: [T; Y],
-    /// Which outputs were observed.
+    /// True for each output that was observed.
     pub observed: [bool; Y],
     /// Normalised innovation squared over the observed outputs; its expectation is their number.
     pub nis: T,
@@ -52,7 +52,7 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         }
     }
 
-    /// That it is finite. An infinite variance would make a weight zero and the rest NaN.
+    /// Checks that it is finite. An infinite variance would make a weight zero and the rest NaN.
     #[inline(always)]
     pub(crate) fn check(&self) -> Result<(), EstimationError> {
         let mut total = self.nis;

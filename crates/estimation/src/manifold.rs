@@ -16,7 +16,7 @@ pub trait Manifold<const M: usize, const Y: usize>: Recentre<f64, M, Y> {
     /// The correction that [`Recentre::correct`] needs to get from one point to the other.
     fn difference(&self, from: &Self::Point, to: &Self::Point) -> [f64; M];
 
-    /// How errors go through a correction; `None` if they stay what they are, as in a flat state
+    /// Transformation of errors by a correction; `None` if they do not change, as in a flat state
     /// space.
     fn corrected(&self, correction: &[f64; M]) -> Option<Corrected<M>> {
         let _ = correction;

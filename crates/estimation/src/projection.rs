@@ -27,7 +27,7 @@ pub(crate) struct Projection<'a, T, const M: usize, const Y: usize> {
 }
 
 impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
-    /// Projects P on the outputs; [`Self::check`] says whether that came out well.
+    /// Projects P on the outputs; [`Self::check`] validates the result.
     ///
     /// Loops run over all outputs with conditions inside: bounds that depend on another index keep
     /// the compiler from unrolling them, and small matrices would then live in memory.
@@ -109,7 +109,8 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
         }
     }
 
-    /// Whether an output says so much more than was known that subtraction would cost digits.
+    /// True if an output is so much more precise than the prediction that subtraction would lose
+    /// digits.
     #[inline(always)]
     fn is_wide(&self) -> bool {
         let mut wide = false;
@@ -120,7 +121,7 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
         wide
     }
 
-    /// That S has digits, and is positive definite and finite.
+    /// Checks that S has kept its precision, and is positive definite and finite.
     #[inline(always)]
     pub(crate) fn check(&self) -> Result<(), EstimationError> {
         if self.is_wide() {

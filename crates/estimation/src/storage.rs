@@ -1,4 +1,4 @@
-//! Where a filter keeps its numbers: arrays for controllers, vectors for batch work.
+//! Storage of a filter: arrays for controllers, vectors for batch work.
 
 /// Everything a filter step reads and writes, as slices.
 ///
@@ -27,7 +27,7 @@ pub struct Buffers<'a, T> {
     pub cross: &'a mut [T],
 }
 
-/// What can be read of a filter's numbers between steps.
+/// Numbers of a filter that persist between steps.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a, T> {
     /// The state: moving states, then parameters.

@@ -6,7 +6,7 @@ use gyrocal_scalar::{Model, RatesJacobian, Scalar};
 
 use crate::unrolled::{load, load_rows, mul_add, small_product, store};
 
-/// How the rates are integrated over a step.
+/// Integration rule of the rates over a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Integration {

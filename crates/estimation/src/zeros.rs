@@ -1,4 +1,4 @@
-//! What a model says of the zeros of a step, and products that leave them out.
+//! Structural zeros of a step as a model declares them, and products that leave them out.
 
 use core::marker::PhantomData;
 

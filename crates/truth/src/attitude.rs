@@ -60,8 +60,8 @@ impl Attitude {
 
     /// The angles about x, then y, then z \[rad\]; that about y within a quarter turn.
     ///
-    /// Where the angle about y is a quarter turn the other two are one, and only their sum or
-    /// difference means anything.
+    /// At an angle about y of a quarter turn only the sum or the difference of the other two is
+    /// determined.
     #[must_use]
     pub fn angles_rad(self) -> [f64; 3] {
         let t_c_s = self.matrix();

@@ -1,38 +1,63 @@
-//! Whether a scenario makes sense.
+//! Validation of a scenario.
 
 use gyrocal_record::Bound;
 
 use crate::effect::Effect;
 use crate::error::Error;
 use crate::hidden::Hidden;
-use crate::scenario::{MOST_ROWS, Scenario};
+use crate::scenario::{MAX_ROWS, Scenario};
 
-/// What a scenario lacks that one of its hidden effects needs.
+/// Conflict of a hidden effect with its scenario.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Lack {
-    /// Which effect, by its number.
+pub(crate) struct Conflict {
+    /// Index of the effect.
     pub(crate) index: usize,
-    /// The field of the scenario that is wrong.
+    /// The field of the scenario in conflict.
     name: &'static str,
     pub(crate) found: String,
     pub(crate) expected: String,
 }
 
 impl Scenario {
-    /// Says what is wrong with the values, if something is.
+    /// Checks that every value is within its bounds.
     ///
     /// # Errors
     ///
-    /// [`Error::InvalidScenario`] for the first value that makes no sense.
+    /// [`Error::InvalidScenario`] for the first value that is not.
     pub fn check(&self) -> Result<(), Error> {
-        let coefficients = self.coefficients;
+        let vectors = self.vectors().into_iter();
+        let all = vectors
+            .flat_map(|(name, values, bound)| values.map(|value| (name, value, bound)))
+            .chain(self.scalars());
+        for (name, value, bound) in all {
+            if !bound.holds(value) {
+                return Err(Error::InvalidScenario {
+                    name,
+                    found: value.to_string(),
+                    expected: bound.describe(),
+                });
+            }
+        }
+        self.check_hidden()?;
+        let mut gaps = self.gaps_s.iter();
+        match gaps.find(|gap| !(gap[0] > 0.0 && gap[1] > gap[0])) {
+            Some(gap) => Err(Error::InvalidScenario {
+                name: "gaps_s",
+                found: format!("{gap:?}"),
+                expected: "0 < from < to (the first row has the initial attitude)".to_owned(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Scalar fields with their names and bounds.
+    fn scalars(&self) -> [(&'static str, f64, Bound); 12] {
         let temperature = self.temperature.unwrap_or_default();
-        let single = [
-            (
-                "latitude_deg",
-                self.latitude_deg,
-                Bound::Within(-90.0, 90.0),
-            ),
+        let latitude = Bound::Within(-90.0, 90.0);
+        let rows = Bound::Within(0.0, MAX_ROWS);
+        let share = Bound::Within(0.0, 1.0);
+        [
+            ("latitude_deg", self.latitude_deg, latitude),
             ("accel_noise_g", self.accel_noise_g, Bound::NotNegative),
             (
                 "gyro_noise_deg_per_h",
@@ -46,13 +71,9 @@ impl Scenario {
             (
                 "duration_s / interval_s",
                 self.duration_s / self.interval_s,
-                Bound::Within(0.0, MOST_ROWS),
+                rows,
             ),
-            (
-                "missing_fraction",
-                self.missing_fraction,
-                Bound::Within(0.0, 1.0),
-            ),
+            ("missing_fraction", self.missing_fraction, share),
             ("temperature.mean_c", temperature.mean_c, Bound::Finite),
             ("temperature.daily_k", temperature.daily_k, Bound::Finite),
             (
@@ -60,8 +81,13 @@ impl Scenario {
                 temperature.wander_k,
                 Bound::NotNegative,
             ),
-        ];
-        let three = [
+        ]
+    }
+
+    /// Fields of three numbers with their names and bounds.
+    fn vectors(&self) -> [(&'static str, [f64; 3], Bound); 6] {
+        let coefficients = self.coefficients;
+        [
             (
                 "initial_angles_sigma_deg",
                 self.initial_angles_sigma_deg,
@@ -88,42 +114,16 @@ impl Scenario {
                 coefficients.gg_deg_per_h_per_g2,
                 Bound::Finite,
             ),
-        ];
-        let all = three
-            .into_iter()
-            .flat_map(|(name, values, bound)| values.map(|value| (name, value, bound)))
-            .chain(single);
-        for (name, value, bound) in all {
-            if !bound.holds(value) {
-                return Err(Error::InvalidScenario {
-                    name,
-                    found: value.to_string(),
-                    expected: bound.describe(),
-                });
-            }
-        }
-        self.check_hidden()?;
-        match self
-            .gaps_s
-            .iter()
-            .find(|gap| !(gap[0] > 0.0 && gap[1] > gap[0]))
-        {
-            Some(gap) => Err(Error::InvalidScenario {
-                name: "gaps_s",
-                found: format!("{gap:?}"),
-                expected: "0 < from < to (the first row has the initial attitude)".to_owned(),
-            }),
-            None => Ok(()),
-        }
+        ]
     }
 
-    /// The first hidden effect that has no meaning in this scenario.
-    pub(crate) fn lack(&self) -> Option<Lack> {
+    /// The first hidden effect that the scenario does not admit.
+    pub(crate) fn conflict(&self) -> Option<Conflict> {
         let effects = self.hidden.iter().enumerate();
         effects
             .filter_map(|(index, hidden)| {
-                let (name, found, expected) = self.lack_of(index, hidden)?;
-                Some(Lack {
+                let (name, found, expected) = self.conflict_of(index, hidden)?;
+                Some(Conflict {
                     index,
                     name,
                     found,
@@ -134,18 +134,18 @@ impl Scenario {
     }
 
     fn check_hidden(&self) -> Result<(), Error> {
-        match self.lack() {
-            Some(lack) => Err(Error::InvalidScenario {
-                name: lack.name,
-                found: lack.found,
-                expected: lack.expected,
+        match self.conflict() {
+            Some(conflict) => Err(Error::InvalidScenario {
+                name: conflict.name,
+                found: conflict.found,
+                expected: conflict.expected,
             }),
             None => Ok(()),
         }
     }
 
     /// The field, what was found and what was expected.
-    fn lack_of(&self, index: usize, hidden: &Hidden) -> Option<(&'static str, String, String)> {
+    fn conflict_of(&self, index: usize, hidden: &Hidden) -> Option<(&'static str, String, String)> {
         let id = hidden.id();
         let onset_s = match hidden.effect() {
             Effect::GyroTemperature(_) | Effect::AccelTemperature(_)

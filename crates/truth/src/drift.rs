@@ -1,4 +1,4 @@
-//! The drift of the gyros with all that is hidden in it.
+//! The drift of the gyros with hidden effects.
 
 use core::f64::consts::TAU;
 
@@ -11,10 +11,10 @@ use crate::term::{Moment, Term};
 
 /// Drift as a function of the moment.
 ///
-/// It is smooth but where a *mode* changes: a step begins, a specific force changes its sign, a
-/// gyro enters or leaves its dead zone. Modes are kept until [`DriftLaw::settle`], so whoever
-/// integrates sees a smooth function, finds out by [`DriftLaw::switched`] where it ended, and
-/// goes on from there.
+/// It is smooth except where a *mode* changes: a step begins, a specific force changes its sign, a
+/// gyro enters or leaves its dead zone. Modes are held until [`DriftLaw::update_modes`], so an
+/// integrator sees a smooth function, detects by [`DriftLaw::mode_changed`] where it ends, and
+/// restarts there.
 #[derive(Debug)]
 pub(crate) struct DriftLaw<'a> {
     coefficients: Coefficients,
@@ -67,7 +67,7 @@ pub(crate) struct Wave {
     rate_rad_per_s: f64,
 }
 
-/// Friction: what is left of a gyro's drift, 0 below a size.
+/// Dead zone of a gyro by friction: its drift less a size, 0 below it.
 #[derive(Debug)]
 struct DeadZone {
     gyro: usize,
@@ -130,9 +130,9 @@ impl<'a> DriftLaw<'a> {
         }
     }
 
-    /// Whether another mode than the present one is right at this moment. Steps are not looked
-    /// at: they begin when they are told to.
-    pub(crate) fn switched(&self, moment: &Moment) -> bool {
+    /// True if a mode at this moment differs from the held one. Steps are left out: their onsets are
+    /// known times.
+    pub(crate) fn mode_changed(&self, moment: &Moment) -> bool {
         let signs = self.parts.iter().any(|(_, part)| match part {
             Part::Sign { axis, negative, .. } => (moment.accel_g[*axis] < 0.0) != *negative,
             _ => false,
@@ -145,8 +145,8 @@ impl<'a> DriftLaw<'a> {
         zones.any(|zone| zone.side_of(free) != zone.side)
     }
 
-    /// Takes the modes that are right from this moment on.
-    pub(crate) fn settle(&mut self, moment: &Moment) {
+    /// Sets the modes to those at this moment.
+    pub(crate) fn update_modes(&mut self, moment: &Moment) {
         for (_, part) in &mut self.parts {
             match part {
                 Part::Step { onset_s, on, .. } => *on = moment.time_s >= *onset_s,
@@ -160,13 +160,13 @@ impl<'a> DriftLaw<'a> {
         }
     }
 
-    /// Whether there are modes that the motion itself changes.
+    /// True if the motion itself can change a mode.
     pub(crate) fn has_switches(&self) -> bool {
         let mut parts = self.parts.iter();
         !self.dead_zones.is_empty() || parts.any(|(_, part)| matches!(part, Part::Sign { .. }))
     }
 
-    /// When steps begin.
+    /// Onsets of steps, s.
     pub(crate) fn onsets_s(&self) -> impl Iterator<Item = f64> {
         self.parts.iter().filter_map(|(_, part)| match part {
             Part::Step { onset_s, .. } => Some(*onset_s),
@@ -174,11 +174,11 @@ impl<'a> DriftLaw<'a> {
         })
     }
 
-    /// The longest step in which the parts that depend on time change so little that a rule of
-    /// fourth order has no error to speak of: a three-hundredth of a period, a sixtieth of a
-    /// time constant. 0.1 deg/h so sampled is wrong by 1e-13 rad after three days.
+    /// Longest integration step for the parts that depend on time: a three-hundredth of a period, a
+    /// sixtieth of a time constant. The error of 0.1 deg/h integrated so is 1e-13 rad after three
+    /// days.
     pub(crate) fn longest_step_s(&self) -> f64 {
-        /// Nothing is known of how fast a term of the caller may change.
+        /// Step for terms of the caller, whose rate of change is unknown.
         const UNKNOWN_S: f64 = 10.0;
         let unknown = self
             .terms

@@ -2,7 +2,7 @@
 
 use gyrocal_record::Bound;
 
-/// What an effect does; gyros, accelerometers and axes are 0, 1, 2 for x, y, z.
+/// An effect; gyros, accelerometers and axes are 0, 1, 2 for x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Effect {
     /// Drift proportional to a product of specific forces, with how often each axis enters.
@@ -55,9 +55,9 @@ pub(crate) struct Parameter {
     pub(crate) name: &'static str,
     pub(crate) unit: &'static str,
     pub(crate) bound: Bound,
-    /// What it is if it is not given; `None` if it has to be.
+    /// Default value; `None` if the parameter must be given.
     pub(crate) default: Option<f64>,
-    /// Whether the effect grows in proportion to it.
+    /// True if the effect is proportional to it.
     pub(crate) is_size: bool,
 }
 
@@ -81,7 +81,7 @@ const fn shape(name: &'static str, unit: &'static str, bound: Bound) -> Paramete
     }
 }
 
-/// Numbers of which those that are not given are zero.
+/// A parameter that is zero if it is not given.
 const fn part(name: &'static str, unit: &'static str) -> Parameter {
     Parameter {
         name,
@@ -158,7 +158,7 @@ impl Effect {
         }
     }
 
-    /// Whether a record can have it more than once, each time with another onset or period.
+    /// True if a record can have it more than once, with different onsets or periods.
     pub(crate) fn can_repeat(self) -> bool {
         matches!(
             self,
@@ -255,7 +255,7 @@ const fn not_negative(unit: &'static str) -> Parameter {
     }
 }
 
-/// Beyond this it is no error any more but another bench.
+/// A size within the limits of a small error.
 const fn small(unit: &'static str) -> Parameter {
     Parameter {
         bound: Bound::Within(-0.3, 0.3),

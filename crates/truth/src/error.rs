@@ -1,25 +1,25 @@
-//! What can be wrong with a scenario.
+//! Errors of this crate.
 
-/// Why a scenario cannot be simulated.
+/// Errors of a scenario.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A value of the scenario makes no sense.
+    /// A value of the scenario is out of its bounds.
     #[error("scenario: {name}: found {found}, expected {expected}")]
     InvalidScenario {
         /// The field of [`Scenario`](crate::Scenario).
         name: &'static str,
         /// Its value.
         found: String,
-        /// What it has to be.
+        /// The expected value.
         expected: String,
     },
     /// There is no such effect.
     #[error("found the unknown effect `{id}`, expected the id of an effect; {advice}")]
     UnknownEffect {
-        /// What was asked for.
+        /// The id that was given.
         id: String,
-        /// The nearest ids, or why no record can hide it.
+        /// The nearest ids, or the reason why no record can have the effect.
         advice: String,
     },
     /// An effect has no such parameter.
@@ -27,19 +27,19 @@ pub enum Error {
     UnknownParameter {
         /// The effect's id.
         effect: String,
-        /// What was given.
+        /// The name that was given.
         parameter: String,
         /// The parameters that it has.
         expected: String,
     },
-    /// A parameter that an effect cannot do without was not given.
+    /// A required parameter of an effect is missing.
     #[error("{effect}: found no `{parameter}`, expected `{parameter} = ` {expected}")]
     MissingParameter {
         /// The effect's id.
         effect: String,
         /// The parameter.
         parameter: &'static str,
-        /// What it has to be.
+        /// The expected value.
         expected: String,
     },
     /// A parameter of an effect is out of its bounds or was given twice.
@@ -51,7 +51,7 @@ pub enum Error {
         parameter: &'static str,
         /// Its value.
         found: String,
-        /// What it has to be.
+        /// The expected value.
         expected: String,
     },
 }

@@ -1,4 +1,4 @@
-//! What is random in the drift.
+//! Noise of the drift.
 
 use libm::sqrt;
 
@@ -54,7 +54,7 @@ impl GyroNoise {
         mean
     }
 
-    /// Where the random walk is now \[deg/h\].
+    /// Present value of the random walk \[deg/h\].
     pub(crate) fn walk_deg_per_h(&self) -> [f64; 3] {
         self.walk
             .as_ref()
@@ -63,8 +63,8 @@ impl GyroNoise {
 }
 
 impl Walk {
-    /// Goes on by an interval; returns the mean over it, jointly with the new end as a Brownian
-    /// motion has them: half of the increment and an independent part of variance Δt/12.
+    /// Advances by an interval and returns the mean over it. Mean and end have the joint distribution
+    /// of a Brownian motion: half of the increment, and an independent part of variance Δt/12.
     fn next_deg_per_h(&mut self, interval_s: f64) -> [f64; 3] {
         let root_h = sqrt(interval_s / 3600.0);
         let (increments, bridges) = (self.steps.three_normals(), self.steps.three_normals());

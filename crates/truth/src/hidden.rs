@@ -3,10 +3,10 @@
 use crate::effect::{Effect, Parameter};
 use crate::error::Error;
 
-/// Something that the platform, its sensors or its site do and the nominal model does not know.
+/// An effect of the platform, its sensors or its site that the nominal model does not have.
 ///
-/// It changes the record, never the bench description: that still says what the operator
-/// believes. [`Hidden::ids`] lists all effects; `docs/formats.md` says what each does.
+/// It changes the record, never the bench description, which holds the operator's beliefs.
+/// [`Hidden::ids`] lists all effects; `docs/formats.md` describes each.
 ///
 /// ```
 /// use gyrocal_truth::{Hidden, Scenario, simulate};

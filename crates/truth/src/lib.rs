@@ -1,4 +1,4 @@
-//! An independent simulator of the platform: what the calibration is judged by.
+//! An independent simulator of the platform, the reference for calibration and diagnosis.
 //!
 //! # The platform
 //!
@@ -15,8 +15,8 @@
 //! applied exactly, by one rotation about its axis; gravity is fixed to the turned frame. The
 //! quaternion is carried by a Runge–Kutta rule of fourth order in steps of at most a minute,
 //! shorter where something changes fast, exact to 1e-12 rad over days. Where the drift jumps,
-//! a step ends. There is no Euler angle in it and none of the generated model, whose equations in Euler
-//! angles against an Earth-fixed chart it is there to check.
+//! a step ends. It has no Euler angle and shares nothing with the generated model, whose equations
+//! in Euler angles against an Earth-fixed chart it checks.
 //!
 //! # Example
 //!
@@ -43,13 +43,14 @@
 //!
 //! - [`simulate`]: a [`Scenario`] in, a record, its bench description and the [`Truth`] out.
 //! - [`Hidden`]: an effect by its id and parameters, which a scenario hides in the record;
-//!   [`simulate_with`] adds [`Term`]s of the caller's own.
+//!   [`simulate_with`] adds [`Term`]s defined by the caller.
 //! - [`euler_rule`]: the same by the paper's own rule, explicit Euler steps on the three angles.
-//! - [`Platform::specific_force_g`]: what ideal accelerometers read at given times.
+//! - [`Platform::specific_force_g`]: readings of ideal accelerometers at given times.
 //! - [`Population`]: random scenarios by the hundred.
 //!
 //! Same scenario, same record, bit for bit: random numbers are ChaCha with one stream for each
-//! seed and purpose, so that hiding an effect leaves all other random numbers as they are; sine, cosine and logarithm are those of `libm` on every machine.
+//! seed and purpose, so that hiding an effect leaves all other random numbers as they are; sine,
+//! cosine and logarithm are those of `libm` on every machine.
 //!
 //! # What it does not do
 //!
@@ -59,6 +60,7 @@ mod attitude;
 mod check;
 mod coefficients;
 mod drift;
+mod earth_rotation;
 mod effect;
 mod error;
 mod euler_rule;
@@ -66,6 +68,7 @@ mod gyro_noise;
 mod hidden;
 mod hidden_file;
 mod motion;
+mod noise_free;
 mod platform;
 mod population;
 mod random;
@@ -75,7 +78,6 @@ mod scenario;
 mod scenario_file;
 mod sensing;
 mod simulation;
-mod sky;
 mod temperature;
 mod term;
 

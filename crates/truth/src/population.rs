@@ -25,7 +25,7 @@ pub struct Population {
     pub most_gaps: u32,
     /// Shortest and longest gap.
     pub gap_s: [f64; 2],
-    /// What scenarios have in common: noise, interval, prior, sigma of the initial angles.
+    /// Values common to all scenarios: noise, interval, prior, sigma of the initial angles.
     pub common: Scenario,
 }
 
@@ -48,7 +48,7 @@ impl Population {
         }
     }
 
-    /// What benches differ in: the usual population, but two to seven days, sampled each 10, 30,
+    /// A population of varied sampling: the usual one, but two to seven days, sampled each 10, 30,
     /// 60 or 120 s, with up to three gaps of ten minutes to six hours.
     #[must_use]
     pub fn varied(seed: u64) -> Self {

@@ -6,7 +6,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::attitude::Attitude;
 
-/// What random numbers are for. Drawing more or fewer for one purpose changes no other.
+/// Purpose of a stream of random numbers. Drawing more or fewer for one purpose changes no other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// An initial attitude anywhere.
@@ -17,11 +17,11 @@ pub(crate) enum Purpose {
     GyroNoise,
     /// The accelerometers' noise.
     AccelNoise,
-    /// Which components are missing.
+    /// Missing components.
     Missing,
     /// A rate random walk of the gyros.
     RandomWalk,
-    /// Which samples are outliers, and of which sign.
+    /// Places and signs of outliers.
     Outliers,
     /// The course of the temperature.
     Temperature,
@@ -74,7 +74,7 @@ impl Stream {
         low + (high - low) * self.uniform()
     }
 
-    /// One of some things, each with the same probability; none of none.
+    /// One of some things, each with the same probability; `None` of an empty list.
     pub(crate) fn one_of<'a, T>(&mut self, things: &'a [T]) -> Option<&'a T> {
         // The uniform number is less than 1, so the product is less than the length.
         things.get((self.uniform() * things.len() as f64) as usize)
@@ -93,7 +93,7 @@ impl Stream {
         radius * cosine
     }
 
-    /// Three of them.
+    /// Three normal deviates.
     pub(crate) fn three_normals(&mut self) -> [f64; 3] {
         core::array::from_fn(|_| self.normal())
     }

@@ -1,11 +1,11 @@
-//! The truth behind a record, as it is written.
+//! The truth of a record as a serialisable report.
 
 use gyrocal_record::SimulationReport;
 use serde::Serialize;
 
 use crate::hidden::Hidden;
 
-/// What `gyrocal simulate` put into a record, hidden effects included.
+/// Truth of a simulated record, hidden effects included.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TruthReport {
     /// Coefficients, rows and attitudes.

@@ -8,7 +8,7 @@ use crate::random::{Purpose, Stream};
 use crate::scenario::Scenario;
 use crate::term::Term;
 
-/// Which rows a scenario has and what the logger makes of them.
+/// The logger: samples with noise, gaps and missing components.
 pub(crate) struct Sampling<'a> {
     scenario: &'a Scenario,
     terms: &'a [Term],
@@ -19,7 +19,7 @@ pub(crate) struct Sampling<'a> {
     outliers: Vec<[bool; 3]>,
 }
 
-/// The noise of the accelerometers with what is hidden in it.
+/// Noise of the accelerometers with hidden effects on it.
 struct AccelNoise {
     white: Stream,
     sigma_g: [f64; 3],
@@ -58,7 +58,7 @@ impl<'a> Sampling<'a> {
         }
     }
 
-    /// Logs one row of the grid; says whether the record has it.
+    /// Logs one row of the grid; returns false if it falls into a gap.
     pub(crate) fn log(&mut self, row: usize, since_first_s: f64, output_g: [f64; 3]) -> bool {
         let (mut sample, outliers) = self.noise.sample_g(output_g);
         for term in self.terms {

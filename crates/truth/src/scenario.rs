@@ -1,4 +1,4 @@
-//! What is to be simulated.
+//! Scenarios: a platform, its bench, and its record.
 
 use gyrocal_record::{Bench, GimbalLimits, Gravity, Prior, SiteUncertainty};
 
@@ -10,16 +10,16 @@ use crate::platform::Platform;
 use crate::random::{Purpose, Stream};
 use crate::temperature::Temperature;
 
-/// A platform, its bench, and how it is recorded.
+/// A scenario to be simulated: a platform, its bench, and the sampling of its record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// Seed of all that is random.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Astronomic latitude, north positive.
     pub latitude_deg: f64,
     /// Local gravity and the accelerometers' unit, when they differ.
     pub gravity: Option<Gravity>,
-    /// What the gyros do.
+    /// Drift coefficients of the gyros.
     pub coefficients: Coefficients,
     /// The initial attitude that the bench file declares.
     pub initial: InitialAttitude,
@@ -42,11 +42,11 @@ pub struct Scenario {
     pub gaps_s: Vec<[f64; 2]>,
     /// Fraction of the accelerometer components that are missing.
     pub missing_fraction: f64,
-    /// The temperature that is logged with the record, if one is.
+    /// Temperature logged with the record, if any.
     pub temperature: Option<Temperature>,
     /// The Earth's magnetic field in local east, north, up, if the bench file gives it.
     pub magnetic_field_gauss: Option<[f64; 3]>,
-    /// What is otherwise than the bench file says.
+    /// Hidden effects: deviations from the nominal model and from the bench file.
     pub hidden: Vec<Hidden>,
 }
 
@@ -86,8 +86,8 @@ impl Default for Scenario {
     }
 }
 
-/// More rows are a mistake in a unit.
-pub(crate) const MOST_ROWS: f64 = 1e7;
+/// Largest number of rows; more are a mistake in a unit.
+pub(crate) const MAX_ROWS: f64 = 1e7;
 
 impl Scenario {
     /// The bench description that goes with the record.
@@ -107,8 +107,8 @@ impl Scenario {
         }
     }
 
-    /// The platform as it truly is at its site: declared angles and their error, and what is
-    /// hidden in latitude, gravity and initial attitude.
+    /// The true platform at its site: declared angles and their errors, and hidden effects on
+    /// latitude, gravity and initial attitude.
     #[must_use]
     pub fn platform(&self) -> Platform {
         let error = Stream::new(self.seed, Purpose::InitialAngles).three_normals();
@@ -154,7 +154,13 @@ impl Scenario {
         (0..self.grid_rows()).map(move |row| row as f64 * interval_s)
     }
 
-    /// Whether the logger writes a row at this time since the first.
+    /// The temperature at each row of the regular grid, if the scenario has one.
+    pub(crate) fn temperature_course_c(&self) -> Option<Vec<f64>> {
+        self.temperature
+            .map(|temperature| temperature.course_c(self.seed, self.grid_s()))
+    }
+
+    /// True if the logger writes a row at this time since the first.
     pub(crate) fn logs(&self, since_first_s: f64) -> bool {
         !self
             .gaps_s

@@ -10,7 +10,7 @@ use gyrocal_record::{Bound, Document, Error, Gravity, InputErrorKind, Prior, Sou
 
 use crate::coefficients::Coefficients;
 use crate::hidden_file::{self, HIDDEN, read_hidden};
-use crate::scenario::{InitialAttitude, MOST_ROWS, Scenario};
+use crate::scenario::{InitialAttitude, MAX_ROWS, Scenario};
 use crate::temperature::Temperature;
 
 const ROOT_KEYS: [&str; 9] = [
@@ -121,12 +121,12 @@ impl Scenario {
             hidden: located.into_iter().map(|located| located.hidden).collect(),
             ..scenario
         };
-        match scenario.lack() {
-            Some(lack) => Err(source.error(
+        match scenario.conflict() {
+            Some(conflict) => Err(source.error(
                 InputErrorKind::OutOfRange,
-                spans.get(lack.index).cloned().unwrap_or_default(),
-                lack.found,
-                lack.expected,
+                spans.get(conflict.index).cloned().unwrap_or_default(),
+                conflict.found,
+                conflict.expected,
                 "change the effect or what it needs",
             )),
             None => Ok(scenario),
@@ -218,8 +218,8 @@ fn with_sampling(scenario: Scenario, sampling: &Table<'_>) -> Result<Scenario, E
     };
     let duration_s = sampling.number("duration_s", Bound::Positive)?;
     let interval_s = sampling.number("interval_s", Bound::Positive)?;
-    if duration_s / interval_s > MOST_ROWS {
-        let expected = format!("at most {MOST_ROWS:?} intervals");
+    if duration_s / interval_s > MAX_ROWS {
+        let expected = format!("at most {MAX_ROWS:?} intervals");
         return out_of_range("duration_s", &expected, "is everything in seconds?");
     }
     let gaps_s = sampling.optional_intervals("gaps_s", Bound::NotNegative)?;

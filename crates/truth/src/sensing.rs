@@ -1,4 +1,4 @@
-//! What the accelerometers make of the specific force, before noise.
+//! Outputs of the accelerometers before noise.
 
 use crate::drift::Wave;
 use crate::effect::Effect;

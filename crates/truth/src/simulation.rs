@@ -14,30 +14,30 @@ use crate::scenario::Scenario;
 use crate::sensing::Sensing;
 use crate::term::Term;
 
-/// A record and all that is behind it.
+/// A record, its bench description and the truth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// What the logger wrote.
+    /// The record.
     pub record: Record,
-    /// What the operator knows.
+    /// The bench description: the operator's knowledge.
     pub bench: Bench,
-    /// What only the simulator knows.
+    /// The truth, known to the simulator only.
     pub truth: Truth,
 }
 
 /// The truth behind a record; the vectors but `hidden` have one element for each of its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
-    /// What the gyros do.
+    /// Drift coefficients of the gyros.
     pub coefficients: Coefficients,
-    /// What is hidden in the record.
+    /// Hidden effects.
     pub hidden: Vec<Hidden>,
     /// Platform against local east, north, up.
     pub platform_c_enu: Vec<Attitude>,
     /// Inertial rate of the platform in its own axes without white noise, which is the drift of
     /// its gyros; hidden effects and a random walk included.
     pub drift_deg_per_h: Vec<[f64; 3]>,
-    /// Which components are outliers, whether they are missing or not.
+    /// True for each component that is an outlier, missing or not.
     pub outliers: Vec<[bool; 3]>,
 }
 
@@ -143,7 +143,7 @@ fn about_mean(scenario: &Scenario, temperature_c: Option<&[f64]>) -> Vec<f64> {
     course_c.iter().map(|value| value - mean_c).collect()
 }
 
-/// From the record's clock to true time.
+/// Conversion from the record's clock to true time.
 struct Clock<'a> {
     seconds_per_second: f64,
     terms: &'a [Term],

@@ -5,7 +5,6 @@ use core::f64::consts::TAU;
 use libm::{cos, pow, sqrt};
 
 use crate::random::{Purpose, Stream};
-use crate::scenario::Scenario;
 
 /// A temperature that is logged with the record: a daily wave and a slow wander, both by the
 /// scenario's seed. Between the rows of the regular grid it is linear.
@@ -67,14 +66,6 @@ impl Temperature {
                 self.mean_c + daily.at_k(time_s) + wander_k
             })
             .collect()
-    }
-}
-
-impl Scenario {
-    /// The temperature at each row of the regular grid, if the scenario has one.
-    pub(crate) fn temperature_course_c(&self) -> Option<Vec<f64>> {
-        self.temperature
-            .map(|temperature| temperature.course_c(self.seed, self.grid_s()))
     }
 }
 

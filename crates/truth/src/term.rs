@@ -1,6 +1,6 @@
-//! Where a hidden effect of the caller's own can enter.
+//! Hidden effects defined by the caller.
 
-/// What a hidden effect may depend on.
+/// The variables that a hidden effect may depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Moment {
@@ -14,17 +14,17 @@ pub struct Moment {
     pub field_gauss: [f64; 3],
 }
 
-/// The point of a term that works on the drift or on the output at a moment.
+/// A function of the moment that adds to drift or output.
 pub(crate) type AtMoment = dyn Fn(&Moment) -> [f64; 3] + Send + Sync;
 
-/// A hidden effect of the caller's own; [`Hidden`](crate::Hidden) has those that have names.
+/// A hidden effect defined by the caller; [`Hidden`](crate::Hidden) has the named ones.
 #[non_exhaustive]
 pub enum Term {
     /// Drift to be added to that of the three gyros \[deg/h\].
     Drift(Box<AtMoment>),
     /// Error to be added to the three accelerometers' outputs before noise \[g\].
     Output(Box<AtMoment>),
-    /// What becomes of a noisy sample \[g\]; the first argument is its row on the regular grid.
+    /// Changes a noisy sample \[g\]; the first argument is its row on the regular grid.
     Noise(Box<dyn Fn(usize, [f64; 3]) -> [f64; 3] + Send + Sync>),
     /// True time since the first row when the record's clock shows some time since it \[s\];
     /// must rise and start at zero.

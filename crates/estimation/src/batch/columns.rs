@@ -1,11 +1,11 @@
 //! Sensitivity columns beside those of the model's own parameters.
 
-/// What else the innovations may depend on: jumps of the moving states, parameters that enter
+/// Columns besides the parameters of the model: jumps of the moving states, parameters that enter
 /// in proportion to one of the model's, or anything else that is linear in its amplitude.
 ///
 /// `M` moving states, `Y` outputs.
 pub trait Columns<const M: usize, const Y: usize> {
-    /// How many columns.
+    /// Number of columns.
     fn count(&self) -> usize;
 
     /// The amplitude that the linearisation point has, column by column.

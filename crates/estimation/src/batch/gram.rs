@@ -18,7 +18,7 @@ pub struct Gram {
 }
 
 impl Gram {
-    /// Of no rows with `columns` columns beside the residual.
+    /// The matrix of no rows, for a residual and `columns` columns.
     #[must_use]
     pub fn new(columns: usize) -> Self {
         let size = columns + 1;

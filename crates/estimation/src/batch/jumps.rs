@@ -29,7 +29,7 @@ struct Seen<const M: usize> {
     gain: [f64; M],
     row: usize,
     output: usize,
-    /// Of that deviation.
+    /// Reciprocal of that deviation.
     reciprocal: f64,
 }
 

@@ -26,7 +26,7 @@ where
     pub inputs: D::Inputs,
     /// The record.
     pub series: &'a S,
-    /// How the rates are integrated.
+    /// Integration rule of the rates.
     pub integration: Integration,
     /// Longest interval integrated in one step, s; longer ones are divided.
     pub longest_step_s: f64,

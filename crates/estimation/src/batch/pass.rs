@@ -24,9 +24,9 @@ pub(crate) struct Taken<const M: usize> {
     /// Square of the residual at the linearisation point over the output's noise variance.
     pub(super) cost: f64,
     pub(crate) jacobian: [f64; M],
-    /// Of the output's noise.
+    /// Variance of the output's noise.
     pub(crate) variance: f64,
-    /// Of the moving states, before.
+    /// Covariance of the moving states before the update.
     pub(crate) covariance: [[f64; M]; M],
 }
 
