@@ -4,10 +4,11 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use gyrocal_report::{
-    After, Against, AgainstPanel, Bin, Comparison, Convergence, ConvergingCoefficient, Correlation,
-    CorrelationPanel, DriftPrediction, Estimate, FreeRun, Gain, MarkedLine, Omitted, Picture,
-    Quantity, RankedEffect, Ranking, RankingGroup, Residuals, Role, Spectrum, SpectrumPanel,
-    Threshold, write_png, write_svg,
+    Bin, ComparedEstimate, ComparedQuantity, Comparison, Convergence, Correlation,
+    CorrelationChannel, CovariatePanel, CrossValidation, EstimateHistory, MarkedFrequency, Omitted,
+    OpenLoop, OpenLoopChannel, ParameterHistory, Picture, PowerThreshold, PredictionError,
+    RankedEffect, Ranking, RankingGroup, ResidualChannel, ResidualVsCovariate, Residuals, Role,
+    Spectrum, SpectrumChannel, write_png, write_svg,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -26,12 +27,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pictures: [(&str, Box<dyn Picture>); 9] = [
         ("convergence", Box::new(convergence(&mut noise))),
         ("residuals", Box::new(residuals(&mut noise))),
-        ("free-run", Box::new(free_run(&mut noise))),
+        ("open-loop", Box::new(open_loop(&mut noise))),
         ("spectrum", Box::new(spectrum(&mut noise))),
         ("correlation", Box::new(correlation(&mut noise))),
-        ("against", Box::new(against(&mut noise))),
+        (
+            "residual-vs-covariate",
+            Box::new(residual_vs_covariate(&mut noise)),
+        ),
         ("ranking", Box::new(ranking())),
-        ("gain", Box::new(gain(&mut noise))),
+        ("cross-validation", Box::new(cross_validation(&mut noise))),
         ("comparison", Box::new(comparison(&mut noise))),
     ];
     for (name, picture) in &pictures {
@@ -72,23 +76,24 @@ fn sidereal(time_s: f64) -> f64 {
 
 fn convergence(noise: &mut Noise) -> Convergence {
     let time_s = times();
-    let mut coefficients = Vec::new();
+    let mut parameters = Vec::new();
     for (power, (kind, unit)) in COEFFICIENTS.into_iter().enumerate() {
         for axis in AXES {
             let size = 10f64.powi(-(power as i32));
             let truth = 0.1 * size * noise.normal();
             let start = noise.normal();
             let sigma = |time: f64| size / (1.0 + (time / 9000.0).powf(1.8) * 3.0);
-            coefficients.push(ConvergingCoefficient {
+            let estimate =
+                |t: f64| truth + sigma(t) * (start + 0.5 * (sidereal(t) * 2.0).sin()) / 1.5;
+            parameters.push(ParameterHistory {
                 name: format!("gyro_{axis}.{kind}"),
                 unit: unit.to_owned(),
-                estimate: time_s
-                    .iter()
-                    .map(|&t| truth + sigma(t) * (start + 0.5 * (sidereal(t) * 2.0).sin()) / 1.5)
-                    .collect(),
-                sigma: time_s.iter().map(|&time| sigma(time)).collect(),
+                estimates: EstimateHistory {
+                    estimate: time_s.iter().map(|&time| estimate(time)).collect(),
+                    sigma: time_s.iter().map(|&time| sigma(time)).collect(),
+                },
                 reference: Some(truth),
-                rival: None,
+                second: None,
             });
         }
     }
@@ -96,11 +101,11 @@ fn convergence(noise: &mut Noise) -> Convergence {
         title: "All nine coefficients settle within a day".to_owned(),
         subtitle: "Streaming filter, three days at 60 s, latitude 39.1°".to_owned(),
         time_s,
-        coefficients,
+        parameters,
         columns: 3,
         reference_label: "true value".to_owned(),
         estimate_label: String::new(),
-        rival_label: String::new(),
+        second_label: String::new(),
     }
 }
 
@@ -126,51 +131,57 @@ fn residuals(noise: &mut Noise) -> Residuals {
             .to_owned(),
         subtitle: "One-step innovations".to_owned(),
         time_s,
-        before,
+        channels: AXES
+            .iter()
+            .zip(before.into_iter().zip(after))
+            .map(|(name, (before, after))| ResidualChannel {
+                name: (*name).to_owned(),
+                before,
+                after: Some(after),
+                sigma,
+            })
+            .collect(),
         before_label: "nominal model".to_owned(),
-        after: Some(After {
-            values: after,
-            label: "with gyro_y.g_z".to_owned(),
-        }),
-        sigma: [sigma; 3],
+        after_label: "with gyro_y.g_z".to_owned(),
         quantity: "residual".to_owned(),
         unit: "g".to_owned(),
     }
 }
 
-fn free_run(noise: &mut Noise) -> FreeRun {
+fn open_loop(noise: &mut Noise) -> OpenLoop {
     let time_s = times();
-    let phase = |axis: usize| 2.1 * axis as f64;
-    let simulated_g: [Vec<f64>; 3] = std::array::from_fn(|axis| {
-        let values = time_s
+    let channels = AXES.iter().enumerate().map(|(axis, name)| {
+        let phase = 2.1 * axis as f64;
+        let simulated = time_s
             .iter()
-            .map(|&time| 0.8 * (sidereal(time) + phase(axis)).cos());
-        values.collect()
+            .map(|&time| 0.8 * (sidereal(time) + phase).cos());
+        let simulated: Vec<f64> = simulated.collect();
+        let measured = time_s.iter().zip(&simulated).map(|(&time, value)| {
+            let error = 1.5e-3 * time / DAY_S * (sidereal(time) + phase).sin();
+            value + error + 1e-5 * noise.normal()
+        });
+        OpenLoopChannel {
+            name: (*name).to_owned(),
+            measured: measured.collect(),
+            simulated,
+            sigma: 1e-5,
+        }
     });
-    let measured_g = std::array::from_fn(|axis| {
-        let pairs = time_s.iter().zip(&simulated_g[axis]);
-        pairs
-            .map(|(&time, value)| {
-                let error = 1.5e-3 * time / DAY_S * (sidereal(time) + phase(axis)).sin();
-                value + error + 1e-5 * noise.normal()
-            })
-            .collect()
-    });
-    FreeRun {
-        title: "The simulation runs away from the measurement by 5 mg in three days".to_owned(),
-        subtitle: "Nominal model from the first sample on, without corrections".to_owned(),
+    OpenLoop {
+        title: "The open-loop simulation diverges by 5 mg in three days".to_owned(),
+        subtitle: "Nominal model from the first sample on, without measurement updates".to_owned(),
+        channels: channels.collect(),
         time_s,
-        measured_g,
-        simulated_g,
-        sigma_g: [1e-5; 3],
+        quantity: "specific force".to_owned(),
+        unit: "g".to_owned(),
     }
 }
 
 fn spectrum(noise: &mut Noise) -> Spectrum {
     let days = 14.0;
-    let frequency_per_day: Vec<f64> = (0..10_080).map(|bin| f64::from(bin) / days).collect();
+    let frequency: Vec<f64> = (0..10_080).map(|bin| f64::from(bin) / days).collect();
     let mut power = |line: f64| -> Vec<f64> {
-        let powers = frequency_per_day.iter().map(|frequency| {
+        let powers = frequency.iter().map(|frequency| {
             let distance = (frequency - 24.0 / 5.3) * days;
             let peak = line / (1.0 + 4.0 * distance * distance);
             let (a, b) = (noise.normal(), noise.normal());
@@ -178,25 +189,26 @@ fn spectrum(noise: &mut Noise) -> Spectrum {
         });
         powers.collect()
     };
-    let threshold = Some(Threshold {
+    let threshold = Some(PowerThreshold {
         power: 13.8,
         false_alarm_probability: 0.01,
     });
     let channels = [("x", 0.0), ("y", 90.0), ("z", 0.0)];
-    let channels = channels.map(|(name, line)| SpectrumPanel {
+    let channels = channels.map(|(name, line)| SpectrumChannel {
         name: name.to_owned(),
         power: power(line),
         samples: 20_160,
         threshold,
     });
-    let mark = |frequency_per_day: f64, label: &str| MarkedLine {
-        frequency_per_day,
+    let mark = |frequency: f64, label: &str| MarkedFrequency {
+        frequency,
         label: label.to_owned(),
     };
     Spectrum {
-        title: "A line at 5.3 h stands out in y; nothing else does".to_owned(),
+        title: "One spectral line: 5.3 h in y".to_owned(),
         subtitle: "Normalised innovations of fourteen days".to_owned(),
-        frequency_per_day: frequency_per_day.clone(),
+        frequency: frequency.clone(),
+        frequency_unit: "cycles/day".to_owned(),
         channels: channels.into(),
         quantity: "power".to_owned(),
         unit: String::new(),
@@ -211,7 +223,7 @@ fn spectrum(noise: &mut Noise) -> Spectrum {
 
 fn correlation(noise: &mut Noise) -> Correlation {
     let band = 1.96 / 4320f64.sqrt();
-    let mut channel = |name: &str, first: f64| CorrelationPanel {
+    let mut channel = |name: &str, first: f64| CorrelationChannel {
         name: name.to_owned(),
         correlation: (1..=100)
             .map(|lag| first.powi(lag) + 0.5 * band * noise.normal())
@@ -220,14 +232,14 @@ fn correlation(noise: &mut Noise) -> Correlation {
         samples: 4320,
     };
     Correlation {
-        title: "The noise of z is coloured".to_owned(),
+        title: "The noise of z is autocorrelated".to_owned(),
         subtitle: String::new(),
         channels: vec![channel("x", 0.0), channel("y", 0.0), channel("z", 0.3)],
         confidence: 0.95,
     }
 }
 
-fn against(noise: &mut Noise) -> Against {
+fn residual_vs_covariate(noise: &mut Noise) -> ResidualVsCovariate {
     let time_s = times();
     let mut panels = Vec::new();
     for (row, axis) in AXES.into_iter().enumerate() {
@@ -242,7 +254,7 @@ fn against(noise: &mut Noise) -> Against {
             .into_iter()
             .enumerate()
         {
-            let abscissa: Vec<f64> = match column {
+            let covariate: Vec<f64> = match column {
                 0 => time_s
                     .iter()
                     .map(|&t| 0.8 * (sidereal(t) + 2.0).cos())
@@ -253,15 +265,15 @@ fn against(noise: &mut Noise) -> Against {
                     .map(|&t| 24.0 + 1.5 * (sidereal(t) + 0.7).sin())
                     .collect(),
             };
-            panels.push(AgainstPanel {
+            panels.push(CovariatePanel {
                 name: format!("residual of {axis}"),
-                abscissa: name.to_owned(),
-                abscissa_unit: ["g", "days", "°C"][column].to_owned(),
-                bins: Bin::of(&abscissa, &residual, 24),
+                covariate: name.to_owned(),
+                covariate_unit: ["g", "days", "°C"][column].to_owned(),
+                bins: Bin::of(&covariate, &residual, 24),
             });
         }
     }
-    Against {
+    ResidualVsCovariate {
         title: "The residual of y follows the specific force along z".to_owned(),
         subtitle: String::new(),
         quantity: "mean residual".to_owned(),
@@ -283,8 +295,7 @@ fn ranking() -> Ranking {
         effects,
     };
     Ranking {
-        title: "One cause is found, gyro_y.g_z, and two that these data cannot tell from it"
-            .to_owned(),
+        title: "gyro_y.g_z is detected; two alternatives are not distinguishable".to_owned(),
         subtitle: "Score tests on fourteen days".to_owned(),
         statistic: "|z|".to_owned(),
         threshold: 3.87,
@@ -292,15 +303,20 @@ fn ranking() -> Ranking {
         tested: 91,
         groups: vec![
             group(
-                "finding 1, set with 95% coverage",
+                "finding 1, 95% confidence set",
                 vec![
-                    effect("gyro_y.g_z", 18.9, Role::Named, "0.0035 deg/h/g"),
-                    effect("gyro_y.g_yz", 18.7, Role::Rival, "3.6 nats behind"),
+                    effect("gyro_y.g_z", 18.9, Role::Reported, "0.0035 deg/h/g"),
+                    effect(
+                        "gyro_y.g_yz",
+                        18.7,
+                        Role::Alternative,
+                        "log likelihood 3.6 nats lower",
+                    ),
                     effect(
                         "gyro_xy.axis_misalignment",
                         18.4,
-                        Role::Rival,
-                        "9.1 nats behind",
+                        Role::Alternative,
+                        "log likelihood 9.1 nats lower",
                     ),
                 ],
             ),
@@ -326,7 +342,7 @@ fn ranking() -> Ranking {
     }
 }
 
-fn gain(noise: &mut Noise) -> Gain {
+fn cross_validation(noise: &mut Noise) -> CrossValidation {
     let time_s: Vec<f64> = (0..1440).map(|row| f64::from(row) * STEP_S).collect();
     let part = |size: f64| -> Vec<f64> {
         let values = time_s
@@ -334,14 +350,17 @@ fn gain(noise: &mut Noise) -> Gain {
             .map(|t| size * t / DAY_S * (1.0 + 0.3 * sidereal(*t).sin()));
         values.collect()
     };
-    Gain {
-        title: "gyro_y.g_z gains 41 nats on held-out data and cuts drift to a tenth".to_owned(),
+    CrossValidation {
+        title: "gyro_y.g_z gains 41 nats on held-out data and reduces drift to a tenth".to_owned(),
         subtitle: "Eight contiguous blocks; drift of a later record".to_owned(),
         block_gain_nats: (0..8).map(|_| 5.0 + 4.0 * noise.normal()).collect(),
-        drift: Some(DriftPrediction {
-            nominal_arcmin: part(4.6),
-            extended_arcmin: part(0.4),
-            expected_arcmin: Some(part(0.3)),
+        prediction: Some(PredictionError {
+            name: "Later record".to_owned(),
+            quantity: "drift prediction error".to_owned(),
+            unit: "arcmin".to_owned(),
+            nominal: part(4.6),
+            extended: part(0.4),
+            expected: Some(part(0.3)),
             time_s,
         }),
     }
@@ -359,11 +378,11 @@ fn comparison(noise: &mut Noise) -> Comparison {
         for axis in AXES {
             let truth = 0.1 * noise.normal() / 10f64.powi(power as i32);
             let sigma = 2e-4;
-            let estimates = [30.0, 1.5, 1.0, 1.0].map(|times| Estimate {
+            let estimates = [30.0, 1.5, 1.0, 1.0].map(|times| ComparedEstimate {
                 value: truth + times * sigma * noise.normal(),
                 sigma,
             });
-            quantities.push(Quantity {
+            quantities.push(ComparedQuantity {
                 name: format!("gyro_{axis}.{kind}"),
                 unit: unit.to_owned(),
                 reference: Some(truth),

@@ -1,38 +1,47 @@
-//! Scales, and the ticks that make them readable.
+//! Scales of axes, their ticks and labels.
 
-use crate::number::{readable_unit, superscript, with_unit};
+use crate::number::{readable_unit, short, superscript, with_unit};
+use crate::span::Span;
 
 const DAY_S: f64 = 86_400.0;
-/// A time axis goes on to its next tick if no more than this share of its length is missing.
+/// A time axis ends at its next tick if no more than this fraction of its length is missing.
 const NEARLY: f64 = 0.01;
 
-/// One axis: what it spans, its ticks and its title.
+/// Times since the first one and their span, s.
+pub(crate) fn elapsed(time_s: &[f64]) -> (Vec<f64>, Span) {
+    let origin = time_s.first().copied().unwrap_or(0.0);
+    let elapsed: Vec<f64> = time_s.iter().map(|time| time - origin).collect();
+    let span = Span::of(elapsed.iter().copied());
+    (elapsed, span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).open())
+}
+
+/// One axis: its span, ticks and title.
 #[derive(Clone, Debug)]
 pub(crate) struct Axis {
     lo: f64,
     hi: f64,
     logarithmic: bool,
-    /// What values are multiplied by before they are read from the labels.
+    /// Factor from values to the numbers of the labels.
     pub factor: f64,
-    /// Where labelled ticks stand, and their labels.
+    /// Values of labelled ticks, and their labels.
     pub ticks: Vec<(f64, String)>,
-    /// Where ticks without labels stand.
+    /// Values of ticks without labels.
     pub minor: Vec<f64>,
     /// Quantity and unit.
     pub title: String,
 }
 
 impl Axis {
-    /// An even scale with about as many ticks as asked; small or large numbers are read in
-    /// thousandths or thousands of the unit.
+    /// A linear scale with about as many ticks as asked; labels of small or large numbers are in
+    /// a power of 1000 of the unit.
     pub(crate) fn linear(span: Span, quantity: &str, unit: &str, ticks: usize) -> Self {
         let (factor, unit) = readable_unit(unit, span.largest());
         let title = with_unit(quantity, &unit);
         Self::scaled(span, factor, title, ticks, &[1.0, 2.0, 5.0])
     }
 
-    /// An even scale of time since an origin, in the unit that suits its length. Values are in
-    /// seconds.
+    /// A linear scale of time since the first sample, labelled in the unit that suits its length.
+    /// Values are in seconds.
     pub(crate) fn time(span: Span, ticks: usize) -> Self {
         let (unit_s, unit, steps): (f64, &str, &[f64]) = match span.length() {
             length if length > 1.5 * DAY_S => (DAY_S, "days", &[1.0, 2.0, 5.0]),
@@ -74,14 +83,14 @@ impl Axis {
             minor.clear();
         }
         if labelled.len() < 2 {
-            // Less than two decades: multiples of powers of ten have to serve.
+            // Less than two decades: label multiples of powers of ten.
             labelled = minor
                 .iter()
                 .filter(|&&value| {
                     let digit = (value / 10f64.powf(value.log10().floor())).round() as i32;
                     matches!(digit, 1 | 2 | 5 | 10)
                 })
-                .map(|&value| (value, crate::number::short(value, 1)))
+                .map(|&value| (value, short(value, 1)))
                 .collect();
         }
         Self {
@@ -95,7 +104,7 @@ impl Axis {
         }
     }
 
-    /// An even scale with ticks at given places.
+    /// A linear scale with the given ticks.
     pub(crate) fn named(span: Span, ticks: Vec<(f64, String)>, title: &str) -> Self {
         Self {
             lo: span.lo,
@@ -108,7 +117,7 @@ impl Axis {
         }
     }
 
-    /// Where a value stands: 0 at the start of the axis, 1 at its end. Not a number if the value
+    /// Position of a value: 0 at the start of the axis, 1 at its end. Not a number if the value
     /// is not one, or has no logarithm.
     pub(crate) fn at(&self, value: f64) -> f64 {
         if self.logarithmic {
@@ -125,12 +134,12 @@ impl Axis {
     fn scaled(span: Span, factor: f64, title: String, ticks: usize, steps: &[f64]) -> Self {
         let (lo, hi) = (span.lo * factor, span.hi * factor);
         let step = step((hi - lo) / ticks.max(1) as f64, steps);
-        let places = places(step);
+        let decimals = decimals(step);
         let (first, last) = ((lo / step).ceil() as i64, (hi / step).floor() as i64);
         let ticks = (first..=last)
             .map(|multiple| {
                 let value = multiple as f64 * step;
-                (value / factor, label(value, places))
+                (value / factor, label(value, decimals))
             })
             .collect();
         Self {
@@ -145,83 +154,6 @@ impl Axis {
     }
 }
 
-/// What an axis spans; the lower end is below the upper.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Span {
-    pub lo: f64,
-    pub hi: f64,
-}
-
-impl Span {
-    /// The span of all finite values; none if there are none.
-    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        values.into_iter().filter(|value| value.is_finite()).fold(
-            None,
-            |span: Option<Self>, value| {
-                Some(span.map_or(
-                    Self {
-                        lo: value,
-                        hi: value,
-                    },
-                    |span| Self {
-                        lo: span.lo.min(value),
-                        hi: span.hi.max(value),
-                    },
-                ))
-            },
-        )
-    }
-
-    /// From minus to plus the size.
-    pub(crate) fn symmetric(size: f64) -> Self {
-        Self {
-            lo: -size,
-            hi: size,
-        }
-        .open()
-    }
-
-    /// Both together.
-    pub(crate) fn with(self, other: Self) -> Self {
-        Self {
-            lo: self.lo.min(other.lo),
-            hi: self.hi.max(other.hi),
-        }
-    }
-
-    /// A little more on either side, a fraction of the length.
-    pub(crate) fn padded(self, fraction: f64) -> Self {
-        let span = self.open();
-        let more = fraction * span.length();
-        Self {
-            lo: span.lo - more,
-            hi: span.hi + more,
-        }
-    }
-
-    /// A span that is not a single point, so that there is a scale.
-    pub(crate) fn open(self) -> Self {
-        let size = self.lo.abs().max(self.hi.abs());
-        // Below that, differences of neighbouring numbers would be the steps of the axis.
-        if self.length() > 1e-9 * size {
-            return self;
-        }
-        let more = if size > 0.0 { 0.1 * size } else { 1.0 };
-        Self {
-            lo: self.lo - more,
-            hi: self.hi + more,
-        }
-    }
-
-    pub(crate) fn length(self) -> f64 {
-        self.hi - self.lo
-    }
-
-    fn largest(self) -> f64 {
-        self.lo.abs().max(self.hi.abs())
-    }
-}
-
 /// The smallest step of the given kind (times a power of ten) that is not below the least.
 fn step(least: f64, kinds: &[f64]) -> f64 {
     let power = 10f64.powf(least.log10().floor());
@@ -232,13 +164,13 @@ fn step(least: f64, kinds: &[f64]) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-/// Decimal places that show a step.
-fn places(step: f64) -> usize {
+/// Number of decimals that a step needs.
+fn decimals(step: f64) -> usize {
     (-(step.log10() + 1e-9).floor()).clamp(0.0, 15.0) as usize
 }
 
-fn label(value: f64, places: usize) -> String {
-    let text = format!("{value:.places$}");
+fn label(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
     // Rounding can leave a zero with a sign.
     if text
         .trim_start_matches('-')

@@ -1,5 +1,5 @@
-//! What data must be to be drawn. Not-a-number stands for a missing value and is left out; what
-//! would make a picture wrong or endless is an error.
+//! Checks of data before they are drawn. Not-a-number stands for a missing value and is left out;
+//! data that would make a picture wrong or endless are an error.
 
 use crate::error::Error;
 
@@ -31,7 +31,7 @@ pub(crate) fn not_infinite(what: impl Fn() -> String, values: &[f64]) -> Result<
 }
 
 /// Abscissas are finite and never decrease.
-pub(crate) fn rising(what: &str, values: &[f64]) -> Result<(), Error> {
+pub(crate) fn non_decreasing(what: &str, values: &[f64]) -> Result<(), Error> {
     each(
         || what.to_owned(),
         values,
@@ -70,9 +70,9 @@ pub(crate) fn positive(what: &str, value: f64) -> Result<(), Error> {
 }
 
 /// A list has an entry.
-pub(crate) fn some<T>(what: &'static str, list: &[T]) -> Result<(), Error> {
+pub(crate) fn non_empty<T>(what: &'static str, list: &[T]) -> Result<(), Error> {
     if list.is_empty() {
-        return Err(Error::Nothing { what });
+        return Err(Error::Empty { what });
     }
     Ok(())
 }

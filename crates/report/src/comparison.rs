@@ -1,101 +1,87 @@
 //! Estimates of several estimators.
 
-use crate::axis::{Axis, Span};
-use crate::canvas::{Align, Canvas, Lettering, Stroke};
+use crate::axes::{Axes, Labels};
+use crate::axis::Axis;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::check;
 use crate::error::Error;
-use crate::page::{Grid, Key, page};
-use crate::panel::{Panel, Surround};
+use crate::figure::{Legend, figure};
+use crate::geometry::Rect;
+use crate::layout::Layout;
 use crate::picture::Picture;
+use crate::span::Span;
 use crate::style::{BLACK, DATA, SERIES, SMALL, THIN};
 use crate::text;
-use crate::trace::Frame;
 
-/// Dots with error bars: some quantities as several estimators see them, one panel a quantity.
+/// Dots with error bars: estimates of some quantities by several estimators, one panel a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// What is seen.
+    /// Main statement of the picture.
     pub title: String,
-    /// More words, or none.
+    /// Further description; may be empty.
     pub subtitle: String,
     /// Names of the estimators, from top to bottom in each panel.
     pub estimators: Vec<String>,
-    /// One panel each, row after row.
-    pub quantities: Vec<Quantity>,
-    /// Panels side by side.
+    /// The quantities, one panel each, row after row.
+    pub quantities: Vec<ComparedQuantity>,
+    /// Number of panels in a row.
     pub columns: usize,
-    /// What references are, for the key: `true value`.
+    /// Meaning of the references, for the legend: `true value`.
     pub reference_label: String,
 }
 
-/// What was estimated.
+/// An estimated quantity.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
-    /// Its name: `gyro_x.bias`.
+pub struct ComparedQuantity {
+    /// Name of the quantity: `gyro_x.bias`.
     pub name: String,
     /// Its unit: `deg/h`.
     pub unit: String,
     /// True or otherwise known value.
     pub reference: Option<f64>,
     /// One estimate of each estimator, in their order.
-    pub estimates: Vec<Estimate>,
+    pub estimates: Vec<ComparedEstimate>,
 }
 
 /// One estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The value; nan if there is none.
+pub struct ComparedEstimate {
+    /// The value; nan for a missing one.
     pub value: f64,
     /// Its standard deviation; nan if it is not known.
     pub sigma: f64,
 }
 
+/// Height of the row of an estimator, px.
 const ROW_PX: f64 = 17.0;
 
 impl Picture for Comparison {
     fn to_svg(&self) -> Result<String, Error> {
         self.check()?;
-        let rows = self.estimators.len() as f64;
-        let names = self
-            .estimators
-            .iter()
-            .map(|e| text::width_px(e, SMALL, false));
-        let names = names.fold(20.0, f64::max).min(170.0);
-        let columns = self.columns.max(1);
-        let mut grid = Grid::new(columns, self.quantities.len(), ROW_PX * rows + 10.0);
-        grid.own_abscissa = true;
-        grid.left_px = 34.0;
-        let mut keys: Vec<Key> = self
-            .estimators
-            .iter()
-            .enumerate()
-            .map(|(index, name)| Key::dot(SERIES[index % SERIES.len()], name.as_str()))
-            .collect();
-        keys.push(Key::line(
-            Stroke::solid(BLACK, DATA),
-            "plus and minus 2 sigma (95%)",
-        ));
-        if self.quantities.iter().any(|q| q.reference.is_some()) {
-            let stroke = Stroke::dashed(BLACK, THIN);
-            keys.push(Key::line(stroke, self.reference_label.as_str()));
-        }
-        page(
+        let widths = self.estimators.iter();
+        let widths = widths.map(|name| text::width_px(name, SMALL, false));
+        let names_px = widths.fold(20.0, f64::max).min(170.0);
+        let panel_px = ROW_PX * self.estimators.len() as f64 + 10.0;
+        let layout = Layout::new(self.columns, self.quantities.len(), panel_px)
+            .with_own_abscissae()
+            .with_left(34.0);
+        Ok(figure(
             &self.title,
             &self.subtitle,
-            &keys,
-            grid.height(),
+            &self.legend(),
+            layout.height(),
             |canvas, mut body| {
-                body.left += names;
-                self.panels(canvas, grid, body, names)
+                body.left += names_px;
+                self.draw(canvas, layout, body, names_px);
             },
-        )
+        ))
     }
 }
 
 impl Comparison {
     fn check(&self) -> Result<(), Error> {
-        check::some("the list of estimators", &self.estimators)?;
-        check::some("the list of quantities", &self.quantities)?;
+        check::non_empty("the list of estimators", &self.estimators)?;
+        check::non_empty("the list of quantities", &self.quantities)?;
         for quantity in &self.quantities {
             if quantity.estimates.len() != self.estimators.len() {
                 return Err(Error::UnequalLengths {
@@ -116,78 +102,96 @@ impl Comparison {
         Ok(())
     }
 
-    fn panels(
-        &self,
-        canvas: &mut Canvas<'_>,
-        grid: Grid,
-        body: Frame,
-        names: f64,
-    ) -> Result<(), Error> {
-        let rows = self.estimators.len() as f64;
+    fn legend(&self) -> Vec<Legend> {
+        let names = self.estimators.iter().enumerate();
+        let mut legend: Vec<Legend> = names
+            .map(|(index, name)| Legend::dot(SERIES[index % SERIES.len()], name.as_str()))
+            .collect();
+        let bar = LineStyle::solid(BLACK, DATA);
+        legend.push(Legend::line(bar, "±2σ (95%)"));
+        if self.quantities.iter().any(|q| q.reference.is_some()) {
+            let style = LineStyle::dashed(BLACK, THIN);
+            legend.push(Legend::line(style, self.reference_label.as_str()));
+        }
+        legend
+    }
+
+    fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect, names_px: f64) {
+        let rows = Span {
+            lo: -0.8,
+            hi: self.estimators.len() as f64 - 0.2,
+        };
         for (index, quantity) in self.quantities.iter().enumerate() {
-            let frame = grid.frame(body, index);
-            let ends = quantity
-                .estimates
-                .iter()
-                .flat_map(|estimate| estimate.ends());
+            let frame = layout.frame(body, index);
+            let ends = quantity.estimates.iter().flat_map(|e| e.ends());
             let span = Span::of(ends.chain(quantity.reference));
-            let any = span.is_some();
+            let has_data = span.is_some();
             let span = span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).padded(0.08);
             let ticks = (frame.width() / 50.0) as usize;
-            let panel = Panel {
+            let axes = Axes {
                 frame,
                 x: Axis::linear(span, "", &quantity.unit, ticks),
-                y: Axis::named(
-                    Span {
-                        lo: -0.8,
-                        hi: rows - 0.2,
-                    },
-                    Vec::new(),
-                    "",
-                ),
+                y: Axis::named(rows, Vec::new(), ""),
             };
-            let surround = Surround {
+            if layout.is_first_in_row(index) {
+                self.draw_names(canvas, &axes, names_px);
+            }
+            let labels = Labels {
                 name: &quantity.name,
                 note: "",
                 abscissa: true,
                 ordinate_title: false,
             };
-            panel.surround(canvas, surround)?;
-            if !any {
-                panel.empty(canvas)?;
-            }
-            if let Some(reference) = quantity.reference {
-                panel.upright(canvas, reference, Stroke::dashed(BLACK, THIN))?;
-            }
-            for (row, estimate) in quantity.estimates.iter().enumerate() {
-                let colour = SERIES[row % SERIES.len()];
-                let y = rows - 1.0 - row as f64;
-                if index % grid.columns == 0 {
-                    let name = text::fit(&self.estimators[row], SMALL, false, names);
-                    let place = (frame.left - 8.0, panel.place(0.0, y).1);
-                    canvas.text(&name, place, Lettering::new(SMALL, Align::End))?;
-                }
-                let [lower, upper] = estimate.ends();
-                if lower < upper {
-                    let bar = [panel.place(lower, y), panel.place(upper, y)];
-                    canvas.line(&bar, Stroke::solid(colour, DATA))?;
-                }
-                if !estimate.value.is_nan() {
-                    canvas.disc(panel.place(estimate.value, y), 3.0, colour, 1.0)?;
-                }
-            }
+            axes.draw(canvas, labels, has_data, |axes, canvas| {
+                quantity.draw(canvas, axes);
+            });
         }
-        Ok(())
+    }
+
+    /// The names of the estimators left of a panel.
+    fn draw_names(&self, canvas: &mut Canvas, axes: &Axes, names_px: f64) {
+        for (row, name) in self.estimators.iter().enumerate() {
+            let (_, y) = axes.point(0.0, ordinate(row, self.estimators.len()));
+            let name = text::fit(name, SMALL, false, names_px);
+            let style = TextStyle::new(SMALL, Align::End);
+            canvas.text(&name, (axes.frame.left - 8.0, y), style);
+        }
     }
 }
 
-impl Estimate {
+impl ComparedQuantity {
+    fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
+        if let Some(reference) = self.reference {
+            axes.vertical_line(canvas, reference, LineStyle::dashed(BLACK, THIN));
+        }
+        for (row, estimate) in self.estimates.iter().enumerate() {
+            let colour = SERIES[row % SERIES.len()];
+            let y = ordinate(row, self.estimates.len());
+            let [lower, upper] = estimate.ends();
+            if lower < upper {
+                let bar = [axes.point(lower, y), axes.point(upper, y)];
+                canvas.line(&bar, LineStyle::solid(colour, DATA));
+            }
+            if !estimate.value.is_nan() {
+                canvas.disc(axes.point(estimate.value, y), 3.0, colour);
+            }
+        }
+    }
+}
+
+/// Ordinate of a row, counted from the top.
+fn ordinate(row: usize, rows: usize) -> f64 {
+    rows as f64 - 1.0 - row as f64
+}
+
+impl ComparedEstimate {
+    /// Both ends of the error bar.
     fn ends(&self) -> [f64; 2] {
-        let reach = if self.sigma.is_nan() {
+        let half = if self.sigma.is_nan() {
             0.0
         } else {
             2.0 * self.sigma
         };
-        [self.value - reach, self.value + reach]
+        [self.value - half, self.value + half]
     }
 }

@@ -1,201 +1,200 @@
 //! Estimates against time.
 
-use crate::axis::{Axis, Span};
-use crate::canvas::{Canvas, Stroke};
+use crate::axes::{Axes, Labels};
+use crate::axis::{Axis, elapsed};
+use crate::canvas::{Canvas, LineStyle};
 use crate::check;
 use crate::error::Error;
+use crate::figure::{Legend, figure};
+use crate::geometry::Rect;
+use crate::layout::Layout;
 use crate::number::{percent, short};
-use crate::page::{Grid, Key, page};
-use crate::panel::{Panel, Surround};
 use crate::picture::Picture;
-use crate::style::{BLACK, BLUE, DATA, ORANGE, SKY, THIN, VERMILION};
-use crate::trace::Frame;
+use crate::span::Span;
+use crate::style::{BAND_OPACITY, BLACK, BLUE, DATA, ORANGE, SKY, THIN, VERMILION};
 
-/// Estimates of coefficients against time with their bands of two sigma, one panel each.
+/// Estimates of parameters against time with their bands of two sigma, one panel each.
 ///
-/// The scale of a panel is set by what the estimate and its band do after the first tenth of the
-/// time (four tenths if there is a rival), and by the reference; what was before may leave the
-/// panel.
+/// The scale of a panel is set by its reference, and by estimate and band after the first tenth of
+/// the time (four tenths with a second estimator); earlier values may leave the panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
-    /// What is seen.
+    /// Main statement of the picture.
     pub title: String,
-    /// More words, or none.
+    /// Further description; may be empty.
     pub subtitle: String,
     /// Times of the estimates, s; shown from the first.
     pub time_s: Vec<f64>,
-    /// One panel each, row after row.
-    pub coefficients: Vec<ConvergingCoefficient>,
-    /// Panels side by side: three for x, y, z.
+    /// The parameters, one panel each, row after row.
+    pub parameters: Vec<ParameterHistory>,
+    /// Number of panels in a row.
     pub columns: usize,
-    /// What references are, for the key: `true value`.
+    /// Meaning of the references, for the legend: `true value`.
     pub reference_label: String,
-    /// What estimates are, for the key: `extended model`; empty: `estimate`.
+    /// The estimator, for the legend: `extended model`; `estimate` if empty.
     pub estimate_label: String,
-    /// What the rival estimates are, for the key, if there are any: `nominal model`.
-    pub rival_label: String,
+    /// The second estimator, for the legend, if there is one: `nominal model`.
+    pub second_label: String,
 }
 
-/// One coefficient while it converges.
+/// The estimates of one parameter against time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ConvergingCoefficient {
-    /// Its name: `gyro_x.bias`.
+pub struct ParameterHistory {
+    /// Name of the parameter: `gyro_x.bias`.
     pub name: String,
     /// Its unit: `deg/h`.
     pub unit: String,
-    /// Estimates at the times; nan where there is none.
+    /// The estimates.
+    pub estimates: EstimateHistory,
+    /// True or otherwise known value.
+    pub reference: Option<f64>,
+    /// Estimates of a second estimator.
+    pub second: Option<EstimateHistory>,
+}
+
+/// Estimates and standard deviations, one of each time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EstimateHistory {
+    /// Estimates; nan for a missing one.
     pub estimate: Vec<f64>,
     /// Their standard deviations.
     pub sigma: Vec<f64>,
-    /// True or otherwise known value.
-    pub reference: Option<f64>,
-    /// Another estimator's estimates and standard deviations at the times.
-    pub rival: Option<[Vec<f64>; 2]>,
 }
 
-/// The part of the time that does not set the scale.
+/// Initial fraction of the time that does not set the scale.
 const UNSETTLED: f64 = 0.1;
-/// The same with rivals: how two estimators differ shows when both have settled.
-const UNSETTLED_RIVALS: f64 = 0.4;
-const BAND_OPACITY: f64 = 0.35;
+/// The same with two estimators: their difference shows when both have settled.
+const UNSETTLED_BOTH: f64 = 0.4;
 
 impl Picture for Convergence {
     fn to_svg(&self) -> Result<String, Error> {
         self.check()?;
-        let mut grid = Grid::new(self.columns, self.coefficients.len(), 130.0);
-        grid.left_px = 70.0;
-        let estimate = match self.estimate_label.as_str() {
-            "" => "estimate",
-            label => label,
-        };
-        let mut keys = vec![
-            Key::line(Stroke::solid(BLUE, DATA), estimate),
-            Key::area(SKY, BAND_OPACITY, "plus and minus 2 sigma (95%)"),
-        ];
-        if self.coefficients.iter().any(|c| c.rival.is_some()) {
-            let stroke = Stroke::solid(VERMILION, DATA);
-            keys.push(Key::line(stroke, self.rival_label.as_str()));
-            keys.push(Key::area(ORANGE, BAND_OPACITY, "the same of it"));
-        }
-        if self.coefficients.iter().any(|c| c.reference.is_some()) {
-            let stroke = Stroke::dashed(BLACK, THIN);
-            keys.push(Key::line(stroke, self.reference_label.as_str()));
-        }
+        let layout = Layout::new(self.columns, self.parameters.len(), 130.0).with_left(70.0);
         let scale = format!(
-            "scales leave the first {} of the time out",
+            "vertical scales leave out the first {} of the time",
             percent(self.unsettled())
         );
         let subtitle = match self.subtitle.trim_end_matches('.') {
             "" => format!("{}{}.", scale[..1].to_uppercase(), &scale[1..]),
             words => format!("{words}; {scale}."),
         };
-        page(
+        Ok(figure(
             &self.title,
             &subtitle,
-            &keys,
-            grid.height(),
-            |canvas, body| self.panels(canvas, grid, body),
-        )
+            &self.legend(),
+            layout.height(),
+            |canvas, body| self.draw(canvas, layout, body),
+        ))
     }
 }
 
 impl Convergence {
+    fn has_second(&self) -> bool {
+        self.parameters.iter().any(|p| p.second.is_some())
+    }
+
     fn unsettled(&self) -> f64 {
-        if self.coefficients.iter().any(|c| c.rival.is_some()) {
-            UNSETTLED_RIVALS
+        if self.has_second() {
+            UNSETTLED_BOTH
         } else {
             UNSETTLED
         }
     }
 
     fn check(&self) -> Result<(), Error> {
-        check::some("the list of converging coefficients", &self.coefficients)?;
-        check::rising("the times of the estimates", &self.time_s)?;
+        check::non_empty("the list of parameters", &self.parameters)?;
+        check::non_decreasing("the times of the estimates", &self.time_s)?;
         let times = ("the times", self.time_s.len());
-        for coefficient in &self.coefficients {
-            let name = &coefficient.name;
-            check::column(
-                || format!("estimates of {name}"),
-                &coefficient.estimate,
-                times,
-            )?;
-            check::column(|| format!("sigmas of {name}"), &coefficient.sigma, times)?;
-            if let Some([estimate, sigma]) = &coefficient.rival {
-                check::column(|| format!("rival estimates of {name}"), estimate, times)?;
-                check::column(|| format!("rival sigmas of {name}"), sigma, times)?;
+        for parameter in &self.parameters {
+            let name = &parameter.name;
+            for (kind, history) in [
+                ("", Some(&parameter.estimates)),
+                ("second ", parameter.second.as_ref()),
+            ] {
+                let Some(history) = history else { continue };
+                let what = || format!("{kind}estimates of {name}");
+                check::column(what, &history.estimate, times)?;
+                let what = || format!("{kind}sigmas of {name}");
+                check::column(what, &history.sigma, times)?;
             }
-            if let Some(reference) = coefficient.reference {
+            if let Some(reference) = parameter.reference {
                 check::finite(&format!("reference of {name}"), reference)?;
             }
         }
         Ok(())
     }
 
-    fn panels(&self, canvas: &mut Canvas<'_>, grid: Grid, body: Frame) -> Result<(), Error> {
-        let origin = self.time_s.first().copied().unwrap_or(0.0);
-        let elapsed: Vec<f64> = self.time_s.iter().map(|time| time - origin).collect();
-        let span = Span::of(elapsed.iter().copied()).unwrap_or(Span { lo: 0.0, hi: 1.0 });
-        for (index, coefficient) in self.coefficients.iter().enumerate() {
-            let band = band(&coefficient.estimate, &coefficient.sigma);
-            let rival = coefficient.rival.as_ref();
-            let rival_band = rival.map(|[estimate, sigma]| self::band(estimate, sigma));
-            let ordinate = coefficient.span(&elapsed, &band, rival_band.as_ref(), self.unsettled());
-            let frame = grid.frame(body, index);
+    fn legend(&self) -> Vec<Legend> {
+        let estimate = match self.estimate_label.as_str() {
+            "" => "estimate",
+            label => label,
+        };
+        let mut legend = vec![
+            Legend::line(LineStyle::solid(BLUE, DATA), estimate),
+            Legend::area(SKY, BAND_OPACITY, "±2σ (95%)"),
+        ];
+        if self.has_second() {
+            let style = LineStyle::solid(VERMILION, DATA);
+            legend.push(Legend::line(style, self.second_label.as_str()));
+            legend.push(Legend::area(ORANGE, BAND_OPACITY, "±2σ (95%)"));
+        }
+        if self.parameters.iter().any(|p| p.reference.is_some()) {
+            let style = LineStyle::dashed(BLACK, THIN);
+            legend.push(Legend::line(style, self.reference_label.as_str()));
+        }
+        legend
+    }
+
+    fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect) {
+        let (elapsed, span) = elapsed(&self.time_s);
+        for (index, parameter) in self.parameters.iter().enumerate() {
+            let frame = layout.frame(body, index);
             let ticks = (frame.width() / 45.0) as usize;
-            let panel = Panel {
+            let ordinate = parameter.span(&elapsed, self.unsettled());
+            let axes = Axes {
                 frame,
-                x: Axis::time(span.open(), ticks),
-                y: Axis::linear(ordinate.padded(0.06), "", &coefficient.unit, 5),
+                x: Axis::time(span, ticks),
+                y: Axis::linear(ordinate.padded(0.06), "", &parameter.unit, 5),
             };
-            let surround = Surround {
-                name: &coefficient.name,
-                note: &coefficient.note(panel.y.factor),
-                abscissa: grid.shows_abscissa(index),
+            let labels = Labels {
+                name: &parameter.name,
+                note: &parameter.estimates.note(axes.y.factor),
+                abscissa: layout.shows_abscissa(index),
                 ordinate_title: true,
             };
-            panel.surround(canvas, surround)?;
-            if coefficient.estimate.iter().all(|value| value.is_nan()) {
-                panel.empty(canvas)?;
-                continue;
-            }
-            if let (Some([estimate, _]), Some((lower, upper))) = (rival, &rival_band) {
-                panel.area(canvas, &elapsed, (lower, upper), ORANGE, BAND_OPACITY)?;
-                panel.line(canvas, &elapsed, estimate, Stroke::solid(VERMILION, DATA))?;
-            }
-            panel.area(canvas, &elapsed, (&band.0, &band.1), SKY, BAND_OPACITY)?;
-            panel.line(
-                canvas,
-                &elapsed,
-                &coefficient.estimate,
-                Stroke::solid(BLUE, DATA),
-            )?;
-            if let Some(reference) = coefficient.reference {
-                panel.level(canvas, reference, Stroke::dashed(BLACK, THIN))?;
-            }
+            let has_data = parameter.estimates.estimate.iter().any(|v| !v.is_nan());
+            axes.draw(canvas, labels, has_data, |axes, canvas| {
+                parameter.draw(canvas, axes, &elapsed);
+            });
         }
-        Ok(())
     }
 }
 
-fn band(estimates: &[f64], sigmas: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let pairs = estimates.iter().zip(sigmas);
-    pairs
-        .map(|(estimate, sigma)| (estimate - 2.0 * sigma, estimate + 2.0 * sigma))
-        .unzip()
-}
+impl ParameterHistory {
+    fn draw(&self, canvas: &mut Canvas, axes: &Axes, elapsed: &[f64]) {
+        let second = self
+            .second
+            .as_ref()
+            .map(|second| (second, ORANGE, VERMILION));
+        let histories = second.into_iter().chain([(&self.estimates, SKY, BLUE)]);
+        for (history, area, line) in histories {
+            let [lower, upper] = history.band();
+            axes.band(canvas, elapsed, (&lower, &upper), area, BAND_OPACITY);
+            let style = LineStyle::solid(line, DATA);
+            axes.line(canvas, elapsed, &history.estimate, style);
+        }
+        if let Some(reference) = self.reference {
+            axes.horizontal_line(canvas, reference, LineStyle::dashed(BLACK, THIN));
+        }
+    }
 
-impl ConvergingCoefficient {
-    fn span(
-        &self,
-        elapsed: &[f64],
-        band: &(Vec<f64>, Vec<f64>),
-        rival: Option<&(Vec<f64>, Vec<f64>)>,
-        unsettled: f64,
-    ) -> Span {
+    /// The span of the settled estimates with their bands, and of the reference.
+    fn span(&self, elapsed: &[f64], unsettled: f64) -> Span {
         let whole = elapsed.last().copied().unwrap_or(0.0);
         let settled = elapsed.partition_point(|&time| time < unsettled * whole);
-        let mut columns = vec![&self.estimate, &band.0, &band.1];
-        columns.extend(rival.into_iter().flat_map(|(lower, upper)| [lower, upper]));
+        let mut columns = vec![self.estimates.estimate.clone()];
+        columns.extend(self.estimates.band());
+        columns.extend(self.second.iter().flat_map(EstimateHistory::band));
         let values = columns
             .iter()
             .flat_map(|column| column.iter().skip(settled));
@@ -204,14 +203,25 @@ impl ConvergingCoefficient {
             .or_else(|| Span::of(all.copied()))
             .unwrap_or(Span::symmetric(1.0))
     }
+}
+
+impl EstimateHistory {
+    /// Lower and upper edge of the band of two sigma.
+    fn band(&self) -> [Vec<f64>; 2] {
+        [-2.0, 2.0].map(|factor| {
+            let pairs = self.estimate.iter().zip(&self.sigma);
+            pairs
+                .map(|(estimate, sigma)| estimate + factor * sigma)
+                .collect()
+        })
+    }
 
     /// The last estimate with its band, as read from the axis.
     fn note(&self, factor: f64) -> String {
         let last = self.estimate.iter().zip(&self.sigma).rev();
-        let mut there = last.filter(|(estimate, sigma)| !estimate.is_nan() && !sigma.is_nan());
-        there.next().map_or(String::new(), |(estimate, sigma)| {
-            let (estimate, width) = (factor * estimate, 2.0 * factor * sigma);
-            with_uncertainty(estimate, width)
+        let mut finite = last.filter(|(estimate, sigma)| !estimate.is_nan() && !sigma.is_nan());
+        finite.next().map_or(String::new(), |(estimate, sigma)| {
+            with_uncertainty(factor * estimate, 2.0 * factor * sigma)
         })
     }
 }

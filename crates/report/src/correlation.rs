@@ -1,139 +1,127 @@
 //! Autocorrelations.
 
-use crate::axis::{Axis, Span};
-use crate::canvas::{Canvas, Stroke};
+use crate::axes::{Axes, Labels};
+use crate::axis::Axis;
+use crate::canvas::{Canvas, LineStyle};
 use crate::check;
 use crate::error::Error;
+use crate::figure::{Legend, figure};
+use crate::geometry::Rect;
+use crate::layout::Layout;
 use crate::number::{count, percent};
-use crate::page::{Grid, Key, page};
-use crate::panel::{Panel, Surround};
 use crate::picture::Picture;
-use crate::style::{BLUE, GREY, HAIR, SKY, THIN};
-use crate::trace::Frame;
+use crate::span::Span;
+use crate::style::{BAND_OPACITY, BLUE, LEGEND_LINE, SKY, THIN};
 
-/// Autocorrelations of some channels as stems, with the band that white noise stays in.
+/// Autocorrelations of some channels as stems, with the confidence band of white noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Correlation {
-    /// What is seen.
+    /// Main statement of the picture.
     pub title: String,
-    /// More words, or none.
+    /// Further description; may be empty.
     pub subtitle: String,
-    /// One panel each, one above the other.
-    pub channels: Vec<CorrelationPanel>,
-    /// Probability that white noise stays inside the bands at one lag: 0.95.
+    /// The channels, one panel each, from top to bottom.
+    pub channels: Vec<CorrelationChannel>,
+    /// Probability that white noise stays inside the band at one lag: 0.95.
     pub confidence: f64,
 }
 
 /// The autocorrelation of one channel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CorrelationPanel {
-    /// Its name: `x`.
+pub struct CorrelationChannel {
+    /// Name of the channel: `x`.
     pub name: String,
-    /// Correlation at lags of 1, 2, 3, … samples; nan where there is none.
+    /// Correlation at lags of 1, 2, 3, … samples; nan for a missing one.
     pub correlation: Vec<f64>,
-    /// Half of the band of white noise.
+    /// Half-width of the band of white noise.
     pub band: f64,
     /// Number of samples.
     pub samples: usize,
 }
 
-const BAND_OPACITY: f64 = 0.35;
-
 impl Picture for Correlation {
     fn to_svg(&self) -> Result<String, Error> {
-        check::some("the list of channels", &self.channels)?;
+        check::non_empty("the list of channels", &self.channels)?;
         for channel in &self.channels {
             let what = || format!("correlations of {}", channel.name);
             check::not_infinite(what, &channel.correlation)?;
             check::positive("the band of white noise", channel.band)?;
         }
-        let grid = Grid::new(1, self.channels.len(), 120.0);
-        let band = format!("white noise at one lag, {}", percent(self.confidence));
-        let keys = [
-            Key::line(Stroke::solid(BLUE, 2.0), "autocorrelation"),
-            Key::area(SKY, BAND_OPACITY, band),
+        let layout = Layout::new(1, self.channels.len(), 120.0);
+        let band = format!("white noise, {} at each lag", percent(self.confidence));
+        let legend = [
+            Legend::line(LineStyle::solid(BLUE, LEGEND_LINE), "autocorrelation"),
+            Legend::area(SKY, BAND_OPACITY, band),
         ];
-        page(
+        Ok(figure(
             &self.title,
             &self.subtitle,
-            &keys,
-            grid.height(),
-            |canvas, body| self.panels(canvas, grid, body),
-        )
+            &legend,
+            layout.height(),
+            |canvas, body| self.draw(canvas, layout, body),
+        ))
     }
 }
 
 impl Correlation {
-    fn panels(&self, canvas: &mut Canvas<'_>, grid: Grid, body: Frame) -> Result<(), Error> {
+    fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect) {
         let most = self.channels.iter().map(|c| c.correlation.len()).max();
-        let lags = most.unwrap_or(0).max(1) as f64;
+        let lags = Span {
+            lo: 0.0,
+            hi: most.unwrap_or(0).max(1) as f64 + 0.5,
+        };
         let values = self.channels.iter().flat_map(|channel| {
             let band = [-2.0 * channel.band, 2.0 * channel.band];
             channel.correlation.iter().copied().chain(band)
         });
         let ordinate = Span::of(values).unwrap_or(Span::symmetric(1.0));
         for (index, channel) in self.channels.iter().enumerate() {
-            let panel = Panel {
-                frame: grid.frame(body, index),
-                x: Axis::linear(
-                    Span {
-                        lo: 0.0,
-                        hi: lags + 0.5,
-                    },
-                    "lag [samples]",
-                    "",
-                    12,
-                ),
+            let axes = Axes {
+                frame: layout.frame(body, index),
+                x: Axis::linear(lags, "lag [samples]", "", 12),
                 y: Axis::linear(ordinate.padded(0.06), "correlation", "", 4),
             };
-            let surround = Surround {
+            let labels = Labels {
                 name: &channel.name,
                 note: &channel.note(),
-                abscissa: grid.shows_abscissa(index),
+                abscissa: layout.shows_abscissa(index),
                 ordinate_title: true,
             };
-            panel.surround(canvas, surround)?;
-            panel.stripe(canvas, -channel.band, channel.band, SKY, BAND_OPACITY)?;
-            panel.level(canvas, 0.0, Stroke::solid(GREY, HAIR))?;
-            if channel.correlation.iter().all(|value| value.is_nan()) {
-                panel.empty(canvas)?;
-            }
-            self.stems(canvas, &panel, channel)?;
+            let has_data = channel.correlation.iter().any(|value| !value.is_nan());
+            axes.draw(canvas, labels, has_data, |axes, canvas| {
+                channel.draw(canvas, axes);
+            });
         }
-        Ok(())
     }
+}
 
-    fn stems(
-        &self,
-        canvas: &mut Canvas<'_>,
-        panel: &Panel,
-        channel: &CorrelationPanel,
-    ) -> Result<(), Error> {
-        let apart = panel.frame.width() / channel.correlation.len().max(1) as f64;
-        for (index, &value) in channel.correlation.iter().enumerate() {
+impl CorrelationChannel {
+    /// The band of white noise and the stems.
+    fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
+        axes.horizontal_band(canvas, (-self.band, self.band), SKY, BAND_OPACITY);
+        axes.zero_line(canvas);
+        let apart = axes.frame.width() / self.correlation.len().max(1) as f64;
+        for (index, &value) in self.correlation.iter().enumerate() {
             if value.is_nan() {
                 continue;
             }
             let lag = index as f64 + 1.0;
-            let (foot, tip) = (panel.place(lag, 0.0), panel.place(lag, value));
-            canvas.line(&[foot, tip], Stroke::solid(BLUE, THIN.min(0.8 * apart)))?;
-            // Dots that would touch say nothing.
+            let (foot, tip) = (axes.point(lag, 0.0), axes.point(lag, value));
+            canvas.line(&[foot, tip], LineStyle::solid(BLUE, THIN.min(0.8 * apart)));
+            // No dots where they would touch.
             if apart > 5.0 {
-                canvas.disc(tip, 2.0, BLUE, 1.0)?;
+                canvas.disc(tip, 2.0, BLUE);
             }
         }
-        Ok(())
     }
-}
 
-impl CorrelationPanel {
     fn note(&self) -> String {
-        let there = self.correlation.iter().filter(|value| !value.is_nan());
-        let outside = there.clone().filter(|value| value.abs() > self.band);
+        let values = self.correlation.iter().filter(|value| !value.is_nan());
+        let outside = values.clone().filter(|value| value.abs() > self.band);
         format!(
             "{} of {} lags outside; n = {}",
             outside.count(),
-            there.count(),
+            values.count(),
             count(self.samples)
         )
     }

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-/// Why a picture could not be made.
+/// The reason why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -11,12 +11,12 @@ pub enum Error {
         what: String,
         /// Its length.
         found: usize,
-        /// What it is held against.
+        /// The column that it belongs to.
         against: String,
-        /// The length of that.
+        /// The length of that column.
         expected: usize,
     },
-    /// A value is not usable where it stands.
+    /// A value cannot be drawn.
     #[error("{what}, value {index}: found {found}, expected {expected}")]
     Value {
         /// The column.
@@ -25,41 +25,35 @@ pub enum Error {
         index: usize,
         /// The value.
         found: f64,
-        /// What would have been usable.
+        /// A description of usable values.
         expected: &'static str,
     },
-    /// The picture would have no panel, bar or row at all.
+    /// A list without which there is nothing to draw is empty.
     #[error("{what} is empty, expected at least one entry; leave the picture out")]
-    Nothing {
+    Empty {
         /// The list.
         what: &'static str,
-    },
-    /// The drawing library refused.
-    #[error("the picture could not be drawn: {reason}")]
-    Drawing {
-        /// What it said.
-        reason: String,
     },
     /// The text is not an SVG picture.
     #[error("not an SVG picture: {reason}")]
     NotSvg {
-        /// What the parser said.
+        /// Message of the parser.
         reason: String,
     },
-    /// The asked size in pixels cannot be had.
+    /// The requested size in pixels is not possible.
     #[error("found a size of {width_px} by {height_px} pixels, expected 1 to {most} each way")]
     Size {
-        /// Asked width.
+        /// Requested width.
         width_px: u32,
         /// Height that follows from it.
         height_px: u32,
-        /// The most that is possible either way.
+        /// The largest possible width and height.
         most: u32,
     },
-    /// The pixels could not be packed into a PNG.
+    /// The pixels could not be encoded as PNG.
     #[error("the PNG could not be encoded: {reason}")]
     Encoding {
-        /// What the encoder said.
+        /// Message of the encoder.
         reason: String,
     },
     /// The file could not be written; it is as it was before.

@@ -1,35 +1,39 @@
-//! Pictures of calibration and diagnosis: plain numbers in, SVG or PNG out.
+//! Pictures of a calibration and a diagnosis: plain numbers in, SVG or PNG out.
 //!
-//! Each picture is a structure of numbers and words, documented with units, that implements
-//! [`Picture`]. The caller passes the title, which should say what is seen; the picture adds
-//! units, the key to its signs, what its bands mean and how many values it shows.
+//! Each picture is a structure of numbers and labels, documented with units, that implements
+//! [`Picture`]. Titles, names of channels and quantities, and units come from the caller; the
+//! picture adds the legend, confidence bands and the number of values.
 //!
 //! | picture | shows |
 //! |---|---|
 //! | [`Convergence`] | estimates against time with their bands |
-//! | [`Residuals`] | residuals before and after, with the noise band |
-//! | [`FreeRun`] | simulated and measured specific force, and their difference |
-//! | [`Spectrum`] | periodograms with threshold and marked lines |
+//! | [`Residuals`] | residuals of one or two models with the noise band |
+//! | [`OpenLoop`] | measurement and open-loop simulation, and their difference |
+//! | [`Spectrum`] | periodograms with detection threshold and marked frequencies |
 //! | [`Correlation`] | autocorrelations with the band of white noise |
-//! | [`Against`] | binned means of a residual against what may cause it |
-//! | [`Ranking`] | effects by test statistic, with threshold |
-//! | [`Gain`] | what an extended model gains on held-out data and in predicted drift |
-//! | [`Contributions`] | what single terms of a law contribute |
-//! | [`Comparison`] | estimates of several estimators, with error bars |
+//! | [`ResidualVsCovariate`] | binned means of residuals against covariates |
+//! | [`Ranking`] | effects by test statistic, with detection threshold |
+//! | [`CrossValidation`] | gain of an extended model on held-out data and on a later record |
+//! | [`TermContributions`] | partial residuals of single terms of a law |
+//! | [`Comparison`] | estimates of several estimators with error bars |
 //!
 //! # Example
 //!
 //! ```
-//! use gyrocal_report::{Picture, Residuals};
+//! use gyrocal_report::{Picture, ResidualChannel, Residuals};
 //!
 //! let picture = Residuals {
 //!     title: "Residuals are white".to_owned(),
 //!     subtitle: String::new(),
 //!     time_s: vec![0.0, 60.0, 120.0],
-//!     before: [vec![1e-5, f64::NAN, -2e-5], vec![0.0; 3], vec![0.0; 3]],
+//!     channels: vec![ResidualChannel {
+//!         name: "x".to_owned(),
+//!         before: vec![1e-5, f64::NAN, -2e-5],
+//!         after: None,
+//!         sigma: 1e-5,
+//!     }],
 //!     before_label: "innovation".to_owned(),
-//!     after: None,
-//!     sigma: [1e-5; 3],
+//!     after_label: String::new(),
 //!     quantity: "residual".to_owned(),
 //!     unit: "g".to_owned(),
 //! };
@@ -41,8 +45,8 @@
 //! # Data
 //!
 //! Not-a-number is a missing value and leaves a gap; so does an interval of more than four times
-//! the usual one. Infinite values, columns of unequal length and times that go back are errors.
-//! A panel without any value says "no data". Long columns are thinned to at most four points for
+//! the median one. Infinite values, columns of unequal length and times that decrease are errors.
+//! A panel without any value says "no data". Long columns are decimated to at most four points for
 //! each column of pixels, which keeps all extremes, so a picture of a million samples is small.
 //!
 //! The same data gives the same SVG, byte by byte.
@@ -54,45 +58,50 @@
 //!
 //! # What it does not do
 //!
-//! It estimates and tests nothing: what is significant, which effect is named and how large the
-//! noise is, it is told. It knows no model, record or report.
+//! It estimates and tests nothing: thresholds, detected effects and noise levels come from the
+//! caller. It knows no model, record or diagnosis.
 
-mod against;
+mod axes;
 mod axis;
 mod canvas;
 mod check;
 mod comparison;
-mod contributions;
 mod convergence;
 mod correlation;
+mod cross_validation;
 mod error;
-mod free_run;
-mod gain;
+mod figure;
+mod geometry;
+mod layout;
 mod number;
-mod page;
-mod panel;
+mod open_loop;
 mod picture;
 #[cfg(feature = "png")]
 mod png;
+mod polyline;
 mod ranking;
+mod residual_vs_covariate;
 mod residuals;
 mod scale;
+mod scatter;
+mod span;
 mod spectrum;
 mod style;
+mod svg;
+mod term_contributions;
 mod text;
-mod trace;
 
-pub use against::{Against, AgainstPanel, Bin};
-pub use comparison::{Comparison, Estimate, Quantity};
-pub use contributions::{Contribution, Contributions};
-pub use convergence::{Convergence, ConvergingCoefficient};
-pub use correlation::{Correlation, CorrelationPanel};
+pub use comparison::{ComparedEstimate, ComparedQuantity, Comparison};
+pub use convergence::{Convergence, EstimateHistory, ParameterHistory};
+pub use correlation::{Correlation, CorrelationChannel};
+pub use cross_validation::{CrossValidation, PredictionError};
 pub use error::Error;
-pub use free_run::FreeRun;
-pub use gain::{DriftPrediction, Gain};
+pub use open_loop::{OpenLoop, OpenLoopChannel};
 pub use picture::{Picture, write_svg};
 #[cfg(feature = "png")]
 pub use png::{to_png, write_png};
 pub use ranking::{Omitted, RankedEffect, Ranking, RankingGroup, Role};
-pub use residuals::{After, Residuals};
-pub use spectrum::{MarkedLine, Spectrum, SpectrumPanel, Threshold};
+pub use residual_vs_covariate::{Bin, CovariatePanel, ResidualVsCovariate};
+pub use residuals::{ResidualChannel, Residuals};
+pub use spectrum::{MarkedFrequency, PowerThreshold, Spectrum, SpectrumChannel};
+pub use term_contributions::{TermContribution, TermContributions};

@@ -1,4 +1,4 @@
-//! Numbers and units as people write them.
+//! Numbers and units as text.
 
 /// A number to some significant digits: `0.00342`, `-12`, `3.1·10⁻⁶`, with a true minus sign.
 pub(crate) fn short(value: f64, digits: usize) -> String {
@@ -30,7 +30,7 @@ pub(crate) fn percent(probability: f64) -> String {
     format!("{text}%")
 }
 
-/// An integer with groups of three digits set apart by thin spaces.
+/// An integer with groups of three digits, if it has more than four.
 pub(crate) fn count(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -43,7 +43,7 @@ pub(crate) fn count(number: usize) -> String {
     text
 }
 
-/// An integer in raised digits.
+/// An integer in superscript digits.
 pub(crate) fn superscript(number: i32) -> String {
     number
         .to_string()
@@ -64,8 +64,8 @@ pub(crate) fn superscript(number: i32) -> String {
         .collect()
 }
 
-/// A factor and the unit that goes with it, so that the largest of the values, times the factor,
-/// is easily read: 3e-5 g is 30 µg, 3e-5 deg/h is 30 · 10⁻⁶ deg/h.
+/// A factor and its unit, in which the largest of the values has few digits: 3e-5 g is 30 µg,
+/// 3e-5 deg/h is 30 · 10⁻⁶ deg/h.
 pub(crate) fn readable_unit(unit: &str, largest: f64) -> (f64, String) {
     if !(largest.is_finite() && largest > 0.0) || (0.01..10_000.0).contains(&largest) {
         return (1.0, unit.to_owned());

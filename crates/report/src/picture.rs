@@ -2,14 +2,13 @@ use std::path::Path;
 
 use crate::error::Error;
 
-/// Something that can be drawn.
+/// A picture that can be drawn from its data.
 pub trait Picture {
     /// The picture as SVG. The same data gives the same bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::UnequalLengths`], [`Error::Value`] or [`Error::Nothing`] if the data cannot be
-    /// drawn honestly.
+    /// [`Error::UnequalLengths`], [`Error::Value`] or [`Error::Empty`] if the data cannot be drawn.
     fn to_svg(&self) -> Result<String, Error>;
 }
 

@@ -7,16 +7,16 @@ use crate::error::Error;
 use crate::picture::{self, Picture};
 use crate::text;
 
-/// The most pixels either way.
+/// The largest width and height, px.
 const MOST_PX: u32 = 16_384;
 
-/// Turns an SVG picture into a PNG of a given width on a white ground; the height follows. Text
-/// is drawn with the embedded font, whatever fonts the machine has.
+/// Renders an SVG picture as PNG of a given width on a white ground; the height follows. Text is
+/// drawn with the embedded font, whatever fonts the machine has.
 ///
 /// # Errors
 ///
 /// [`Error::NotSvg`] if the text cannot be read, [`Error::Size`] if the picture would have no
-/// pixel or too many, [`Error::Encoding`] if it could not be packed.
+/// pixel or too many, [`Error::Encoding`] if encoding fails.
 pub fn to_png(svg: &str, width_px: u32) -> Result<Vec<u8>, Error> {
     let mut options = Options {
         font_family: "DejaVu Sans".to_owned(),

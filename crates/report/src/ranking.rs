@@ -1,34 +1,33 @@
 //! Effects by test statistic.
 
-use plotters::style::RGBColor;
-
-use crate::axis::{Axis, Span};
-use crate::canvas::{Align, Canvas, Lettering, Stroke};
+use crate::axes::{Axes, Labels};
+use crate::axis::Axis;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::check;
 use crate::error::Error;
+use crate::figure::{Legend, figure};
+use crate::geometry::Rect;
 use crate::number::{count, percent, short};
-use crate::page::{Key, page};
-use crate::panel::{Panel, Surround};
 use crate::picture::Picture;
+use crate::span::Span;
 use crate::style::{
-    BELOW, BLACK, BODY, GREY, INK, MARGIN, ORANGE, SMALL, THIN, VERMILION, WHITE, WIDTH,
+    BELOW, BLACK, BODY, Colour, GREY, INK, MARGIN, ORANGE, SMALL, THIN, VERMILION, WHITE, WIDTH,
 };
 use crate::text;
-use crate::trace::Frame;
 
-/// Bars of a test statistic by effect, in groups: each named effect with its rivals, and the
-/// rest; with the threshold of the family.
+/// Bars of a test statistic by effect, in groups: each reported effect with its alternatives, and
+/// the rest; with the detection threshold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// What is seen.
+    /// Main statement of the picture.
     pub title: String,
-    /// More words, or none.
+    /// Further description; may be empty.
     pub subtitle: String,
     /// Name of the statistic: `|z|`.
     pub statistic: String,
-    /// What the largest statistic of a clean record seldom passes.
+    /// Detection threshold of the largest statistic.
     pub threshold: f64,
-    /// Probability that any effect of a clean record passes the threshold.
+    /// Probability that any effect exceeds the threshold in a record without effects.
     pub false_alarm_probability: f64,
     /// Number of effects that were tested.
     pub tested: usize,
@@ -38,10 +37,10 @@ pub struct Ranking {
     pub omitted: Option<Omitted>,
 }
 
-/// Bars that belong together.
+/// A group of bars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RankingGroup {
-    /// What they have in common: `finding 1: cannot be told apart at 95%`.
+    /// Heading of the group: `finding 1, 95% confidence set`.
     pub label: String,
     /// The bars from top to bottom.
     pub effects: Vec<RankedEffect>,
@@ -54,19 +53,19 @@ pub struct RankedEffect {
     pub effect: String,
     /// Its statistic; nan if it could not be tested.
     pub statistic: f64,
-    /// What it is in the answer.
+    /// Its role in the result.
     pub role: Role,
-    /// Words beside the bar, or none: `3.6 nats behind`.
+    /// Text beside the bar; may be empty: `log likelihood lower by 3.6 nats`.
     pub note: String,
 }
 
-/// What an effect is in the answer.
+/// The role of an effect in the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Named as the cause.
-    Named,
-    /// In the set of causes that the data do not tell apart from the named one.
-    Rival,
+    /// Reported as detected.
+    Reported,
+    /// An alternative to a reported effect: in its confidence set, or exactly equivalent.
+    Alternative,
     /// Neither.
     Other,
 }
@@ -74,32 +73,33 @@ pub enum Role {
 /// Effects left out of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Omitted {
-    /// How many.
+    /// Number of effects.
     pub effects: usize,
     /// The largest statistic among them.
     pub largest: f64,
 }
 
+/// Height of a bar with its gap, of the heading of a group, and of the gap after a group, px.
 const BAR_PITCH: f64 = 19.0;
 const GROUP_HEAD: f64 = 22.0;
 const GROUP_GAP: f64 = 6.0;
 
 impl Role {
-    const ALL: [Self; 3] = [Self::Named, Self::Rival, Self::Other];
+    const ALL: [Self; 3] = [Self::Reported, Self::Alternative, Self::Other];
 
-    fn colour(self) -> RGBColor {
+    fn colour(self) -> Colour {
         match self {
-            Self::Named => VERMILION,
-            Self::Rival => ORANGE,
+            Self::Reported => VERMILION,
+            Self::Alternative => ORANGE,
             Self::Other => GREY,
         }
     }
 
     fn label(self) -> &'static str {
         match self {
-            Self::Named => "named",
-            Self::Rival => "rival, not told apart from the named one",
-            Self::Other => "not named",
+            Self::Reported => "reported",
+            Self::Alternative => "alternative, not distinguishable from the reported effect",
+            Self::Other => "not reported",
         }
     }
 }
@@ -115,19 +115,19 @@ impl Picture for Ranking {
         } else {
             0.0
         };
-        page(
+        Ok(figure(
             &self.title,
             &self.subtitle,
-            &self.keys(),
+            &self.legend(),
             bars + omitted + BELOW,
             |canvas, body| self.draw(canvas, body, omitted),
-        )
+        ))
     }
 }
 
 impl Ranking {
     fn check(&self) -> Result<(), Error> {
-        check::some("the list of groups of effects", &self.groups)?;
+        check::non_empty("the list of groups of effects", &self.groups)?;
         check::positive("the threshold of the statistic", self.threshold)?;
         for effect in self.effects() {
             let what = || format!("the statistic of {}", effect.effect);
@@ -140,53 +140,27 @@ impl Ranking {
         self.groups.iter().flat_map(|group| &group.effects)
     }
 
-    fn keys(&self) -> Vec<Key> {
-        let mut keys: Vec<Key> = Role::ALL
+    fn legend(&self) -> Vec<Legend> {
+        let mut legend: Vec<Legend> = Role::ALL
             .into_iter()
             .filter(|role| self.effects().any(|effect| effect.role == *role))
-            .map(|role| Key::area(role.colour(), 1.0, role.label()))
+            .map(|role| Legend::area(role.colour(), 1.0, role.label()))
             .collect();
         let threshold = format!(
-            "threshold {}: a clean record passes it with any of {} effects with probability {}",
+            "detection threshold {} (false-alarm probability {} over {} effects)",
             short(self.threshold, 3),
-            count(self.tested),
-            percent(self.false_alarm_probability)
+            percent(self.false_alarm_probability),
+            count(self.tested)
         );
-        keys.push(Key::line(Stroke::dashed(BLACK, THIN), threshold));
-        keys
+        legend.push(Legend::line(LineStyle::dashed(BLACK, THIN), threshold));
+        legend
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, body: Frame, omitted: f64) -> Result<(), Error> {
-        let widths = self
-            .effects()
-            .map(|e| text::width_px(&e.effect, BODY, true));
-        let names = widths.fold(60.0, f64::max).min(0.4 * body.width());
-        let statistics = self.effects().map(|effect| effect.statistic);
-        let most = Span::of(statistics.chain([1.15 * self.threshold]));
-        let most = most.map_or(1.0, |span| span.hi);
-        let left = body.left + names + 14.0;
-        // As wide as the words beside the bars allow.
-        let widths = self.effects().map(|effect| {
-            let beside = text::width_px(&effect.beside(), SMALL, false);
-            let part = (effect.statistic.max(0.0) / (1.02 * most)).max(1e-3);
-            (body.right - left - beside - 8.0) / part
-        });
-        let width = widths.fold(body.right - left, f64::min);
-        let frame = Frame {
-            left,
-            top: body.top,
-            right: left + width.max(0.3 * (body.right - left)),
-            bottom: body.bottom - BELOW - omitted,
-        };
-        let abscissa = Span {
-            lo: 0.0,
-            hi: 1.02 * most,
-        };
-        let panel = Panel {
-            frame,
-            x: Axis::linear(abscissa, &self.statistic, "", 8),
-            y: Axis::named(Span { lo: 0.0, hi: 1.0 }, Vec::new(), ""),
-        };
+    fn draw(&self, canvas: &mut Canvas, body: Rect, omitted_px: f64) {
+        let widths = self.effects();
+        let widths = widths.map(|effect| text::width_px(&effect.effect, BODY, true));
+        let names_px = widths.fold(60.0, f64::max).min(0.4 * body.width());
+        let axes = self.axes(body, body.left + names_px + 14.0, omitted_px);
         if let Some(omitted) = self.omitted {
             let words = format!(
                 "{} more effects are not shown; the largest {} among them is {}",
@@ -194,25 +168,52 @@ impl Ranking {
                 self.statistic,
                 short(omitted.largest, 2)
             );
-            let place = (body.left, body.bottom - 8.0);
-            let lettering = Lettering::new(SMALL, Align::Start).colour(INK);
-            canvas.text(&words, place, lettering)?;
+            let style = TextStyle::new(SMALL, Align::Start).colour(INK);
+            canvas.text(&words, (body.left, body.bottom - 8.0), style);
         }
-        let surround = Surround {
+        let labels = Labels {
             name: "",
             note: "",
             abscissa: true,
             ordinate_title: false,
         };
-        panel.surround(canvas, surround)?;
-        for (effect, y) in self.rows(body.top) {
-            panel.bar(canvas, effect, y)?;
+        axes.draw(canvas, labels, true, |axes, canvas| {
+            for (effect, y) in self.rows(body.top) {
+                effect.draw_bar(canvas, axes, y);
+            }
+            axes.vertical_line(canvas, self.threshold, LineStyle::dashed(BLACK, THIN));
+            for (effect, y) in self.rows(body.top) {
+                effect.draw_text(canvas, axes, y, names_px);
+            }
+        });
+        self.draw_headings(canvas, body, axes.frame.left);
+    }
+
+    /// Axes as wide as the text beside the bars allows.
+    fn axes(&self, body: Rect, left: f64, omitted_px: f64) -> Axes {
+        let statistics = self.effects().map(|effect| effect.statistic);
+        let most = Span::of(statistics.chain([1.15 * self.threshold]));
+        let most = most.map_or(1.0, |span| span.hi);
+        let widths = self.effects().map(|effect| {
+            let beside = text::width_px(&effect.beside(), SMALL, false);
+            let part = (effect.statistic.max(0.0) / (1.02 * most)).max(1e-3);
+            (body.right - left - beside - 8.0) / part
+        });
+        let width = widths.fold(body.right - left, f64::min);
+        let abscissa = Span {
+            lo: 0.0,
+            hi: 1.02 * most,
+        };
+        Axes {
+            frame: Rect {
+                left,
+                top: body.top,
+                right: left + width.max(0.3 * (body.right - left)),
+                bottom: body.bottom - BELOW - omitted_px,
+            },
+            x: Axis::linear(abscissa, &self.statistic, "", 8),
+            y: Axis::named(Span { lo: 0.0, hi: 1.0 }, Vec::new(), ""),
         }
-        panel.upright(canvas, self.threshold, Stroke::dashed(BLACK, THIN))?;
-        for (effect, y) in self.rows(body.top) {
-            panel.words(canvas, effect, y, names)?;
-        }
-        self.heads(canvas, body, left)
     }
 
     /// The effects with the heights of their middles.
@@ -230,59 +231,50 @@ impl Ranking {
         rows
     }
 
-    fn heads(&self, canvas: &mut Canvas<'_>, body: Frame, axis: f64) -> Result<(), Error> {
+    fn draw_headings(&self, canvas: &mut Canvas, body: Rect, axis: f64) {
         let mut y = body.top;
         for group in &self.groups {
-            let head = text::fit(&group.label, BODY, true, body.width());
+            let heading = text::fit(&group.label, BODY, true, body.width());
             // A white ground keeps axis, grid and threshold out of the letters.
-            let right = body.left + text::width_px(&head, BODY, true) + 6.0;
+            let right = body.left + text::width_px(&heading, BODY, true) + 6.0;
             if right > axis {
-                canvas.rect((body.left, y), (right, y + GROUP_HEAD), WHITE, 1.0)?;
+                canvas.rect((body.left, y), (right, y + GROUP_HEAD), WHITE, 1.0);
             }
-            let lettering = Lettering::new(BODY, Align::Start).bold().colour(INK);
-            canvas.text(&head, (body.left, y + 0.5 * GROUP_HEAD), lettering)?;
+            let style = TextStyle::new(BODY, Align::Start).bold().colour(INK);
+            canvas.text(&heading, (body.left, y + 0.5 * GROUP_HEAD), style);
             y += GROUP_HEAD + BAR_PITCH * group.effects.len() as f64 + GROUP_GAP;
         }
-        Ok(())
-    }
-}
-
-impl Panel {
-    fn bar(&self, canvas: &mut Canvas<'_>, effect: &RankedEffect, y: f64) -> Result<(), Error> {
-        let half = 0.5 * BAR_PITCH - 3.5;
-        let foot = (self.frame.left, y - half);
-        let tip = (self.tip(effect), y + half);
-        canvas.rect(foot, tip, effect.role.colour(), 1.0)
-    }
-
-    fn words(
-        &self,
-        canvas: &mut Canvas<'_>,
-        effect: &RankedEffect,
-        y: f64,
-        names: f64,
-    ) -> Result<(), Error> {
-        let named = effect.role == Role::Named;
-        let mut lettering = Lettering::new(BODY, Align::End);
-        lettering.bold = named;
-        let name = text::fit(&effect.effect, BODY, named, names);
-        canvas.text(&name, (self.frame.left - 8.0, y), lettering)?;
-        let start = self.tip(effect) + 6.0;
-        let beside = text::fit(&effect.beside(), SMALL, false, WIDTH - MARGIN - start);
-        let end = start + text::width_px(&beside, SMALL, false);
-        canvas.rect((start - 2.0, y - 6.0), (end + 2.0, y + 6.0), WHITE, 1.0)?;
-        let lettering = Lettering::new(SMALL, Align::Start).colour(INK);
-        canvas.text(&beside, (start, y), lettering)
-    }
-
-    /// Where the bar of an effect ends, px.
-    fn tip(&self, effect: &RankedEffect) -> f64 {
-        // Not a number, of an effect that could not be tested, is no bar.
-        self.place(effect.statistic.max(0.0), 0.0).0
     }
 }
 
 impl RankedEffect {
+    fn draw_bar(&self, canvas: &mut Canvas, axes: &Axes, y: f64) {
+        let half = 0.5 * BAR_PITCH - 3.5;
+        let foot = (axes.frame.left, y - half);
+        let tip = (self.tip(axes), y + half);
+        canvas.rect(foot, tip, self.role.colour(), 1.0);
+    }
+
+    /// The name left of the axis, and statistic and note right of the bar.
+    fn draw_text(&self, canvas: &mut Canvas, axes: &Axes, y: f64, names_px: f64) {
+        let mut style = TextStyle::new(BODY, Align::End);
+        style.bold = self.role == Role::Reported;
+        let name = text::fit(&self.effect, BODY, style.bold, names_px);
+        canvas.text(&name, (axes.frame.left - 8.0, y), style);
+        let start = self.tip(axes) + 6.0;
+        let beside = text::fit(&self.beside(), SMALL, false, WIDTH - MARGIN - start);
+        let end = start + text::width_px(&beside, SMALL, false);
+        canvas.rect((start - 2.0, y - 6.0), (end + 2.0, y + 6.0), WHITE, 1.0);
+        let style = TextStyle::new(SMALL, Align::Start).colour(INK);
+        canvas.text(&beside, (start, y), style);
+    }
+
+    /// The right end of the bar, px; an effect that could not be tested has no bar.
+    fn tip(&self, axes: &Axes) -> f64 {
+        axes.point(self.statistic.max(0.0), 0.0).0
+    }
+
+    /// The text right of the bar.
     fn beside(&self) -> String {
         let value = if self.statistic.is_nan() {
             "not tested".to_owned()

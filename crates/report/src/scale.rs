@@ -1,22 +1,22 @@
-//! How large the scale of a panel has to be.
+//! Size of a scale about zero, with few extremes left out.
 
-use crate::axis::Span;
+use crate::span::Span;
 
-/// A scale about zero, and what does not fit into it.
+/// A scale about zero that may leave a few extremes out.
 pub(crate) struct Scale {
     /// Half of the scale.
     pub half: f64,
     cut: bool,
 }
 
-/// The share of values that a scale must hold before it may cut the rest.
+/// Fraction of the values that a scale must hold.
 const KEPT: f64 = 0.995;
-/// Extremes are cut only if they would make the scale so many times larger.
+/// Extremes are left out only if they would make the scale larger by more than this factor.
 const CUT_FACTOR: f64 = 4.0;
 
 impl Scale {
-    /// A scale about zero for all values, unless a few of them would press the others flat; never
-    /// below the least half.
+    /// A scale for all values, unless a few of them would flatten the others; never smaller than
+    /// the least half.
     pub(crate) fn about_zero<'a>(
         columns: impl IntoIterator<Item = &'a [f64]>,
         least_half: f64,
@@ -49,7 +49,7 @@ impl Scale {
         Span::symmetric(self.half)
     }
 
-    /// How many values leave the scale, and the largest of them; none if it was not cut.
+    /// Number of values outside the scale and the largest of them; `None` if none was left out.
     pub(crate) fn beyond(&self, values: &[f64]) -> Option<(usize, f64)> {
         let beyond = values.iter().filter(|value| value.abs() > self.half);
         let (count, largest) = beyond.fold((0, 0.0_f64), |(count, largest), value| {
@@ -59,7 +59,7 @@ impl Scale {
     }
 }
 
-/// Root mean square of the values that are there, and how many they are.
+/// Root mean square of the finite values, and their number.
 pub(crate) fn rms(values: &[f64]) -> (f64, usize) {
     let there = values.iter().filter(|value| value.is_finite());
     let (sum, count) = there.fold((0.0, 0), |(sum, count), value| {
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_few_outliers_do_not_press_the_rest_flat() {
+    fn a_few_outliers_do_not_flatten_the_rest() {
         let mut values: Vec<f64> = (0..1000).map(|n| f64::from(n % 7) - 3.0).collect();
         let whole = Scale::about_zero([values.as_slice()], 0.0);
         assert!(whole.half >= 3.0 && whole.half < 3.3);

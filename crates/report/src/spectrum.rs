@@ -1,105 +1,109 @@
 //! Periodograms.
 
-use crate::axis::{Axis, Span};
-use crate::canvas::{Align, Canvas, Lettering, Stroke};
+use crate::axes::{Axes, Labels};
+use crate::axis::Axis;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::check;
 use crate::error::Error;
+use crate::figure::{Legend, figure};
+use crate::geometry::Rect;
+use crate::layout::Layout;
 use crate::number::{count, percent};
-use crate::page::{Grid, Key, page};
-use crate::panel::{Panel, Surround};
 use crate::picture::Picture;
-use crate::style::{BLUE, HAIR, PURPLE, SMALL, THIN, VERMILION};
+use crate::span::Span;
+use crate::style::{BLUE, HAIR, INNER_WIDTH, LEGEND_LINE, PURPLE, SMALL, THIN, VERMILION};
 use crate::text;
-use crate::trace::Frame;
 
-/// Periodograms of some channels, on logarithmic scales, with thresholds and marked lines; all
-/// panels have one scale.
+/// Periodograms of some channels, on logarithmic scales, with thresholds and marked frequencies;
+/// all panels have one scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// What is seen.
+    /// Main statement of the picture.
     pub title: String,
-    /// More words, or none.
+    /// Further description; may be empty.
     pub subtitle: String,
-    /// Frequencies, cycles a day, rising. That of zero has no place on the scale and is left out.
-    pub frequency_per_day: Vec<f64>,
-    /// One panel each, one above the other.
-    pub channels: Vec<SpectrumPanel>,
+    /// Frequencies, increasing. Zero has no place on the logarithmic scale and is left out.
+    pub frequency: Vec<f64>,
+    /// Unit of all frequencies: `cycles/day`.
+    pub frequency_unit: String,
+    /// The channels, one panel each, from top to bottom.
+    pub channels: Vec<SpectrumChannel>,
     /// Name of the ordinate: `power`.
     pub quantity: String,
-    /// Its unit: `g²`, or empty for normalised power.
+    /// Unit of the ordinate: `g²`, or empty for normalised power.
     pub unit: String,
-    /// Frequencies to be marked in all panels.
-    pub marks: Vec<MarkedLine>,
+    /// Frequencies that are marked in all panels.
+    pub marks: Vec<MarkedFrequency>,
 }
 
 /// The periodogram of one channel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SpectrumPanel {
-    /// Its name: `x`.
+pub struct SpectrumChannel {
+    /// Name of the channel: `x`.
     pub name: String,
-    /// Power at the frequencies; nan where there is none. Zero has no place on the scale and is
-    /// left out.
+    /// Power at the frequencies; nan for a missing one. Zero has no place on the logarithmic scale
+    /// and is left out.
     pub power: Vec<f64>,
-    /// Number of samples it was made of.
+    /// Number of samples of the channel.
     pub samples: usize,
-    /// Power that noise alone seldom passes.
-    pub threshold: Option<Threshold>,
+    /// Detection threshold of a line.
+    pub threshold: Option<PowerThreshold>,
 }
 
-/// A power that the largest ordinate of noise alone passes with a known probability.
+/// Detection threshold of a spectral line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Threshold {
+pub struct PowerThreshold {
     /// The power.
     pub power: f64,
-    /// Probability that noise alone passes it anywhere in the panel.
+    /// Probability that white noise exceeds it anywhere in the panel.
     pub false_alarm_probability: f64,
 }
 
-/// A frequency to be marked.
+/// A frequency that is marked by a vertical line.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MarkedLine {
-    /// The frequency, cycles a day.
-    pub frequency_per_day: f64,
-    /// What it is: `sidereal day`, `5.3 h`.
+pub struct MarkedFrequency {
+    /// The frequency, in the unit of the picture.
+    pub frequency: f64,
+    /// Its label: `sidereal day`, `5.3 h`.
     pub label: String,
 }
 
+/// Height of a row of labels of marks, px.
 const MARK_ROW: f64 = 14.0;
 
 impl Picture for Spectrum {
     fn to_svg(&self) -> Result<String, Error> {
         self.check()?;
-        let grid = Grid::new(1, self.channels.len(), 170.0);
-        let span = Span::of(self.frequency_per_day.iter().copied().filter(|f| *f > 0.0));
+        let layout = Layout::new(1, self.channels.len(), 170.0);
+        let span = Span::of(self.frequency.iter().copied().filter(|f| *f > 0.0));
         let span = span.unwrap_or(Span { lo: 0.1, hi: 10.0 }).open();
-        let abscissa = Axis::logarithmic(span, "frequency", "cycles a day", 8);
-        let rows = self.mark_rows(&abscissa, grid);
-        let lines = rows.iter().map(|(_, row, _)| row + 1).max().unwrap_or(0) as f64;
-        let room = MARK_ROW * lines;
-        let keys = self.keys();
-        page(
+        let abscissa = Axis::logarithmic(span, "frequency", &self.frequency_unit, 8);
+        let labels = self.mark_labels(&abscissa, layout);
+        let rows = labels.iter().map(|(_, row, _)| row + 1).max().unwrap_or(0);
+        let room = MARK_ROW * rows as f64;
+        Ok(figure(
             &self.title,
             &self.subtitle,
-            &keys,
-            grid.height() + room,
+            &self.legend(),
+            layout.height() + room,
             |canvas, mut body| {
                 body.top += room;
-                for (x, row, label) in &rows {
+                for (x, row, label) in &labels {
                     let y = body.top - MARK_ROW * (*row as f64 + 0.5);
-                    let lettering = Lettering::new(SMALL, Align::Middle).colour(PURPLE);
-                    canvas.text(label, (body.left + x, y), lettering)?;
+                    let style = TextStyle::new(SMALL, Align::Middle).colour(PURPLE);
+                    canvas.text(label, (body.left + x, y), style);
                 }
-                self.panels(canvas, grid, body, &abscissa)
+                self.draw(canvas, layout, body, &abscissa);
             },
-        )
+        ))
     }
 }
 
 impl Spectrum {
     fn check(&self) -> Result<(), Error> {
-        check::some("the list of channels", &self.channels)?;
-        check::rising("the frequencies", &self.frequency_per_day)?;
-        let frequencies = ("the frequencies", self.frequency_per_day.len());
+        check::non_empty("the list of channels", &self.channels)?;
+        check::non_decreasing("the frequencies", &self.frequency)?;
+        let frequencies = ("the frequencies", self.frequency.len());
         for channel in &self.channels {
             let what = || format!("power of {}", channel.name);
             check::column(what, &channel.power, frequencies)?;
@@ -108,46 +112,48 @@ impl Spectrum {
             }
         }
         for mark in &self.marks {
-            check::positive("a marked frequency", mark.frequency_per_day)?;
+            check::positive("a marked frequency", mark.frequency)?;
         }
         Ok(())
     }
 
-    fn keys(&self) -> Vec<Key> {
-        let mut keys = vec![Key::line(Stroke::solid(BLUE, 2.0), "periodogram")];
+    fn legend(&self) -> Vec<Legend> {
+        let power = LineStyle::solid(BLUE, LEGEND_LINE);
+        let mut legend = vec![Legend::line(power, "periodogram")];
         if let Some(threshold) = self.channels.iter().find_map(|channel| channel.threshold) {
             let label = format!(
-                "threshold; noise alone passes it anywhere in a panel with probability {}",
+                "detection threshold (false-alarm probability {} per panel)",
                 percent(threshold.false_alarm_probability)
             );
-            keys.push(Key::line(Stroke::dashed(VERMILION, THIN), label));
+            legend.push(Legend::line(LineStyle::dashed(VERMILION, THIN), label));
         }
         if !self.marks.is_empty() {
-            keys.push(Key::line(Stroke::dashed(PURPLE, THIN), "marked frequency"));
+            let mark = LineStyle::dashed(PURPLE, THIN);
+            legend.push(Legend::line(mark, "marked frequency"));
         }
-        keys
+        legend
     }
 
-    /// The span of what a logarithmic scale can show of a channel.
-    fn powers(&self, channel: &SpectrumPanel) -> Option<Span> {
-        let shown = self.frequency_per_day.iter().zip(&channel.power);
+    /// The span of the values of a channel that a logarithmic scale can show.
+    fn powers(&self, channel: &SpectrumChannel) -> Option<Span> {
+        let shown = self.frequency.iter().zip(&channel.power);
         let shown = shown.filter(|(frequency, power)| **frequency > 0.0 && **power > 0.0);
         Span::of(shown.map(|(_, power)| *power))
     }
 
     /// Labels of marks: px from the left of the body, row above the panels, text; no two overlap.
-    fn mark_rows(&self, abscissa: &Axis, grid: Grid) -> Vec<(f64, usize, String)> {
-        let body = Frame {
+    fn mark_labels(&self, abscissa: &Axis, layout: Layout) -> Vec<(f64, usize, String)> {
+        let body = Rect {
             left: 0.0,
             top: 0.0,
-            right: crate::style::WIDTH - 2.0 * crate::style::MARGIN,
+            right: INNER_WIDTH,
             bottom: 0.0,
         };
-        let frame = grid.frame(body, 0);
+        let frame = layout.frame(body, 0);
         let mut taken: Vec<Vec<(f64, f64)>> = Vec::new();
         let mut labels = Vec::new();
         for mark in &self.marks {
-            let part = abscissa.at(mark.frequency_per_day);
+            let part = abscissa.at(mark.frequency);
             if !(0.0..=1.0).contains(&part) {
                 continue;
             }
@@ -167,56 +173,47 @@ impl Spectrum {
         labels
     }
 
-    fn panels(
-        &self,
-        canvas: &mut Canvas<'_>,
-        grid: Grid,
-        body: Frame,
-        abscissa: &Axis,
-    ) -> Result<(), Error> {
+    fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect, abscissa: &Axis) {
         let spans: Vec<Option<Span>> = self.channels.iter().map(|c| self.powers(c)).collect();
         let ends = spans.iter().flatten().flat_map(|span| [span.lo, span.hi]);
         let thresholds = self.channels.iter().filter_map(|channel| channel.threshold);
         let span = Span::of(ends.chain(thresholds.map(|threshold| threshold.power)));
         let span = room_above(span.unwrap_or(Span { lo: 1.0, hi: 10.0 }));
         for (index, channel) in self.channels.iter().enumerate() {
-            let panel = Panel {
-                frame: grid.frame(body, index),
+            let axes = Axes {
+                frame: layout.frame(body, index),
                 x: abscissa.clone(),
                 y: Axis::logarithmic(span, &self.quantity, &self.unit, 6),
             };
-            let surround = Surround {
+            let labels = Labels {
                 name: &channel.name,
                 note: &format!("n = {}", count(channel.samples)),
-                abscissa: grid.shows_abscissa(index),
+                abscissa: layout.shows_abscissa(index),
                 ordinate_title: true,
             };
-            panel.surround(canvas, surround)?;
-            if spans[index].is_none() {
-                panel.empty(canvas)?;
-                continue;
-            }
-            for mark in &self.marks {
-                let stroke = Stroke::dashed(PURPLE, HAIR);
-                panel.upright(canvas, mark.frequency_per_day, stroke)?;
-            }
-            panel.line_bridging(
-                canvas,
-                &self.frequency_per_day,
-                &channel.power,
-                Stroke::solid(BLUE, THIN),
-                f64::INFINITY,
-            )?;
-            if let Some(threshold) = channel.threshold {
-                panel.level(canvas, threshold.power, Stroke::dashed(VERMILION, THIN))?;
-            }
+            axes.draw(canvas, labels, spans[index].is_some(), |axes, canvas| {
+                self.draw_channel(canvas, axes, channel);
+            });
         }
-        Ok(())
+    }
+
+    fn draw_channel(&self, canvas: &mut Canvas, axes: &Axes, channel: &SpectrumChannel) {
+        for mark in &self.marks {
+            let style = LineStyle::dashed(PURPLE, HAIR);
+            axes.vertical_line(canvas, mark.frequency, style);
+        }
+        let style = LineStyle::solid(BLUE, THIN);
+        let (frequency, power) = (&self.frequency, &channel.power);
+        axes.line_bridging(canvas, frequency, power, style, f64::INFINITY);
+        if let Some(threshold) = channel.threshold {
+            let style = LineStyle::dashed(VERMILION, THIN);
+            axes.horizontal_line(canvas, threshold.power, style);
+        }
     }
 }
 
-/// Some room above the largest power; at most eight decades, so that ordinates near zero by
-/// chance do not press the rest flat.
+/// Some room above the largest power; at most eight decades, so that ordinates near zero by chance
+/// do not flatten the rest.
 fn room_above(span: Span) -> Span {
     let hi = 2.0 * span.hi;
     Span {

@@ -1,4 +1,4 @@
-//! How wide a text is, and how to make it fit.
+//! Width of text in the embedded font, and text cut or broken to fit a width.
 
 use std::sync::OnceLock;
 
@@ -57,19 +57,6 @@ pub(crate) fn wrap(text: &str, size_px: f64, bold: bool, room_px: f64) -> Vec<St
         }
     }
     lines
-}
-
-/// The text without what XML forbids.
-pub(crate) fn printable(text: &str) -> String {
-    text.chars()
-        .map(|letter| {
-            if letter.is_control() || matches!(letter, '\u{FFFE}' | '\u{FFFF}') {
-                ' '
-            } else {
-                letter
-            }
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 
 mod samples;
 
-use gyrocal_report::{After, Error, Picture, Residuals, write_svg};
+use gyrocal_report::{Error, Picture, Residuals, write_svg};
 use samples::{all, residuals};
 
 /// Pairs of coordinates of a list of points.
@@ -28,8 +28,8 @@ fn attributes<'a>(svg: &'a str, name: &str) -> Vec<&'a str> {
     parts.map(|part| part.split('"').next().unwrap()).collect()
 }
 
-/// Width and height in the document's own fine units.
-fn sheet(svg: &str) -> (f64, f64) {
+/// Width and height of the canvas.
+fn canvas(svg: &str) -> (f64, f64) {
     let view_box: Vec<f64> = attributes(svg, "viewBox")[0]
         .split(' ')
         .map(|number| number.parse().unwrap())
@@ -58,10 +58,10 @@ fn same_data_same_bytes() {
 }
 
 #[test]
-fn everything_drawn_is_on_the_sheet() {
+fn everything_drawn_is_on_the_canvas() {
     for (name, picture, _) in all() {
         let svg = picture.to_svg().unwrap();
-        let (width, height) = sheet(&svg);
+        let (width, height) = canvas(&svg);
         let drawn: Vec<_> = attributes(&svg, "points")
             .into_iter()
             .flat_map(points)
@@ -80,7 +80,7 @@ fn everything_drawn_is_on_the_sheet() {
 #[test]
 fn data_stay_in_their_panel() {
     let mut picture = residuals(500);
-    picture.before[1][250] = 1.0;
+    picture.channels[1].before[250] = 1.0;
     let svg = picture.to_svg().unwrap();
     // The axes are the paths of exactly three points: top left, bottom left, bottom right.
     let lists: Vec<_> = attributes(&svg, "points").into_iter().map(points).collect();
@@ -92,10 +92,10 @@ fn data_stay_in_their_panel() {
     let curves = lists.iter().filter(|list| list.len() > 3);
     for curve in curves {
         let home = axes.iter().find(|axis| {
-            // A pixel is eight units; coordinates are rounded to whole units.
-            let inside = |place: &(f64, f64)| {
-                (axis[0].0 - 1.0..=axis[2].0 + 1.0).contains(&place.0)
-                    && (axis[0].1 - 1.0..=axis[1].1 + 1.0).contains(&place.1)
+            // Coordinates are rounded to tenths of a pixel.
+            let inside = |point: &(f64, f64)| {
+                (axis[0].0 - 0.1..=axis[2].0 + 0.1).contains(&point.0)
+                    && (axis[0].1 - 0.1..=axis[1].1 + 0.1).contains(&point.1)
             };
             curve.iter().all(inside)
         });
@@ -115,33 +115,27 @@ fn data_stay_in_their_panel() {
 fn a_million_samples_make_a_small_picture() {
     let count = 1_000_000;
     let mut picture = residuals(count);
-    picture.after = Some(After {
-        values: picture.before.clone(),
-        label: "again".to_owned(),
-    });
+    for channel in &mut picture.channels {
+        channel.after = Some(channel.before.clone());
+    }
     let svg = picture.to_svg().unwrap();
-    // Six curves of at most four points of ten bytes on each of 880 columns of pixels are
-    // 211 kB; six dashed lines of a hundred dashes are 66 kB; the rest is text and axes.
-    assert!(svg.len() < 300_000, "{} bytes", svg.len());
+    // Six curves of at most four points of eleven bytes on each of 880 columns of pixels are
+    // 232 kB; the rest is text and axes.
+    assert!(svg.len() < 250_000, "{} bytes", svg.len());
 }
 
 #[test]
 fn missing_data_are_said_to_be_missing() {
     let mut picture = residuals(50);
-    picture.before[2] = vec![f64::NAN; 50];
+    picture.channels[2].before = vec![f64::NAN; 50];
     assert_eq!(picture.to_svg().unwrap().matches("no data").count(), 1);
-    let nothing = Residuals {
-        time_s: Vec::new(),
-        before: Default::default(),
-        ..residuals(0)
-    };
-    assert_eq!(nothing.to_svg().unwrap().matches("no data").count(), 3);
+    assert_eq!(residuals(0).to_svg().unwrap().matches("no data").count(), 3);
 }
 
 #[test]
 fn wrong_data_are_errors_that_say_where() {
     let mut infinite = residuals(50);
-    infinite.before[1][7] = f64::INFINITY;
+    infinite.channels[1].before[7] = f64::INFINITY;
     let message = infinite.to_svg().unwrap_err().to_string();
     assert!(
         message.contains("residuals of y, value 7: found inf"),
@@ -149,7 +143,7 @@ fn wrong_data_are_errors_that_say_where() {
     );
 
     let mut short = residuals(50);
-    short.before[0].pop();
+    short.channels[0].before.pop();
     assert!(matches!(
         short.to_svg(),
         Err(Error::UnequalLengths {
@@ -164,8 +158,17 @@ fn wrong_data_are_errors_that_say_where() {
     assert!(matches!(back.to_svg(), Err(Error::Value { index: 20, .. })));
 
     let mut noiseless = residuals(50);
-    noiseless.sigma[0] = 0.0;
+    noiseless.channels[0].sigma = 0.0;
     assert!(matches!(noiseless.to_svg(), Err(Error::Value { .. })));
+
+    let without_channels = Residuals {
+        channels: Vec::new(),
+        ..residuals(50)
+    };
+    assert!(matches!(
+        without_channels.to_svg(),
+        Err(Error::Empty { .. })
+    ));
 }
 
 #[test]
@@ -185,7 +188,7 @@ fn a_file_is_written_whole_or_not_at_all() {
     let before = std::fs::read(&path).unwrap();
     assert!(before.ends_with(b"</svg>\n"));
     let mut wrong = residuals(50);
-    wrong.before[0].pop();
+    wrong.channels[0].before.pop();
     assert!(write_svg(&wrong, &path).is_err());
     assert_eq!(std::fs::read(&path).unwrap(), before);
     let nowhere = directory.path().join("no/such/directory.svg");

@@ -29,10 +29,10 @@ pub(super) fn stage(
 
 /// A record that is too short for one picture leaves that out.
 fn pictures(found: &Found<'_>) -> Result<Vec<Named>, gyrocal_calibration::CalibrationError> {
-    let runs = residual::FreeRuns::of(found)?;
+    let runs = residual::OpenLoopRuns::of(found)?;
     let mut pictures: Vec<Named> = vec![
         ("residuals", Box::new(runs.residuals(found))),
-        ("free-run", Box::new(runs.free_run(found))),
+        ("free-run", Box::new(runs.open_loop(found))),
         (
             "residual-against-force",
             Box::new(runs.against_force(found)),
@@ -61,14 +61,14 @@ fn pictures(found: &Found<'_>) -> Result<Vec<Named>, gyrocal_calibration::Calibr
     Ok(pictures)
 }
 
-/// Causes in the extended model, for titles: `gyro_y.g_z and gyro_x.ramp`.
+/// Effects in the extended model, for titles: `gyro_y.g_z and gyro_x.ramp`.
 fn causes(found: &Found<'_>) -> Option<String> {
     let (findings, acceptances) = (&found.diagnosis.findings, &found.diagnosis.acceptances);
     let accepted = findings.iter().zip(acceptances).filter(|(_, a)| a.accepted);
     listed(&accepted.map(|(f, _)| f.effect).collect::<Vec<_>>())
 }
 
-/// Causes that were found, whether the model is better for them or not.
+/// All reported effects, in the extended model or not.
 fn named(found: &Found<'_>) -> Option<String> {
     let findings = found.diagnosis.findings.iter();
     listed(&findings.map(|finding| finding.effect).collect::<Vec<_>>())
@@ -82,7 +82,7 @@ fn listed(ids: &[&str]) -> Option<String> {
     }
 }
 
-/// What belongs below every title.
+/// Record and verdict, below every title.
 fn subtitle(found: &Found<'_>) -> String {
     let verdict = match found.report.verdict {
         DiagnosisVerdict::EffectsFound => {
@@ -95,13 +95,13 @@ fn subtitle(found: &Found<'_>) -> String {
                 .filter(|effect| *effect != filter::EFFECT)
                 .collect();
             if ids.is_empty() {
-                "nothing found".to_owned()
+                "no effects found".to_owned()
             } else {
-                format!("found: {}", ids.join(", "))
+                format!("effects found: {}", ids.join(", "))
             }
         }
-        DiagnosisVerdict::Unexplained => "something is left unexplained".to_owned(),
-        _ => "nothing found".to_owned(),
+        DiagnosisVerdict::Unexplained => "unexplained residual".to_owned(),
+        _ => "no effects found".to_owned(),
     };
     let name = found.path.file_name().unwrap_or(found.path.as_os_str());
     format!("{}; {verdict}", name.display())

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use gyrocal_measured::tumble::{Finding, GyroReport, Prepared, TumbleReport};
-use gyrocal_report::{After, Contribution, Contributions, Residuals};
+use gyrocal_report::{ResidualChannel, Residuals, TermContribution, TermContributions};
 
 use crate::pictures::Named;
 use crate::rounding::rounded;
 
-/// Contribution of each finding, and residuals of the laws; only the latter without findings.
+/// Partial residuals of each effect found, and the residuals of both laws; only the latter if
+/// nothing was found.
 pub(super) fn pictures(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Vec<Named> {
     let mut pictures: Vec<Named> = Vec::new();
     if let Some(causes) = causes(log, prepared, report) {
@@ -32,32 +33,32 @@ fn gyro_of<'a>(report: &'a TumbleReport, finding: &Finding) -> Option<(usize, &'
 }
 
 /// By gyro and then by name: findings come in the order of their significance.
-fn causes(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Option<Contributions> {
+fn causes(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Option<TermContributions> {
     let mut findings: Vec<&Finding> = report.findings.iter().collect();
     findings.sort_by(|a, b| a.effect.cmp(&b.effect));
-    let panels = findings
+    let terms = findings
         .iter()
         .filter_map(|finding| contribution(prepared, report, finding));
-    let panels: Vec<Contribution> = panels.collect();
+    let terms: Vec<TermContribution> = terms.collect();
     let title = match &*report.findings {
         [] => return None,
-        [one] => format!("{}: the nominal drift law leaves it out", one.effect),
+        [one] => format!("{} is missing from the nominal drift law", one.effect),
         several => format!(
-            "{} terms that the nominal drift law leaves out",
+            "{} terms are missing from the nominal drift law",
             several.len()
         ),
     };
-    Some(Contributions {
+    Some(TermContributions {
         title,
         subtitle: format!(
-            "gyro output less all other terms of the extended law; {}",
+            "partial residuals: gyro output minus all other terms of the extended law; {}",
             subtitle(log, report)
         ),
         quantity: "rate".to_owned(),
         unit: "deg/h".to_owned(),
-        dot: "one static stop".to_owned(),
-        columns: 2.min(panels.len()),
-        panels,
+        point_label: "one static stop".to_owned(),
+        columns: 2.min(terms.len()),
+        terms,
     })
 }
 
@@ -65,27 +66,29 @@ fn contribution(
     prepared: &Prepared,
     report: &TumbleReport,
     finding: &Finding,
-) -> Option<Contribution> {
+) -> Option<TermContribution> {
     let (axis, gyro) = gyro_of(report, finding)?;
     let sigmas = prepared.positions.sigma_deg_per_h.iter();
     let residuals = &gyro.extended.residuals_deg_per_h;
-    let rest = residuals.iter().zip(&finding.regressor);
-    let (abscissa, abscissa_unit) = abscissa(&finding.effect);
+    let pairs = residuals.iter().zip(&finding.regressor);
+    let (regressor, regressor_unit) = regressor(&finding.effect);
     let [estimate, sigma] = rounded(finding.estimate, finding.sigma);
-    Some(Contribution {
+    Some(TermContribution {
         name: finding.effect.clone(),
-        size: format!("{estimate} ± {sigma} {}", finding.unit),
-        abscissa,
-        abscissa_unit,
-        abscissae: finding.regressor.clone(),
-        rest: rest.map(|(left, x)| left + finding.estimate * x).collect(),
-        standard_error: sigmas.map(|sigma| sigma[axis]).collect(),
+        estimate: format!("{estimate} ± {sigma} {}", finding.unit),
+        regressor,
+        regressor_unit,
+        regressor_values: finding.regressor.clone(),
+        partial_residuals: pairs
+            .map(|(residual, x)| residual + finding.estimate * x)
+            .collect(),
+        standard_errors: sigmas.map(|sigma| sigma[axis]).collect(),
         slope: finding.estimate,
     })
 }
 
-/// Regressor of a term, by its name: `gyro_x.g_yz` multiplies forces along y and z.
-fn abscissa(effect: &str) -> (String, String) {
+/// Regressor of a term and its unit, by its name: `gyro_x.g_yz` multiplies forces along y and z.
+fn regressor(effect: &str) -> (String, String) {
     match effect.split_once(".g_").map(|(_, axes)| axes) {
         Some(axis) if axis.len() == 1 => (format!("specific force {axis}"), "g".to_owned()),
         Some(axes) => {
@@ -110,29 +113,33 @@ fn residuals(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Option<R
     let found = !report.findings.is_empty();
     let title = if found {
         format!(
-            "The nominal drift law misses the stops by {miss:.0} deg/h, the extended one by {:.0}",
+            "Residual at the static stops: {miss:.0} deg/h rms for the nominal drift law, {:.0} for \
+             the extended one",
             all(after)
         )
     } else {
-        format!("The nominal drift law misses the stops by {miss:.0} deg/h")
+        format!("Residual of the nominal drift law at the static stops: {miss:.0} deg/h rms")
     };
     Some(Residuals {
         title,
         subtitle: format!(
-            "gyro output less the law at each stop; {}",
+            "gyro output minus drift law at each stop; {}",
             subtitle(log, report)
         ),
         time_s: prepared.positions.time_s.clone(),
-        before: before.map(Clone::clone),
+        channels: (0..3)
+            .map(|axis| {
+                let sigmas = prepared.positions.sigma_deg_per_h.iter();
+                ResidualChannel {
+                    name: ["x", "y", "z"][axis].to_owned(),
+                    before: before[axis].clone(),
+                    after: found.then(|| after[axis].clone()),
+                    sigma: rms(&sigmas.map(|sigma| sigma[axis]).collect::<Vec<_>>()),
+                }
+            })
+            .collect(),
         before_label: "nominal law".to_owned(),
-        after: found.then(|| After {
-            values: after.map(Clone::clone),
-            label: "extended law".to_owned(),
-        }),
-        sigma: core::array::from_fn(|axis| {
-            let sigmas = prepared.positions.sigma_deg_per_h.iter();
-            rms(&sigmas.map(|sigma| sigma[axis]).collect::<Vec<_>>())
-        }),
+        after_label: "extended law".to_owned(),
         quantity: "residual".to_owned(),
         unit: "deg/h".to_owned(),
     })

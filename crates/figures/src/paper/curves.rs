@@ -3,7 +3,8 @@
 use gyrocal::PlatformFilter;
 use gyrocal_calibration::{Options, declared_attitude, filter_settings};
 use gyrocal_report::{
-    After, Comparison, Convergence, ConvergingCoefficient, Estimate, Picture, Quantity, Residuals,
+    ComparedEstimate, ComparedQuantity, Comparison, Convergence, EstimateHistory, ParameterHistory,
+    Picture, ResidualChannel, Residuals,
 };
 use gyrocal_truth::Simulation;
 
@@ -17,7 +18,7 @@ const THINNED: usize = 10;
 /// A picture and the stem of its files.
 pub(super) type Named = (&'static str, Box<dyn Picture>);
 
-/// What a streaming filter holds while it runs.
+/// Estimates and innovations of a streaming filter over a record.
 struct Track {
     time_s: Vec<f64>,
     estimate: Vec<[f64; 9]>,
@@ -83,14 +84,16 @@ impl Track {
         Ok(track)
     }
 
-    fn coefficient(&self, letter: &str, index: usize, reference: f64) -> ConvergingCoefficient {
-        ConvergingCoefficient {
+    fn coefficient(&self, letter: &str, index: usize, reference: f64) -> ParameterHistory {
+        ParameterHistory {
             name: format!("{letter}: {}", names()[index]),
             unit: units()[index].to_owned(),
-            estimate: self.estimate.iter().map(|values| values[index]).collect(),
-            sigma: self.sigma.iter().map(|values| values[index]).collect(),
+            estimates: EstimateHistory {
+                estimate: self.estimate.iter().map(|values| values[index]).collect(),
+                sigma: self.sigma.iter().map(|values| values[index]).collect(),
+            },
             reference: Some(reference),
-            rival: None,
+            second: None,
         }
     }
 }
@@ -102,7 +105,7 @@ fn units() -> [&'static str; 9] {
 /// The three coefficients of one gyro, one a row, in the three ways, one a column.
 fn convergence(gyro: usize, tracks: &[Track; 3], batch: &Judged) -> Convergence {
     let [by_rule, paper, default] = tracks;
-    let coefficients = (3 * gyro..3 * gyro + 3).flat_map(|index| {
+    let parameters = (3 * gyro..3 * gyro + 3).flat_map(|index| {
         [
             by_rule.coefficient("A", index, batch.truth[index]),
             paper.coefficient("B", index, batch.estimate[index]),
@@ -111,51 +114,61 @@ fn convergence(gyro: usize, tracks: &[Track; 3], batch: &Judged) -> Convergence 
     });
     let name = ["x", "y", "z"][gyro];
     Convergence {
-        title: format!("Gyro {name}: the paper's filter converges on data by its own rule only"),
-        subtitle: "A: paper's filter, data by its own rule. B: paper's filter, exact data. C: \
-                   default filter, exact data"
+        title: format!(
+            "Gyro {name}: the paper's filter converges only on data simulated by its own rule"
+        ),
+        subtitle: "A: paper's filter, data simulated by its own rule. B: paper's filter, exact \
+                   data. C: default filter, exact data"
             .to_owned(),
         time_s: by_rule.time_s.clone(),
-        coefficients: coefficients.collect(),
+        parameters: parameters.collect(),
         columns: 3,
         reference_label: "true value in A, batch estimate in B and C".to_owned(),
         estimate_label: String::new(),
-        rival_label: String::new(),
+        second_label: String::new(),
     }
 }
 
 fn innovations(exact: &Simulation, paper: Track, default: Track) -> Residuals {
     Residuals {
-        title: "On exact data the paper's filter is surprised by far more than noise".to_owned(),
+        title: "On exact data the innovations of the paper's filter are far larger than the noise"
+            .to_owned(),
         subtitle: format!("One record, seed {SHOWN_SEED}"),
         time_s: exact.record.time_s.clone(),
-        before: paper.innovation_g,
+        channels: ["x", "y", "z"]
+            .into_iter()
+            .zip(paper.innovation_g.into_iter().zip(default.innovation_g))
+            .map(|(name, (before, after))| ResidualChannel {
+                name: name.to_owned(),
+                before,
+                after: Some(after),
+                sigma: exact.bench.accel_noise_g,
+            })
+            .collect(),
         before_label: "paper's filter".to_owned(),
-        after: Some(After {
-            values: default.innovation_g,
-            label: "default filter".to_owned(),
-        }),
-        sigma: [exact.bench.accel_noise_g; 3],
+        after_label: "default filter".to_owned(),
         quantity: "innovation".to_owned(),
         unit: "g".to_owned(),
     }
 }
 
 fn estimates(judged: &[Judged]) -> Comparison {
-    let quantity = |i: usize| Quantity {
+    let quantity = |i: usize| ComparedQuantity {
         name: names()[i].to_owned(),
         unit: units()[i].to_owned(),
         reference: Some(judged[0].truth[i]),
         estimates: judged
             .iter()
-            .map(|run| Estimate {
+            .map(|run| ComparedEstimate {
                 value: run.estimate[i],
                 sigma: run.sigma[i],
             })
             .collect(),
     };
     Comparison {
-        title: "On exact data the paper's filter is wrong by many of its sigmas".to_owned(),
+        title:
+            "On exact data the errors of the paper's filter are many times its standard deviations"
+                .to_owned(),
         subtitle: format!("One record, seed {SHOWN_SEED}"),
         estimators: ["paper's filter", "default filter", "batch"]
             .map(str::to_owned)

@@ -7,16 +7,17 @@
 )]
 
 use gyrocal_report::{
-    Against, AgainstPanel, Bin, Comparison, Convergence, ConvergingCoefficient, Correlation,
-    CorrelationPanel, DriftPrediction, Estimate, FreeRun, Gain, MarkedLine, Omitted, Picture,
-    Quantity, RankedEffect, Ranking, RankingGroup, Residuals, Role, Spectrum, SpectrumPanel,
-    Threshold,
+    Bin, ComparedEstimate, ComparedQuantity, Comparison, Convergence, Correlation,
+    CorrelationChannel, CovariatePanel, CrossValidation, EstimateHistory, MarkedFrequency, Omitted,
+    OpenLoop, OpenLoopChannel, ParameterHistory, Picture, PowerThreshold, PredictionError,
+    RankedEffect, Ranking, RankingGroup, ResidualChannel, ResidualVsCovariate, Residuals, Role,
+    Spectrum, SpectrumChannel,
 };
 
 /// A name, the picture, and words that it must show.
 pub type Sample = (&'static str, Box<dyn Picture>, Vec<&'static str>);
 
-const BAND: &str = "2 sigma (95%)";
+const BAND: &str = "±2σ (95%)";
 const DAYS: &str = "time from the first sample [days]";
 
 fn wave(count: usize, size: f64, phase: f64) -> Vec<f64> {
@@ -29,22 +30,30 @@ fn times(count: usize) -> Vec<f64> {
     (0..count).map(|n| 1e9 + 600.0 * n as f64).collect()
 }
 
+const AXES: [(&str, f64); 3] = [("x", 0.0), ("y", 1.0), ("z", 2.0)];
+
 /// Residuals every ten minutes.
 pub fn residuals(count: usize) -> Residuals {
     Residuals {
         title: "Residuals stay in the band".to_owned(),
         subtitle: String::new(),
         time_s: times(count),
-        before: [0.0, 1.0, 2.0].map(|phase| wave(count, 1e-5, phase)),
+        channels: AXES
+            .map(|(name, phase)| ResidualChannel {
+                name: name.to_owned(),
+                before: wave(count, 1e-5, phase),
+                after: None,
+                sigma: 1e-5,
+            })
+            .into(),
         before_label: "innovation".to_owned(),
-        after: None,
-        sigma: [1e-5; 3],
+        after_label: String::new(),
         quantity: "residual".to_owned(),
         unit: "g".to_owned(),
     }
 }
 
-/// All nine.
+/// One of each kind but one.
 pub fn all() -> Vec<Sample> {
     let n = 400;
     let text = str::to_owned;
@@ -60,28 +69,21 @@ pub fn all() -> Vec<Sample> {
             vec![BAND, DAYS, "gyro_x.bias", "deg/h", "truth"],
         ),
         (
-            "free run",
-            Box::new(FreeRun {
-                title: text("Free run"),
-                subtitle: String::new(),
-                time_s: times(n),
-                measured_g: [0.0, 1.0, 2.0].map(|phase| wave(n, 0.9, phase)),
-                simulated_g: [0.01, 1.0, 2.0].map(|phase| wave(n, 0.9, phase)),
-                sigma_g: [1e-5; 3],
-            }),
-            vec!["measured less simulated", BAND, "specific force [g]", DAYS],
+            "open loop",
+            Box::new(open_loop(n)),
+            vec!["measured minus simulated", BAND, "specific force [g]", DAYS],
         ),
         (
             "spectrum",
             Box::new(spectrum(n)),
-            vec!["cycles a day", "probability 1%", "solar day"],
+            vec!["cycles/day", "probability 1%", "solar day"],
         ),
         (
             "correlation",
             Box::new(Correlation {
                 title: text("Correlation"),
                 subtitle: String::new(),
-                channels: vec![CorrelationPanel {
+                channels: vec![CorrelationChannel {
                     name: text("x"),
                     correlation: wave(60, 0.1, 0.0),
                     band: 0.03,
@@ -90,22 +92,22 @@ pub fn all() -> Vec<Sample> {
                 confidence: 0.95,
             }),
             vec![
-                "white noise at one lag, 95%",
+                "white noise, 95% at each lag",
                 "lag [samples]",
                 "of 60 lags outside",
             ],
         ),
         (
-            "against",
-            Box::new(Against {
-                title: text("Against"),
+            "residual against covariate",
+            Box::new(ResidualVsCovariate {
+                title: text("Covariate"),
                 subtitle: String::new(),
                 quantity: text("mean residual"),
                 unit: text("g"),
-                panels: vec![AgainstPanel {
+                panels: vec![CovariatePanel {
                     name: text("x"),
-                    abscissa: text("temperature"),
-                    abscissa_unit: text("°C"),
+                    covariate: text("temperature"),
+                    covariate_unit: text("°C"),
                     bins: Bin::of(&wave(n, 3.0, 0.0), &wave(n, 1e-5, 0.4), 10),
                 }],
                 columns: 1,
@@ -118,23 +120,26 @@ pub fn all() -> Vec<Sample> {
             vec!["|z|", "gyro_y.g_z", "3.9", "not tested", "12 more"],
         ),
         (
-            "gain",
-            Box::new(Gain {
-                title: text("Gain"),
+            "cross-validation",
+            Box::new(CrossValidation {
+                title: text("Cross-validation"),
                 subtitle: String::new(),
                 block_gain_nats: vec![3.0, -1.0, f64::NAN, 5.0],
-                drift: Some(DriftPrediction {
+                prediction: Some(PredictionError {
+                    name: text("Later record"),
+                    quantity: text("drift prediction error"),
+                    unit: text("arcmin"),
                     time_s: times(n),
-                    nominal_arcmin: wave(n, 5.0, 0.0),
-                    extended_arcmin: wave(n, 0.5, 0.0),
-                    expected_arcmin: Some(vec![0.2; n]),
+                    nominal: wave(n, 5.0, 0.0),
+                    extended: wave(n, 0.5, 0.0),
+                    expected: Some(vec![0.2; n]),
                 }),
             }),
             vec![
                 "[nats]",
-                "[arc minutes]",
+                "drift prediction error [arcmin]",
                 "sum 7.00 nats, 3 blocks",
-                "to be expected of the extended model",
+                "expected for the extended model",
             ],
         ),
         (
@@ -146,26 +151,49 @@ pub fn all() -> Vec<Sample> {
 }
 
 fn convergence(n: usize) -> Convergence {
-    let coefficient = |name: &str, reference| ConvergingCoefficient {
+    let parameter = |name: &str, reference: Option<f64>| ParameterHistory {
         name: name.to_owned(),
         unit: "deg/h".to_owned(),
-        estimate: (0..n).map(|k| 0.1 + (1.0 / (k as f64 + 1.0))).collect(),
-        sigma: (0..n).map(|k| 1.0 / (k as f64 + 1.0)).collect(),
+        estimates: EstimateHistory {
+            estimate: (0..n).map(|k| 0.1 + (1.0 / (k as f64 + 1.0))).collect(),
+            sigma: (0..n).map(|k| 1.0 / (k as f64 + 1.0)).collect(),
+        },
         reference,
-        rival: reference.map(|value| [vec![value; n], vec![0.1; n]]),
+        second: reference.map(|value| EstimateHistory {
+            estimate: vec![value; n],
+            sigma: vec![0.1; n],
+        }),
     };
     Convergence {
         title: "Convergence".to_owned(),
         subtitle: String::new(),
         time_s: times(n),
-        coefficients: vec![
-            coefficient("gyro_x.bias", Some(0.1)),
-            coefficient("gyro_y.bias", None),
+        parameters: vec![
+            parameter("gyro_x.bias", Some(0.1)),
+            parameter("gyro_y.bias", None),
         ],
         columns: 3,
         reference_label: "truth".to_owned(),
         estimate_label: "extended".to_owned(),
-        rival_label: "nominal".to_owned(),
+        second_label: "nominal".to_owned(),
+    }
+}
+
+fn open_loop(n: usize) -> OpenLoop {
+    OpenLoop {
+        title: "Open loop".to_owned(),
+        subtitle: String::new(),
+        time_s: times(n),
+        channels: AXES
+            .map(|(name, phase)| OpenLoopChannel {
+                name: name.to_owned(),
+                measured: wave(n, 0.9, phase),
+                simulated: wave(n, 0.9, phase.max(0.01)),
+                sigma: 1e-5,
+            })
+            .into(),
+        quantity: "specific force".to_owned(),
+        unit: "g".to_owned(),
     }
 }
 
@@ -173,20 +201,21 @@ fn spectrum(n: usize) -> Spectrum {
     Spectrum {
         title: "Spectrum".to_owned(),
         subtitle: String::new(),
-        frequency_per_day: (0..n).map(|k| k as f64 / 14.0).collect(),
-        channels: vec![SpectrumPanel {
+        frequency: (0..n).map(|k| k as f64 / 14.0).collect(),
+        frequency_unit: "cycles/day".to_owned(),
+        channels: vec![SpectrumChannel {
             name: "x".to_owned(),
             power: wave(n, 1.0, 0.0).into_iter().map(f64::abs).collect(),
             samples: n,
-            threshold: Some(Threshold {
+            threshold: Some(PowerThreshold {
                 power: 12.0,
                 false_alarm_probability: 0.01,
             }),
         }],
         quantity: "power".to_owned(),
         unit: "g²".to_owned(),
-        marks: vec![MarkedLine {
-            frequency_per_day: 1.0,
+        marks: vec![MarkedFrequency {
+            frequency: 1.0,
             label: "solar day".to_owned(),
         }],
     }
@@ -209,8 +238,8 @@ fn ranking() -> Ranking {
         groups: vec![RankingGroup {
             label: "finding 1".to_owned(),
             effects: vec![
-                effect("gyro_y.g_z", 18.9, Role::Named),
-                effect("gyro_y.g_yz", 18.7, Role::Rival),
+                effect("gyro_y.g_z", 18.9, Role::Reported),
+                effect("gyro_y.g_yz", 18.7, Role::Alternative),
                 effect("gyro_x.temperature", f64::NAN, Role::Other),
             ],
         }],
@@ -222,12 +251,12 @@ fn ranking() -> Ranking {
 }
 
 fn comparison() -> Comparison {
-    let estimate = |value| Estimate { value, sigma: 1e-3 };
+    let estimate = |value| ComparedEstimate { value, sigma: 1e-3 };
     Comparison {
         title: "Comparison".to_owned(),
         subtitle: String::new(),
         estimators: ["filter", "smoother"].map(str::to_owned).into(),
-        quantities: vec![Quantity {
+        quantities: vec![ComparedQuantity {
             name: "gyro_x.bias".to_owned(),
             unit: "deg/h".to_owned(),
             reference: Some(0.031),

@@ -1,8 +1,8 @@
-//! The nine coefficients while the record goes on, with and without the causes.
+//! Estimates of the coefficients against record length, nominal and extended model.
 
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{CalibrationError, Estimates, Extended};
-use gyrocal_report::{Convergence, ConvergingCoefficient};
+use gyrocal_report::{Convergence, EstimateHistory, ParameterHistory};
 
 use super::{Found, causes, subtitle};
 
@@ -24,7 +24,7 @@ pub(super) fn convergence(found: &Found<'_>) -> Result<Option<Convergence>, Cali
     let (nominal, extended) = (of(&diagnosis.nominal)?, of(extended)?);
     Ok(Some(Convergence {
         title: format!(
-            "With {} the coefficients settle elsewhere",
+            "Coefficients against record length, without and with {}",
             causes(found).unwrap_or_default()
         ),
         subtitle: format!(
@@ -32,35 +32,34 @@ pub(super) fn convergence(found: &Found<'_>) -> Result<Option<Convergence>, Cali
             subtitle(found)
         ),
         time_s: rows.iter().map(|row| found.record.time_s[*row]).collect(),
-        coefficients: DRIFT
+        parameters: DRIFT
             .iter()
             .enumerate()
-            .map(|(index, element)| {
-                let [estimate, sigma] = curves(&extended, index);
-                ConvergingCoefficient {
-                    name: element.id.to_owned(),
-                    unit: element.unit.to_owned(),
-                    estimate,
-                    sigma,
-                    reference: None,
-                    rival: Some(curves(&nominal, index)),
-                }
+            .map(|(index, element)| ParameterHistory {
+                name: element.id.to_owned(),
+                unit: element.unit.to_owned(),
+                estimates: history(&extended, index),
+                reference: None,
+                second: Some(history(&nominal, index)),
             })
             .collect(),
         columns: 3,
         reference_label: String::new(),
         estimate_label: "extended model".to_owned(),
-        rival_label: "nominal model".to_owned(),
+        second_label: "nominal model".to_owned(),
     }))
 }
 
-/// Estimate and sigma of a coefficient.
-fn curves(estimates: &[Option<Estimates>], index: usize) -> [Vec<f64>; 2] {
+/// Estimates of a coefficient.
+fn history(estimates: &[Option<Estimates>], index: usize) -> EstimateHistory {
     let of = |value: fn(&Estimates) -> &[f64; 9]| {
         estimates
             .iter()
             .map(|estimates| estimates.as_ref().map_or(f64::NAN, |e| value(e)[index]))
             .collect()
     };
-    [of(|e| &e.coefficients), of(|e| &e.sigmas)]
+    EstimateHistory {
+        estimate: of(|e| &e.coefficients),
+        sigma: of(|e| &e.sigmas),
+    }
 }

@@ -1,16 +1,16 @@
-//! Effects by statistic, and what a model with the causes gains.
+//! Effects by test statistic, and the gain of the extended model.
 
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_record::GainReport;
 use gyrocal_report::{
-    Comparison, DriftPrediction, Estimate, Gain, Omitted, Quantity, RankedEffect, Ranking,
-    RankingGroup, Role,
+    ComparedEstimate, ComparedQuantity, Comparison, CrossValidation, Omitted, PredictionError,
+    RankedEffect, Ranking, RankingGroup, Role,
 };
 
 use super::{Found, causes, named, subtitle};
 use crate::diagnose::words::likelihood;
 
-/// Effects that were neither named nor rivals and are shown.
+/// Number of effects shown that are neither reported nor alternatives.
 const OTHERS_SHOWN: usize = 10;
 
 /// All effects of the first search by their statistic; `None` if nothing could be searched.
@@ -31,29 +31,26 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
         let mut effects = vec![RankedEffect {
             effect: finding.effect.clone(),
             statistic: statistic(&finding.effect),
-            role: Role::Named,
+            role: Role::Reported,
             note: String::new(),
         }];
         let equal = finding.equivalents.iter().map(|equivalent| RankedEffect {
             effect: equivalent.effect.clone(),
             statistic: statistic(&equivalent.effect),
-            role: Role::Rival,
-            note: "no record can tell it apart".to_owned(),
+            role: Role::Alternative,
+            note: "exact equivalent".to_owned(),
         });
         effects.extend(equal.filter(|effect| effect.statistic.is_finite()));
         effects.extend(finding.rivals.iter().map(|rival| RankedEffect {
             effect: rival.effect.clone(),
             statistic: statistic(&rival.effect),
-            role: Role::Rival,
+            role: Role::Alternative,
             note: likelihood(rival),
         }));
         let label = if effects.len() == 1 {
-            format!("{} alone", finding.effect)
+            format!("{}, no alternatives", finding.effect)
         } else {
-            format!(
-                "{} or what the record does not tell from it",
-                finding.effect
-            )
+            format!("{} and its alternatives", finding.effect)
         };
         shown.push(&finding.effect);
         shown.extend(finding.rivals.iter().map(|r| r.effect.as_str()));
@@ -72,27 +69,24 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
         note: String::new(),
     });
     groups.push(RankingGroup {
-        label: "not named".to_owned(),
+        label: "not reported".to_owned(),
         effects: others.collect(),
     });
     let title = match named(found) {
         Some(causes) => format!(
-            "Of {} effects {causes} explains the record best",
+            "{causes} detected among {} effects tested",
             report.ranking.len()
         ),
         None => format!(
-            "None of {} effects passes the threshold; {} comes nearest",
+            "None of {} effects exceeds the detection threshold; the largest statistic is that of {}",
             report.ranking.len(),
             largest.effect
         ),
     };
     Some(Ranking {
         title,
-        subtitle: format!(
-            "before anything was added to the model; {}",
-            subtitle(found)
-        ),
-        statistic: "chi-square less what searching alone reaches".to_owned(),
+        subtitle: format!("first search, nominal model; {}", subtitle(found)),
+        statistic: "score statistic (chi-square, penalised for search)".to_owned(),
         threshold,
         false_alarm_probability: found.diagnosis.search_false_alarm_probability,
         tested: report.ranking.len(),
@@ -104,43 +98,46 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
     })
 }
 
-/// What the extended model predicts better, block by block.
-pub(super) fn gain(found: &Found<'_>, gain: &GainReport) -> Gain {
+/// Gain of the extended model in cross-validation, and its prediction of a later record.
+pub(super) fn gain(found: &Found<'_>, gain: &GainReport) -> CrossValidation {
     let compensation = found.validation.as_ref().map(|v| &v.compensation);
     let blocks = &gain.block_log_score_nats;
     let better = blocks.iter().filter(|nats| **nats > 0.0).count();
-    Gain {
+    CrossValidation {
         title: format!(
-            "With {} {better} of {} blocks are predicted better, by {:.1} nats in all",
+            "{} improves the predictive log score by {:.1} nats, in {better} of {} blocks",
             gain.effects.join(", "),
-            blocks.len(),
-            gain.cross_validated_log_score_nats
+            gain.cross_validated_log_score_nats,
+            blocks.len()
         ),
-        subtitle: format!("each block predicted from the others; {}", subtitle(found)),
+        subtitle: format!("blocked cross-validation; {}", subtitle(found)),
         block_gain_nats: blocks.clone(),
-        drift: compensation.map(|found| DriftPrediction {
+        prediction: compensation.map(|found| PredictionError {
+            name: "Later record".to_owned(),
+            quantity: "drift prediction error".to_owned(),
+            unit: "arcmin".to_owned(),
             time_s: found.time_s.clone(),
-            nominal_arcmin: found.nominal_arcmin.clone(),
-            extended_arcmin: found.extended_arcmin.clone(),
-            expected_arcmin: Some(found.expected_arcmin.clone()),
+            nominal: found.nominal_arcmin.clone(),
+            extended: found.extended_arcmin.clone(),
+            expected: Some(found.expected_arcmin.clone()),
         }),
     }
 }
 
-/// The nine coefficients without and with the causes.
+/// The coefficients of the nominal and of the extended model.
 pub(super) fn coefficients(found: &Found<'_>) -> Option<Comparison> {
     let (nominal, extended) = (&found.diagnosis.nominal, found.diagnosis.extended.as_ref()?);
     let shifts = &found.report.gain.as_ref()?.coefficient_shift;
     let largest = shifts
         .iter()
         .max_by(|a, b| a.in_sigmas.abs().total_cmp(&b.in_sigmas.abs()))?;
-    let estimate = |fit: &gyrocal_calibration::Extended<'_>, index: usize| Estimate {
+    let estimate = |fit: &gyrocal_calibration::Extended<'_>, index: usize| ComparedEstimate {
         value: fit.values()[index],
         sigma: fit.covariance()[(index, index)].sqrt(),
     };
     Some(Comparison {
         title: format!(
-            "Without {} the coefficients are off by up to {:.0} sigma, {} most",
+            "Adding {} changes the coefficients by up to {:.0} sigma ({})",
             causes(found).unwrap_or_default(),
             largest.in_sigmas.abs(),
             largest.coefficient
@@ -150,7 +147,7 @@ pub(super) fn coefficients(found: &Found<'_>) -> Option<Comparison> {
         quantities: DRIFT
             .iter()
             .enumerate()
-            .map(|(index, element)| Quantity {
+            .map(|(index, element)| ComparedQuantity {
                 name: element.id.to_owned(),
                 unit: element.unit.to_owned(),
                 reference: None,

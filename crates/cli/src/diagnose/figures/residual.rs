@@ -1,4 +1,4 @@
-//! Residuals of the free run and one-step innovations.
+//! Open-loop residuals, one-step innovations and the specific-force magnitude.
 
 use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::{
@@ -6,8 +6,9 @@ use gyrocal_diagnosis::{
     periodogram,
 };
 use gyrocal_report::{
-    After, Against, AgainstPanel, Bin, Correlation, CorrelationPanel, FreeRun, MarkedLine, Picture,
-    Residuals, Spectrum, SpectrumPanel, Threshold,
+    Bin, Correlation, CorrelationChannel, CovariatePanel, MarkedFrequency, OpenLoop,
+    OpenLoopChannel, Picture, PowerThreshold, ResidualChannel, ResidualVsCovariate, Residuals,
+    Spectrum, SpectrumChannel,
 };
 
 use super::{Found, causes, subtitle};
@@ -28,13 +29,13 @@ const SIDEREAL_PER_DAY: f64 = 1.002_737_9;
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
-/// What the models give when they run by themselves from the first row.
-pub(super) struct FreeRuns {
+/// Open-loop simulations of the models, from the first row on without measurement updates.
+pub(super) struct OpenLoopRuns {
     nominal_g: Vec<[f64; 3]>,
     extended_g: Option<Vec<[f64; 3]>>,
 }
 
-impl FreeRuns {
+impl OpenLoopRuns {
     pub(super) fn of(found: &Found<'_>) -> Result<Self, CalibrationError> {
         let diagnosis = &found.diagnosis;
         Ok(Self {
@@ -47,7 +48,7 @@ impl FreeRuns {
         })
     }
 
-    /// Measured less simulated specific force, before and after.
+    /// Measured minus simulated specific force of both models.
     pub(super) fn residuals(&self, found: &Found<'_>) -> Residuals {
         let before = differences(found, &self.nominal_g);
         let after = self.extended_g.as_deref().map(|g| differences(found, g));
@@ -55,46 +56,53 @@ impl FreeRuns {
         let noise = amount(found.bench.accel_noise_g);
         let title = match (&after, causes(found)) {
             (Some(after), Some(causes)) => format!(
-                "The nominal model misses the record by {miss}; with {causes} by {}",
+                "Open-loop residual: {miss} rms for the nominal model, {} with {causes}",
                 amount(rms(after))
             ),
-            _ => format!("The nominal model misses the record by {miss}; noise is {noise}"),
+            _ => format!("Open-loop residual of the nominal model: {miss} rms, noise {noise}"),
         };
         Residuals {
             title,
             subtitle: format!(
-                "measured less simulated from the first row on; {}",
+                "measured minus simulated specific force, no measurement updates; {}",
                 subtitle(found)
             ),
             time_s: found.record.time_s.clone(),
-            before,
+            channels: channels(before, after, found.bench.accel_noise_g),
             before_label: "nominal model".to_owned(),
-            after: after.map(|values| After {
-                values,
-                label: format!("with {}", causes(found).unwrap_or_default()),
-            }),
-            sigma: [found.bench.accel_noise_g; 3],
+            after_label: format!("with {}", causes(found).unwrap_or_default()),
             quantity: "residual".to_owned(),
             unit: "g".to_owned(),
         }
     }
 
-    /// The nominal model beside the record.
-    pub(super) fn free_run(&self, found: &Found<'_>) -> FreeRun {
+    /// Open-loop simulation of the nominal model and the record.
+    pub(super) fn open_loop(&self, found: &Found<'_>) -> OpenLoop {
         let miss = amount(rms(&differences(found, &self.nominal_g)));
         let days = found.record.duration_s() / SECONDS_PER_DAY;
-        FreeRun {
-            title: format!("The nominal model follows {days:.1} days of the record to {miss} rms"),
+        let (measured, simulated) = (columns(&found.record.accel_g), columns(&self.nominal_g));
+        let channels = AXES.iter().zip(measured.into_iter().zip(simulated));
+        OpenLoop {
+            title: format!(
+                "Open-loop simulation of the nominal model over {days:.1} days: residual {miss} rms"
+            ),
             subtitle: subtitle(found),
             time_s: found.record.time_s.clone(),
-            measured_g: columns(&found.record.accel_g),
-            simulated_g: columns(&self.nominal_g),
-            sigma_g: [found.bench.accel_noise_g; 3],
+            channels: channels
+                .map(|(name, (measured, simulated))| OpenLoopChannel {
+                    name: (*name).to_owned(),
+                    measured,
+                    simulated,
+                    sigma: found.bench.accel_noise_g,
+                })
+                .collect(),
+            quantity: "specific force".to_owned(),
+            unit: "g".to_owned(),
         }
     }
 
-    /// What the nominal model misses against each component of specific force, and temperature.
-    pub(super) fn against_force(&self, found: &Found<'_>) -> Against {
+    /// Open-loop residuals against each component of specific force, and temperature.
+    pub(super) fn against_force(&self, found: &Found<'_>) -> ResidualVsCovariate {
         let residuals = differences(found, &self.nominal_g);
         let forces = columns(&self.nominal_g);
         let mut panels = Vec::new();
@@ -105,10 +113,10 @@ impl FreeRuns {
                 if share > steepest.0 {
                     steepest = (share, axis, name.clone());
                 }
-                panels.push(AgainstPanel {
+                panels.push(CovariatePanel {
                     name: AXES[axis].to_owned(),
-                    abscissa: name,
-                    abscissa_unit: unit.to_owned(),
+                    covariate: name,
+                    covariate_unit: unit.to_owned(),
                     bins: Bin::of(abscissa, residual, BINS),
                 });
             };
@@ -120,14 +128,14 @@ impl FreeRuns {
             }
         }
         let (share, axis, name) = steepest;
-        Against {
+        ResidualVsCovariate {
             title: format!(
-                "{:.0} % of what the nominal model misses in {} goes with {name}",
+                "{:.0} % of the mean-square open-loop residual of {} depends on {name}",
                 100.0 * share,
                 AXES[axis]
             ),
             subtitle: format!(
-                "means of the residual of the free run in {BINS} bins; {}",
+                "open-loop residuals of the nominal model, means in {BINS} bins; {}",
                 subtitle(found)
             ),
             quantity: "mean residual".to_owned(),
@@ -138,12 +146,12 @@ impl FreeRuns {
     }
 }
 
-/// Periodograms of the innovations: of the nominal model, and with all causes.
+/// Periodograms of the innovations of the nominal and of the extended model.
 pub(super) fn periodograms(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
     let probability = found.report.false_alarm_probability;
     let time_s = &found.record.time_s;
     let mut channels = Vec::new();
-    let mut frequency_per_day = Vec::new();
+    let mut frequency = Vec::new();
     // Of each channel the power of its strongest line over the threshold, and its frequency.
     let mut lines: Vec<(f64, f64)> = Vec::new();
     for (label, innovations) in whitened(found) {
@@ -155,40 +163,40 @@ pub(super) fn periodograms(found: &Found<'_>) -> Result<Box<dyn Picture>, Diagno
                 line,
             } = periodogram(time_s, series, probability)?;
             lines.push((line.power / level, line.frequency_hz * SECONDS_PER_DAY));
-            frequency_per_day = frequency_hz.iter().map(|hz| hz * SECONDS_PER_DAY).collect();
-            channels.push(SpectrumPanel {
+            frequency = frequency_hz.iter().map(|hz| hz * SECONDS_PER_DAY).collect();
+            channels.push(SpectrumChannel {
                 name: format!("{}, {label}", AXES[axis]),
                 power,
                 samples: series.iter().filter(|value| !value.is_nan()).count(),
-                threshold: Some(Threshold {
+                threshold: Some(PowerThreshold {
                     power: level,
                     false_alarm_probability: probability,
                 }),
             });
         }
     }
-    let mut marks = vec![MarkedLine {
-        frequency_per_day: SIDEREAL_PER_DAY,
+    let mut marks = vec![MarkedFrequency {
+        frequency: SIDEREAL_PER_DAY,
         label: "sidereal day".to_owned(),
     }];
     let strongest = (0..lines.len())
         .filter(|channel| lines[*channel].0 > 1.0)
         .max_by(|a, b| lines[*a].0.total_cmp(&lines[*b].0));
     let title = match strongest {
-        None => "The innovations hold no line that noise alone would not".to_owned(),
+        None => "No spectral line of the innovations exceeds the detection threshold".to_owned(),
         Some(channel) => {
             let (beyond, per_day) = lines[channel];
             let period = format!("{:.2} h", 24.0 / per_day);
             let mut title = format!(
-                "The strongest line has a period of {period} ({}), {beyond:.1} times the threshold",
+                "Strongest spectral line: period {period} ({}), {beyond:.1} times the threshold",
                 channels[channel].name
             );
             // Those of the extended model follow the first three.
             if lines.len() > 3 && lines[3..].iter().all(|(beyond, _)| *beyond <= 1.0) {
-                title.push_str("; none is left");
+                title.push_str("; none in the extended model");
             }
-            marks.push(MarkedLine {
-                frequency_per_day: per_day,
+            marks.push(MarkedFrequency {
+                frequency: per_day,
                 label: period,
             });
             title
@@ -197,7 +205,8 @@ pub(super) fn periodograms(found: &Found<'_>) -> Result<Box<dyn Picture>, Diagno
     Ok(Box::new(Spectrum {
         title,
         subtitle: format!("one-step innovations; {}", subtitle(found)),
-        frequency_per_day,
+        frequency,
+        frequency_unit: "cycles/day".to_owned(),
         channels,
         quantity: "power".to_owned(),
         unit: String::new(),
@@ -234,7 +243,7 @@ pub(super) fn autocorrelations(found: &Found<'_>) -> Result<Box<dyn Picture>, Di
             {
                 worst = Some((largest, name.clone()));
             }
-            channels.push(CorrelationPanel {
+            channels.push(CorrelationChannel {
                 name,
                 correlation: values,
                 band,
@@ -246,8 +255,8 @@ pub(super) fn autocorrelations(found: &Found<'_>) -> Result<Box<dyn Picture>, Di
     let (largest, name) = worst.unwrap_or_default();
     Ok(Box::new(Correlation {
         title: format!(
-            "{beyond} of {total} correlations of the innovations leave the 95 % band; the largest \
-             is {largest:.3} ({name})"
+            "{beyond} of {total} autocorrelations of the innovations outside the 95 % band, the \
+             largest {largest:.3} ({name})"
         ),
         subtitle: format!("one-step innovations; {}", subtitle(found)),
         channels,
@@ -255,21 +264,21 @@ pub(super) fn autocorrelations(found: &Found<'_>) -> Result<Box<dyn Picture>, Di
     }))
 }
 
-/// |E|² against specific force and time: accelerometers only.
+/// Squared magnitude of specific force against its components and time: accelerometers only.
 pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
     let noise_g = [found.bench.accel_noise_g; 3];
     let gravity_g = found.bench.specific_force_at_rest();
     let norm = magnitude_channel(found.record, &noise_g, gravity_g, BINS)?;
-    let panel = |abscissa: String, unit: &str, scale: f64, dependence: &Dependence| {
+    let panel = |covariate: String, unit: &str, scale: f64, dependence: &Dependence| {
         let first = if unit == "days" {
             found.record.time_s.first().copied().unwrap_or(0.0)
         } else {
             0.0
         };
-        AgainstPanel {
-            name: "|E|² less gravity squared".to_owned(),
-            abscissa,
-            abscissa_unit: unit.to_owned(),
+        CovariatePanel {
+            name: "|f|² − g²".to_owned(),
+            covariate,
+            covariate_unit: unit.to_owned(),
             bins: dependence
                 .bins
                 .iter()
@@ -282,7 +291,7 @@ pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError
                 .collect(),
         }
     };
-    let mut panels: Vec<AgainstPanel> = norm
+    let mut panels: Vec<CovariatePanel> = norm
         .on_component
         .iter()
         .zip(AXES)
@@ -303,14 +312,15 @@ pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError
         .fold(norm.mean_p_value, f64::min);
     let count = 1.0 + panels.len() as f64;
     let title = if least * count < found.report.false_alarm_probability {
-        "The norm of specific force is not gravity: an accelerometer is in error"
+        "Specific-force magnitude test: not consistent with gravity, accelerometer error"
     } else {
-        "The norm of specific force is gravity: no error of an accelerometer shows"
+        "Specific-force magnitude test: consistent with gravity"
     };
-    Ok(Box::new(Against {
+    Ok(Box::new(ResidualVsCovariate {
         title: title.to_owned(),
         subtitle: format!(
-            "no gyro and no attitude enters it; in standard deviations of one sample; {}",
+            "squared specific force minus squared gravity, in standard deviations of one sample; \
+             independent of gyros and attitude; {}",
             subtitle(found)
         ),
         quantity: "mean".to_owned(),
@@ -320,15 +330,12 @@ pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError
     }))
 }
 
-/// Innovations of the nominal model, and of the model with all causes if there are any.
+/// Innovations of the nominal model and, if there is one, of the extended model.
 fn whitened<'a>(found: &'a Found<'_>) -> Vec<(&'static str, &'a [[f64; 3]])> {
     let diagnosis = &found.diagnosis;
-    let mut all = vec![("nominal", diagnosis.innovations.normalised.as_slice())];
+    let mut all = vec![("nominal model", diagnosis.innovations.normalised.as_slice())];
     if diagnosis.extended.is_some() {
-        all.push((
-            "with what was found",
-            diagnosis.remainder.whitened.as_slice(),
-        ));
+        all.push(("extended model", diagnosis.remainder.whitened.as_slice()));
     }
     all
 }
@@ -343,6 +350,24 @@ fn differences(found: &Found<'_>, simulated_g: &[[f64; 3]]) -> [Vec<f64>; 3] {
             .map(|(measured, simulated)| measured[axis] - simulated[axis])
             .collect()
     })
+}
+
+/// Residuals of the three axes, before and after.
+fn channels(
+    before: [Vec<f64>; 3],
+    after: Option<[Vec<f64>; 3]>,
+    sigma: f64,
+) -> Vec<ResidualChannel> {
+    let after = after.map_or([None, None, None], |after| after.map(Some));
+    AXES.iter()
+        .zip(before.into_iter().zip(after))
+        .map(|(name, (before, after))| ResidualChannel {
+            name: (*name).to_owned(),
+            before,
+            after,
+            sigma,
+        })
+        .collect()
 }
 
 fn columns(rows: &[[f64; 3]]) -> [Vec<f64>; 3] {

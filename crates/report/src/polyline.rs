@@ -1,32 +1,12 @@
-//! From columns of numbers to lines on the sheet: gaps, decimation, clipping.
+//! From columns of points to lines and bands on the canvas: gaps, decimation, clipping.
 
-use crate::axis::Axis;
-use crate::canvas::Place;
-
-/// A rectangle on the sheet, px.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Frame {
-    pub left: f64,
-    pub top: f64,
-    pub right: f64,
-    pub bottom: f64,
-}
-
-impl Frame {
-    pub(crate) fn width(self) -> f64 {
-        self.right - self.left
-    }
-
-    pub(crate) fn height(self) -> f64 {
-        self.bottom - self.top
-    }
-}
+use crate::geometry::{Point, Rect};
 
 /// Intervals longer than so many times the usual one are gaps.
 const GAP_FACTOR: f64 = 4.0;
 
-/// The longest interval, in units of the abscissa, that a line may bridge.
-pub(crate) fn longest_bridge(abscissa: &[f64]) -> f64 {
+/// The longest interval, in units of the abscissa, that is not a gap.
+pub(crate) fn longest_interval(abscissa: &[f64]) -> f64 {
     let mut intervals: Vec<f64> = abscissa.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if intervals.is_empty() {
         return f64::INFINITY;
@@ -36,26 +16,24 @@ pub(crate) fn longest_bridge(abscissa: &[f64]) -> f64 {
     GAP_FACTOR * *median
 }
 
-/// The lines that join values, broken at missing values and at gaps, no more than four points for
-/// each column of pixels, cut at the upper and lower edge of the frame.
+/// The lines through points, broken at missing values and at gaps, no more than four points for
+/// each column of pixels, clipped at the upper and lower edge of the frame.
 pub(crate) fn lines(
-    frame: Frame,
-    (x_axis, y_axis): (&Axis, &Axis),
+    frame: Rect,
     abscissa: &[f64],
-    values: &[f64],
-    bridge: f64,
-) -> Vec<Vec<Place>> {
+    points: &[Point],
+    longest_interval: f64,
+) -> Vec<Vec<Point>> {
     let mut lines = Vec::new();
-    let mut line = Thinned::default();
+    let mut line = Decimated::default();
     let mut last = f64::NAN;
-    for (&x, &value) in abscissa.iter().zip(values) {
-        let place = place(frame, (x_axis, y_axis), (x, value));
-        let missing = !(place.0.is_finite() && place.1.is_finite());
-        if missing || x - last > bridge {
+    for (&x, &point) in abscissa.iter().zip(points) {
+        let missing = !(point.0.is_finite() && point.1.is_finite());
+        if missing || x - last > longest_interval {
             clip(frame, &std::mem::take(&mut line).finish(), &mut lines);
         }
         if !missing {
-            line.push(place);
+            line.push(point);
             last = x;
         }
     }
@@ -63,32 +41,29 @@ pub(crate) fn lines(
     lines
 }
 
-/// The outline of the area between two columns, in as many pieces as there are stretches without
-/// missing values or gaps, clamped to the frame.
-pub(crate) fn areas(
-    frame: Frame,
-    axes: (&Axis, &Axis),
+/// The outlines of the band between two edges, one for each stretch without missing values or
+/// gaps, clamped to the frame.
+pub(crate) fn bands(
+    frame: Rect,
     abscissa: &[f64],
-    lower: &[f64],
-    upper: &[f64],
-    bridge: f64,
-) -> Vec<Vec<Place>> {
-    let mut areas = Vec::new();
+    (lower, upper): (&[Point], &[Point]),
+    longest_interval: f64,
+) -> Vec<Vec<Point>> {
+    let mut bands = Vec::new();
+    // Of each column of pixels its left edge, bottom and top.
     let mut columns: Vec<[f64; 3]> = Vec::new();
     let mut last = f64::NAN;
     let mut close = |columns: &mut Vec<[f64; 3]>| {
         if columns.len() > 1 {
             let bottom = columns.iter().map(|column| (column[0], column[1]));
             let top = columns.iter().rev().map(|column| (column[0], column[2]));
-            areas.push(bottom.chain(top).collect());
+            bands.push(bottom.chain(top).collect());
         }
         columns.clear();
     };
-    for ((&x, &lower), &upper) in abscissa.iter().zip(lower).zip(upper) {
-        let (px, bottom) = place(frame, axes, (x, lower));
-        let (_, top) = place(frame, axes, (x, upper));
+    for ((&x, &(px, bottom)), &(_, top)) in abscissa.iter().zip(lower).zip(upper) {
         let missing = !(px.is_finite() && bottom.is_finite() && top.is_finite());
-        if missing || x - last > bridge {
+        if missing || x - last > longest_interval {
             close(&mut columns);
         }
         if missing {
@@ -106,50 +81,42 @@ pub(crate) fn areas(
         }
     }
     close(&mut columns);
-    areas
-}
-
-/// Where a pair of values stands on the sheet, maybe outside of the frame.
-pub(crate) fn place(frame: Frame, axes: (&Axis, &Axis), (x, y): (f64, f64)) -> Place {
-    (
-        frame.left + axes.0.at(x) * frame.width(),
-        frame.bottom - axes.1.at(y) * frame.height(),
-    )
+    bands
 }
 
 /// A line of at most four points for each column of pixels: first, highest, lowest, last, in
 /// their order, which draws the same pixels as all of them.
 #[derive(Default)]
-struct Thinned {
-    line: Vec<Place>,
+struct Decimated {
+    line: Vec<Point>,
     column: Option<Column>,
 }
 
 struct Column {
     number: i64,
-    first: (usize, Place),
-    highest: (usize, Place),
-    lowest: (usize, Place),
-    last: (usize, Place),
+    first: (usize, Point),
+    highest: (usize, Point),
+    lowest: (usize, Point),
+    last: (usize, Point),
 }
 
-impl Thinned {
-    fn push(&mut self, place: Place) {
-        let number = place.0.floor() as i64;
+impl Decimated {
+    fn push(&mut self, point: Point) {
+        let number = point.0.floor() as i64;
         match &mut self.column {
             Some(column) if column.number == number => {
-                let next = (column.last.0 + 1, place);
-                if place.1 < column.highest.1.1 {
+                let next = (column.last.0 + 1, point);
+                if point.1 < column.highest.1.1 {
                     column.highest = next;
                 }
-                if place.1 > column.lowest.1.1 {
+                if point.1 > column.lowest.1.1 {
                     column.lowest = next;
                 }
                 column.last = next;
             }
             _ => {
                 self.close();
-                let only = (0, place);
+                let only = (0, point);
                 self.column = Some(Column {
                     number,
                     first: only,
@@ -166,31 +133,31 @@ impl Thinned {
             let mut kept = [column.first, column.highest, column.lowest, column.last];
             kept.sort_by_key(|(order, _)| *order);
             let mut before = None;
-            for (order, place) in kept {
+            for (order, point) in kept {
                 if before != Some(order) {
-                    self.line.push(place);
+                    self.line.push(point);
                 }
                 before = Some(order);
             }
         }
     }
 
-    fn finish(mut self) -> Vec<Place> {
+    fn finish(mut self) -> Vec<Point> {
         self.close();
         self.line
     }
 }
 
 /// The parts of a line between the upper and the lower edge of the frame.
-fn clip(frame: Frame, line: &[Place], lines: &mut Vec<Vec<Place>>) {
-    let inside = |place: &Place| (frame.top..=frame.bottom).contains(&place.1);
+fn clip(frame: Rect, line: &[Point], lines: &mut Vec<Vec<Point>>) {
+    let inside = |point: &Point| (frame.top..=frame.bottom).contains(&point.1);
     if let [only] = line {
         if inside(only) {
             lines.push(vec![*only]);
         }
         return;
     }
-    let mut part: Vec<Place> = Vec::new();
+    let mut part: Vec<Point> = Vec::new();
     for pair in line.windows(2) {
         let Some((from, to)) = clip_segment(frame, pair[0], pair[1]) else {
             continue;
@@ -208,17 +175,17 @@ fn clip(frame: Frame, line: &[Place], lines: &mut Vec<Vec<Place>>) {
     }
 }
 
-fn clip_segment(frame: Frame, from: Place, to: Place) -> Option<(Place, Place)> {
+fn clip_segment(frame: Rect, from: Point, to: Point) -> Option<(Point, Point)> {
     if from.1.max(to.1) < frame.top || from.1.min(to.1) > frame.bottom {
         return None;
     }
-    let slide = |place: Place, other: Place| {
-        let edge = place.1.clamp(frame.top, frame.bottom);
-        if edge == place.1 {
-            return place;
+    let slide = |point: Point, other: Point| {
+        let edge = point.1.clamp(frame.top, frame.bottom);
+        if edge == point.1 {
+            return point;
         }
-        let part = (edge - place.1) / (other.1 - place.1);
-        (place.0 + part * (other.0 - place.0), edge)
+        let part = (edge - point.1) / (other.1 - point.1);
+        (point.0 + part * (other.0 - point.0), edge)
     };
     Some((slide(from, to), slide(to, from)))
 }
@@ -226,27 +193,39 @@ fn clip_segment(frame: Frame, from: Place, to: Place) -> Option<(Place, Place)> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::Span;
+    use crate::span::Span;
 
-    const FRAME: Frame = Frame {
+    const FRAME: Rect = Rect {
         left: 10.0,
         top: 20.0,
         right: 110.0,
         bottom: 70.0,
     };
 
-    fn axes(x: (f64, f64), y: (f64, f64)) -> (Axis, Axis) {
-        let axis = |(lo, hi)| Axis::linear(Span { lo, hi }, "", "", 4);
-        (axis(x), axis(y))
+    /// Points of values on linear scales over the frame.
+    fn points(x: Span, y: Span, abscissa: &[f64], values: &[f64]) -> Vec<Point> {
+        let pairs = abscissa.iter().zip(values);
+        let part = |span: Span, value: f64| (value - span.lo) / span.length();
+        pairs
+            .map(|(&abscissa, &value)| {
+                (
+                    FRAME.left + part(x, abscissa) * FRAME.width(),
+                    FRAME.bottom - part(y, value) * FRAME.height(),
+                )
+            })
+            .collect()
+    }
+
+    fn span(lo: f64, hi: f64) -> Span {
+        Span { lo, hi }
     }
 
     #[test]
     fn gaps_are_not_bridged() {
-        let (x_axis, y_axis) = axes((0.0, 20.0), (0.0, 1.0));
         let time = [0.0, 1.0, 2.0, 3.0, 10.0, 11.0, 12.0, 13.0];
         let values = [0.5, 0.5, f64::NAN, 0.5, 0.5, 0.5, 0.5, 0.5];
-        let bridge = longest_bridge(&time);
-        let lines = lines(FRAME, (&x_axis, &y_axis), &time, &values, bridge);
+        let points = points(span(0.0, 20.0), span(0.0, 1.0), &time, &values);
+        let lines = lines(FRAME, &time, &points, longest_interval(&time));
         let ends: Vec<_> = lines
             .iter()
             .map(|line| (line[0].0, line[line.len() - 1].0))
@@ -256,41 +235,34 @@ mod tests {
     }
 
     #[test]
-    fn thinning_keeps_the_extremes() {
+    fn decimation_keeps_the_extremes() {
         let count = 100_000;
         let time: Vec<f64> = (0..count).map(f64::from).collect();
         let mut values: Vec<f64> = time.iter().map(|t| (0.1 * t).sin()).collect();
         values[31_415] = 7.0;
         values[27_182] = -5.0;
-        let (x_axis, y_axis) = axes((0.0, f64::from(count)), (-10.0, 10.0));
-        let lines = lines(FRAME, (&x_axis, &y_axis), &time, &values, 10.0);
+        let (x, y) = (span(0.0, f64::from(count)), span(-10.0, 10.0));
+        let lines = lines(FRAME, &time, &points(x, y, &time, &values), 10.0);
         assert_eq!(lines.len(), 1);
         assert!(lines[0].len() <= 4 * 101, "{}", lines[0].len());
-        let span = Span::of(lines[0].iter().map(|place| place.1));
+        let drawn = Span::of(lines[0].iter().map(|point| point.1));
         // 50 px for 20 units, downwards.
-        let expected = Span {
-            lo: 45.0 - 7.0 * 2.5,
-            hi: 45.0 + 5.0 * 2.5,
-        };
-        assert_eq!(span, Some(expected));
+        let expected = span(45.0 - 7.0 * 2.5, 45.0 + 5.0 * 2.5);
+        assert_eq!(drawn, Some(expected));
         assert!(lines[0].windows(2).all(|pair| pair[0].0 <= pair[1].0));
     }
 
     #[test]
     fn lines_end_at_the_edge() {
-        let (x_axis, y_axis) = axes((0.0, 4.0), (0.0, 1.0));
-        let lines = lines(
-            FRAME,
-            (&x_axis, &y_axis),
-            &[0.0, 1.0, 2.0, 3.0, 4.0],
-            &[0.5, 1.5, 0.5, -9.5, -9.5],
-            9.0,
-        );
+        let time = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let values = [0.5, 1.5, 0.5, -9.5, -9.5];
+        let points = points(span(0.0, 4.0), span(0.0, 1.0), &time, &values);
+        let lines = lines(FRAME, &time, &points, 9.0);
         assert_eq!(lines.len(), 2);
         assert_eq!(lines[0], [(10.0, 45.0), (22.5, 20.0)]);
         assert_eq!(lines[1].first(), Some(&(47.5, 20.0)));
-        for place in lines.iter().flatten() {
-            assert!((FRAME.top..=FRAME.bottom).contains(&place.1), "{place:?}");
+        for point in lines.iter().flatten() {
+            assert!((FRAME.top..=FRAME.bottom).contains(&point.1), "{point:?}");
         }
     }
 }
