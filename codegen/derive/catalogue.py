@@ -1,12 +1,13 @@
-"""The catalogue of effects: whatever this project can look for, one entry each.
+"""The catalogue of effects: every effect that a diagnosis can test, one entry each.
 
 To add an effect, add an entry. Its derivatives, its place in `Catalogue` and its row in the
 table of effects follow with the next build; docs/adding-a-term.md walks through an example.
 
 Letters are those of IEEE Std 517-1974 (single-degree-of-freedom gyros: D_F, D_I, D_O, D_S and
-squares and products of them) and IEEE Std 1293-2018 (accelerometers: K_0, K_1, K_2, ...), where
-I, O and S stand for input, output and spin axis. Input axes are the platform axes; which of the
-two other axes is a gyro's output axis is not known here, so either letter may apply.
+their squares and products) and IEEE Std 1293-2018 (accelerometers: K_0, K_1, K_2, ...), where
+I, O and S are the input, output and spin axis. Input axes are the platform axes. The model does not
+specify which of the two other axes is the output axis of a gyro, so either letter may apply.
+docs/glossary.md defines all terms.
 """
 
 import math
@@ -34,18 +35,17 @@ SITE_EXPERIMENTS = (
 )
 
 SQUARES = Equivalence(
-    "the squares of the three components of specific force add up to gravity squared, so these "
-    "differ by a constant drift and by the square along the input axis, which are estimated "
-    "anyway: the same samples, at any attitude and for ever",
-    "no bench at rest: only specific force of another size, as on a centrifuge; at rest one "
-    "compensates as well as the other",
+    "the squares of the three components of specific force sum to gravity squared, so the two "
+    "differ by a constant drift and the square along the input axis, which are estimated "
+    "coefficients: their signatures are equal in every record on a static base",
+    "specific force of another magnitude, as on a centrifuge; on a static base either one "
+    "compensates the drift",
 )
 EARTH_RATE = Equivalence(
-    "each turns or scales the Earth's rate as the platform sees it, and the three coefficients "
-    "along the input axes take up all but one direction of that: the same samples, at any attitude "
-    "and for ever",
+    "each rotates or scales the Earth rate in platform axes, and the three coefficients D_I absorb "
+    "all but one direction of that change: their signatures are equal in every record",
     "an independent astronomic latitude, or a check of the sampling clock against a time signal; "
-    "the Earth's rate itself is known far better",
+    "the Earth rate itself is known far better",
 )
 
 
@@ -62,25 +62,25 @@ def _onset() -> Parameter:
 
 
 def _products(i: str) -> list[str]:
-    """Pairs of axes whose products may drive gyro i, but for its own square (nominal)."""
+    """Pairs of axes of the product terms of gyro i, without its own square (nominal)."""
     pairs = [j + k for j in AXES for k in AXES if j <= k]
     return [pair for pair in pairs if pair != i + i]
 
 
 def _product_twin(i: str, pair: str) -> tuple[str, ...]:
-    """a.a = g^2 makes the squares along the two other axes one class, with opposite signs."""
+    """Since a.a = g^2 the squares along the two other axes are equivalent, with opposite signs."""
     j, k = others(i)
     return (f"gyro_{i}.g_{k}{k}",) if pair == j + j else ()
 
 
 def _share_after(onset_s: ca.SX, at) -> ca.SX:
-    """The share of a step that lies after an onset."""
+    """The fraction of a step after an onset."""
     share = (at.time_s - onset_s) / at.interval_s + 0.5
     return ca.fmax(0, ca.fmin(1, share))
 
 
 def _turned_about_east(angle_rad: ca.SX, at) -> ca.SX:
-    """Earth rate at a latitude greater by an angle; it has no component along East."""
+    """Earth rate at a latitude that is larger by an angle; it has no component along East."""
     return ca.cos(angle_rad) * at.omega_0 + ca.sin(angle_rad) * ca.cross(at.east_0, at.omega_0)
 
 
@@ -89,7 +89,7 @@ EFFECTS = [
     *[
         Effect(
             f"gyro_{i}.g_{j}", Kind.CONSTANT, Enters.RATE,
-            f"mass unbalance of gyro {i} that specific force along {j} acts on (D_O or D_S)",
+            f"mass unbalance of gyro {i} along the cross axis {j} (D_O or D_S)",
             _size("deg/h/g"), 0.05, GYRO_STANDARD,
             lambda p, at, i=i, j=j: {i: p["size"] * at.a[j]},
             near_twins=(f"gyro_{i}{j}.axis_misalignment", f"gyro_{i}.magnetic",
@@ -133,7 +133,7 @@ EFFECTS = [
     ],
     *[
         Effect(
-            f"gyro_{i}.step", Kind.STEP, Enters.RATE, f"sudden change of the drift of gyro {i} that stays",
+            f"gyro_{i}.step", Kind.STEP, Enters.RATE, f"step of the drift of gyro {i}",
             _size("deg/h"), 0.02, "",
             lambda p, at, i=i: {i: p["size"] * _share_after(p["onset_s"], at)},
             shapes=(_onset(),),
@@ -143,7 +143,7 @@ EFFECTS = [
     ],
     *[
         Effect(
-            f"gyro_{i}.warmup", Kind.EXPONENTIAL, Enters.RATE, f"warm-up of gyro {i}: drift that decays",
+            f"gyro_{i}.warmup", Kind.EXPONENTIAL, Enters.RATE, f"warm-up of gyro {i}: exponential decay of the drift",
             _size("deg/h"), 0.05, GYRO_STANDARD,
             lambda p, at, i=i: {
                 i: p["size"] * ca.exp(-at.time_s / (HOUR_S * p["time_constant_h"]))
@@ -158,9 +158,9 @@ EFFECTS = [
     *[
         Effect(
             f"gyro_{i}.diurnal", Kind.PERIODIC, Enters.RATE,
-            f"drift of gyro {i} that follows the solar day, as room temperature does",
-            (Parameter("sine", "deg/h", "part that begins at zero"),
-             Parameter("cosine", "deg/h", "part that begins at its largest")),
+            f"diurnal drift of gyro {i}: period of one solar day, like room temperature",
+            (Parameter("sine", "deg/h", "sine amplitude, phase zero at the first row"),
+             Parameter("cosine", "deg/h", "cosine amplitude")),
             0.01, "",
             lambda p, at, i=i: {
                 i: p["sine"] * ca.sin(2 * math.pi / DAY_S * at.time_s)
@@ -191,7 +191,7 @@ EFFECTS = [
         )
         for i in AXES
     ],
-    # What the accelerometers read.
+    # Outputs of the accelerometers.
     *[
         Effect(
             f"accel_{i}.bias", Kind.CONSTANT, Enters.OUTPUT, f"bias of accelerometer {i} (K_0)",
@@ -222,7 +222,7 @@ EFFECTS = [
     *[
         Effect(
             f"accel_{i}{j}.nonorthogonality", Kind.CONSTANT, Enters.OUTPUT,
-            f"axes of accelerometers {i} and {j} not at a right angle: the symmetric part of "
+            f"orthogonality error of accelerometers {i} and {j}: symmetric part of the "
             "misalignment (delta_o, delta_p)",
             _size("rad"), 1e-4, ACCELEROMETER_STANDARD,
             lambda p, at, i=i, j=j: {i: p["size"] * at.a[j], j: p["size"] * at.a[i]},
@@ -242,17 +242,17 @@ EFFECTS = [
     ],
     *[
         Effect(
-            f"accel_{i}.noise", Kind.NOISE, Enters.OUTPUT, f"noise of accelerometer {i} other than declared",
-            (Parameter("ratio", "1", "sigma over the declared one"),), 1.2,
+            f"accel_{i}.noise", Kind.NOISE, Enters.OUTPUT, f"noise of accelerometer {i}, ratio to the declared noise",
+            (Parameter("ratio", "1", "standard deviation over the declared one"),), 1.2,
             ACCELEROMETER_STANDARD, axes=(i,), noise=NoiseProperty.LEVEL,
             family="accel_i.noise",
         )
         for i in AXES
     ],
     Effect(
-        "accel.outliers", Kind.NOISE, Enters.OUTPUT, "isolated samples far outside the noise",
-        (Parameter("fraction", "1", "share of the samples"),
-         Parameter("size", "1", "spread, in declared sigmas")),
+        "accel.outliers", Kind.NOISE, Enters.OUTPUT, "outliers: isolated values far outside the noise",
+        (Parameter("fraction", "1", "fraction of the values"),
+         Parameter("size", "1", "size, in declared standard deviations")),
         0.005, "", axes=AXES, noise=NoiseProperty.OUTLIERS,
     ),
     *[
@@ -275,25 +275,25 @@ EFFECTS = [
         for i in AXES
     ],
     Effect(
-        "accel.coloured_noise", Kind.NOISE, Enters.OUTPUT, "accelerometer noise that is correlated in time",
-        (Parameter("correlation", "1", "correlation of neighbouring samples"),), 0.3,
+        "accel.coloured_noise", Kind.NOISE, Enters.OUTPUT, "correlation of the accelerometer noise, first order",
+        (Parameter("correlation", "1", "correlation of successive samples"),), 0.3,
         ACCELEROMETER_STANDARD, axes=AXES, noise=NoiseProperty.CORRELATION,
     ),
     *[
         Effect(
-            f"gyro_{i}.noise", Kind.NOISE, Enters.RATE, f"white drift noise of gyro {i} other than declared",
-            (Parameter("ratio", "1", "sigma over the declared one"),), 1.2,
+            f"gyro_{i}.noise", Kind.NOISE, Enters.RATE, f"white drift noise of gyro {i}, ratio to the declared noise",
+            (Parameter("ratio", "1", "standard deviation over the declared one"),), 1.2,
             NOISE_STANDARD, axes=(i,), noise=NoiseProperty.LEVEL,
             family="gyro_i.noise",
         )
         for i in AXES
     ],
-    # Where and when.
+    # Site, clock and attitude.
     Effect(
         "site.latitude", Kind.CONSTANT, Enters.INPUT, "error of the astronomic latitude", _size("deg"), 0.005, "",
         lambda p, at: {"omega_0": _turned_about_east(RAD_PER_DEG * p["size"], at)},
-        # The record sees the angle between Earth rate and gravity and the size of Earth rate only
-        # up to omega_0 - k f_0, which the three D_I take up: any two of these are one.
+        # The three D_I absorb omega_0 - k f_0. The record determines the magnitude of Earth rate and
+        # its angle to gravity only up to that: any two of these effects are equivalent.
         equivalents=("clock.rate", "site.earth_rate"), equivalence=EARTH_RATE,
         separated_by=SITE_EXPERIMENTS,
         formula="omega_0 -> omega_0 turned about East by site_latitude",
@@ -314,23 +314,23 @@ EFFECTS = [
     ),
     Effect(
         "clock.rate", Kind.CONSTANT, Enters.TIME,
-        "relative error of the sampling clock, which runs fast: a second of the record lasts 1 - p",
+        "relative rate error of the sampling clock, positive if fast: a second of it lasts 1 - p",
         _size("1"), 2e-5, "", lambda p, at: 1 - p["size"], separated_by=SITE_EXPERIMENTS,
     ),
     Effect(
-        "platform.initial_attitude", Kind.INITIAL_STATE, Enters.STATE, "attitude at the first sample outside its prior",
+        "platform.initial_attitude", Kind.INITIAL_STATE, Enters.STATE, "error of the initial attitude outside its prior",
         _rotation(), 0.05, "", axes=AXES,
     ),
     Effect(
-        "platform.knock", Kind.STATE_JUMP, Enters.STATE, "sudden change of attitude of unknown size and time",
+        "platform.knock", Kind.STATE_JUMP, Enters.STATE, "attitude jump of unknown size and onset",
         _rotation(), 0.05, "", axes=AXES, shapes=(_onset(),),
     ),
     *[
         Effect(
             f"gyro_{i}{j}.axis_misalignment", Kind.CONSTANT, Enters.RATE,
-            f"input axis of gyro {i} turned towards platform {j}",
+            f"misalignment of the input axis of gyro {i} towards platform {j}",
             _size("rad"), 3e-4, GYRO_STANDARD,
-            # The gyro feels the rate about j, and the servo loop takes it out about i. Of first
+            # The gyro measures the rate about j, and the servo loop compensates it about i. First
             # order: the square of a milliradian is 1e-6 of a drift. Coefficients refer to
             # specific force along platform axes, as everywhere.
             lambda p, at, i=i, j=j: {i: -p["size"] * at.drift[j]},
@@ -341,7 +341,7 @@ EFFECTS = [
     ],
     *[
         Effect(
-            f"gyro_{i}.magnetic", Kind.CONSTANT, Enters.RATE, f"drift of gyro {i} from the Earth's magnetic field",
+            f"gyro_{i}.magnetic", Kind.CONSTANT, Enters.RATE, f"magnetic sensitivity of the drift of gyro {i}",
             _size("deg/h/gauss"), 0.01, GYRO_STANDARD,
             lambda p, at, i=i: {i: p["size"] * at.field[i]},
             separated_by=(
@@ -353,7 +353,7 @@ EFFECTS = [
         for i in AXES
     ],
     Effect(
-        "filter.discretisation", Kind.INTEGRATION, Enters.FILTER, "the integration rule of the filter is too coarse",
+        "filter.discretisation", Kind.INTEGRATION, Enters.FILTER, "discretisation error of the filter",
         (), 0.0, "", default_search=False,
     ),
 ]

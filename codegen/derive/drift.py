@@ -15,7 +15,7 @@ def drift_rate(theta: ca.SX, drift: ca.SX, noise: ca.SX, f_0: ca.SX) -> ca.SX:
 
 
 def drift_law(a: ca.SX, drift: ca.SX, noise: ca.SX) -> ca.SX:
-    """The same of specific force `a` along the input axes of the gyros."""
+    """The same for specific force `a` along the input axes of the gyros."""
     coefficients = ca.reshape(drift, 3, 3).T
     bias, along, square = coefficients[:, 0], coefficients[:, 1], coefficients[:, 2]
     return bias + along * a + square * a**2 + noise

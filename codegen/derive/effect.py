@@ -1,4 +1,4 @@
-"""An entry of the catalogue: what an effect is, declared in types, and what its term may use."""
+"""Types of the entries of the catalogue: effects, their terms, and the symbols of a term."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ class Kind(Enum):
     INITIAL_STATE = "InitialState"
     """Error of moving states at the first row, outside their prior."""
     NOISE = "Noise"
-    """A property of the noise, which `noise` names."""
+    """A property of the noise, given by `noise`."""
     INTEGRATION = "Integration"
     """The integration rule of a filter."""
 
 
 KINDS_WITH_TERM = {Kind.CONSTANT, Kind.STEP, Kind.FROM_ONSET, Kind.EXPONENTIAL, Kind.RAMP,
                    Kind.PERIODIC, Kind.REGRESSOR}
-"""Kinds that the symbolic model has a term for."""
+"""Kinds with a term in the symbolic model."""
 
 KINDS_WITH_WEIGHT = KINDS_WITH_TERM - {Kind.CONSTANT}
 """Kinds whose terms are explicit functions of time, of a regressor or of a shape."""
@@ -61,21 +61,21 @@ class Enters(Enum):
     """Where an effect enters the model."""
 
     RATE = "rate"
-    """Drift of gyros: the term gives by axis what is added, deg/h."""
+    """Drift of gyros: the term returns the addition by axis, deg/h."""
     OUTPUT = "output"
-    """Readings of accelerometers: the term gives by axis what is added, g."""
+    """Outputs of accelerometers: the term returns the addition by axis, g."""
     INPUT = "input"
-    """`omega_0` or `f_0`, or both: the term gives them as the effect makes them."""
+    """`omega_0` or `f_0`, or both: the term returns them with the effect."""
     TIME = "time"
-    """Time itself: the term is a factor on all rates."""
+    """Time: the term is a factor of all rates."""
     STATE = "state"
     """Moving states: no term."""
     FILTER = "filter"
-    """The filter and not the model: no term."""
+    """The filter: no term."""
 
 
 class Continuation(Enum):
-    """How an effect continues in a later record. Values are the variants in Rust."""
+    """Continuation of an effect in a later record. Values are the variants in Rust."""
 
     BEGINS_ANEW = "BeginsAnew"
     GOES_ON = "GoesOn"
@@ -101,7 +101,7 @@ USUAL_CONTINUATION = {
 
 @dataclass(frozen=True)
 class Experiment:
-    """An experiment that separates effects: a variant of the enum in Rust, and its object."""
+    """An experiment that distinguishes effects: a variant of the enum in Rust, and its object."""
 
     variant: str
     of: str = ""
@@ -115,7 +115,7 @@ START_LATE = Experiment("StartLate")
 
 @dataclass(frozen=True)
 class Equivalence:
-    """Why effects are exact equivalents, and what would separate them."""
+    """Reason why effects are exact equivalents, and the experiment that would distinguish them."""
 
     reason: str
     experiment: str
@@ -123,7 +123,7 @@ class Equivalence:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that an effect has: its name within the effect, its unit, its meaning."""
+    """A parameter of an effect: its name within the effect, its unit, its meaning."""
 
     name: str
     unit: str
@@ -134,12 +134,12 @@ class Parameter:
 
 @dataclass(frozen=True)
 class At:
-    """What terms are made of. Vectors along platform axes are taken by the axis: `at.a["x"]`."""
+    """Symbols of a term. Vectors along platform axes are indexed by axis: `at.a["x"]`."""
 
     a: dict[str, ca.SX]
     """Specific force along the platform axes, g."""
     drift: dict[str, ca.SX]
-    """Drift of each gyro, deg/h, noise included, without terms that themselves take drifts."""
+    """Drift of each gyro with its noise, without terms that themselves use drifts, deg/h."""
     field: dict[str, ca.SX]
     """Magnetic field of the Earth along the platform axes, gauss."""
     time_s: ca.SX
@@ -161,8 +161,8 @@ class Effect:
     """One entry of the catalogue. All parameters are zero in the nominal model.
 
     `term(p, at)` is the effect as an expression of its parameters `p["size"]`, ... and of `at`;
-    `enters` says what it returns. An effect without a term is no part of the symbolic model; the
-    table of effects says the same of it as of the others.
+    `enters` determines what it returns. An effect without a term is not part of the symbolic model;
+    the table of effects has the same fields for it.
     """
 
     id: str
@@ -173,7 +173,7 @@ class Effect:
     parameters: tuple[Parameter, ...]
     """Constants that a filter can estimate: states of the model."""
     typical_size: float
-    """Of the first parameter, in its unit: what a sound instrument may have."""
+    """Size of the first parameter, in its unit, that a fault-free instrument may have."""
     reference: str = ""
     term: Callable[[dict[str, ca.SX], At], object] | None = None
     axes: tuple[str, ...] = ()
@@ -181,33 +181,32 @@ class Effect:
     shapes: tuple[Parameter, ...] = ()
     """Onset (`onset_s`) or time constant (`time_constant_h`): the term is not linear in it."""
     period_s: float | None = None
-    """Of a periodic effect."""
+    """Period of a periodic effect."""
     noise: NoiseProperty | None = None
-    """The property of the noise that a noise effect is."""
+    """Property of the noise, for a noise effect."""
     equivalents: tuple[str, ...] = ()
-    """Exact equivalents: effects that no record whatever can distinguish from this one; naming
-    it in one entry will do."""
+    """Exact equivalents: effects that no record can distinguish from this one; declared in one
+    entry."""
     equivalence: Equivalence | None = None
-    """Why they are, in one entry of the class."""
+    """Reason of the equivalence, in one entry of the class."""
     near_twins: tuple[str, ...] = ()
-    """Effects that a short record can hardly distinguish from it; naming it in one entry will
-    do."""
+    """Effects that a short record hardly distinguishes from it; declared in one entry."""
     nested: tuple[str, ...] = ()
-    """Simpler effects that it tends to at an end of its shape: one of them is named in its place
-    unless this one is significantly better."""
+    """Simpler effects that it tends to at a limit of its shape: one of them is named instead unless
+    this one is significantly better."""
     continues: Continuation | None = None
-    """How it continues in a later record, where that is not usual for its kind."""
+    """Continuation in a later record, if not the usual one of its kind."""
     separated_by: tuple[Experiment, ...] | None = None
-    """Experiments that separate it from others, where they are not usual for its kind."""
+    """Experiments that distinguish it from others, if not the usual ones of its kind."""
     family: str = ""
-    """Id with letters in the place of axes, `gyro_i.g_jk`, of effects that differ by their axes;
-    the id where there is none."""
+    """Id with letters in place of axes, `gyro_i.g_jk`, common to effects that differ by their axes;
+    default: the id."""
     default_search: bool = True
     formula: str = ""
-    """Written out only where the expression itself does not read well."""
+    """Formula as text, only where the expression is not readable."""
 
     def state_id(self, parameter: Parameter) -> str:
-        """Public id of a parameter that is a state: the effect's own if there is but one."""
+        """Public id of a parameter that is a state: the id of the effect if it is the only one."""
         return self.id if len(self.parameters) == 1 else f"{self.id}.{parameter.name}"
 
     def shape_id(self, parameter: Parameter) -> str:

@@ -21,7 +21,7 @@ CHANNEL_FIELDS = ("id", "name", "unit", "label", "constant")
 
 
 class Layout:
-    """Where parameters, shapes and weights of effects stand in the model."""
+    """Order of parameters, shapes and weights of effects in the model."""
 
     def __init__(self, parameters: list[str], shapes: list[str], weights: list[str]):
         self.parameters, self.shapes, self.weights = parameters, shapes, weights
@@ -174,7 +174,7 @@ def _reasons(effects: list[Effect], equivalents) -> dict[str, Equivalence]:
 
 
 def _closed(effects: list[Effect], known: list[str], field: str, transitive: bool):
-    """The relation read in both directions, in the order of the table."""
+    """The relation in both directions, in the order of the table."""
     found: dict[str, set[str]] = {name: set() for name in known}
     for effect in effects:
         for other in getattr(effect, field):
@@ -189,8 +189,8 @@ def _closed(effects: list[Effect], known: list[str], field: str, transitive: boo
 
 
 def _formula(effect: Effect) -> tuple[str, list[Variant], list[str]]:
-    """The term with plain symbols, what it needs of record and bench, and where it enters: axes
-    or names of inputs."""
+    """The term as text, the data of record and bench that it needs, and where it enters: axes or
+    names of inputs."""
     if not effect.has_term:
         return "", [], list(effect.axes)
     symbols = Symbols(effect)

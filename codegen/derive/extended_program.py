@@ -1,4 +1,4 @@
-"""The platform with a list of effects: one constant parameter more for each of theirs."""
+"""The platform with a list of effects: one more constant parameter for each of their parameters."""
 
 from dataclasses import replace
 
@@ -20,11 +20,11 @@ from specific_force import specific_force
 def program(name: str, model: str, doc: str, effects: list[Effect],
             tables: list[Table] = (), strapdown: bool = False,
             with_weights: bool = False) -> Program:
-    """The functions of a model, the nominal one with `effects`. Inputs are those it needs.
+    """The functions of the nominal model with `effects`, and with the inputs that they need.
 
     `with_weights` adds the function of the weights of terms that depend on time.
 
-    With `strapdown` the platform is computed from the outputs of gyros that are fixed to a body.
+    With `strapdown` the platform is analytic: computed from the outputs of gyros fixed to a body.
     """
     effects = _output_first(effects)
     parameters = _parameters(effects)
@@ -38,7 +38,7 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
 
     value = Output("theta_dot", rates, "rad/s", "rates of the platform angles",
                    [f"theta_dot_{i}" for i in AXES])
-    output = Output("reading", reading, "g", "what the accelerometers read, up positive",
+    output = Output("reading", reading, "g", "outputs of the accelerometers, up positive",
                     [f"e_{i}" for i in AXES])
     of_output = [parameters] if ca.depends_on(reading, parameters.sx) else []
     own = [
@@ -51,7 +51,7 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
             AWAY_FROM_GIMBAL_LOCK, together=(parameters, drift_noise),
         ),
         *with_jacobian(
-            "accelerometers", "What the accelerometers read.",
+            "accelerometers", "Outputs of the accelerometers.",
             "equations (8) and (12), with the terms of the catalogue",
             [theta, *of_output, *needed(reading)], output,
             [(theta, "g/rad"), *((group, "g per unit of the parameter") for group in of_output)],
@@ -60,7 +60,7 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
     ]
     by_name = {function.name: function for function in own}
     for function, of in (("dynamics", "Rates of the platform angles"),
-                         ("accelerometers", "What the accelerometers read")):
+                         ("accelerometers", "Outputs of the accelerometers")):
         own.append(at_origin(
             f"{function}_at_origin_jacobian", f"{of}, with exact Jacobians, at zero angles.",
             by_name[f"{function}_jacobian"],
@@ -100,7 +100,7 @@ def weighted(effects: list[Effect]) -> list[tuple[Effect, Parameter]]:
 
 
 def _weights(effects: list[Effect], shapes: Group | None) -> Function:
-    """What a unit of each of them adds to its channel."""
+    """Function of the weights: what a unit of each parameter adds to its channel."""
     rows = []
     for effect, parameter in weighted(effects):
         own = {p.name: ca.SX.sym(p.name) for p in effect.parameters}
@@ -119,8 +119,8 @@ def _weights(effects: list[Effect], shapes: Group | None) -> Function:
     )
     return Function(
         "weights",
-        "What a unit of each parameter of a term that is a function of time, of the temperature or "
-        "of a shape adds to its channel.",
+        "Addition to its channel of a unit of each parameter whose term is a function of time, of the "
+        "temperature or of a shape.",
         "the terms of the catalogue", [force, conditions, *([shapes] if shapes else [])],
         [output], "time constants and the interval greater than zero, all other inputs finite",
     )
@@ -135,8 +135,8 @@ def _forms(function: str) -> dict[str, str]:
 
 
 def _output_first(effects: list[Effect]) -> list[Effect]:
-    """Effects that change what accelerometers read come first: filters take the leading
-    parameters as those that an output depends on."""
+    """Effects that enter an output come first: filters take the leading parameters as those that an
+    output depends on."""
     found = [effect for effect in effects if _enters_output(effect)]
     return found + [effect for effect in effects if effect not in found]
 
@@ -171,10 +171,10 @@ def _shapes(effects: list[Effect]) -> Group | None:
 
 def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
                  strapdown: bool = False):
-    """Rates of the angles, and what the accelerometers read.
+    """Rates of the angles and outputs of the accelerometers.
 
-    Gyros whose outputs, not whose torquers, hold the platform turn it by minus their error: what
-    they say too much is taken off the attitude (docs/measured-data.md).
+    An analytic platform, held by the outputs of its gyros, rotates by minus their errors
+    (docs/measured-data.md).
     """
     at = At(
         a={}, drift={}, field={},
@@ -194,13 +194,13 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
     field = platform_c_chart(theta.sx) @ field_0.sx
     along_platform = replace(at, a=by_axis(force))
     if strapdown:
-        # Rows of the matrix are elements in a row; CasADi fills columns first.
+        # The group has the matrix by rows; CasADi reshapes by columns.
         rotation = ca.reshape(platform_c_gyros.sx, 3, 3).T
         force, field = rotation.T @ force, rotation.T @ field
     at = replace(at, a=by_axis(force), field=by_axis(field))
     nominal = parameters.sx[: len(drift.elements)]
     omega_d = drift_law(force, nominal, drift_noise.sx)
-    # Terms that take drifts take those that the others add up to.
+    # Terms that use drifts use the sum of all other terms.
     others = ca.SX.sym("omega_d", 3)
     at = replace(at, drift=by_axis(others))
     added = _sum(term(effect) for effect in _entering(Enters.RATE, effects))

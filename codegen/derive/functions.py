@@ -29,8 +29,8 @@ def without_noise(output: Output) -> Output:
 
 
 def at_origin(name: str, doc: str, function: Function) -> Function:
-    """The same outputs with all platform angles zero: where each step of a filter starts whose
-    chart moves with the platform."""
+    """The same outputs at zero platform angles, where each step of a filter with a moving chart
+    starts."""
 
     def at_zero(output: Output) -> Output:
         expression = ca.substitute(output.expression, theta.sx, ca.SX.zeros(3))
@@ -51,8 +51,8 @@ def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
 
     `by` lists (group, unit of the Jacobian). By the groups in `together` the value is
     differentiated in one pass, so that equal columns, such as those of biases and noise, are the
-    same expressions; they are in the order of `by`. `shorter` are the value and its Jacobians, in
-    the order of `by`, in fewer operations than `value` and differentiating it take.
+    same expressions; they are in the order of `by`. `shorter` is another form of the value and its
+    Jacobians, in the order of `by`, with fewer operations than `value` and its derivatives.
     """
     jacobians = [
         jacobian_output(
@@ -83,13 +83,13 @@ def with_jacobian(name: str, doc: str, source: str, inputs, value: Output, by,
 
 
 def _checked(output: Output, shorter: ca.SX) -> ca.SX:
-    """`shorter`, which must be another form of the same output: compared at random points."""
+    """`shorter`, after a comparison with the output at random points."""
     symbols = ca.symvar(ca.vertcat(ca.vec(output.expression), ca.vec(shorter)))
     both = ca.Function("both", symbols, [ca.densify(output.expression), ca.densify(shorter)])
     rng = random.Random(0)
     for _ in range(8):
         expected, found = both(*[rng.uniform(-1, 1) for _ in symbols])
-        # Far more than rounding and far less than any term of a model.
+        # Far above rounding and far below any term of a model.
         if not ca.norm_inf(ca.vec(found - expected)) <= 1e-12 * ca.norm_inf(ca.vec(expected)):
             raise ExportError(
                 f"the shorter form of `{output.name}` gives {found}, its expression {expected}: "

@@ -35,8 +35,8 @@ def rate_matrix_inverse(theta: ca.SX) -> ca.SX:
 def angle_rates(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0: ca.SX, f_0: ca.SX) -> ca.SX:
     """f1-f3: W^-1 (omega_d - p_C_0 omega_0), equations (7) and (9), in rad/s.
 
-    The platform is held to its gyros, so its inertial rate is the gyro drift; what is
-    left after Earth rate turns it against the chart.
+    The platform is held to its gyros, so its inertial rate is the gyro drift. Its rate relative to
+    the chart is the drift less Earth rate.
     """
     return angle_rates_of(theta, drift_rate(theta, drift, noise, f_0), omega_0)
 

@@ -83,7 +83,7 @@ force = Group(
 
 conditions = Group(
     "conditions",
-    "What changes from step to step and is known.",
+    "Known quantities that change from step to step.",
     [
         Element("time_s", "s", "time since the first row: of the middle of the step for rates, of "
                 "the sample for outputs"),

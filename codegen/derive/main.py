@@ -15,7 +15,7 @@ import surveyed_program
 
 
 def derive(output: Path) -> None:
-    """Writes one program file for each generated Rust module, and CasADi's own numbers."""
+    """Writes one program file for each generated Rust module, and reference values of CasADi."""
     programs = [
         platform_program.program(),
         oracle_program.program(),

@@ -1,6 +1,6 @@
 """The platform with the effects that a user's model file lists, in the order of the file.
 
-A model file is TOML, what `gyrocal extend` writes; docs/extending.md describes it.
+A model file is TOML, written by `gyrocal extend`; docs/extending.md describes it.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from layout import drift
 SCHEMA_VERSION = 1
 KEYS = {"schema_version", "effects", "shapes", "estimates"}
 WIDE = 10
-"""A parameter that nothing is known of may be so many times what a sound instrument has."""
+"""Sigma of a parameter without an estimate, in typical sizes."""
 
 START_FIELDS = {
     "id": "public id of the parameter",
-    "value": "where a filter starts, in the unit of the parameter",
-    "sigma": "standard deviation of its error",
+    "value": "initial value of a filter, in the unit of the parameter",
+    "sigma": "standard deviation of the initial value",
 }
 
 
@@ -53,7 +53,7 @@ def _program(content: dict, name: str) -> Program:
         raise ExportError(f"found effects {ids!r}, expected a list of ids of effects")
     effects = [_effect(id, place, ids) for place, id in enumerate(ids)]
     effects = _with_shapes(effects, content.get("shapes", {}))
-    # Tables speak of parameters in the order in which the model has them.
+    # Tables have parameters in the order of the model.
     states = extended_program.added_parameters(effects)
     start = _start(effects, [element.id for element in states], content.get("estimates", {}))
     listed = ", ".join(f"`{effect.id}`" for effect in effects)
@@ -61,7 +61,7 @@ def _program(content: dict, name: str) -> Program:
         name, "".join(word.capitalize() for word in name.split("_")),
         f"The platform with {listed}.", effects,
         [Table("start", "StartValue",
-               "Where a filter starts: the parameters after the drift coefficients, in order.",
+               "Initial values of a filter: the parameters after the drift coefficients, in order.",
                START_FIELDS, start)],
     )
 
@@ -73,11 +73,11 @@ def _effect(id: str, place: int, ids: list[str]) -> Effect:
     if found is not None and found.has_term:
         return found
     if found is not None:
-        raise ExportError(f"effects: found `{id}`, which is no term of the model (its kind is "
+        raise ExportError(f"effects: found `{id}`, which is not a term of the model (its kind is "
                           f"{found.kind.name}), expected effects with a term")
     if id in (element.id for element in drift.elements):
         raise ExportError(f"effects: found `{id}`, which every model has, expected effects "
-                          "beside the nominal coefficients")
+                          "in addition to the nominal coefficients")
     known = [effect.id for effect in EFFECTS if effect.has_term]
     near = difflib.get_close_matches(id, known, 3)
     raise ExportError(f"effects: found `{id}`, expected the id of an effect; the nearest are "

@@ -1,9 +1,9 @@
-"""f1-f3 with their Jacobians in few operations: in nodal axes, which have turned about x and y
-but not yet about z.
+"""f1-f3 with their Jacobians in few operations, in nodal axes, which are rotated about x and y but
+not about z.
 
-There Earth rate need not be turned about z, W is sparse, and the sines and cosines of z enter
-with the drift alone. Rates and Jacobians are those of kinematics.py, in fewer operations than its
-matrices and the differentiation of its expressions take.
+In these axes Earth rate is not rotated about z, W is sparse, and the sine and cosine of z enter
+with the drift alone. Rates and Jacobians equal those of kinematics.py, with fewer operations than
+its matrices and their differentiation.
 """
 
 import casadi as ca
@@ -14,7 +14,7 @@ from kinematics import DEG_PER_HOUR_IN_RAD_PER_S
 
 
 def nodal(theta: ca.SX, vector: ca.SX) -> ca.SX:
-    """Nodal components of a vector that is fixed in the chart: one turn after the other."""
+    """Nodal components of a vector that is fixed in the chart: one rotation after the other."""
     return rotation_y(theta[1]) @ (rotation_x(theta[0]) @ vector)
 
 
@@ -55,15 +55,15 @@ def angle_rates_with_jacobians(theta: ca.SX, drift: ca.SX, noise: ca.SX, omega_0
                                f_0: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
     """`kinematics.angle_rates`, and its Jacobians by angles, drift coefficients and noise.
 
-    Seen from axes that turn by dphi = W dtheta, a fixed vector v changes by v x dphi; and
-    W theta_dot = relative rate is differentiated as it stands.
+    In axes that rotate by dphi = W dtheta, a fixed vector v changes by v x dphi; and
+    W theta_dot = relative rate is differentiated directly.
     """
     force, omega, w = nodal(theta, f_0), nodal(theta, omega_0), nodal_rate_matrix(theta)
     a, theta_dot, relative = [ca.SX.sym(name, 3) for name in ("a", "theta_dot", "relative")]
     rate = DEG_PER_HOUR_IN_RAD_PER_S * drift_law(a, drift, noise)
     turned = (nodal_from_platform_both_sides(theta, ca.jacobian(rate, a)) @ ca.skew(force)
               - ca.skew(omega)) @ w
-    # Nodal axes do not turn about z: there the components of the rate change instead.
+    # Nodal axes do not rotate about z: the components of the rate change instead.
     turned[:, 2] += ca.vertcat(-relative[1], relative[0], 0)
     by_theta = angle_rates_from_nodal(theta, turned - ca.jacobian(w @ theta_dot, theta))
     by_rate = angle_rates_from_nodal(

@@ -1,4 +1,4 @@
-"""Functions that only tests run: slow, written out, and exact."""
+"""Functions for tests: slow, without shortcuts, exact."""
 
 from casadi_program import Function, Output, Program, jacobian_output
 from functions import AWAY_FROM_GIMBAL_LOCK

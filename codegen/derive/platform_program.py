@@ -1,4 +1,4 @@
-"""The functions that a filter of the platform runs on, and the model they make up."""
+"""The functions of a filter of the platform, and its model."""
 
 import casadi as ca
 
@@ -44,8 +44,8 @@ def program() -> Program:
     )
     functions = [
         Function(
-            "reanchor", "Direction cosine matrix and rate matrix W: what moving the chart onto "
-            "the platform takes.", "equations (4) and (6)", [theta], [rotation, rate_map],
+            "reanchor", "Direction cosine matrix and rate matrix W, for moving the chart onto "
+            "the platform.", "equations (4) and (6)", [theta], [rotation, rate_map],
         ),
         *with_jacobian(
             "drift_rate", "Drift of the three gyros, D_F + D_I a + D_II a^2.",
@@ -62,7 +62,7 @@ def program() -> Program:
             shorter=angle_rates_with_jacobians(angles, drift.sx, drift_noise.sx, *chart),
         ),
         *with_jacobian(
-            "specific_force", "What ideal accelerometers read: h1-h3.",
+            "specific_force", "Outputs of ideal accelerometers: h1-h3.",
             "equations (8) and (12)", [theta, f_0], force, [(theta, "g/rad")],
             "all finite inputs",
         ),
@@ -83,7 +83,7 @@ def program() -> Program:
         ),
         at_origin(
             "specific_force_at_origin_jacobian",
-            "What ideal accelerometers read, with its exact Jacobian, at zero angles.",
+            "Outputs of ideal accelerometers, with the exact Jacobian, at zero angles.",
             by_name["specific_force_jacobian"],
         ),
     ]

@@ -1,7 +1,7 @@
-"""CasADi's own values of every function at fixed random points, for the tests.
+"""Reference values of every function, computed by CasADi at fixed random points, for tests.
 
-Their last bits depend on the processor's mathematics library, so they are compared
-with a tolerance and never byte for byte.
+Their last bits depend on the mathematics library of the machine, so they are compared with a
+tolerance and never byte for byte.
 """
 
 import json

@@ -6,8 +6,8 @@ from frames import platform_c_chart
 
 
 def specific_force(theta: ca.SX, f_0: ca.SX) -> ca.SX:
-    """a = p_C_0 f_0 in g, up positive: what ideal accelerometers on the platform read.
+    """a = p_C_0 f_0 in g, up positive: outputs of ideal accelerometers on the platform.
 
-    Equation (8) of the paper speaks of gravity; the sign here is that of specific force.
+    Equation (8) of the paper has gravity; the sign here is that of specific force.
     """
     return platform_c_chart(theta) @ f_0

@@ -1,8 +1,8 @@
-"""The analytic platform: axes held by computation from the outputs of gyros fixed to a body.
+"""The analytic platform: axes computed from the outputs of gyros fixed to a body.
 
-The drift law is that of the gyros in their own axes, at body specific force; the coefficients are
-errors of outputs, and turn the platform by -platform_c_gyros times their sum. Parameters and
-their order are those of `Surveyed`.
+The drift law is evaluated in the axes of the gyros, at the specific force along body axes. The
+coefficients are errors of the outputs; the platform rotates by -platform_c_gyros times their sum.
+Parameters and their order are those of `Surveyed`.
 """
 
 import extended_program

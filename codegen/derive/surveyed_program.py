@@ -1,4 +1,4 @@
-"""The nominal platform with what is known of its site only within limits."""
+"""The nominal platform with the uncertain quantities of its site as parameters."""
 
 import extended_program
 from casadi_program import Program

@@ -154,21 +154,21 @@ impl ModelFile {
 
     fn format(&self) -> String {
         let mut text = format!(
-            "# What a model has beside the nine drift coefficients; docs/extending.md.\n\
+            "# Effects of an extended model, after the nine drift coefficients; docs/extending.md.\n\
              schema_version = {SCHEMA_VERSION}\n\
              effects = {:?}\n",
             self.effects
         );
         if !self.shapes.is_empty() {
             text.push_str(
-                "\n# built into the model; without them they are inputs of it\n[shapes]\n",
+                "\n# constants of the model; shapes that are not listed are inputs\n[shapes]\n",
             );
             for (id, value) in &self.shapes {
                 let _ = writeln!(text, "{id:?} = {value:?}");
             }
         }
         if !self.estimates.is_empty() {
-            text.push_str("\n# where filters start\n[estimates]\n");
+            text.push_str("\n# initial values of filters\n[estimates]\n");
             for estimate in &self.estimates {
                 let _ = writeln!(
                     text,

@@ -68,15 +68,15 @@ fn terms_that_were_found_are_in_the_model_and_the_rest_is_explained() {
     let said = folder.succeed(&arguments);
     assert_eq!(
         folder.text("extended.model.toml"),
-        "# What a model has beside the nine drift coefficients; docs/extending.md.\n\
+        "# Effects of an extended model, after the nine drift coefficients; docs/extending.md.\n\
          schema_version = 1\n\
          effects = [\"gyro_y.g_z\", \"gyro_x.warmup\"]\n\
          \n\
-         # built into the model; without them they are inputs of it\n\
+         # constants of the model; shapes that are not listed are inputs\n\
          [shapes]\n\
          \"gyro_x.warmup.time_constant_h\" = 3.5\n\
          \n\
-         # where filters start\n\
+         # initial values of filters\n\
          [estimates]\n\
          \"gyro_y.g_z\" = { value = 0.05, sigma = 0.0001 }\n\
          \"gyro_x.warmup\" = { value = 0.1, sigma = 0.0001 }\n"
