@@ -145,7 +145,7 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
     ///
     /// # Errors
     /// [`EstimationError::InvalidArgument`] if the interval is not positive and finite, or longer
-    /// than a million longest steps; other variants if the prediction left the numbers.
+    /// than a million longest steps; other variants if the prediction is not finite.
     #[inline]
     pub fn predict(&mut self, interval_s: T) -> Result<(), EstimationError> {
         let parts = (interval_s / self.longest_step_s).to_f64();

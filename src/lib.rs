@@ -1,24 +1,25 @@
-//! Gyro drift calibration of inertially stabilised platforms, for controllers and hosts.
+//! Generated model and streaming filter of an inertially stabilised platform, for controllers and
+//! hosts.
 //!
 //! # What it is
 //!
 //! An extended Kalman filter that estimates the nine drift coefficients of three gyros from
 //! the accelerometers of the platform that the gyros stabilise. Dynamics, measurement and
-//! their exact Jacobians are generated from a symbolic model (`codegen/derive`); the filter
-//! is [`gyrocal_estimation`]'s. Nothing here allocates or needs the standard library.
+//! their exact Jacobians are generated from a symbolic model (`codegen/derive`); the kernel is
+//! that of [`gyrocal_estimation`]. Nothing here allocates or needs the standard library.
 //!
 //! # The domain in brief
 //!
 //! On a static base the servo loops hold the platform to its gyros. With the gyros un-torqued
-//! the platform keeps its attitude in inertial space but for gyro drift, so to the platform
-//! gravity seems to sweep round once a sidereal day. Drift of a gyro with specific force `a`
-//! along its input axis is
+//! the platform keeps its attitude in inertial space but for gyro drift, so in platform axes
+//! gravity rotates once a sidereal day. The drift of a gyro with specific force `a` along its
+//! input axis is
 //!
 //! ```text
 //! omega_d = D_F + D_I a + D_II a² + ε        [deg/h]
 //! ```
 //!
-//! and the sweep makes all three coefficients visible in the accelerometers within days
+//! and the rotation makes all three coefficients observable in the accelerometers within days
 //! (Li Zhong, *The method of calibrating gyroscope drift in the geometrical stability state of
 //! inertial stabilized platform*, Geophysical and Geochemical Exploration 39(S1), 2015).
 //!
@@ -61,13 +62,13 @@
 //!   compile the committed Rust, without any generator.
 //! - `std` (default): fused multiply-add where the target has it.
 //! - `batch`: attitudes as points of a trajectory, for estimation from whole records.
-//! - `catalogue`: the platform with every effect that a diagnosis looks for, and their table.
+//! - `catalogue`: the platform with every effect of the catalogue, and the table of effects.
 //! - `oracle`: slow, exact functions for tests.
 //!
 //! # What it does not do
 //!
-//! It reads no files, averages no samples and judges no residuals: records, batch estimation
-//! and diagnosis are other crates of the workspace. It models a static base only.
+//! It reads no files, averages no samples and tests no residuals: records, batch estimation and
+//! diagnosis are in other crates of the workspace. It models a static base only.
 
 #![no_std]
 
@@ -100,7 +101,7 @@ pub use initial_attitude::{ChartAngles, InitialAttitude};
 pub use settings::{Discretisation, FilterSettings};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};
 
-/// The example of the README, as it stands there.
+/// The example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use gyrocal_oracle::dual::{self, Dual};
 use gyrocal_oracle::points::State;
-use gyrocal_oracle::rounding::{Bounded, ROUNDOFF_F64};
+use gyrocal_oracle::rounding::{RunningError, ROUNDOFF_F64};
 use gyrocal_scalar::Lanes;
 
 use crate::programs;
@@ -29,7 +29,7 @@ pub(crate) struct Callable {
     pub(crate) lanes: Option<Flat<Lanes<f64, 4>>>,
     /// For functions that a test differentiates.
     pub(crate) dual: Option<Flat<Dual<VARIABLES>>>,
-    pub(crate) bounded: Flat<Bounded>,
+    pub(crate) bounded: Flat<RunningError>,
 }
 
 /// A [`Callable`] from a function that is generic over its scalar.
@@ -64,7 +64,7 @@ impl Callable {
 
     /// Bound on the rounding error of each of its results in `f64`.
     pub(crate) fn rounding(&self, inputs: &[f64]) -> Vec<f64> {
-        let inputs: Vec<Bounded> = inputs.iter().map(|&value| Bounded::exact(value)).collect();
+        let inputs: Vec<RunningError> = inputs.iter().map(|&value| RunningError::exact(value)).collect();
         (self.bounded)(&inputs)
             .iter()
             .map(|result| ROUNDOFF_F64 * result.bound())

@@ -1,19 +1,17 @@
-//! Error of a matrix against a reference, and the name of its worst element.
+//! Comparison of a matrix with a reference, and the name of its worst element.
 
 use core::fmt;
 
 use crate::program::Output;
 
-/// How far a result may be from its oracle.
+/// Tolerance of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Error allowed relative to the largest entry of the element's column.
-    ///
-    /// Of the column, since columns differ in scale: those of the drift coefficients are
-    /// 1e-4 of the others.
+    /// Error relative to the largest entry of the element's column. Columns differ in scale: those
+    /// of the drift coefficients are 1e-4 of the others.
     pub relative: f64,
-    /// Share of all compared elements that may go beyond it where rounding alone explains
-    /// that (see [`crate::rounding`]).
+    /// Fraction of all compared elements that may exceed it within their rounding error (see
+    /// [`crate::rounding`]).
     pub ill_conditioned_share: f64,
 }
 
@@ -26,18 +24,18 @@ pub struct Comparison<'a> {
     summary: Summary,
 }
 
-/// What a comparison found.
+/// Result of a comparison.
 #[derive(Clone, Debug, Default)]
 pub struct Summary {
     /// Elements compared.
     pub elements: usize,
-    /// Elements beyond the relative tolerance but within what rounding explains.
+    /// Elements beyond the relative tolerance but within their rounding error.
     pub ill_conditioned: usize,
-    /// The element that came nearest to its allowance, or went farthest beyond.
+    /// The element with the largest error over its tolerance.
     pub worst: Option<Element>,
 }
 
-/// One element of a result beside what it should have been.
+/// One element of a result with its expected value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Element {
     /// Function that was compared.
@@ -52,29 +50,29 @@ pub struct Element {
     pub point: usize,
     /// The result.
     pub value: f64,
-    /// What the oracle says.
+    /// The expected value.
     pub expected: f64,
     /// Error relative to the largest entry of the column.
     pub error: f64,
-    /// The error that was allowed, likewise relative.
+    /// Relative tolerance.
     pub allowed: f64,
 }
 
-/// Why a comparison failed.
+/// Failure of a comparison.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Mismatch {
     /// An element is beyond its tolerance; this is the worst.
     #[error("{0}")]
     Element(Box<Element>),
-    /// Rounding had to excuse too many elements.
+    /// Too many elements are beyond the relative tolerance.
     #[error("{function}, {output}: {count} of {elements} elements are ill-conditioned")]
     IllConditioned {
         /// Function that was compared.
         function: String,
         /// Its output.
         output: String,
-        /// Elements that rounding had to excuse.
+        /// Elements beyond the relative tolerance but within their rounding error.
         count: usize,
         /// Elements compared.
         elements: usize,
@@ -103,12 +101,11 @@ impl<'a> Comparison<'a> {
 
     /// Compares dense matrices, row by row, at one point.
     ///
-    /// `rounding` bounds, element by element, how far apart the two may be by rounding alone.
-    /// A column of zeros must be met exactly where the bound is zero; what is not a number agrees
-    /// with nothing.
+    /// `rounding` bounds the difference of the two by rounding, element by element. A column of zeros
+    /// must be equal where the bound is zero; a value that is not a number never agrees.
     ///
     /// # Panics
-    /// If a matrix has not the shape of the output.
+    /// If a matrix does not have the shape of the output.
     pub fn add(&mut self, point: usize, value: &[f64], expected: &[f64], rounding: &[f64]) {
         let (rows, columns) = (self.output.rows, self.output.columns);
         for matrix in [value, expected, rounding] {
@@ -170,8 +167,8 @@ impl<'a> Comparison<'a> {
     /// Ends the comparison.
     ///
     /// # Errors
-    /// If an element is beyond its tolerance, rounding had to excuse too many, or nothing
-    /// was compared.
+    /// If an element is beyond its tolerance, if too many are beyond the relative tolerance, or if
+    /// nothing was compared.
     pub fn finish(self) -> Result<Summary, Mismatch> {
         let (function, output) = (self.function.to_owned(), self.output.name.clone());
         let Summary {

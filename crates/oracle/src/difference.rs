@@ -3,16 +3,16 @@
 //! f'(x) = [45 (f(x+h) − f(x−h)) − 9 (f(x+2h) − f(x−2h)) + (f(x+3h) − f(x−3h))] / 60h,
 //! with the error −h⁶ f⁽⁷⁾/140 (Fornberg, Mathematics of Computation 51, 1988, table 1).
 //!
-//! A good step balances that against the rounding of f. With rounding 1e-16 |f| and a
+//! A good step balances this error and the rounding of f. With rounding 1e-16 |f| and a
 //! function whose nearest singularity is the distance d away, so that f⁽⁷⁾ ~ 7! f'/d⁶ and
 //! |f| ~ d |f'|, the two relative errors of f' are 36 (h/d)⁶ and 2e-16 d/h: both are below
-//! 1e-10 for h/d between 2e-6 and 1e-2. The upper end is where to be, since entries of a
-//! column that are small against f suffer from the second error only.
+//! 1e-10 for h/d between 2e-6 and 1e-2. The upper end is best, since entries of a column that are
+//! small against f have the second error only.
 
 /// Weights of f(x + kh) − f(x − kh), k = 1, 2, 3, times 60.
 const WEIGHTS: [f64; 3] = [45.0, -9.0, 1.0];
 
-/// What one unit of error in f can do to the derivative, times the step.
+/// Error of the derivative from one unit of error in f, times the step.
 pub const AMPLIFICATION: f64 = 2.0 * (45.0 + 9.0 + 1.0) / 60.0;
 
 /// Jacobian of `function` with respect to the inputs whose places are `by`, row by row;
@@ -39,8 +39,8 @@ pub fn jacobian(
         .collect()
 }
 
-/// Bound of the error that errors `value_errors` of the values (one for each row) bring into
-/// such a Jacobian, row by row. The truncation of the formula is not in it.
+/// Bound of the error of such a Jacobian, row by row, from errors `value_errors` of the values (one
+/// per row). The truncation error of the formula is not included.
 #[must_use]
 pub fn rounding(value_errors: &[f64], steps: &[f64]) -> Vec<f64> {
     value_errors

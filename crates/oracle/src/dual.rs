@@ -1,5 +1,5 @@
 //! Dual numbers as [`Scalar`]: a generated value function called with them returns its
-//! exact derivatives, by the chain rule alone and without looking at its Jacobian.
+//! exact derivatives, by the chain rule alone and independent of its Jacobian.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 

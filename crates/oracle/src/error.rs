@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-/// Why an oracle has no answer.
+/// Errors of an oracle.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum OracleError {
@@ -9,7 +9,7 @@ pub enum OracleError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Reason given by the operating system.
         source: std::io::Error,
     },
     /// The text is not JSON of the expected form.
@@ -28,7 +28,7 @@ pub enum OracleError {
     /// A name that is not in the program or in the reference.
     #[error("there is no {kind} `{name}`")]
     Unknown {
-        /// What was looked for: function, group, …
+        /// Kind of the name: function, group, …
         kind: &'static str,
         /// Its name.
         name: String,
@@ -40,7 +40,7 @@ pub enum OracleError {
         function: String,
         /// Position in the instruction list, from 0.
         index: usize,
-        /// What is wrong with it.
+        /// Its fault.
         problem: String,
     },
     /// A number of scalars other than the function takes.

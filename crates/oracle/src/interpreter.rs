@@ -1,7 +1,7 @@
 //! Runs the instruction list of a program, one instruction after the other.
 //!
-//! Nothing is simplified or shared, and every function of a number comes from the standard
-//! library: what the emitter or the project's own sine and cosine get wrong shows here.
+//! Nothing is simplified or shared, and all elementary functions are those of the standard library,
+//! so that errors of the emitter and of the project's own sine and cosine become visible.
 
 use crate::OracleError;
 use crate::program::{Binary, Function, Instruction, Unary};

@@ -1,19 +1,43 @@
-//! Oracles for generated functions: other ways to get the same numbers.
+//! Test oracles of generated functions: independent computations of the same numbers.
 //!
-//! | module | says what a generated function should return by |
+//! # What it is
+//!
+//! | module | expected value by |
 //! |---|---|
-//! | [`interpreter`] | running the instruction list of the [`program`] that it was generated from |
-//! | [`dual`] | the chain rule, on the function's own value: exact derivatives |
+//! | [`interpreter`] | execution of the instruction list of the [`program`] from which the function was generated |
+//! | [`dual`] | dual numbers: exact derivatives of the function's value by the chain rule |
 //! | [`difference`] | sixth-order central differences of the value |
-//! | [`reference`](mod@reference) | numbers that CasADi itself computed |
+//! | [`reference`](mod@reference) | numbers computed by CasADi |
 //!
-//! [`compare`] measures a result against an oracle and names the worst element,
-//! [`rounding`] bounds what rounding alone can do to a result, and [`points`] draws the
-//! states to compare at. All vectors are flat: the inputs of a function one group after the
-//! other, its outputs as structural nonzeros in the order of the program ([`nonzeros`]).
+//! [`compare`] measures the error of a result and names the worst element, [`rounding`] bounds the
+//! rounding error of a result, and [`points`] draws the states of a comparison. All vectors are
+//! flat: the inputs of a function one group after the other, its outputs as structural nonzeros in
+//! the order of the program ([`nonzeros`]).
 //!
-//! The crate reads programs with types of its own and depends on nothing of the emitter:
-//! a mistake there cannot hide itself here. It is not published.
+//! # Example
+//!
+//! ```
+//! use gyrocal_oracle::program::Program;
+//!
+//! // y = sin(a) of one input.
+//! let program = Program::from_json(
+//!     r#"{"schema_version": 1, "name": "wave", "groups": [
+//!            {"name": "angle", "elements": [{"name": "a"}]}],
+//!         "functions": [{"name": "sine", "inputs": [{"group": "angle"}],
+//!            "outputs": [{"name": "y", "rows": 1, "columns": 1, "row_names": ["y"],
+//!                         "column_names": [], "nonzeros": [[0, 0]]}],
+//!            "work_size": 2,
+//!            "instructions": [["input", 0, 0, 0], ["sin", 1, 0], ["output", 0, 0, 1]]}]}"#,
+//! )?;
+//! let value = program.function("sine")?.evaluate(&[0.5])?;
+//! assert_eq!(value, [0.5_f64.sin()]);
+//! # Ok::<(), gyrocal_oracle::OracleError>(())
+//! ```
+//!
+//! # What it does not do
+//!
+//! It shares no code with the emitter and reads programs with types of its own, so that an error
+//! of the emitter cannot hide itself here. It is not published.
 
 pub mod compare;
 pub mod difference;

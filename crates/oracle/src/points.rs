@@ -1,4 +1,4 @@
-//! Seeded random states of the platform to compare functions at.
+//! Seeded random states of the platform for comparisons of functions.
 
 use core::f64::consts::PI;
 
@@ -10,8 +10,8 @@ pub const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;
 
 const SEED: u64 = 20_150_101;
 
-/// What states are drawn for. Each purpose has a stream of random numbers of its own, so
-/// that a test sees the same states whatever the others draw.
+/// Purpose of the states. Each purpose has its own stream of random numbers, so that the states of a
+/// test do not depend on those of others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Purpose {
@@ -29,7 +29,7 @@ pub enum Purpose {
     Equations = 6,
 }
 
-/// A state with everything that a generated function may ask for, group by group.
+/// A state with all inputs of generated functions, group by group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Platform angles, rad: to ±80°.
@@ -53,7 +53,7 @@ pub struct State {
     /// Time since the first row in s, to three days; length of the step in s; temperature
     /// above its mean in K, to ±5.
     pub conditions: [f64; 3],
-    /// Numbers within ±1 that parameters and shapes of extended models are made of.
+    /// Numbers within ±1 from which parameters and shapes of extended models are computed.
     pub free: [f64; 128],
 }
 
@@ -77,7 +77,7 @@ impl State {
     }
 
     /// Parameters of an extended model: the drift coefficients, then those of effects, to ±0.5 of
-    /// their unit: as large as drifts, so that a wrong one shows.
+    /// their unit: as large as drifts, so that an error is visible.
     ///
     /// # Panics
     /// If there are fewer than nine.
@@ -92,7 +92,7 @@ impl State {
     /// within it, and time constants in h, from 12 to 36.
     ///
     /// # Panics
-    /// If a name ends otherwise than those of shapes do.
+    /// If a name has not the ending of a shape.
     #[must_use]
     pub fn shapes(&self, names: &[String]) -> Vec<f64> {
         let [time_s, interval_s, _] = self.conditions;

@@ -1,7 +1,7 @@
 //! Programs as the exporter writes them: named functions of flat scalar instructions.
 //!
 //! The schema is described in `codegen/emit/exporter/casadi_program.py`. Everything that
-//! an instruction refers to is checked here, once, so that running it cannot go wrong.
+//! an instruction refers to is checked once, on reading.
 
 mod parse;
 
@@ -25,11 +25,11 @@ pub struct Function {
     pub name: String,
     /// The groups of scalars that it takes.
     pub inputs: Vec<Group>,
-    /// What it returns.
+    /// Its outputs.
     pub outputs: Vec<Output>,
     /// Scalars in the work vector.
     pub work_size: usize,
-    /// What it does. Changing it is how a test shows that an oracle can disagree.
+    /// Its instructions. Tests change them to show that an oracle can disagree.
     pub instructions: Vec<Instruction>,
 }
 
@@ -64,14 +64,14 @@ pub struct Output {
 pub enum Instruction {
     /// `work[to] = value`.
     Const {
-        /// Where to.
+        /// Target.
         to: usize,
         /// The constant.
         value: f64,
     },
     /// `work[to] = inputs[scalar]`, inputs one group after the other.
     Input {
-        /// Where to.
+        /// Target.
         to: usize,
         /// Place in the flat inputs.
         scalar: usize,
@@ -80,27 +80,27 @@ pub enum Instruction {
     Output {
         /// Place in the flat outputs.
         nonzero: usize,
-        /// Where from.
+        /// Source.
         from: usize,
     },
     /// `work[to] = operation(work[operand])`.
     Unary {
-        /// What to do.
+        /// Operation.
         operation: Unary,
-        /// Where to.
+        /// Target.
         to: usize,
-        /// What with.
+        /// Operand.
         operand: usize,
     },
     /// `work[to] = operation(work[left], work[right])`.
     Binary {
-        /// What to do.
+        /// Operation.
         operation: Binary,
-        /// Where to.
+        /// Target.
         to: usize,
-        /// What with, first.
+        /// First operand.
         left: usize,
-        /// What with, second.
+        /// Second operand.
         right: usize,
     },
 }
@@ -158,8 +158,8 @@ impl Program {
     /// Reads a program from the text of its file.
     ///
     /// # Errors
-    /// If the text is not a program of the schema's version, or an instruction refers to
-    /// what is not there.
+    /// If the text is not a program of the schema's version, or an instruction refers to something
+    /// that does not exist.
     pub fn from_json(text: &str) -> Result<Self, OracleError> {
         parse::program(text)
     }
@@ -196,7 +196,7 @@ impl Function {
     }
 
     /// Splits flat outputs (nonzeros, one output after the other) into one dense matrix,
-    /// row by row, for each output; `zero` stands where the structure has no element.
+    /// row by row, for each output, with `zero` for elements outside the structure.
     ///
     /// # Panics
     /// If `flat` is shorter than [`Self::nonzero_count`].

@@ -1,4 +1,4 @@
-//! CasADi's own values of every function at fixed points, as the derivation wrote them.
+//! Reference values of every function, computed by CasADi at fixed points in the derivation.
 //!
 //! The format is that of `codegen/derive/reference.py`.
 
@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use crate::OracleError;
 
-/// Where the committed values are.
+/// Path of the committed values.
 pub const REFERENCE_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/reference/platform.json");
 
 /// Values of functions at points.

@@ -1,11 +1,10 @@
-//! What rounding alone can do to a result: a running bound, operation by operation.
+//! Running bound of the rounding error of a result, operation by operation.
 //!
-//! A relative tolerance is no tolerance where terms cancel. The derivative of a drift with
-//! respect to a mass unbalance is the specific force a along an axis; with the axis nearly
-//! horizontal a = 1e-4 comes from terms near 1 and holds their rounding, 1e-16, which is
-//! 1e-12 of it. No arithmetic of the same precision does better, so a comparison must allow
-//! it there, and only there. [`Bounded`] computes how much, for the very operations that the
-//! generated function does.
+//! A relative tolerance fails where terms cancel. The derivative of a drift by a mass unbalance is
+//! the specific force a along an axis. With the axis nearly horizontal, a = 1e-4 is the difference
+//! of terms near 1 with their rounding error of 1e-16, which is 1e-12 of it. No arithmetic of the
+//! same precision is better, so a comparison must allow this error there, and only there.
+//! [`RunningError`] computes it for the operations of the generated function.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -18,16 +17,15 @@ pub const ROUNDOFF_F32: f64 = f32::EPSILON as f64 / 2.0;
 
 /// A number with a bound on its accumulated rounding error, in unit roundoffs.
 ///
-/// The bound is of first order (products of errors are left out), so one evaluation serves
-/// every precision: multiply [`Bounded::bound`] by its unit roundoff. Comparisons count as
-/// decided, whatever the error of what they compare.
+/// The bound is of first order (products of errors are neglected), so one evaluation serves every
+/// precision: multiply [`RunningError::bound`] by its unit roundoff. Comparisons are taken as exact.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounded {
+pub struct RunningError {
     value: f64,
     bound: f64,
 }
 
-impl Bounded {
+impl RunningError {
     /// A number without error.
     #[must_use]
     pub fn exact(value: f64) -> Self {
@@ -63,7 +61,7 @@ impl Bounded {
     }
 }
 
-/// Error handed on by a factor; an exact operand hands on none, whatever the factor.
+/// Error propagated by a factor; zero for an exact operand.
 fn inherited(slope: f64, bound: f64) -> f64 {
     if bound == 0.0 {
         0.0
@@ -74,7 +72,7 @@ fn inherited(slope: f64, bound: f64) -> f64 {
 
 // Inlined into generated code these operations would take minutes to compile.
 
-impl Add for Bounded {
+impl Add for RunningError {
     type Output = Self;
     #[inline(never)]
     fn add(self, other: Self) -> Self {
@@ -82,7 +80,7 @@ impl Add for Bounded {
     }
 }
 
-impl Sub for Bounded {
+impl Sub for RunningError {
     type Output = Self;
     #[inline(never)]
     fn sub(self, other: Self) -> Self {
@@ -90,7 +88,7 @@ impl Sub for Bounded {
     }
 }
 
-impl Mul for Bounded {
+impl Mul for RunningError {
     type Output = Self;
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
@@ -99,7 +97,7 @@ impl Mul for Bounded {
     }
 }
 
-impl Div for Bounded {
+impl Div for RunningError {
     type Output = Self;
     #[inline(never)]
     fn div(self, other: Self) -> Self {
@@ -110,7 +108,7 @@ impl Div for Bounded {
     }
 }
 
-impl Neg for Bounded {
+impl Neg for RunningError {
     type Output = Self;
     fn neg(self) -> Self {
         Self {
@@ -120,7 +118,7 @@ impl Neg for Bounded {
     }
 }
 
-impl Scalar for Bounded {
+impl Scalar for RunningError {
     fn from_f64(value: f64) -> Self {
         // Rounded in any precision below f64, unless it is short enough for f32.
         let short = f64::from(value as f32) == value;
@@ -247,7 +245,8 @@ mod tests {
         for i in 1..200_u16 {
             for j in 1..50_u16 {
                 let (x, y) = (f32::from(i) / 128.0, f32::from(j) / 32.0);
-                let bounds = everything(Bounded::exact(x.into()), Bounded::exact(y.into()));
+                let bounds =
+                    everything(RunningError::exact(x.into()), RunningError::exact(y.into()));
                 let exact = everything(f64::from(x), f64::from(y));
                 for ((single, exact), bound) in everything(x, y).iter().zip(exact).zip(bounds) {
                     let ratio = (f64::from(*single) - exact).abs() / (bound.bound() * ROUNDOFF_F32);
@@ -263,8 +262,8 @@ mod tests {
 
     #[test]
     fn cancellation_keeps_the_error_of_the_terms() {
-        let third = Bounded::exact(1.0) / Bounded::exact(3.0);
-        let difference = third - Bounded::exact(0.333);
+        let third = RunningError::exact(1.0) / RunningError::exact(3.0);
+        let difference = third - RunningError::exact(0.333);
         assert!(difference.bound() > 1.0 / 3.0);
         assert!(difference.bound() / difference.value() > 999.0);
     }
