@@ -29,12 +29,12 @@ use items::Items;
 /// other names or types.
 pub const EMISSION_VERSION: u32 = 1;
 
-/// What the first lines of an emitted file say.
+/// Data of the first lines of an emitted file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
     /// Command that writes the file again.
     pub rebuild_command: String,
-    /// What it was derived from, relative to the repository.
+    /// Source of the derivation, relative to the repository.
     pub source: String,
     /// Hash of everything that the file depends on.
     pub fingerprint: String,

@@ -12,7 +12,7 @@ pub enum Error {
     Json {
         /// File the text is from.
         origin: String,
-        /// What the parser said, with line and column.
+        /// Message of the parser, with line and column.
         reason: String,
     },
 
@@ -41,7 +41,7 @@ pub enum Error {
         place: String,
         /// The name.
         name: String,
-        /// What it has to be.
+        /// Expected form.
         expected: String,
     },
 
@@ -68,11 +68,11 @@ pub enum Error {
         origin: String,
         /// Place in the program.
         place: String,
-        /// What is there.
+        /// Value found.
         found: String,
-        /// What should be there.
+        /// Value expected.
         expected: String,
-        /// What to do.
+        /// Advice.
         remedy: String,
     },
 
@@ -97,7 +97,7 @@ pub enum Error {
         place: String,
         /// Its value.
         found: String,
-        /// What it has to be.
+        /// Expected form.
         expected: String,
     },
 
@@ -111,7 +111,7 @@ pub enum Error {
         origin: String,
         /// Item that was emitted.
         place: String,
-        /// What the parser said.
+        /// Message of the parser.
         reason: String,
     },
 }

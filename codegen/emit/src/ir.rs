@@ -25,7 +25,7 @@ impl NodeId {
     }
 }
 
-/// What a node computes.
+/// Operation of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Node {
     /// A finite number.
@@ -106,7 +106,7 @@ impl Binary {
     }
 }
 
-/// What is known of the value of a node.
+/// Known properties of the value of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Type {
     /// Any number.
@@ -154,13 +154,13 @@ impl Graph {
         }
     }
 
-    /// What a node computes.
+    /// Operation of a node.
     #[must_use]
     pub fn node(&self, id: NodeId) -> Node {
         self.nodes[id.index()]
     }
 
-    /// What is known of its value.
+    /// Known properties of its value.
     #[must_use]
     pub fn type_of(&self, id: NodeId) -> Type {
         self.types[id.index()]

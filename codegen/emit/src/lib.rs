@@ -1,10 +1,16 @@
-//! Turns CasADi programs into `no_std` Rust.
+//! Turns symbolic models, written in Python with CasADi, into `no_std` Rust.
 //!
-//! A *program* is a JSON file of named functions that the exporter `casadi_program.py`
-//! (beside this crate's sources) wrote. [`Program::from_json`] reads and checks it,
-//! [`emit_module`] gives the text of one Rust file: for each group of inputs a table of
-//! elements, a struct and index constants, for each function a Rust function generic over
-//! the scalar, and for a model the implementation of `Model`.
+//! # What it is
+//!
+//! The exporter `casadi_program.py` of this crate writes a *program*: a JSON file of named
+//! functions, each a flat list of scalar instructions. [`Program::from_json`] reads and checks it,
+//! [`ir`] is its typed expression graph, [`simplify`] rewrites the graph by rules that keep every
+//! value (except the sign of a zero), and [`emit_module`] returns the text of one Rust file: for
+//! each group of inputs a table of elements, a struct and index constants; for each function a Rust
+//! function generic over the scalar; for a model the implementation of `Model`. [`build`] keeps
+//! committed copies up to date from a build script. `codegen/emit/README.md` is the manual.
+//!
+//! # Example
 //!
 //! ```
 //! # fn main() -> Result<(), gyrocal_codegen::Error> {
@@ -32,8 +38,14 @@
 //! # }
 //! ```
 //!
-//! In between stands the typed expression graph of [`ir`], which [`simplify`] rewrites by
-//! rules that keep every value (the sign of a zero aside).
+//! # Features
+//!
+//! - `cli`: the command `gyrocal-codegen`, which writes or checks committed files.
+//!
+//! # What it does not do
+//!
+//! It has no loops, branches or interpolation tables, and it neither reorders sums and products nor
+//! uses fused multiply-add. It is independent of the kind of model.
 
 pub mod build;
 mod emit;

@@ -77,17 +77,17 @@ pub struct Function {
     pub name: String,
     /// Meaning.
     pub doc: String,
-    /// Where the formula is from.
+    /// Source of the formula.
     pub source: String,
     /// For which inputs it holds.
     pub domain: String,
     /// The groups it takes: indices into [`Program::groups`].
     pub inputs: Vec<usize>,
-    /// What it gives.
+    /// Outputs.
     pub outputs: Vec<Output>,
     /// Number of scalars the instructions work on.
     pub work_size: usize,
-    /// What to compute, in order.
+    /// Instructions, in order.
     pub instructions: Vec<Instruction>,
 }
 
@@ -179,11 +179,11 @@ pub struct Model {
     pub parameters: Option<usize>,
     /// Name of the noise inputs, as in `rate_d_NOISE`; a group of that name need not exist.
     pub noise: Option<String>,
-    /// What rates and outputs depend on besides.
+    /// Inputs of rates and outputs besides the state.
     pub inputs: Vec<usize>,
     /// Rates of the moving states.
     pub rates: ModelFunction,
-    /// What sensors read.
+    /// Outputs of sensors.
     pub output: ModelFunction,
 }
 

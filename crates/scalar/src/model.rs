@@ -31,7 +31,7 @@ pub struct RatesJacobian<'a, T, const M: usize> {
 ///
 /// Implementations are generated; the filters know nothing of a model but this.
 pub trait Model<T: Scalar, const M: usize, const Y: usize> {
-    /// What rates and outputs depend on besides the state, held over a step.
+    /// Inputs of rates and outputs besides the state, held over a step.
     type Inputs: Copy;
 
     /// Number of constant parameters.

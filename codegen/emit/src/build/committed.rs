@@ -124,7 +124,7 @@ pub(super) fn shown(path: &Path) -> &Path {
 /// The text with line endings normalised (version control may have changed them).
 fn read(path: &Path) -> Result<Option<String>, Error> {
     match fs::read(path) {
-        // What is not UTF-8 is not what was generated; it must not stop the repair.
+        // A file that is not UTF-8 was not generated; it must not stop the repair.
         Ok(bytes) => Ok(Some(normalised(&String::from_utf8_lossy(&bytes)))),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(at("read", path)(error)),

@@ -1,4 +1,4 @@
-//! What a derivation directory declares about itself: the file `derivation.toml`.
+//! Declaration of a derivation: the file `derivation.toml`.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub(super) struct Declaration {
     pub(super) source: String,
     /// The command that rewrites the committed files.
     pub(super) write_command: String,
-    /// What Python must be and have.
+    /// Requirements on Python.
     pub(super) python: PythonDeclaration,
     /// The programs that become Rust modules.
     #[serde(rename = "module")]
@@ -26,7 +26,7 @@ pub(super) struct Declaration {
     /// Files of evaluated numbers.
     #[serde(default)]
     pub(super) numbers: Vec<NumbersDeclaration>,
-    /// What is otherwise for files of other packages.
+    /// Settings for variants of other packages.
     #[serde(default)]
     pub(super) variants: VariantsDeclaration,
 }
@@ -34,7 +34,7 @@ pub(super) struct Declaration {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct VariantsDeclaration {
-    /// Where those packages find the traits that generated code names.
+    /// Path of the traits of generated code in those packages.
     pub(super) scalar_crate: Option<String>,
 }
 
@@ -65,7 +65,7 @@ pub(super) struct ModuleDeclaration {
 pub(super) struct NumbersDeclaration {
     /// File that the derivation writes.
     pub(super) file: String,
-    /// Where it is committed. It is written when a module changed or it is missing, and
+    /// Path of the committed copy. It is written when a module changed or it is missing, and
     /// never compared: the last bits of evaluated numbers depend on the processor.
     pub(super) committed: String,
 }

@@ -18,11 +18,11 @@ pub struct Derivation {
     pub(super) lock: Lock,
     pub(super) fingerprint: String,
     pub(super) settings: Settings,
-    /// What a file of another package asks for, instead of all programs.
+    /// Variant defined by a file of another package, instead of all programs.
     pub(super) request: Option<Request>,
 }
 
-/// What [`Derivation::write`] did.
+/// Result of [`Derivation::write`].
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Written {
@@ -237,7 +237,7 @@ impl Derivation {
             .collect()
     }
 
-    /// Where the private environments live when the build works in `inside`.
+    /// Directory of the private environments of a build in `inside`.
     fn environments(&self, inside: &Path) -> PathBuf {
         if let Some(directory) = &self.settings.environments {
             return directory.clone();
@@ -247,8 +247,8 @@ impl Derivation {
             .join("gyrocal-codegen")
     }
 
-    /// Where a command works: the target directory that it was built in, or, if it was
-    /// installed, that of the workspace around the derivation.
+    /// Base directory of the environments of a command: the target directory in which it was built
+    /// or, if it was installed, that of the workspace around the derivation.
     fn command_directory(&self) -> PathBuf {
         let program = std::env::current_exe().unwrap_or_default();
         if let Some(directory) = target_directory(&program) {

@@ -14,7 +14,7 @@ pub enum Error {
     Declaration {
         /// The file.
         path: PathBuf,
-        /// What was found and what was expected.
+        /// Values found and expected.
         reason: String,
     },
 
@@ -34,11 +34,11 @@ pub enum Error {
     /// A file or directory could not be read or written.
     #[error("cannot {action} `{}`: {source}", path.display())]
     Io {
-        /// What was tried.
+        /// Attempted action.
         action: &'static str,
         /// The file or directory.
         path: PathBuf,
-        /// What the system said.
+        /// Reason given by the system.
         source: std::io::Error,
     },
 
@@ -100,7 +100,7 @@ pub enum Error {
         environment.display()
     )]
     Environment {
-        /// What was being done.
+        /// Failed operation.
         step: &'static str,
         /// The environment.
         environment: PathBuf,
@@ -130,7 +130,7 @@ pub enum Error {
     Refused {
         /// The derivation.
         source_name: String,
-        /// What to change.
+        /// Advice.
         reason: String,
     },
 
@@ -156,7 +156,7 @@ pub enum Error {
     Rederivation {
         /// The committed files that cannot be used, and why.
         stale: Vec<Stale>,
-        /// What failed.
+        /// Failed operation.
         cause: Box<Error>,
     },
 

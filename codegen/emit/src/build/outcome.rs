@@ -6,7 +6,7 @@ use super::derivation::Derivation;
 use super::run::Timings;
 use super::settings::{VARIABLES, WRITE_VARIABLE};
 
-/// What [`Derivation::build`](super::Derivation::build) did.
+/// Result of [`Derivation::build`](super::Derivation::build).
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Outcome {
@@ -48,7 +48,7 @@ impl Outcome {
         }
     }
 
-    /// What became of the module of a file that has no committed copy.
+    /// Result for the module of a file without a committed copy.
     pub(super) fn of_file(derivation: &Derivation, file: &Path, timings: Option<Timings>) -> Self {
         Self {
             timings,

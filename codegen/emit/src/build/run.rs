@@ -17,7 +17,7 @@ use crate::{Header, Options, Program, emit_module_with};
 /// Exit code with which `run.py` refuses a derivation that no program can hold.
 const REFUSED: i32 = 3;
 
-/// What a derivation gives, in memory.
+/// Results of a derivation, in memory.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Derived {

@@ -1,4 +1,4 @@
-//! What the caller's environment may say about a derivation.
+//! Environment variables of a derivation.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ pub(super) const VARIABLES: [&str; 4] = [
     CARGO_OFFLINE_VARIABLE,
 ];
 
-/// Where Python comes from and whether the network may be used.
+/// Source of Python and use of the network.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Settings {

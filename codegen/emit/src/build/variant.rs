@@ -51,7 +51,7 @@ impl Variant {
         Self::open(directory, file)
     }
 
-    /// What `file` asks of the derivation in `directory`.
+    /// Variant defined by `file`, of the derivation in `directory`.
     ///
     /// # Errors
     ///

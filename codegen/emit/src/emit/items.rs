@@ -27,7 +27,7 @@ const USED_TYPES: &[&str] = &[
 ];
 const USED_VALUES: &[&str] = &["Some", "None", "Ok", "T"];
 
-/// Where Rust looks a name up.
+/// Namespace of a name in Rust.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Namespace {
     Type,

@@ -15,7 +15,7 @@ use crate::program::{Element, Function, Group, Model, ModelFunction, Output};
 use crate::{Error, Program};
 use methods::Methods;
 
-/// What the items of a model are made from.
+/// Data of the items of a model.
 struct Parts<'a> {
     program: &'a Program,
     model: &'a Model,
@@ -148,7 +148,7 @@ fn inputs(parts: &Parts<'_>, items: &mut Items<'_>) -> Result<Vec<TokenStream>, 
         &place,
     )?;
     let doc = Doc::of(&format!(
-        "What rates and outputs of [`{}`] depend on besides its state, held over a step.",
+        "Inputs of [`{}`] besides its state, held over a step.",
         parts.model.name
     ))
     .tokens();

@@ -34,7 +34,7 @@ pub(super) fn is_returned_directly(function: &Function) -> bool {
     matches!(&function.outputs[..], [output] if output.is_full())
 }
 
-/// What the function returns.
+/// Return type of a function.
 pub(super) fn return_type(function: &Function) -> TokenStream {
     match &function.outputs[..] {
         [output] if output.is_full() => array_type(output),
@@ -70,7 +70,7 @@ pub(super) fn structure(
     }
     let place = format!("function `{}`", function.name);
     let name = items.claim(Namespace::Type, &pascal_case(&function.name), &place)?;
-    let doc = Doc::of(&format!("What [`{}`] gives.", function.name)).tokens();
+    let doc = Doc::of(&format!("Results of [`{}`].", function.name)).tokens();
     let fields = function.outputs.iter().map(|output| {
         let doc = Doc::of(&meaning(output, &name)).tokens();
         let (field, kind) = (ident(&output.name), array_type(output));

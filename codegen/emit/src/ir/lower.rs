@@ -7,7 +7,7 @@ const LARGEST_PRODUCT: f64 = 32.0;
 
 /// Turns the instructions of a function into its graph, operation by operation.
 ///
-/// What the scalar trait lacks is expressed by what it has: logic on the numbers 0 and 1,
+/// Operations that the scalar trait lacks are expressed by others: logic on the numbers 0 and 1,
 /// and powers with integer exponents as products.
 #[must_use]
 pub fn lower(function: &Function) -> Expressions {

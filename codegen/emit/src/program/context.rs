@@ -6,7 +6,7 @@ use std::fmt::Display;
 use super::names::is_snake_case;
 use crate::Error;
 
-/// What to do about a program that the exporter cannot have written.
+/// Advice for a program that the exporter cannot have written.
 pub(super) const DERIVE_AGAIN: &str = "derive the program again, and do not edit it by hand";
 
 /// Makes errors that know their file.

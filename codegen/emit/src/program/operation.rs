@@ -114,7 +114,7 @@ operations! {
     }
 }
 
-/// What the instructions of a function may refer to.
+/// Sizes of the objects that the instructions of a function may refer to.
 pub(super) struct Instructions<'a> {
     pub(super) context: &'a Context<'a>,
     pub(super) place: &'a str,

@@ -18,7 +18,7 @@ pub struct Table {
     pub module: Option<String>,
     /// Meaning.
     pub doc: String,
-    /// What every record has.
+    /// Fields of every record.
     pub fields: Vec<Field>,
     /// The records: a value for each field, of its kind.
     pub rows: Vec<Vec<Value>>,
@@ -32,11 +32,11 @@ pub struct Field {
     pub name: String,
     /// Meaning.
     pub doc: String,
-    /// What its values are.
+    /// Type of its values.
     pub kind: Kind,
 }
 
-/// What the values of a field are.
+/// Type of the values of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Text.
@@ -73,7 +73,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// What it is.
+    /// Meaning.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {

@@ -16,7 +16,7 @@ swing = Group("swing", "State of the pendulum.", [
     Element("angle", "rad", "angle from the vertical"),
     Element("rate", "rad/s", "rate of the angle"),
 ])
-rod = Group("rod", "What the pendulum is made of.", [
+rod = Group("rod", "Constants of the pendulum.", [
     Element("length", "m", "length of the rod", "rod.length"),
     Element("damping", "m^3/s", "damping at low rates"),
 ])
@@ -76,8 +76,8 @@ def derive(output: Path) -> None:
                  domain),
         Function("swing_rates_jacobian", "Rates of a damped pendulum, with Jacobians.", source,
                  inputs, [still(rates), *[jacobian(rates, g) for g in (swing, rod, push)]], domain),
-        Function("bob_place", "Where the bob is.", source, [swing, rod], [bob]),
-        Function("bob_place_jacobian", "Where the bob is, with Jacobians.", source, [swing, rod],
+        Function("bob_place", "Position of the bob.", source, [swing, rod], [bob]),
+        Function("bob_place_jacobian", "Position of the bob, with Jacobians.", source, [swing, rod],
                  [bob, *[jacobian(bob, g) for g in (swing, rod)]]),
         Function("reach", "A bound on the height that the bob can reach.", "", [swing, rod, field],
                  [Output("reach", ca.fmin(2 * length, rate**2 * length**2 / (2 * field["gravity"])
@@ -92,7 +92,7 @@ def derive(output: Path) -> None:
     functions += [
         at_origin("swing_rates_at_origin", "Rates and Jacobians at rest.",
                   by_name["swing_rates_jacobian"]),
-        at_origin("bob_place_at_origin", "Where the bob is at rest, with Jacobians.",
+        at_origin("bob_place_at_origin", "Position of the bob at rest, with Jacobians.",
                   by_name["bob_place_jacobian"]),
     ]
     program = Program(

@@ -59,7 +59,7 @@ pub mod swing_index {
     pub const RATE: usize = 1;
 }
 
-/// What the pendulum is made of.
+/// Constants of the pendulum.
 ///
 /// Names, ids and units of the elements of [`Rod`].
 pub const ROD: [Element; 2] = [
@@ -77,7 +77,7 @@ pub const ROD: [Element; 2] = [
     },
 ];
 
-/// What the pendulum is made of.
+/// Constants of the pendulum.
 ///
 /// As an array in this order; see [`ROD`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -204,7 +204,7 @@ pub mod push_index {
 ///
 /// # Arguments
 /// - `swing`: State of the pendulum \[rad, rad/s\], 2 in the order of [`Swing`].
-/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `rod`: Constants of the pendulum \[m, m^3/s\], 2 in the order of [`Rod`].
 /// - `field`: Field of gravity \[m/s^2\], 1 in the order of [`Field`].
 ///
 /// # Returns
@@ -235,7 +235,7 @@ pub fn swing_rates<T: Scalar>(swing: &[T; 2], rod: &[T; 2], field: &[T; 1]) -> [
     [rate, rate_dot]
 }
 
-/// What [`swing_rates_jacobian`] gives.
+/// Results of [`swing_rates_jacobian`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingRatesJacobian<T> {
     /// Rates of the state \[rad/s, rad/s^2\], 2: `angle_dot`, `rate_dot`.
@@ -319,7 +319,7 @@ impl<T: Scalar> SwingRatesJacobian<T> {
 ///
 /// # Arguments
 /// - `swing`: State of the pendulum \[rad, rad/s\], 2 in the order of [`Swing`].
-/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `rod`: Constants of the pendulum \[m, m^3/s\], 2 in the order of [`Rod`].
 /// - `field`: Field of gravity \[m/s^2\], 1 in the order of [`Field`].
 ///
 /// # Returns
@@ -375,13 +375,13 @@ pub fn swing_rates_jacobian<T: Scalar>(
     }
 }
 
-/// Where the bob is.
+/// Position of the bob.
 ///
 /// Source: Newton \<1687\> \[law 2\].
 ///
 /// # Arguments
 /// - `swing`: State of the pendulum \[rad, rad/s\], 2 in the order of [`Swing`].
-/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `rod`: Constants of the pendulum \[m, m^3/s\], 2 in the order of [`Rod`].
 ///
 /// # Returns
 /// - `bob`: Place of the bob \[m\], 2: `across`, `up`.
@@ -401,7 +401,7 @@ pub fn bob_place<T: Scalar>(swing: &[T; 2], rod: &[T; 2]) -> [T; 2] {
     [length * sin_angle, up]
 }
 
-/// What [`bob_place_jacobian`] gives.
+/// Results of [`bob_place_jacobian`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BobPlaceJacobian<T> {
     /// Place of the bob \[m\], 2: `across`, `up`.
@@ -450,13 +450,13 @@ impl<T: Scalar> BobPlaceJacobian<T> {
     }
 }
 
-/// Where the bob is, with Jacobians.
+/// Position of the bob, with Jacobians.
 ///
 /// Source: Newton \<1687\> \[law 2\].
 ///
 /// # Arguments
 /// - `swing`: State of the pendulum \[rad, rad/s\], 2 in the order of [`Swing`].
-/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `rod`: Constants of the pendulum \[m, m^3/s\], 2 in the order of [`Rod`].
 ///
 /// # Returns
 /// - `bob`: Place of the bob \[m\], 2: `across`, `up`.
@@ -492,7 +492,7 @@ pub fn bob_place_jacobian<T: Scalar>(
 ///
 /// # Arguments
 /// - `swing`: State of the pendulum \[rad, rad/s\], 2 in the order of [`Swing`].
-/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `rod`: Constants of the pendulum \[m, m^3/s\], 2 in the order of [`Rod`].
 /// - `field`: Field of gravity \[m/s^2\], 1 in the order of [`Field`].
 ///
 /// # Returns
@@ -515,7 +515,7 @@ pub fn reach<T: Scalar>(swing: &[T; 2], rod: &[T; 2], field: &[T; 1]) -> [T; 1] 
     [(length + length).min(t1)]
 }
 
-/// What [`heading`] gives.
+/// Results of [`heading`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heading<T> {
     /// Angle \[rad\], 1.
@@ -528,7 +528,7 @@ pub struct Heading<T> {
 ///
 /// # Arguments
 /// - `swing`: State of the pendulum \[rad, rad/s\], 2 in the order of [`Swing`].
-/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `rod`: Constants of the pendulum \[m, m^3/s\], 2 in the order of [`Rod`].
 ///
 /// # Returns
 /// - `heading`: Angle \[rad\], 1.
@@ -552,7 +552,7 @@ pub fn heading<T: Scalar>(swing: &[T; 2], rod: &[T; 2]) -> Heading<T> {
     }
 }
 
-/// What [`swing_rates_at_origin`] gives.
+/// Results of [`swing_rates_at_origin`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingRatesAtOrigin<T> {
     /// Rates of the state \[rad/s, rad/s^2\], 2 x 1, 0 structural nonzeros at
@@ -644,7 +644,7 @@ impl<T: Scalar> SwingRatesAtOrigin<T> {
 /// Source: Newton \<1687\> \[law 2\].
 ///
 /// # Arguments
-/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `rod`: Constants of the pendulum \[m, m^3/s\], 2 in the order of [`Rod`].
 /// - `field`: Field of gravity \[m/s^2\], 1 in the order of [`Field`].
 ///
 /// # Returns
@@ -683,7 +683,7 @@ pub fn swing_rates_at_origin<T: Scalar>(
     }
 }
 
-/// What [`bob_place_at_origin`] gives.
+/// Results of [`bob_place_at_origin`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BobPlaceAtOrigin<T> {
     /// Place of the bob \[m\], 2 x 1, 1 structural nonzero at [`BobPlaceAtOrigin::BOB`].
@@ -744,12 +744,12 @@ impl<T: Scalar> BobPlaceAtOrigin<T> {
     }
 }
 
-/// Where the bob is at rest, with Jacobians.
+/// Position of the bob at rest, with Jacobians.
 ///
 /// Source: Newton \<1687\> \[law 2\].
 ///
 /// # Arguments
-/// - `rod`: What the pendulum is made of \[m, m^3/s\], 2 in the order of [`Rod`].
+/// - `rod`: Constants of the pendulum \[m, m^3/s\], 2 in the order of [`Rod`].
 ///
 /// # Returns
 /// - `bob`: Place of the bob \[m\], 2 x 1, 1 structural nonzero at [`BobPlaceAtOrigin::BOB`].
@@ -789,7 +789,7 @@ impl Pendulum {
     pub const OUTPUTS: usize = 2;
 }
 
-/// What rates and outputs of [`Pendulum`] depend on besides its state, held over a step.
+/// Inputs of [`Pendulum`] besides its state, held over a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PendulumInputs<T> {
     /// Field of gravity \[m/s^2\].
