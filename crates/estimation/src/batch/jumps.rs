@@ -54,7 +54,7 @@ where
         let mut innovations: Vec<f64> = Vec::with_capacity(rows * Y * count);
         let mut transitions = Vec::with_capacity(rows);
         self.forward(
-            |whitened: &Whitened<'_>, jacobian, cross| {
+            &mut |whitened: &Whitened<'_>, jacobian, cross| {
                 let reciprocal = 1.0 / whitened.deviation;
                 seen.push(Seen {
                     jacobian: jacobian.map(|element| element * reciprocal),
@@ -65,7 +65,7 @@ where
                 });
                 innovations.extend_from_slice(whitened.columns);
             },
-            |transition| transitions.push(*transition),
+            &mut |transition| transitions.push(*transition),
         )?;
         let mut score = JumpScore {
             columns: vec![[0.0; M]; count],

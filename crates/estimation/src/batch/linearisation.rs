@@ -116,8 +116,11 @@ where
     /// [`EstimationError::InvalidArgument`] if there is not one point for each row, times do not
     /// rise, or the noise does not drive every moving state;
     /// [`EstimationError::NotFinite`] if the model left the numbers.
-    pub fn reduce(&self, watch: impl FnMut(&Whitened<'_>)) -> Result<Reduced<M>, EstimationError> {
-        self.reduce_onto(None, watch)
+    pub fn reduce(
+        &self,
+        mut watch: impl FnMut(&Whitened<'_>),
+    ) -> Result<Reduced<M>, EstimationError> {
+        self.reduce_onto(None, &mut watch)
     }
 
     /// As [`Self::reduce`], and keeps the linearised steps for later passes.
@@ -126,17 +129,17 @@ where
     /// As [`Self::reduce`].
     pub fn reduce_and_keep(
         &self,
-        watch: impl FnMut(&Whitened<'_>),
+        mut watch: impl FnMut(&Whitened<'_>),
     ) -> Result<(Reduced<M>, Tape<M>), EstimationError> {
         let mut tape = Tape::new(self.points.len().saturating_sub(1), self.active.len());
-        let reduced = self.reduce_onto(Some(&mut tape), watch)?;
+        let reduced = self.reduce_onto(Some(&mut tape), &mut watch)?;
         Ok((reduced, tape))
     }
 
     fn reduce_onto(
         &self,
         mut tape: Option<&mut Tape<M>>,
-        mut watch: impl FnMut(&Whitened<'_>),
+        watch: &mut dyn FnMut(&Whitened<'_>),
     ) -> Result<Reduced<M>, EstimationError> {
         let count = self.active.len() + self.further.count();
         let mut gram = Gram::new(count);
@@ -152,7 +155,7 @@ where
         };
         for row in 0..self.points.len() {
             let before = reduced.values;
-            pass.observe(row, |whitened, taken| {
+            pass.observe(row, &mut |whitened, taken| {
                 gram.add(whitened.columns);
                 reduced.values += 1;
                 reduced.log_variance += 2.0 * Scalar::ln(whitened.deviation);
@@ -178,13 +181,13 @@ where
     /// and each step's transition to `step`.
     pub(crate) fn forward(
         &self,
-        mut output: impl FnMut(&Whitened<'_>, &[f64; M], [f64; M]),
-        mut step: impl FnMut(&[[f64; M]; M]),
+        output: &mut dyn FnMut(&Whitened<'_>, &[f64; M], [f64; M]),
+        step: &mut dyn FnMut(&[[f64; M]; M]),
     ) -> Result<(), EstimationError> {
         let count = self.active.len() + self.further.count();
         let mut pass = Pass::new(self, count, None)?;
         for row in 0..self.points.len() {
-            pass.observe(row, |whitened, taken| {
+            pass.observe(row, &mut |whitened, taken| {
                 let mut cross = [0.0; M];
                 for i in 0..M {
                     for j in 0..M {
@@ -268,7 +271,7 @@ where
         pass.input_factors.copy_from_slice(inputs);
         let mut filter = NoiseFilter::<M>::new(Y);
         for row in 0..self.points.len() {
-            pass.observe(row, |whitened, taken| filter.take(whitened, taken))?;
+            pass.observe(row, &mut |whitened, taken| filter.take(whitened, taken))?;
             if row + 1 < self.points.len() {
                 filter.predict(&pass.advance(row)?.step);
             }
@@ -286,7 +289,7 @@ where
         let mut corrections = vec![[0.0; M]; rows];
         let mut gains = vec![[[0.0; M]; M]; rows.saturating_sub(1)];
         for row in 0..rows {
-            pass.observe(row, |_, _| ())?;
+            pass.observe(row, &mut |_, _| ())?;
             corrections[row] = pass.filter.mean();
             if row + 1 < rows {
                 let filtered = pass.filter.covariance;

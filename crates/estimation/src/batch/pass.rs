@@ -133,11 +133,12 @@ where
         })
     }
 
-    /// Updates with the outputs of a row; `used` gets each of them and its quantities.
+    /// Updates with the outputs of a row; `used` gets each of them and its quantities. It is called
+    /// through a pointer, so that the pass is compiled once for all callers.
     pub(super) fn observe(
         &mut self,
         row: usize,
-        mut used: impl FnMut(&Whitened<'_>, &Taken<M>),
+        used: &mut dyn FnMut(&Whitened<'_>, &Taken<M>),
     ) -> Result<(), EstimationError> {
         let of = self.of;
         let measured = of.series.measured(row);
