@@ -2,7 +2,9 @@
 
 use core::f64::consts::TAU;
 
-use realfft::RealFftPlanner;
+use rustfft::algorithm::Radix4;
+use rustfft::num_complex::Complex64;
+use rustfft::{Fft as _, FftDirection};
 
 use crate::error::DiagnosisError;
 use crate::noise::median_interval_s;
@@ -112,14 +114,13 @@ pub(crate) fn transformed(time_s: &[f64], there: &[(f64, f64)]) -> Option<(Vec<f
     let place = |time: f64| ((time - first_s) / interval_s).round() as usize;
     let rows = place(last_s) + 1;
     let length = (OVERSAMPLING * rows).next_power_of_two();
-    let mut grid = vec![0.0; length];
+    let mut grid = vec![Complex64::default(); length];
     for (time, value) in there {
-        grid[place(*time)] += value;
+        grid[place(*time)].re += value;
     }
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut coefficients = transform.make_output_vec();
-    transform.process(&mut grid, &mut coefficients).ok()?;
-    let squares = coefficients[1..length / 2].iter().map(|c| c.norm_sqr());
+    // The one algorithm that a power of two needs: a planner instantiates all of them.
+    Radix4::new(length, FftDirection::Forward).process(&mut grid);
+    let squares = grid[1..length / 2].iter().map(|c| c.norm_sqr());
     Some((squares.collect(), 1.0 / (length as f64 * interval_s)))
 }
 
