@@ -12,6 +12,7 @@ mod calibrate;
 mod characterise;
 mod command;
 mod diagnose;
+mod error_report;
 mod extend;
 mod import;
 mod measured;
@@ -32,9 +33,10 @@ use std::io::{ErrorKind, IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use clap::Parser as _;
-use miette::{MietteHandlerOpts, Report};
+use miette::Report;
 
 use crate::command::{Cli, Command};
+use crate::error_report::ErrorReport;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -72,7 +74,7 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
         Err(Failure::Work(report)) => {
-            let _ = writeln!(std::io::stderr(), "{report:?}");
+            let _ = writeln!(anstream::stderr(), "{report:?}");
             ExitCode::from(1)
         }
     }
@@ -124,15 +126,8 @@ fn start_logging(verbose: u8) {
         .init();
 }
 
-/// Lines are wrapped on a terminal only: scripts search for an unbroken `file:line:column`.
+/// Sets the form of errors.
 fn show_errors_plainly() {
-    let wrap = std::io::stderr().is_terminal();
     // Fails if a handler is installed already, which is then used.
-    let _ = miette::set_hook(Box::new(move |_| {
-        let options = MietteHandlerOpts::new()
-            .terminal_links(false)
-            .break_words(false)
-            .wrap_lines(wrap);
-        Box::new(options.build())
-    }));
+    let _ = miette::set_hook(Box::new(|_| Box::new(ErrorReport::of_stderr())));
 }

@@ -1,5 +1,6 @@
 //! Shared parts of the commands on logs of real sensors.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use gyrocal_measured::MeasuredError;
@@ -29,14 +30,23 @@ pub(crate) fn unusable(log: &Path, error: MeasuredError) -> Failure {
     }
 }
 
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[error("{}: found {found}, expected {expected}", log.display())]
-#[diagnostic(code(gyrocal::measured::unfit), help("{advice}"))]
 struct Unusable {
     log: PathBuf,
     found: String,
     expected: String,
     advice: String,
+}
+
+impl Diagnostic for Unusable {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new("gyrocal::measured::unfit"))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(&self.advice))
+    }
 }
 
 /// Parses `FROM:TO`.

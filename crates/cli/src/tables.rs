@@ -1,6 +1,7 @@
 //! Layout of tables.
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table, TableStyle};
+use terminal_size::{Width, terminal_size_of};
 
 /// A table with a rule below its head and no other lines.
 pub(crate) fn table(header: impl Into<Row>) -> Table {
@@ -10,6 +11,9 @@ pub(crate) fn table(header: impl Into<Row>) -> Table {
         .load_style(TableStyle::new().header_separator(rule))
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_header(header);
+    if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
+        table.set_width(columns);
+    }
     table
 }
 

@@ -1,5 +1,7 @@
 //! Word wrap for a terminal.
 
+use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
+
 /// Characters per line.
 const LINE: usize = 100;
 
@@ -18,27 +20,23 @@ pub(crate) fn bullet(words: &str) -> String {
     lines(" - ", "   ", words)
 }
 
-/// Breaks at single spaces only; several spaces in a row, as in a path, are kept.
+/// Wrapped to this width, without a line break at the end.
+pub(crate) fn wrapped(width: usize, words: &str) -> String {
+    textwrap::fill(words, options(width))
+}
+
 fn lines(first: &str, next: &str, words: &str) -> String {
-    let mut text = first.to_owned();
-    let mut column = first.chars().count();
-    let mut empty = true;
-    for word in words.split(' ') {
-        let length = word.chars().count();
-        if !empty && column + 1 + length > LINE {
-            text.push('\n');
-            text.push_str(next);
-            column = next.chars().count();
-        } else if !empty {
-            text.push(' ');
-            column += 1;
-        }
-        text.push_str(word);
-        column += length;
-        empty = false;
-    }
-    text.push('\n');
-    text
+    let options = options(LINE).initial_indent(first).subsequent_indent(next);
+    textwrap::fill(words, options) + "\n"
+}
+
+/// Breaks at spaces only; several spaces in a row, as in a path, are kept.
+fn options<'a>(width: usize) -> Options<'a> {
+    Options::new(width)
+        .break_words(false)
+        .word_separator(WordSeparator::AsciiSpace)
+        .word_splitter(WordSplitter::NoHyphenation)
+        .wrap_algorithm(WrapAlgorithm::FirstFit)
 }
 
 #[cfg(test)]

@@ -6,19 +6,14 @@ use std::path::PathBuf;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
 
 /// Whatever can go wrong with a file.
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// Something in an input file is not what its format asks for.
     #[error(transparent)]
-    #[diagnostic(transparent)]
     Input(Box<InputError>),
     /// An input file cannot be read at all.
     #[error("{}: cannot be read: {reason}", path.display())]
-    #[diagnostic(
-        code(gyrocal::file::unreadable),
-        help("check that the file exists and that you may read it")
-    )]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -27,10 +22,6 @@ pub enum Error {
     },
     /// An output file cannot be written; nothing was left behind.
     #[error("{}: cannot be written: {reason}", path.display())]
-    #[diagnostic(
-        code(gyrocal::file::unwritable),
-        help("check that the folder exists, that you may write there and that the disk has room")
-    )]
     Unwritable {
         /// The file.
         path: PathBuf,
@@ -39,7 +30,6 @@ pub enum Error {
     },
     /// A value in memory cannot be written because no reader would accept it.
     #[error("{}: not written: found {found}, expected {expected}", path.display())]
-    #[diagnostic(code(gyrocal::file::invalid_value))]
     InvalidValue {
         /// The file that was to be written.
         path: PathBuf,
@@ -48,6 +38,44 @@ pub enum Error {
         /// What it would have to be.
         expected: String,
     },
+}
+
+impl Diagnostic for Error {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let code = match self {
+            Self::Input(error) => return error.code(),
+            Self::Unreadable { .. } => "gyrocal::file::unreadable",
+            Self::Unwritable { .. } => "gyrocal::file::unwritable",
+            Self::InvalidValue { .. } => "gyrocal::file::invalid_value",
+        };
+        Some(Box::new(code))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let advice = match self {
+            Self::Input(error) => return error.help(),
+            Self::Unreadable { .. } => "check that the file exists and that you may read it",
+            Self::Unwritable { .. } => {
+                "check that the folder exists, that you may write there and that the disk has room"
+            }
+            Self::InvalidValue { .. } => return None,
+        };
+        Some(Box::new(advice))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        match self {
+            Self::Input(error) => error.source_code(),
+            _ => None,
+        }
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        match self {
+            Self::Input(error) => error.labels(),
+            _ => None,
+        }
+    }
 }
 
 /// What kind of thing is wrong in an input file.

@@ -1,5 +1,7 @@
 //! Errors of `gyrocal calibrate`, with advice.
 
+use std::fmt::Display;
+
 use gyrocal::EstimationError;
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_record::CalibrationMethod;
@@ -10,9 +12,8 @@ use crate::Failure;
 use crate::noise::{GYRO_ADVICE, has_tiny_gyro_noise};
 
 /// The records could not be calibrated.
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[error("{records}: no calibration")]
-#[diagnostic(code(gyrocal::calibrate), help("{}", self.advice()))]
 pub(super) struct NotCalibrated {
     records: String,
     method: CalibrationMethod,
@@ -99,6 +100,16 @@ fn place(why: &CalibrationError) -> Option<usize> {
             Some(run - 1)
         }
         _ => None,
+    }
+}
+
+impl Diagnostic for NotCalibrated {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new("gyrocal::calibrate"))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(self.advice()))
     }
 }
 

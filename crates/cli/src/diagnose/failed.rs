@@ -1,5 +1,6 @@
 //! Errors of `gyrocal diagnose`, with advice.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use gyrocal_calibration::CalibrationError;
@@ -11,9 +12,8 @@ use crate::Failure;
 use crate::noise::{GYRO_ADVICE, has_tiny_gyro_noise};
 
 /// The record could not be diagnosed.
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[error("{record}: no diagnosis")]
-#[diagnostic(code(gyrocal::diagnose), help("{}", self.advice()))]
 pub(crate) struct NotDiagnosed {
     record: String,
     tiny_gyro_noise: bool,
@@ -57,6 +57,16 @@ impl NotDiagnosed {
                  check [noise], [prior] and initial_angles_sigma_deg"
             }
         }
+    }
+}
+
+impl Diagnostic for NotDiagnosed {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new("gyrocal::diagnose"))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(self.advice()))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Errors of `gyrocal plan`, with advice.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use gyrocal_diagnosis::plan::PlanError;
@@ -7,25 +8,20 @@ use miette::Diagnostic;
 
 use crate::Failure;
 
+const CODE: &str = "gyrocal::plan";
+
 /// No next run could be planned.
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[error("{record}: no plan")]
-#[diagnostic(code(gyrocal::plan), help("{}", self.advice()))]
 pub(super) struct NotPlanned {
     record: String,
     source: PlanError,
 }
 
 /// A diagnosis is of another record, or was made with another bench file.
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[error(
     "{diagnosis}: a diagnosis {other}; that has SHA-256 {found}, expected {expected}, that of {given}"
-)]
-#[diagnostic(
-    code(gyrocal::plan),
-    help(
-        "diagnose this record with this bench file, or leave --diagnosis out: the command then diagnoses it"
-    )
 )]
 pub(super) struct OtherInput {
     pub(super) diagnosis: String,
@@ -59,6 +55,29 @@ impl NotPlanned {
                  lists the findings"
             }
         }
+    }
+}
+
+impl Diagnostic for NotPlanned {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(CODE))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(self.advice()))
+    }
+}
+
+impl Diagnostic for OtherInput {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(CODE))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(
+            "diagnose this record with this bench file, or leave --diagnosis out: the command \
+             then diagnoses it",
+        ))
     }
 }
 
