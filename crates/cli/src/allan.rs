@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use comfy_table::Cell;
-use gyrocal_measured::allan::{
-    AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
-};
 use gyrocal_measured::{MeasuredError, ResultFile, Unfit, read_columns};
 use gyrocal_record::{InputErrorKind, SourceText, write_json};
+use gyrocal_statistics::allan::{
+    AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
+};
 use serde_json::json;
 
 use crate::Failure;

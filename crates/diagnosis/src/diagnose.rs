@@ -7,6 +7,7 @@ use gyrocal::effect::{EffectKind, NoiseProperty};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{CalibrationError, Extended, NoiseEstimate, NoiseModel, Options, Run};
 use gyrocal_record::{Bench, Record};
+use gyrocal_statistics::{AllanTest, allan_test, two_sided_p};
 
 use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, Unnamed, search};
 use crate::error::DiagnosisError;
@@ -16,8 +17,6 @@ use crate::noise::{Estimate, NoiseAudit, NoiseFinding};
 use crate::remainder::{Remainder, TESTS, remainder};
 use crate::request;
 use crate::series::Innovations;
-use crate::significance::two_sided_p;
-use crate::stability::{Stability, stability};
 use audited::{Audited, audited};
 use unsettled::standing_off;
 
@@ -85,7 +84,7 @@ pub struct Diagnosis<'a> {
     /// complete rows.
     pub norm: Option<MagnitudeTest>,
     /// How what is left averages out; `None` without a stretch that is long enough.
-    pub stability: Option<Stability>,
+    pub stability: Option<AllanTest>,
     /// What is wrong with the noise.
     pub noise_findings: Vec<NoiseFinding>,
     /// The noise audit with all its figures.
@@ -234,7 +233,7 @@ pub fn diagnose<'a>(
         remainder.add(found);
     }
     let found = !searched.findings.is_empty();
-    let stability = stability(&record.time_s, &remainder.whitened, told).ok();
+    let stability = allan_test(&record.time_s, &remainder.whitened, told).ok();
     let judged = judge(&nominal, &searched, record)?;
     let gain = match judged.scores {
         Some(scores) if found => {

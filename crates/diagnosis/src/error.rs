@@ -1,3 +1,5 @@
+use gyrocal_statistics::StatisticsError;
+
 /// Why a record could not be examined.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -38,4 +40,7 @@ pub enum DiagnosisError {
         /// What it may be.
         expected: &'static str,
     },
+    /// A statistic that could not be computed.
+    #[error(transparent)]
+    Statistics(#[from] StatisticsError),
 }

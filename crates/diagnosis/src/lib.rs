@@ -5,10 +5,9 @@
 //! Statistics of residuals and an audit of the noise, as pure functions of plain data: a record
 //! ([`gyrocal_record::Record`]) and the [`Innovations`] that a filter made of it.
 //!
-//! - [`nis`], [`autocorrelation`], [`periodogram`], [`dependence`]: the usual tests.
+//! - [`residuals`]: the usual tests of innovations, by `gyrocal-statistics`.
 //! - [`magnitude_channel`]: |E|², which sees accelerometer errors only, without any filter;
 //!   [`magnitude_test`] says which side it speaks for.
-//! - [`stability`]: Allan deviation of innovations, whether they average out.
 //! - [`audit_noise`]: is the noise as declared? Robust, with one false-alarm probability for all.
 //!
 //! # The audit
@@ -25,7 +24,6 @@
 
 pub mod cause;
 mod continuation;
-mod dependence;
 mod diagnose;
 mod error;
 mod gain;
@@ -37,12 +35,7 @@ mod remainder;
 mod request;
 mod residuals;
 mod series;
-mod significance;
-mod spectrum;
-mod stability;
-mod whiteness;
 
-pub use dependence::{Bin, Dependence, dependence};
 pub use diagnose::{DiagnoseError, DiagnoseOptions, Diagnosis, Verdict, diagnose, validated};
 pub use error::DiagnosisError;
 pub use gain::{Acceptance, CoefficientShift, Compensation, Gain, Validation, validate};
@@ -55,10 +48,6 @@ pub use noise::{
 pub use remainder::{Remainder, remainder};
 pub use residuals::{Abscissa, Residuals, residuals};
 pub use series::Innovations;
-pub use significance::{two_sided_p, z_of_two_sided_p};
-pub use spectrum::{Line, Periodogram, periodogram, strongest};
-pub use stability::{NoiseCourse, Stability, stability};
-pub use whiteness::{Autocorrelation, Nis, autocorrelation, nis};
 
 /// Number of drift coefficients of the nominal model.
 const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;

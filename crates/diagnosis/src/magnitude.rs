@@ -6,10 +6,9 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use gyrocal_record::Record;
+use gyrocal_statistics::{BinnedMeans, binned_means, two_sided_p};
 
-use crate::dependence::{Dependence, dependence};
 use crate::error::DiagnosisError;
-use crate::significance::two_sided_p;
 
 /// |E|² of each sample against its expectation.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,11 +31,11 @@ pub struct MagnitudeChannel {
     /// Two-sided p-value of the variance.
     pub variance_p_value: f64,
     /// Binned means over each component of specific force: scale, bias, non-linearity.
-    pub on_component: [Dependence; 3],
+    pub on_component: [BinnedMeans; 3],
     /// Binned means over time.
-    pub on_time: Dependence,
+    pub on_time: BinnedMeans,
     /// Binned means over temperature, if it was logged and varies.
-    pub on_temperature: Option<Dependence>,
+    pub on_temperature: Option<BinnedMeans>,
 }
 
 /// The magnitude channel of a record with the declared noise of each accelerometer; `gravity_g` is
@@ -45,7 +44,7 @@ pub struct MagnitudeChannel {
 /// # Errors
 ///
 /// [`DiagnosisError::TooShort`] with fewer than two complete rows per bin, and the errors of
-/// [`dependence`].
+/// [`binned_means`].
 pub fn magnitude_channel(
     record: &Record,
     accel_noise_g: &[f64; 3],
@@ -87,7 +86,7 @@ pub fn magnitude_channel(
     let (mean_g2, mean_sigma_g2) = (sum_g2 / count, variance_g4.sqrt() / count);
     let middle = white.iter().sum::<f64>() / count;
     let scatter: f64 = white.iter().map(|w| (w - middle).powi(2)).sum();
-    let against = |abscissa: &[f64]| dependence(abscissa, &normalised, 1.0, bins);
+    let against = |abscissa: &[f64]| binned_means(abscissa, &normalised, 1.0, bins);
     let component = |axis: usize| {
         record
             .accel_g

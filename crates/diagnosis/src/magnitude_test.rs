@@ -2,8 +2,8 @@
 //! attitude and site (docs/method.md, equation 18).
 
 use gyrocal_record::{Bench, Record};
+use gyrocal_statistics::BinnedMeans;
 
-use crate::dependence::Dependence;
 use crate::error::DiagnosisError;
 use crate::magnitude::{MagnitudeChannel, magnitude_channel};
 
@@ -79,7 +79,7 @@ pub fn magnitude_test(
         );
         tests.push((channel.mean_p_value, z * z, words));
     }
-    let mut depends = |on: &str, found: &Dependence| {
+    let mut depends = |on: &str, found: &BinnedMeans| {
         let words = format!(
             "it varies with {on} (chi-square {:.0} for {} degrees of freedom)",
             found.chi_square,

@@ -19,4 +19,4 @@ pub use audit::{AuditOptions, DeclaredNoise, audit_noise};
 pub use finding::{Cleaned, Estimate, Gaps, NoiseAudit, NoiseFinding, Shares};
 pub use outlier::Outlier;
 
-pub(crate) use open_loop::{median_interval_s, runs};
+pub(crate) use open_loop::runs;

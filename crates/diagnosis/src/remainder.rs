@@ -2,10 +2,9 @@
 
 use gyrocal_calibration::{CalibrationError, Extended};
 use gyrocal_record::Record;
+use gyrocal_statistics::{autocorrelation, periodogram, strongest_line};
 
 use crate::cause::Unnamed;
-use crate::spectrum::{periodogram, strongest};
-use crate::whiteness::autocorrelation;
 
 /// Lags of the portmanteau test: structure shorter than these many rows.
 const LAGS: usize = 20;
@@ -65,7 +64,7 @@ pub fn remainder(
     let mut untested = Vec::new();
     if let [Ok(x), Ok(y), Ok(z)] = &lines {
         let of = [x.line, y.line, z.line];
-        let (axis, p) = strongest(&of);
+        let (axis, p) = strongest_line(&of);
         p_value = p_value.min(TESTS * p);
         if TESTS * p < false_alarm {
             let line = of[axis];

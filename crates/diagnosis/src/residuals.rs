@@ -3,12 +3,12 @@
 
 use gyrocal_calibration::Extended;
 use gyrocal_record::Record;
+use gyrocal_statistics::{
+    Autocorrelation, BinnedMeans, Nis, SpectralLine, StatisticsError, autocorrelation,
+    binned_means, nis, periodogram,
+};
 
-use crate::dependence::{Dependence, dependence};
-use crate::error::DiagnosisError;
 use crate::series::Innovations;
-use crate::spectrum::{Line, periodogram};
-use crate::whiteness::{Autocorrelation, Nis, autocorrelation, nis};
 
 /// Lags of the autocorrelation.
 const LAGS: usize = 20;
@@ -35,12 +35,12 @@ pub struct Residuals {
     /// Correlation of innovations over rows.
     pub autocorrelation: Option<Autocorrelation>,
     /// The largest line of each axis.
-    pub lines: Option<[Line; 3]>,
+    pub lines: Option<[SpectralLine; 3]>,
     /// Root mean square of measured less simulated specific force of each axis, the simulation
     /// running by itself from the first attitude, g.
     pub free_run_rms_g: [f64; 3],
     /// Means of normalised innovations of each axis over each abscissa.
-    pub against: Vec<(Abscissa, [Dependence; 3])>,
+    pub against: Vec<(Abscissa, [BinnedMeans; 3])>,
 }
 
 /// Looks at the innovations of the nominal model, and at its free run.
@@ -65,7 +65,7 @@ pub fn residuals(
         .filter_map(|(abscissa, at)| {
             let [x, y, z] = channels
                 .each_ref()
-                .map(|series| dependence(&at, series, 1.0, BINS));
+                .map(|series| binned_means(&at, series, 1.0, BINS));
             Some((abscissa, [x.ok()?, y.ok()?, z.ok()?]))
         })
         .collect();
@@ -100,7 +100,7 @@ fn abscissae(innovations: &Innovations, record: &Record) -> Vec<(Abscissa, Vec<f
     all
 }
 
-fn all(lines: [Result<Line, DiagnosisError>; 3]) -> Option<[Line; 3]> {
+fn all(lines: [Result<SpectralLine, StatisticsError>; 3]) -> Option<[SpectralLine; 3]> {
     let [x, y, z] = lines;
     Some([x.ok()?, y.ok()?, z.ok()?])
 }

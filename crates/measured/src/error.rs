@@ -1,3 +1,5 @@
+use gyrocal_statistics::StatisticsError;
+
 /// Why a recording could not be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -5,6 +7,9 @@ pub enum MeasuredError {
     /// A file is not what its format asks for.
     #[error(transparent)]
     File(#[from] gyrocal_record::Error),
+    /// A statistic has no meaning with these arguments.
+    #[error(transparent)]
+    Statistics(StatisticsError),
     /// The recording contradicts what was said of it, or is not fit for the job.
     #[error("found {found}, expected {expected}; {advice}")]
     Unfit {
@@ -60,12 +65,39 @@ impl MeasuredError {
         }
     }
 
-    /// What kind of thing is wrong with the recording; `None` for errors of files.
+    /// What kind of thing is wrong with the recording; `None` for errors of files and of
+    /// arguments.
     #[must_use]
     pub fn kind(&self) -> Option<Unfit> {
         match self {
             Self::Unfit { kind, .. } => Some(*kind),
-            Self::File(_) => None,
+            Self::File(_) | Self::Statistics(_) => None,
+        }
+    }
+}
+
+impl From<StatisticsError> for MeasuredError {
+    fn from(error: StatisticsError) -> Self {
+        match error {
+            StatisticsError::AveragingTooLong { found, expected } => Self::unfit(
+                Unfit::TooShort,
+                format!("{found} samples"),
+                format!("at least {expected}"),
+                "record for longer, or ask for shorter averaging times",
+            ),
+            StatisticsError::NotFinite { sample } => Self::unfit(
+                Unfit::Gap,
+                format!("a sample that is no finite number (number {sample})"),
+                "a rate at every sample",
+                "cut the recording where samples are missing",
+            ),
+            StatisticsError::Overflow { deviation, tau_s } => Self::unfit(
+                Unfit::Setting,
+                format!("a deviation of {deviation:e} at an averaging time of {tau_s:e} s"),
+                "finite numbers",
+                "choose a unit of the rate and a sampling rate of a usual size",
+            ),
+            other => Self::Statistics(other),
         }
     }
 }

@@ -2,7 +2,6 @@
 //!
 //! # What it is
 //!
-//! - [`allan`]: overlapping Allan deviation with confidence intervals.
 //! - [`tumble`]: the multi-position drift test. A unit is stopped in many attitudes; the drift
 //!   law is fitted to what its gyros say at rest, and extended while that is better than chance.
 //! - [`strapdown`]: the analytic platform. A strapdown unit at rest becomes, in software, the
@@ -42,7 +41,6 @@
 //! It prints nothing and writes no files. It knows no filter. It repairs no log: gaps, clocks that
 //! jump, wrong units and left-handed axes are errors that say what was found.
 
-pub mod allan;
 mod average;
 mod columns;
 pub mod description;

@@ -24,13 +24,13 @@ mod windows;
 
 use gyrocal::EARTH_RATE_RAD_PER_S;
 use gyrocal_record::{Bench, Record};
+use gyrocal_statistics::allan::{allan_deviation, octaves};
 use serde::Serialize;
 
 pub use axes_file::{axes_csv, read_axes};
 pub use integrate::{PlatformRow, integrate};
 pub use rotation_fit::{RotationFit, fit_rotation};
 
-use crate::allan::{allan_deviation, octaves};
 use crate::description::Description;
 use crate::error::{MeasuredError, Unfit};
 use crate::log::Log;

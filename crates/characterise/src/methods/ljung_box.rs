@@ -1,7 +1,7 @@
 //! The portmanteau test at 1 % over 20 lags, all pairs of axes (Ljung and Box, Biometrika 65, 1978;
 //! Hosking's form for several series, 1980). 20 lags are the usual choice for thousands of values.
 
-use gyrocal_diagnosis::autocorrelation;
+use gyrocal_statistics::autocorrelation;
 
 use crate::bank::Bank;
 

@@ -3,7 +3,7 @@
 //! 5.4). The nine fitted coefficients take nine of thousands of degrees of freedom, which shifts
 //! it by less than a tenth of its sigma.
 
-use gyrocal_diagnosis::nis;
+use gyrocal_statistics::nis;
 
 use crate::bank::Bank;
 

@@ -2,10 +2,11 @@
 
 use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
-use gyrocal_diagnosis::{MagnitudeTest, NoiseCourse, Stability};
+use gyrocal_diagnosis::MagnitudeTest;
 use gyrocal_record::{
     AllanCourse, AllanPointReport, AllanReport, DiagnosisReport, DiagnosisVerdict, NormReport,
 };
+use gyrocal_statistics::{AllanTest, NoiseCourse};
 
 use super::words::{probability, short};
 
@@ -24,18 +25,18 @@ pub(super) fn norm(verdict: &MagnitudeTest) -> NormReport {
     }
 }
 
-pub(super) fn allan(stability: &Stability) -> AllanReport {
-    let [x, y, z] = &stability.points;
+pub(super) fn allan(test: &AllanTest) -> AllanReport {
+    let [x, y, z] = &test.points;
     AllanReport {
-        course: match stability.course {
+        course: match test.course {
             NoiseCourse::White => AllanCourse::White,
             NoiseCourse::LargerWhite => AllanCourse::LargerWhite,
             NoiseCourse::Flicker => AllanCourse::Flicker,
             // A course without a word of its own is at least not white.
             _ => AllanCourse::Slow,
         },
-        p_value: stability.p_value,
-        rows: stability.rows,
+        p_value: test.p_value,
+        rows: test.rows,
         points: x
             .iter()
             .zip(y.iter().zip(z))

@@ -1,8 +1,8 @@
 //! What the paper's own filter makes of a record.
 
 use gyrocal_calibration::{CalibrationError, Options, calibrate};
-use gyrocal_diagnosis::two_sided_p;
 use gyrocal_record::{Bench, FilterReport, FindingReport, Record};
+use gyrocal_statistics::two_sided_p;
 
 /// The effect that is named if the filter's rule is too coarse.
 pub(super) const EFFECT: &str = "filter.discretisation";

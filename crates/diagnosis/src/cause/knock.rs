@@ -2,9 +2,8 @@
 
 use gyrocal_calibration::Jump;
 use gyrocal_record::Record;
+use gyrocal_statistics::{chi_square_equivalent, ln_chi_square_tail};
 use nalgebra::{Matrix3, Vector3};
-
-use crate::significance::{ln_chi_square_tail, single_equivalent};
 
 /// The step in which a knock would explain most.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +47,6 @@ pub(crate) fn best(jumps: &[Option<Jump>], record: &Record) -> Option<Knock> {
     Some(Knock {
         onset_s: record.time_s[row] - record.time_s[0],
         statistic,
-        equivalent: single_equivalent(ln_probability),
+        equivalent: chi_square_equivalent(ln_probability),
     })
 }

@@ -6,11 +6,10 @@ use std::sync::Arc;
 
 use gyrocal_calibration::{BIASES, CalibrationError, Column, Extended, Jump};
 use gyrocal_record::Record;
+use gyrocal_statistics::{FrequencySearch, fourier_powers, median_interval_s};
 
 use super::bank::Bank;
 use super::unnamed::{Channel, Pattern, Unnamed};
-use crate::noise::median_interval_s;
-use crate::spectrum::{Searched, transformed};
 
 /// Lines that are tried in each channel.
 const TRIED: usize = 4;
@@ -89,7 +88,7 @@ fn standing_out(record: &Record, jumps: &[Option<Jump>], channel: Channel) -> Ve
             }
         })
         .collect();
-    let Some((power, step_hz)) = transformed(&record.time_s, &scores) else {
+    let Some((power, step_hz)) = fourier_powers(&record.time_s, &scores) else {
         return Vec::new();
     };
     let duration_s = record.time_s[record.len() - 1] - record.time_s[0];
@@ -140,7 +139,7 @@ fn best(
         return Ok(None);
     }
     let bank = Bank::beside(fitted, &columns)?;
-    let searched = Searched::of_times(&record.time_s);
+    let searched = FrequencySearch::of_times(&record.time_s);
     let found = tried.iter().enumerate().filter_map(|(index, place)| {
         let (channel, period_h) = *place;
         let joint = bank.joint(&[2 * index, 2 * index + 1])?;

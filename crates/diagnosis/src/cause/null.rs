@@ -1,5 +1,6 @@
 //! What the statistics reach if the model is right: drawn from their joint distribution.
 
+use gyrocal_statistics::{two_sided_p, z_of_two_sided_p};
 use nalgebra::{Cholesky, DMatrix, DMatrixView};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -7,7 +8,6 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::bank::Bank;
 use super::family::Family;
 use super::walk::Walk;
-use crate::significance::z_of_two_sided_p;
 
 /// Draws from the joint distribution: the 1 % point of the largest statistic then rests on 40.
 const DRAWS: usize = 4096;
@@ -235,7 +235,7 @@ impl Null {
 
 /// Upper tail of chi-square with one degree of freedom.
 pub(crate) fn tail(value: f64) -> f64 {
-    crate::two_sided_p(value.max(0.0).sqrt())
+    two_sided_p(value.max(0.0).sqrt())
 }
 
 /// A normal deviate by the polar method (Marsaglia).

@@ -2,9 +2,9 @@
 
 use gyrocal_calibration::{CalibrationError, Column, Extended, Jump};
 use gyrocal_record::Record;
+use gyrocal_statistics::{chi_square_equivalent, ln_chi_square_tail};
 
 use super::{curve, line};
-use crate::significance::{ln_chi_square_tail, single_equivalent};
 
 /// A gyro or an accelerometer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,7 +106,7 @@ impl Unnamed {
 
     /// The value of chi-square with one degree of freedom that is as rare.
     pub(super) fn equivalent(&self) -> f64 {
-        single_equivalent(self.ln_probability)
+        chi_square_equivalent(self.ln_probability)
     }
 
     /// Whether it is a line with a period that terms of the catalogue have: a sidereal day, its

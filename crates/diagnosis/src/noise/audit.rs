@@ -1,17 +1,17 @@
 //! The audit: quantisation, outliers, spectrum, in this order.
 
 use gyrocal_record::Record;
+use gyrocal_statistics::{median_interval_s, two_sided_p, z_of_two_sided_p};
 
 use super::decision::{decide, ratio};
 use super::finding::{Cleaned, Estimate, Gaps, NoiseAudit, NoiseFinding, Shares};
 use super::lattice::{self, Lattice};
 use super::likelihood::{CORRELATION, WALK};
-use super::open_loop::{median_interval_s, open_loop, runs};
+use super::open_loop::{open_loop, runs};
 use super::outlier::{self, Outlier};
 use super::spectrum::Spectrum;
 use crate::error::DiagnosisError;
 use crate::series::Innovations;
-use crate::significance::{two_sided_p, z_of_two_sided_p};
 
 /// Smallest quantisation step tested for, in standard deviations of the noise: it increases the
 /// variance by 2 %, the standard deviation by 1 %.

@@ -1,12 +1,12 @@
 //! Selection of the noise model that explains the spectrum: likelihood-ratio tests of variance and
 //! correlation.
 
+use gyrocal_statistics::{two_sided_p, z_of_two_sided_p};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::finding::{Estimate, NoiseFinding, Shares};
 use super::likelihood::{Bins, CORRELATION, NoiseFit, NoiseModel, fit};
 use super::spectrum::Spectrum;
-use crate::significance::{two_sided_p, z_of_two_sided_p};
 
 /// Smallest correlation that is reported: less is immaterial, however significant.
 const LEAST_CORRELATION: f64 = 0.01;

@@ -1,5 +1,7 @@
 //! Open-loop residuals: innovations with the feedback of the filter undone.
 
+use gyrocal_statistics::median_interval_s;
+
 use crate::series::Innovations;
 
 /// Measured specific force less a prediction without feedback of single samples, in declared
@@ -42,18 +44,6 @@ pub(crate) fn runs(time_s: &[f64]) -> Vec<core::ops::Range<usize>> {
         }
     }
     runs
-}
-
-/// Median interval between rows; infinite for less than two rows.
-pub(crate) fn median_interval_s(time_s: &[f64]) -> f64 {
-    let mut intervals: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    median(&mut intervals).unwrap_or(f64::INFINITY)
-}
-
-/// Median of values, which are reordered; the upper one of an even number.
-pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 #[cfg(test)]

@@ -2,9 +2,8 @@
 
 use core::ops::Range;
 
+use gyrocal_statistics::upper_median;
 use statrs::distribution::{ContinuousCDF, StudentsT};
-
-use super::open_loop::median;
 
 /// Number of rows on either side of a sample in the comparison.
 const REACH: usize = 8;
@@ -221,7 +220,7 @@ fn at_an_end(value: f64, masked: &[f64], row: usize, run: &Range<usize>) -> Opti
 fn robust_scale(sizes: &mut [f64]) -> f64 {
     /// Variance of a standard normal variable truncated at 4.
     const WITHIN_FOUR: f64 = 0.998_929;
-    let rough = median(sizes).unwrap_or(0.0) / NORMAL_MAD;
+    let rough = upper_median(sizes).unwrap_or(0.0) / NORMAL_MAD;
     let (count, sum) = sizes
         .iter()
         .filter(|size| **size <= 4.0 * rough)
@@ -255,8 +254,8 @@ fn robust_line(near: &[(f64, f64)]) -> Option<(f64, f64)> {
         .iter()
         .enumerate()
         .flat_map(|(i, a)| later(i).map(move |b| (b.1 - a.1) / (b.0 - a.0)));
-    let slope = median(&mut pairs.collect::<Vec<f64>>())?;
-    let line = median(
+    let slope = upper_median(&mut pairs.collect::<Vec<f64>>())?;
+    let line = upper_median(
         &mut near
             .iter()
             .map(|(at, value)| value - slope * at)

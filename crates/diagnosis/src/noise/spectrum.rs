@@ -1,7 +1,8 @@
 //! Spectrum of the accelerometer noise, averaged over blocks.
 
+use gyrocal_statistics::upper_median;
+
 use super::block::Basis;
-use super::open_loop::median;
 
 /// Rows of the longest block.
 const MOST_ROWS: usize = 64;
@@ -96,7 +97,7 @@ impl Spectrum {
 impl AxisSpectrum {
     fn gather(mut blocks: Vec<Block>, cosines: usize) -> Self {
         let mut totals: Vec<f64> = blocks.iter().map(Block::total).collect();
-        let usual = median(&mut totals).unwrap_or(0.0);
+        let usual = upper_median(&mut totals).unwrap_or(0.0);
         let most = usual * (1.0 + EXCESS_POWER_SIGMAS * (2.0 / cosines as f64).sqrt());
         blocks.retain(|block| block.total() <= most);
         let mut sums = Self {

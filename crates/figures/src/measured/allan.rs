@@ -1,13 +1,13 @@
 //! Allan deviations against those of another library.
 
-use gyrocal_measured::allan::allan_deviation;
+use gyrocal_statistics::allan::allan_deviation;
 
 use super::Measured;
 use crate::figure::Figure;
 use crate::page::Error;
 
-/// Made by crates/measured/tests/data/allan_reference.py with the library that it names.
-const REFERENCE: &str = include_str!("../../../measured/tests/data/allan_reference.csv");
+/// Made by crates/statistics/tests/data/allan_reference.py with the library that it names.
+const REFERENCE: &str = include_str!("../../../statistics/tests/data/allan_reference.csv");
 
 const ONE_SIGMA: f64 = 0.682_689_492_137_085_9;
 

@@ -1,21 +1,19 @@
 //! Open-loop residuals, one-step innovations and the specific-force magnitude.
 
 use gyrocal_calibration::CalibrationError;
-use gyrocal_diagnosis::{
-    Autocorrelation, Dependence, DiagnosisError, Periodogram, autocorrelation, magnitude_channel,
-    periodogram,
-};
+use gyrocal_diagnosis::{DiagnosisError, magnitude_channel};
 use gyrocal_report::{
     Bin, Correlation, CorrelationChannel, CovariatePanel, MarkedFrequency, OpenLoop,
     OpenLoopChannel, Picture, PowerThreshold, ResidualChannel, ResidualVsCovariate, Residuals,
     Spectrum, SpectrumChannel,
 };
+use gyrocal_statistics::{Autocorrelation, BinnedMeans, Periodogram, autocorrelation, periodogram};
 
 use super::{Found, causes, subtitle};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Bins of a dependence.
+/// Bins of a covariate.
 const BINS: usize = 24;
 
 /// Lags of the autocorrelation.
@@ -269,7 +267,7 @@ pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError
     let noise_g = [found.bench.accel_noise_g; 3];
     let gravity_g = found.bench.specific_force_at_rest();
     let norm = magnitude_channel(found.record, &noise_g, gravity_g, BINS)?;
-    let panel = |covariate: String, unit: &str, scale: f64, dependence: &Dependence| {
+    let panel = |covariate: String, unit: &str, scale: f64, means: &BinnedMeans| {
         let first = if unit == "days" {
             found.record.time_s.first().copied().unwrap_or(0.0)
         } else {
@@ -279,7 +277,7 @@ pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError
             name: "|f|² − g²".to_owned(),
             covariate,
             covariate_unit: unit.to_owned(),
-            bins: dependence
+            bins: means
                 .bins
                 .iter()
                 .map(|bin| Bin {
@@ -295,12 +293,12 @@ pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError
         .on_component
         .iter()
         .zip(AXES)
-        .map(|(dependence, axis)| panel(format!("specific force {axis}"), "g", 1.0, dependence))
+        .map(|(means, axis)| panel(format!("specific force {axis}"), "g", 1.0, means))
         .collect();
     let per_day = 1.0 / SECONDS_PER_DAY;
     panels.push(panel("time".to_owned(), "days", per_day, &norm.on_time));
-    if let Some(dependence) = &norm.on_temperature {
-        panels.push(panel("temperature".to_owned(), "°C", 1.0, dependence));
+    if let Some(means) = &norm.on_temperature {
+        panels.push(panel("temperature".to_owned(), "°C", 1.0, means));
     }
     let tests = norm
         .on_component

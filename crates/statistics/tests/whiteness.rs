@@ -1,8 +1,9 @@
-//! The statistics of residuals on white innovations, and on such that are not.
+//! Tests of whiteness on white series, and on series that are not.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
-use gyrocal_diagnosis::{autocorrelation, magnitude_channel, nis, periodogram, strongest};
-use gyrocal_record::Record;
+use gyrocal_statistics::{
+    NoiseCourse, allan_test, autocorrelation, nis, periodogram, strongest_line,
+};
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -19,6 +20,12 @@ impl Normals {
 
     fn normal(&mut self) -> f64 {
         (-2.0 * self.uniform().ln()).sqrt() * (core::f64::consts::TAU * self.uniform()).cos()
+    }
+
+    fn white(&mut self, rows: usize) -> Vec<[f64; 3]> {
+        (0..rows)
+            .map(|_| core::array::from_fn(|_| self.normal()))
+            .collect()
     }
 
     /// White innovations, 3 % of them missing.
@@ -62,7 +69,7 @@ fn white_innovations_alarm_as_often_as_they_say() {
             let series: Vec<f64> = white.iter().map(|row| row[axis]).collect();
             periodogram(&time_s, &series, FALSE_ALARM).unwrap().line
         };
-        strongest(&[line(0), line(1), line(2)]).1
+        strongest_line(&[line(0), line(1), line(2)]).1
     });
     assert!(ALARMS.contains(&of_lines), "lines {of_lines}");
 }
@@ -101,37 +108,49 @@ fn correlation_between_axes_and_rows_is_seen() {
     assert!(autocorrelation(&innovations[..39], 10, 0.01).is_err());
 }
 
+/// Minutes of a day.
+const DAY: usize = 1440;
+
+fn minutes() -> Vec<f64> {
+    (0..DAY).map(|row| 60.0 * row as f64).collect()
+}
+
 #[test]
-fn the_norm_sees_accelerometers_whatever_the_attitude() {
-    let (sigma_g, bias_g) = (1e-5, 2e-6);
-    let record = |bias_g: f64, scale: f64| {
-        let mut normals = Normals::of_seed(3);
-        let accel_g = (0..5000).map(|_| {
-            let direction: [f64; 3] = core::array::from_fn(|_| normals.normal());
-            let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
-            core::array::from_fn(|axis| {
-                let error =
-                    sigma_g * scale * normals.normal() + if axis == 0 { bias_g } else { 0.0 };
-                direction[axis] / length + error
-            })
-        });
-        Record {
-            time_s: (0..5000).map(|k| 60.0 * f64::from(k)).collect(),
-            accel_g: accel_g.collect(),
-            temperature_c: None,
+fn white_noise_alarms_the_allan_test_no_more_often_than_it_may() {
+    const RECORDS: u64 = 400;
+    let alarms = (0..RECORDS)
+        .filter(|seed| {
+            let white = Normals::of_seed(*seed).white(DAY);
+            let found = allan_test(&minutes(), &white, FALSE_ALARM).unwrap();
+            found.course != NoiseCourse::White
+        })
+        .count();
+    // At most 20 are expected, with a sigma of 4.4: four sigmas. Averages that share samples need
+    // less than each its share; none at all would be a test that sees nothing.
+    assert!((2..=38).contains(&alarms), "{alarms}");
+}
+
+#[test]
+fn noise_that_does_not_average_out_is_told_by_its_course() {
+    let course = |of: &dyn Fn(usize, f64, &mut [f64; 3]) -> f64| {
+        let mut held = [0.0; 3];
+        let mut series = Normals::of_seed(5).white(DAY);
+        for (row, values) in series.iter_mut().enumerate() {
+            for value in values {
+                *value = of(row, *value, &mut held);
+            }
         }
+        let found = allan_test(&minutes(), &series, 1e-3).unwrap();
+        // Each is far from white.
+        assert!(found.p_value < 1e-3 && found.most.is_some());
+        found.course
     };
-    let clean = magnitude_channel(&record(0.0, 1.0), &[sigma_g; 3], 1.0, 10).unwrap();
-    // One seed: probabilities of ordinary size.
-    assert!(clean.mean_p_value > 1e-3 && clean.variance_p_value > 1e-3);
-    assert!(clean.on_component.iter().all(|on| on.p_value > 1e-3));
-    // |E|² has twice the noise of a component, along specific force.
-    assert!((clean.sigma_g2[7] / (2.0 * sigma_g) - 1.0).abs() < 1e-4);
-    let biased = magnitude_channel(&record(bias_g, 1.0), &[sigma_g; 3], 1.0, 10).unwrap();
-    // 2 b a_x: 0.2 sigma a_x, so 0.2 sqrt(5000 / 3) = 8 sigmas, on x and on x alone.
-    assert!(biased.on_component[0].p_value < 1e-6);
-    assert!(biased.on_component[1].p_value > 1e-3 && biased.on_component[2].p_value > 1e-3);
-    let noisy = magnitude_channel(&record(0.0, 1.2), &[sigma_g; 3], 1.0, 10).unwrap();
-    // 5000 values: the variance 1.44 is known to 2 %.
-    assert!((noisy.variance_ratio - 1.44).abs() < 0.12 && noisy.variance_p_value < 1e-9);
+    // Variance 2.25 where 1440 values know 1 to 4 %.
+    assert_eq!(course(&|_, white, _| 1.5 * white), NoiseCourse::LargerWhite);
+    // A walk of 0.1 a row is over white noise after ten rows.
+    let walk = |_: usize, white: f64, held: &mut [f64; 3]| {
+        held[0] += 0.3 * white;
+        held[0]
+    };
+    assert_eq!(course(&walk), NoiseCourse::Slow);
 }

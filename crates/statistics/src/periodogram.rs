@@ -6,8 +6,8 @@ use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft as _, FftDirection};
 
-use crate::error::DiagnosisError;
-use crate::noise::median_interval_s;
+use crate::error::StatisticsError;
+use crate::sampling::median_interval_s;
 use crate::whiteness::check_probability;
 
 /// The transform is this many times longer than the record, so that a line between two of its own
@@ -26,12 +26,12 @@ pub struct Periodogram {
     /// Power that the largest one of white innovations exceeds with the false-alarm probability.
     pub level: f64,
     /// The largest line.
-    pub line: Line,
+    pub line: SpectralLine,
 }
 
-/// The largest line of a periodogram.
+/// The largest spectral line of a periodogram.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
+pub struct SpectralLine {
     /// Its frequency, between those of the transform.
     pub frequency_hz: f64,
     /// Its power.
@@ -52,16 +52,16 @@ pub struct Line {
 ///
 /// # Errors
 ///
-/// [`DiagnosisError::TooShort`] with fewer than 16 values, [`DiagnosisError::UnequalLengths`], and
-/// [`DiagnosisError::InvalidArgument`] for a probability that is none.
+/// [`StatisticsError::TooShort`] with fewer than 16 values, [`StatisticsError::UnequalLengths`], and
+/// [`StatisticsError::InvalidArgument`] for a probability that is none.
 pub fn periodogram(
     time_s: &[f64],
     series: &[f64],
     false_alarm: f64,
-) -> Result<Periodogram, DiagnosisError> {
+) -> Result<Periodogram, StatisticsError> {
     check_probability(false_alarm)?;
     if time_s.len() != series.len() {
-        return Err(DiagnosisError::UnequalLengths {
+        return Err(StatisticsError::UnequalLengths {
             what: "a series",
             found: series.len(),
             expected: time_s.len(),
@@ -74,14 +74,14 @@ pub fn periodogram(
         .filter(|(_, v)| !v.is_nan())
         .collect();
     if there.len() < LEAST_VALUES {
-        return Err(DiagnosisError::TooShort {
+        return Err(StatisticsError::TooShort {
             test: "the periodogram",
             found: there.len(),
             expected: LEAST_VALUES,
         });
     }
-    let Some((mut power, step_hz)) = transformed(time_s, &there) else {
-        return Err(DiagnosisError::TooShort {
+    let Some((mut power, step_hz)) = fourier_powers(time_s, &there) else {
+        return Err(StatisticsError::TooShort {
             test: "the periodogram",
             found: there.len(),
             expected: LEAST_VALUES,
@@ -92,7 +92,7 @@ pub fn periodogram(
     }
     let frequency_hz: Vec<f64> = (1..=power.len()).map(|k| k as f64 * step_hz).collect();
     let times = there.iter().map(|(time, _)| *time);
-    let searched = Searched::new(times, 0.5 / median_interval_s(time_s));
+    let searched = FrequencySearch::new(times, 0.5 / median_interval_s(time_s));
     let largest = (0..power.len())
         .max_by(|a, b| power[*a].total_cmp(&power[*b]))
         .unwrap_or(0);
@@ -107,7 +107,10 @@ pub fn periodogram(
 /// Squares of the Fourier sums of values at some of the times of a record, at multiples of a
 /// frequency from that itself to half the sampling rate, and that frequency \[Hz\]. `None` without
 /// values.
-pub(crate) fn transformed(time_s: &[f64], there: &[(f64, f64)]) -> Option<(Vec<f64>, f64)> {
+///
+/// `there` holds times and values.
+#[must_use]
+pub fn fourier_powers(time_s: &[f64], there: &[(f64, f64)]) -> Option<(Vec<f64>, f64)> {
     let (first_s, last_s) = (*time_s.first()?, *time_s.last()?);
     there.first()?;
     let interval_s = median_interval_s(time_s);
@@ -125,7 +128,12 @@ pub(crate) fn transformed(time_s: &[f64], there: &[(f64, f64)]) -> Option<(Vec<f
 }
 
 /// The line near a frequency of the transform: its maximum by golden section, at the true times.
-fn refine(there: &[(f64, f64)], near_hz: f64, step_hz: f64, searched: &Searched) -> Line {
+fn refine(
+    there: &[(f64, f64)],
+    near_hz: f64,
+    step_hz: f64,
+    searched: &FrequencySearch,
+) -> SpectralLine {
     let first_s = there[0].0;
     let sums = |frequency_hz: f64| {
         there.iter().fold([0.0; 2], |[c, s], (time, value)| {
@@ -151,7 +159,7 @@ fn refine(there: &[(f64, f64)], near_hz: f64, step_hz: f64, searched: &Searched)
     let [cosine, sine] = sums(frequency_hz);
     let power = (cosine * cosine + sine * sine) / count;
     let phase_at_first = (-sine).atan2(cosine);
-    Line {
+    SpectralLine {
         frequency_hz,
         power,
         amplitude: 2.0 * (power / count).sqrt(),
@@ -160,18 +168,20 @@ fn refine(there: &[(f64, f64)], near_hz: f64, step_hz: f64, searched: &Searched)
     }
 }
 
-/// Which of three axes has the strongest line, and the probability of as strong a one in any.
+/// The axis with the strongest line of three, and the probability of as strong a one in any of
+/// them.
 #[must_use]
-pub fn strongest(lines: &[Line; 3]) -> (usize, f64) {
+pub fn strongest_line(lines: &[SpectralLine; 3]) -> (usize, f64) {
     let weaker = |a: &usize, b: &usize| lines[*a].p_value.total_cmp(&lines[*b].p_value);
     let axis = (0..3).min_by(weaker).unwrap_or(0);
     (axis, -(3.0 * (-lines[axis].p_value).ln_1p()).exp_m1())
 }
 
-/// How much was searched for a maximum: frequency range times effective duration.
-pub(crate) struct Searched(f64);
+/// Extent of a search for the largest power: frequency range times effective duration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrequencySearch(f64);
 
-impl Searched {
+impl FrequencySearch {
     fn new(times_s: impl Iterator<Item = f64> + Clone, largest_hz: f64) -> Self {
         let count = times_s.clone().count() as f64;
         let mean = times_s.clone().sum::<f64>() / count;
@@ -179,13 +189,16 @@ impl Searched {
         Self(largest_hz * (2.0 * TAU * variance).sqrt())
     }
 
-    /// Over all rows of a record, to half the sampling rate.
-    pub(crate) fn of_times(time_s: &[f64]) -> Self {
+    /// The search over all rows of a record, to half the sampling rate.
+    #[must_use]
+    pub fn of_times(time_s: &[f64]) -> Self {
         Self::new(time_s.iter().copied(), 0.5 / median_interval_s(time_s))
     }
 
-    /// Natural logarithm of [`Self::probability`], where that is small.
-    pub(crate) fn ln_probability(&self, power: f64) -> f64 {
+    /// Natural logarithm of the probability that white noise exceeds a power anywhere, where that
+    /// is small.
+    #[must_use]
+    pub fn ln_probability(&self, power: f64) -> f64 {
         (1.0 + self.0 * power.sqrt()).ln() - power
     }
 
@@ -228,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_between_frequencies_is_found_with_its_size() -> Result<(), DiagnosisError> {
+    fn a_line_between_frequencies_is_found_with_its_size() -> Result<(), StatisticsError> {
         let (frequency_hz, amplitude, phase) = (1.0 / 437.3, 0.25, 1.1);
         let time_s: Vec<f64> = (0..3000)
             .filter(|k| !(700..900).contains(k))
@@ -255,7 +268,7 @@ mod tests {
 
     #[test]
     fn the_level_belongs_to_its_probability() {
-        let searched = Searched(2000.0);
+        let searched = FrequencySearch(2000.0);
         for probability in [0.3, 0.01, 1e-6] {
             let back = searched.probability(searched.level(probability));
             assert!((back / probability - 1.0).abs() < 1e-9);

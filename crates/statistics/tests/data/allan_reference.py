@@ -1,7 +1,7 @@
 """Reference values of the overlapping Allan deviation by allantools 2024.06.
 
     python3 -m venv venv && venv/bin/pip install allantools==2024.6
-    venv/bin/python crates/measured/tests/data/allan_reference.py > crates/measured/tests/data/allan_reference.csv
+    venv/bin/python crates/statistics/tests/data/allan_reference.py > crates/statistics/tests/data/allan_reference.csv
 
 The series is the one of NIST SP 1065, section 12.4 (1000 points, n(i+1) = 16807 n(i) mod
 2147483647 from 1234567890, divided by 2147483647), taken three ways: as a rate (white), as

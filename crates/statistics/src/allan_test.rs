@@ -1,10 +1,10 @@
-//! Allan deviation of what is left: whether noise averages out as white noise does.
+//! Allan test: do whitened innovations average out as white noise does?
 
-use gyrocal_measured::allan::{AllanPoint, NoiseType, allan_deviation, octaves};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::error::DiagnosisError;
-use crate::noise::median_interval_s;
+use crate::allan::{AllanPoint, NoiseType, allan_deviation, octaves};
+use crate::error::StatisticsError;
+use crate::sampling::median_interval_s;
 
 /// Fewer rows in a stretch say nothing of long times.
 const LEAST_ROWS: usize = 64;
@@ -15,7 +15,7 @@ const EQUAL: f64 = 0.01;
 /// Probability that the interval of a deviation holds it.
 const CONFIDENCE: f64 = 0.95;
 
-/// What noise does when it is averaged.
+/// Course of noise that is averaged over longer and longer times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NoiseCourse {
@@ -44,7 +44,7 @@ impl NoiseCourse {
 
 /// The Allan deviations of the whitened innovations over the longest stretch without a gap.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stability {
+pub struct AllanTest {
     /// Time between rows.
     pub interval_s: f64,
     /// Rows of the stretch.
@@ -52,11 +52,11 @@ pub struct Stability {
     /// For x, y, z: deviations in believed standard deviations, which for white noise are one
     /// over the root of the number of rows averaged.
     pub points: [Vec<AllanPoint>; 3],
-    /// What the noise does.
+    /// Course of the noise.
     pub course: NoiseCourse,
     /// Probability that white noise of the believed size exceeds its expectation as much anywhere.
     pub p_value: f64,
-    /// Where it does most: channel and averaging time.
+    /// Largest excess: channel and averaging time \[s\].
     pub most: Option<(usize, f64)>,
 }
 
@@ -65,15 +65,15 @@ pub struct Stability {
 ///
 /// # Errors
 ///
-/// [`DiagnosisError::TooShort`] without a stretch of 64 complete rows at equal intervals, and
-/// [`DiagnosisError::UnequalLengths`].
-pub fn stability(
+/// [`StatisticsError::TooShort`] without a stretch of 64 complete rows at equal intervals, and
+/// [`StatisticsError::UnequalLengths`].
+pub fn allan_test(
     time_s: &[f64],
     whitened: &[[f64; 3]],
     false_alarm: f64,
-) -> Result<Stability, DiagnosisError> {
+) -> Result<AllanTest, StatisticsError> {
     if time_s.len() != whitened.len() {
-        return Err(DiagnosisError::UnequalLengths {
+        return Err(StatisticsError::UnequalLengths {
             what: "innovations",
             found: whitened.len(),
             expected: time_s.len(),
@@ -81,7 +81,7 @@ pub fn stability(
     }
     let interval_s = median_interval_s(time_s);
     let stretch = longest_stretch(time_s, whitened, interval_s);
-    let too_short = DiagnosisError::TooShort {
+    let too_short = StatisticsError::TooShort {
         test: "the Allan deviation",
         found: stretch.len(),
         expected: LEAST_ROWS,
@@ -128,7 +128,7 @@ pub fn stability(
         Some((p, ..)) => ((count * p).min(1.0), NoiseCourse::White, None),
         None => (1.0, NoiseCourse::White, None),
     };
-    Ok(Stability {
+    Ok(AllanTest {
         interval_s,
         rows: stretch.len(),
         points,
@@ -182,10 +182,10 @@ mod tests {
     #[test]
     fn too_few_rows_are_refused() {
         let time_s: Vec<f64> = (0..63).map(f64::from).collect();
-        let error = stability(&time_s, &[[0.0; 3]; 63], 0.01);
+        let error = allan_test(&time_s, &[[0.0; 3]; 63], 0.01);
         assert!(matches!(
             error,
-            Err(DiagnosisError::TooShort { found: 63, .. })
+            Err(StatisticsError::TooShort { found: 63, .. })
         ));
     }
 }

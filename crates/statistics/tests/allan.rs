@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 
-use gyrocal_measured::Unfit;
-use gyrocal_measured::allan::{NoiseType, allan_deviation, octaves};
+use gyrocal_statistics::StatisticsError;
+use gyrocal_statistics::allan::{NoiseType, allan_deviation, octaves};
 
 /// Made by tests/data/allan_reference.py.
 const REFERENCE: &str = include_str!("data/allan_reference.csv");
@@ -116,14 +116,22 @@ fn octaves_end_at_a_third() {
 
 #[test]
 fn what_cannot_be_computed_is_refused() {
+    use StatisticsError::{AveragingTooLong, InvalidArgument, NotFinite};
     let rate = nist_series();
-    let kind = |rate: &[f64], interval_s: f64, averaging: &[usize], confidence: f64| {
-        let outcome = allan_deviation(rate, interval_s, averaging, confidence);
-        outcome.unwrap_err().kind().unwrap()
+    let error = |rate: &[f64], interval_s: f64, averaging: &[usize], confidence: f64| {
+        allan_deviation(rate, interval_s, averaging, confidence).unwrap_err()
     };
-    assert_eq!(kind(&rate, 1.0, &[334], 0.9), Unfit::TooShort);
-    assert_eq!(kind(&rate, 0.0, &[1], 0.9), Unfit::Setting);
-    assert_eq!(kind(&rate, 1.0, &[0], 0.9), Unfit::Setting);
-    assert_eq!(kind(&rate, 1.0, &[1], 1.0), Unfit::Setting);
-    assert_eq!(kind(&[0.0, f64::NAN, 1.0], 1.0, &[1], 0.9), Unfit::Gap);
+    assert_eq!(
+        error(&rate, 1.0, &[334], 0.9),
+        AveragingTooLong {
+            found: 1000,
+            expected: 1002
+        }
+    );
+    for (interval_s, averaging, confidence) in [(0.0, 1, 0.9), (1.0, 0, 0.9), (1.0, 1, 1.0)] {
+        let found = error(&rate, interval_s, &[averaging], confidence);
+        assert!(matches!(found, InvalidArgument { .. }), "{found}");
+    }
+    let gap = [0.0, f64::NAN, 1.0];
+    assert_eq!(error(&gap, 1.0, &[1], 0.9), NotFinite { sample: 2 });
 }

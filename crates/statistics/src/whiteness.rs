@@ -1,9 +1,9 @@
-//! NIS, autocorrelation and Ljung–Box: the usual tests of innovations.
+//! Whiteness of innovations: NIS, autocorrelation and the Ljung–Box test.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::error::DiagnosisError;
-use crate::significance::normal_quantile;
+use crate::error::StatisticsError;
+use crate::probability::normal_quantile;
 
 /// Normalised innovations squared, over a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,8 +42,8 @@ pub struct Autocorrelation {
 ///
 /// # Errors
 ///
-/// [`DiagnosisError::TooShort`] without a value.
-pub fn nis(normalised: &[[f64; 3]], false_alarm: f64) -> Result<Nis, DiagnosisError> {
+/// [`StatisticsError::TooShort`] without a value.
+pub fn nis(normalised: &[[f64; 3]], false_alarm: f64) -> Result<Nis, StatisticsError> {
     check_probability(false_alarm)?;
     let values = normalised.iter().flatten().filter(|w| !w.is_nan());
     let (count, sum) = values.fold((0, 0.0), |(count, sum), w| (count + 1, sum + w * w));
@@ -69,16 +69,16 @@ pub fn nis(normalised: &[[f64; 3]], false_alarm: f64) -> Result<Nis, DiagnosisEr
 ///
 /// # Errors
 ///
-/// [`DiagnosisError::TooShort`] with fewer than four times as many rows as lags.
+/// [`StatisticsError::TooShort`] with fewer than four times as many rows as lags.
 pub fn autocorrelation(
     normalised: &[[f64; 3]],
     lags: usize,
     false_alarm: f64,
-) -> Result<Autocorrelation, DiagnosisError> {
+) -> Result<Autocorrelation, StatisticsError> {
     check_probability(false_alarm)?;
     let expected = 4 * lags.max(1);
     if normalised.len() < expected {
-        return Err(DiagnosisError::TooShort {
+        return Err(StatisticsError::TooShort {
             test: "the autocorrelation",
             found: normalised.len(),
             expected,
@@ -132,19 +132,19 @@ pub fn autocorrelation(
     })
 }
 
-fn chi_squared(degrees: usize, test: &'static str) -> Result<ChiSquared, DiagnosisError> {
-    ChiSquared::new(degrees as f64).map_err(|_| DiagnosisError::TooShort {
+fn chi_squared(degrees: usize, test: &'static str) -> Result<ChiSquared, StatisticsError> {
+    ChiSquared::new(degrees as f64).map_err(|_| StatisticsError::TooShort {
         test,
         found: degrees,
         expected: 1,
     })
 }
 
-pub(crate) fn check_probability(false_alarm: f64) -> Result<(), DiagnosisError> {
+pub(crate) fn check_probability(false_alarm: f64) -> Result<(), StatisticsError> {
     if false_alarm > 0.0 && false_alarm < 1.0 {
         return Ok(());
     }
-    Err(DiagnosisError::InvalidArgument {
+    Err(StatisticsError::InvalidArgument {
         what: "the false-alarm probability",
         found: false_alarm,
         expected: "a number between 0 and 1",

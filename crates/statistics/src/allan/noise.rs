@@ -1,4 +1,4 @@
-//! Which power law a noise follows, and what that means for the degrees of freedom.
+//! The power law of a noise, and the degrees of freedom that follow from it.
 
 use nalgebra::{Matrix3, Vector3};
 

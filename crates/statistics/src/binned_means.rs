@@ -1,12 +1,12 @@
-//! Residuals against what they may depend on: specific force, time, temperature.
+//! Regression of residuals on a covariate, such as time or temperature: means in bins.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::error::DiagnosisError;
+use crate::error::StatisticsError;
 
-/// A mean of the residuals of a bin.
+/// Mean of the residuals of one bin.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bin {
+pub struct BinMean {
     /// Mean of the abscissa.
     pub at: f64,
     /// Mean of the residuals.
@@ -19,9 +19,9 @@ pub struct Bin {
 
 /// Binned means over an abscissa, and the test that all are zero.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Dependence {
+pub struct BinnedMeans {
     /// Bins of equal numbers of values, in rising order.
-    pub bins: Vec<Bin>,
+    pub bins: Vec<BinMean>,
     /// Sum of squared means over their variances.
     pub chi_square: f64,
     /// Probability of as large a sum if all means are zero.
@@ -34,29 +34,29 @@ pub struct Dependence {
 ///
 /// # Errors
 ///
-/// [`DiagnosisError::UnequalLengths`], [`DiagnosisError::TooShort`] with fewer than two values a
-/// bin, and [`DiagnosisError::InvalidArgument`] without a bin or for a sigma that is not positive.
-pub fn dependence(
+/// [`StatisticsError::UnequalLengths`], [`StatisticsError::TooShort`] with fewer than two values a
+/// bin, and [`StatisticsError::InvalidArgument`] without a bin or for a sigma that is not positive.
+pub fn binned_means(
     abscissa: &[f64],
     residuals: &[f64],
     sigma: f64,
     bins: usize,
-) -> Result<Dependence, DiagnosisError> {
+) -> Result<BinnedMeans, StatisticsError> {
     if abscissa.len() != residuals.len() {
-        return Err(DiagnosisError::UnequalLengths {
+        return Err(StatisticsError::UnequalLengths {
             what: "residuals",
             found: residuals.len(),
             expected: abscissa.len(),
         });
     }
     if !(sigma > 0.0 && sigma.is_finite()) {
-        return Err(DiagnosisError::InvalidArgument {
+        return Err(StatisticsError::InvalidArgument {
             what: "the standard deviation of a residual",
             found: sigma,
             expected: "a positive number",
         });
     }
-    let degrees = ChiSquared::new(bins as f64).map_err(|_| DiagnosisError::InvalidArgument {
+    let degrees = ChiSquared::new(bins as f64).map_err(|_| StatisticsError::InvalidArgument {
         what: "the number of bins",
         found: bins as f64,
         expected: "one or more",
@@ -68,7 +68,7 @@ pub fn dependence(
         .filter(|(at, value)| !at.is_nan() && !value.is_nan())
         .collect();
     if points.len() < 2 * bins {
-        return Err(DiagnosisError::TooShort {
+        return Err(StatisticsError::TooShort {
             test: "the dependence of residuals",
             found: points.len(),
             expected: 2 * bins,
@@ -76,11 +76,11 @@ pub fn dependence(
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let edge = |bin: usize| bin * points.len() / bins;
-    let bins: Vec<Bin> = (0..bins)
+    let bins: Vec<BinMean> = (0..bins)
         .map(|bin| {
             let within = &points[edge(bin)..edge(bin + 1)];
             let count = within.len() as f64;
-            Bin {
+            BinMean {
                 at: within.iter().map(|(at, _)| at).sum::<f64>() / count,
                 mean: within.iter().map(|(_, value)| value).sum::<f64>() / count,
                 sigma: sigma / count.sqrt(),
@@ -89,7 +89,7 @@ pub fn dependence(
         })
         .collect();
     let chi_square = bins.iter().map(|bin| (bin.mean / bin.sigma).powi(2)).sum();
-    Ok(Dependence {
+    Ok(BinnedMeans {
         p_value: degrees.sf(chi_square),
         chi_square,
         bins,
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bins_hold_equal_numbers_and_sum_to_chi_square() -> Result<(), DiagnosisError> {
+    fn bins_hold_equal_numbers_and_sum_to_chi_square() -> Result<(), StatisticsError> {
         // Residuals alternate about 0.5 above and -0.5 below the middle of the abscissa, given
         // in falling order and with one missing value.
         let abscissa: Vec<f64> = (0..401).rev().map(f64::from).collect();
@@ -113,7 +113,7 @@ mod tests {
             })
             .collect();
         residuals[200] = f64::NAN;
-        let found = dependence(&abscissa, &residuals, 1.0, 4)?;
+        let found = binned_means(&abscissa, &residuals, 1.0, 4)?;
         assert!(
             found
                 .bins
@@ -128,7 +128,7 @@ mod tests {
         // Four means, each five of their sigmas off.
         assert!((found.chi_square - 100.0).abs() < 1e-9);
         assert!(found.p_value < 1e-18);
-        assert!(dependence(&abscissa, &residuals, 1.0, 300).is_err());
+        assert!(binned_means(&abscissa, &residuals, 1.0, 300).is_err());
         Ok(())
     }
 }

@@ -12,7 +12,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 pub use coefficients::{NoiseCoefficients, noise_coefficients};
 pub use noise::NoiseType;
 
-use crate::error::{MeasuredError, Unfit};
+use crate::error::StatisticsError;
 
 /// One averaging time of an Allan deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub struct AllanPoint {
     pub interval: [f64; 2],
     /// Equivalent degrees of freedom of the variance.
     pub degrees_of_freedom: f64,
-    /// What dominates, which decides the degrees of freedom.
+    /// The noise that dominates, which decides the degrees of freedom.
     pub noise: NoiseType,
 }
 
@@ -46,15 +46,17 @@ pub fn octaves(samples: usize) -> Vec<usize> {
 ///
 /// # Errors
 ///
-/// [`Unfit::TooShort`] with fewer than three samples an averaging time, [`Unfit::Setting`] for an
-/// interval that is not positive, an averaging of no samples, a confidence that is no
-/// probability, and rates or intervals so large or small that a deviation is no finite number.
+/// [`StatisticsError::AveragingTooLong`] with fewer than three samples an averaging time,
+/// [`StatisticsError::InvalidArgument`] for an interval that is not positive, an averaging of no
+/// samples and a confidence that is no probability, [`StatisticsError::NotFinite`] for a sample
+/// that is missing, [`StatisticsError::Overflow`] for rates or intervals so large or small that a
+/// deviation is no finite number.
 pub fn allan_deviation(
     rate: &[f64],
     interval_s: f64,
     averaging: &[usize],
     confidence: f64,
-) -> Result<Vec<AllanPoint>, MeasuredError> {
+) -> Result<Vec<AllanPoint>, StatisticsError> {
     check(rate, interval_s, averaging, confidence)?;
     let phase = phase(rate, interval_s);
     let ramp = noise::ramp(rate);
@@ -92,7 +94,7 @@ pub fn allan_deviation(
     Ok(points)
 }
 
-fn refuse_overflow(point: &AllanPoint) -> Result<(), MeasuredError> {
+fn refuse_overflow(point: &AllanPoint) -> Result<(), StatisticsError> {
     let [low, high] = point.interval;
     if [point.tau_s, point.deviation, low, high]
         .iter()
@@ -100,15 +102,10 @@ fn refuse_overflow(point: &AllanPoint) -> Result<(), MeasuredError> {
     {
         return Ok(());
     }
-    Err(MeasuredError::unfit(
-        Unfit::Setting,
-        format!(
-            "a deviation of {:e} at an averaging time of {:e} s",
-            point.deviation, point.tau_s
-        ),
-        "finite numbers",
-        "choose a unit of the rate and a sampling rate of a usual size",
-    ))
+    Err(StatisticsError::Overflow {
+        deviation: point.deviation,
+        tau_s: point.tau_s,
+    })
 }
 
 /// The angle at the ends of the intervals, from zero.
@@ -141,38 +138,37 @@ fn check(
     interval_s: f64,
     averaging: &[usize],
     confidence: f64,
-) -> Result<(), MeasuredError> {
-    let setting = |found: String, expected: &str| {
-        MeasuredError::unfit(Unfit::Setting, found, expected, "change the option")
-    };
+) -> Result<(), StatisticsError> {
     if !(interval_s > 0.0 && interval_s.is_finite()) {
-        let found = format!("a sampling interval of {interval_s} s");
-        return Err(setting(found, "a positive one"));
+        return Err(StatisticsError::InvalidArgument {
+            what: "the sampling interval, in seconds,",
+            found: interval_s,
+            expected: "a positive number",
+        });
     }
     if !(confidence > 0.0 && confidence < 1.0) {
-        let found = format!("a confidence of {confidence}");
-        return Err(setting(found, "a probability between 0 and 1"));
+        return Err(StatisticsError::InvalidArgument {
+            what: "the confidence",
+            found: confidence,
+            expected: "a probability between 0 and 1",
+        });
     }
     if averaging.contains(&0) {
-        let found = "an averaging time of no samples".to_owned();
-        return Err(setting(found, "one or more"));
+        return Err(StatisticsError::InvalidArgument {
+            what: "an averaging time in samples",
+            found: 0.0,
+            expected: "one or more",
+        });
     }
     let longest = averaging.iter().copied().max().unwrap_or(1);
     if rate.len() / 3 < longest {
-        return Err(MeasuredError::unfit(
-            Unfit::TooShort,
-            format!("{} samples", rate.len()),
-            format!("at least {}", 3 * longest),
-            "record for longer, or ask for shorter averaging times",
-        ));
+        return Err(StatisticsError::AveragingTooLong {
+            found: rate.len(),
+            expected: 3 * longest,
+        });
     }
     if let Some(row) = rate.iter().position(|value| !value.is_finite()) {
-        return Err(MeasuredError::unfit(
-            Unfit::Gap,
-            format!("a sample that is no finite number (number {})", row + 1),
-            "a rate at every sample",
-            "cut the recording where samples are missing",
-        ));
+        return Err(StatisticsError::NotFinite { sample: row + 1 });
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Between probabilities and standard deviations.
+//! Tail probabilities of the normal and chi-square distributions, and their inverses.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use statrs::function::erf::{erf_inv, erfc, erfc_inv};
@@ -17,7 +17,8 @@ pub fn z_of_two_sided_p(p: f64) -> f64 {
 }
 
 /// Natural logarithm of the probability that chi-square exceeds a value.
-pub(crate) fn ln_chi_square_tail(value: f64, degrees_of_freedom: f64) -> f64 {
+#[must_use]
+pub fn ln_chi_square_tail(value: f64, degrees_of_freedom: f64) -> f64 {
     let tail = ChiSquared::new(degrees_of_freedom).map_or(1.0, |chi| chi.sf(value));
     if tail > LEAST_TAIL {
         return tail.ln();
@@ -29,7 +30,8 @@ pub(crate) fn ln_chi_square_tail(value: f64, degrees_of_freedom: f64) -> f64 {
 
 /// The value of chi-square with one degree of freedom that is exceeded with a probability of this
 /// natural logarithm: makes statistics of any kind comparable with that of one signature.
-pub(crate) fn single_equivalent(ln_probability: f64) -> f64 {
+#[must_use]
+pub fn chi_square_equivalent(ln_probability: f64) -> f64 {
     if ln_probability > LEAST_TAIL.ln() {
         return z_of_two_sided_p(ln_probability.min(0.0).exp()).powi(2);
     }
@@ -45,7 +47,8 @@ pub(crate) fn single_equivalent(ln_probability: f64) -> f64 {
 const LEAST_TAIL: f64 = 1e-200;
 
 /// The value that a standard normal variable stays below with probability `p`.
-pub(crate) fn normal_quantile(p: f64) -> f64 {
+#[must_use]
+pub fn normal_quantile(p: f64) -> f64 {
     core::f64::consts::SQRT_2 * erf_inv(2.0 * p - 1.0)
 }
 
@@ -72,7 +75,7 @@ mod tests {
     fn equivalents_join_where_tails_are_expanded() {
         // One signature is equivalent to itself, near and far; the expansion is off by 1/u.
         for value in [5.0, 50.0, 900.0, 1_100.0, 40_000.0] {
-            let equivalent = single_equivalent(ln_chi_square_tail(value, 1.0));
+            let equivalent = chi_square_equivalent(ln_chi_square_tail(value, 1.0));
             assert!(
                 (equivalent - value).abs() < 3.0 / value + 1e-6,
                 "{value} {equivalent}"

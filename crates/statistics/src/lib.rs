@@ -1,0 +1,59 @@
+//! Statistics of time series: pure functions of plain slices.
+//!
+//! # What it is
+//!
+//! - [`nis`], [`autocorrelation`]: whiteness of innovations (mean of squares, Ljung and Box).
+//! - [`periodogram`], [`FrequencySearch`]: spectral lines, and the probability of the largest.
+//! - [`binned_means`]: regression of residuals on a covariate.
+//! - [`allan`]: overlapping Allan deviation, types of noise, noise coefficients; [`allan_test`]:
+//!   do innovations average out as white noise does?
+//! - [`two_sided_p`], [`ln_chi_square_tail`] and others: tail probabilities and their inverses.
+//!
+//! # The domain in brief
+//!
+//! The innovation of a filter is a measurement less its prediction. Divided by its predicted
+//! standard deviation it is *whitened*: if model and noise are right it is white, standard normal
+//! noise. Each test here asks whether a series is that, against one kind of departure, and
+//! returns a p-value: the probability of as large a departure from white noise. `NaN` is a missing
+//! value everywhere.
+//!
+//! # Example
+//!
+//! ```
+//! use gyrocal_statistics::{autocorrelation, nis};
+//!
+//! # fn main() -> Result<(), gyrocal_statistics::StatisticsError> {
+//! // Alternating signs: of the right size, but far from white.
+//! let whitened: Vec<[f64; 3]> = (0..100).map(|k| [if k % 2 == 0 { 1.0 } else { -1.0 }; 3]).collect();
+//! assert!(nis(&whitened, 0.01)?.p_value > 0.5);
+//! assert!(autocorrelation(&whitened, 5, 0.01)?.p_value < 1e-6);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # What it does not do
+//!
+//! It knows no gyro, no record and no file, and prints nothing.
+
+pub mod allan;
+mod allan_test;
+mod binned_means;
+mod error;
+mod location;
+mod periodogram;
+mod probability;
+mod sampling;
+mod whiteness;
+
+pub use allan_test::{AllanTest, NoiseCourse, allan_test};
+pub use binned_means::{BinMean, BinnedMeans, binned_means};
+pub use error::StatisticsError;
+pub use location::upper_median;
+pub use periodogram::{
+    FrequencySearch, Periodogram, SpectralLine, fourier_powers, periodogram, strongest_line,
+};
+pub use probability::{
+    chi_square_equivalent, ln_chi_square_tail, normal_quantile, two_sided_p, z_of_two_sided_p,
+};
+pub use sampling::median_interval_s;
+pub use whiteness::{Autocorrelation, Nis, autocorrelation, nis};
