@@ -10,6 +10,7 @@
 use core::ops::Range;
 
 use gyrocal_record::{Bench, Record};
+use gyrocal_statistics::{mean, median_interval_s};
 use nalgebra::{SMatrix, SVector};
 
 use crate::check::check_lengths;
@@ -109,18 +110,14 @@ pub fn average_record(
     Ok(assemble(record, &means, corrected, left_out))
 }
 
-/// The median interval between rows.
+/// The median interval between rows; zero of fewer than two.
 fn median_step_s(record: &Record) -> f64 {
-    let mut steps: Vec<f64> = record
-        .time_s
-        .windows(2)
-        .map(|two| two[1] - two[0])
-        .collect();
-    if steps.is_empty() {
-        return 0.0;
+    let interval_s = median_interval_s(&record.time_s);
+    if interval_s.is_finite() {
+        interval_s
+    } else {
+        0.0
     }
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Rows of each interval that has any.
@@ -185,12 +182,6 @@ impl Mean {
         }
         Some(this)
     }
-}
-
-/// `NaN` of nothing.
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len() as f64;
-    values.sum::<f64>() / count
 }
 
 /// Marks means of too few values as missing; returns their number.
@@ -280,9 +271,7 @@ fn assemble(
             .as_flattened()
             .iter()
             .filter(|count| **count > 0)
-            .map(|count| 1.0 / *count as f64)
-            .collect::<Vec<_>>()
-            .into_iter(),
+            .map(|count| 1.0 / *count as f64),
     );
     if let (Some(start_s), Some(first_s)) = (record.time_s.first(), time_s.first())
         && start_s < first_s

@@ -1,7 +1,7 @@
 //! Consistency of innovations with their predicted covariance.
 
 use gyrocal::Innovation;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use gyrocal_statistics::chi_square_band;
 
 use crate::problem::Unknown;
 use crate::solve::Solution;
@@ -165,37 +165,9 @@ impl FitStatistics {
     }
 }
 
-/// The central interval of a chi-square variable that leaves out `false_alarm` in both tails
-/// together.
-///
-/// # Panics
-/// If `degrees_of_freedom` is not positive.
-#[must_use]
-pub fn chi_square_band(degrees_of_freedom: f64, false_alarm: f64) -> [f64; 2] {
-    #[allow(clippy::expect_used)] // documented under # Panics
-    let distribution =
-        ChiSquared::new(degrees_of_freedom).expect("degrees of freedom must be positive");
-    [
-        distribution.inverse_cdf(false_alarm / 2.0),
-        distribution.inverse_cdf(1.0 - false_alarm / 2.0),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_band_is_that_of_published_tables() {
-        // Chi-square with 10 degrees of freedom: 2.5 % and 97.5 % points, printed to 3 decimals.
-        let [low, high] = chi_square_band(10.0, 0.05);
-        assert!((low - 3.247).abs() < 5e-4 && (high - 20.483).abs() < 5e-4);
-        // Large numbers: normal limit, sqrt(2 / n) times 3.29; its skewness enters as 1 / n.
-        let n = 13_000.0;
-        let [low, high] = chi_square_band(n, 1e-3);
-        let half_width = 3.2905 * (2.0 * n).sqrt();
-        assert!((low - (n - half_width)).abs() < 10.0 && (high - (n + half_width)).abs() < 10.0);
-    }
 
     #[test]
     fn the_test_compares_the_mean_with_its_band() {

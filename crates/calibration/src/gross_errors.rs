@@ -1,6 +1,7 @@
 //! Detection of gross errors by the norm of specific force.
 
 use gyrocal_record::Record;
+use gyrocal_statistics::upper_median;
 
 /// Rows whose norm differs from the local median by more than this many standard deviations of the
 /// noise are gross errors. The norm of specific force is that of gravity at any attitude, and errors
@@ -33,7 +34,7 @@ pub fn gross_errors(record: &Record, noise_g: f64) -> Vec<usize> {
         .copied()
         .filter(|difference| difference.is_finite())
         .collect();
-    let Some(median) = median(&mut finite) else {
+    let Some(median) = upper_median(&mut finite) else {
         return Vec::new();
     };
     let limit = f64::max(NOISE_MULTIPLE * noise_g, MEDIAN_MULTIPLE * median);
@@ -54,12 +55,7 @@ fn local_median(norms: &[f64], row: usize) -> f64 {
     if count < LEAST_ROWS {
         return f64::NAN;
     }
-    median(&mut near[..count]).unwrap_or(f64::NAN)
-}
-
-fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+    upper_median(&mut near[..count]).unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

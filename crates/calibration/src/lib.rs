@@ -135,7 +135,7 @@ pub use coefficients::BIASES;
 pub use cramer_rao::cramer_rao_bound;
 pub use error::CalibrationError;
 pub use extended::{Estimates, Expectation, Extended, Extension, Jump, NoiseModel};
-pub use fit::{Consistency, FitStatistics, chi_square_band};
+pub use fit::{Consistency, FitStatistics};
 pub use further::{Column, Further};
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;

@@ -2,6 +2,7 @@
 
 use gyrocal::estimation::EstimationError;
 use gyrocal::estimation::batch::NoiseScore;
+use gyrocal_statistics::NORMAL_97_5;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Most steps of Fisher's scoring; four bring a variance that is off by a factor of a hundred within
@@ -10,9 +11,6 @@ const MAX_STEPS: usize = 12;
 
 /// Largest step in the logarithm of a variance.
 const LARGEST_STEP: f64 = 2.0;
-
-/// 97.5 % point of the normal distribution.
-const NORMAL_97_5: f64 = 1.959_963_984_540_054;
 
 /// Ratio of an estimated standard deviation to the declared one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,13 +9,13 @@
 //! message, counted, and never run again.
 //!
 //! [`Trial`] is the job of `gyrocal monte-carlo`, one simulated record calibrated and held
-//! against its truth, and [`Summary`] is what many of them say. [`statistics`] has the exact
-//! intervals that go with it.
+//! against its truth, and [`Summary`] is what many of them say.
 //!
 //! # Example
 //!
 //! ```
-//! use gyrocal_campaign::{Campaign, Fingerprint, statistics::Proportion};
+//! use gyrocal_campaign::{Campaign, Fingerprint};
+//! use gyrocal_statistics::Proportion;
 //!
 //! let campaign = Campaign::new(0..100, Fingerprint::new("coin").with("sides", 2));
 //! let outcome = campaign.run(
@@ -39,7 +39,6 @@ mod error;
 mod fingerprint;
 mod program;
 mod report;
-pub mod statistics;
 mod store;
 mod summary;
 mod trial;

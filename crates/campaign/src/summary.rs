@@ -1,21 +1,19 @@
 //! What many trials say together.
 
+use gyrocal_statistics::{
+    NORMAL_97_5, Proportion, mean, mean_square_band, median, rms_ratio_interval, root_mean_square,
+    standard_error,
+};
 use gyrocal_truth::Coefficients;
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::Outcome;
-use crate::statistics::{
-    Proportion, mean, mean_square_band, median, rms_ratio_interval, root_mean_square,
-    standard_error,
-};
 use crate::trial::Trial;
 
 /// Probability of the bands of NEES and NIS.
 const BAND: f64 = 0.999;
 /// Confidence of the intervals of ratios and shares.
 const CONFIDENCE: f64 = 0.95;
-/// The two-sided 95 % point of the normal distribution: what reported intervals are made of.
-const SIGMAS_OF_95_PERCENT: f64 = 1.959_963_984_540_054;
 
 /// The estimator over all runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -202,10 +200,6 @@ fn coefficient(trials: &[&Trial], index: usize, name: &str, unit: &str) -> Coeff
         sigma_median: finite(median(&sigmas)),
         rmse_over_sigma: Measured::ratio(&in_sigmas),
         rmse_over_bound: Measured::ratio(&in_bounds),
-        coverage: Measured::share(
-            in_sigmas
-                .iter()
-                .map(|error| error.abs() <= SIGMAS_OF_95_PERCENT),
-        ),
+        coverage: Measured::share(in_sigmas.iter().map(|error| error.abs() <= NORMAL_97_5)),
     }
 }

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use gyrocal_campaign::statistics::{Proportion, mean, standard_error};
+use gyrocal_statistics::{NORMAL_97_5, Proportion, mean, standard_error};
 use serde::{Deserialize, Serialize};
 
 /// Confidence of the intervals that are shown.
@@ -14,9 +14,6 @@ const SHOWN: f64 = 0.999;
 
 /// The same as a point of the normal distribution.
 const SIGMAS_SHOWN: f64 = 3.090_232_306_167_813;
-
-/// Of a two-sided interval.
-const SIGMAS_95: f64 = 1.959_963_984_540_054;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -97,7 +94,10 @@ impl Gathered {
         let variance = all.iter().map(Proportion::variance).sum::<f64>();
         let sigma = variance.sqrt() / all.len() as f64;
         let up_to = |sigmas: f64| f64::min(average + sigmas * sigma, 1.0);
-        let interval = [f64::max(average - SIGMAS_95 * sigma, 0.0), up_to(SIGMAS_95)];
+        let interval = [
+            f64::max(average - NORMAL_97_5 * sigma, 0.0),
+            up_to(NORMAL_97_5),
+        ];
         let holds = if self.full {
             average >= least
         } else {

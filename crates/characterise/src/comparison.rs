@@ -1,6 +1,6 @@
 //! The diagnosis beside other methods, on the same records.
 
-use gyrocal_campaign::statistics::{Proportion, mean};
+use gyrocal_statistics::{Proportion, mean};
 use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, same};

@@ -1,6 +1,6 @@
 //! The same figures by family: effects that differ by their axes only.
 
-use gyrocal_campaign::statistics::{Proportion, mean};
+use gyrocal_statistics::{Proportion, mean};
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;

@@ -5,6 +5,7 @@ use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::NoiseModel;
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, Ranked, SearchOptions, search};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
+use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Scenario, Simulation};
 
 use crate::bank::Bank;
@@ -19,11 +20,7 @@ const NEAREST_KEPT: usize = 10;
 
 /// Half widths, in sigmas, of intervals that hold one size, two and three together with 95 %: the
 /// points of the normal distribution at the roots of 0.95 (Sidak 1967; more if sizes correlate).
-const HALF_WIDTHS: [f64; 3] = [
-    1.959_963_984_540_054,
-    2.236_476_644_557_79,
-    2.387_737_887_070_817,
-];
+const HALF_WIDTHS: [f64; 3] = [NORMAL_97_5, 2.236_476_644_557_79, 2.387_737_887_070_817];
 
 /// Diagnoses a record and compares with what is hidden in it, an effect of the catalogue or
 /// several; the strengths are theirs.

@@ -4,7 +4,7 @@ use core::ops::Range;
 use std::collections::BTreeMap;
 
 use gyrocal_campaign::Outcome;
-use gyrocal_campaign::statistics::{Proportion, quantile};
+use gyrocal_statistics::{Proportion, quantile};
 
 use crate::case::Case;
 use crate::cell::Cell;

@@ -7,7 +7,7 @@ use gyrocal::effect::{EffectKind, NoiseProperty};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{CalibrationError, Extended, NoiseEstimate, NoiseModel, Options, Run};
 use gyrocal_record::{Bench, Record};
-use gyrocal_statistics::{AllanTest, allan_test, two_sided_p};
+use gyrocal_statistics::{AllanTest, NORMAL_97_5, allan_test, two_sided_p};
 
 use crate::cause::{Finding, Ranked, SearchOptions, Unavailable, Unnamed, search};
 use crate::error::DiagnosisError;
@@ -314,10 +314,7 @@ fn effect(id: &str) -> Option<&'static Effect> {
 /// Logarithm of a ratio and its standard deviation.
 fn logarithm(ratio: &gyrocal_calibration::NoiseRatio) -> (f64, f64) {
     let [low, high] = ratio.interval;
-    (
-        ratio.ratio.ln(),
-        (high / low).ln() / (2.0 * 1.959_963_984_540_054),
-    )
+    (ratio.ratio.ln(), (high / low).ln() / (2.0 * NORMAL_97_5))
 }
 
 /// Gyro noise over the declared one that the search should believe; the estimate is over what

@@ -8,14 +8,12 @@ mod score;
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{CalibrationError, Extended, NoiseModel};
 use gyrocal_record::Record;
+use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
 pub use accepted::Acceptance;
 pub(crate) use accepted::judge;
 pub use later::{Compensation, Validation, validate};
 use score::BLOCKS;
-
-/// 97.5 % point of the normal distribution.
-const NORMAL_97_5: f64 = 1.959_963_984_540_054;
 
 /// What the extended model is better by.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,15 +120,10 @@ fn rms(record: &Record, noise: &NoiseModel, simulated_g: &[[f64; 3]]) -> f64 {
         let weight = noise.weights.as_ref().map_or(1.0, |w| w[row][axis]);
         weight > 0.0
     };
-    let (mut count, mut sum) = (0.0, 0.0);
-    for (row, (measured, simulated)) in record.accel_g.iter().zip(simulated_g).enumerate() {
-        for axis in 0..3 {
-            let residual = measured[axis] - simulated[axis];
-            if !residual.is_nan() && used(row, axis) {
-                count += 1.0;
-                sum += residual * residual;
-            }
-        }
-    }
-    (sum / f64::max(count, 1.0)).sqrt()
+    let rows = record.accel_g.iter().zip(simulated_g).enumerate();
+    let residuals = rows.flat_map(|(row, (measured, simulated))| {
+        let there = (0..3).filter(move |axis| used(row, *axis));
+        there.map(|axis| measured[axis] - simulated[axis])
+    });
+    rms_of_present(residuals).0
 }

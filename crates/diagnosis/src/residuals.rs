@@ -5,7 +5,7 @@ use gyrocal_calibration::Extended;
 use gyrocal_record::Record;
 use gyrocal_statistics::{
     Autocorrelation, BinnedMeans, Nis, SpectralLine, StatisticsError, autocorrelation,
-    binned_means, nis, periodogram,
+    binned_means, nis, periodogram, rms_of_present,
 };
 
 use crate::series::Innovations;
@@ -75,7 +75,7 @@ pub fn residuals(
         lines: all(lines.map(|found| found.map(|found| found.line))),
         free_run_rms_g: core::array::from_fn(|axis| {
             let misses = record.accel_g.iter().zip(&simulated_g);
-            rms(misses.map(|(measured, simulated)| measured[axis] - simulated[axis]))
+            rms_of_present(misses.map(|(measured, simulated)| measured[axis] - simulated[axis])).0
         }),
         against,
     })
@@ -103,13 +103,4 @@ fn abscissae(innovations: &Innovations, record: &Record) -> Vec<(Abscissa, Vec<f
 fn all(lines: [Result<SpectralLine, StatisticsError>; 3]) -> Option<[SpectralLine; 3]> {
     let [x, y, z] = lines;
     Some([x.ok()?, y.ok()?, z.ok()?])
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (mut count, mut sum) = (0.0, 0.0);
-    for value in values.filter(|value| !value.is_nan()) {
-        count += 1.0;
-        sum += value * value;
-    }
-    (sum / f64::max(count, 1.0)).sqrt()
 }

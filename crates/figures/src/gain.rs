@@ -7,7 +7,7 @@ mod records;
 use core::ops::Range;
 
 use gyrocal_campaign::Outcome;
-use gyrocal_campaign::statistics::{Proportion, mean_square_band, median};
+use gyrocal_statistics::{Proportion, mean_square_band, median};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -166,7 +166,7 @@ fn cross_axis(small: bool) -> Result<Vec<Figure>, Error> {
     let errors: Vec<&Errors> = outcome.successes().map(|(_, errors)| errors).collect();
     let runs = errors.len();
     let all = |of: &dyn Fn(&Errors) -> f64| errors.iter().map(|e| of(e)).collect::<Vec<f64>>();
-    let mean = |values: Vec<f64>| gyrocal_campaign::statistics::mean(&values);
+    let mean = |values: Vec<f64>| gyrocal_statistics::mean(&values);
     let name = "0.05 deg/h/g across an axis:";
     let band = mean_square_band(9.0 * runs as f64, runs as f64, 0.99);
     let figures = [

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use gyrocal_record::{Error, InputErrorKind, SourceText};
+use gyrocal_statistics::median_interval_s;
 
 use crate::columns::read_columns;
 use crate::description::{AccelUnit, CountScale, Description, Direction, GyroUnit};
@@ -243,8 +244,5 @@ fn usual_interval_s(time_s: &[f64]) -> Result<f64, MeasuredError> {
             "record for longer",
         ));
     }
-    let mut intervals: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = intervals.len() / 2;
-    let (_, median, _) = intervals.select_nth_unstable_by(middle, f64::total_cmp);
-    Ok(*median)
+    Ok(median_interval_s(time_s))
 }

@@ -1,5 +1,7 @@
 //! Accelerometers calibrated by the norm of specific force at rest, which is 1 g in any attitude.
 
+use gyrocal_statistics::upper_median;
+
 use crate::average::Stop;
 use crate::error::{MeasuredError, Unfit};
 use crate::least_squares::minimise;
@@ -135,8 +137,7 @@ fn unpack(unknowns: &[f64]) -> ([f64; 3], [[f64; 3]; 3]) {
 /// [`Unfit::Norm`].
 pub fn refuse_wrong_norm(norms_g: impl Iterator<Item = f64>) -> Result<(), MeasuredError> {
     let mut norms: Vec<f64> = norms_g.collect();
-    norms.sort_by(f64::total_cmp);
-    let median = norms.get(norms.len() / 2).copied().unwrap_or(f64::NAN);
+    let median = upper_median(&mut norms).unwrap_or(f64::NAN);
     if (0.9..=1.1).contains(&median) {
         return Ok(());
     }

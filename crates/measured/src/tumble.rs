@@ -9,8 +9,9 @@ mod rivals;
 mod search;
 
 use gyrocal::EARTH_RATE_RAD_PER_S;
+use gyrocal_statistics::chi_square_tail;
 use serde::Serialize;
-use statrs::distribution::{ChiSquared, ContinuousCDF as _, FisherSnedecor};
+use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 pub use basis::Term;
 pub use controls::{Controls, controls};
@@ -316,7 +317,7 @@ fn law_report(data: &Whitened, terms: &[Term]) -> Result<LawReport, MeasuredErro
         unit: term.unit(data.gyro).to_owned(),
     });
     let chi_square = with_standard_errors.chi_square;
-    let chance = ChiSquared::new(fit.freedom).map_or(f64::NAN, |chi| chi.sf(chi_square));
+    let chance = chi_square_tail(chi_square, fit.freedom).unwrap_or(f64::NAN);
     Ok(LawReport {
         coefficients: coefficients.collect(),
         chi_square,

@@ -7,12 +7,11 @@
 mod coefficients;
 mod noise;
 
-use statrs::distribution::{ChiSquared, ContinuousCDF as _};
-
 pub use coefficients::{NoiseCoefficients, noise_coefficients};
 pub use noise::NoiseType;
 
 use crate::error::StatisticsError;
+use crate::probability::chi_square_quantile;
 
 /// One averaging time of an Allan deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +75,7 @@ pub fn allan_deviation(
         }
         let degrees_of_freedom = noise.degrees_of_freedom(phase.len(), averaging);
         let bound = |probability: f64| {
-            let quantile = chi_square_quantile(degrees_of_freedom, probability);
+            let quantile = chi_square_quantile(probability, degrees_of_freedom).unwrap_or(f64::NAN);
             (variance * degrees_of_freedom / quantile).sqrt()
         };
         let tail = 0.5 * (1.0 - confidence);
@@ -171,8 +170,4 @@ fn check(
         return Err(StatisticsError::NotFinite { sample: row + 1 });
     }
     Ok(())
-}
-
-fn chi_square_quantile(degrees_of_freedom: f64, probability: f64) -> f64 {
-    ChiSquared::new(degrees_of_freedom).map_or(f64::NAN, |chi| chi.inverse_cdf(probability))
 }

@@ -1,9 +1,8 @@
 //! Allan test: do whitened innovations average out as white noise does?
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
 use crate::allan::{AllanPoint, NoiseType, allan_deviation, octaves};
 use crate::error::StatisticsError;
+use crate::probability::chi_square_tail;
 use crate::sampling::median_interval_s;
 
 /// Fewer rows in a stretch say nothing of long times.
@@ -104,7 +103,7 @@ pub fn allan_test(
         let freedom = NoiseType::WhiteRate.degrees_of_freedom(stretch.len() + 1, point.averaging);
         // White noise averaged over m rows has variance 1/m.
         let ratio = point.deviation * point.deviation * point.averaging as f64;
-        ChiSquared::new(freedom).map_or(1.0, |distribution| distribution.sf(freedom * ratio))
+        chi_square_tail(freedom * ratio, freedom).unwrap_or(1.0)
     };
     let count = points.iter().map(Vec::len).sum::<usize>() as f64;
     let most = points

@@ -7,6 +7,8 @@
 //! - [`binned_means`]: regression of residuals on a covariate.
 //! - [`allan`]: overlapping Allan deviation, types of noise, noise coefficients; [`allan_test`]:
 //!   do innovations average out as white noise does?
+//! - [`Proportion`], [`chi_square_band`] and others: exact intervals of shares and of mean squares.
+//! - [`median`], [`quantile`], [`robust_sigma`] and others: descriptive statistics.
 //! - [`two_sided_p`], [`ln_chi_square_tail`] and others: tail probabilities and their inverses.
 //!
 //! # The domain in brief
@@ -37,23 +39,32 @@
 
 pub mod allan;
 mod allan_test;
+mod bands;
 mod binned_means;
+mod descriptive;
 mod error;
-mod location;
 mod periodogram;
 mod probability;
+mod proportion;
+mod robust;
 mod sampling;
 mod whiteness;
 
 pub use allan_test::{AllanTest, NoiseCourse, allan_test};
+pub use bands::{chi_square_band, mean_square_band, rms_ratio_interval};
 pub use binned_means::{BinMean, BinnedMeans, binned_means};
+pub use descriptive::{
+    mean, median, quantile, rms_of_present, root_mean_square, standard_error, upper_median,
+};
 pub use error::StatisticsError;
-pub use location::upper_median;
 pub use periodogram::{
     FrequencySearch, Periodogram, SpectralLine, fourier_powers, periodogram, strongest_line,
 };
 pub use probability::{
-    chi_square_equivalent, ln_chi_square_tail, normal_quantile, two_sided_p, z_of_two_sided_p,
+    CHI_SQUARE_99, NORMAL_97_5, chi_square_equivalent, chi_square_quantile, chi_square_tail,
+    ln_chi_square_tail, normal_quantile, two_sided_p, z_of_two_sided_p,
 };
+pub use proportion::Proportion;
+pub use robust::{NORMAL_MAD, robust_sigma, theil_sen_at_zero};
 pub use sampling::median_interval_s;
 pub use whiteness::{Autocorrelation, Nis, autocorrelation, nis};

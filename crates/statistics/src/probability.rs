@@ -4,6 +4,13 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use statrs::function::erf::{erf_inv, erfc, erfc_inv};
 use statrs::function::gamma::ln_gamma;
 
+/// The 97.5 % quantile of the standard normal distribution: half the width of a two-sided 95 %
+/// interval, in standard deviations.
+pub const NORMAL_97_5: f64 = 1.959_963_984_540_054;
+
+/// The 99 % quantile of chi-square with one degree of freedom.
+pub const CHI_SQUARE_99: f64 = 6.634_896_601_021_214;
+
 /// Probability that a standard normal variable is as far from zero as `z` or farther.
 #[must_use]
 pub fn two_sided_p(z: f64) -> f64 {
@@ -16,10 +23,27 @@ pub fn z_of_two_sided_p(p: f64) -> f64 {
     core::f64::consts::SQRT_2 * erfc_inv(p.clamp(f64::MIN_POSITIVE, 1.0))
 }
 
+/// Probability that chi-square exceeds a value; `None` if the degrees of freedom are not positive.
+#[must_use]
+pub fn chi_square_tail(value: f64, degrees_of_freedom: f64) -> Option<f64> {
+    Some(ChiSquared::new(degrees_of_freedom).ok()?.sf(value))
+}
+
+/// The value that chi-square stays below with a probability; `None` if the degrees of freedom are
+/// not positive.
+#[must_use]
+pub fn chi_square_quantile(probability: f64, degrees_of_freedom: f64) -> Option<f64> {
+    Some(
+        ChiSquared::new(degrees_of_freedom)
+            .ok()?
+            .inverse_cdf(probability),
+    )
+}
+
 /// Natural logarithm of the probability that chi-square exceeds a value.
 #[must_use]
 pub fn ln_chi_square_tail(value: f64, degrees_of_freedom: f64) -> f64 {
-    let tail = ChiSquared::new(degrees_of_freedom).map_or(1.0, |chi| chi.sf(value));
+    let tail = chi_square_tail(value, degrees_of_freedom).unwrap_or(1.0);
     if tail > LEAST_TAIL {
         return tail.ln();
     }
@@ -69,6 +93,9 @@ mod tests {
             );
         }
         assert!(z_of_two_sided_p(0.0).is_finite());
+        // Both sides rounded to doubles.
+        assert!((normal_quantile(0.975) - NORMAL_97_5).abs() < 1e-14);
+        assert!((z_of_two_sided_p(0.01).powi(2) - CHI_SQUARE_99).abs() < 1e-13);
     }
 
     #[test]

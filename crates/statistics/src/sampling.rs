@@ -1,6 +1,6 @@
 //! Sampling of a series: intervals between its values.
 
-use crate::location::upper_median;
+use crate::descriptive::upper_median;
 
 /// Median of the intervals between rows \[s\], the upper one of an even number; infinite without
 /// any.

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-use gyrocal_campaign::statistics::Proportion;
 use gyrocal_characterise::{CellReport, Characteristic, Target};
+use gyrocal_statistics::Proportion;
 
 use crate::tables::{right, table};
 use crate::text::paragraph;

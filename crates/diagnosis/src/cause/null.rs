@@ -1,6 +1,6 @@
 //! What the statistics reach if the model is right: drawn from their joint distribution.
 
-use gyrocal_statistics::{two_sided_p, z_of_two_sided_p};
+use gyrocal_statistics::{CHI_SQUARE_99, two_sided_p, z_of_two_sided_p};
 use nalgebra::{Cholesky, DMatrix, DMatrixView};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -20,7 +20,7 @@ const JITTER: f64 = 1e-6;
 const EQUAL_LEVEL: f64 = 0.99;
 
 /// Its quantile of chi-square with one degree of freedom: a family of one signature.
-const EQUAL_SINGLE: f64 = 6.634_896_601_021_214;
+const EQUAL_SINGLE: f64 = CHI_SQUARE_99;
 
 /// The share of its penalty that a family pays in the test of whether anything is there. A step of
 /// five standard deviations would exceed a threshold of 14.5 raised by 6, what searching an onset

@@ -1,8 +1,7 @@
 //! Selection of the noise model that explains the spectrum: likelihood-ratio tests of variance and
 //! correlation.
 
-use gyrocal_statistics::{two_sided_p, z_of_two_sided_p};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use gyrocal_statistics::{chi_square_tail, two_sided_p, z_of_two_sided_p};
 
 use super::finding::{Estimate, NoiseFinding, Shares};
 use super::likelihood::{Bins, CORRELATION, NoiseFit, NoiseModel, fit};
@@ -55,8 +54,8 @@ pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Share
     let of_correlation = gain(&coloured, &white);
     let alone = fit(spectrum, &bins, start, [false, false, false, true, false]);
     let walking = fit(spectrum, &bins, start, [false, false, false, false, true]);
-    let declared_p = chi_squared_p(gain(&coloured, &walking).powi(2), 4.0);
-    let alone_p = chi_squared_p(gain(&coloured, &alone).powi(2), 4.0);
+    let declared_p = chi_square_tail(gain(&coloured, &walking).powi(2), 4.0).unwrap_or(1.0);
+    let alone_p = chi_square_tail(gain(&coloured, &alone).powi(2), 4.0).unwrap_or(1.0);
     let is_simplest = declared_p < half && alone_p > NOT_REJECTED_P;
     let (coloured, z) = if is_simplest && two_sided_p(of_correlation) >= half {
         (alone, z_of_two_sided_p(declared_p))
@@ -135,10 +134,6 @@ pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Share
             white_with(&white, &coloured)
         },
     }
-}
-
-fn chi_squared_p(value: f64, degrees: f64) -> f64 {
-    ChiSquared::new(degrees).map_or(1.0, |distribution| distribution.sf(value))
 }
 
 /// The white fit with the correlation of the coloured fit, for information.

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use gyrocal_statistics::upper_median;
+use gyrocal_statistics::{robust_sigma, theil_sen_at_zero};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Number of rows on either side of a sample in the comparison.
@@ -18,8 +18,6 @@ const ISOLATED_SIGMAS: f64 = 3.0;
 /// that there are outliers: with half a percent of them at 8 sigma the densities are equal at 4.7.
 /// Noise alone exceeds 4.5 once in 150 000 samples.
 const OUTLIER_SIGMAS: f64 = 4.5;
-/// Median absolute deviation of normal noise of unit variance.
-const NORMAL_MAD: f64 = 0.674_489_750_196_081_7;
 
 /// An outlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +82,7 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
         .map(|r| r.deviation(1.0))
         .collect();
     let samples = sizes.len();
-    let scale = robust_scale(&mut sizes);
+    let scale = robust_sigma(&mut sizes);
     let mut flagged: Vec<(usize, usize)> = Vec::new();
     if scale > 0.0 {
         // The largest of a neighbourhood first: it distorts the fit of the others.
@@ -215,56 +213,15 @@ fn at_an_end(value: f64, masked: &[f64], row: usize, run: &Range<usize>) -> Opti
     })
 }
 
-/// Robust standard deviation of normal absolute values with a few outliers: root mean square of the
-/// values within four sigmas by the median. Half as uncertain as the median itself.
-fn robust_scale(sizes: &mut [f64]) -> f64 {
-    /// Variance of a standard normal variable truncated at 4.
-    const WITHIN_FOUR: f64 = 0.998_929;
-    let rough = upper_median(sizes).unwrap_or(0.0) / NORMAL_MAD;
-    let (count, sum) = sizes
-        .iter()
-        .filter(|size| **size <= 4.0 * rough)
-        .fold((0.0, 0.0), |(count, sum), size| {
-            (count + 1.0, sum + size * size)
-        });
-    if count > 0.0 {
-        (sum / (count * WITHIN_FOUR)).sqrt()
-    } else {
-        0.0
-    }
-}
-
 fn is_isolated(value: f64, masked: &[f64], row: usize, run: &Range<usize>, scale: f64) -> bool {
     let far = |near: &[(f64, f64)]| {
-        robust_line(near)
-            .is_none_or(|(line, spread)| (value - line).abs() > ISOLATED_SIGMAS * spread * scale)
+        near.len() < LEAST_SIDE
+            || theil_sen_at_zero(near).is_none_or(|(line, spread)| {
+                (value - line).abs() > ISOLATED_SIGMAS * spread * scale
+            })
     };
     let before = (run.start..row).rev();
     far(&side(masked, before, row)) && far(&side(masked, row + 1..run.end, row))
-}
-
-/// Theil-Sen line at zero, and the standard deviation of the difference of a sample there; robust
-/// against two of eight values. `None` with too few values.
-fn robust_line(near: &[(f64, f64)]) -> Option<(f64, f64)> {
-    if near.len() < LEAST_SIDE {
-        return None;
-    }
-    let later = |i: usize| near[i + 1..].iter();
-    let pairs = near
-        .iter()
-        .enumerate()
-        .flat_map(|(i, a)| later(i).map(move |b| (b.1 - a.1) / (b.0 - a.0)));
-    let slope = upper_median(&mut pairs.collect::<Vec<f64>>())?;
-    let line = upper_median(
-        &mut near
-            .iter()
-            .map(|(at, value)| value - slope * at)
-            .collect::<Vec<f64>>(),
-    )?;
-    let count = near.len() as f64;
-    let middle = near.iter().map(|(at, _)| at).sum::<f64>() / count;
-    let width: f64 = near.iter().map(|(at, _)| (at - middle).powi(2)).sum();
-    Some((line, (1.0 + 1.0 / count + middle * middle / width).sqrt()))
 }
 
 /// The nearest values on one side, with their distances in rows.

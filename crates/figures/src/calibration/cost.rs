@@ -1,7 +1,7 @@
 //! What a calibration takes: processor time and memory.
 
 use gyrocal_calibration::{Options, calibrate};
-use gyrocal_campaign::statistics::median;
+use gyrocal_statistics::median;
 use gyrocal_truth::{Coefficients, Scenario, Simulation, simulate};
 
 use super::Error;

@@ -1,7 +1,7 @@
 //! The paper's three days, against the errors that it prints.
 
 use gyrocal_calibration::{Options, calibrate};
-use gyrocal_campaign::statistics::root_mean_square;
+use gyrocal_statistics::root_mean_square;
 use gyrocal_truth::{Coefficients, Scenario, simulate};
 use rayon::prelude::*;
 

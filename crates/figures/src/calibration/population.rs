@@ -1,8 +1,8 @@
 //! A population of random records, calibrated by the batch estimator and held against the truth.
 
 use gyrocal_calibration::Options;
-use gyrocal_campaign::statistics::mean;
 use gyrocal_campaign::{Banded, Outcome, Summary, Trial};
+use gyrocal_statistics::mean;
 use gyrocal_truth::Population;
 
 use super::Error;

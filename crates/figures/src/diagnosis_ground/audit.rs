@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use gyrocal_campaign::statistics::{Proportion, mean};
 use gyrocal_diagnosis::{AuditOptions, NoiseAudit, Outlier, audit_noise};
+use gyrocal_statistics::{Proportion, mean};
 use gyrocal_truth::Term;
 use serde::{Deserialize, Serialize};
 

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use gyrocal_campaign::statistics::Proportion;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_statistics::Proportion;
 use serde::{Deserialize, Serialize};
 
 use super::records::{KINDS, POPULATION, record, three_days};

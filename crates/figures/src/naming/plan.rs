@@ -82,7 +82,7 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         .collect();
     let mean = |of: &dyn Fn(&Sets) -> f64| {
         let values: Vec<f64> = cases.iter().map(|case| of(case)).collect();
-        gyrocal_campaign::statistics::mean(&values)
+        gyrocal_statistics::mean(&values)
     };
     figures.push(Figure::note(
         "planned run: mean size of named sets of two or more before it",

@@ -2,7 +2,7 @@
 
 use gyrocal::{Discretisation, Recentring};
 use gyrocal_calibration::Options;
-use gyrocal_campaign::statistics::{mean, median, quantile};
+use gyrocal_statistics::{mean, median, quantile};
 
 use super::bench::{Data, Judged, judge_all, seeds};
 use super::result::coverage_percent;

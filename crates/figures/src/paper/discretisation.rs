@@ -2,7 +2,7 @@
 
 use gyrocal::{Discretisation, Integration};
 use gyrocal_calibration::Options;
-use gyrocal_campaign::statistics::{median, root_mean_square};
+use gyrocal_statistics::{median, root_mean_square};
 
 use super::bench::{Data, Judged, PAPER_DAYS, SHOWN_SEED, judge_all, scenario};
 use super::{Error, Measured};

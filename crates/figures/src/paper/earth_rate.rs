@@ -2,7 +2,7 @@
 
 use gyrocal::EARTH_RATE_RAD_PER_S;
 use gyrocal_calibration::Options;
-use gyrocal_campaign::statistics::{mean, median, root_mean_square};
+use gyrocal_statistics::{mean, median, root_mean_square};
 use gyrocal_truth::{Scenario, simulate};
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Table 2: errors after three days, and what the same filters do on exact data.
 
 use gyrocal_calibration::Options;
-use gyrocal_campaign::statistics::{median, root_mean_square};
+use gyrocal_statistics::{median, root_mean_square};
 
 use super::bench::{
     Data, Judged, PAPER_DAYS, SEEDS, SHOWN_SEED, judge_all, names, scenario, seeds,

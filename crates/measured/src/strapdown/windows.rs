@@ -1,5 +1,7 @@
 //! Which rows are quiet.
 
+use gyrocal_statistics::upper_median;
+
 use super::PlatformRow;
 
 /// Whether each row scatters at most `factor` times as much as the median row.
@@ -14,8 +16,7 @@ pub(super) fn quiet(rows: &[PlatformRow], factor: f64) -> Vec<bool> {
 pub(super) fn median_scatter(rows: &[PlatformRow]) -> [f64; 2] {
     let median = |of: fn(&PlatformRow) -> f64| {
         let mut values: Vec<f64> = rows.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0)
+        upper_median(&mut values).unwrap_or(0.0)
     };
     [
         median(|row| row.gyro_scatter),

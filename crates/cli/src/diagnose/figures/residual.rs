@@ -7,7 +7,10 @@ use gyrocal_report::{
     OpenLoopChannel, Picture, PowerThreshold, ResidualChannel, ResidualVsCovariate, Residuals,
     Spectrum, SpectrumChannel,
 };
-use gyrocal_statistics::{Autocorrelation, BinnedMeans, Periodogram, autocorrelation, periodogram};
+use gyrocal_statistics::{
+    Autocorrelation, BinnedMeans, NORMAL_97_5, Periodogram, autocorrelation, periodogram,
+    rms_of_present,
+};
 
 use super::{Found, causes, subtitle};
 
@@ -18,9 +21,6 @@ const BINS: usize = 24;
 
 /// Lags of the autocorrelation.
 const LAGS: usize = 40;
-
-/// 97.5 % point of the normal distribution.
-const NORMAL_97_5: f64 = 1.959_963_984_540_054;
 
 /// Cycles a sidereal day, a day.
 const SIDEREAL_PER_DAY: f64 = 1.002_737_9;
@@ -373,11 +373,7 @@ fn columns(rows: &[[f64; 3]]) -> [Vec<f64>; 3] {
 }
 
 fn rms(columns: &[Vec<f64>; 3]) -> f64 {
-    let values = columns.iter().flatten().filter(|value| !value.is_nan());
-    let (count, sum) = values.fold((0.0, 0.0), |(count, sum), value| {
-        (count + 1.0, sum + value * value)
-    });
-    (sum / f64::max(count, 1.0)).sqrt()
+    rms_of_present(columns.iter().flatten()).0
 }
 
 /// Share of the mean square of a residual that the means of its bins hold.
