@@ -2,10 +2,10 @@
 
 use gyrocal_calibration::{Column, Extension};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 
 use crate::case::{Case, HiddenCase};
-use crate::draw::Draw;
 use crate::error::CharacteriseError;
 use crate::judge::case;
 use crate::plant::fitted;

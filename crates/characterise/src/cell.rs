@@ -1,11 +1,11 @@
 //! The cells of the table: what is hidden in their records.
 
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Scenario, simulate};
 
 use crate::beyond::beyond;
 use crate::case::Case;
-use crate::draw::Draw;
 use crate::error::CharacteriseError;
 use crate::judge::judge;
 use crate::methods::Method;

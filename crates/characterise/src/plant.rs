@@ -3,12 +3,12 @@
 use gyrocal::effect::{EffectParameter, Need, Role};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{Extended, NoiseModel, Options, Run};
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::bank::Bank;
 use crate::cell::TRIES;
-use crate::draw::Draw;
 use crate::error::CharacteriseError;
 use crate::population::duration_h;
 use crate::signature::{Columns, Signature};

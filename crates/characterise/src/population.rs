@@ -1,8 +1,7 @@
 //! The records that effects are hidden in.
 
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Population, Scenario, Temperature};
-
-use crate::draw::Draw;
 
 /// Seed of the population; records are numbers in it.
 const SEED: u64 = 77;

@@ -3,10 +3,8 @@
 //! It depends neither on the attitude nor on the gyros nor on a filter (docs/method.md, equation
 //! 18): a deviation is an error of the accelerometers, or of gravity.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
 use gyrocal_record::Record;
-use gyrocal_statistics::{BinnedMeans, binned_means, two_sided_p};
+use gyrocal_statistics::{BinnedMeans, binned_means, chi_square_two_sided_p, two_sided_p};
 
 use crate::error::DiagnosisError;
 
@@ -72,8 +70,7 @@ pub fn magnitude_channel(
         .collect();
     let white: Vec<f64> = normalised.iter().copied().filter(|w| !w.is_nan()).collect();
     let values = white.len();
-    let spread = ChiSquared::new(values.saturating_sub(1) as f64);
-    let Ok(spread) = spread else {
+    let Some(degrees) = values.checked_sub(1).filter(|degrees| *degrees > 0) else {
         return Err(DiagnosisError::TooShort {
             test: "the magnitude test",
             found: values,
@@ -104,7 +101,7 @@ pub fn magnitude_channel(
         mean_sigma_g2,
         mean_p_value: two_sided_p(mean_g2 / mean_sigma_g2),
         variance_ratio: scatter / (count - 1.0),
-        variance_p_value: (2.0 * spread.cdf(scatter).min(spread.sf(scatter))).min(1.0),
+        variance_p_value: chi_square_two_sided_p(scatter, degrees as f64).unwrap_or(1.0),
         on_component: [
             against(&component(0))?,
             against(&component(1))?,

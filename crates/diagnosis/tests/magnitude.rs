@@ -3,24 +3,7 @@
 
 use gyrocal_diagnosis::magnitude_channel;
 use gyrocal_record::Record;
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
-
-struct Normals(ChaCha12Rng);
-
-impl Normals {
-    fn of_seed(seed: u64) -> Self {
-        Self(ChaCha12Rng::seed_from_u64(seed))
-    }
-
-    fn uniform(&mut self) -> f64 {
-        ((self.0.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (core::f64::consts::TAU * self.uniform()).cos()
-    }
-}
+use gyrocal_statistics::deviates::Normals;
 
 #[test]
 fn the_norm_sees_accelerometers_whatever_the_attitude() {

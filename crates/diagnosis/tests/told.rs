@@ -3,33 +3,10 @@
 
 use gyrocal_diagnosis::magnitude_test;
 use gyrocal_record::{Bench, Record};
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use gyrocal_statistics::deviates::Normals;
 
 const ROWS: usize = 1440;
 const SIGMA_G: f64 = 1e-5;
-
-struct Normals(ChaCha12Rng);
-
-impl Normals {
-    fn of_seed(seed: u64) -> Self {
-        Self(ChaCha12Rng::seed_from_u64(seed))
-    }
-
-    fn uniform(&mut self) -> f64 {
-        ((self.0.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (core::f64::consts::TAU * self.uniform()).cos()
-    }
-
-    fn white(&mut self) -> Vec<[f64; 3]> {
-        (0..ROWS)
-            .map(|_| core::array::from_fn(|_| self.normal()))
-            .collect()
-    }
-}
 
 fn minutes() -> Vec<f64> {
     (0..ROWS).map(|row| 60.0 * row as f64).collect()
@@ -37,7 +14,7 @@ fn minutes() -> Vec<f64> {
 
 /// A day in which gravity sweeps round the platform.
 fn record(seed: u64, error_g: impl Fn(usize, [f64; 3]) -> [f64; 3]) -> Record {
-    let noise = Normals::of_seed(seed).white();
+    let noise = Normals::of_seed(seed).rows(ROWS);
     let accel_g = noise.iter().enumerate().map(|(row, noise)| {
         let angle = core::f64::consts::TAU * row as f64 / ROWS as f64;
         let force = [0.8 * angle.cos(), 0.8 * angle.sin(), 0.6];

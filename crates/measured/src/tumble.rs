@@ -9,9 +9,8 @@ mod rivals;
 mod search;
 
 use gyrocal::EARTH_RATE_RAD_PER_S;
-use gyrocal_statistics::chi_square_tail;
+use gyrocal_statistics::{chi_square_tail, f_tail};
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 pub use basis::Term;
 pub use controls::{Controls, controls};
@@ -335,11 +334,10 @@ fn f_test(data: &Whitened, law: &[Term], larger: &[Term]) -> Result<FTest, Measu
     let large = data.fit(larger).ok_or_else(|| undetermined(data, larger))?;
     let added = small.freedom - large.freedom;
     let f = (small.chi_square - large.chi_square) / added / large.scale();
-    let chance = FisherSnedecor::new(added, large.freedom);
     Ok(FTest {
         f,
         degrees_of_freedom: [added, large.freedom],
-        p_value: chance.map_or(f64::NAN, |chance| chance.sf(f)),
+        p_value: f_tail(f, [added, large.freedom]).unwrap_or(f64::NAN),
     })
 }
 

@@ -9,6 +9,7 @@
 //!   do innovations average out as white noise does?
 //! - [`Proportion`], [`chi_square_band`] and others: exact intervals of shares and of mean squares.
 //! - [`median`], [`quantile`], [`robust_sigma`] and others: descriptive statistics.
+//! - [`deviates`]: normal deviates of a seed.
 //! - [`two_sided_p`], [`ln_chi_square_tail`] and others: tail probabilities and their inverses.
 //!
 //! # The domain in brief
@@ -42,6 +43,7 @@ mod allan_test;
 mod bands;
 mod binned_means;
 mod descriptive;
+pub mod deviates;
 mod error;
 mod periodogram;
 mod probability;
@@ -62,7 +64,8 @@ pub use periodogram::{
 };
 pub use probability::{
     CHI_SQUARE_99, NORMAL_97_5, chi_square_equivalent, chi_square_quantile, chi_square_tail,
-    ln_chi_square_tail, normal_quantile, two_sided_p, z_of_two_sided_p,
+    chi_square_two_sided_p, f_tail, ln_chi_square_tail, normal_quantile, student_two_sided_p,
+    two_sided_p, z_of_two_sided_p,
 };
 pub use proportion::Proportion;
 pub use robust::{NORMAL_MAD, robust_sigma, theil_sen_at_zero};

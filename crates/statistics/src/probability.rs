@@ -1,6 +1,6 @@
 //! Tail probabilities of the normal and chi-square distributions, and their inverses.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
 use statrs::function::erf::{erf_inv, erfc, erfc_inv};
 use statrs::function::gamma::ln_gamma;
 
@@ -29,6 +29,15 @@ pub fn chi_square_tail(value: f64, degrees_of_freedom: f64) -> Option<f64> {
     Some(ChiSquared::new(degrees_of_freedom).ok()?.sf(value))
 }
 
+/// Probability that chi-square is as far from its median as a value or farther, on either side;
+/// `None` if the degrees of freedom are not positive.
+#[must_use]
+pub fn chi_square_two_sided_p(value: f64, degrees_of_freedom: f64) -> Option<f64> {
+    let distribution = ChiSquared::new(degrees_of_freedom).ok()?;
+    let tail = distribution.cdf(value).min(distribution.sf(value));
+    Some((2.0 * tail).min(1.0))
+}
+
 /// The value that chi-square stays below with a probability; `None` if the degrees of freedom are
 /// not positive.
 #[must_use]
@@ -38,6 +47,23 @@ pub fn chi_square_quantile(probability: f64, degrees_of_freedom: f64) -> Option<
             .ok()?
             .inverse_cdf(probability),
     )
+}
+
+/// Probability that a variable of Student's distribution is as far from zero as `t` or farther;
+/// `None` if the degrees of freedom are not positive.
+#[must_use]
+pub fn student_two_sided_p(t: f64, degrees_of_freedom: f64) -> Option<f64> {
+    let distribution = StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?;
+    Some(2.0 * distribution.sf(t.abs()))
+}
+
+/// Probability that a variable of Fisher's F distribution exceeds a value; `None` if the degrees of
+/// freedom, of numerator and denominator, are not positive.
+#[must_use]
+pub fn f_tail(value: f64, degrees_of_freedom: [f64; 2]) -> Option<f64> {
+    let [numerator, denominator] = degrees_of_freedom;
+    let distribution = FisherSnedecor::new(numerator, denominator).ok()?;
+    Some(distribution.sf(value))
 }
 
 /// Natural logarithm of the probability that chi-square exceeds a value.
@@ -96,6 +122,19 @@ mod tests {
         // Both sides rounded to doubles.
         assert!((normal_quantile(0.975) - NORMAL_97_5).abs() < 1e-14);
         assert!((z_of_two_sided_p(0.01).powi(2) - CHI_SQUARE_99).abs() < 1e-13);
+    }
+
+    #[test]
+    fn tails_of_ratios_are_those_of_tables() {
+        // Two-sided 5 % point of t with 10 degrees of freedom, 5 % point of F(3, 20), 97.5 % and
+        // 2.5 % points of chi-square with 100, as printed.
+        assert!((student_two_sided_p(-2.228, 10.0).unwrap_or(0.0) - 0.05).abs() < 1e-4);
+        assert!((f_tail(3.098, [3.0, 20.0]).unwrap_or(0.0) - 0.05).abs() < 1e-4);
+        for value in [129.561, 74.222] {
+            let p = chi_square_two_sided_p(value, 100.0).unwrap_or(0.0);
+            assert!((p - 0.05).abs() < 1e-4, "{p}");
+        }
+        assert_eq!(chi_square_tail(1.0, 0.0), None);
     }
 
     #[test]

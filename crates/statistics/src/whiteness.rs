@@ -1,9 +1,8 @@
 //! Whiteness of innovations: NIS, autocorrelation and the Ljung–Box test.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
+use crate::bands::chi_square_band;
 use crate::error::StatisticsError;
-use crate::probability::normal_quantile;
+use crate::probability::{chi_square_tail, chi_square_two_sided_p, normal_quantile};
 
 /// Normalised innovations squared, over a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,18 +46,14 @@ pub fn nis(normalised: &[[f64; 3]], false_alarm: f64) -> Result<Nis, StatisticsE
     check_probability(false_alarm)?;
     let values = normalised.iter().flatten().filter(|w| !w.is_nan());
     let (count, sum) = values.fold((0, 0.0), |(count, sum), w| (count + 1, sum + w * w));
-    let distribution = chi_squared(count, "NIS")?;
-    let tail = distribution.cdf(sum).min(distribution.sf(sum));
-    let quantile = |p| distribution.inverse_cdf(p) / count as f64;
+    let degrees = count as f64;
+    let p_value = chi_square_two_sided_p(sum, degrees).ok_or(too_short("NIS"))?;
     Ok(Nis {
         sum,
         values: count,
-        mean: sum / count as f64,
-        band: [
-            quantile(false_alarm / 2.0),
-            quantile(1.0 - false_alarm / 2.0),
-        ],
-        p_value: (2.0 * tail).min(1.0),
+        mean: sum / degrees,
+        band: chi_square_band(degrees, false_alarm).map(|bound| bound / degrees),
+        p_value,
     })
 }
 
@@ -128,16 +123,17 @@ pub fn autocorrelation(
         band: normal_quantile(1.0 - false_alarm / (2.0 * shown)),
         ljung_box,
         degrees_of_freedom,
-        p_value: chi_squared(degrees_of_freedom, "the autocorrelation")?.sf(ljung_box),
+        p_value: chi_square_tail(ljung_box, degrees_of_freedom as f64)
+            .ok_or(too_short("the autocorrelation"))?,
     })
 }
 
-fn chi_squared(degrees: usize, test: &'static str) -> Result<ChiSquared, StatisticsError> {
-    ChiSquared::new(degrees as f64).map_err(|_| StatisticsError::TooShort {
+fn too_short(test: &'static str) -> StatisticsError {
+    StatisticsError::TooShort {
         test,
-        found: degrees,
+        found: 0,
         expected: 1,
-    })
+    }
 }
 
 pub(crate) fn check_probability(false_alarm: f64) -> Result<(), StatisticsError> {

@@ -1,47 +1,25 @@
 //! Tests of whiteness on white series, and on series that are not.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
+use gyrocal_statistics::deviates::Normals;
 use gyrocal_statistics::{
     NoiseCourse, allan_test, autocorrelation, nis, periodogram, strongest_line,
 };
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
-struct Normals(ChaCha12Rng);
-
-impl Normals {
-    fn of_seed(seed: u64) -> Self {
-        Self(ChaCha12Rng::seed_from_u64(seed))
-    }
-
-    fn uniform(&mut self) -> f64 {
-        ((self.0.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (core::f64::consts::TAU * self.uniform()).cos()
-    }
-
-    fn white(&mut self, rows: usize) -> Vec<[f64; 3]> {
-        (0..rows)
-            .map(|_| core::array::from_fn(|_| self.normal()))
-            .collect()
-    }
-
-    /// White innovations, 3 % of them missing.
-    fn innovations(&mut self, rows: usize) -> Vec<[f64; 3]> {
-        let mut value = || {
-            let normal = self.normal();
-            if self.uniform() < 0.03 {
-                f64::NAN
-            } else {
-                normal
-            }
-        };
-        (0..rows)
-            .map(|_| core::array::from_fn(|_| value()))
-            .collect()
-    }
+/// White innovations, 3 % of them missing.
+fn innovations(seed: u64, rows: usize) -> Vec<[f64; 3]> {
+    let mut normals = Normals::of_seed(seed);
+    let mut value = || {
+        let normal = normals.normal();
+        if normals.uniform() < 0.03 {
+            f64::NAN
+        } else {
+            normal
+        }
+    };
+    (0..rows)
+        .map(|_| core::array::from_fn(|_| value()))
+        .collect()
 }
 
 const RECORDS: u64 = 600;
@@ -50,7 +28,7 @@ const FALSE_ALARM: f64 = 0.05;
 const ALARMS: core::ops::RangeInclusive<usize> = 9..=51;
 
 fn alarms(test: impl Fn(&[[f64; 3]]) -> f64) -> usize {
-    let p_values = (0..RECORDS).map(|seed| test(&Normals::of_seed(seed).innovations(700)));
+    let p_values = (0..RECORDS).map(|seed| test(&innovations(seed, 700)));
     p_values.filter(|p| *p < FALSE_ALARM).count()
 }
 
@@ -77,7 +55,7 @@ fn white_innovations_alarm_as_often_as_they_say() {
 #[test]
 fn power_is_one_in_the_mean_and_stays_below_the_level() {
     let time_s: Vec<f64> = (0..2000).map(|k| 60.0 * f64::from(k)).collect();
-    let white = Normals::of_seed(5).innovations(2000);
+    let white = innovations(5, 2000);
     let series: Vec<f64> = white.iter().map(|row| row[0]).collect();
     let found = periodogram(&time_s, &series, 0.01).unwrap();
     let mean = found.power.iter().sum::<f64>() / found.power.len() as f64;
@@ -93,7 +71,7 @@ fn power_is_one_in_the_mean_and_stays_below_the_level() {
 
 #[test]
 fn correlation_between_axes_and_rows_is_seen() {
-    let mut innovations = Normals::of_seed(9).innovations(4000);
+    let mut innovations = innovations(9, 4000);
     // x follows the y of the row before with 0.1: six sigmas of a correlation of 4000 rows.
     for row in (1..innovations.len()).rev() {
         if !innovations[row - 1][1].is_nan() {
@@ -120,7 +98,7 @@ fn white_noise_alarms_the_allan_test_no_more_often_than_it_may() {
     const RECORDS: u64 = 400;
     let alarms = (0..RECORDS)
         .filter(|seed| {
-            let white = Normals::of_seed(*seed).white(DAY);
+            let white = Normals::of_seed(*seed).rows(DAY);
             let found = allan_test(&minutes(), &white, FALSE_ALARM).unwrap();
             found.course != NoiseCourse::White
         })
@@ -134,7 +112,7 @@ fn white_noise_alarms_the_allan_test_no_more_often_than_it_may() {
 fn noise_that_does_not_average_out_is_told_by_its_course() {
     let course = |of: &dyn Fn(usize, f64, &mut [f64; 3]) -> f64| {
         let mut held = [0.0; 3];
-        let mut series = Normals::of_seed(5).white(DAY);
+        let mut series = Normals::of_seed(5).rows(DAY);
         for (row, values) in series.iter_mut().enumerate() {
             for value in values {
                 *value = of(row, *value, &mut held);

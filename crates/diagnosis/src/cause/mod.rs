@@ -36,7 +36,6 @@ pub use family::{Candidate, Family, Plan, Unavailable};
 pub(crate) use family::{extend, jump, missing, parameter, warm_up};
 pub(crate) use finding::SET_CONSTANT;
 pub use finding::{Finding, FoundParameter, Rival};
-pub(crate) use null::normal;
 pub(crate) use score::RICHER;
 pub use score::Ranked;
 pub use search::{SearchOptions, Searched, search};

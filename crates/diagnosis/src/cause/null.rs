@@ -1,9 +1,10 @@
 //! What the statistics reach if the model is right: drawn from their joint distribution.
 
+use gyrocal_statistics::deviates::polar;
 use gyrocal_statistics::{CHI_SQUARE_99, two_sided_p, z_of_two_sided_p};
 use nalgebra::{Cholesky, DMatrix, DMatrixView};
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand_chacha::rand_core::SeedableRng;
 
 use super::bank::Bank;
 use super::family::Family;
@@ -65,7 +66,7 @@ impl Normals {
 
     fn grow(&mut self, signatures: usize) {
         while self.values.len() < signatures * DRAWS {
-            self.values.push(normal(&mut self.generator));
+            self.values.push(polar(&mut self.generator));
         }
     }
 
@@ -238,18 +239,6 @@ pub(crate) fn tail(value: f64) -> f64 {
     two_sided_p(value.max(0.0).sqrt())
 }
 
-/// A normal deviate by the polar method (Marsaglia).
-pub(crate) fn normal(generator: &mut ChaCha8Rng) -> f64 {
-    let mut uniform = || (generator.next_u64() >> 11) as f64 * (2.0 / (1u64 << 53) as f64) - 1.0;
-    loop {
-        let (x, y) = (uniform(), uniform());
-        let square = x * x + y * y;
-        if square < 1.0 && square > 0.0 {
-            return x * (-2.0 * square.ln() / square).sqrt();
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -257,7 +246,7 @@ mod tests {
     #[test]
     fn a_threshold_is_exceeded_with_its_probability_however_small() {
         let mut generator = ChaCha8Rng::seed_from_u64(3);
-        let mut maxima: Vec<f64> = (0..DRAWS).map(|_| normal(&mut generator).powi(2)).collect();
+        let mut maxima: Vec<f64> = (0..DRAWS).map(|_| polar(&mut generator).powi(2)).collect();
         maxima.sort_unstable_by(f64::total_cmp);
         let null = Null {
             penalties: Vec::new(),

@@ -2,8 +2,7 @@
 
 use core::ops::Range;
 
-use gyrocal_statistics::{robust_sigma, theil_sen_at_zero};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use gyrocal_statistics::{robust_sigma, student_two_sided_p, theil_sen_at_zero};
 
 /// Number of rows on either side of a sample in the comparison.
 const REACH: usize = 8;
@@ -50,7 +49,7 @@ impl Search {
     /// estimated from the samples. Neighbouring residuals share samples and count half.
     pub(crate) fn single_p(&self, deviation: f64) -> f64 {
         let degrees = (0.5 * self.samples as f64).max(1.0);
-        StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |student| 2.0 * student.sf(deviation.abs()))
+        student_two_sided_p(deviation, degrees).unwrap_or(1.0)
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is left of a set after a next run, on average.
 
+use gyrocal_statistics::deviates::polar;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -8,7 +9,6 @@ use super::outlook::{SetForecast, SetMember};
 use super::said::Said;
 use super::set::{Comparison, deficits, stays};
 use super::universe::{Case, Unknown};
-use crate::cause::normal;
 
 /// What the record says of each member's sizes and of all that it is judged beside, if that member
 /// is the cause.
@@ -32,7 +32,7 @@ impl Deviates {
     pub(crate) fn new(rows: usize, draws: usize, seed: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         Self(DMatrix::from_fn(rows.max(1), draws, |_, _| {
-            normal(&mut generator)
+            polar(&mut generator)
         }))
     }
 }

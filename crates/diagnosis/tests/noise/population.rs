@@ -3,9 +3,8 @@
 use gyrocal::{Drift, FilterSettings, InitialAttitude, PlatformFilter, Site};
 use gyrocal_diagnosis::{DeclaredNoise, Innovations};
 use gyrocal_record::Record;
+use gyrocal_statistics::deviates::Normals;
 use gyrocal_truth::{Population, Scenario, Term, simulate_with};
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// What is wrong with the noise of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +48,7 @@ pub(crate) fn case(population: &Population, number: u64, fault: Fault, terms: &[
         _ => {}
     }
     let mut record = simulate_with(&simulated, terms).unwrap().record;
-    let mut normals = Normals(ChaCha12Rng::seed_from_u64(scenario.seed ^ 0x5eed));
+    let mut normals = Normals::of_seed(scenario.seed ^ 0x5eed);
     let mut outliers = Vec::new();
     let mut held = [0.0; 3];
     for (row, sample) in record.accel_g.iter_mut().enumerate() {
@@ -125,18 +124,4 @@ pub(crate) fn innovations(record: &Record, scenario: &Scenario) -> Innovations {
             .unwrap();
     }
     innovations
-}
-
-/// Normal deviates by Box and Muller.
-pub(crate) struct Normals(pub(crate) ChaCha12Rng);
-
-impl Normals {
-    pub(crate) fn uniform(&mut self) -> f64 {
-        ((self.0.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    pub(crate) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        radius * (core::f64::consts::TAU * self.uniform()).cos()
-    }
 }

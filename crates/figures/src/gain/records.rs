@@ -1,9 +1,10 @@
 //! One record, diagnosed, and what its extended model gains.
 
 use gyrocal_calibration::{Extended, Run};
-use gyrocal_characterise::{Draw, Planted, plant_any};
+use gyrocal_characterise::{Planted, plant_any};
 use gyrocal_diagnosis::plan::Named;
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, validated};
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};

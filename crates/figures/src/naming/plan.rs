@@ -1,9 +1,10 @@
 //! Planned runs, made: what was predicted of sigmas and named sets, beside what they are.
 
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
-use gyrocal_characterise::{Draw, plant_any};
+use gyrocal_characterise::plant_any;
 use gyrocal_diagnosis::plan::{Named, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, InitialAttitude, Population, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 

@@ -3,28 +3,25 @@
 #![allow(dead_code)] // each test file uses a part
 
 use gyrocal_measured::Log;
+use gyrocal_statistics::deviates::Normals;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 pub(crate) const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;
 
 /// Normal deviates of a seed.
-pub(crate) struct Noise(ChaCha12Rng);
+pub(crate) struct Noise(Normals);
 
 impl Noise {
     pub(crate) fn of_seed(seed: u64) -> Self {
-        Self(ChaCha12Rng::seed_from_u64(seed))
+        Self(Normals::of_seed(seed))
     }
 
     pub(crate) fn uniform(&mut self) -> f64 {
-        ((self.0.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        self.0.uniform()
     }
 
-    /// By Box and Muller.
     pub(crate) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        radius * (core::f64::consts::TAU * self.uniform()).cos()
+        self.0.normal()
     }
 
     pub(crate) fn vector(&mut self) -> Vector3<f64> {
