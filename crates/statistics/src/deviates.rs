@@ -5,13 +5,17 @@ use core::f64::consts::TAU;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_chacha::{ChaCha8Rng, ChaCha12Rng};
 
+use crate::math::{ln, pow};
+
 /// Spacing of uniform deviates of 53 bits.
 const SPACING: f64 = 1.0 / (1_u64 << 53) as f64;
 
-/// A standard normal deviate of two uniform ones, the first greater than 0 (Box and Muller).
+/// A standard normal deviate of two uniform ones, the first greater than 0 (Box and Muller). The
+/// cosine is that of `libm`, not of [`crate::math`], whose last bit may differ: a seed gives the same
+/// record for ever.
 #[must_use]
 pub fn box_muller([radius, angle]: [f64; 2]) -> f64 {
-    (-2.0 * libm::log(radius)).sqrt() * libm::cos(TAU * angle)
+    (-2.0 * ln(radius)).sqrt() * libm::cos(TAU * angle)
 }
 
 /// A standard normal deviate by the polar method (Marsaglia).
@@ -21,7 +25,7 @@ pub fn polar(generator: &mut impl Rng) -> f64 {
         let (x, y) = (uniform(), uniform());
         let square = x * x + y * y;
         if square < 1.0 && square > 0.0 {
-            return x * (-2.0 * square.ln() / square).sqrt();
+            return x * (-2.0 * ln(square) / square).sqrt();
         }
     }
 }
@@ -46,7 +50,7 @@ impl Draw {
 
     /// Uniform in the logarithm between two positive numbers.
     pub fn log_uniform(&mut self, [low, high]: [f64; 2]) -> f64 {
-        low * libm::pow(high / low, self.uniform())
+        low * pow(high / low, self.uniform())
     }
 
     /// Normal with mean 0 and standard deviation 1.

@@ -10,6 +10,7 @@
 //! - [`Proportion`], [`chi_square_band`] and others: exact intervals of shares and of mean squares.
 //! - [`median`], [`quantile`], [`robust_sigma`] and others: descriptive statistics.
 //! - [`deviates`]: normal deviates of a seed.
+//! - [`math`]: exponential, logarithm, sine and others, the same on every machine.
 //! - [`two_sided_p`], [`ln_chi_square_tail`] and others: tail probabilities and their inverses.
 //!
 //! # The domain in brief
@@ -45,6 +46,7 @@ mod binned_means;
 mod descriptive;
 pub mod deviates;
 mod error;
+pub mod math;
 mod periodogram;
 mod probability;
 mod proportion;

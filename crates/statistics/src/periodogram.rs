@@ -7,6 +7,7 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft as _, FftDirection};
 
 use crate::error::StatisticsError;
+use crate::math::{atan2, exp, exp_m1, ln, ln_1p, sin_cos};
 use crate::sampling::median_interval_s;
 use crate::whiteness::check_probability;
 
@@ -137,7 +138,7 @@ fn refine(
     let first_s = there[0].0;
     let sums = |frequency_hz: f64| {
         there.iter().fold([0.0; 2], |[c, s], (time, value)| {
-            let (sin, cos) = (TAU * frequency_hz * (time - first_s)).sin_cos();
+            let (sin, cos) = sin_cos(TAU * frequency_hz * (time - first_s));
             [c + value * cos, s + value * sin]
         })
     };
@@ -158,7 +159,7 @@ fn refine(
     let frequency_hz = 0.5 * (low + high);
     let [cosine, sine] = sums(frequency_hz);
     let power = (cosine * cosine + sine * sine) / count;
-    let phase_at_first = (-sine).atan2(cosine);
+    let phase_at_first = atan2(-sine, cosine);
     SpectralLine {
         frequency_hz,
         power,
@@ -174,7 +175,7 @@ fn refine(
 pub fn strongest_line(lines: &[SpectralLine; 3]) -> (usize, f64) {
     let weaker = |a: &usize, b: &usize| lines[*a].p_value.total_cmp(&lines[*b].p_value);
     let axis = (0..3).min_by(weaker).unwrap_or(0);
-    (axis, -(3.0 * (-lines[axis].p_value).ln_1p()).exp_m1())
+    (axis, -exp_m1(3.0 * ln_1p(-lines[axis].p_value)))
 }
 
 /// Extent of a search for the largest power: frequency range times effective duration.
@@ -199,16 +200,16 @@ impl FrequencySearch {
     /// is small.
     #[must_use]
     pub fn ln_probability(&self, power: f64) -> f64 {
-        (1.0 + self.0 * power.sqrt()).ln() - power
+        ln(1.0 + self.0 * power.sqrt()) - power
     }
 
     /// Probability that white noise exceeds a power anywhere (Baluev, MNRAS 385, 1279, 2008,
     /// equations 5 and 6, for known variance): an upper bound that is close where it is small.
     fn probability(&self, power: f64) -> f64 {
-        let single = (-power).exp();
+        let single = exp(-power);
         let crossings = self.0 * single * power.sqrt();
         // 1 - (1 - single) exp(-crossings), without losing digits where both are small.
-        single * (-crossings).exp() - (-crossings).exp_m1()
+        single * exp(-crossings) - exp_m1(-crossings)
     }
 
     /// The power that belongs to a probability.

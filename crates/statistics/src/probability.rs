@@ -1,8 +1,9 @@
 //! Tail probabilities of the normal and chi-square distributions, and their inverses.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
-use statrs::function::erf::{erf_inv, erfc, erfc_inv};
-use statrs::function::gamma::ln_gamma;
+use statrs::function::erf::{erf_inv, erfc_inv};
+
+use crate::math::{erfc, exp, ln, ln_gamma};
 
 /// The 97.5 % quantile of the standard normal distribution: half the width of a two-sided 95 %
 /// interval, in standard deviations.
@@ -71,24 +72,24 @@ pub fn f_tail(value: f64, degrees_of_freedom: [f64; 2]) -> Option<f64> {
 pub fn ln_chi_square_tail(value: f64, degrees_of_freedom: f64) -> f64 {
     let tail = chi_square_tail(value, degrees_of_freedom).unwrap_or(1.0);
     if tail > LEAST_TAIL {
-        return tail.ln();
+        return ln(tail);
     }
     // The first term of the tail's expansion.
     let half = 0.5 * degrees_of_freedom;
-    (half - 1.0) * (0.5 * value).ln() - 0.5 * value - ln_gamma(half)
+    (half - 1.0) * ln(0.5 * value) - 0.5 * value - ln_gamma(half)
 }
 
 /// The value of chi-square with one degree of freedom that is exceeded with a probability of this
 /// natural logarithm: makes statistics of any kind comparable with that of one signature.
 #[must_use]
 pub fn chi_square_equivalent(ln_probability: f64) -> f64 {
-    if ln_probability > LEAST_TAIL.ln() {
-        return z_of_two_sided_p(ln_probability.min(0.0).exp()).powi(2);
+    if ln_probability > ln(LEAST_TAIL) {
+        return z_of_two_sided_p(exp(ln_probability.min(0.0))).powi(2);
     }
     // From ln p = -u/2 - ln(pi u/2)/2, the first term of the tail's expansion.
     let mut value = -2.0 * ln_probability;
     for _ in 0..4 {
-        value = -2.0 * ln_probability - (core::f64::consts::FRAC_PI_2 * value).ln();
+        value = -2.0 * ln_probability - ln(core::f64::consts::FRAC_PI_2 * value);
     }
     value
 }

@@ -2,6 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::math::{exp, ln};
+
 /// Fewer decimated points than these tell nothing of the noise.
 const FEWEST_POINTS: usize = 30;
 
@@ -56,9 +58,8 @@ impl NoiseType {
         let edf = match self {
             Self::WhiteAngle => (n + 1.0) * (n - 2.0 * m) / (2.0 * (n - m)),
             Self::FlickerAngle => {
-                let product =
-                    ((n - 1.0) / (2.0 * m)).ln() * ((2.0 * m + 1.0) * (n - 1.0) / 4.0).ln();
-                product.max(0.0).sqrt().exp()
+                let product = ln((n - 1.0) / (2.0 * m)) * ln((2.0 * m + 1.0) * (n - 1.0) / 4.0);
+                exp(product.max(0.0).sqrt())
             }
             Self::WhiteRate => {
                 (1.5 * (n - 1.0) / m - 2.0 * (n - 2.0) / n) * (4.0 * m * m / (4.0 * m * m + 5.0))
