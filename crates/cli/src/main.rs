@@ -23,7 +23,6 @@ mod outputs;
 mod pictures;
 mod plan;
 mod progress;
-mod rounding;
 mod simulate;
 mod tables;
 mod text;

@@ -15,13 +15,13 @@ use gyrocal_measured::{
     Description, Log, MeasuredError, ResultFile, StopSettings, find_stops, given_stops,
 };
 use gyrocal_record::Outputs;
+use gyrocal_statistics::format;
 
 use crate::Failure;
 use crate::measured::{interval, unusable};
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::pictures;
-use crate::rounding::rounded;
 use crate::tables::{right, table};
 
 /// Multi-position test: fit the drift law to static stops and find missing terms.
@@ -137,24 +137,23 @@ fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleRepo
         let _ = writeln!(
             text,
             "{}: chi-square {:.0} with the nominal law ({} degrees of freedom), {:.1} with the \
-             extended law ({}; p {:.1e}).\n  Scatter beyond the standard errors of the stops: {:.0} \
+             extended law ({}; {}).\n  Scatter beyond the standard errors of the stops: {:.0} \
              deg/h, with the nominal law {:.0} deg/h.\n  All terms of the catalogue against the \
-             nominal law: F({}, {}) = {:.1}, p {:.1e}; against the extended law: F = {:.1}, p \
-             {:.1e}.",
+             nominal law: F({}, {}) = {:.1}, {}; against the extended law: F = {:.1}, {}.",
             gyro.gyro,
             nominal.chi_square,
             nominal.degrees_of_freedom,
             extended.chi_square,
             extended.degrees_of_freedom,
-            extended.p_value,
+            format::p_value(extended.p_value),
             extended.excess_deg_per_h,
             nominal.excess_deg_per_h,
             test.degrees_of_freedom[0],
             test.degrees_of_freedom[1],
             test.f,
-            test.p_value,
+            format::p_value(test.p_value),
             gyro.extended_against_catalogue.f,
-            gyro.extended_against_catalogue.p_value,
+            format::p_value(gyro.extended_against_catalogue.p_value),
         );
         if !gyro.undetermined.is_empty() {
             let names = gyro.undetermined.join(", ");
@@ -233,9 +232,9 @@ fn laws(report: &TumbleReport) -> Table {
             let [before, before_sigma] = nominal
                 .find(|other| other.name == coefficient.name)
                 .map_or([const { String::new() }; 2], |other| {
-                    rounded(other.estimate, other.sigma)
+                    format::estimate(other.estimate, other.sigma)
                 });
-            let [estimate, sigma] = rounded(coefficient.estimate, coefficient.sigma);
+            let [estimate, sigma] = format::estimate(coefficient.estimate, coefficient.sigma);
             table.add_row([
                 Cell::new(&coefficient.name),
                 right(before),
@@ -250,16 +249,14 @@ fn laws(report: &TumbleReport) -> Table {
 }
 
 fn describe(text: &mut String, finding: &Finding) {
-    let [estimate, sigma] = rounded(finding.estimate, finding.sigma);
-    let p_value = match finding.p_value {
-        // Of more permutations than usual.
-        p_value if p_value < 0.001 => format!("{p_value:.0e}"),
-        p_value => format!("{p_value:.3}"),
-    };
+    let [estimate, sigma] = format::estimate(finding.estimate, finding.sigma);
     let _ = writeln!(
         text,
-        "  {}  {estimate} ± {sigma} {}  (F = {:.0}, family-wise p = {p_value})",
-        finding.effect, finding.unit, finding.f
+        "  {}  {estimate} ± {sigma} {}  (F = {:.0}, family-wise {})",
+        finding.effect,
+        finding.unit,
+        finding.f,
+        format::p_value(finding.p_value)
     );
     let rivals: Vec<String> = finding
         .rivals

@@ -10,6 +10,7 @@
 //! - [`Proportion`], [`chi_square_band`] and others: exact intervals of shares and of mean squares.
 //! - [`median`], [`quantile`], [`robust_sigma`] and others: descriptive statistics.
 //! - [`deviates`]: normal deviates of a seed.
+//! - [`format`]: p-values, estimates and rounded numbers as text.
 //! - [`math`]: exponential, logarithm, sine and others, the same on every machine.
 //! - [`two_sided_p`], [`ln_chi_square_tail`] and others: tail probabilities and their inverses.
 //!
@@ -46,6 +47,7 @@ mod binned_means;
 mod descriptive;
 pub mod deviates;
 mod error;
+pub mod format;
 pub mod math;
 mod periodogram;
 mod probability;

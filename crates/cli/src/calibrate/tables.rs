@@ -2,10 +2,10 @@
 
 use comfy_table::Cell;
 use gyrocal_calibration::{Calibration, ConsiderSensitivity, SiteQuantity};
+use gyrocal_statistics::format;
 
 use super::Found;
 use super::words::site_error;
-use crate::rounding::rounded;
 use crate::tables::{right, table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -22,7 +22,7 @@ pub(super) fn coefficients(calibration: &Calibration) -> String {
     ];
     let mut table = table(header);
     for coefficient in calibration.coefficients() {
-        let [estimate, sigma] = rounded(coefficient.estimate, coefficient.sigma);
+        let [estimate, sigma] = format::estimate(coefficient.estimate, coefficient.sigma);
         table.add_row([
             Cell::new(coefficient.id),
             right(estimate),
@@ -74,7 +74,7 @@ pub(super) fn turn_ons(found: &Found) -> Option<String> {
     let mut table = table(["record".to_owned()].into_iter().chain(header));
     for (measurement, run) in found.measurements.iter().zip(&found.calibration.runs) {
         let gyros = run.turn_on_deg_per_h?.map(|[estimate, sigma]| {
-            let [estimate, sigma] = rounded(estimate, sigma);
+            let [estimate, sigma] = format::estimate(estimate, sigma);
             right(format!("{estimate} ± {sigma}"))
         });
         let name = Cell::new(measurement.path.display());
@@ -103,8 +103,8 @@ pub(super) fn gains(found: &Found) -> Option<String> {
         }
         table.add_row([
             Cell::new(coefficient.id),
-            right(rounded(0.0, *alone)[1].clone()),
-            right(rounded(0.0, coefficient.sigma)[1].clone()),
+            right(format::estimate(0.0, *alone)[1].clone()),
+            right(format::estimate(0.0, coefficient.sigma)[1].clone()),
             right(format!("{:.2}", coefficient.sigma / alone)),
             Cell::new(coefficient.unit),
         ]);

@@ -6,9 +6,7 @@ use gyrocal_diagnosis::MagnitudeTest;
 use gyrocal_record::{
     AllanCourse, AllanPointReport, AllanReport, DiagnosisReport, DiagnosisVerdict, NormReport,
 };
-use gyrocal_statistics::{AllanTest, NoiseCourse};
-
-use super::words::{probability, short};
+use gyrocal_statistics::{AllanTest, NoiseCourse, format};
 
 /// Sigmas of the mean norm below which an error would not be seen.
 const SEEN: f64 = 4.0;
@@ -55,18 +53,17 @@ pub(super) fn norm_in_words(report: &DiagnosisReport) -> String {
     let Some(norm) = &report.norm else {
         return "The norm of specific force has too few complete rows to say anything.".to_owned();
     };
-    let p = probability(norm.p_value);
+    let p = format::p_value(norm.p_value);
     if norm.accelerometers {
         return format!(
             "The norm of specific force says: the accelerometers' side. No gyro and no attitude \
-             enters it, and {} (probability by chance {p}): an accelerometer, or gravity, is other \
+             enters it, and {} ({p}): an accelerometer, or gravity, is other \
              than declared.",
             norm.description
         );
     }
     let within = format!(
-        "it is gravity's within its noise, {:.1e} ± {:.1e} g off on average (probability by chance \
-         {p})",
+        "it is gravity's within its noise, {:.1e} ± {:.1e} g off on average ({p})",
         norm.mean_g, norm.mean_sigma_g
     );
     let physical = report.findings.iter().any(|finding| {
@@ -93,13 +90,13 @@ pub(super) fn allan_in_words(report: &DiagnosisReport) -> String {
                 deviation of it."
             .to_owned();
     };
-    let p = probability(allan.p_value);
+    let p = format::p_value(allan.p_value);
     let longest = allan.points.last().map_or(0.0, |point| point.tau_s);
     let course = match allan.course {
         AllanCourse::White => {
             return format!(
                 "Averaged over up to {}, it falls as white noise of the believed size does \
-                 (Allan deviation; probability of as much more by chance {p}).",
+                 (Allan deviation; {p}).",
                 duration(longest)
             );
         }
@@ -120,17 +117,17 @@ pub(super) fn allan_in_words(report: &DiagnosisReport) -> String {
     };
     format!(
         "Averaged, it {course}: in channel {} its Allan deviation over {} is {} times that of \
-         white noise (probability by chance {p}). That is told, not counted as a finding.",
+         white noise ({p}). That is told, not counted as a finding.",
         AXES[axis],
         duration(point.tau_s),
-        short((100.0 * factor).round() / 100.0)
+        format::short((100.0 * factor).round() / 100.0, 4)
     )
 }
 
 fn duration(seconds: f64) -> String {
     if seconds < 3600.0 {
-        format!("{} s", short(seconds))
+        format!("{} s", format::short(seconds, 4))
     } else {
-        format!("{} h", short((seconds / 360.0).round() / 10.0))
+        format!("{} h", format::short((seconds / 360.0).round() / 10.0, 4))
     }
 }

@@ -5,8 +5,8 @@ use gyrocal_diagnosis::{Abscissa, DiagnoseError, Diagnosis, residuals};
 use gyrocal_record::{
     AgainstReport, AutocorrelationReport, LineReport, NisReport, Record, ResidualsReport,
 };
+use gyrocal_statistics::format;
 
-use super::words::{probability, short};
 use crate::tables::{right, table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -87,9 +87,9 @@ pub(super) fn rows(report: &ResidualsReport, duration_h: f64) -> String {
                 let period = if line.period_h > duration_h {
                     "longer than the record".to_owned()
                 } else {
-                    format!("{} h", short(line.period_h))
+                    format!("{} h", format::short(line.period_h, 4))
                 };
-                format!("{period}, {}", probability(line.p_value))
+                format!("{period}, {}", format::p_cell(line.p_value))
             }),
         );
     }
@@ -103,7 +103,7 @@ pub(super) fn rows(report: &ResidualsReport, duration_h: f64) -> String {
         };
         row(
             format!("against {name}, p"),
-            against.p_value.map(probability),
+            against.p_value.map(format::p_cell),
         );
     }
     table.trim_fmt()

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 
 use comfy_table::Cell;
 use gyrocal_record::{DiagnosisReport, FindingReport, GainReport, NoiseRatioReport};
+use gyrocal_statistics::format;
 
-use super::words::{likelihood, probability, short, value};
+use super::words::{likelihood, value};
 use super::{Found, residuals};
 use crate::noise::told;
 use crate::tables::{right, table};
@@ -81,7 +82,7 @@ fn findings(report: &DiagnosisReport) -> String {
         let mut head = [
             Cell::new(&finding.effect),
             right(format!("{:.1}", finding.z)),
-            right(probability(finding.p_value)),
+            right(format::p_cell(finding.p_value)),
             right(gain(finding)),
         ];
         if finding.parameters.is_empty() {
@@ -207,14 +208,14 @@ fn audit(found: &Found<'_>) -> String {
             "{} {} with {} s missing, the longest interval {} s",
             gaps.count,
             if gaps.count == 1 { "gap" } else { "gaps" },
-            short(gaps.missing_s),
-            short(gaps.longest_s)
+            format::short(gaps.missing_s, 4),
+            format::short(gaps.longest_s, 4)
         ));
     }
     if gaps.missing_values > 0.0 {
         parts.push(format!(
             "{} % of the values missing",
-            short(100.0 * gaps.missing_values)
+            format::short(100.0 * gaps.missing_values, 4)
         ));
     }
     format!("Noise of the accelerometers: {}.", parts.join("; "))

@@ -8,10 +8,10 @@ use gyrocal::generated::catalogue::EFFECTS;
 use gyrocal_record::{
     DiagnosisVerdict, FilterReport, FindingReport, ParameterReport, RemainderVerdict, RivalReport,
 };
+use gyrocal_statistics::format;
 
 use super::blind::is_blind;
 use super::{Found, channels, filter, tables};
-use crate::rounding::rounded;
 use crate::text::{bullet, indented, paragraph};
 
 /// Rivals that are told in words; the table has all.
@@ -93,10 +93,9 @@ pub(super) fn name(effect: &str) -> &'static str {
 
 fn verdict(found: &Found<'_>) -> String {
     let report = &found.report;
-    let percent = 100.0 * report.false_alarm_probability;
     let alarm = format!(
-        "a sound record shows anything with a probability of {} %",
-        short(percent)
+        "a sound record shows anything with a probability of {}",
+        format::percent(report.false_alarm_probability)
     );
     match report.verdict {
         DiagnosisVerdict::EffectsFound => {
@@ -107,20 +106,18 @@ fn verdict(found: &Found<'_>) -> String {
                 .map(|finding| finding.p_value)
                 .fold(1.0, f64::min);
             format!(
-                "Something is wrong: {} found. By chance the whole search would show as much with a \
-                 probability of {}; {alarm}.",
+                "Something is wrong: {} found ({} for the whole search; {alarm}).",
                 if count == 1 {
                     "one effect".to_owned()
                 } else {
                     format!("{count} effects")
                 },
-                probability(least),
+                format::p_value(least),
             )
         }
         DiagnosisVerdict::Unexplained => format!(
-            "Something is wrong, and no effect of the catalogue explains it (probability by chance \
-             {}; {alarm}).",
-            probability(report.remainder.p_value)
+            "Something is wrong, and no effect of the catalogue explains it ({}; {alarm}).",
+            format::p_value(report.remainder.p_value)
         ),
         _ => format!(
             "Nothing is wrong: {}, no effect of the catalogue{} ({alarm}).{}",
@@ -158,9 +155,9 @@ fn size(finding: &FindingReport) -> String {
         words.push(values(&finding.parameters));
     }
     words.push(format!(
-        "{:.1} sigma, probability by chance {}",
+        "{:.1} sigma, {}",
         finding.z,
-        probability(finding.p_value)
+        format::p_value(finding.p_value)
     ));
     words.join("; ")
 }
@@ -181,10 +178,10 @@ pub(super) fn values(parameters: &[ParameterReport]) -> String {
 pub(super) fn value(parameter: &ParameterReport) -> String {
     match parameter.sigma {
         Some(sigma) => {
-            let [estimate, sigma] = rounded(parameter.estimate, sigma);
+            let [estimate, sigma] = format::estimate(parameter.estimate, sigma);
             format!("{estimate} ± {sigma}")
         }
-        None => short(parameter.estimate),
+        None => format::short(parameter.estimate, 4),
     }
 }
 
@@ -247,10 +244,10 @@ fn judged(report: &FilterReport, findings: &[FindingReport]) -> String {
 
 fn left(found: &Found<'_>) -> String {
     let remainder = &found.report.remainder;
-    let p = probability(remainder.p_value);
+    let p = format::p_value(remainder.p_value);
     match remainder.verdict {
         RemainderVerdict::Unexplained => format!(
-            "Left unexplained: {} (probability by chance {p}). No effect of the catalogue does \
+            "Left unexplained: {} ({p}). No effect of the catalogue does \
              this; docs/adding-a-term.md adds one.",
             remainder.description
         ),
@@ -260,60 +257,14 @@ fn left(found: &Found<'_>) -> String {
         ),
         _ => format!(
             "Left: noise. The innovations of the model are white up to half the sampling rate \
-             (probability of as much structure by chance {p})."
+             ({p})."
         ),
-    }
-}
-
-/// A probability to two digits, whatever its size.
-pub(super) fn probability(p: f64) -> String {
-    if p < 1e-300 {
-        "below 1e-300".to_owned()
-    } else if p >= 1e-3 {
-        format!("{p:.2}").replace("0.00", "below 0.01")
-    } else {
-        format!("{p:.0e}")
-    }
-}
-
-/// Four digits without trailing zeros.
-pub(super) fn short(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
-        let digits = value.abs().max(1e-9).log10().floor() as i32;
-        let decimals = usize::try_from(3 - digits).unwrap_or(0);
-        let text = format!("{value:.decimals$}");
-        if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        }
-    } else {
-        format!("{value:.3e}")
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_short() {
-        let cases = [
-            (86_400.0, "86400"),
-            (12.345_67, "12.35"),
-            (0.5, "0.5"),
-            (1e-7, "1.000e-7"),
-            (0.0, "0"),
-            (100.0, "100"),
-        ];
-        for (value, expected) in cases {
-            assert_eq!(short(value), expected);
-        }
-        assert_eq!(probability(0.034), "0.03");
-        assert_eq!(probability(0.002), "below 0.01");
-        assert_eq!(probability(2.3e-12), "2e-12");
-        assert_eq!(probability(0.0), "below 1e-300");
-    }
 
     #[test]
     fn a_rival_is_told_by_its_likelihood() {

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use comfy_table::{Cell, Table};
 use gyrocal_campaign::{Banded, CoefficientSummary, Failure, Measured, Summary};
+use gyrocal_statistics::format;
 
 use super::MonteCarloArguments;
-use crate::rounding::rounded;
 use crate::tables::{right, table};
 
 /// Failed runs that are shown; the JSON has all.
@@ -102,11 +102,11 @@ fn coefficients(summary: &Summary) -> Table {
             right(ratio.map_or_else(String::new, |ratio| measured_text(ratio, 1.0, 3)))
         };
         let [bias, bias_error] = match (coefficient.bias, coefficient.bias_standard_error) {
-            (Some(bias), Some(error)) => rounded(bias, error),
+            (Some(bias), Some(error)) => format::estimate(bias, error),
             (Some(bias), None) => [format!("{bias:.1e}"), String::new()],
             (None, _) => [String::new(), String::new()],
         };
-        let rmse = coefficient.rmse.map(|rmse| rounded(0.0, rmse));
+        let rmse = coefficient.rmse.map(|rmse| format::estimate(0.0, rmse));
         let mut row = vec![
             Cell::new(&coefficient.name),
             Cell::new(&coefficient.unit),

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use gyrocal_measured::tumble::{Finding, GyroReport, Prepared, TumbleReport};
 use gyrocal_report::{ResidualChannel, Residuals, TermContribution, TermContributions};
+use gyrocal_statistics::format;
 
 use crate::pictures::Named;
-use crate::rounding::rounded;
 
 /// Partial residuals of each effect found, and the residuals of both laws; only the latter if
 /// nothing was found.
@@ -72,7 +72,7 @@ fn contribution(
     let residuals = &gyro.extended.residuals_deg_per_h;
     let pairs = residuals.iter().zip(&finding.regressor);
     let (regressor, regressor_unit) = regressor(&finding.effect);
-    let [estimate, sigma] = rounded(finding.estimate, finding.sigma);
+    let [estimate, sigma] = format::estimate(finding.estimate, finding.sigma);
     Some(TermContribution {
         name: finding.effect.clone(),
         estimate: format!("{estimate} ± {sigma} {}", finding.unit),
