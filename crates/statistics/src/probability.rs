@@ -3,7 +3,7 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
 use statrs::function::erf::{erf_inv, erfc_inv};
 
-use crate::math::{erfc, exp, ln, ln_gamma};
+use crate::math::{erfc, exp, ln, ln_1p, ln_gamma};
 
 /// The 97.5 % quantile of the standard normal distribution: half the width of a two-sided 95 %
 /// interval, in standard deviations.
@@ -94,6 +94,24 @@ pub fn chi_square_equivalent(ln_probability: f64) -> f64 {
     value
 }
 
+/// The standard normal deviate whose tail is as probable as that of a chi-square value, negative
+/// below the median; `None` if the degrees of freedom are not positive.
+#[must_use]
+pub fn chi_square_z(value: f64, degrees_of_freedom: f64) -> Option<f64> {
+    let distribution = ChiSquared::new(degrees_of_freedom).ok()?;
+    let (lower, upper) = (distribution.cdf(value), distribution.sf(value));
+    if lower < upper {
+        return Some(-z_of_two_sided_p(2.0 * lower));
+    }
+    if upper > LEAST_TAIL {
+        return Some(z_of_two_sided_p(2.0 * upper));
+    }
+    // The sum of the expansion's terms, which fall like a geometric series.
+    let ratio = (0.5 * degrees_of_freedom - 1.0) / (0.5 * value);
+    let ln_tail = ln_chi_square_tail(value, degrees_of_freedom) - ln_1p(-ratio);
+    Some(chi_square_equivalent(core::f64::consts::LN_2 + ln_tail).sqrt())
+}
+
 /// Below it, tails are taken by the first term of their expansions.
 const LEAST_TAIL: f64 = 1e-200;
 
@@ -136,6 +154,23 @@ mod tests {
             assert!((p - 0.05).abs() < 1e-4, "{p}");
         }
         assert_eq!(chi_square_tail(1.0, 0.0), None);
+    }
+
+    #[test]
+    fn a_chi_square_has_the_z_of_its_tail() {
+        let z = |value, degrees| chi_square_z(value, degrees).unwrap_or(f64::NAN);
+        // 97.5 % and 2.5 % points of chi-square with 100 degrees of freedom, as printed.
+        assert!((z(129.561, 100.0) - NORMAL_97_5).abs() < 1e-4);
+        assert!((z(74.222, 100.0) + NORMAL_97_5).abs() < 1e-4);
+        // The tail of a square is both tails of the variable; to the digits of the quantile.
+        assert!((two_sided_p(z(900.0, 1.0)) / (2.0 * two_sided_p(30.0)) - 1.0).abs() < 1e-6);
+        // The tail is expanded from 1e-200 on, near 17 270; a step of 50 is worth 0.25 there.
+        let values = (0..12).map(|step| z(17_000.0 + 50.0 * f64::from(step), 12_000.0));
+        let values: Vec<f64> = values.collect();
+        for pair in values.windows(2) {
+            assert!((pair[1] - pair[0] - 0.25).abs() < 0.01, "{values:?}");
+        }
+        assert_eq!(chi_square_z(1.0, 0.0), None);
     }
 
     #[test]
