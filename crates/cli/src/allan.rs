@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use comfy_table::Cell;
-use gyrocal_measured::{MeasuredError, ResultFile, Unfit, read_columns};
+use gyrocal_instruments::{MeasuredError, ResultFile, Unfit, read_columns};
 use gyrocal_record::{InputErrorKind, SourceText, write_json};
 use gyrocal_statistics::allan::{
     AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use gyrocal_measured::strapdown::{ImportReport, ImportSettings, Imported, axes_csv, import};
-use gyrocal_measured::{Description, Log, MeasuredError, ResultFile};
+use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, axes_csv, import};
+use gyrocal_instruments::{Description, Log, MeasuredError, ResultFile};
 use gyrocal_record::Outputs;
 
 use crate::Failure;

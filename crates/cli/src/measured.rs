@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use gyrocal_measured::MeasuredError;
+use gyrocal_instruments::MeasuredError;
 use miette::Diagnostic;
 
 use crate::Failure;

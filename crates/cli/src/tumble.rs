@@ -8,10 +8,10 @@ use std::path::PathBuf;
 use clap::Args;
 use comfy_table::{Cell, Table};
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_measured::tumble::{
+use gyrocal_instruments::tumble::{
     Finding, Prepared, SearchSettings, TumbleReport, TumbleSettings, prepare, tumble,
 };
-use gyrocal_measured::{
+use gyrocal_instruments::{
     Description, Log, MeasuredError, ResultFile, StopSettings, find_stops, given_stops,
 };
 use gyrocal_record::Outputs;

@@ -28,7 +28,7 @@ pub(crate) fn campaign(
 
 /// Where the results of a cell are kept.
 pub(crate) fn results(topic: &str, cell: &str) -> Result<PathBuf, Error> {
-    let directory = gyrocal_freshness::workspace().join("target/figures");
+    let directory = gyrocal_testkit::workspace().join("target/figures");
     std::fs::create_dir_all(&directory)?;
     let letters = cell.chars();
     let cell: String = letters

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use gyrocal::Platform;
 use gyrocal_calibration::{GyroAxes, Run, attitude_walk_share, average_record};
-use gyrocal_measured::strapdown::read_axes;
+use gyrocal_instruments::strapdown::read_axes;
 use gyrocal_record::{AveragedReport, Bench, Record, SourceText};
 use miette::miette;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use gyrocal_measured::tumble::{Finding, GyroReport, Prepared, TumbleReport};
+use gyrocal_instruments::tumble::{Finding, GyroReport, Prepared, TumbleReport};
 use gyrocal_report::{ResidualChannel, Residuals, TermContribution, TermContributions};
 use gyrocal_statistics::format;
 

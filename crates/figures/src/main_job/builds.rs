@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use gyrocal_codegen::build::{Derivation, Settings};
-use gyrocal_freshness::{WorkspaceCopy, cargo, run};
+use gyrocal_testkit::{WorkspaceCopy, cargo, run};
 
 use super::Error;
 use crate::figure::Figure;
@@ -26,7 +26,7 @@ fn seconds(name: &str, limit: f64, measured: Duration) -> Figure {
 fn clean_build() -> Result<Figure, Error> {
     let scratch = tempfile::tempdir()?;
     let copy = WorkspaceCopy::make(&scratch.path().to_string_lossy(), "clean");
-    let tools = gyrocal_freshness::tools_only(scratch.path().join("tools"));
+    let tools = gyrocal_testkit::tools_only(scratch.path().join("tools"));
     // What a build needs from the registry is downloaded once, as on any machine.
     run(cargo(&copy.root, &scratch.path().join("target")).args(["fetch"])).succeeded();
     let begin = Instant::now();
@@ -44,7 +44,7 @@ fn clean_build() -> Result<Figure, Error> {
 /// First environment, derivation and emission, and the bytes they give.
 fn derivation() -> Result<Vec<Figure>, Error> {
     let scratch = tempfile::tempdir()?;
-    let sources = gyrocal_freshness::workspace().join("codegen/derive");
+    let sources = gyrocal_testkit::workspace().join("codegen/derive");
     let copied = WorkspaceCopy::make(&scratch.path().to_string_lossy(), "elsewhere");
     let mut settings = Settings::from_env();
     settings.environments = Some(scratch.path().join("environments"));

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use gyrocal_calibration::{Calibration, GyroAxes, Options, Run, calibrate, calibrate_strapdown};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
-use gyrocal_measured::strapdown::{ImportReport, ImportSettings, Imported, import};
-use gyrocal_measured::{Description, Log};
+use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, import};
+use gyrocal_instruments::{Description, Log};
 
 use super::{Measured, data, run_time};
 use crate::figure::Figure;

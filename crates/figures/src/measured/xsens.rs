@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use gyrocal_measured::tumble::{Finding, TumbleReport, TumbleSettings, prepare, tumble};
-use gyrocal_measured::{Description, Log, StopSettings, find_stops};
+use gyrocal_instruments::tumble::{Finding, TumbleReport, TumbleSettings, prepare, tumble};
+use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
 
 use super::{Measured, data, run_time};
 use crate::figure::Figure;
@@ -180,7 +180,7 @@ fn misalignment(finding: &Finding) -> Option<f64> {
     finding.misalignment_needed_rad
 }
 
-fn rival(rival: &gyrocal_measured::tumble::Rival) -> String {
+fn rival(rival: &gyrocal_instruments::tumble::Rival) -> String {
     format!(
         "`{}` ({} nats)",
         rival.effect,

@@ -9,8 +9,8 @@ use common::{EARTH_RATE_RAD_PER_S, Noise, log};
 use gyrocal_calibration::{
     Calibration, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
-use gyrocal_measured::Description;
-use gyrocal_measured::strapdown::{ImportSettings, Imported, axes_csv, import, read_axes};
+use gyrocal_instruments::Description;
+use gyrocal_instruments::strapdown::{ImportSettings, Imported, axes_csv, import, read_axes};
 use gyrocal_record::SourceText;
 use nalgebra::{UnitQuaternion, Vector3};
 

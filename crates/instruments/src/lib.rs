@@ -20,10 +20,10 @@
 //! # Example
 //!
 //! ```no_run
-//! use gyrocal_measured::tumble::{TumbleSettings, prepare, tumble};
-//! use gyrocal_measured::{Description, Log, StopSettings, find_stops};
+//! use gyrocal_instruments::tumble::{TumbleSettings, prepare, tumble};
+//! use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
 //!
-//! # fn main() -> Result<(), gyrocal_measured::MeasuredError> {
+//! # fn main() -> Result<(), gyrocal_instruments::MeasuredError> {
 //! let description = Description::read("log.toml".as_ref())?;
 //! let log = Log::read("log.csv".as_ref(), &description)?;
 //! let stops = find_stops(&log, &StopSettings::default())?;

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use gyrocal_freshness::{
+use gyrocal_testkit::{
     TinyDerivation, codegen, fresh_directory, real_environments, run, snapshot, system_python,
 };
 

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use gyrocal_freshness::workspace;
+use gyrocal_testkit::workspace;
 
 /// All pages below a folder.
 fn pages(folder: &Path) -> Vec<PathBuf> {

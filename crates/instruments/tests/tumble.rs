@@ -5,10 +5,10 @@
 mod common;
 
 use common::{Noise, Unit, stops_and_turns};
-use gyrocal_measured::tumble::{
+use gyrocal_instruments::tumble::{
     Positions, Prepared, SearchSettings, Term, TumbleSettings, prepare, search, tumble,
 };
-use gyrocal_measured::{
+use gyrocal_instruments::{
     Description, Log, MeasuredError, StopSettings, Unfit, average, calibrate_by_norm, find_stops,
     given_stops,
 };
@@ -172,7 +172,7 @@ fn earth_rate_is_taken_off_where_latitude_is_known() {
         let up = noise.vector().normalize();
         let north = noise.vector().cross(&up).normalize();
         let earth = EARTH_DEG_PER_H * (up * sine + north * cosine);
-        gyrocal_measured::Stop {
+        gyrocal_instruments::Stop {
             samples: 0..1,
             time_s: 0.0,
             gyro: earth.into(),
@@ -181,8 +181,8 @@ fn earth_rate_is_taken_off_where_latitude_is_known() {
             accel_sigma: [1e-5; 3],
         }
     };
-    let stops: Vec<gyrocal_measured::Stop> = (0..200).map(stop).collect();
-    let instrument = |latitude_deg| gyrocal_measured::tumble::Instrument {
+    let stops: Vec<gyrocal_instruments::Stop> = (0..200).map(stop).collect();
+    let instrument = |latitude_deg| gyrocal_instruments::tumble::Instrument {
         accel: None,
         outputs_per_rad_per_s: [1.0_f64.to_degrees() * 3600.0; 3],
         latitude_deg,

@@ -2,7 +2,7 @@
 
 #![allow(dead_code)] // each test file uses a part
 
-use gyrocal_measured::Log;
+use gyrocal_instruments::Log;
 use gyrocal_statistics::deviates::Normals;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 

@@ -5,8 +5,8 @@
 mod common;
 
 use common::{EARTH_RATE_RAD_PER_S, log};
-use gyrocal_measured::strapdown::{ImportSettings, Imported, import, integrate};
-use gyrocal_measured::{Description, Log, MeasuredError, Unfit};
+use gyrocal_instruments::strapdown::{ImportSettings, Imported, import, integrate};
+use gyrocal_instruments::{Description, Log, MeasuredError, Unfit};
 use gyrocal_truth::{Attitude, Coefficients, InitialAttitude, Scenario, simulate};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use gyrocal_codegen::build::Derivation;
-use gyrocal_freshness::{TinyDerivation, codegen, edit, fresh_directory, run, snapshot, workspace};
+use gyrocal_testkit::{TinyDerivation, codegen, edit, fresh_directory, run, snapshot, workspace};
 
 const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
 

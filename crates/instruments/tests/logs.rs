@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 
-use gyrocal_measured::{Description, Log, MeasuredError, Unfit};
+use gyrocal_instruments::{Description, Log, MeasuredError, Unfit};
 use gyrocal_statistics::allan::{allan_deviation, noise_coefficients, octaves};
 
 const DESCRIPTION: &str = r#"

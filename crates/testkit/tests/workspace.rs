@@ -6,7 +6,7 @@ use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use gyrocal_codegen::build::{Settings, Variant};
-use gyrocal_freshness::{
+use gyrocal_testkit::{
     Outcome, WorkspaceCopy, cargo, fresh_directory, real_environments, run, snapshot, tools_only,
 };
 

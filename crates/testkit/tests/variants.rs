@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use gyrocal_codegen::build::{Settings, Variant};
-use gyrocal_freshness::{TinyDerivation, edit, real_environments, workspace};
+use gyrocal_testkit::{TinyDerivation, edit, real_environments, workspace};
 
 const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::time::{Duration, SystemTime};
 
 use gyrocal_codegen::build::Derivation;
-use gyrocal_freshness::{WorkspaceCopy, workspace};
+use gyrocal_testkit::{WorkspaceCopy, workspace};
 
 /// Cargo does not see an edit that keeps an old file time: this test does.
 #[test]

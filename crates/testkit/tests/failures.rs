@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use gyrocal_freshness::{
+use gyrocal_testkit::{
     Outcome, TinyDerivation, WorkspaceCopy, codegen, edit, executable, fresh_directory, run,
     snapshot, system_python,
 };
