@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_characterise::{Cell, CellReport, CharacteriseReport, Method, campaign, cell_report};
+use gyrocal_evaluation::{
+    BaselineMethod, CellReport, CharacteriseReport, PopulationCell, cell_campaign, cell_report,
+};
 use gyrocal_record::{SCHEMA_VERSION, write_json, write_whole};
 use miette::miette;
 
@@ -27,7 +29,7 @@ pub(crate) struct CharacteriseArguments {
     /// Only this cell of the table; may be given several times. One of clean, d5, d6, d8, d12, d5-50,
     /// pair, beyond, step, cubic, azimuth.
     #[arg(long = "cell", value_name = "NAME", value_parser = cell)]
-    cells: Vec<Cell>,
+    cells: Vec<PopulationCell>,
     /// Records per cell; default 1000 (clean: 2000), on which targets must be met; on fewer they
     /// must not be significantly missed.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
@@ -62,7 +64,7 @@ pub(crate) struct CharacteriseArguments {
 /// Value of `--method`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Asked {
-    Method(Method),
+    Method(BaselineMethod),
     None,
 }
 
@@ -77,7 +79,7 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> 
         std::fs::create_dir_all(folder).map_err(|reason| unusable(folder, &reason))?;
     }
     let cells = if arguments.cells.is_empty() {
-        Cell::ALL.to_vec()
+        PopulationCell::ALL.to_vec()
     } else {
         arguments.cells.clone()
     };
@@ -114,7 +116,7 @@ fn check_outputs(arguments: &CharacteriseArguments) -> Result<(), Failure> {
     // Including cells that are not requested.
     let results = arguments.results.iter();
     let kept: Vec<PathBuf> = results
-        .flat_map(|folder| Cell::ALL.map(|cell| kept(folder, cell)))
+        .flat_map(|folder| PopulationCell::ALL.map(|cell| kept(folder, cell)))
         .collect();
     let mut outputs: Vec<(&str, Option<&Path>)> = kept
         .iter()
@@ -127,18 +129,18 @@ fn check_outputs(arguments: &CharacteriseArguments) -> Result<(), Failure> {
 }
 
 /// File of the kept records of a cell.
-fn kept(folder: &Path, cell: Cell) -> PathBuf {
+fn kept(folder: &Path, cell: PopulationCell) -> PathBuf {
     folder.join(format!("{}.jsonl", cell.name()))
 }
 
 fn report(
     arguments: &CharacteriseArguments,
-    cell: Cell,
-    methods: &[Method],
+    cell: PopulationCell,
+    methods: &[BaselineMethod],
 ) -> Result<CellReport, Failure> {
     let runs = arguments.runs.unwrap_or(cell.full_runs());
     let seeds: Range<u64> = arguments.seed..arguments.seed + runs;
-    let mut campaign = campaign(cell, seeds.clone(), methods);
+    let mut campaign = cell_campaign(cell, seeds.clone(), methods);
     if let Some(folder) = &arguments.results {
         campaign = campaign.results(kept(folder, cell));
     }
@@ -148,7 +150,7 @@ fn report(
     let mut progress = SeedProgress::named(&cell.name());
     let outcome = campaign
         .run(
-            |seed| cell.examine(seed, methods),
+            |seed| cell.evaluate(seed, methods),
             |state| progress.reach(state),
         )
         .map_err(|error| Failure::Work(miette!("{error}")))?;
@@ -167,29 +169,29 @@ fn unusable(folder: &Path, reason: &std::io::Error) -> Failure {
     ))
 }
 
-fn cell(name: &str) -> Result<Cell, String> {
-    Cell::of_name(name).map_err(|error| error.to_string())
+fn cell(name: &str) -> Result<PopulationCell, String> {
+    PopulationCell::of_name(name).map_err(|error| error.to_string())
 }
 
 fn method(name: &str) -> Result<Asked, String> {
     if name == "none" {
         return Ok(Asked::None);
     }
-    let found = Method::ALL.into_iter().find(|method| method.name() == name);
+    let found = BaselineMethod::ALL.into_iter().find(|method| method.name() == name);
     found.map(Asked::Method).ok_or_else(|| {
-        let known = Method::ALL.map(Method::name).join(", ");
+        let known = BaselineMethod::ALL.map(BaselineMethod::name).join(", ");
         format!("expected one of {known}, none")
     })
 }
 
 /// The requested methods in their own order.
-fn methods(asked: &[Asked]) -> Result<Vec<Method>, Failure> {
+fn methods(asked: &[Asked]) -> Result<Vec<BaselineMethod>, Failure> {
     let none = asked.contains(&Asked::None);
     if none && asked.iter().any(|asked| *asked != Asked::None) {
         return Err(Failure::Usage(
             "--method none excludes other methods".to_owned(),
         ));
     }
-    let is_asked = |method: &Method| asked.is_empty() || asked.contains(&Asked::Method(*method));
-    Ok(Method::ALL.into_iter().filter(is_asked).collect())
+    let is_asked = |method: &BaselineMethod| asked.is_empty() || asked.contains(&Asked::Method(*method));
+    Ok(BaselineMethod::ALL.into_iter().filter(is_asked).collect())
 }

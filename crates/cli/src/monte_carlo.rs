@@ -10,7 +10,9 @@ use std::path::PathBuf;
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Options;
-use gyrocal_campaign::{Campaign, Fingerprint, MonteCarloReport, Outcome, Summary, Trial, program};
+use gyrocal_evaluation::{
+    CalibrationSummary, CalibrationTrial, Campaign, Fingerprint, MonteCarloReport, Outcome, program,
+};
 use gyrocal_record::{SCHEMA_VERSION, write_json};
 use gyrocal_truth::{Population, Scenario};
 use miette::miette;
@@ -70,7 +72,7 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
     let seed = scenario.seed;
     let outcome = outcome(arguments, scenario)?;
     tracing::info!(resumed = outcome.resumed(), "all seeds done");
-    let summary = Summary::of(&outcome);
+    let summary = CalibrationSummary::of(&outcome);
     if let (0, Some(failure)) = (summary.runs, summary.failures.first()) {
         return Err(Failure::Work(miette!(
             "{}: no run gave a calibration; seed {}: {}",
@@ -93,7 +95,10 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
     Ok(text)
 }
 
-fn outcome(arguments: &MonteCarloArguments, scenario: Scenario) -> Result<Outcome<Trial>, Failure> {
+fn outcome(
+    arguments: &MonteCarloArguments,
+    scenario: Scenario,
+) -> Result<Outcome<CalibrationTrial>, Failure> {
     let options = if arguments.streaming {
         Options::streaming()
     } else {
@@ -135,7 +140,7 @@ fn outcome(arguments: &MonteCarloArguments, scenario: Scenario) -> Result<Outcom
                 ..file.clone()
             }
         };
-        Trial::of(&scenario, &options)
+        CalibrationTrial::of(&scenario, &options)
     };
     campaign
         .run(job, |state| progress.reach(state))

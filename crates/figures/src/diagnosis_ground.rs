@@ -12,7 +12,7 @@ mod difference;
 #[path = "../../diagnosis/tests/noise/population.rs"]
 mod population;
 
-use gyrocal_campaign::Campaign;
+use gyrocal_evaluation::Campaign;
 
 use crate::figure::Figure;
 use crate::resumable;

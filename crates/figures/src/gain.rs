@@ -6,7 +6,7 @@ mod records;
 
 use core::ops::Range;
 
-use gyrocal_campaign::Outcome;
+use gyrocal_evaluation::Outcome;
 use gyrocal_statistics::{Proportion, mean_square_band, median};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -93,7 +93,7 @@ fn at_least(name: &str, least: f64, found: Proportion, small: bool) -> Figure {
 /// Records that could not be diagnosed, if there are any: there must be none.
 fn failures<T>(cell: &str, outcome: &Outcome<T>) -> Option<Figure> {
     let failed = outcome.failures().count();
-    let (_, first) = outcome.failures().next()?;
+    let first = outcome.failures().next()?.message;
     let name = format!("{cell}: records that could not be diagnosed");
     let mut figure = Figure::note(&name, format!("{failed} ({first})"));
     figure.target = "none".to_owned();

@@ -4,7 +4,7 @@
 mod cost;
 mod plan;
 
-use gyrocal_characterise::{Cell, Characteristic, Target, campaign, cell_report};
+use gyrocal_evaluation::{Characteristic, PopulationCell, Target, cell_campaign, cell_report};
 
 use crate::figure::Figure;
 use crate::resumable::results;
@@ -13,18 +13,18 @@ use crate::resumable::results;
 type Error = Box<dyn std::error::Error + Send + Sync>;
 
 /// Records of each cell in the small version, which runs everywhere.
-const SMALL_RUNS: [(Cell, u64); 11] = [
-    (Cell::Clean, 16),
-    (Cell::Single(5), 8),
-    (Cell::Single(6), 8),
-    (Cell::Single(8), 12),
-    (Cell::Single(12), 6),
-    (Cell::LogUniform, 4),
-    (Cell::Pair, 4),
-    (Cell::Step, 3),
-    (Cell::Cubic, 4),
-    (Cell::Azimuth, 3),
-    (Cell::Beyond, 4),
+const SMALL_RUNS: [(PopulationCell, u64); 11] = [
+    (PopulationCell::Clean, 16),
+    (PopulationCell::Single(5), 8),
+    (PopulationCell::Single(6), 8),
+    (PopulationCell::Single(8), 12),
+    (PopulationCell::Single(12), 6),
+    (PopulationCell::LogUniform, 4),
+    (PopulationCell::Pair, 4),
+    (PopulationCell::Step, 3),
+    (PopulationCell::Cubic, 4),
+    (PopulationCell::Azimuth, 3),
+    (PopulationCell::OutOfCatalogue, 4),
 ];
 
 /// All figures of the topic.
@@ -33,14 +33,14 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     for (cell, few) in SMALL_RUNS {
         let report = if small {
             let seeds = 0..few;
-            let outcome =
-                campaign(cell, seeds.clone(), &[]).run(|seed| cell.examine(seed, &[]), |_| ())?;
+            let outcome = cell_campaign(cell, seeds.clone(), &[])
+                .run(|seed| cell.evaluate(seed, &[]), |_| ())?;
             cell_report(cell, &outcome, &seeds)
         } else {
             let seeds = 0..cell.full_runs();
-            let outcome = campaign(cell, seeds.clone(), &[])
+            let outcome = cell_campaign(cell, seeds.clone(), &[])
                 .results(results("naming", &cell.name())?)
-                .run(|seed| cell.examine(seed, &[]), |_| ())?;
+                .run(|seed| cell.evaluate(seed, &[]), |_| ())?;
             cell_report(cell, &outcome, &seeds)
         };
         let all = report.characteristics.iter();

@@ -3,7 +3,7 @@
 use core::ops::Range;
 use std::path::PathBuf;
 
-use gyrocal_campaign::{Campaign, Fingerprint, program};
+use gyrocal_evaluation::{Campaign, Fingerprint, program};
 
 /// Why a file of results cannot be kept.
 type Error = Box<dyn std::error::Error + Send + Sync>;

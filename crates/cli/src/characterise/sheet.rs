@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-use gyrocal_characterise::{CellReport, Characteristic, Target};
+use gyrocal_evaluation::{CellReport, Characteristic, Target};
 use gyrocal_statistics::Proportion;
 
 use crate::tables::{right, table};

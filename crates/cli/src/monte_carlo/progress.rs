@@ -3,7 +3,7 @@
 use std::io::IsTerminal as _;
 use std::time::Duration;
 
-use gyrocal_campaign::Progress;
+use gyrocal_evaluation::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// A bar with the time left, if stderr is a terminal; it goes when it is dropped.

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use comfy_table::{Cell, Table};
-use gyrocal_campaign::{Banded, CoefficientSummary, Failure, Measured, Summary};
+use gyrocal_evaluation::{
+    BandedMean, CalibrationSummary, CoefficientSummary, Failure, MeasuredValue,
+};
 use gyrocal_statistics::format;
 
 use super::MonteCarloArguments;
@@ -12,7 +14,7 @@ use crate::tables::{right, table};
 /// Failed runs that are shown; the JSON has all.
 const FAILURES_SHOWN: usize = 5;
 
-pub(super) fn text(arguments: &MonteCarloArguments, summary: &Summary) -> String {
+pub(super) fn text(arguments: &MonteCarloArguments, summary: &CalibrationSummary) -> String {
     let mut text = format!(
         "{}: {} {} to {}, {} calibrated, {} failed\n",
         arguments.scenario.display(),
@@ -71,14 +73,14 @@ pub(super) fn text(arguments: &MonteCarloArguments, summary: &Summary) -> String
     text
 }
 
-fn nine(summary: &Summary) -> Option<Banded> {
+fn nine(summary: &CalibrationSummary) -> Option<BandedMean> {
     let all = |coefficient: &CoefficientSummary| coefficient.determined == summary.runs;
     summary
         .nees
         .filter(|_| !summary.coefficients.iter().all(all))
 }
 
-fn coefficients(summary: &Summary) -> Table {
+fn coefficients(summary: &CalibrationSummary) -> Table {
     let bounded = summary
         .coefficients
         .iter()
@@ -98,7 +100,7 @@ fn coefficients(summary: &Summary) -> Table {
     header.push("95 % interval holds, %");
     let mut table = table(header);
     for coefficient in &summary.coefficients {
-        let ratio = |ratio: Option<Measured>| {
+        let ratio = |ratio: Option<MeasuredValue>| {
             right(ratio.map_or_else(String::new, |ratio| measured_text(ratio, 1.0, 3)))
         };
         let [bias, bias_error] = match (coefficient.bias, coefficient.bias_standard_error) {
@@ -129,13 +131,13 @@ fn coefficients(summary: &Summary) -> Table {
     table
 }
 
-fn measured_text(measured: Measured, scale: f64, decimals: usize) -> String {
+fn measured_text(measured: MeasuredValue, scale: f64, decimals: usize) -> String {
     let [low, high] = measured.interval.map(|bound| scale * bound);
     let value = scale * measured.value;
     format!("{value:.decimals$} ({low:.decimals$} to {high:.decimals$})")
 }
 
-fn banded_text(banded: &Banded) -> String {
+fn banded_text(banded: &BandedMean) -> String {
     let [low, high] = banded.band;
     format!(
         "mean {:.3}, {:.3} expected, 99.9 % band {low:.3} to {high:.3}: {}; median {:.3}",
@@ -150,8 +152,8 @@ fn banded_text(banded: &Banded) -> String {
 mod tests {
     use super::*;
 
-    fn summary(rmse_over_bound: Option<Measured>) -> Summary {
-        let share = Measured {
+    fn summary(rmse_over_bound: Option<MeasuredValue>) -> CalibrationSummary {
+        let share = MeasuredValue {
             value: 0.95,
             interval: [0.94, 0.959_6],
         };
@@ -167,7 +169,7 @@ mod tests {
             rmse_over_bound,
             coverage: Some(share),
         };
-        Summary {
+        CalibrationSummary {
             runs: 9,
             failures: (0..7)
                 .map(|seed| Failure {
@@ -177,7 +179,7 @@ mod tests {
                 .collect(),
             nees_determined: None,
             nees: None,
-            nis: Some(Banded {
+            nis: Some(BandedMean {
                 mean: 3.2,
                 expected: 3.0,
                 band: [2.9, 3.1],
@@ -188,7 +190,7 @@ mod tests {
         }
     }
 
-    fn said(summary: &Summary) -> String {
+    fn said(summary: &CalibrationSummary) -> String {
         let arguments = MonteCarloArguments {
             scenario: "s.toml".into(),
             seeds: 0..16,
@@ -208,7 +210,7 @@ mod tests {
         let cells = "7   -0.00123     0.00056   0.018   0.950 (0.940 to 0.960)";
         assert!(without.contains(cells), "{without}");
         assert!(without.contains("95.0 (94.0 to 96.0)"), "{without}");
-        let with = said(&summary(Some(Measured {
+        let with = said(&summary(Some(MeasuredValue {
             value: 1.02,
             interval: [0.99, 1.05],
         })));

@@ -4,7 +4,7 @@ use std::fs;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use gyrocal_characterise::CharacteriseReport;
+use gyrocal_evaluation::CharacteriseReport;
 
 use crate::folder::Folder;
 

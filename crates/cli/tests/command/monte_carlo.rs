@@ -4,7 +4,7 @@ use std::fs;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use gyrocal_campaign::MonteCarloReport;
+use gyrocal_evaluation::MonteCarloReport;
 
 use crate::folder::Folder;
 

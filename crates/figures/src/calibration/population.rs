@@ -1,8 +1,8 @@
 //! A population of random records, calibrated by the batch estimator and held against the truth.
 
 use gyrocal_calibration::Options;
-use gyrocal_campaign::{Banded, Outcome, Summary, Trial};
 use gyrocal_statistics::mean;
+use gyrocal_evaluation::{BandedMean, CalibrationSummary, CalibrationTrial, Outcome};
 use gyrocal_truth::Population;
 
 use super::Error;
@@ -27,7 +27,7 @@ const NORMAL_99_9: f64 = 3.2905;
 
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let outcome = run(if small { FEW } else { RECORDS })?;
-    let summary = Summary::of(&outcome);
+    let summary = CalibrationSummary::of(&outcome);
     let runs = summary.runs;
     let seeds = format!(
         "population {SEED}, 0 to {}",
@@ -107,7 +107,7 @@ fn judged(what: &str, bounds: [f64; 2], value: f64, interval: [f64; 2], runs: us
 }
 
 /// A mean of normalised squares in its 99.9 % band.
-fn banded(what: &str, banded: Option<Banded>) -> Result<Figure, Error> {
+fn banded(what: &str, banded: Option<BandedMean>) -> Result<Figure, Error> {
     let banded = banded.ok_or("no record was calibrated")?;
     let mut figure = Figure::within(what, banded.band, banded.mean);
     let [low, high] = banded.band;
@@ -118,7 +118,7 @@ fn banded(what: &str, banded: Option<Banded>) -> Result<Figure, Error> {
 
 /// Mean NIS in its band. The least sum of squares has an element for each prior, which expects a
 /// truth drawn from it.
-fn nis(outcome: &Outcome<Trial>, nis: Option<Banded>) -> Result<Figure, Error> {
+fn nis(outcome: &Outcome<CalibrationTrial>, nis: Option<BandedMean>) -> Result<Figure, Error> {
     let nis = nis.ok_or("no record was calibrated")?;
     let rows: usize = outcome.successes().map(|(_, trial)| trial.rows).sum();
     let lacking = lacking(outcome, |variance| 1.0 - variance);
@@ -138,7 +138,7 @@ fn nis(outcome: &Outcome<Trial>, nis: Option<Banded>) -> Result<Figure, Error> {
 /// For consistent covariances, a truth of variance v takes (1 - v) P from the NEES of all nine
 /// coefficients and (1 - v) (1 - P) from the least sum of squares, P being the coefficient's
 /// posterior variance; `share` is of that.
-fn lacking(outcome: &Outcome<Trial>, share: impl Fn(f64) -> f64) -> Vec<f64> {
+fn lacking(outcome: &Outcome<CalibrationTrial>, share: impl Fn(f64) -> f64) -> Vec<f64> {
     let population = Population::new(SEED);
     let variances = [
         population.largest_bias_deg_per_h,
@@ -146,7 +146,7 @@ fn lacking(outcome: &Outcome<Trial>, share: impl Fn(f64) -> f64) -> Vec<f64> {
         population.largest_gg_deg_per_h_per_g2,
     ]
     .map(|largest| largest * largest / 3.0);
-    let of = |trial: &Trial| {
+    let of = |trial: &CalibrationTrial| {
         let sigmas = trial.sigma.iter().enumerate();
         sigmas
             .map(|(i, sigma)| share(sigma * sigma) * (1.0 - variances[i % 3]))
@@ -156,12 +156,12 @@ fn lacking(outcome: &Outcome<Trial>, share: impl Fn(f64) -> f64) -> Vec<f64> {
 }
 
 /// Runs what has no result yet; few records are run afresh each time.
-fn run(records: u64) -> Result<Outcome<Trial>, Error> {
+fn run(records: u64) -> Result<Outcome<CalibrationTrial>, Error> {
     let population = Population::new(SEED);
     let options = Options::default();
     resumable::campaign("calibration", "population", 0..records, records == FEW)?
         .run(
-            |number| Trial::of(&population.scenario(number), &options),
+            |number| CalibrationTrial::of(&population.scenario(number), &options),
             |progress| {
                 if progress.done % 100 == 0 {
                     eprintln!("{} of {} records", progress.done, progress.total);

@@ -178,7 +178,8 @@ fn audited(
 ) -> Result<Vec<Audited>, Error> {
     let job = |number| -> Result<Audited, Error> { audit(&make(number)) };
     let outcome = campaign(&format!("audit {cell}"), 0..runs, small)?.run(job, |_| ())?;
-    if let Some((seed, error)) = outcome.failures().next() {
+    if let Some(failure) = outcome.failures().next() {
+        let (seed, error) = (failure.seed, failure.message);
         return Err(format!("record {seed} of `{cell}` could not be audited: {error}").into());
     }
     Ok(outcome.successes().map(|(_, one)| one.clone()).collect())

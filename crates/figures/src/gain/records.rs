@@ -1,9 +1,9 @@
 //! One record, diagnosed, and what its extended model gains.
 
 use gyrocal_calibration::{Extended, Run};
-use gyrocal_characterise::{Planted, plant_any};
 use gyrocal_diagnosis::plan::Named;
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, validated};
+use gyrocal_evaluation::{InjectedEffect, inject_any};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{DMatrix, DVector};
@@ -64,13 +64,13 @@ impl Extension {
 }
 
 fn scenario(seed: u64) -> Scenario {
-    gyrocal_characterise::scenario(FIRST_NUMBER + seed)
+    gyrocal_evaluation::scenario(FIRST_NUMBER + seed)
 }
 
 /// With a random effect in it, `strength` standard deviations of its own bound large.
-fn drawn(seed: u64, strength: f64) -> Result<(Scenario, Planted), Error> {
+fn drawn(seed: u64, strength: f64) -> Result<(Scenario, InjectedEffect), Error> {
     let draw = &mut Draw::new(FIRST_NUMBER + seed, 0);
-    Ok(plant_any(scenario(seed), strength, draw)?)
+    Ok(inject_any(scenario(seed), strength, draw)?)
 }
 
 fn diagnosed(simulation: &Simulation) -> Result<Diagnosis<'_>, Error> {
@@ -86,9 +86,9 @@ pub(super) fn clean(seed: u64) -> Result<Extension, Error> {
 
 /// A record with one hidden effect.
 pub(super) fn hidden(seed: u64, strength: f64) -> Result<Extension, Error> {
-    let (scenario, planted) = drawn(seed, strength)?;
+    let (scenario, injected) = drawn(seed, strength)?;
     let simulation = simulate(&scenario)?;
-    Ok(Extension::of(planted.effect.id, &diagnosed(&simulation)?))
+    Ok(Extension::of(injected.effect.id, &diagnosed(&simulation)?))
 }
 
 /// What a cross-axis term does to the coefficients.
@@ -175,10 +175,10 @@ impl Second {
 pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     // Log-uniform by the golden ratio: any number of seeds is spread evenly.
     let share = (seed as f64 * 0.618_033_988_749_894_9).fract();
-    let (scenario, planted) = drawn(seed, least * 4.0_f64.powf(share))?;
+    let (scenario, injected) = drawn(seed, least * 4.0_f64.powf(share))?;
     let first = simulate(&scenario)?;
     let found = diagnosed(&first)?;
-    let later = simulate(&later(&scenario, &planted)?)?;
+    let later = simulate(&later(&scenario, &injected)?)?;
     let [one, other] = [&first, &later].map(|simulation| Run {
         record: &simulation.record,
         bench: &simulation.bench,
@@ -186,8 +186,8 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     let options = DiagnoseOptions::default();
     let validation = validated(&found, &one, &other, &options)?;
     let named = Named {
-        effect: planted.effect.id.to_owned(),
-        shape: planted.shape,
+        effect: injected.effect.id.to_owned(),
+        shape: injected.shape,
         rivals: Vec::new(),
     };
     let fitted = Named::fitted(&[named], &one, &found.noise_model, &options.calibration)?;
@@ -202,7 +202,7 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     };
     let of_told = validated(&told, &one, &other, &options)?.ok_or("nothing to validate")?;
     Ok(Second {
-        effect: planted.effect.id.to_owned(),
+        effect: injected.effect.id.to_owned(),
         accepted,
         gain_nats: validation.as_ref().map(|v| v.gain_nats()),
         after_a_day_arcmin: validation.map(|v| v.compensation.at_end_arcmin()),
@@ -212,18 +212,18 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
 
 /// The same platform four days later, at another attitude: what changed stays changed, what ages
 /// has aged.
-fn later(first: &Scenario, planted: &Planted) -> Result<Scenario, Error> {
+fn later(first: &Scenario, injected: &InjectedEffect) -> Result<Scenario, Error> {
     let mut scenario = Scenario {
         seed: first.seed ^ LATER_SEED,
         start_s: first.start_s + LATER_S,
         hidden: Vec::new(),
         ..first.clone()
     };
-    let (channel, term) = planted.effect.id.split_once('.').unwrap_or_default();
+    let (channel, term) = injected.effect.id.split_once('.').unwrap_or_default();
     let axis = ["gyro_x", "gyro_y", "gyro_z"]
         .iter()
         .position(|gyro| *gyro == channel);
-    let size = planted.sizes[0];
+    let size = injected.sizes[0];
     let aged = size * LATER_S / SECONDS_PER_DAY;
     match (term, axis) {
         ("step", Some(axis)) => scenario.coefficients.bias_deg_per_h[axis] += size,

@@ -1,9 +1,9 @@
 //! Planned runs, made: what was predicted of sigmas and named sets, beside what they are.
 
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
-use gyrocal_characterise::plant_any;
 use gyrocal_diagnosis::plan::{Named, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_evaluation::{inject_any};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, InitialAttitude, Population, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
@@ -194,7 +194,7 @@ fn sigmas(seed: u64) -> Result<Sigmas, Error> {
 }
 
 fn sets(seed: u64) -> Result<Sets, Error> {
-    let (scenario, _) = plant_any(scenario(seed), STRENGTH, &mut Draw::new(seed, 0))?;
+    let (scenario, _) = inject_any(scenario(seed), STRENGTH, &mut Draw::new(seed, 0))?;
     let first = simulate(&scenario)?;
     let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default())?;
     let named: Vec<Named> = found.findings.iter().map(Named::of).collect();

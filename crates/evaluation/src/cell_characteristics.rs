@@ -1,0 +1,283 @@
+//! Figures of each population cell with their targets.
+
+use core::ops::Range;
+use std::collections::BTreeMap;
+
+use crate::campaign::Outcome;
+use gyrocal_statistics::{Proportion, quantile};
+
+use crate::characteristic::{CellFigures, Characteristic};
+use crate::effect_family::families;
+use crate::population::PopulationCell;
+use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
+
+/// A stricter limit than [`SAME_CLASS_COSINE`], for information.
+const STRICT_CLASS_COSINE: f64 = 0.97;
+
+/// Targets for single effects by strength: detection on average and of the worst family, class of
+/// the first finding.
+const SINGLE_TARGETS: [(u32, [f64; 2], Option<f64>); 4] = [
+    (5, [0.86, 0.80], None),
+    (6, [0.97, 0.95], None),
+    (8, [0.995, 0.99], Some(0.91)),
+    (12, [0.995, 0.99], Some(0.97)),
+];
+
+/// Family of attitude jumps: three sizes at any row, found less often than effects without an onset.
+const ATTITUDE_JUMP: &str = "platform.knock";
+
+/// Strengths given the findings that count as the requested 10 sigmas.
+const REACHED: Range<f64> = 9.0..11.5;
+
+/// The figures of a cell, in the order of the table.
+#[must_use]
+pub fn characteristics(
+    cell: PopulationCell,
+    outcome: &Outcome<RecordScore>,
+    seeds: &Range<u64>,
+) -> Vec<Characteristic> {
+    let records: Vec<&RecordScore> = outcome.successes().map(|(_, record)| record).collect();
+    let mut figures = CellFigures {
+        cell: cell.name(),
+        seeds: seeds.clone(),
+        full: seeds.end - seeds.start >= cell.full_runs(),
+        all: Vec::new(),
+    };
+    match cell {
+        PopulationCell::Clean => clean(&mut figures, &records),
+        PopulationCell::Single(strength) => {
+            let asked = SINGLE_TARGETS.iter().find(|(of, ..)| *of == strength);
+            if let Some((_, detected, first)) = asked {
+                single(&mut figures, &records, Some(*detected), *first);
+            }
+        }
+        PopulationCell::LogUniform => single(&mut figures, &records, None, None),
+        PopulationCell::Pair => pair(&mut figures, &records),
+        PopulationCell::OutOfCatalogue => out_of_catalogue(&mut figures, &records),
+        PopulationCell::Step => step(&mut figures, &records),
+        PopulationCell::Cubic => {
+            let silent = share(&records, |record| Some(record.verdict == "clean"));
+            figures.at_least("silent", 0.75, silent);
+        }
+        PopulationCell::Azimuth => {
+            let first = share(&records, |record| {
+                let first = record.findings.first();
+                Some(first.is_some_and(|first| first.effect == "platform.initial_attitude"))
+            });
+            figures.at_least("named `platform.initial_attitude`", 0.95, first);
+            figures.mean("its mean size in sigmas", &strengths(&records));
+        }
+    }
+    let single_names = records.iter().flat_map(|record| &record.findings);
+    let single_names = single_names
+        .filter(|finding| finding.lacks_equivalents)
+        .count();
+    if cell != PopulationCell::Clean && cell != PopulationCell::Cubic {
+        figures.none(
+            "single names for exact equivalents",
+            single_names,
+            records.len() as u64,
+        );
+    }
+    let failed = outcome.failures().count();
+    if failed > 0 {
+        let runs = seeds.end - seeds.start;
+        figures.none("records that could not be examined", failed, runs);
+    }
+    figures.all
+}
+
+fn share(records: &[&RecordScore], of: impl Fn(&RecordScore) -> Option<bool>) -> Proportion {
+    Proportion::of(records.iter().filter_map(|record| of(record)))
+}
+
+/// The same for each injected effect separately: some are injected more often than others.
+fn by_effect(
+    records: &[&RecordScore],
+    of: impl Fn(&RecordScore) -> Option<bool>,
+) -> Vec<Proportion> {
+    let mut effects: BTreeMap<&str, Vec<bool>> = BTreeMap::new();
+    for record in records {
+        if let (Some(hidden), Some(counts)) = (record.hidden.first(), of(record)) {
+            effects.entry(&hidden.effect).or_default().push(counts);
+        }
+    }
+    effects.into_values().map(Proportion::of).collect()
+}
+
+fn strengths(records: &[&RecordScore]) -> Vec<f64> {
+    let hidden = records.iter().flat_map(|record| &record.hidden);
+    hidden.map(|hidden| hidden.strength).collect()
+}
+
+fn clean(figures: &mut CellFigures, records: &[&RecordScore]) {
+    let alarms = share(records, |record| Some(record.verdict != "clean"));
+    figures.bound_at_most("false alarms, upper 95 % bound", 0.02, alarms);
+    figures.note("false alarms", alarms);
+    let by = |of: fn(&RecordScore) -> bool| share(records, |record| Some(of(record)));
+    figures.note("false alarms of the search", by(|record| record.detected()));
+    figures.note(
+        "false alarms of noise",
+        by(|record| !record.noise.is_empty()),
+    );
+    figures.note(
+        "false alarms of the remainder",
+        by(|record| record.unexplained.is_some()),
+    );
+}
+
+fn single(
+    figures: &mut CellFigures,
+    records: &[&RecordScore],
+    detected: Option<[f64; 2]>,
+    first: Option<f64>,
+) {
+    if let Some([average, worst]) = detected {
+        let of = by_effect(records, |record| Some(record.detected()));
+        figures.average_at_least("detected, average of the effects", average, &of);
+        let all = families(records);
+        let of = |knocks: bool| -> Vec<Proportion> {
+            let some = all
+                .iter()
+                .filter(|one| (one.family == ATTITUDE_JUMP) == knocks);
+            some.map(|one| one.detected()).collect()
+        };
+        figures.none_below("detected, the worst family but knocks", worst, &of(false));
+        // No test finds jumps of five and six sigmas as often: docs/characteristics.md.
+        match of(true).as_slice() {
+            [knocks] if first.is_some() => {
+                figures.none_below("detected, knocks", worst, &[*knocks]);
+            }
+            [knocks] => figures.note("detected, knocks", *knocks),
+            _ => {}
+        }
+    }
+    let in_set = share(records, |record| {
+        record
+            .detected()
+            .then(|| record.hidden.iter().all(|hidden| hidden.in_set))
+    });
+    figures.at_least("the named set holds the truth", 0.95, in_set);
+    set_size(figures, records);
+    let right = |record: &RecordScore, cosine: f64| {
+        let hidden = record.hidden.first()?;
+        record.detected().then_some(hidden.first_cosine >= cosine)
+    };
+    let first_at = |cosine: f64| share(records, move |record| right(record, cosine));
+    match first {
+        Some(least) => figures.average_at_least(
+            "the class named first is right, average of the effects",
+            least,
+            &by_effect(records, |record| right(record, SAME_CLASS_COSINE)),
+        ),
+        None => figures.note(
+            "the class named first is right",
+            first_at(SAME_CLASS_COSINE),
+        ),
+    }
+    figures.note(
+        "the same with classes of a cosine of 0.97 or more",
+        first_at(STRICT_CLASS_COSINE),
+    );
+    figures.note("the name named first is right", first_at(1.0));
+    covered(figures, records);
+    let more = share(records, |record| {
+        record.detected().then_some(record.findings.len() > 1)
+    });
+    figures.note("a spurious second", more);
+}
+
+fn set_size(figures: &mut CellFigures, records: &[&RecordScore]) {
+    let sizes: Vec<[f64; 2]> = records
+        .iter()
+        .filter(|record| record.detected())
+        .filter_map(|record| Some([record.set_size() as f64, record.oracle_set_size? as f64]))
+        .collect();
+    figures.ratio_at_most("mean size of the set over the oracle's", 1.2, &sizes);
+    let own: Vec<f64> = sizes.iter().map(|pair| pair[0]).collect();
+    figures.mean("mean size of the set", &own);
+    figures.mean(
+        "mean size of the smallest sets that hold it in 95 %",
+        &smallest(records),
+    );
+}
+
+/// Sizes of the confidence sets of the first search with the constant at which they contain the truth
+/// in 95 % of the detected records: the least possible for sets of this kind.
+fn smallest(records: &[&RecordScore]) -> Vec<f64> {
+    let detected = || records.iter().filter(|record| record.detected());
+    let deficits: Vec<f64> = detected()
+        .filter_map(|record| record.hidden.first()?.deficit)
+        .collect();
+    let constant = quantile(&deficits, 0.95);
+    detected()
+        .map(|record| {
+            1 + record
+                .nearest
+                .iter()
+                .filter(|near| near.1 <= constant)
+                .count()
+        })
+        .map(|size| size as f64)
+        .collect()
+}
+
+fn covered(figures: &mut CellFigures, records: &[&RecordScore]) {
+    let covered = records
+        .iter()
+        .flat_map(|record| &record.hidden)
+        .filter_map(|hidden| hidden.covered);
+    figures.at_least(
+        "95 % interval of the size holds it, given the right name",
+        0.93,
+        Proportion::of(covered),
+    );
+}
+
+fn pair(figures: &mut CellFigures, records: &[&RecordScore]) {
+    let each = share(records, |record| Some(record.each_in_its_set()));
+    figures.at_least("each in its set", 0.90, each);
+    let third = share(records, |record| Some(record.findings.len() > 2));
+    figures.at_most("a spurious third", 0.08, third);
+    covered(figures, records);
+}
+
+fn out_of_catalogue(figures: &mut CellFigures, records: &[&RecordScore]) {
+    let reached = |record: &RecordScore| {
+        let hidden = record.hidden.first();
+        hidden.is_some_and(|hidden| REACHED.contains(&hidden.strength))
+    };
+    let flagged = share(records, |record| {
+        reached(record).then(|| record.unexplained.is_some())
+    });
+    figures.at_least("flagged unexplained", 0.98, flagged);
+    let masked = share(records, |record| {
+        Some(record.detected() && record.unexplained.is_none())
+    });
+    figures.at_most("a false name with a clean remainder", 0.05, masked);
+    let noise = share(records, |record| {
+        Some(!record.noise.is_empty() && !record.detected() && record.unexplained.is_none())
+    });
+    figures.note("taken for noise alone", noise);
+    figures.note(
+        "as long as asked for beside the causes that were named",
+        share(records, |record| Some(reached(record))),
+    );
+}
+
+fn step(figures: &mut CellFigures, records: &[&RecordScore]) {
+    const NEAR: f64 = 0.05;
+    let onset = |record: &RecordScore| record.hidden.first().and_then(|hidden| hidden.onset_error);
+    figures.at_least(
+        "onset within 5 % of the record, given the right name",
+        0.90,
+        share(records, |record| onset(record).map(|error| error <= NEAR)),
+    );
+    figures.note(
+        "onset within 5 % of the record, of all",
+        share(records, |record| {
+            Some(onset(record).is_some_and(|error| error <= NEAR))
+        }),
+    );
+    figures.note("detected", share(records, |record| Some(record.detected())));
+}

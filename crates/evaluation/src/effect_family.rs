@@ -1,0 +1,123 @@
+//! Figures by family of effects: effects that differ only in their axes.
+
+use gyrocal_statistics::{Proportion, mean};
+use serde::{Deserialize, Serialize};
+
+use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
+
+/// One family of effects in one cell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FamilyRow {
+    /// Id of the effect with `i`, `j`, `k` for its axes.
+    pub family: String,
+    /// Number of records with an injected effect of the family.
+    pub runs: u64,
+    /// Number of detections: records with a finding.
+    pub detected: u64,
+    /// Detections whose confidence sets contain the injected effects.
+    pub in_set: u64,
+    /// Detections whose first finding is of the right class.
+    pub class_first: u64,
+    /// Mean size of the first confidence set over the detections.
+    pub mean_set_size: Option<f64>,
+}
+
+impl FamilyRow {
+    /// Fraction of the records with a finding.
+    #[must_use]
+    pub fn detected(&self) -> Proportion {
+        Proportion {
+            hits: self.detected,
+            trials: self.runs,
+        }
+    }
+}
+
+/// The families of the first injected effects, in alphabetical order.
+#[must_use]
+pub fn families(records: &[&RecordScore]) -> Vec<FamilyRow> {
+    let mut by_family: std::collections::BTreeMap<String, Vec<&RecordScore>> = Default::default();
+    for record in records {
+        if let Some(hidden) = record.hidden.first() {
+            by_family
+                .entry(effect_family(&hidden.effect))
+                .or_default()
+                .push(record);
+        }
+    }
+    by_family
+        .into_iter()
+        .map(|(family, records)| {
+            let detected: Vec<&&RecordScore> =
+                records.iter().filter(|record| record.detected()).collect();
+            let count = |of: &dyn Fn(&RecordScore) -> bool| {
+                detected.iter().filter(|record| of(record)).count() as u64
+            };
+            let sizes: Vec<f64> = detected
+                .iter()
+                .map(|record| record.set_size() as f64)
+                .collect();
+            FamilyRow {
+                family,
+                runs: records.len() as u64,
+                detected: detected.len() as u64,
+                in_set: count(&|record| record.hidden.iter().all(|hidden| hidden.in_set)),
+                class_first: count(&|record| {
+                    let mut hidden = record.hidden.iter();
+                    hidden.any(|hidden| hidden.first_cosine >= SAME_CLASS_COSINE)
+                }),
+                mean_set_size: (!sizes.is_empty()).then(|| mean(&sizes)),
+            }
+        })
+        .collect()
+}
+
+/// Family of an effect: its id with `i` for its own axis and `j`, `k` for others.
+#[must_use]
+pub fn effect_family(id: &str) -> String {
+    let Some((owner, rest)) = id.split_once('.') else {
+        return id.to_owned();
+    };
+    let Some((kind, axes)) = owner.split_once('_') else {
+        return match id {
+            // Exact equivalents in every record.
+            "clock.rate" => "site.latitude".to_owned(),
+            id => id.to_owned(),
+        };
+    };
+    let axes = match axes.len() {
+        1 => "i",
+        _ => "ij",
+    };
+    let rest = match rest.strip_prefix("g_") {
+        None => rest,
+        Some(letters) => match letters.len() {
+            1 => "g_j",
+            2 => "g_jk",
+            _ => "g_iii",
+        },
+    };
+    format!("{kind}_{axes}.{rest}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::effect_family;
+
+    #[test]
+    fn a_family_forgets_the_axes() {
+        for (id, expected) in [
+            ("gyro_x.g_y", "gyro_i.g_j"),
+            ("gyro_z.g_xy", "gyro_i.g_jk"),
+            ("gyro_z.g_yy", "gyro_i.g_jk"),
+            ("gyro_y.g_yyy", "gyro_i.g_iii"),
+            ("gyro_y.step", "gyro_i.step"),
+            ("accel_xz.nonorthogonality", "accel_ij.nonorthogonality"),
+            ("accel_x.bias", "accel_i.bias"),
+            ("clock.rate", "site.latitude"),
+            ("platform.knock", "platform.knock"),
+        ] {
+            assert_eq!(effect_family(id), expected);
+        }
+    }
+}

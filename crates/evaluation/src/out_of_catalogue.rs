@@ -1,0 +1,317 @@
+//! Effects that are not in the catalogue, scaled to a strength given the findings of the diagnosis.
+//!
+//! Such an effect has no signature in the linearised model. Its strength is the length of the change
+//! in the whitened residuals: the fitted model, with the effects that the diagnosis named in it, is
+//! fitted to the record with and without the effect, the noise of both being the same.
+
+use gyrocal_calibration::{Column, Extension, Further};
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
+
+use crate::error::EvaluationError;
+use crate::injection::nominal_fit;
+use gyrocal_statistics::deviates::Draw;
+use crate::record_score::{InjectedScore, RecordScore};
+use crate::scenario::duration_h;
+use crate::score::findings_score;
+
+/// Corrections of a size after a diagnosis: the findings depend on the size.
+const CORRECTIONS: usize = 3;
+
+/// A strength within this fraction of the requested one needs no correction.
+const NEAR: f64 = 0.1;
+
+/// Largest correction factor: a finding may have absorbed almost all of the effect.
+const LARGEST_CORRECTION: f64 = 4.0;
+
+/// Number of effects drawn before a record is given up.
+const MAX_DRAWS: usize = 8;
+
+/// The strength given the nominal model must be within this factor of the requested one: effects that
+/// switch are not proportional to their size.
+const REACHED: f64 = 1.2;
+
+/// Largest size of an effect of a gyro \[deg/h\]. Larger ones change the motion of the platform: the
+/// record is then a different one and not the same with a small disturbance.
+const LARGEST_GYRO_DEG_PER_H: f64 = 0.05;
+
+/// The same of an accelerometer \[g\].
+const LARGEST_ACCEL_G: f64 = 5e-4;
+
+/// An effect with less strength than this given the findings, in sigmas, is equivalent to them, as a
+/// sign that never switches is to a bias.
+const LEAST_STRENGTH: f64 = 0.5;
+
+/// An effect of the simulator with its size.
+struct UnlistedEffect {
+    id: String,
+    size: f64,
+    largest_size: f64,
+    /// Names and values of all other parameters.
+    further: Vec<(&'static str, f64)>,
+}
+
+impl UnlistedEffect {
+    /// Draws a tone at a period that no term of the catalogue has, a term with the sign of a specific
+    /// force (Coulomb friction), or a dead zone, of a gyro or an accelerometer.
+    fn draw(kind: u64, scenario: &Scenario, random: &mut Draw) -> Self {
+        let axis = *random.one_of(&["x", "y", "z"]);
+        let other = *random.one_of(&["x", "y", "z"]);
+        let gyro = |id: String| (id, 1e-3, LARGEST_GYRO_DEG_PER_H);
+        let accel = |id: String| (id, 1e-6, LARGEST_ACCEL_G);
+        let is_tone = matches!(kind % 6, 0 | 3);
+        let (id, size, largest_size) = match kind % 6 {
+            0 => gyro(format!("gyro_{axis}.tone")),
+            1 => gyro(format!("gyro_{axis}.sign_{other}")),
+            2 => gyro(format!("gyro_{axis}.dead_zone")),
+            3 => accel(format!("accel_{axis}.tone")),
+            4 => accel(format!("accel_{axis}.sign")),
+            _ => accel(format!("accel_{axis}.dead_zone")),
+        };
+        let further = if is_tone {
+            vec![
+                ("period_h", odd_period_h(scenario, random)),
+                ("phase_deg", 360.0 * random.uniform()),
+            ]
+        } else {
+            Vec::new()
+        };
+        Self {
+            id,
+            size,
+            largest_size,
+            further,
+        }
+    }
+
+    fn to_hidden(&self) -> Result<Hidden, gyrocal_truth::Error> {
+        let mut parameters = vec![("size", self.size)];
+        parameters.extend(self.further.iter().copied());
+        Hidden::new(&self.id, &parameters)
+    }
+
+    /// Simulates the scenario with this effect.
+    fn simulate(&self, scenario: &Scenario) -> Result<Simulation, EvaluationError> {
+        Ok(simulate(&Scenario {
+            hidden: vec![self.to_hidden()?],
+            ..scenario.clone()
+        })?)
+    }
+}
+
+/// A period between six rows and a third of the record, away from the day and its half, which terms of
+/// the catalogue have.
+fn odd_period_h(scenario: &Scenario, random: &mut Draw) -> f64 {
+    let range = [
+        6.0 * scenario.interval_s / 3600.0,
+        duration_h(scenario) / 3.0,
+    ];
+    loop {
+        let period_h = random.log_uniform(range);
+        let away = |from_h: f64| libm::fabs(libm::log(period_h / from_h)) > 0.15;
+        if away(24.0) && away(12.0) {
+            return period_h;
+        }
+    }
+}
+
+/// Injects an effect that is not in the catalogue, diagnoses the record and returns its score.
+///
+/// # Errors
+/// [`EvaluationError::NotInjectable`] if none of the effects drawn reaches the strength, and the errors
+/// of simulation, calibration and diagnosis.
+pub(crate) fn score_out_of_catalogue(
+    number: u64,
+    scenario: &Scenario,
+    strength: f64,
+    random: &mut Draw,
+) -> Result<RecordScore, EvaluationError> {
+    let clean = simulate(scenario)?;
+    let residuals = whitened_residuals(&clean, &Extension::default())?;
+    for attempt in 0..MAX_DRAWS {
+        let mut effect = UnlistedEffect::draw(number + attempt as u64, scenario, random);
+        if !scale(scenario, &residuals, &mut effect, strength)? {
+            continue;
+        }
+        if let Some(score) = diagnosed(scenario, &clean, &residuals, effect, strength)? {
+            return Ok(score);
+        }
+    }
+    Err(EvaluationError::NotInjectable {
+        tried: MAX_DRAWS,
+        strength,
+    })
+}
+
+/// Diagnoses the record with the effect, and corrects the size until the strength given the findings
+/// is the requested one. `None` if the findings absorb the effect, or if they cannot be fitted to the
+/// record without it.
+fn diagnosed(
+    scenario: &Scenario,
+    clean: &Simulation,
+    nominal_residuals: &[[f64; 3]],
+    mut effect: UnlistedEffect,
+    strength: f64,
+) -> Result<Option<RecordScore>, EvaluationError> {
+    let mut corrections = 0;
+    loop {
+        let simulation = effect.simulate(scenario)?;
+        let found = diagnose(
+            &simulation.record,
+            &simulation.bench,
+            &DiagnoseOptions::default(),
+        )?;
+        let named = found
+            .extended
+            .as_ref()
+            .map_or_else(Extension::default, |extended| {
+                named_effects(extended.extension())
+            });
+        let without = if named == Extension::default() {
+            Ok(nominal_residuals.to_vec())
+        } else {
+            whitened_residuals(clean, &named)
+        };
+        let (Ok(without), Ok(with)) = (without, whitened_residuals(&simulation, &named)) else {
+            return Ok(None);
+        };
+        let reached = distance(&without, &with);
+        if reached < LEAST_STRENGTH {
+            return Ok(None);
+        }
+        let factor = strength / reached;
+        corrections += 1;
+        if (factor - 1.0).abs() < NEAR || corrections > CORRECTIONS {
+            return Ok(Some(RecordScore {
+                hidden: vec![injected_score(&effect, reached)],
+                ..findings_score(&found)
+            }));
+        }
+        effect.size = (effect.size * factor.min(LARGEST_CORRECTION)).min(effect.largest_size);
+    }
+}
+
+/// Scales an effect to a strength given the nominal model; `false` if it cannot be reached.
+fn scale(
+    scenario: &Scenario,
+    without: &[[f64; 3]],
+    effect: &mut UnlistedEffect,
+    strength: f64,
+) -> Result<bool, EvaluationError> {
+    for _ in 0..=CORRECTIONS {
+        let Ok(simulation) = effect.simulate(scenario) else {
+            return Ok(false);
+        };
+        let Ok(with) = whitened_residuals(&simulation, &Extension::default()) else {
+            return Ok(false);
+        };
+        let factor = strength / distance(without, &with);
+        if !(1e-4..1e4).contains(&factor) {
+            return Ok(false);
+        }
+        if (1.0 / REACHED..REACHED).contains(&factor) {
+            return Ok(true);
+        }
+        effect.size *= factor;
+        if effect.size > effect.largest_size {
+            return Ok(false);
+        }
+    }
+    Ok(false)
+}
+
+/// Whitened residuals of a model that is fitted to a record.
+fn whitened_residuals(
+    simulation: &Simulation,
+    extension: &Extension,
+) -> Result<Vec<[f64; 3]>, EvaluationError> {
+    let nominal = nominal_fit(simulation)?;
+    if *extension == Extension::default() {
+        return Ok(nominal.whitened()?);
+    }
+    Ok(nominal.refitted(extension)?.whitened()?)
+}
+
+/// Length of the difference between the whitened residuals of one model fitted to two records with
+/// the same noise.
+fn distance(without: &[[f64; 3]], with: &[[f64; 3]]) -> f64 {
+    let square: f64 = without
+        .iter()
+        .flatten()
+        .zip(with.iter().flatten())
+        .map(|(without, with)| with - without)
+        .filter(|difference| !difference.is_nan())
+        .map(|difference| difference * difference)
+        .sum();
+    square.sqrt()
+}
+
+/// The extension without unmodelled terms: the spectral lines and curves that the search added have no
+/// name and count as unexplained.
+fn named_effects(extension: &Extension) -> Extension {
+    let further = &extension.further;
+    let mut named = Further::default();
+    for (column, sigma) in further.columns().iter().zip(further.sigmas()) {
+        if !matches!(column, Column::Course { .. } | Column::Readings { .. }) {
+            named.extend([column.clone()], *sigma);
+        }
+    }
+    Extension {
+        further: named,
+        ..extension.clone()
+    }
+}
+
+fn injected_score(effect: &UnlistedEffect, strength: f64) -> InjectedScore {
+    let mut parameters = vec![("size".to_owned(), effect.size)];
+    let further = effect.further.iter();
+    parameters.extend(further.map(|(name, value)| ((*name).to_owned(), *value)));
+    InjectedScore {
+        effect: effect.id.clone(),
+        parameters,
+        strength,
+        in_set: false,
+        first_cosine: 0.0,
+        covered: None,
+        onset_error: None,
+        deficit: None,
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::scenario::scenario;
+
+    #[test]
+    fn every_kind_is_scaled_to_its_strength() {
+        let scenario = Scenario {
+            duration_s: 86_400.0,
+            interval_s: 300.0,
+            gaps_s: Vec::new(),
+            ..scenario(3)
+        };
+        let clean = simulate(&scenario).unwrap();
+        let without = whitened_residuals(&clean, &Extension::default()).unwrap();
+        let mut scaled = 0;
+        for kind in 0..6 {
+            let random = &mut Draw::new(kind, 0);
+            let mut effect = UnlistedEffect::draw(kind, &scenario, random);
+            if scale(&scenario, &without, &mut effect, 10.0).unwrap() {
+                scaled += 1;
+                let other = effect.simulate(&scenario).unwrap();
+                let with = whitened_residuals(&other, &Extension::default()).unwrap();
+                let strength = distance(&without, &with);
+                assert!(
+                    (10.0 / REACHED..10.0 * REACHED).contains(&strength),
+                    "{strength}"
+                );
+                // Scaling does not change the sign.
+                assert!(effect.size > 0.0);
+            }
+        }
+        // A term whose force never changes its sign in a day is a constant, and cannot be scaled.
+        assert!(scaled >= 3, "{scaled}");
+    }
+}

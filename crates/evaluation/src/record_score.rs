@@ -1,0 +1,199 @@
+//! Score of one record: a line in the file of results. Serialised names are those of the file.
+
+use serde::{Deserialize, Serialize};
+
+use crate::baseline::BaselineResult;
+
+/// Two signatures are of one class if the cosine of the angle between them is at least this.
+pub const SAME_CLASS_COSINE: f64 = 0.9;
+
+/// Injected effects and findings of one record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RecordScore {
+    /// Injected effects.
+    pub hidden: Vec<InjectedScore>,
+    /// `clean`, `effects-found` or `unexplained`.
+    pub verdict: String,
+    /// Findings of the diagnosis, strongest first.
+    pub findings: Vec<FindingScore>,
+    /// Effects of noise that the diagnosis found.
+    pub noise: Vec<String>,
+    /// Description of the unexplained residuals; `None` if the residuals are white.
+    pub unexplained: Option<String>,
+    /// Size of the first confidence set if the noise is known; `None` without a finding.
+    pub oracle_set_size: Option<usize>,
+    /// Hypotheses next to the best in the first search, each with twice its log-likelihood deficit,
+    /// search penalties included; without exact equivalents of the best and of each other.
+    pub nearest: Vec<(String, f64)>,
+    /// Results of the baseline methods.
+    pub methods: Vec<BaselineScore>,
+}
+
+/// An injected effect and its recovery.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InjectedScore {
+    /// Id of the effect.
+    pub effect: String,
+    /// Name and value of each parameter.
+    pub parameters: Vec<(String, f64)>,
+    /// Strength in sigmas of its own bound; of an effect that is not in the catalogue, given the
+    /// findings.
+    pub strength: f64,
+    /// `true` if the confidence set of some finding contains it.
+    pub in_set: bool,
+    /// Closeness of the first finding: 1 for this effect or an exact equivalent, else the cosine of
+    /// the angle between the two signatures; 0 without a finding.
+    pub first_cosine: f64,
+    /// `true` if the 95 % intervals of the sizes cover the true ones; `None` if the effect was not
+    /// found.
+    pub covered: Option<bool>,
+    /// Error of the onset over the duration of the record; `None` if the effect was not found.
+    pub onset_error: Option<f64>,
+    /// Twice its log-likelihood deficit to the best hypothesis of the first search.
+    pub deficit: Option<f64>,
+}
+
+/// A finding of the diagnosis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FindingScore {
+    /// Id of the effect.
+    pub effect: String,
+    /// Its significance in sigmas.
+    pub z: f64,
+    /// Name and estimate of each parameter.
+    pub parameters: Vec<(String, f64)>,
+    /// All other members of the confidence set, each with twice its log-likelihood deficit.
+    #[serde(rename = "rivals")]
+    pub alternatives: Vec<(String, f64)>,
+    /// Exact equivalents that the finding lists.
+    pub equivalents: Vec<String>,
+    /// `true` if the effect has exact equivalents and the finding lists none.
+    #[serde(rename = "alone")]
+    pub lacks_equivalents: bool,
+}
+
+/// Result of a baseline method.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BaselineScore {
+    /// Name of the method.
+    pub method: String,
+    /// Its result.
+    #[serde(rename = "called")]
+    pub result: BaselineResult,
+    /// As [`InjectedScore::first_cosine`], of the first injected effect.
+    pub first_cosine: f64,
+}
+
+impl RecordScore {
+    /// `true` if the diagnosis has a finding.
+    #[must_use]
+    pub fn detected(&self) -> bool {
+        !self.findings.is_empty()
+    }
+
+    /// Size of the first confidence set, exact equivalents not counted; 0 without a finding.
+    #[must_use]
+    pub fn set_size(&self) -> usize {
+        self.findings
+            .first()
+            .map_or(0, |finding| 1 + finding.alternatives.len())
+    }
+
+    /// `true` if each injected effect is in the confidence set of a finding of its own.
+    #[must_use]
+    pub fn each_in_its_set(&self) -> bool {
+        let holds = |finding: &FindingScore, hidden: &InjectedScore| finding.holds(&hidden.effect);
+        match self.hidden.as_slice() {
+            [one, other] => (0..self.findings.len()).any(|i| {
+                holds(&self.findings[i], one)
+                    && (0..self.findings.len()).any(|j| j != i && holds(&self.findings[j], other))
+            }),
+            hidden => hidden.iter().all(|hidden| hidden.in_set),
+        }
+    }
+}
+
+impl FindingScore {
+    /// `true` if the confidence set contains an effect or an exact equivalent of it.
+    #[must_use]
+    pub fn holds(&self, effect: &str) -> bool {
+        same_or_equivalent(&self.effect, effect)
+            || self
+                .alternatives
+                .iter()
+                .any(|(other, _)| same_or_equivalent(other, effect))
+    }
+}
+
+/// `true` if two ids are of one effect or of exact equivalents.
+#[must_use]
+pub fn same_or_equivalent(one: &str, other: &str) -> bool {
+    one == other
+        || gyrocal::EFFECTS
+            .iter()
+            .any(|effect| effect.id == one && effect.equivalents.contains(&other))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(effect: &str, alternatives: &[&str]) -> FindingScore {
+        FindingScore {
+            effect: effect.to_owned(),
+            z: 8.0,
+            parameters: Vec::new(),
+            alternatives: alternatives
+                .iter()
+                .map(|other| ((*other).to_owned(), 1.0))
+                .collect(),
+            equivalents: Vec::new(),
+            lacks_equivalents: false,
+        }
+    }
+
+    fn hidden(effect: &str) -> InjectedScore {
+        InjectedScore {
+            effect: effect.to_owned(),
+            parameters: Vec::new(),
+            strength: 8.0,
+            in_set: true,
+            first_cosine: 1.0,
+            covered: None,
+            onset_error: None,
+            deficit: None,
+        }
+    }
+
+    #[test]
+    fn two_effects_need_a_finding_each() {
+        let pair = |findings: Vec<FindingScore>| RecordScore {
+            hidden: vec![hidden("gyro_x.g_y"), hidden("gyro_y.ramp")],
+            verdict: "effects-found".to_owned(),
+            findings,
+            noise: Vec::new(),
+            unexplained: None,
+            oracle_set_size: None,
+            nearest: Vec::new(),
+            methods: Vec::new(),
+        };
+        // One finding whose set holds both is not enough.
+        let both = found("gyro_x.g_y", &["gyro_y.ramp"]);
+        assert!(!pair(vec![both.clone()]).each_in_its_set());
+        assert!(!pair(vec![both.clone(), found("accel_x.bias", &[])]).each_in_its_set());
+        assert!(pair(vec![found("gyro_y.step", &["gyro_y.ramp"]), both.clone()]).each_in_its_set());
+        assert_eq!(pair(vec![both]).set_size(), 2);
+    }
+
+    #[test]
+    fn exact_equivalents_are_the_same() {
+        assert!(
+            same_or_equivalent("gyro_x.g_yy", "gyro_x.g_zz")
+                && same_or_equivalent("clock.rate", "site.latitude")
+        );
+        assert!(
+            !same_or_equivalent("gyro_x.g_yy", "gyro_y.g_zz")
+                && !same_or_equivalent("no effect", "gyro_x.g_y")
+        );
+    }
+}

@@ -1,0 +1,318 @@
+//! Comparison of the diagnosis of one record with the effects injected into it.
+
+use gyrocal::effect::Role;
+use gyrocal::{EFFECTS, Effect};
+use gyrocal_calibration::NoiseModel;
+use gyrocal_diagnosis::cause::{Finding, FoundParameter, Ranked, SearchOptions, search};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
+use gyrocal_statistics::NORMAL_97_5;
+use gyrocal_truth::{Scenario, Simulation};
+
+use crate::baseline::{BaselineMethod, LibraryEntry, library};
+use crate::error::EvaluationError;
+use crate::injection::{InjectedEffect, nominal_fit, testable_effects};
+use crate::projection::ProjectedScores;
+use crate::record_score::{
+    BaselineScore, FindingScore, InjectedScore, RecordScore, same_or_equivalent,
+};
+use crate::signature::{Signature, SignatureColumns};
+
+/// Number of hypotheses next to the best of the first search that are kept.
+const NEAREST_KEPT: usize = 10;
+
+/// Half widths, in sigmas, of simultaneous 95 % intervals of one, two and three sizes: two-sided
+/// points of the normal distribution at the roots of 0.95 (Sidak 1967; conservative for correlated
+/// sizes).
+const HALF_WIDTHS: [f64; 3] = [NORMAL_97_5, 2.236_476_644_557_79, 2.387_737_887_070_817];
+
+/// Diagnoses a record and compares the result with the injected effects of the catalogue, each given
+/// with its strength.
+pub(crate) fn score(
+    scenario: &Scenario,
+    simulation: &Simulation,
+    injected: &[(InjectedEffect, f64)],
+    methods: &[BaselineMethod],
+) -> Result<RecordScore, EvaluationError> {
+    let found = diagnose(
+        &simulation.record,
+        &simulation.bench,
+        &DiagnoseOptions::default(),
+    )?;
+    let record = &simulation.record;
+    let mut columns = SignatureColumns::default();
+    let truths: Vec<Truth<'_>> = injected
+        .iter()
+        .map(|(injected, strength)| Truth {
+            injected,
+            strength: *strength,
+            signature: columns.signature(injected.effect, record, injected.shape),
+        })
+        .collect();
+    let first = found.findings.first().map(|finding| {
+        let signature =
+            row(finding.effect).and_then(|row| columns.signature(row, record, shape_of(finding)));
+        (finding.effect, signature)
+    });
+    let library = if methods.iter().any(|method| method.identifies_effects()) {
+        library(&testable_effects(scenario), record, &mut columns)
+    } else {
+        Vec::new()
+    };
+    let misnamed = first.as_ref().is_some_and(|(name, _)| {
+        let mut truths = truths.iter();
+        truths.any(|truth| !same_or_equivalent(truth.injected.effect.id, name))
+    });
+    // Without another name and without a baseline method no cosine is asked for.
+    let scores = if !methods.is_empty() || misnamed {
+        Some(nominal_scores(simulation, &found, &columns)?)
+    } else {
+        None
+    };
+    let hidden = truths
+        .iter()
+        .map(|truth| {
+            let first_cosine = first.as_ref().map_or(0.0, |(name, signature)| {
+                truth.cosine(name, signature.as_ref(), scores.as_ref())
+            });
+            injected_score(&found, truth, first_cosine, scenario.duration_s)
+        })
+        .collect();
+    let methods = scores.as_ref().map_or_else(Vec::new, |scores| {
+        let truth = truths.first();
+        let of = |method: &BaselineMethod| baseline_score(*method, scores, &library, truth);
+        methods.iter().map(of).collect()
+    });
+    Ok(RecordScore {
+        hidden,
+        oracle_set_size: oracle_set_size(simulation, &found)?,
+        methods,
+        ..findings_score(&found)
+    })
+}
+
+/// An injected effect with its strength and its signature.
+struct Truth<'a> {
+    injected: &'a InjectedEffect,
+    strength: f64,
+    signature: Option<Signature>,
+}
+
+impl Truth<'_> {
+    /// Closeness of a finding: 1 for the same effect or an exact equivalent, else the cosine between
+    /// the signatures, 0 if there is none.
+    fn cosine(
+        &self,
+        name: &str,
+        signature: Option<&Signature>,
+        scores: Option<&ProjectedScores>,
+    ) -> f64 {
+        match (&self.signature, signature, scores) {
+            _ if same_or_equivalent(name, self.injected.effect.id) => 1.0,
+            (Some(truth), Some(signature), Some(scores)) => {
+                scores.cosine(truth, &self.injected.sizes, signature)
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+/// Scores and information at the fit of the nominal model with the declared noise.
+fn nominal_scores(
+    simulation: &Simulation,
+    found: &Diagnosis<'_>,
+    columns: &SignatureColumns,
+) -> Result<ProjectedScores, EvaluationError> {
+    let nominal = if found.noise_model == NoiseModel::default() {
+        found.nominal.clone()
+    } else {
+        nominal_fit(simulation)?
+    };
+    Ok(ProjectedScores::new(&nominal, &columns.further)?)
+}
+
+/// Result of a baseline method, compared with the first injected effect.
+fn baseline_score(
+    method: BaselineMethod,
+    scores: &ProjectedScores,
+    library: &[LibraryEntry],
+    truth: Option<&Truth<'_>>,
+) -> BaselineScore {
+    let (result, selected) = method.apply(scores, library);
+    let first_cosine = match (selected.first(), truth) {
+        (Some(entry), Some(truth)) => {
+            let entry = &library[*entry];
+            truth.cosine(entry.effect.id, Some(&entry.signature), Some(scores))
+        }
+        _ => 0.0,
+    };
+    BaselineScore {
+        method: method.name().to_owned(),
+        result,
+        first_cosine,
+    }
+}
+
+/// The findings of a diagnosis, without the comparison with injected effects.
+pub(crate) fn findings_score(found: &Diagnosis<'_>) -> RecordScore {
+    RecordScore {
+        hidden: Vec::new(),
+        verdict: match found.verdict {
+            Verdict::Clean => "clean",
+            Verdict::EffectsFound => "effects-found",
+            Verdict::Unexplained => "unexplained",
+        }
+        .to_owned(),
+        findings: found.findings.iter().map(finding_score).collect(),
+        noise: found
+            .noise_findings
+            .iter()
+            .map(|finding| finding.effect.to_owned())
+            .collect(),
+        unexplained: found
+            .remainder
+            .unexplained
+            .then(|| found.remainder.description.clone()),
+        oracle_set_size: None,
+        nearest: nearest(&found.ranking),
+        methods: Vec::new(),
+    }
+}
+
+fn nearest(ranking: &[Ranked]) -> Vec<(String, f64)> {
+    let Some(best) = ranking.first() else {
+        return Vec::new();
+    };
+    let mut nearest: Vec<(String, f64)> = Vec::with_capacity(NEAREST_KEPT);
+    for ranked in &ranking[1..] {
+        let listed = same_or_equivalent(ranked.effect, best.effect)
+            || nearest
+                .iter()
+                .any(|(other, _)| same_or_equivalent(ranked.effect, other));
+        if !listed {
+            nearest.push((ranked.effect.to_owned(), best.statistic - ranked.statistic));
+        }
+        if nearest.len() == NEAREST_KEPT {
+            break;
+        }
+    }
+    nearest
+}
+
+fn finding_score(finding: &Finding) -> FindingScore {
+    let has_equivalents = row(finding.effect).is_some_and(|effect| !effect.equivalents.is_empty());
+    FindingScore {
+        effect: finding.effect.to_owned(),
+        z: finding.z,
+        parameters: finding
+            .parameters
+            .iter()
+            .map(|parameter| (parameter.name.to_owned(), parameter.estimate))
+            .collect(),
+        alternatives: finding
+            .rivals
+            .iter()
+            .map(|rival| (rival.effect.to_owned(), 2.0 * rival.log_likelihood_deficit))
+            .collect(),
+        equivalents: finding
+            .equivalents
+            .iter()
+            .map(|(id, _)| (*id).to_owned())
+            .collect(),
+        lacks_equivalents: has_equivalents && finding.equivalents.is_empty(),
+    }
+}
+
+fn injected_score(
+    found: &Diagnosis<'_>,
+    truth: &Truth<'_>,
+    first_cosine: f64,
+    duration_s: f64,
+) -> InjectedScore {
+    let injected = truth.injected;
+    let id = injected.effect.id;
+    // Those of the effect, or those of an exact equivalent that a finding lists.
+    let parameters: Option<&[FoundParameter]> = found.findings.iter().find_map(|finding| {
+        if finding.effect == id {
+            return Some(finding.parameters.as_slice());
+        }
+        let listed = finding.equivalents.iter().find(|(other, _)| *other == id);
+        listed.map(|(_, parameters)| parameters.as_slice())
+    });
+    let in_set = found.findings.iter().any(|finding| {
+        let mut rivals = finding.rivals.iter();
+        same_or_equivalent(finding.effect, id)
+            || rivals.any(|rival| same_or_equivalent(rival.effect, id))
+    });
+    let shape = injected.effect.shape();
+    let shape = shape.filter(|shape| matches!(shape.role, Role::Onset(_)));
+    let onset_s = parameters.zip(shape).and_then(|(parameters, shape)| {
+        let onset = parameters
+            .iter()
+            .find(|parameter| parameter.name == shape.name);
+        onset.map(|onset| onset.estimate)
+    });
+    let best = found.ranking.first().map_or(0.0, |best| best.statistic);
+    let own = found
+        .ranking
+        .iter()
+        .find(|ranked| same_or_equivalent(ranked.effect, id));
+    let names = injected
+        .effect
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name.to_owned());
+    InjectedScore {
+        effect: id.to_owned(),
+        parameters: names
+            .zip(injected.sizes.iter().copied().chain(injected.shape))
+            .collect(),
+        strength: truth.strength,
+        in_set,
+        first_cosine,
+        covered: parameters.map(|parameters| covers(parameters, &injected.sizes)),
+        onset_error: onset_s
+            .zip(injected.shape)
+            .map(|(found_s, true_s)| (found_s - true_s).abs() / duration_s),
+        deficit: own.map(|own| best - own.statistic),
+    }
+}
+
+/// `true` if the simultaneous 95 % intervals of all sizes cover the true ones.
+fn covers(parameters: &[FoundParameter], sizes: &[f64]) -> bool {
+    let sigmas = HALF_WIDTHS[sizes.len().clamp(1, HALF_WIDTHS.len()) - 1];
+    parameters.iter().zip(sizes).all(|(found, size)| {
+        found
+            .sigma
+            .is_none_or(|sigma| (found.estimate - size).abs() <= sigmas * sigma)
+    })
+}
+
+/// Size of the first confidence set of a search with the true noise, which here is the declared one.
+fn oracle_set_size(
+    simulation: &Simulation,
+    found: &Diagnosis<'_>,
+) -> Result<Option<usize>, EvaluationError> {
+    let size = |findings: &[Finding]| findings.first().map(|finding| 1 + finding.rivals.len());
+    if found.noise_model == NoiseModel::default() {
+        return Ok(size(&found.findings));
+    }
+    let options = SearchOptions {
+        false_alarm_probability: found.search_false_alarm_probability,
+        ..SearchOptions::default()
+    };
+    let nominal = nominal_fit(simulation)?;
+    let searched = search(nominal, &simulation.record, &simulation.bench, &options)?;
+    Ok(size(&searched.findings))
+}
+
+fn row(id: &str) -> Option<&'static Effect> {
+    EFFECTS.iter().find(|effect| effect.id == id)
+}
+
+/// Onset or time constant of a finding.
+fn shape_of(finding: &Finding) -> Option<f64> {
+    let shape = row(finding.effect)?.shape()?;
+    let mut parameters = finding.parameters.iter();
+    let found = parameters.find(|parameter| parameter.name == shape.name);
+    found.map(|parameter| parameter.estimate)
+}
