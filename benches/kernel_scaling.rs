@@ -2,18 +2,12 @@
 //! parameters in vectors of run-time length. `cargo figures kernel` holds it against n².
 #![allow(clippy::unwrap_used, missing_docs)]
 
-#[path = "../tests/numerics/extended_filter.rs"]
-mod extended_filter;
-#[path = "../tests/numerics/extended_platform.rs"]
-mod extended_platform;
-
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use gyrocal::Integration;
-
-use extended_filter::{SIZES, samples, start, step};
+use gyrocal_testkit::extended_filter::{SIZES, samples, start, step};
 
 /// Steps from the start before a filter starts again: four hours.
 const STEPS: usize = 240;

@@ -4,9 +4,6 @@
 //! needs no unsafe code here.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-#[path = "numerics/extended_platform.rs"]
-mod extended_platform;
-
 use std::hint::black_box;
 
 use allocation_counter::measure;
@@ -17,8 +14,7 @@ use gyrocal::{
     Anchored, Chart, Discretisation, FilterSettings, InitialAttitude, Integration, Platform,
     PlatformFilter, Recentring, Site,
 };
-
-use extended_platform::ExtendedPlatform;
+use gyrocal_testkit::extended_platform::ExtendedPlatform;
 
 const STEPS: usize = 200;
 const DENSITY: [f64; 3] = [2.4e-4; 3];

@@ -3,12 +3,10 @@
 //!
 //! `dense_joseph` is the textbook filter of `gyrocal_estimation::dense` with Euler angles in
 //! one chart: less work than the default filter does, whose chart moves at every step.
-//! `adskalman` and `multicalc` are Joseph-form filters from crates.io on the same generated
+//! `adskalman` and `multicalc` are Joseph-form filters of other packages on the same generated
 //! functions, of the Euler step only: with Runge-Kutta they would take the same dense step after
 //! the same transition. Compare within one run only; `cargo figures kernel` judges the ratios.
 #![allow(clippy::unwrap_used, missing_docs)]
-
-mod peers;
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -19,6 +17,7 @@ use gyrocal::{
     Anchored, Chart, Discretisation, FilterSettings, InitialAttitude, Integration, Platform,
     PlatformFilter, Recentring, Site,
 };
+use gyrocal_testkit::peer_filters::{Adskalman, Multicalc};
 use nalgebra::{SMatrix, SVector};
 
 /// Interval between samples, s.
@@ -126,7 +125,7 @@ fn filter_step(criterion: &mut Criterion) {
         }
 
         if integration == Integration::EULER {
-            let start = peers::Adskalman::new(chart(), PRIOR_VARIANCE, DENSITY, VARIANCE);
+            let start = Adskalman::new(chart(), PRIOR_VARIANCE, DENSITY, VARIANCE);
             group.bench_function("adskalman", |bencher| {
                 bencher.iter_custom(|iterations| {
                     time(iterations, &samples, &start, |filter, sample| {
@@ -134,7 +133,7 @@ fn filter_step(criterion: &mut Criterion) {
                     })
                 });
             });
-            let start = peers::Multicalc::new(chart(), PRIOR_VARIANCE, DENSITY, VARIANCE);
+            let start = Multicalc::new(chart(), PRIOR_VARIANCE, DENSITY, VARIANCE);
             group.bench_function("multicalc", |bencher| {
                 bencher.iter_custom(|iterations| {
                     time(iterations, &samples, &start, |filter, sample| {

@@ -1,8 +1,7 @@
 use gyrocal::Integration;
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{Covariance, Factors};
-
-use crate::reference::{FACTORS_LIMIT, TIE, dense_joseph, structured};
+use gyrocal_testkit::rounding_errors::{FACTORS_LIMIT, TIE, dense_joseph, structured};
 
 /// Errors of a form must be at most `limit` times those of the dense Joseph filter.
 fn compare<F: Form<f64>>(name: &str, limit: f64) {

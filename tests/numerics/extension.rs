@@ -1,6 +1,6 @@
 use gyrocal::scalar::{Model, RatesJacobian};
+use gyrocal_testkit::extended_platform::ExtendedPlatform;
 
-use crate::extended_platform::ExtendedPlatform;
 use crate::truth::{DRIFT, chart};
 
 const MOVING: [f64; 3] = [0.2, -0.4, 0.7];

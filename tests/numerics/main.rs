@@ -4,9 +4,7 @@
 
 mod accuracy;
 mod definiteness;
-mod extended_platform;
 mod extension;
 mod gimbal_lock;
 mod poisoning;
-mod reference;
 mod truth;

@@ -7,8 +7,8 @@ use gyrocal::estimation::{
 };
 use gyrocal::scalar::Recentre;
 use gyrocal::{Anchored, Chart, Platform};
+use gyrocal_testkit::extended_platform::ExtendedPlatform;
 
-use crate::extended_platform::ExtendedPlatform;
 use crate::truth::{DENSITY, STEP_S, Truth, VARIANCE, chart};
 
 const MOVING: usize = 3;

@@ -6,12 +6,10 @@
     reason = "loops over several matrices by one index read like the equations"
 )]
 
-mod dense;
-
-use dense::Dense;
 use gyrocal::Discretisation;
 use gyrocal_calibration::{CalibrationError, Options, Run, calibrate, cramer_rao_bound};
 use gyrocal_record::Prior;
+use gyrocal_testkit::dense_least_squares::DenseProblem;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 
 /// What is asked for; 2e-8 was seen, and at times 1e-6 where steps converge slowly.
@@ -47,7 +45,7 @@ fn assert_dense(simulation: &Simulation) {
     };
     let (record, bench) = (&simulation.record, &simulation.bench);
     let found = calibrate(record, bench, &options, |_| ()).unwrap();
-    let dense = Dense::new(Run { record, bench }, options.discretisation.longest_step_s).solve();
+    let dense = DenseProblem::new(Run { record, bench }, options.discretisation.longest_step_s).solve();
     let drift = found.drift.to_array();
     for i in 0..9 {
         let sigma = dense.covariance[(i, i)].sqrt();

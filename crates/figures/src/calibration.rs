@@ -7,11 +7,6 @@ mod paper;
 mod population;
 mod site;
 
-// Support of the calibration package's tests, which has no other reader.
-#[allow(clippy::expect_used)]
-#[path = "../../calibration/tests/dense/mod.rs"]
-mod dense;
-
 use crate::figure::Figure;
 
 /// Why a figure could not be measured.

@@ -5,13 +5,6 @@ mod records;
 mod signatures;
 mod whole;
 
-// Support of the diagnosis package's tests, which has no other reader.
-#[path = "../../diagnosis/tests/signatures/difference.rs"]
-mod difference;
-#[allow(clippy::unwrap_used, dead_code)] // the tests have kinds of faults that no figure asks for
-#[path = "../../diagnosis/tests/noise/population.rs"]
-mod population;
-
 use gyrocal_evaluation::Campaign;
 
 use crate::figure::Figure;

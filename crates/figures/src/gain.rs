@@ -1,13 +1,12 @@
 //! What extended models gain: under cross-validation, in the coefficients, on a second record.
 
-#[path = "../../../examples/extended/tests/comparison/mod.rs"]
-mod comparison;
 mod records;
 
 use core::ops::Range;
 
 use gyrocal_evaluation::Outcome;
 use gyrocal_statistics::{Proportion, mean_square_band, median};
+use gyrocal_testkit::extended_comparison;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -54,12 +53,12 @@ fn filters() -> [Figure; 2] {
         figure(
             &format!("{name} one step"),
             1e-9,
-            comparison::after_one_step(),
+            extended_comparison::after_one_step(),
         ),
         figure(
             &format!("{name} three days"),
             1e-5,
-            comparison::after_three_days(),
+            extended_comparison::after_three_days(),
         ),
     ]
 }

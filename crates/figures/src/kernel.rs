@@ -8,19 +8,6 @@ mod scaling;
 mod speed;
 mod timing;
 
-// Support of the library package's tests and benches, which has no other reader.
-#[allow(clippy::expect_used)]
-#[path = "../../../tests/numerics/extended_filter.rs"]
-mod extended_filter;
-#[path = "../../../tests/numerics/extended_platform.rs"]
-mod extended_platform;
-#[allow(clippy::unwrap_used)]
-#[path = "../../../benches/filter_step/peers.rs"]
-mod peers;
-#[allow(clippy::expect_used, clippy::panic)]
-#[path = "../../../tests/numerics/reference.rs"]
-mod reference;
-
 use gyrocal::Integration;
 
 use crate::figure::Figure;

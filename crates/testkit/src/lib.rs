@@ -1,18 +1,43 @@
-//! Support for the tests of the build: copies of the workspace, small derivations, cargo
-//! and Python as a user would have them.
+//! Shared support of tests, benches and figures; not part of the library.
 //!
-//! Nothing here is part of the library. Helpers panic when the machine lacks something:
-//! that is how a test fails.
+//! - Without features: copies of the workspace, small derivations, and cargo and Python as a user
+//!   would have them, for tests of the build.
+//! - `filters`: a platform with any number of states, rounding errors against 400-bit references, and
+//!   Kalman filters of other packages.
+//! - `calibration`: dense least squares for short records, and signatures by finite differences of the
+//!   independent simulation.
+//! - `noise`: records with faulty noise.
+//! - `extended`: the controller of `examples/extended` against the catalogue.
+//!
+//! Each module has more than one user among tests, benches and `cargo figures`; support of a single test
+//! stays with that test. Helpers panic when the machine lacks something: that is how a test fails.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
     clippy::missing_panics_doc,
+    clippy::missing_errors_doc,
     clippy::must_use_candidate
 )]
 
 mod command;
 mod copy;
+#[cfg(feature = "calibration")]
+pub mod dense_least_squares;
+#[cfg(feature = "extended")]
+pub mod extended_comparison;
+#[cfg(feature = "filters")]
+pub mod extended_filter;
+#[cfg(feature = "filters")]
+pub mod extended_platform;
 mod files;
+#[cfg(feature = "noise")]
+pub mod noise_faults;
+#[cfg(feature = "filters")]
+pub mod peer_filters;
+#[cfg(feature = "filters")]
+pub mod rounding_errors;
+#[cfg(feature = "calibration")]
+pub mod signature_differences;
 mod tiny;
 
 pub use command::{Outcome, cargo, codegen, real_environments, run, system_python, tools_only};

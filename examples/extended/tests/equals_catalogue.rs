@@ -5,12 +5,10 @@
     reason = "a test may stop at what must not happen"
 )]
 
-mod comparison;
-
-use comparison::{after_one_step, after_three_days, attitude, settings};
 use gyrocal::Drift;
 use gyrocal_extended::Controller;
 use gyrocal_extended::extended::START;
+use gyrocal_testkit::extended_comparison::{after_one_step, after_three_days, attitude, settings};
 
 #[test]
 fn one_step_from_one_state_is_the_same() {

@@ -5,8 +5,8 @@ use gyrocal_calibration::{Options, Run, calibrate};
 use gyrocal_truth::{Population, simulate};
 
 use super::Error;
-use super::dense::Dense;
 use crate::figure::Figure;
+use gyrocal_testkit::dense_least_squares::DenseProblem;
 
 /// Largest difference in units of the coefficients' sigmas.
 const SIGMAS: f64 = 1e-6;
@@ -40,7 +40,7 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
             record: &simulation.record,
             bench: &simulation.bench,
         };
-        let dense = Dense::new(run, options.discretisation.longest_step_s).solve();
+        let dense = DenseProblem::new(run, options.discretisation.longest_step_s).solve();
         let drift = found.drift.to_array();
         for (i, (estimate, expected)) in drift.iter().zip(dense.drift).enumerate() {
             let sigma = dense.covariance[(i, i)].sqrt();

@@ -7,10 +7,10 @@ use gyrocal_statistics::{Proportion, mean};
 use gyrocal_truth::Term;
 use serde::{Deserialize, Serialize};
 
-use super::population::{Case, Fault, case};
 use super::records::{KINDS, Kind, POPULATION, record, three_days};
 use super::{Error, campaign};
 use crate::figure::Figure;
+use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
 
 /// Clean records; records of each kind; records with each physical cause. With `--small` fewer.
 const RUNS: [u64; 3] = [2000, 1000, 100];
@@ -80,7 +80,7 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     }
     for (name, term) in CAUSES {
         let audited = audited(&format!("cause {name}"), causes, small, |number| {
-            case(&three_days(), number, Fault::None, &[term()])
+            faulty_record(&three_days(), number, Fault::None, &[term()])
         })?;
         figures.push(
             Figure::note(
@@ -174,7 +174,7 @@ fn audited(
     cell: &str,
     runs: u64,
     small: bool,
-    make: impl Fn(u64) -> Case + Sync,
+    make: impl Fn(u64) -> FaultyRecord + Sync,
 ) -> Result<Vec<Audited>, Error> {
     let job = |number| -> Result<Audited, Error> { audit(&make(number)) };
     let outcome = campaign(&format!("audit {cell}"), 0..runs, small)?.run(job, |_| ())?;
@@ -185,7 +185,7 @@ fn audited(
     Ok(outcome.successes().map(|(_, one)| one.clone()).collect())
 }
 
-fn audit(case: &Case) -> Result<Audited, Error> {
+fn audit(case: &FaultyRecord) -> Result<Audited, Error> {
     let options = AuditOptions::default();
     let audit = audit_noise(&case.record, &case.innovations, &case.declared, &options)?;
     let mut found: Vec<String> = audit
@@ -203,7 +203,7 @@ fn audit(case: &Case) -> Result<Audited, Error> {
 }
 
 /// Of outliers found against true ones; 1 if there are neither.
-fn f1(case: &Case, audit: &NoiseAudit) -> f64 {
+fn f1(case: &FaultyRecord, audit: &NoiseAudit) -> f64 {
     let hit = |outlier: &&Outlier| case.outliers.contains(&(outlier.row, outlier.axis));
     let hits = audit.outliers.iter().filter(hit).count();
     match case.outliers.len() + audit.outliers.len() {

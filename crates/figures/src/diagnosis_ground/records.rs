@@ -2,7 +2,7 @@
 
 use gyrocal_truth::Population;
 
-use super::population::{Case, Fault, case};
+use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
 
 /// Seed of the population.
 pub(super) const POPULATION: u64 = 20;
@@ -59,6 +59,6 @@ pub(super) fn three_days() -> Population {
 }
 
 /// The record of a number with a fault.
-pub(super) fn record(number: u64, fault: Fault) -> Case {
-    case(&three_days(), number, fault, &[])
+pub(super) fn record(number: u64, fault: Fault) -> FaultyRecord {
+    faulty_record(&three_days(), number, fault, &[])
 }

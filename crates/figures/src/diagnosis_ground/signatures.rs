@@ -4,8 +4,8 @@ use gyrocal_truth::{Population, Scenario, Temperature};
 use rayon::prelude::*;
 
 use super::Error;
-use super::difference::{Compared, compare};
 use crate::figure::Figure;
+use gyrocal_testkit::signature_differences::{Compared, compare};
 
 /// Seed of the population, and how many scenarios of it are compared.
 const POPULATION: u64 = 8;

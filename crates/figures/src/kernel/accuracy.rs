@@ -3,8 +3,8 @@
 use gyrocal::estimation::{Covariance, Factors};
 
 use super::RULES;
-use super::reference::{FACTORS_LIMIT, TIE, dense_joseph, structured};
 use crate::figure::Figure;
+use gyrocal_testkit::rounding_errors::{FACTORS_LIMIT, TIE, dense_joseph, structured};
 
 const RUNS: &str = "tests/data/numerics";
 

@@ -8,11 +8,11 @@ use gyrocal::{Anchored, Chart, EstimationError, Integration, Platform, Recentrin
 use nalgebra::{SMatrix, SVector};
 
 use super::Error;
-use super::extended_filter::samples;
-use super::peers::{Adskalman, Multicalc};
 use super::speed::{DENSITY, STEP_S, STEPS, VARIANCE};
 use super::timing::{medians, seconds, well_placed};
 use crate::figure::Figure;
+use gyrocal_testkit::extended_filter::samples;
+use gyrocal_testkit::peer_filters::{Adskalman, Multicalc};
 
 /// Within a tenth of the fastest.
 const ALLOWED: f64 = 1.1;

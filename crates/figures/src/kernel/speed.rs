@@ -10,10 +10,10 @@ use gyrocal::{
 };
 use nalgebra::{SMatrix, SVector};
 
-use super::extended_filter::samples;
 use super::timing::{is_x86_64_v3, medians, seconds, well_placed};
 use super::{Error, RULES};
 use crate::figure::Figure;
+use gyrocal_testkit::extended_filter::samples;
 
 /// Steps of one round: ten hours.
 pub(super) const STEPS: usize = 600;

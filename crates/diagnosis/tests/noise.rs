@@ -4,11 +4,9 @@
 //! records.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
-mod population;
-
 use gyrocal_diagnosis::{AuditOptions, DiagnosisError, NoiseAudit, audit_noise};
+use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
 use gyrocal_truth::{Population, Term};
-use population::{Case, Fault, case};
 
 fn three_days() -> Population {
     let mut population = Population::new(20);
@@ -16,7 +14,7 @@ fn three_days() -> Population {
     population
 }
 
-fn audit(case: &Case) -> NoiseAudit {
+fn audit(case: &FaultyRecord) -> NoiseAudit {
     let options = AuditOptions::default();
     audit_noise(&case.record, &case.innovations, &case.declared, &options).unwrap()
 }
@@ -45,7 +43,7 @@ fn clean_records_of_any_interval_have_no_finding() {
         population.common.missing_fraction = missing;
         population.common.gaps_s = vec![[40_000.0, 52_000.0]];
         for number in 0..3 {
-            let case = case(&population, number, Fault::None, &[]);
+            let case = faulty_record(&population, number, Fault::None, &[]);
             let audit = audit(&case);
             assert!(
                 audit.findings.is_empty(),
@@ -72,7 +70,12 @@ fn clean_records_of_any_interval_have_no_finding() {
 #[test]
 fn a_converter_is_found_with_its_step() {
     for number in 0..3 {
-        let audit = audit(&case(&three_days(), number, Fault::Quantised(3.0), &[]));
+        let audit = audit(&faulty_record(
+            &three_days(),
+            number,
+            Fault::Quantised(3.0),
+            &[],
+        ));
         let expected = [
             "accel_x.quantisation",
             "accel_y.quantisation",
@@ -95,7 +98,7 @@ fn a_converter_is_found_with_its_step() {
 #[test]
 fn outliers_are_found_one_by_one() {
     for number in 0..3 {
-        let case = case(&three_days(), number, Fault::Outliers(0.005, 8.0), &[]);
+        let case = faulty_record(&three_days(), number, Fault::Outliers(0.005, 8.0), &[]);
         let audit = audit(&case);
         assert_eq!(names(&audit), ["accel.outliers"]);
         let right = |o: &&gyrocal_diagnosis::Outlier| case.outliers.contains(&(o.row, o.axis));
@@ -119,7 +122,7 @@ fn outliers_are_found_one_by_one() {
 #[test]
 fn correlated_noise_is_called_that() {
     for (number, correlation) in [(0, 0.3), (1, 0.3), (2, -0.3), (3, 0.6)] {
-        let audit = audit(&case(
+        let audit = audit(&faulty_record(
             &three_days(),
             number,
             Fault::Coloured(correlation),
@@ -141,7 +144,12 @@ fn correlated_noise_is_called_that() {
 fn noise_of_another_size_is_called_that() {
     let expected = ["accel_x.noise", "accel_y.noise", "accel_z.noise"];
     for (number, ratio) in [(0, 1.2), (1, 0.8), (2, 3.0), (3, 0.2)] {
-        let audit = audit(&case(&three_days(), number, Fault::Ratio(ratio), &[]));
+        let audit = audit(&faulty_record(
+            &three_days(),
+            number,
+            Fault::Ratio(ratio),
+            &[],
+        ));
         assert_eq!(names(&audit), expected, "{ratio}");
         for (axis, effect) in expected.iter().enumerate() {
             let (found, _) = size(&audit, effect);
@@ -170,14 +178,19 @@ fn physical_effects_are_no_noise() {
         || Term::Drift(Box::new(|m| [0.1 * m.accel_g[1] * m.accel_g[2], 0.0, 0.0])),
     ];
     for (number, term) in terms.into_iter().enumerate() {
-        let audit = audit(&case(&three_days(), number as u64, Fault::None, &[term()]));
+        let audit = audit(&faulty_record(
+            &three_days(),
+            number as u64,
+            Fault::None,
+            &[term()],
+        ));
         assert!(
             audit.findings.is_empty(),
             "term {number}: {:?}",
             audit.findings
         );
     }
-    let audit = audit(&case(&three_days(), 4, Fault::GyroRatio(3.0), &[]));
+    let audit = audit(&faulty_record(&three_days(), 4, Fault::GyroRatio(3.0), &[]));
     assert!(audit.findings.is_empty(), "{:?}", audit.findings);
     let walk = audit.gyro_ratio.unwrap();
     // Three times the declared noise is nine times its variance, known here to two.
@@ -189,7 +202,7 @@ fn physical_effects_are_no_noise() {
 
 #[test]
 fn what_cannot_be_audited_says_why() {
-    let mut case = case(&three_days(), 0, Fault::None, &[]);
+    let mut case = faulty_record(&three_days(), 0, Fault::None, &[]);
     let options = AuditOptions::default();
     case.record.time_s.truncate(100);
     case.record.accel_g.truncate(100);

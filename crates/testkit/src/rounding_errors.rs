@@ -1,4 +1,5 @@
-//! Errors of the filters against tests/data/numerics: the same filter in 400-bit arithmetic.
+//! Rounding errors of the filters against the same filter in 400-bit arithmetic, whose results are in
+//! `tests/data/numerics`.
 
 use gyrocal::estimation::dense::DenseFilter;
 use gyrocal::estimation::form::Form;
@@ -7,10 +8,10 @@ use gyrocal::generated::platform::reanchor;
 use gyrocal::{Anchored, Chart, EARTH_RATE_RAD_PER_S, Integration, Platform, Recentring, Site};
 use nalgebra::{SMatrix, SVector};
 
-const REFERENCE: &str = include_str!("../data/numerics/reference.csv");
-const SAMPLES: &str = include_str!("../data/numerics/samples.csv");
+const REFERENCE: &str = include_str!("../../../tests/data/numerics/reference.csv");
+const SAMPLES: &str = include_str!("../../../tests/data/numerics/samples.csv");
 
-/// What the script starts from, under the same names.
+/// Start of the script that made the references, under the same names.
 const STEP_S: f64 = 60.0;
 const LATITUDE_RAD: f64 = -0.575;
 const ANGLES_RAD: [f64; 3] = [0.3, -0.5, 1.9];
@@ -20,33 +21,33 @@ const CHECKPOINTS: [usize; 5] = [1, 2, 10, 100, 1000];
 const DRIFT_DENSITY: [f64; 3] = [2.4e-4; 3];
 const ACCEL_VARIANCE: [f64; 3] = [1e-10; 3];
 
-/// How much worse than another one a filter of the same rounding error may look: the rounding
-/// error of one run is one draw, ln of it has a standard deviation of up to 0.9 over runs, so
-/// that of a mean over eight is 0.3 and that of a ratio 0.45. Two of these are a tie.
-pub(crate) const TIE: f64 = 2.5;
+/// Largest ratio of measured errors that is a tie. The rounding error of one run is one draw; its
+/// logarithm has a standard deviation of up to 0.9 over runs, so that of a mean over eight is 0.3 and
+/// that of a ratio 0.45. Two of these are a tie.
+pub const TIE: f64 = 2.5;
 
-/// What the errors of the factors may be of those of the dense Joseph filter. Measured: a
-/// thousandth, since factors keep small pivots to their own last digit.
-pub(crate) const FACTORS_LIMIT: f64 = 0.02;
+/// Largest ratio of the errors of `Factors` to those of the dense Joseph filter. Measured: 0.001, since
+/// factors keep small pivots to their own last digit.
+pub const FACTORS_LIMIT: f64 = 0.02;
 
 /// Errors of one filter against the reference, over the checkpoints of all runs of 1000 steps.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Accuracy {
+pub struct Accuracy {
     /// Error of the state in units of its sigma, angles as a rotation vector: root mean square
     /// over a run, geometric mean over runs.
-    pub(crate) state: f64,
+    pub state: f64,
     /// The same of sigmas, relative.
-    pub(crate) sigma: f64,
+    pub sigma: f64,
     /// The largest error of a state.
-    pub(crate) worst_state: f64,
+    pub worst_state: f64,
     /// The largest error of a sigma.
-    pub(crate) worst_sigma: f64,
+    pub worst_sigma: f64,
     /// The largest error of a correlation.
-    pub(crate) worst_correlation: f64,
+    pub worst_correlation: f64,
 }
 
-/// The filter as shipped, in a form of the covariance.
-pub(crate) fn structured<F: Form<f64>>(integration: Integration) -> Accuracy {
+/// Errors of the structured filter, in a form of the covariance.
+pub fn structured<F: Form<f64>>(integration: Integration) -> Accuracy {
     let mut state = [0.0; 12];
     state[..3].copy_from_slice(&ANGLES_RAD);
     accuracy(integration, |run| {
@@ -81,8 +82,8 @@ pub(crate) fn structured<F: Form<f64>>(integration: Integration) -> Accuracy {
     })
 }
 
-/// The textbook dense filter in Joseph form.
-pub(crate) fn dense_joseph(integration: Integration) -> Accuracy {
+/// Errors of the textbook dense filter in Joseph form.
+pub fn dense_joseph(integration: Integration) -> Accuracy {
     let mut state = SVector::<f64, 12>::zeros();
     state.as_mut_slice()[..3].copy_from_slice(&ANGLES_RAD);
     accuracy(integration, |run| {
@@ -123,7 +124,7 @@ fn sigmas(run: u32) -> [f64; 12] {
     core::array::from_fn(|i| if i < 3 { ANGLE_SIGMA_RAD } else { coefficient })
 }
 
-/// What a filter says after a step.
+/// Estimate of a filter after a step.
 struct Estimate {
     platform_c_enu: [[f64; 3]; 3],
     coefficients: [f64; 9],
@@ -142,7 +143,7 @@ fn attitude(state: &[f64], chart: &Chart<f64>) -> [[f64; 3]; 3] {
     })
 }
 
-/// One line of the reference: what, where, and its digits.
+/// One line of the reference: a quantity, its indices, and its digits.
 struct Entry<'a> {
     quantity: &'a str,
     i: usize,

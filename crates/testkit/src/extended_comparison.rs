@@ -1,9 +1,5 @@
-//! The filter on the extended model against one on the model with every effect of the catalogue,
-//! all others of which are known to be absent. Tests and the figures of the repository use it.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a comparison may stop at what must not happen"
-)]
+//! The filter on the extended model of `examples/extended` against one on the model with every effect
+//! of the catalogue, all other effects of which are known to be absent.
 
 use gyrocal::estimation::{ArrayStorage, Filter};
 use gyrocal::generated::catalogue::{CatalogueInputs, PARAMETERS as CATALOGUE_PARAMETERS};
@@ -22,7 +18,7 @@ const DENSITY: [f64; 3] = [0.002 * 0.002 * 60.0; 3];
 const VARIANCE: [f64; 3] = [1e-10; 3];
 /// So small that a parameter of an effect stays what it is.
 const NOTHING: f64 = 1e-14;
-const FAULT: &str = include_str!("../../fault.scenario.toml");
+const FAULT: &str = include_str!("../../../examples/extended/fault.scenario.toml");
 
 type CatalogueFilter = Filter<
     f64,
@@ -33,7 +29,7 @@ type CatalogueFilter = Filter<
     3,
 >;
 
-/// Where each state of the extended model stands in that of the catalogue.
+/// Index of each state of the extended model in the model of the catalogue.
 fn places() -> [usize; Extended::STATES] {
     let place = |id: &str| {
         let parameter = CATALOGUE_PARAMETERS.iter().position(|other| other.id == id);
@@ -45,7 +41,8 @@ fn places() -> [usize; Extended::STATES] {
     })
 }
 
-pub(crate) fn settings(drift: Drift<f64>) -> FilterSettings<f64> {
+/// Settings of both filters.
+pub fn settings(drift: Drift<f64>) -> FilterSettings<f64> {
     FilterSettings {
         drift,
         accel_noise_g: 1e-5,
@@ -55,7 +52,7 @@ pub(crate) fn settings(drift: Drift<f64>) -> FilterSettings<f64> {
 }
 
 /// Angles known to 0.01 deg.
-pub(crate) fn attitude(angles_rad: [f64; 3]) -> InitialAttitude<f64> {
+pub fn attitude(angles_rad: [f64; 3]) -> InitialAttitude<f64> {
     InitialAttitude::Angles {
         angles_rad,
         sigma_rad: [0.01_f64.to_radians(); 3],
@@ -117,8 +114,9 @@ fn differences(extended: &Controller<f64>, catalogue: &CatalogueFilter) -> [f64;
     largest
 }
 
-/// Differences after one step from one state.
-pub(crate) fn after_one_step() -> [f64; 2] {
+/// Differences after one step from the same state: the largest of a state in sigmas, and the largest
+/// relative one of a sigma.
+pub fn after_one_step() -> [f64; 2] {
     // Angles of any size, coefficients of a bad gyro.
     let drift = [0.41, -0.13, 0.04, -0.29, 0.21, -0.07, 0.15, 0.09, 0.02];
     let settings = settings(Drift::from_array(drift));
@@ -137,8 +135,8 @@ pub(crate) fn after_one_step() -> [f64; 2] {
     differences(&extended, &catalogue)
 }
 
-/// Differences after three days of samples.
-pub(crate) fn after_three_days() -> [f64; 2] {
+/// The same after three days of samples.
+pub fn after_three_days() -> [f64; 2] {
     let scenario = Scenario::parse(FAULT, "fault.scenario.toml").unwrap();
     let record = simulate(&scenario).unwrap().record;
     let angles = [10.0_f64, -20.0, 35.0].map(f64::to_radians);

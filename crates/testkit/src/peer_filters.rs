@@ -1,4 +1,4 @@
-//! Joseph-form Kalman filters from crates.io, driven by the generated Euler step.
+//! Joseph-form Kalman filters of other packages, driven by the generated Euler step.
 
 use adskalman::{
     KalmanFilterNoControl, ObservationModel, StateAndCovariance, TransitionModelLinearNoControl,
@@ -55,9 +55,9 @@ fn measurement(chart: &Chart<f64>, state: &State) -> (SVector<f64, 3>, SMatrix<f
     (SVector::from(at.specific_force), h)
 }
 
-/// The filter of the crate `adskalman`.
+/// The filter of the package `adskalman`.
 #[derive(Clone)]
-pub(crate) struct Adskalman {
+pub struct Adskalman {
     chart: Chart<f64>,
     estimate: StateAndCovariance<f64, nalgebra::Const<12>>,
     density: [f64; 3],
@@ -113,12 +113,9 @@ impl ObservationModel<f64, nalgebra::Const<12>, nalgebra::Const<3>> for Observed
 }
 
 impl Adskalman {
-    pub(crate) fn new(
-        chart: Chart<f64>,
-        prior: [f64; 12],
-        density: [f64; 3],
-        variance: [f64; 3],
-    ) -> Self {
+    /// The filter at its start; `prior` and `variance` are variances, `density` the spectral density of
+    /// the drift noise.
+    pub fn new(chart: Chart<f64>, prior: [f64; 12], density: [f64; 3], variance: [f64; 3]) -> Self {
         let covariance = Square::from_diagonal(&SVector::from(prior));
         let estimate = StateAndCovariance::new(State::zeros(), covariance);
         Self {
@@ -129,7 +126,8 @@ impl Adskalman {
         }
     }
 
-    pub(crate) fn step(&mut self, dt_s: f64, sample: &[f64; 3]) {
+    /// Prediction over `dt_s` and update of one sample.
+    pub fn step(&mut self, dt_s: f64, sample: &[f64; 3]) {
         let (predicted, phi, noise) =
             transition(&self.chart, self.estimate.state(), dt_s, self.density);
         let linearised = Linearised {
@@ -152,9 +150,9 @@ impl Adskalman {
     }
 }
 
-/// The filter of the crate `multicalc`.
+/// The filter of the package `multicalc`.
 #[derive(Clone)]
-pub(crate) struct Multicalc {
+pub struct Multicalc {
     chart: Chart<f64>,
     filter: multicalc::estimation::KalmanFilter<12, 3>,
     density: [f64; 3],
@@ -169,12 +167,9 @@ fn matrix<const R: usize, const C: usize>(from: &SMatrix<f64, R, C>) -> Multical
 }
 
 impl Multicalc {
-    pub(crate) fn new(
-        chart: Chart<f64>,
-        prior: [f64; 12],
-        density: [f64; 3],
-        variance: [f64; 3],
-    ) -> Self {
+    /// The filter at its start; `prior` and `variance` are variances, `density` the spectral density of
+    /// the drift noise.
+    pub fn new(chart: Chart<f64>, prior: [f64; 12], density: [f64; 3], variance: [f64; 3]) -> Self {
         let model = multicalc::estimation::KalmanModel {
             state_transition: matrix(&Square::identity()),
             measurement_model: matrix(&SMatrix::<f64, 3, 12>::zeros()),
@@ -193,7 +188,8 @@ impl Multicalc {
         }
     }
 
-    pub(crate) fn step(&mut self, dt_s: f64, sample: &[f64; 3]) {
+    /// Prediction over `dt_s` and update of one sample.
+    pub fn step(&mut self, dt_s: f64, sample: &[f64; 3]) {
         let now = self.filter.state();
         let state = State::from_fn(|i, _| now[i]);
         let (predicted, phi, noise) = transition(&self.chart, &state, dt_s, self.density);
@@ -204,7 +200,7 @@ impl Multicalc {
             .set_state(multicalc::linear_algebra::Vector::new(predicted.into()));
         let (output, h) = measurement(&self.chart, &predicted);
         self.filter.set_measurement_model(matrix(&h));
-        // The crate's output is linear: hand it the measurement with the same innovation.
+        // The output of this filter is linear: it gets the measurement with the same innovation.
         let linear = h * predicted;
         let equivalent = core::array::from_fn(|i| sample[i] - output[i] + linear[i]);
         self.filter

@@ -1,4 +1,4 @@
-//! Records with noise that is not as declared, and the innovations of the streaming filter.
+//! Records with noise that is not as declared, and their innovations by the streaming filter.
 
 use gyrocal::{Drift, FilterSettings, InitialAttitude, PlatformFilter, Site};
 use gyrocal_diagnosis::{DeclaredNoise, Innovations};
@@ -6,10 +6,10 @@ use gyrocal_record::Record;
 use gyrocal_statistics::deviates::Normals;
 use gyrocal_truth::{Population, Scenario, Term, simulate_with};
 
-/// What is wrong with the noise of a record.
+/// Fault of the noise of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Fault {
-    /// Nothing.
+pub enum Fault {
+    /// No fault.
     None,
     /// Values rounded to multiples of this many standard deviations.
     Quantised(f64),
@@ -19,25 +19,32 @@ pub(crate) enum Fault {
     Coloured(f64),
     /// Standard deviation over the declared one.
     Ratio(f64),
-    /// That of the gyros.
+    /// Standard deviation of the gyro noise over the declared one.
     GyroRatio(f64),
 }
 
-/// A record and what the audit takes with it.
-pub(crate) struct Case {
-    pub(crate) record: Record,
-    pub(crate) innovations: Innovations,
-    pub(crate) declared: DeclaredNoise,
-    /// What is wrong with it.
-    #[allow(dead_code)] // the figures ask
-    pub(crate) fault: Fault,
-    /// Row and axis of true outliers.
-    pub(crate) outliers: Vec<(usize, usize)>,
+/// A record with the inputs of the noise audit.
+pub struct FaultyRecord {
+    /// The record.
+    pub record: Record,
+    /// Innovations of the streaming filter with the declared noise.
+    pub innovations: Innovations,
+    /// The declared noise.
+    pub declared: DeclaredNoise,
+    /// The fault.
+    pub fault: Fault,
+    /// Row and axis of each true outlier.
+    pub outliers: Vec<(usize, usize)>,
 }
 
-/// The record of a number of a population with a fault, and with hidden terms.
+/// Record `number` of a population, with a fault and with hidden terms.
 #[allow(clippy::collapsible_match)] // a guard that draws a random number hides it
-pub(crate) fn case(population: &Population, number: u64, fault: Fault, terms: &[Term]) -> Case {
+pub fn faulty_record(
+    population: &Population,
+    number: u64,
+    fault: Fault,
+    terms: &[Term],
+) -> FaultyRecord {
     let scenario = population.scenario(number);
     let sigma = scenario.accel_noise_g;
     let mut simulated = scenario.clone();
@@ -80,7 +87,7 @@ pub(crate) fn case(population: &Population, number: u64, fault: Fault, terms: &[
         accel_g: [sigma; 3],
         gyro_deg_per_h: scenario.gyro_noise_deg_per_h,
     };
-    Case {
+    FaultyRecord {
         innovations: innovations(&record, &scenario),
         record,
         declared,
@@ -89,8 +96,8 @@ pub(crate) fn case(population: &Population, number: u64, fault: Fault, terms: &[
     }
 }
 
-/// The innovations of the streaming filter with what the bench file of a scenario declares.
-pub(crate) fn innovations(record: &Record, scenario: &Scenario) -> Innovations {
+/// Innovations of the streaming filter with the declarations of a scenario.
+fn innovations(record: &Record, scenario: &Scenario) -> Innovations {
     let attitude = InitialAttitude::Angles {
         angles_rad: scenario.declared_angles_deg().map(f64::to_radians),
         sigma_rad: scenario.initial_angles_sigma_deg.map(f64::to_radians),

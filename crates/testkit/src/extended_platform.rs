@@ -15,9 +15,9 @@ const DIRECTION: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
 /// T_(1 + k / 3)(x), a Chebyshev polynomial of the specific force x along a fixed direction:
 /// smooth, bounded, no two alike.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ExtendedPlatform {
+pub struct ExtendedPlatform {
     /// Number of additional parameters.
-    pub(crate) additional: usize,
+    pub additional: usize,
 }
 
 /// Specific force along the direction, and its derivative by the angles.

@@ -1,4 +1,4 @@
-//! Filters with more and more constant parameters on the same samples, to time.
+//! Filters with a varying number of constant parameters on the same samples, for timing.
 
 use std::hint::black_box;
 
@@ -7,10 +7,10 @@ use gyrocal::{
     Chart, FilterSettings, InitialAttitude, Integration, PlatformFilter, Recentring, Site,
 };
 
-use super::extended_platform::ExtendedPlatform;
+use crate::extended_platform::ExtendedPlatform;
 
 /// Numbers of states.
-pub(crate) const SIZES: [usize; 6] = [12, 14, 18, 24, 36, 60];
+pub const SIZES: [usize; 6] = [12, 14, 18, 24, 36, 60];
 const STEP_S: f64 = 60.0;
 const LATITUDE_DEG: f64 = 39.1;
 /// (0.002 deg/h)² held over 60 s.
@@ -18,10 +18,11 @@ const DENSITY: [f64; 3] = [2.4e-4; 3];
 /// (1e-5 g)².
 const VARIANCE: [f64; 3] = [1e-10; 3];
 
-type ExtendedFilter = Filter<f64, ExtendedPlatform, Chart<f64>, VecStorage<f64>, 3, 3>;
+/// The filter on [`ExtendedPlatform`].
+pub type ExtendedFilter = Filter<f64, ExtendedPlatform, Chart<f64>, VecStorage<f64>, 3, 3>;
 
 /// Noise-free samples of a platform without drift.
-pub(crate) fn samples(count: usize) -> Result<Vec<[f64; 3]>, gyrocal::EstimationError> {
+pub fn samples(count: usize) -> Result<Vec<[f64; 3]>, gyrocal::EstimationError> {
     let site = Site::at_latitude_deg(LATITUDE_DEG);
     let mut truth =
         PlatformFilter::new(&FilterSettings::at_site(site), &InitialAttitude::aligned())?;
@@ -33,8 +34,8 @@ pub(crate) fn samples(count: usize) -> Result<Vec<[f64; 3]>, gyrocal::Estimation
     Ok(samples)
 }
 
-/// A filter with `states` states at the start of the samples.
-pub(crate) fn start(
+/// A filter with `states` states, at least 12, at the start of the samples.
+pub fn start(
     states: usize,
     integration: Integration,
 ) -> Result<ExtendedFilter, gyrocal::EstimationError> {
@@ -54,9 +55,9 @@ pub(crate) fn start(
     )
 }
 
-/// One step to a sample.
+/// Prediction and update of one sample.
 #[inline]
-pub(crate) fn step(
+pub fn step(
     filter: &mut ExtendedFilter,
     sample: &[f64; 3],
 ) -> Result<(), gyrocal::EstimationError> {

@@ -3,9 +3,7 @@
 //! over more and longer records.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
-mod difference;
-
-use difference::compare;
+use gyrocal_testkit::signature_differences::compare;
 use gyrocal_truth::{Population, Scenario, Temperature};
 
 #[test]

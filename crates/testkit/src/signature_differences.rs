@@ -12,8 +12,8 @@ use gyrocal_record::Record;
 use gyrocal_truth::{Hidden, Scenario, simulate};
 use nalgebra::{DMatrix, DVector};
 
-/// Why a comparison could not be made.
-pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
+/// Failure of a comparison.
+pub type Error = Box<dyn std::error::Error + Send + Sync>;
 
 /// How far the readings are moved: the second order of a difference with either sign cancels, and
 /// the third is some 1e-9 of it, while the simulator's own error of 1e-12 rad is 1e-7 of it.
@@ -22,23 +22,22 @@ const MOVED_G: f64 = 3e-5;
 /// Drift coefficients: the first columns, which every fit takes up.
 const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;
 
-/// What is left of a signature when the coefficients are projected out is compared down to this
-/// part of it: below, it cannot be seen either.
+/// A signature with the coefficients projected out is compared if at least this part of it is left:
+/// below, it is not observable.
 const LEAST_PART: f64 = 1e-3;
 
-/// One signature beside its finite difference.
+/// One signature compared with its finite difference.
 #[derive(Clone, Debug)]
-pub(crate) struct Compared {
+pub struct Compared {
     /// Id of the parameter, with onset, time constant or axis.
-    pub(crate) name: String,
+    pub name: String,
     /// Norm of the difference over that of the finite difference, both whitened.
-    pub(crate) error: f64,
-    /// The same of what is left when the nine coefficients are projected out; `None` if that is
-    /// next to nothing.
-    pub(crate) projected: Option<f64>,
+    pub error: f64,
+    /// The same with the nine coefficients projected out; `None` if next to nothing is left.
+    pub projected: Option<f64>,
 }
 
-/// A parameter with a signature, and how the simulator hides it.
+/// A parameter with a signature, and the hidden effect of the simulator that it stands for.
 struct Probe {
     name: String,
     effect: &'static str,
@@ -52,14 +51,14 @@ struct Probe {
     signature: Signature,
 }
 
-/// Which column the signature is.
+/// Column of a signature.
 enum Signature {
     Parameter(usize),
     Further(Column),
 }
 
 /// All signatures of the catalogue over the record of a scenario without noise.
-pub(crate) fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
+pub fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
     let quiet = Scenario {
         accel_noise_g: 0.0,
         gyro_noise_deg_per_h: 0.0,
@@ -147,9 +146,40 @@ fn shape(id: &str, record: &Record) -> f64 {
     }
 }
 
-/// Every parameter of the catalogue, and the columns that stand for steps, warm-ups, knocks and
-/// the first attitude in a search.
+/// Every parameter of the catalogue, and the columns that stand for steps, warm-ups, attitude jumps
+/// and the initial attitude in a search.
 fn probes(record: &Record) -> Result<Vec<Probe>, Error> {
+    let mut probes = parameter_probes(record)?;
+    for (gyro, [step, warm_up]) in [
+        ["gyro_x.step", "gyro_x.warmup"],
+        ["gyro_y.step", "gyro_y.warmup"],
+        ["gyro_z.step", "gyro_z.warmup"],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        probes.extend(probed_rows(record).map(|row| step_probe(record, gyro, step, row)));
+        let time_constants_h = [1.0, 0.5 * record.duration_s() / 3600.0];
+        probes.extend(time_constants_h.map(|h| warm_up_probe(record, gyro, warm_up, h)));
+    }
+    for axis in 0..3 {
+        probes.extend(attitude_probes(record, axis));
+    }
+    Ok(probes)
+}
+
+/// Rows of onsets: early, in the middle, and late.
+fn probed_rows(record: &Record) -> [usize; 3] {
+    let rows = record.len();
+    [rows / 10, rows / 2, 9 * rows / 10]
+}
+
+fn since_first_s(record: &Record, row: usize) -> f64 {
+    record.time_s[row] - record.time_s[0]
+}
+
+/// Every parameter of the catalogue, onsets and time constants held.
+fn parameter_probes(record: &Record) -> Result<Vec<Probe>, Error> {
     let mut probes = Vec::new();
     for effect in EFFECTS.iter().filter(|effect| effect.has_term()) {
         let own = effect.shape().into_iter();
@@ -169,82 +199,81 @@ fn probes(record: &Record) -> Result<Vec<Probe>, Error> {
             });
         }
     }
-    let rows = record.len();
-    let since_first_s = |row: usize| record.time_s[row] - record.time_s[0];
-    for (gyro, [step, warm_up]) in [
-        ["gyro_x.step", "gyro_x.warmup"],
-        ["gyro_y.step", "gyro_y.warmup"],
-        ["gyro_z.step", "gyro_z.warmup"],
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        for row in [rows / 10, rows / 2, 9 * rows / 10] {
-            let onset_s = since_first_s(row);
-            probes.push(Probe {
-                name: format!("{step} at {onset_s} s"),
-                effect: step,
-                parameter: "size",
-                held: vec![("onset_s", onset_s)],
-                size: 0.01,
-                unit: 1.0,
-                signature: Signature::Further(Column::Onset {
-                    parameter: BIASES[gyro],
-                    row,
-                }),
-            });
-        }
-        for time_constant_h in [1.0, 0.5 * record.duration_s() / 3600.0] {
-            let share = |pair: &[f64]| {
-                let middle_s = 0.5 * (pair[0] + pair[1]) - record.time_s[0];
-                (-middle_s / (3600.0 * time_constant_h)).exp()
-            };
-            probes.push(Probe {
-                name: format!("{warm_up} of {time_constant_h} h"),
-                effect: warm_up,
-                parameter: "size",
-                held: vec![("time_constant_h", time_constant_h)],
-                size: 0.01,
-                unit: 1.0,
-                signature: Signature::Further(Column::Course {
-                    parameter: BIASES[gyro],
-                    steps: record.time_s.windows(2).map(share).collect(),
-                }),
-            });
-        }
-    }
-    for (axis, parameter) in ["x_deg", "y_deg", "z_deg"].into_iter().enumerate() {
-        let turn = |effect: &'static str, held, signature, at: String| Probe {
-            name: format!("{effect} about {}{at}", ["x", "y", "z"][axis]),
-            effect,
-            parameter,
-            held,
-            size: 0.05,
-            unit: core::f64::consts::PI / 180.0,
-            signature: Signature::Further(signature),
-        };
-        probes.push(turn(
-            "platform.initial_attitude",
-            Vec::new(),
-            Column::Start { axis },
-            String::new(),
-        ));
-        for row in [rows / 10, rows / 2, 9 * rows / 10] {
-            // The turn of a step is one at its end; a knock at any time within it is the same
-            // but for what the platform does in the rest of the step.
-            let onset_s = since_first_s(row + 1);
-            probes.push(turn(
-                "platform.knock",
-                vec![("onset_s", onset_s)],
-                Column::Jump { row, axis },
-                format!(" at {onset_s} s"),
-            ));
-        }
-    }
     Ok(probes)
 }
 
-/// What a unit of the column does to the readings.
+fn step_probe(record: &Record, gyro: usize, effect: &'static str, row: usize) -> Probe {
+    let onset_s = since_first_s(record, row);
+    Probe {
+        name: format!("{effect} at {onset_s} s"),
+        effect,
+        parameter: "size",
+        held: vec![("onset_s", onset_s)],
+        size: 0.01,
+        unit: 1.0,
+        signature: Signature::Further(Column::Onset {
+            parameter: BIASES[gyro],
+            row,
+        }),
+    }
+}
+
+fn warm_up_probe(
+    record: &Record,
+    gyro: usize,
+    effect: &'static str,
+    time_constant_h: f64,
+) -> Probe {
+    let share = |pair: &[f64]| {
+        let middle_s = 0.5 * (pair[0] + pair[1]) - record.time_s[0];
+        (-middle_s / (3600.0 * time_constant_h)).exp()
+    };
+    Probe {
+        name: format!("{effect} of {time_constant_h} h"),
+        effect,
+        parameter: "size",
+        held: vec![("time_constant_h", time_constant_h)],
+        size: 0.01,
+        unit: 1.0,
+        signature: Signature::Further(Column::Course {
+            parameter: BIASES[gyro],
+            steps: record.time_s.windows(2).map(share).collect(),
+        }),
+    }
+}
+
+/// The initial attitude and attitude jumps about one axis.
+fn attitude_probes(record: &Record, axis: usize) -> Vec<Probe> {
+    let rotation = |effect: &'static str, held, signature, at: String| Probe {
+        name: format!("{effect} about {}{at}", ["x", "y", "z"][axis]),
+        effect,
+        parameter: ["x_deg", "y_deg", "z_deg"][axis],
+        held,
+        size: 0.05,
+        unit: core::f64::consts::PI / 180.0,
+        signature: Signature::Further(signature),
+    };
+    let initial = rotation(
+        "platform.initial_attitude",
+        Vec::new(),
+        Column::Start { axis },
+        String::new(),
+    );
+    let jumps = probed_rows(record).map(|row| {
+        // The column has the rotation at the end of the step; a jump at any time within the step
+        // differs by the motion of the platform in the rest of it.
+        let onset_s = since_first_s(record, row + 1);
+        rotation(
+            "platform.knock",
+            vec![("onset_s", onset_s)],
+            Column::Jump { row, axis },
+            format!(" at {onset_s} s"),
+        )
+    });
+    core::iter::once(initial).chain(jumps).collect()
+}
+
+/// Change of the readings by a unit of the column.
 fn change_g(quiet: &Scenario, probe: &Probe) -> Result<Vec<[f64; 3]>, Error> {
     let readings_g = |size: f64| -> Result<Vec<[f64; 3]>, Error> {
         let mut parameters = probe.held.clone();

@@ -1,9 +1,7 @@
-//! Least squares on all of a short record at once, on dense matrices: what the batch estimator
-//! must agree with.
+//! Dense least squares over all rows of a short record: the reference of the batch estimator.
 //!
-//! It shares nothing with it. Unknown are the attitude at every row and the coefficients;
-//! residuals are those of the samples, of what the gyro noise must have done between rows, and of
-//! the priors. Attitudes are direction cosines, derivatives are differences of fourth order, and
+//! The two share no code. Unknowns are the attitude at every row and the coefficients; residuals are
+//! those of the samples, of the gyro noise between rows, and of the priors. Attitudes are direction cosines, derivatives are differences of fourth order, and
 //! the normal equations are never formed.
 
 use gyrocal_calibration::Run;
@@ -19,22 +17,20 @@ const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;
 /// rad/s in a deg/h.
 const DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
 
-/// What is found.
-pub(crate) struct DenseSolution {
+/// The solution.
+pub struct DenseSolution {
     /// The coefficients.
-    pub(crate) drift: [f64; COEFFICIENTS],
+    pub drift: [f64; COEFFICIENTS],
     /// Their covariance.
-    pub(crate) covariance: DMatrix<f64>,
+    pub covariance: DMatrix<f64>,
     /// Platform from East, North, Up at the first row and the last.
-    #[allow(dead_code, reason = "the figures do not look at it")]
-    pub(crate) ends: [Matrix3<f64>; 2],
+    pub ends: [Matrix3<f64>; 2],
     /// Least sum of squares, priors included.
-    #[allow(dead_code, reason = "the figures do not look at it")]
-    pub(crate) cost: f64,
+    pub cost: f64,
 }
 
-/// A short record as one problem.
-pub(crate) struct Dense<'a> {
+/// A short record as one least-squares problem.
+pub struct DenseProblem<'a> {
     run: Run<'a>,
     longest_step_s: f64,
     /// As the bench declares.
@@ -44,9 +40,10 @@ pub(crate) struct Dense<'a> {
     drift_sigma: [f64; COEFFICIENTS],
 }
 
-impl<'a> Dense<'a> {
-    /// The bench has to declare the initial angles.
-    pub(crate) fn new(run: Run<'a>, longest_step_s: f64) -> Self {
+impl<'a> DenseProblem<'a> {
+    /// The problem of a run; steps longer than `longest_step_s` are divided. The bench has to declare the
+    /// initial angles.
+    pub fn new(run: Run<'a>, longest_step_s: f64) -> Self {
         let bench = run.bench;
         let angles =
             Vector3::from(bench.initial_angles_deg.expect("initial angles")).map(f64::to_radians);
@@ -76,7 +73,7 @@ impl<'a> Dense<'a> {
     }
 
     /// Gauss-Newton steps to convergence.
-    pub(crate) fn solve(&self) -> DenseSolution {
+    pub fn solve(&self) -> DenseSolution {
         let mut drift = [0.0; COEFFICIENTS];
         let mut attitudes = vec![self.first];
         for row in 0..self.run.record.len() - 1 {
@@ -191,10 +188,10 @@ impl<'a> Dense<'a> {
     }
 }
 
-/// The problem where it stands; unknowns are changes from there: coefficients in units of their
-/// prior sigmas, then rotations.
+/// The problem about the current estimate. Unknowns are changes from there: coefficients in units of
+/// their prior sigmas, then rotations.
 struct Linearised<'a> {
-    problem: &'a Dense<'a>,
+    problem: &'a DenseProblem<'a>,
     attitudes: &'a [Matrix3<f64>],
     drift: &'a [f64; COEFFICIENTS],
     noise_roots: Vec<Matrix3<f64>>,
