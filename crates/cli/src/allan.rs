@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
 fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, MeasuredError> {
     let source = SourceText::read(&arguments.log)?;
     let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
-    let columns = read_columns(&source, &names)?;
+    let columns = read_columns(&source, &names)?.values;
     let interval_s = 1.0 / arguments.rate_hz;
     names
         .into_iter()

@@ -8,8 +8,9 @@ use std::path::PathBuf;
 use clap::Args;
 use comfy_table::{Cell, Table};
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_instruments::tumble::{
-    Finding, Prepared, SearchSettings, TumbleReport, TumbleSettings, prepare, tumble,
+use gyrocal_instruments::multi_position::{
+    Finding, MultiPositionReport, MultiPositionSettings, PreparedTest, SearchSettings,
+    multi_position_test, prepare,
 };
 use gyrocal_instruments::{
     Description, Log, MeasuredError, ResultFile, StopSettings, find_stops, given_stops,
@@ -97,7 +98,7 @@ fn false_alarm(text: &str) -> Result<f64, String> {
         .map_err(|error| error.to_string())
 }
 
-fn work(arguments: &TumbleArguments) -> Result<(Prepared, TumbleReport), MeasuredError> {
+fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, MultiPositionReport), MeasuredError> {
     let description = Description::read(&arguments.log_description)?;
     let log = Log::read(&arguments.log, &description)?;
     let stops = match &arguments.stop[..] {
@@ -114,16 +115,20 @@ fn work(arguments: &TumbleArguments) -> Result<(Prepared, TumbleReport), Measure
         given => given_stops(&log, given)?,
     };
     let prepared = prepare(&log, &description, &stops)?;
-    let settings = TumbleSettings {
+    let settings = MultiPositionSettings {
         search: SearchSettings::at(arguments.false_alarm, arguments.seed)?,
         left_out: arguments.left_out as usize,
-        ..TumbleSettings::default()
+        ..MultiPositionSettings::default()
     };
-    let report = tumble(&prepared.positions, &settings)?;
+    let report = multi_position_test(&prepared.positions, &settings)?;
     Ok((prepared, report))
 }
 
-fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleReport) -> String {
+fn summary(
+    arguments: &TumbleArguments,
+    prepared: &PreparedTest,
+    report: &MultiPositionReport,
+) -> String {
     let mut text = format!(
         "{}: {} static stops\n\n",
         arguments.log.display(),
@@ -184,7 +189,7 @@ fn summary(arguments: &TumbleArguments, prepared: &Prepared, report: &TumbleRepo
     text
 }
 
-fn sensors(text: &mut String, prepared: &Prepared) {
+fn sensors(text: &mut String, prepared: &PreparedTest) {
     let sensors = prepared.sensors();
     if let Some(outputs) = sensors.accel_outputs_per_g {
         let [x, y, z] = outputs;
@@ -217,7 +222,7 @@ fn sensors(text: &mut String, prepared: &Prepared) {
     text.push('\n');
 }
 
-fn laws(report: &TumbleReport) -> Table {
+fn laws(report: &MultiPositionReport) -> Table {
     let mut table = table([
         "coefficient",
         "nominal",
@@ -259,7 +264,7 @@ fn describe(text: &mut String, finding: &Finding) {
         format::p_value(finding.p_value)
     );
     let rivals: Vec<String> = finding
-        .rivals
+        .alternatives
         .iter()
         .map(|rival| {
             format!(
@@ -296,8 +301,8 @@ fn describe(text: &mut String, finding: &Finding) {
     }
 }
 
-fn held_out_gain(text: &mut String, arguments: &TumbleArguments, report: &TumbleReport) {
-    if report.gain.is_none() && !report.findings.is_empty() {
+fn held_out_gain(text: &mut String, arguments: &TumbleArguments, report: &MultiPositionReport) {
+    if report.cross_validation.is_none() && !report.findings.is_empty() {
         let _ = writeln!(
             text,
             "\nThe gain of the extended law on held-out stops cannot be measured: without {} successive \
@@ -305,7 +310,7 @@ fn held_out_gain(text: &mut String, arguments: &TumbleArguments, report: &Tumble
             arguments.left_out
         );
     }
-    if let Some(gain) = &report.gain {
+    if let Some(gain) = &report.cross_validation {
         let list = |values: [f64; 3]| values.map(|value| format!("{value:.0}")).join(", ");
         let _ = writeln!(
             text,
@@ -352,7 +357,7 @@ fn held_out_gain(text: &mut String, arguments: &TumbleArguments, report: &Tumble
     );
 }
 
-fn not_identifiable(text: &mut String, prepared: &Prepared) {
+fn not_identifiable(text: &mut String, prepared: &PreparedTest) {
     text.push_str(
         "\nNot distinguishable: squares along all three axes and the bias (they sum to 1 g²); other \
          effects of the\nattitude to gravity, such as convection in the unit, and sensitivity to \

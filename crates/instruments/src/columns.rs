@@ -1,88 +1,72 @@
-//! Some columns of a CSV file, by name.
+//! Selected columns of a CSV file, by name.
 
+use core::ops::Range;
+
+use gyrocal_record::fields::{Field, Line, Lines};
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 
-/// Reads the columns `names`, in that order, from text with a header row. Values are finite.
+/// Columns of a CSV file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Columns {
+    /// The values of each column, all finite.
+    pub values: Vec<Vec<f64>>,
+    /// Place of each row in the text of the file.
+    pub places: Vec<Range<usize>>,
+}
+
+/// Reads the columns `names`, in that order, from text with a header row.
 ///
 /// # Errors
 ///
 /// [`Error::Input`], at its place, for a column that is absent or double, a row with more or
-/// fewer fields than the header, a field that is no finite number, or a file without rows.
-pub fn read_columns(source: &SourceText, names: &[&str]) -> Result<Vec<Vec<f64>>, Error> {
-    let mut lines = lines(source.text());
-    let header = lines.next().unwrap_or_default();
-    let places = names
+/// fewer fields than the header, a field that is not a finite number, or a file without rows.
+pub fn read_columns(source: &SourceText, names: &[&str]) -> Result<Columns, Error> {
+    let mut lines = Lines::of(source);
+    let header = lines.next_line()?.unwrap_or_default();
+    let indices = names
         .iter()
-        .map(|name| place(source, &header, name))
+        .map(|name| index(source, &header, name))
         .collect::<Result<Vec<usize>, Error>>()?;
-    let mut columns = vec![Vec::new(); names.len()];
-    let mut end = header.start;
-    for line in lines {
+    let mut values = vec![Vec::new(); names.len()];
+    let mut places: Vec<Range<usize>> = Vec::new();
+    while let Some(line) = lines.next_line()? {
         if line.fields.len() != header.fields.len() {
             return Err(source.error(
                 InputErrorKind::FieldCount,
-                line.start..line.start + line.text.len(),
+                line.span,
                 format!("{} fields", line.fields.len()),
                 format!("{} fields, as the header has", header.fields.len()),
                 "decimal numbers have a point, and fields are separated by commas",
             ));
         }
-        for (column, &place) in columns.iter_mut().zip(&places) {
-            column.push(number(source, &line, place)?);
+        for (column, &index) in values.iter_mut().zip(&indices) {
+            column.push(number(source, &line.fields[index])?);
         }
-        end = line.start;
+        places.push(line.span);
     }
-    if columns.iter().all(Vec::is_empty) {
+    if places.is_empty() {
         return Err(source.error(
             InputErrorKind::TooFewRows,
-            end..end,
+            header.span.start..header.span.start,
             "a header without rows",
             "samples",
             "check that the program that wrote the log had finished",
         ));
     }
-    Ok(columns)
+    Ok(Columns { values, places })
 }
 
-/// One line that has something in it.
-#[derive(Debug, Default)]
-struct Line<'a> {
-    start: usize,
-    text: &'a str,
-    fields: Vec<&'a str>,
-}
-
-fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
-    let mut next = 0;
-    text.split_inclusive('\n')
-        .map(move |whole| {
-            let start = next;
-            next += whole.len();
-            let text = whole.trim_end();
-            let fields = text.split(',').collect();
-            Line {
-                start,
-                text,
-                fields,
-            }
-        })
-        .filter(|line| !line.text.trim().is_empty())
-}
-
-fn bare(field: &str) -> &str {
-    field.trim().trim_matches('"')
-}
-
-fn place(source: &SourceText, header: &Line<'_>, name: &str) -> Result<usize, Error> {
-    let names: Vec<&str> = header.fields.iter().map(|field| bare(field)).collect();
-    let mut places = (0..names.len()).filter(|place| names[*place] == name);
+/// Index of the column of a name.
+fn index(source: &SourceText, header: &Line<'_>, name: &str) -> Result<usize, Error> {
+    let names: Vec<&str> = header.fields.iter().map(|field| field.text).collect();
+    let mut indices = (0..names.len()).filter(|index| names[*index] == name);
     let advice = format!("the columns are {}", names.join(", "));
     let error = |found: String, expected: String| {
-        let span = header.start..header.start + header.text.len();
+        let span = header.span.clone();
         source.error(InputErrorKind::Header, span, found, expected, &*advice)
     };
-    match (places.next(), places.next()) {
-        (Some(place), None) => Ok(place),
+    match (indices.next(), indices.next()) {
+        (Some(index), None) => Ok(index),
         (None, _) => Err(error(
             "a header without it".to_owned(),
             format!("a column `{name}`"),
@@ -94,20 +78,13 @@ fn place(source: &SourceText, header: &Line<'_>, name: &str) -> Result<usize, Er
     }
 }
 
-fn number(source: &SourceText, line: &Line<'_>, place: usize) -> Result<f64, Error> {
-    let field = line.fields[place];
-    let number = bare(field).parse::<f64>().ok();
+fn number(source: &SourceText, field: &Field<'_>) -> Result<f64, Error> {
+    let number = field.text.parse::<f64>().ok();
     number.filter(|value| value.is_finite()).ok_or_else(|| {
-        // A comma before each field but the first.
-        let before: usize = line.fields[..place]
-            .iter()
-            .map(|field| field.len() + 1)
-            .sum();
-        let start = line.start + before;
         source.error(
             InputErrorKind::NotANumber,
-            start..start + field.len(),
-            format!("`{}`", field.trim()),
+            field.span.clone(),
+            format!("`{}`", &source.text()[field.span.clone()]),
             "a finite number",
             "cut the log before the first sample that is missing",
         )

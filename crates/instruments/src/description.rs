@@ -1,26 +1,26 @@
-//! What the columns of a log mean: a small TOML file beside it.
+//! Description of a log: columns, units and axes, in a TOML file.
 
 use std::path::Path;
 
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 use serde::Deserialize;
 
-/// What the columns of a log mean.
+/// Columns, units and axes of a log.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Description {
-    /// When the samples were taken.
+    /// Times of the samples.
     pub time: Time,
     /// The three gyros.
     pub gyro: Gyro,
     /// The three accelerometers.
     pub accel: Accel,
-    /// Where the log was taken.
+    /// Site of the recording.
     #[serde(default)]
     pub site: Site,
 }
 
-/// When the samples were taken: a column of time stamps, or a rate.
+/// Times of the samples: a column of time stamps, or a rate.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Time {
@@ -45,10 +45,10 @@ pub struct Gyro {
     /// column y, and body y is column x with its sign changed.
     #[serde(default = "straight")]
     pub axes: [Direction; 3],
-    /// The count that stands for no rotation.
+    /// Count at zero rate.
     #[serde(default)]
     pub zero_counts: f64,
-    /// Counts in one rad/s, or `"from-turns"`: estimated from turns between stops.
+    /// Counts per rad/s, or `"from-turns"`: estimated from turns between stops.
     pub counts_per_rad_per_s: Option<CountScale>,
 }
 
@@ -63,20 +63,20 @@ pub struct Accel {
     /// Directions of the body axes along the columns, as for the gyros.
     #[serde(default = "straight")]
     pub axes: [Direction; 3],
-    /// The count that stands for no specific force.
+    /// Count at zero specific force.
     #[serde(default)]
     pub zero_counts: f64,
-    /// Counts in 1 g, or `"from-stops"`: estimated from the norm of specific force at rest.
+    /// Counts per g, or `"from-stops"`: estimated from the norm of specific force at rest.
     pub counts_per_g: Option<CountScale>,
 }
 
-/// Where the log was taken.
+/// Site of the recording.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Site {
     /// Astronomic latitude, north positive.
     pub latitude_deg: Option<f64>,
-    /// Gravity in the unit of m/s² that the accelerometers were scaled with.
+    /// Gravity in m/s², as used for the scale of the accelerometers.
     pub gravity_m_per_s2: Option<f64>,
 }
 
@@ -113,19 +113,19 @@ pub enum AccelUnit {
     Counts,
 }
 
-/// How many counts make a unit.
+/// Scale of raw counts.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum CountScale {
-    /// The same for three axes.
+    /// Counts per unit, the same for all axes.
     Same(f64),
-    /// For each axis.
+    /// Counts per unit of each axis.
     Each([f64; 3]),
-    /// What the recording itself says.
+    /// Estimated from the recording.
     Estimate(Estimate),
 }
 
-/// What a scale is estimated from.
+/// Source of an estimated scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub enum Estimate {
     /// Turns between stops.
@@ -136,7 +136,7 @@ pub enum Estimate {
     FromStops,
 }
 
-/// A column, with or without its sign changed.
+/// Direction of a body axis: a column and its sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub enum Direction {
     /// The first column.
@@ -160,7 +160,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// This component of three columns.
+    /// Component of three columns in this direction.
     pub(crate) fn of(self, columns: [f64; 3]) -> f64 {
         match self {
             Self::X => columns[0],
@@ -178,7 +178,7 @@ impl Description {
     ///
     /// # Errors
     ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Unreadable`], or [`Error::Input`] for the first mistake in it.
     pub fn read(path: &Path) -> Result<Self, Error> {
         Self::from_source(&SourceText::read(path)?)
     }
@@ -187,7 +187,7 @@ impl Description {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Input`] for the first mistake in it.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
         Self::from_source(&SourceText::new(text, name)?)
     }
@@ -221,7 +221,7 @@ impl Description {
         }
     }
 
-    /// What no type says: a key, and what was expected of it.
+    /// First mistake beyond types: its key, and the expected value.
     fn mistake(&self) -> Option<(&'static str, &'static str)> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let count = |scale: Option<CountScale>| match scale {

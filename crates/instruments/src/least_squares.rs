@@ -2,13 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A minimum of a sum of squares.
+/// Minimum of a sum of squares.
 pub(crate) struct Minimum {
-    /// The unknowns.
+    /// The unknowns at the minimum.
     pub(crate) unknowns: Vec<f64>,
-    /// Residuals there.
+    /// The residuals at the minimum.
     pub(crate) residuals: Vec<f64>,
-    /// Inverse of the normal matrix there; `None` if it is singular.
+    /// Inverse of the normal matrix at the minimum; `None` if it is singular.
     pub(crate) cofactors: Option<DMatrix<f64>>,
 }
 
@@ -22,7 +22,8 @@ impl Minimum {
     }
 }
 
-/// Levenberg's and Marquardt's method, derivatives by differences of `steps`.
+/// Minimises a sum of squares by the method of Levenberg and Marquardt, with derivatives by differences
+/// of `steps`.
 pub(crate) fn minimise(
     start: &[f64],
     steps: &[f64],

@@ -1,26 +1,31 @@
-//! Recordings of real inertial sensors: what they say of the gyros, without any simulator.
+//! Instrument tests: calibration and tests of gyros and accelerometers from logs of real sensors.
 //!
 //! # What it is
 //!
-//! - [`tumble`]: the multi-position drift test. A unit is stopped in many attitudes; the drift
-//!   law is fitted to what its gyros say at rest, and extended while that is better than chance.
-//! - [`strapdown`]: the analytic platform. A strapdown unit at rest becomes, in software, the
-//!   space-stable platform that the rest of `gyrocal` calibrates.
-//!
-//! Logs are CSV files; a [`Description`] says what their columns mean.
+//! - [`Log`] and [`Description`]: samples of six sensors from a CSV file whose columns, units and axes a
+//!   TOML file describes.
+//! - [`find_stops`] and [`stop_means`]: intervals at rest, and means over them with standard errors for
+//!   coloured noise.
+//! - [`accel_from_norm`] and [`gyro_from_turns`]: scales, zeros and alignment of raw counts, from the norm
+//!   of gravity at rest and from the turns between stops.
+//! - [`multi_position`]: the multi-position test (tumble test). A unit is stopped in many attitudes; the
+//!   drift law is fitted to its gyro outputs at rest and extended by significant terms.
+//! - [`strapdown`]: the import of a strapdown unit at rest as an analytic platform, the space-stable
+//!   platform that the rest of `gyrocal` calibrates.
 //!
 //! # The domain in brief
 //!
-//! A gyro at rest reads its drift and its share of Earth rate. The drift depends on specific
-//! force, which the attitude to gravity sets: many attitudes determine many terms (the
-//! multi-position test), one attitude determines one number for each gyro, however long it is
-//! held. Outputs in raw counts need scales: the norm of gravity gives those of accelerometers,
-//! turns between stops, which must take gravity from one stop to the next, those of gyros.
+//! A gyro at rest reads its drift and its component of Earth rate. The drift depends on specific force,
+//! and so on the attitude to gravity: many attitudes determine many terms of the drift law (the
+//! multi-position test); one attitude determines one number for each gyro, whatever its duration.
+//! Outputs in raw counts need scales. The norm of gravity determines those of accelerometers. Turns
+//! between stops, whose integrated rate must rotate gravity from one stop to the next, determine those
+//! of gyros.
 //!
 //! # Example
 //!
 //! ```no_run
-//! use gyrocal_instruments::tumble::{TumbleSettings, prepare, tumble};
+//! use gyrocal_instruments::multi_position::{MultiPositionSettings, multi_position_test, prepare};
 //! use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
 //!
 //! # fn main() -> Result<(), gyrocal_instruments::MeasuredError> {
@@ -28,7 +33,7 @@
 //! let log = Log::read("log.csv".as_ref(), &description)?;
 //! let stops = find_stops(&log, &StopSettings::default())?;
 //! let prepared = prepare(&log, &description, &stops)?;
-//! let report = tumble(&prepared.positions, &TumbleSettings::default())?;
+//! let report = multi_position_test(&prepared.positions, &MultiPositionSettings::default())?;
 //! for finding in &report.findings {
 //!     println!("{} {} ± {}", finding.effect, finding.estimate, finding.sigma);
 //! }
@@ -38,28 +43,28 @@
 //!
 //! # What it does not do
 //!
-//! It prints nothing and writes no files. It knows no filter. It repairs no log: gaps, clocks that
-//! jump, wrong units and left-handed axes are errors that say what was found.
+//! It prints nothing and writes no files. It knows no filter and no simulator. It repairs no log: gaps,
+//! clocks that jump, wrong units and left-handed axes are errors.
 
-mod average;
+mod accel_from_norm;
 mod columns;
 pub mod description;
 mod error;
+mod gyro_from_turns;
 mod least_squares;
 mod log;
-mod norms;
+pub mod multi_position;
 mod result_file;
+mod stop_means;
 mod stops;
 pub mod strapdown;
-pub mod tumble;
-mod turns;
 
-pub use average::{Stop, average};
-pub use columns::read_columns;
+pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
+pub use columns::{Columns, read_columns};
 pub use description::Description;
 pub use error::{MeasuredError, Unfit};
+pub use gyro_from_turns::{GyroCalibration, gyro_from_turns};
 pub use log::Log;
-pub use norms::{AccelCalibration, calibrate_by_norm, refuse_wrong_norm};
 pub use result_file::ResultFile;
+pub use stop_means::{StopMeans, stop_means};
 pub use stops::{StopSettings, find_stops, given_stops};
-pub use turns::{GyroCalibration, calibrate_by_turns};

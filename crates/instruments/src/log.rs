@@ -1,15 +1,16 @@
-//! A log of three gyros and three accelerometers, as its description says.
+//! Logs of three gyros and three accelerometers.
 
+use core::ops::Range;
 use std::path::Path;
 
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 use gyrocal_statistics::median_interval_s;
 
-use crate::columns::read_columns;
+use crate::columns::{Columns, read_columns};
 use crate::description::{AccelUnit, CountScale, Description, Direction, GyroUnit};
 use crate::error::{MeasuredError, Unfit};
 
-/// Samples of six sensors. The vectors have the same length.
+/// Samples of six sensors; all vectors have the same length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     /// End of the interval of each sample.
@@ -18,19 +19,19 @@ pub struct Log {
     pub gyro: Vec<[f64; 3]>,
     /// Specific force along body x, y, z: g, or counts above zero if the scale is not known.
     pub accel: Vec<[f64; 3]>,
-    /// Whether the gyros are still in counts.
+    /// `true` if the scale of the gyros is not known.
     pub gyro_in_counts: bool,
-    /// Whether the accelerometers are still in counts.
+    /// `true` if the scale of the accelerometers is not known.
     pub accel_in_counts: bool,
-    /// The usual interval between samples.
+    /// Median interval between samples.
     pub interval_s: f64,
 }
 
-/// Intervals longer than this many usual ones are gaps.
+/// Intervals longer than this many median ones are gaps.
 const GAP: f64 = 1.5;
 
-/// Relative scatter of the intervals that integration bears: a rate that changes over an interval
-/// is wrong by as much of its change.
+/// Largest relative scatter of the intervals: integration of a changing rate errs by this fraction of
+/// its change over an interval.
 const JITTER: f64 = 0.05;
 
 impl Log {
@@ -59,7 +60,7 @@ impl Log {
         self.time_s.len()
     }
 
-    /// Whether there are no samples.
+    /// `true` without samples.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.time_s.is_empty()
@@ -76,13 +77,16 @@ impl Log {
             .chain(&description.accel.columns);
         names.extend(sensors.map(String::as_str));
         names.extend(description.time.column.as_deref());
-        let columns = read_columns(source, &names)?;
-        let rows = columns[0].len();
+        let Columns {
+            values: columns,
+            places,
+        } = read_columns(source, &names)?;
+        let rows = places.len();
         let time_s = match (&columns[6..], description.time.rate_hz) {
             ([stamps], _) => {
                 let unit_s = description.time.unit_s;
                 let time_s: Vec<f64> = stamps.iter().map(|stamp| stamp * unit_s).collect();
-                refuse_backwards(source, &time_s)?;
+                refuse_backwards(source, &time_s, &places)?;
                 time_s
             }
             (_, rate_hz) => {
@@ -167,7 +171,7 @@ impl Log {
     }
 }
 
-/// The factor from counts above zero to rad/s; `None` if turns are to tell.
+/// Factor from counts above zero to rad/s; `None` if turns are to determine it.
 fn gyro_scale(description: &Description) -> Result<Option<[f64; 3]>, MeasuredError> {
     let per_hour = 1.0_f64.to_radians() / 3600.0;
     match (description.gyro.unit, description.gyro.counts_per_rad_per_s) {
@@ -179,7 +183,7 @@ fn gyro_scale(description: &Description) -> Result<Option<[f64; 3]>, MeasuredErr
     }
 }
 
-/// The factor from counts above zero to g; `None` if stops are to tell.
+/// Factor from counts above zero to g; `None` if stops are to determine it.
 fn accel_scale(description: &Description) -> Result<Option<[f64; 3]>, MeasuredError> {
     match (description.accel.unit, description.accel.counts_per_g) {
         (AccelUnit::G, _) => Ok(Some([1.0; 3])),
@@ -212,21 +216,17 @@ fn no_scale(table: &str, key: &str, estimate: &str) -> MeasuredError {
     )
 }
 
-fn refuse_backwards(source: &SourceText, time_s: &[f64]) -> Result<(), Error> {
+fn refuse_backwards(
+    source: &SourceText,
+    time_s: &[f64],
+    places: &[Range<usize>],
+) -> Result<(), Error> {
     let Some(row) = time_s.windows(2).position(|pair| pair[1] <= pair[0]) else {
         return Ok(());
     };
-    // Two lines to the second row of the data, and lines are counted from one.
-    let line = source
-        .text()
-        .lines()
-        .enumerate()
-        .filter(|(_, line)| !line.trim().is_empty());
-    let line = line.map(|(_, line)| line).nth(row + 2).unwrap_or("");
-    let start = line.as_ptr() as usize - source.text().as_ptr() as usize;
     Err(source.error(
         InputErrorKind::Time,
-        start..start + line.len(),
+        places[row + 1].clone(),
         format!("time {} s after {} s", time_s[row + 1], time_s[row]),
         "times that rise",
         "cut the log where the clock was set back; if only the stamps are wrong, give `rate_hz` \

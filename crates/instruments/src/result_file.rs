@@ -1,13 +1,18 @@
+//! JSON result of an instrument test.
+
 use gyrocal_record::{Manifest, SCHEMA_VERSION};
 use serde::Serialize;
 
-/// A result for programs: where it comes from, and its own fields beside that.
+/// A result with its manifest. The fields of the result stand beside those of this type.
 #[derive(Debug, Clone, Serialize)]
 pub struct ResultFile<T> {
-    schema_version: u32,
-    manifest: Manifest,
+    /// [`SCHEMA_VERSION`] at the time of writing.
+    pub schema_version: u32,
+    /// Program, inputs and command that made the result.
+    pub manifest: Manifest,
+    /// The result.
     #[serde(flatten)]
-    result: T,
+    pub result: T,
 }
 
 impl<T> ResultFile<T> {

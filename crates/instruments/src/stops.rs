@@ -1,20 +1,20 @@
-//! Where a log is at rest.
+//! Detection of stops: intervals of a log at rest.
 
 use crate::error::{MeasuredError, Unfit};
 use crate::log::Log;
 
-/// How stops are found.
+/// Settings of the detection of stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StopSettings {
-    /// Length of the windows in which the scatter is judged.
+    /// Length of the windows whose variance is tested.
     pub window_s: f64,
-    /// How many times the variance of the quietest windows a window of the gyros may have.
+    /// Largest variance of the gyros in a window at rest, over that of the quietest windows.
     pub gyro_factor: f64,
     /// The same of the accelerometers.
     pub accel_factor: f64,
-    /// What is left out at both ends of a stop.
+    /// Time that is omitted at both ends of a stop.
     pub margin_s: f64,
-    /// Shorter stops, margins left out, do not count.
+    /// Least length of a stop without its margins.
     pub shortest_s: f64,
 }
 
@@ -30,14 +30,15 @@ impl Default for StopSettings {
     }
 }
 
-/// The share of windows that is taken to be at rest in any log that has stops at all.
+/// Fraction of the windows that is at rest in any log with stops.
 const QUIETEST: f64 = 0.1;
 
-/// At rest successive samples differ about as much as samples far apart; in motion by far less.
-/// Filters of sensors halve their bandwidth at the most a few times.
+/// Largest variance at rest over half the mean square of successive differences. At rest successive
+/// samples differ about as much as distant ones, but for the filters of sensors, which halve the
+/// bandwidth a few times; in motion they differ by far less.
 const MOST_CORRELATED: f64 = 10.0;
 
-/// Stretches of a log at rest, as ranges of samples.
+/// Finds the stops of a log, as ranges of samples.
 ///
 /// A window is at rest if its variance is within a factor of that of the quietest windows of the
 /// log, for gyros and accelerometers; a stop is a run of such windows.
@@ -76,7 +77,7 @@ pub fn find_stops(
         match (quiet, first) {
             (true, None) => first = Some(start),
             (false, Some(from)) => {
-                // The last quiet window began one sample ago.
+                // The last quiet window began one sample before.
                 let stop = from + margin..(start - 1 + window).saturating_sub(margin);
                 if stop.len() >= shortest && is_at_rest(&log.gyro[stop.clone()]) {
                     stops.push(stop);
@@ -102,7 +103,7 @@ pub fn find_stops(
     Ok(stops)
 }
 
-/// Stops that the user gives, as ranges of samples.
+/// Converts stops given as times to ranges of samples.
 ///
 /// # Errors
 ///

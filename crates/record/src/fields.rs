@@ -7,33 +7,36 @@ use csv::{ByteRecord, Reader, ReaderBuilder};
 use crate::error::{Error, InputErrorKind};
 use crate::source::SourceText;
 
-/// The lines of a CSV file that have something in them.
-pub(crate) struct Lines<'a> {
+/// Reader of the lines of a CSV file; empty lines are skipped.
+#[derive(Debug)]
+pub struct Lines<'a> {
     source: &'a SourceText,
     reader: Reader<&'a [u8]>,
     fields: ByteRecord,
 }
 
-/// One line.
+/// One line of a CSV file.
 #[derive(Debug, Default)]
-pub(crate) struct Line<'a> {
-    /// Its place in the text, without white space around it.
-    pub(crate) span: Range<usize>,
-    /// Its fields.
-    pub(crate) fields: Vec<Field<'a>>,
+pub struct Line<'a> {
+    /// Place in the text, without surrounding white space.
+    pub span: Range<usize>,
+    /// Fields of the line.
+    pub fields: Vec<Field<'a>>,
 }
 
-/// One field, without white space around it.
+/// One field, without surrounding white space.
 #[derive(Debug)]
-pub(crate) struct Field<'a> {
-    /// Its place in the text, with its quotation marks if it has any.
-    pub(crate) span: Range<usize>,
-    /// Its text without them.
-    pub(crate) text: &'a str,
+pub struct Field<'a> {
+    /// Place in the text, quotation marks included.
+    pub span: Range<usize>,
+    /// Text without quotation marks.
+    pub text: &'a str,
 }
 
 impl<'a> Lines<'a> {
-    pub(crate) fn of(source: &'a SourceText) -> Self {
+    /// The lines of a text, its header included.
+    #[must_use]
+    pub fn of(source: &'a SourceText) -> Self {
         // Quotation marks are left to `Field`: names and numbers need none, and a field that
         // the reader had unquoted could not be found again in the text.
         let reader = ReaderBuilder::new()
@@ -48,8 +51,11 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The next line, or `None` after the last.
-    pub(crate) fn next_line(&mut self) -> Result<Option<Line<'a>>, Error> {
+    /// The next line; `None` after the last.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for text that the CSV reader refuses.
+    pub fn next_line(&mut self) -> Result<Option<Line<'a>>, Error> {
         while self.read()? {
             let line = self.line();
             if !line.span.is_empty() {

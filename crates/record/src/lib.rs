@@ -56,7 +56,7 @@ mod bench;
 mod channel_report;
 mod diagnosis_report;
 mod error;
-mod fields;
+pub mod fields;
 mod gain_report;
 mod gimbals;
 mod header;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use gyrocal_instruments::tumble::{Finding, GyroReport, Prepared, TumbleReport};
+use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
 use gyrocal_report::{ResidualChannel, Residuals, TermContribution, TermContributions};
 use gyrocal_statistics::format;
 
@@ -10,7 +10,7 @@ use crate::pictures::Named;
 
 /// Partial residuals of each effect found, and the residuals of both laws; only the latter if
 /// nothing was found.
-pub(super) fn pictures(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Vec<Named> {
+pub(super) fn pictures(log: &Path, prepared: &PreparedTest, report: &MultiPositionReport) -> Vec<Named> {
     let mut pictures: Vec<Named> = Vec::new();
     if let Some(causes) = causes(log, prepared, report) {
         pictures.push(("causes", Box::new(causes)));
@@ -21,19 +21,22 @@ pub(super) fn pictures(log: &Path, prepared: &Prepared, report: &TumbleReport) -
     pictures
 }
 
-fn subtitle(log: &Path, report: &TumbleReport) -> String {
+fn subtitle(log: &Path, report: &MultiPositionReport) -> String {
     let name = log.file_name().unwrap_or(log.as_os_str());
     format!("{}; {} static stops", name.display(), report.stops)
 }
 
-fn gyro_of<'a>(report: &'a TumbleReport, finding: &Finding) -> Option<(usize, &'a GyroReport)> {
+fn gyro_of<'a>(
+    report: &'a MultiPositionReport,
+    finding: &Finding,
+) -> Option<(usize, &'a GyroReport)> {
     let (gyro, _) = finding.effect.split_once('.')?;
     let mut gyros = report.gyros.iter().enumerate();
     gyros.find(|(_, other)| other.gyro == gyro)
 }
 
 /// By gyro and then by name: findings come in the order of their significance.
-fn causes(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Option<TermContributions> {
+fn causes(log: &Path, prepared: &PreparedTest, report: &MultiPositionReport) -> Option<TermContributions> {
     let mut findings: Vec<&Finding> = report.findings.iter().collect();
     findings.sort_by(|a, b| a.effect.cmp(&b.effect));
     let terms = findings
@@ -63,8 +66,8 @@ fn causes(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Option<Term
 }
 
 fn contribution(
-    prepared: &Prepared,
-    report: &TumbleReport,
+    prepared: &PreparedTest,
+    report: &MultiPositionReport,
     finding: &Finding,
 ) -> Option<TermContribution> {
     let (axis, gyro) = gyro_of(report, finding)?;
@@ -99,7 +102,11 @@ fn regressor(effect: &str) -> (String, String) {
     }
 }
 
-fn residuals(log: &Path, prepared: &Prepared, report: &TumbleReport) -> Option<Residuals> {
+fn residuals(
+    log: &Path,
+    prepared: &PreparedTest,
+    report: &MultiPositionReport,
+) -> Option<Residuals> {
     let [x, y, z] = &*report.gyros else {
         return None;
     };

@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use gyrocal_instruments::tumble::{Finding, TumbleReport, TumbleSettings, prepare, tumble};
+use gyrocal_instruments::multi_position::{
+    Alternative, Finding, MultiPositionReport, MultiPositionSettings, multi_position_test, prepare,
+};
 use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
 
 use super::{Measured, data, run_time};
@@ -16,7 +18,7 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     let log = Log::read(&data("xsens_38_positions/imu_counts.csv"), &description)?;
     let stops = find_stops(&log, &StopSettings::default())?;
     let prepared = prepare(&log, &description, &stops)?;
-    let report = tumble(&prepared.positions, &TumbleSettings::default())?;
+    let report = multi_position_test(&prepared.positions, &MultiPositionSettings::default())?;
     let seconds = begin.elapsed().as_secs_f64();
     laws(measured, &report);
     findings(measured, &report);
@@ -28,7 +30,7 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
 
 /// Chi-square of each law by the standard errors of the stops, and all terms of the catalogue
 /// against it.
-fn laws(measured: &mut Measured, report: &TumbleReport) {
+fn laws(measured: &mut Measured, report: &MultiPositionReport) {
     let mut table = Table::new([
         "gyro",
         "degrees of freedom",
@@ -91,7 +93,19 @@ fn laws(measured: &mut Measured, report: &TumbleReport) {
     ));
 }
 
-fn findings(measured: &mut Measured, report: &TumbleReport) {
+fn findings(measured: &mut Measured, report: &MultiPositionReport) {
+    let angles = report.findings.iter().filter_map(misalignment);
+    let smallest = angles.fold(f64::INFINITY, f64::min);
+    measured
+        .values
+        .put("table_findings", findings_table(report).text());
+    measured
+        .values
+        .put("smallest_misalignment", fixed(smallest, 1));
+    measured.figures.extend(findings_figures(report));
+}
+
+fn findings_table(report: &MultiPositionReport) -> Table {
     let mut table = Table::new([
         "effect",
         "size, deg/h/g",
@@ -101,7 +115,7 @@ fn findings(measured: &mut Measured, report: &TumbleReport) {
         "nearest excluded effect",
     ]);
     for finding in &report.findings {
-        let rivals: Vec<String> = finding.rivals.iter().map(rival).collect();
+        let alternatives: Vec<String> = finding.alternatives.iter().map(alternative).collect();
         table.row([
             format!("`{}`", finding.effect),
             format!(
@@ -111,31 +125,29 @@ fn findings(measured: &mut Measured, report: &TumbleReport) {
             ),
             fixed(finding.f, 0),
             fixed(finding.p_value, 3),
-            if rivals.is_empty() {
+            if alternatives.is_empty() {
                 "none".to_owned()
             } else {
-                rivals.join(", ")
+                alternatives.join(", ")
             },
             finding
                 .nearest_ruled_out
                 .as_ref()
-                .map_or(String::new(), rival),
+                .map_or(String::new(), alternative),
         ]);
     }
-    let angles = report.findings.iter().filter_map(misalignment);
-    let smallest = angles.fold(f64::INFINITY, f64::min);
+    table
+}
+
+fn findings_figures(report: &MultiPositionReport) -> [Figure; 5] {
     let cross = |finding: &&Finding| finding.misalignment_needed_rad.is_some();
     let named = report.findings.iter().filter(cross).count();
-    measured.values.put("table_findings", table.text());
-    measured
-        .values
-        .put("smallest_misalignment", fixed(smallest, 1));
     let deficits = report
         .findings
         .iter()
         .flat_map(|finding| &finding.nearest_ruled_out);
-    let nearest = deficits.map(|rival| rival.log_likelihood_deficit);
-    measured.figures.extend([
+    let nearest = deficits.map(|other| other.log_likelihood_deficit);
+    [
         // Two for each gyro.
         Figure::within(
             "xsens: linear cross-axis terms found",
@@ -165,7 +177,7 @@ fn findings(measured: &mut Measured, report: &TumbleReport) {
             report
                 .findings
                 .iter()
-                .map(|f| f.rivals.len())
+                .map(|f| f.alternatives.len())
                 .sum::<usize>() as f64,
         ),
         Figure::within(
@@ -173,23 +185,26 @@ fn findings(measured: &mut Measured, report: &TumbleReport) {
             [1.92, f64::INFINITY],
             nearest.fold(f64::INFINITY, f64::min),
         ),
-    ]);
+    ]
 }
 
 fn misalignment(finding: &Finding) -> Option<f64> {
     finding.misalignment_needed_rad
 }
 
-fn rival(rival: &gyrocal_instruments::tumble::Rival) -> String {
+fn alternative(other: &Alternative) -> String {
     format!(
         "`{}` ({} nats)",
-        rival.effect,
-        fixed(rival.log_likelihood_deficit, 1)
+        other.effect,
+        fixed(other.log_likelihood_deficit, 1)
     )
 }
 
-fn gain(measured: &mut Measured, report: &TumbleReport) -> Result<(), Error> {
-    let gain = report.gain.as_ref().ok_or("no gain of the extended law")?;
+fn gain(measured: &mut Measured, report: &MultiPositionReport) -> Result<(), Error> {
+    let gain = report
+        .cross_validation
+        .as_ref()
+        .ok_or("no gain of the extended law")?;
     let nats = gain.cross_validated_log_score_nats;
     let mut table = Table::new(["rms on held-out stops, deg/h", "x", "y", "z"]);
     for (name, rms) in [
@@ -237,7 +252,7 @@ fn gain(measured: &mut Measured, report: &TumbleReport) -> Result<(), Error> {
     Ok(())
 }
 
-fn controls(measured: &mut Measured, report: &TumbleReport) {
+fn controls(measured: &mut Measured, report: &MultiPositionReport) {
     let controls = &report.controls;
     let values = &mut measured.values;
     values.put("shuffles", controls.shuffles.to_string());

@@ -1,16 +1,16 @@
-//! The file that says how body axes lie in those of the virtual platform.
+//! The file of body axes: the rotation from body to virtual platform at each row of a record.
 
 use std::fmt::Write as _;
 
 use gyrocal_record::{Error, InputErrorKind, Record, SourceText};
 
-use crate::columns::read_columns;
+use crate::columns::{Columns, read_columns};
 
 const COLUMNS: [&str; 5] = ["time_s", "q_w", "q_x", "q_y", "q_z"];
 
-/// Time stamps of the two files are printed numbers, rounded or not.
+/// Largest difference of the time stamps of the two files, which may be rounded.
 const SAME_TIME_S: f64 = 1e-6;
-/// A quaternion printed with three digits is a unit one within this.
+/// Largest error of the norm, that of a quaternion printed with three digits.
 const UNIT: f64 = 0.01;
 
 /// The text of the file: for each row its time and the unit quaternion (w, x, y, z) that takes
@@ -29,14 +29,18 @@ pub fn axes_csv(record: &Record, platform_q_body: &[[f64; 4]]) -> String {
 ///
 /// # Errors
 ///
-/// [`Error::Input`], at its place, if rows or times are not those of the record, or if a
-/// quaternion is no rotation.
+/// [`Error::Input`], at its place, if rows or times differ from those of the record, or if a quaternion
+/// is not a rotation.
 pub fn read_axes(source: &SourceText, record: &Record) -> Result<Vec<[f64; 4]>, Error> {
-    let columns = read_columns(source, &COLUMNS)?;
-    let rows = columns[0].len();
+    let Columns {
+        values: columns,
+        places,
+    } = read_columns(source, &COLUMNS)?;
+    let rows = places.len();
+    // The place after the last row if the record has more.
+    let end = source.text().len();
     let at_line = |row: usize| {
-        let mut ends = source.text().match_indices('\n').map(|(end, _)| end + 1);
-        let start = ends.nth(row).unwrap_or(0);
+        let start = places.get(row).map_or(end, |place| place.start);
         start..start
     };
     if rows != record.len() {

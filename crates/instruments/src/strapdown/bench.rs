@@ -4,10 +4,12 @@ use gyrocal::generated::platform::reanchor;
 use gyrocal_record::Bench;
 use nalgebra::{Matrix3, Vector3};
 
-use super::{ImportSettings, RotationFit, earth_deg_per_h};
+use super::ImportSettings;
+use super::earth_rate::earth_deg_per_h;
+use super::rotation_fit::RotationFit;
 use crate::error::MeasuredError;
 
-/// The bench file's text, read back as any bench file is.
+/// The bench description, made as the text of a bench file and parsed as any other.
 pub(super) fn bench(
     fit: &RotationFit,
     latitude_deg: f64,
@@ -43,11 +45,11 @@ pub(super) fn bench(
     Ok(Bench::parse(&text, "bench")?)
 }
 
-/// Sigmas of angles that an error of heading moves together by `of_heading`, beside errors of the
-/// level.
+/// Uncorrelated sigmas of angles that an error of heading of one sigma moves together by `of_heading`,
+/// in addition to errors of the level.
 ///
-/// A bench file knows no correlations. Variances e of the single angles allow a turn by one sigma,
-/// which moves angle i by a_i, if the sum of a_i² / e_i is 1; the least sum of such variances has
+/// A bench file has no correlations. Uncorrelated variances e of the angles allow a joint error of one
+/// sigma, a_i of angle i, if the sum of a_i² / e_i is 1; of these the least sum of variances has
 /// e_i = a_i times the sum of all a.
 fn uncorrelated_deg(of_heading: &[f64; 3], level_sigma_deg: f64) -> [f64; 3] {
     let together: f64 = of_heading.iter().sum();
@@ -65,8 +67,8 @@ fn angles_deg(platform_c_enu: &[[f64; 3]; 3]) -> [f64; 3] {
     .map(f64::to_degrees)
 }
 
-/// What an error of heading, a small turn about the vertical, is to each platform angle: W takes
-/// errors of angles to small turns in platform axes.
+/// Error of each platform angle by an error of heading, a small rotation about the vertical: W takes
+/// errors of angles to small rotations in platform axes.
 fn sigma_deg(angles_deg: &[f64; 3], up: &[f64; 3], heading_sigma_deg: f64) -> [f64; 3] {
     let rate_matrix = reanchor(&angles_deg.map(f64::to_radians)).rotation_d_theta_dense();
     let turn = Vector3::from(*up) * heading_sigma_deg;

@@ -1,10 +1,10 @@
-//! Which rows are quiet.
+//! Selection of quiet rows by the scatter of their samples.
 
 use gyrocal_statistics::upper_median;
 
 use super::PlatformRow;
 
-/// Whether each row scatters at most `factor` times as much as the median row.
+/// `true` for each row with at most `factor` times the scatter of the median row.
 pub(super) fn quiet(rows: &[PlatformRow], factor: f64) -> Vec<bool> {
     let [gyro, accel] = median_scatter(rows);
     rows.iter()

@@ -1,57 +1,57 @@
-//! Which other terms explain the stops as well as one that was found.
+//! Confidence set of a finding: terms that explain the stops as well in its place.
 
 use nalgebra::DVector;
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::Serialize;
 
-use super::basis::Term;
-use super::regression::{Fit, Whitened};
+use super::regression::{Fit, WeightedStops};
 use super::search::shuffle;
+use super::terms::Term;
 
-/// Another term in place of one that was found.
+/// A term in place of a finding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Rival {
-    /// Its name.
+pub struct Alternative {
+    /// Name of the term.
     pub effect: String,
-    /// By how much the log likelihood is lower with it.
+    /// Decrease of the log-likelihood with it.
     pub log_likelihood_deficit: f64,
 }
 
-/// The rivals of a finding, and how well the set holds the truth.
+/// Alternatives of a finding.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Rivals {
-    /// Terms that cannot be ruled out, by deficit.
-    pub(crate) members: Vec<Rival>,
-    /// The nearest term that is ruled out.
-    pub(crate) nearest: Option<Rival>,
+pub(crate) struct Alternatives {
+    /// Terms that cannot be rejected, in the order of their deficits.
+    pub(crate) members: Vec<Alternative>,
+    /// The nearest rejected term.
+    pub(crate) nearest: Option<Alternative>,
     /// Largest deficit of a member.
     pub(crate) limit: f64,
 }
 
-/// Half of the 95 % quantile of chi-square with one degree of freedom: a set is never narrower
-/// than that of two terms that are nothing alike.
+/// Least limit of a deficit, that of two unrelated terms: half of the 95 % quantile of chi-square with
+/// one degree of freedom.
 const LEAST_LIMIT: f64 = 1.92;
 
-/// Draws of the bootstrap.
+/// Number of bootstrap draws.
 const DRAWS: usize = 999;
 
-/// Terms in place of `term` in a law, whose deficit is within what chance gives the true term in
-/// `coverage` of the draws of a bootstrap: the law with its residuals in another order.
-pub(crate) fn rivals(
-    data: &Whitened,
+/// Terms in place of `term` in a law. The limit of their deficit is the quantile `coverage` of the
+/// deficit of the true term in a bootstrap: the fitted law with its residuals permuted.
+pub(crate) fn alternatives(
+    data: &WeightedStops,
     law: &[Term],
     term: Term,
     coverage: f64,
     seed: u64,
-) -> Option<Rivals> {
+) -> Option<Alternatives> {
     let without: Vec<Term> = law.iter().copied().filter(|other| *other != term).collect();
     let with = |other: Term| {
         let mut terms = without.clone();
         terms.push(other);
         terms
     };
-    // The law itself first; terms that the stops do not determine are no rivals.
+    // The law itself first; terms that the stops do not determine are left out.
     let mut others = vec![(term, data.columns(law))];
     let free = Term::catalogue(data.gyro);
     for other in free.into_iter().filter(|other| !law.contains(other)) {
@@ -61,7 +61,7 @@ pub(crate) fn rivals(
         }
     }
     let half = 0.5 * data.len() as f64;
-    // Residual sums of squares need no more than an orthonormal span.
+    // An orthonormal span is enough for residual sums of squares.
     let spans: Vec<_> = others
         .iter()
         .map(|(_, columns)| columns.clone().qr().q())
@@ -90,11 +90,11 @@ pub(crate) fn rivals(
     let quantile = deficits_of_truth.get(place.min(DRAWS - 1)).copied()?;
     let limit = quantile.max(LEAST_LIMIT);
     let found = log_likelihoods(&data.rates);
-    let mut all: Vec<Rival> = others
+    let mut all: Vec<Alternative> = others
         .iter()
         .zip(&found)
         .skip(1)
-        .map(|((other, _), log_likelihood)| Rival {
+        .map(|((other, _), log_likelihood)| Alternative {
             effect: other.id(data.gyro),
             log_likelihood_deficit: found[0] - log_likelihood,
         })
@@ -103,13 +103,13 @@ pub(crate) fn rivals(
         a.log_likelihood_deficit
             .total_cmp(&b.log_likelihood_deficit)
     });
-    let members: Vec<Rival> = all
+    let members: Vec<Alternative> = all
         .iter()
-        .filter(|rival| rival.log_likelihood_deficit <= limit)
+        .filter(|other| other.log_likelihood_deficit <= limit)
         .cloned()
         .collect();
     let nearest = all.get(members.len()).cloned();
-    Some(Rivals {
+    Some(Alternatives {
         members,
         nearest,
         limit,

@@ -1,21 +1,20 @@
-//! Forward search through the catalogue, with the search itself accounted for.
+//! Forward selection of terms with family-wise p-values.
 
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::Positions;
-use super::basis::Term;
-use super::regression::Whitened;
+use super::positions::Positions;
+use super::regression::WeightedStops;
+use super::terms::Term;
 use crate::error::{MeasuredError, Unfit};
 
-/// How findings are tested.
+/// Settings of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
-    /// Probability that a search through data without effects finds something.
+    /// Probability of a finding in data without effects (family-wise error rate).
     pub false_alarm_probability: f64,
-    /// Permutations that the probability is counted over; with n of them none is below
-    /// 1 / (n + 1).
+    /// Number of permutations for the p-values; with n of them no p-value is below 1 / (n + 1).
     pub permutations: usize,
     /// Seed of the permutations.
     pub seed: u64,
@@ -33,13 +32,11 @@ impl Default for SearchSettings {
 
 const FEWEST_PERMUTATIONS: usize = 999;
 
-/// The least probability of false alarm that can be asked for. The time of a search grows with
-/// its inverse.
+/// Least probability of a false alarm that a search accepts: its time grows with the inverse.
 pub const LEAST_FALSE_ALARM: f64 = 1e-4;
 
 impl SearchSettings {
-    /// Settings with so many permutations that the least p-value is a tenth of the probability,
-    /// or less.
+    /// Settings with enough permutations for p-values of a tenth of the probability.
     ///
     /// # Errors
     ///
@@ -62,36 +59,37 @@ impl SearchSettings {
     }
 }
 
-/// One step of a search that found something.
+/// A step of the search that added a term.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct SearchStep {
     /// The gyro.
     pub gyro: usize,
     /// The term that was added.
     pub term: Term,
     /// F statistic of the term at this step.
     pub f: f64,
-    /// Probability that the largest F of the whole search is as large by chance.
+    /// Family-wise p-value of `f`.
     pub p_value: f64,
 }
 
-/// The law of one gyro as the search has it so far.
+/// Current law of one gyro.
 struct Law {
-    data: Whitened,
+    data: WeightedStops,
     terms: Vec<Term>,
     /// Orthonormal columns that span the terms.
     span: DMatrix<f64>,
-    /// What the terms leave of the rates.
+    /// Residuals of the rates.
     residuals: DVector<f64>,
-    /// Directions of the other terms, without what the law has already.
+    /// Directions of all other terms with the law projected out, of length one.
     candidates: Vec<(Term, DVector<f64>)>,
 }
 
-/// A term of which less than this share is outside the law cannot be told from it.
+/// A term is not distinguishable from the law if the projection leaves less than this fraction of its
+/// length.
 const SMALLEST_SHARE: f64 = 0.03;
 
 impl Law {
-    fn new(data: &Whitened, terms: Vec<Term>) -> Self {
+    fn new(data: &WeightedStops, terms: Vec<Term>) -> Self {
         let data = data.with_excess_of(&terms);
         let span = data.columns(&terms).qr().q();
         let outside = |column: DVector<f64>| &column - &span * (span.transpose() * &column);
@@ -132,27 +130,31 @@ impl Law {
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The law's residuals in another order, as a fit of the law would leave them.
+    /// Permuted residuals with the law projected out again.
     fn permuted(&self, order: &[usize]) -> DVector<f64> {
         let moved = DVector::from_iterator(order.len(), order.iter().map(|i| self.residuals[*i]));
         &moved - &self.span * (self.span.transpose() * &moved)
     }
 }
 
-/// Adds terms to the nominal law of the gyros while the best of all is better than chance.
+/// Adds terms to the nominal laws of the gyros while the best term is significant.
 ///
-/// The statistic of a step is the largest F over all gyros and terms; its distribution by chance
-/// is that of the same maximum after the residuals of the present law were permuted among the
-/// stops, the same for all gyros (Freedman and Lane 1983), so it includes the search. `which`
-/// are the stops that are used. Their weights are those that the present law leaves: with the
-/// standard errors alone a long stop would stand out by its weight where the law is wrong.
+/// The statistic of a step is the maximum F over all gyros and terms. Its null distribution is that of
+/// the same maximum after the residuals of the current laws are permuted among the stops, in the same
+/// order for all gyros (Freedman and Lane 1983), so that p-values are family-wise. `which` are the stops
+/// that are used, weighted with the excess scatter of the current law: with the standard errors alone
+/// a long stop would dominate where the law is wrong.
 #[must_use]
-pub fn search(positions: &Positions, which: &[usize], settings: &SearchSettings) -> Vec<Step> {
+pub fn search(
+    positions: &Positions,
+    which: &[usize],
+    settings: &SearchSettings,
+) -> Vec<SearchStep> {
     let mut generator = ChaCha12Rng::seed_from_u64(settings.seed);
     let mut laws: Vec<Law> = (0..3)
         .map(|gyro| {
             Law::new(
-                &Whitened::of(positions, gyro, which),
+                &WeightedStops::of(positions, gyro, which),
                 Term::NOMINAL.to_vec(),
             )
         })
@@ -166,10 +168,10 @@ pub fn search(positions: &Positions, which: &[usize], settings: &SearchSettings)
         let Some((gyro, (term, f))) = best else {
             return steps;
         };
-        let Some(p_value) = chance(&laws, f, settings, &mut generator) else {
+        let Some(p_value) = significance(&laws, f, settings, &mut generator) else {
             return steps;
         };
-        steps.push(Step {
+        steps.push(SearchStep {
             gyro,
             term,
             f,
@@ -181,9 +183,8 @@ pub fn search(positions: &Positions, which: &[usize], settings: &SearchSettings)
     }
 }
 
-/// Probability that the largest F of permuted residuals is `f` or more, if it is no larger than
-/// that of a false alarm.
-fn chance(
+/// Family-wise p-value of `f`; `None` if it exceeds the probability of a false alarm.
+fn significance(
     laws: &[Law],
     f: f64,
     settings: &SearchSettings,
@@ -201,7 +202,7 @@ fn chance(
             .fold(0.0, |largest: f64, (_, f)| largest.max(f));
         as_large += usize::from(largest >= f);
         p_value = (1 + as_large) as f64 / (1 + settings.permutations) as f64;
-        // The rest cannot make it smaller.
+        // All further permutations can only increase it.
         if p_value > settings.false_alarm_probability {
             return None;
         }
@@ -209,8 +210,8 @@ fn chance(
     (p_value <= settings.false_alarm_probability).then_some(p_value)
 }
 
-/// The terms of one gyro after a search.
-pub(crate) fn terms_of(steps: &[Step], gyro: usize) -> Vec<Term> {
+/// Terms of one gyro after a search.
+pub(crate) fn terms_of(steps: &[SearchStep], gyro: usize) -> Vec<Term> {
     let found = steps.iter().filter(|step| step.gyro == gyro);
     Term::NOMINAL
         .into_iter()
@@ -218,10 +219,10 @@ pub(crate) fn terms_of(steps: &[Step], gyro: usize) -> Vec<Term> {
         .collect()
 }
 
-/// Fisher's and Yates' shuffle.
+/// Random permutation (Fisher and Yates).
 pub(crate) fn shuffle(order: &mut [usize], generator: &mut ChaCha12Rng) {
     for last in (1..order.len()).rev() {
-        // The bias of the remainder is below 1e-17 for as few as there are stops.
+        // For the number of stops of a log the bias of the remainder is below 1e-17.
         let other = (generator.next_u64() % (last as u64 + 1)) as usize;
         order.swap(last, other);
     }

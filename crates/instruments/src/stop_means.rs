@@ -1,41 +1,41 @@
-//! Means over stops, with standard errors that hold for coloured noise.
+//! Means over stops, with standard errors for coloured noise.
 
 use core::ops::Range;
 
 use crate::log::Log;
 
-/// The means of one stop.
+/// Means of one stop.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stop {
-    /// Which samples of the log.
+pub struct StopMeans {
+    /// Range of samples in the log.
     pub samples: Range<usize>,
     /// Middle of the stop.
     pub time_s: f64,
     /// Mean output of the gyros, in the unit of the log.
     pub gyro: [f64; 3],
-    /// Standard errors of these means.
+    /// Standard errors of the means of the gyros.
     pub gyro_sigma: [f64; 3],
     /// Mean output of the accelerometers, in the unit of the log.
     pub accel: [f64; 3],
-    /// Standard errors of these means.
+    /// Standard errors of the means of the accelerometers.
     pub accel_sigma: [f64; 3],
 }
 
-/// Block lengths that are compared, in seconds.
+/// Compared block lengths, s.
 const BLOCKS_S: [f64; 3] = [0.25, 0.5, 1.0];
 
-/// Fewer differences than these tell nothing of the variance of blocks.
+/// Least degrees of freedom for the variance of block means.
 const FEWEST_BLOCKS: f64 = 30.0;
 
 /// Averages each stop.
 ///
 /// The standard error of a mean is that of white noise, from the scatter within the stop (which
-/// depends on the attitude where something vibrates), times an inflation for coloured noise,
-/// pooled over all stops: the largest ratio that the variance of block means, times the length
-/// of the blocks, has to the variance of samples, over blocks of a quarter of a second to one
-/// second. Noise slower than that shows in the residuals of the fit.
+/// depends on the attitude if something vibrates), times an inflation for coloured noise that is
+/// pooled over all stops: the largest ratio of the variance of block means, times the length of the
+/// blocks, to the variance of samples, over blocks of a quarter of a second to one second. Slower
+/// noise shows in the residuals of the fit.
 #[must_use]
-pub fn average(log: &Log, stops: &[Range<usize>]) -> Vec<Stop> {
+pub fn stop_means(log: &Log, stops: &[Range<usize>]) -> Vec<StopMeans> {
     let gyro_inflation = inflation(&log.gyro, log.interval_s, stops);
     let accel_inflation = inflation(&log.accel, log.interval_s, stops);
     stops
@@ -44,7 +44,7 @@ pub fn average(log: &Log, stops: &[Range<usize>]) -> Vec<Stop> {
             let times = &log.time_s[samples.clone()];
             let (gyro, gyro_sigma) = moments(&log.gyro[samples.clone()], gyro_inflation);
             let (accel, accel_sigma) = moments(&log.accel[samples.clone()], accel_inflation);
-            Stop {
+            StopMeans {
                 samples: samples.clone(),
                 time_s: 0.5 * (times[0] + times[times.len() - 1]),
                 gyro,
@@ -65,7 +65,7 @@ fn moments(samples: &[[f64; 3]], inflation: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     (mean, sigma)
 }
 
-/// How many times larger the variance of a mean is than white noise would make it.
+/// Variance of a mean over that of white noise.
 fn inflation(samples: &[[f64; 3]], interval_s: f64, stops: &[Range<usize>]) -> [f64; 3] {
     core::array::from_fn(|axis| {
         let mut largest = 1.0_f64;

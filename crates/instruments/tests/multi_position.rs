@@ -5,12 +5,13 @@
 mod common;
 
 use common::{Noise, Unit, stops_and_turns};
-use gyrocal_instruments::tumble::{
-    Positions, Prepared, SearchSettings, Term, TumbleSettings, prepare, search, tumble,
+use gyrocal_instruments::multi_position::{
+    MultiPositionSettings, Positions, PreparedTest, SearchSettings, Term, multi_position_test,
+    prepare, search,
 };
 use gyrocal_instruments::{
-    Description, Log, MeasuredError, StopSettings, Unfit, average, calibrate_by_norm, find_stops,
-    given_stops,
+    Description, Log, MeasuredError, StopSettings, Unfit, accel_from_norm, find_stops, given_stops,
+    stop_means,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -96,12 +97,12 @@ fn what_is_there_is_found_with_its_size_and_its_sigma() {
         ("gyro_y.g_xz", -300.0),
         ("gyro_z.g_y", 280.0),
     ];
-    let settings = TumbleSettings {
+    let settings = MultiPositionSettings {
         shuffles: 20,
-        ..TumbleSettings::default()
+        ..MultiPositionSettings::default()
     };
     for seed in 0..5 {
-        let report = tumble(&positions(seed, 40, law), &settings).unwrap();
+        let report = multi_position_test(&positions(seed, 40, law), &settings).unwrap();
         let mut found: Vec<&str> = report.findings.iter().map(|f| &*f.effect).collect();
         found.sort_unstable();
         assert_eq!(found, truth.map(|(name, _)| name), "seed {seed}");
@@ -115,9 +116,9 @@ fn what_is_there_is_found_with_its_size_and_its_sigma() {
                 ((finding.estimate - size) / finding.sigma).abs() < 4.0,
                 "{finding:?}"
             );
-            assert!(finding.rivals.is_empty(), "{finding:?}");
+            assert!(finding.alternatives.is_empty(), "{finding:?}");
         }
-        let gain = report.gain.unwrap();
+        let gain = report.cross_validation.unwrap();
         assert!(gain.cross_validated_log_score_nats > 3.0 * gain.standard_error_nats);
         assert!(report.controls.renamed_as_expected);
         // Twenty draws of a hundredth: more than two have a probability of 0.1 %.
@@ -126,7 +127,7 @@ fn what_is_there_is_found_with_its_size_and_its_sigma() {
 }
 
 #[test]
-fn terms_that_the_attitudes_do_not_tell_apart_are_rivals() {
+fn terms_that_the_attitudes_do_not_distinguish_are_alternatives() {
     // Along the meridian x = 0.6 y, x and y can only be told by what is off it.
     let mut noise = Noise::of_seed(5);
     let mut made = positions(5, 40, nominal);
@@ -138,11 +139,15 @@ fn terms_that_the_attitudes_do_not_tell_apart_are_rivals() {
         *rate = core::array::from_fn(|gyro| nominal(gyro, *force) + 50.0 * noise.normal());
         rate[2] += 300.0 * force[0];
     }
-    let report = tumble(&made, &TumbleSettings::default()).unwrap();
+    let report = multi_position_test(&made, &MultiPositionSettings::default()).unwrap();
     let [finding] = &report.findings[..] else {
         panic!("{:?}", report.findings);
     };
-    let mut names: Vec<&str> = finding.rivals.iter().map(|rival| &*rival.effect).collect();
+    let mut names: Vec<&str> = finding
+        .alternatives
+        .iter()
+        .map(|other| &*other.effect)
+        .collect();
     names.push(&finding.effect);
     assert!(
         names.contains(&"gyro_z.g_x") && names.contains(&"gyro_z.g_y"),
@@ -172,7 +177,7 @@ fn earth_rate_is_taken_off_where_latitude_is_known() {
         let up = noise.vector().normalize();
         let north = noise.vector().cross(&up).normalize();
         let earth = EARTH_DEG_PER_H * (up * sine + north * cosine);
-        gyrocal_instruments::Stop {
+        gyrocal_instruments::StopMeans {
             samples: 0..1,
             time_s: 0.0,
             gyro: earth.into(),
@@ -181,19 +186,19 @@ fn earth_rate_is_taken_off_where_latitude_is_known() {
             accel_sigma: [1e-5; 3],
         }
     };
-    let stops: Vec<gyrocal_instruments::Stop> = (0..200).map(stop).collect();
-    let instrument = |latitude_deg| gyrocal_instruments::tumble::Instrument {
+    let stops: Vec<gyrocal_instruments::StopMeans> = (0..200).map(stop).collect();
+    let instrument = |latitude_deg| gyrocal_instruments::multi_position::Instrument {
         accel: None,
         outputs_per_rad_per_s: [1.0_f64.to_degrees() * 3600.0; 3],
         latitude_deg,
     };
-    let settings = TumbleSettings {
+    let settings = MultiPositionSettings {
         shuffles: 1,
-        ..TumbleSettings::default()
+        ..MultiPositionSettings::default()
     };
     let along = |latitude_deg| {
         let positions = Positions::new(&stops, &instrument(latitude_deg));
-        let report = tumble(&positions, &settings).unwrap();
+        let report = multi_position_test(&positions, &settings).unwrap();
         let coefficient = report.gyros[0].extended.coefficients[1].clone();
         (coefficient.estimate, coefficient.sigma)
     };
@@ -216,7 +221,7 @@ fn description(unit: &str) -> Description {
     Description::parse(&text, "log.toml").unwrap()
 }
 
-fn prepared(log: &Log) -> Result<Prepared, MeasuredError> {
+fn prepared(log: &Log) -> Result<PreparedTest, MeasuredError> {
     let stops = find_stops(log, &StopSettings::default())?;
     prepare(log, &description("rad/s"), &stops)
 }
@@ -274,7 +279,7 @@ fn stops_scales_and_misalignments_are_found_in_a_log() {
 #[test]
 fn accelerometers_are_calibrated_by_the_norm() {
     let mut log = stops_and_turns(24, &Unit::mems(), 12);
-    let stops = average(&log, &find_stops(&log, &StopSettings::default()).unwrap());
+    let stops = stop_means(&log, &find_stops(&log, &StopSettings::default()).unwrap());
     let truth: Vec<[f64; 3]> = stops.iter().map(|stop| stop.accel).collect();
     for force in &mut log.accel {
         let [x, y, z] = *force;
@@ -285,8 +290,8 @@ fn accelerometers_are_calibrated_by_the_norm() {
         ];
     }
     log.accel_in_counts = true;
-    let stops = average(&log, &find_stops(&log, &StopSettings::default()).unwrap());
-    let calibration = calibrate_by_norm(&stops).unwrap();
+    let stops = stop_means(&log, &find_stops(&log, &StopSettings::default()).unwrap());
+    let calibration = accel_from_norm(&stops).unwrap();
     // z to x cannot be told from a turn of all axes, so only norms and angles must agree.
     let forces: Vec<Vector3<f64>> = stops
         .iter()
@@ -317,7 +322,7 @@ fn standard_errors_hold_for_coloured_noise() {
     let ranges: Vec<_> = (0..60)
         .map(|stop| 1000 * stop..1000 * stop + 1000)
         .collect();
-    let stops = average(&log, &ranges);
+    let stops = stop_means(&log, &ranges);
     for axis in 0..3 {
         let squares = stops
             .iter()

@@ -1,17 +1,17 @@
-//! Weighted linear regression of one gyro on some terms, and what it predicts.
+//! Weighted linear regression of the rates of one gyro on terms of the drift law.
 
 use nalgebra::{DMatrix, DVector};
 use statrs::function::gamma::ln_gamma;
 
-use super::Positions;
-use super::basis::{Term, response};
+use super::positions::Positions;
+use super::terms::{Term, response};
 
-/// The rates of one gyro at some stops, over their standard deviations, and the terms likewise.
+/// Rates and terms of one gyro at some stops, over the standard deviations of the rates.
 ///
-/// The variance of a stop is the square of its standard error, plus an excess that is the same
-/// for all: what a law leaves that averaging within stops does not show.
+/// The variance of a rate is the square of its standard error plus an excess that is the same at all
+/// stops: scatter between stops that averaging within stops does not show.
 #[derive(Clone)]
-pub(crate) struct Whitened {
+pub(crate) struct WeightedStops {
     pub(crate) gyro: usize,
     pub(crate) rates: DVector<f64>,
     /// Standard deviations \[deg/h\].
@@ -19,11 +19,11 @@ pub(crate) struct Whitened {
     /// The excess, as a standard deviation \[deg/h\].
     pub(crate) excess_deg_per_h: f64,
     standard_errors: DVector<f64>,
-    /// What a unit of each parameter of the catalogue adds to each rate.
+    /// Rate at each stop per unit of each parameter of the catalogue.
     responses: Vec<Vec<f64>>,
 }
 
-impl Whitened {
+impl WeightedStops {
     /// Gyro `gyro` at the stops `which`, without an excess.
     pub(crate) fn of(positions: &Positions, gyro: usize, which: &[usize]) -> Self {
         let pick = |values: &dyn Fn(usize) -> f64| {
@@ -48,16 +48,16 @@ impl Whitened {
         }
     }
 
-    /// The same stops with the excess that makes the residuals of a law as large as their
-    /// standard deviations (Mandel and Paule 1970); none if they are smaller already.
+    /// The same stops with the excess at which the residuals of a law have unit variance (Mandel and
+    /// Paule 1970); without excess if it is less than one already.
     pub(crate) fn with_excess_of(&self, terms: &[Term]) -> Self {
-        /// Bisections: the excess is found to a millionth.
+        /// Number of bisections, for a relative accuracy of 1e-6.
         const HALVINGS: usize = 24;
         let none = self.with_excess(0.0);
         let Some(fit) = none.fit(terms).filter(|fit| fit.scale() > 1.0) else {
             return none;
         };
-        // All scatter as excess would be too much.
+        // Upper limit: all scatter as excess.
         let largest = none.sigma.max();
         let (mut low, mut high) = (0.0, largest * fit.scale().sqrt());
         for _ in 0..HALVINGS {
@@ -93,9 +93,9 @@ impl Whitened {
         self.rates.len()
     }
 
-    /// One column of the fit.
+    /// Whitened column of a term.
     pub(crate) fn column(&self, term: Term) -> DVector<f64> {
-        // A term that the catalogue does not have adds nothing, and is never determined.
+        // A term that the catalogue lacks is a column of zeros, which no stops determine.
         let parameter = term.parameter(self.gyro);
         let values = self.responses.iter().zip(self.sigma.iter());
         let values = values.map(|(response, sigma)| {
@@ -104,30 +104,30 @@ impl Whitened {
         DVector::from_iterator(self.len(), values)
     }
 
-    /// The columns of some terms.
+    /// Whitened columns of terms.
     pub(crate) fn columns(&self, terms: &[Term]) -> DMatrix<f64> {
         let columns: Vec<DVector<f64>> = terms.iter().map(|term| self.column(*term)).collect();
         DMatrix::from_columns(&columns)
     }
 
-    /// Fits some terms; `None` if the stops do not determine them.
+    /// Fits terms; `None` if the stops do not determine them.
     pub(crate) fn fit(&self, terms: &[Term]) -> Option<Fit> {
         Fit::of(&self.columns(terms), &self.rates)
     }
 }
 
-/// A fit of whitened rates.
+/// Fit of whitened rates.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
     pub(crate) estimates: DVector<f64>,
-    /// Covariance of the estimates if the standard errors of the stops are right.
+    /// Covariance of the estimates for right standard errors.
     pub(crate) cofactors: DMatrix<f64>,
     pub(crate) residuals: DVector<f64>,
     pub(crate) chi_square: f64,
     pub(crate) freedom: f64,
 }
 
-/// Condition of the columns, each of length one, beyond which terms count as not determined.
+/// Largest condition number of the columns, each scaled to length one, of determined terms.
 const WORST_CONDITION: f64 = 1e4;
 
 impl Fit {
@@ -160,13 +160,13 @@ impl Fit {
         })
     }
 
-    /// Residual variance over what the standard errors of the stops say.
+    /// Residual variance over its expectation from the standard errors.
     pub(crate) fn scale(&self) -> f64 {
         self.chi_square / self.freedom
     }
 
-    /// Log density of a whitened rate that was not used, Student's t because the scale is
-    /// estimated; and how far it is from its prediction.
+    /// Prediction of a whitened rate that was held out: its error and its log density, which is
+    /// Student's t since the scale is estimated.
     pub(crate) fn predict(&self, row: &DVector<f64>, rate: f64) -> Prediction {
         let error = rate - row.dot(&self.estimates);
         let variance = self.scale() * (1.0 + row.dot(&(&self.cofactors * row)));
@@ -179,7 +179,7 @@ impl Fit {
     }
 }
 
-/// A whitened rate that was not used, against its prediction.
+/// Prediction of a held-out whitened rate.
 pub(crate) struct Prediction {
     pub(crate) error: f64,
     pub(crate) log_score: f64,

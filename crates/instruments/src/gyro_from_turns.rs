@@ -1,25 +1,26 @@
-//! Gyros scaled and aligned by the turns between stops: what they say of a turn must take
-//! gravity from one stop to the next.
+//! Calibration of gyros by the turns between stops: the integrated rate of a turn must rotate gravity
+//! from one stop to the next.
 
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
 
-use crate::average::Stop;
 use crate::error::{MeasuredError, Unfit};
 use crate::least_squares::minimise;
 use crate::log::Log;
+use crate::stop_means::StopMeans;
 
-/// Body rate \[rad/s\] is `matrix` times (output - zero), in the axes of the accelerometers.
+/// Calibration of three gyros: body rate \[rad/s\] is `matrix` times (output - zero), in the axes of the
+/// accelerometers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GyroCalibration {
     /// Rate from output.
     pub matrix: [[f64; 3]; 3],
     /// Standard deviations of its elements.
     pub sigma: [[f64; 3]; 3],
-    /// Outputs in one rad/s about the gyro's own input axis.
+    /// Outputs per rad/s about the input axis of the gyro.
     pub outputs_per_rad_per_s: [f64; 3],
     /// Angles between input axes and the axes of the accelerometers.
     pub misalignment_rad: [f64; 3],
-    /// What is left between gravity as carried over and as measured, rms a component.
+    /// Rms difference, per component, between rotated and measured gravity \[g\].
     pub gravity_rms_g: f64,
     /// Number of turns.
     pub turns: usize,
@@ -27,10 +28,10 @@ pub struct GyroCalibration {
 
 const UNKNOWNS: usize = 9;
 
-/// Turns smaller than this tell nothing of a scale.
+/// Smaller turns are not used: they hardly determine a scale.
 const SMALLEST_TURN_RAD: f64 = 0.2;
 
-/// Fewer turns cannot determine nine unknowns from two numbers each with something left over.
+/// Fewer turns, with two numbers each, leave nearly no degrees of freedom beside nine unknowns.
 const FEWEST_TURNS: usize = 8;
 
 struct Turn {
@@ -40,17 +41,17 @@ struct Turn {
     increments: Vec<Vector3<f64>>,
 }
 
-/// Scales and alignment of the gyros from the turns between stops, `forces_g` being specific
-/// force at each. The zero of each turn is that of the stops around it.
+/// Estimates scales and alignment of the gyros from the turns between stops, with specific force
+/// `forces_g` at each stop. The zero of a turn is that of the stops around it.
 ///
 /// # Errors
 ///
-/// [`Unfit::TooShort`] with too few turns; [`Unfit::Axes`] if the axes are left-handed or those
-/// of the gyros are other ones than those of the accelerometers; [`Unfit::Undetermined`] if the
+/// [`Unfit::TooShort`] with too few turns; [`Unfit::Axes`] if the axes are left-handed or
+/// differ between gyros and accelerometers; [`Unfit::Undetermined`] if the
 /// turns are all about like axes; [`Unfit::GyroScale`] if the gyros do not explain the turns.
-pub fn calibrate_by_turns(
+pub fn gyro_from_turns(
     log: &Log,
-    stops: &[Stop],
+    stops: &[StopMeans],
     forces_g: &[[f64; 3]],
 ) -> Result<GyroCalibration, MeasuredError> {
     let turns = turns(log, stops, forces_g);
@@ -108,7 +109,7 @@ pub fn calibrate_by_turns(
     })
 }
 
-fn turns(log: &Log, stops: &[Stop], forces_g: &[[f64; 3]]) -> Vec<Turn> {
+fn turns(log: &Log, stops: &[StopMeans], forces_g: &[[f64; 3]]) -> Vec<Turn> {
     let pairs = stops.windows(2).zip(forces_g.windows(2));
     pairs
         .map(|(stops, forces_g)| {
@@ -131,7 +132,7 @@ fn turns(log: &Log, stops: &[Stop], forces_g: &[[f64; 3]]) -> Vec<Turn> {
         .collect()
 }
 
-/// Gravity after a turn by the gyros, less gravity as measured.
+/// Gravity rotated by the gyros, less measured gravity.
 fn residuals(turns: &[Turn], matrix: &Matrix3<f64>) -> Vec<f64> {
     let residual = |turn: &Turn| {
         let mut attitude = UnitQuaternion::identity();
@@ -144,8 +145,8 @@ fn residuals(turns: &[Turn], matrix: &Matrix3<f64>) -> Vec<f64> {
     turns.iter().flat_map(residual).collect()
 }
 
-/// The scale that makes the angles that were passed as long as those between gravity before and
-/// after; the true one is larger by a factor of order one.
+/// The scale with which the integrated angles are as large as those between gravity before and after
+/// the turns; the true one is larger by a factor of order one.
 fn first_scale(turns: &[Turn]) -> f64 {
     let angles = turns.iter().map(|turn| turn.before_g.angle(&turn.after_g));
     let passed = turns
@@ -154,7 +155,7 @@ fn first_scale(turns: &[Turn]) -> f64 {
     angles.sum::<f64>() / passed.sum::<f64>().max(f64::MIN_POSITIVE)
 }
 
-/// Axes in any order and of any sign, and scales around the first guess.
+/// Start values: axes in any order and of any sign, and scales around the first guess.
 fn starts(unit: f64) -> Vec<Matrix3<f64>> {
     const ORDERS: [[usize; 3]; 6] = [
         [0, 1, 2],

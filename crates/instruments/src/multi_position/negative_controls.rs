@@ -1,39 +1,39 @@
-//! Data in which nothing, or something else, must be found.
+//! Negative controls: searches in data without effects, or with other ones.
 
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::Serialize;
 
-use super::Positions;
-use super::basis::Term;
-use super::search::{SearchSettings, Step, search, shuffle};
+use super::positions::Positions;
+use super::search::{SearchSettings, SearchStep, search, shuffle};
+use super::terms::Term;
 
-/// What was found where nothing, or something else, should be.
+/// Findings in data without effects, or with other ones.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Controls {
-    /// How often the specific forces were dealt to other stops.
+pub struct NegativeControls {
+    /// Number of data sets with specific forces permuted among the stops.
     pub shuffles: usize,
-    /// In how many of these something was found.
+    /// Number of these with a finding.
     pub shuffles_with_findings: usize,
-    /// Findings with the instrument's axes renamed x to y, y to z, z to x: the findings under
-    /// their new names, if the search depends on no name.
+    /// Findings after the axes of the instrument are renamed x to y, y to z, z to x: the original
+    /// findings under their new names, if the search does not depend on names.
     pub renamed: Vec<String>,
-    /// Whether they are exactly the findings under their new names.
+    /// `true` if `renamed` are the original findings under their new names.
     pub renamed_as_expected: bool,
-    /// Findings with the axes of the accelerometers alone renamed so.
+    /// Findings after only the axes of the accelerometers are renamed so.
     pub forces_renamed: Vec<String>,
-    /// Those among them that are no finding, and no along-axis term, under its new name.
+    /// Those of them that are neither an original finding nor an along-axis term under its new name.
     pub forces_renamed_unexpected: Vec<String>,
 }
 
-/// Searches shuffled and renamed stops.
+/// Searches stops with permuted specific forces and with renamed axes.
 #[must_use]
-pub fn controls(
+pub fn negative_controls(
     positions: &Positions,
-    found: &[Step],
+    found: &[SearchStep],
     shuffles: usize,
     settings: &SearchSettings,
-) -> Controls {
+) -> NegativeControls {
     let all: Vec<usize> = (0..positions.time_s.len()).collect();
     let mut generator = ChaCha12Rng::seed_from_u64(settings.seed);
     generator.set_stream(1);
@@ -63,7 +63,7 @@ pub fn controls(
     let renamed = sorted(search(&renamed, &all, settings).iter().map(name));
     let swapped = search(&forces_renamed, &all, settings);
     let unexpected = swapped.iter().filter(|step| !is_there(step, found));
-    Controls {
+    NegativeControls {
         shuffles,
         shuffles_with_findings: with_findings,
         renamed_as_expected: renamed == expected,
@@ -73,8 +73,8 @@ pub fn controls(
     }
 }
 
-/// The name of a finding after x became y, y became z and z became x.
-fn new_name(step: &Step) -> String {
+/// Name of a finding after the axes are renamed x to y, y to z, z to x.
+fn new_name(step: &SearchStep) -> String {
     let next = |axis: usize| (axis + 1) % 3;
     let gyro = next(step.gyro);
     let term = match step.term {
@@ -93,17 +93,17 @@ fn new_name(step: &Step) -> String {
     term.id(gyro)
 }
 
-/// Whether a term, of forces whose axes were renamed, stands for one that was there before.
-fn is_there(step: &Step, found: &[Step]) -> bool {
+/// `true` if a term of renamed forces stands for an original finding or for an along-axis term.
+fn is_there(step: &SearchStep, found: &[SearchStep]) -> bool {
     let Term::Cross(new) = step.term else {
         return false;
     };
     let before = (new + 2) % 3;
-    let same = |other: &Step| other.gyro == step.gyro && other.term == Term::Cross(before);
+    let same = |other: &SearchStep| other.gyro == step.gyro && other.term == Term::Cross(before);
     before == step.gyro || found.iter().any(same)
 }
 
-fn name(step: &Step) -> String {
+fn name(step: &SearchStep) -> String {
     step.term.id(step.gyro)
 }
 

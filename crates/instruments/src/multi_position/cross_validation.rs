@@ -1,39 +1,42 @@
-//! What an extended law is worth at stops that were not used.
+//! Blocked cross-validation of the extended laws.
 
 use nalgebra::DVector;
 use serde::Serialize;
 
-use super::Positions;
-use super::basis::Term;
-use super::regression::{Fit, Whitened};
+use super::positions::Positions;
+use super::regression::{Fit, WeightedStops};
 use super::search::{SearchSettings, search, terms_of};
+use super::terms::Term;
 
-/// Gain of the extended over the nominal law at stops that were not used.
+/// Gain of the extended over the nominal laws at held-out stops.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Gain {
-    /// Stops in a row that were left out together.
+pub struct CrossValidation {
+    /// Number of successive stops held out together.
     pub left_out: usize,
     /// Number of such blocks.
     pub blocks: usize,
-    /// Sum over all stops and gyros of the log density of the extended law less that of the
-    /// nominal one.
+    /// Difference of the predictive log scores, extended less nominal, summed over all stops and gyros.
     pub cross_validated_log_score_nats: f64,
     /// Its standard error, from the scatter between blocks.
     pub standard_error_nats: f64,
-    /// Prediction errors rms for each gyro by the nominal law \[deg/h\].
+    /// Rms prediction error of each gyro with the nominal law \[deg/h\].
     pub rms_before_deg_per_h: [f64; 3],
-    /// The same by the extended law.
+    /// The same with the extended law.
     pub rms_after_deg_per_h: [f64; 3],
-    /// Standard errors of the stops, rms.
+    /// Rms standard error of the stops.
     pub noise_deg_per_h: [f64; 3],
-    /// In how many blocks each term was found without them.
+    /// For each term, the number of blocks without which it was found.
     pub found_in_blocks: Vec<(String, usize)>,
 }
 
-/// Leaves out one block of stops after the other, searches and fits without it, and predicts it.
-/// `None` if the stops are too few for that.
+/// Holds out one block of stops after the other, searches and fits without it, and predicts it. `None`
+/// if the remaining stops do not determine the laws.
 #[must_use]
-pub fn gain(positions: &Positions, left_out: usize, settings: &SearchSettings) -> Option<Gain> {
+pub fn cross_validate(
+    positions: &Positions,
+    left_out: usize,
+    settings: &SearchSettings,
+) -> Option<CrossValidation> {
     let stops = positions.time_s.len();
     let all: Vec<usize> = (0..stops).collect();
     let mut scores = Vec::new();
@@ -53,8 +56,8 @@ pub fn gain(positions: &Positions, left_out: usize, settings: &SearchSettings) -
         for (gyro, squares) in squares.iter_mut().enumerate() {
             let laws = [Term::NOMINAL.to_vec(), terms_of(&steps, gyro)];
             for (which, law) in laws.iter().enumerate() {
-                let used = Whitened::of(positions, gyro, &rest).with_excess_of(law);
-                let unused = Whitened::of(positions, gyro, block).like(&used);
+                let used = WeightedStops::of(positions, gyro, &rest).with_excess_of(law);
+                let unused = WeightedStops::of(positions, gyro, block).like(&used);
                 let fit = used.fit(law)?;
                 let sign = if which == 0 { -1.0 } else { 1.0 };
                 score += sign * predict(&fit, law, &unused, &mut squares[which]);
@@ -76,7 +79,7 @@ pub fn gain(positions: &Positions, left_out: usize, settings: &SearchSettings) -
             .map(|sigma| sigma[gyro].powi(2));
         (variances.sum::<f64>() / stops as f64).sqrt()
     };
-    Some(Gain {
+    Some(CrossValidation {
         left_out,
         blocks: scores.len(),
         cross_validated_log_score_nats: total,
@@ -88,8 +91,8 @@ pub fn gain(positions: &Positions, left_out: usize, settings: &SearchSettings) -
     })
 }
 
-/// Log density of the stops that were not used; adds squares of the errors in deg/h.
-fn predict(fit: &Fit, law: &[Term], unused: &Whitened, squares: &mut f64) -> f64 {
+/// Predictive log score of the held-out stops; adds the squares of their errors \[(deg/h)²\].
+fn predict(fit: &Fit, law: &[Term], unused: &WeightedStops, squares: &mut f64) -> f64 {
     let columns = unused.columns(law);
     (0..unused.len())
         .map(|stop| {

@@ -1,67 +1,66 @@
-//! From a log to what the drift law is fitted to.
+//! Reduction of a log to rates and specific force at its stops.
 
 use core::ops::Range;
 
 use serde::Serialize;
 
-use super::{Instrument, Positions};
-use crate::average::{Stop, average};
+use super::positions::{Instrument, Positions};
+use crate::accel_from_norm::{accel_from_norm, refuse_wrong_norm};
 use crate::description::Description;
 use crate::error::{MeasuredError, Unfit};
+use crate::gyro_from_turns::{GyroCalibration, gyro_from_turns};
 use crate::log::Log;
-use crate::norms::{calibrate_by_norm, refuse_wrong_norm};
-use crate::turns::{GyroCalibration, calibrate_by_turns};
+use crate::stop_means::{StopMeans, stop_means};
 
 /// A log reduced to its stops.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Prepared {
-    /// The means of the stops, in the unit of the log.
-    pub stops: Vec<Stop>,
-    /// What is known of the sensors and the site.
+pub struct PreparedTest {
+    /// Means of the stops, in the unit of the log.
+    pub stops: Vec<StopMeans>,
+    /// Calibration constants of the sensors, and the site.
     pub instrument: Instrument,
-    /// Gyros by the turns between stops; `None` if their scale was given and the turns are too
-    /// few to check it.
+    /// Calibration of the gyros from the turns between stops; `None` if their scale is given and the
+    /// turns are too few to check it.
     pub turns: Option<GyroCalibration>,
     /// Rates and specific force at the stops.
     pub positions: Positions,
 }
 
-/// What the sensors were found to be, for programs.
+/// Calibration of the sensors, as it is serialised.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SensorReport {
-    /// Zero of the accelerometers, if it was estimated.
+    /// Zero of the accelerometers, if estimated.
     pub accel_zero: Option<[f64; 3]>,
-    /// Outputs of the accelerometers in 1 g, if they were estimated.
+    /// Outputs of the accelerometers per g, if estimated.
     pub accel_outputs_per_g: Option<[f64; 3]>,
     /// Norm of specific force less 1 g, rms over the stops \[g\].
     pub norm_rms_g: f64,
-    /// Outputs of the gyros in 1 rad/s by the turns.
+    /// Outputs of the gyros per rad/s, from the turns.
     pub gyro_outputs_per_rad_per_s: Option<[f64; 3]>,
-    /// Angles of the gyros' input axes from the axes of the accelerometers, by the turns.
+    /// Angles between the input axes of the gyros and the axes of the accelerometers, from the turns.
     pub gyro_misalignment_rad: Option<[f64; 3]>,
-    /// Gravity carried over by the turns against gravity measured, rms a component \[g\].
+    /// Rms difference, per component, between gravity rotated by the turns and measured gravity \[g\].
     pub turn_rms_g: Option<f64>,
 }
 
-/// A scale by the turns that differs from the one that was given by more than this share
-/// contradicts it.
+/// Largest relative difference between the scale from the turns and the given one.
 const LARGEST_SCALE_ERROR: f64 = 0.1;
 
-/// Averages stops and takes them to physical units.
+/// Averages a log over stops and converts the means to physical units.
 ///
 /// # Errors
 ///
-/// What [`calibrate_by_norm`] and [`calibrate_by_turns`] say where scales are estimated;
+/// Those of [`accel_from_norm`] and [`gyro_from_turns`] where scales are estimated;
 /// [`Unfit::Norm`], [`Unfit::GyroScale`] and [`Unfit::Axes`] where given scales and axes
 /// contradict the stops and the turns between them.
 pub fn prepare(
     log: &Log,
     description: &Description,
     stops: &[Range<usize>],
-) -> Result<Prepared, MeasuredError> {
-    let stops = average(log, stops);
+) -> Result<PreparedTest, MeasuredError> {
+    let stops = stop_means(log, stops);
     let accel = match log.accel_in_counts {
-        true => Some(calibrate_by_norm(&stops)?),
+        true => Some(accel_from_norm(&stops)?),
         false => None,
     };
     let forces_g: Vec<[f64; 3]> = stops
@@ -72,10 +71,10 @@ pub fn prepare(
         })
         .collect();
     refuse_wrong_norm(forces_g.iter().map(norm))?;
-    let turns = match calibrate_by_turns(log, &stops, &forces_g) {
+    let turns = match gyro_from_turns(log, &stops, &forces_g) {
         Ok(turns) => Some(turns),
-        // A scale that was given needs no turns.
-        Err(error) if !log.gyro_in_counts && is_for_want_of_turns(&error) => None,
+        // A given scale needs no turns.
+        Err(error) if !log.gyro_in_counts && has_too_few_turns(&error) => None,
         Err(error) => return Err(error),
     };
     let outputs_per_rad_per_s = match &turns {
@@ -91,7 +90,7 @@ pub fn prepare(
         outputs_per_rad_per_s,
         latitude_deg: description.site.latitude_deg,
     };
-    Ok(Prepared {
+    Ok(PreparedTest {
         positions: Positions::new(&stops, &instrument),
         stops,
         instrument,
@@ -99,8 +98,8 @@ pub fn prepare(
     })
 }
 
-impl Prepared {
-    /// What the sensors were found to be.
+impl PreparedTest {
+    /// Calibration of the sensors.
     #[must_use]
     pub fn sensors(&self) -> SensorReport {
         let accel = self.instrument.accel.as_ref();
@@ -130,7 +129,7 @@ fn norm(force_g: &[f64; 3]) -> f64 {
         .sqrt()
 }
 
-fn is_for_want_of_turns(error: &MeasuredError) -> bool {
+fn has_too_few_turns(error: &MeasuredError) -> bool {
     matches!(error.kind(), Some(Unfit::TooShort | Unfit::Undetermined))
 }
 

@@ -1,12 +1,12 @@
-//! The terms of the drift law as functions of specific force: columns of a linear fit.
+//! Terms of the drift law as functions of specific force: columns of a linear regression.
 
-use gyrocal::generated::catalogue::{PARAMETERS, dynamics_at_origin_jacobian};
+use gyrocal::generated::catalogue::{PARAMETERS, SHAPES, dynamics_at_origin_jacobian};
 use serde::Serialize;
 
 /// Letters of the axes.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The letters of the nominal terms of a gyro, as often as its own axis stands in them.
+/// Power of specific force along the input axis in each nominal term.
 const NOMINAL_POWERS: [usize; 3] = [0, 1, 2];
 
 /// One term of the drift of one gyro.
@@ -28,8 +28,8 @@ impl Term {
     /// The terms of the nominal law.
     pub const NOMINAL: [Self; 3] = [Self::Nominal(0), Self::Nominal(1), Self::Nominal(2)];
 
-    /// The terms that the nominal law leaves out, for one gyro. The squares along the two other
-    /// axes are one term, since the three squares sum to one: the first of them stands for both.
+    /// The terms that the nominal law of a gyro lacks. The squares along the two other axes are exact
+    /// equivalents, since the three squares sum to one: the first of them stands for both.
     #[must_use]
     pub fn catalogue(gyro: usize) -> Vec<Self> {
         let [j, k] = others(gyro);
@@ -69,13 +69,13 @@ impl Term {
             .map_or("", |parameter| PARAMETERS[parameter].unit)
     }
 
-    /// Its place among the parameters of the generated catalogue.
+    /// Its index among the parameters of the generated catalogue.
     pub(crate) fn parameter(self, gyro: usize) -> Option<usize> {
         let id = self.id(gyro);
         PARAMETERS.iter().position(|parameter| parameter.id == id)
     }
 
-    /// Names of terms that no record can tell from this one, with the opposite sign.
+    /// Names of its exact equivalents, which have the opposite sign.
     #[must_use]
     pub fn equivalents(self, gyro: usize) -> Vec<String> {
         match self {
@@ -88,15 +88,15 @@ impl Term {
     }
 }
 
-/// What one unit of each parameter of the generated catalogue adds to the drift of a gyro
-/// \[deg/h\], at a specific force and a time after the first stop.
+/// Drift of a gyro per unit of each parameter of the generated catalogue \[deg/h\], at a specific force
+/// and a time after the first stop.
 ///
 /// It is the Jacobian of the generated rates of the platform angles with respect to the
 /// parameters, at zero angles, where W is the identity and the chart's axes are those of the
 /// gyros, with the Earth at rest: the drift law alone.
 pub(crate) fn response(gyro: usize, force_g: &[f64; 3], time_s: f64) -> [f64; PARAMETERS.len()] {
-    // Sizes are zero, so onsets and time constants must only be numbers that can be divided by.
-    let shapes = [1.0; 6];
+    // The Jacobian is taken at sizes of zero: onsets and time constants only have to be divisors.
+    let shapes = [1.0; SHAPES.len()];
     let jacobian = dynamics_at_origin_jacobian(
         &[0.0; PARAMETERS.len()],
         &[0.0; 3],

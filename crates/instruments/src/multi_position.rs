@@ -1,0 +1,219 @@
+//! The multi-position test (tumble test): the drift law fitted to gyro outputs at rest in many attitudes.
+//!
+//! [`prepare`] reduces a log to rates and specific force at its stops. [`multi_position_test`] fits the
+//! nominal drift law of each gyro, extends it by terms of the catalogue in a forward search whose
+//! p-values come from permutations, and measures the extension by cross-validation and on negative
+//! controls.
+
+mod alternatives;
+mod cross_validation;
+mod negative_controls;
+mod positions;
+mod prepare;
+mod regression;
+mod report;
+mod search;
+mod terms;
+
+use gyrocal_statistics::{chi_square_tail, f_tail};
+
+pub use alternatives::Alternative;
+pub use cross_validation::{CrossValidation, cross_validate};
+pub use negative_controls::{NegativeControls, negative_controls};
+pub use positions::{Instrument, Positions};
+pub use prepare::{PreparedTest, SensorReport, prepare};
+pub use report::{CoefficientReport, FTest, Finding, GyroReport, LawReport, MultiPositionReport};
+pub use search::{LEAST_FALSE_ALARM, SearchSettings, SearchStep, search};
+pub use terms::Term;
+
+use crate::error::{MeasuredError, Unfit};
+use regression::WeightedStops;
+use search::terms_of;
+
+/// Settings of a multi-position test.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MultiPositionSettings {
+    /// Settings of the search.
+    pub search: SearchSettings,
+    /// Number of successive stops that the cross-validation holds out together.
+    pub left_out: usize,
+    /// Number of shuffled data sets among the negative controls.
+    pub shuffles: usize,
+    /// Probability that a finding and its alternatives contain the true term.
+    pub coverage: f64,
+}
+
+impl Default for MultiPositionSettings {
+    fn default() -> Self {
+        Self {
+            search: SearchSettings::default(),
+            left_out: 4,
+            shuffles: 100,
+            coverage: 0.95,
+        }
+    }
+}
+
+/// Fits the drift laws, searches for missing terms, and validates the extended laws.
+///
+/// # Errors
+///
+/// [`Unfit::TooShort`] if the stops are fewer than the catalogue needs; [`Unfit::Undetermined`]
+/// if their attitudes do not determine the nominal law.
+pub fn multi_position_test(
+    positions: &Positions,
+    settings: &MultiPositionSettings,
+) -> Result<MultiPositionReport, MeasuredError> {
+    let stops = positions.time_s.len();
+    let largest = Term::NOMINAL.len() + Term::catalogue(0).len();
+    let fewest = largest + 3;
+    if stops < fewest {
+        return Err(MeasuredError::unfit(
+            Unfit::TooShort,
+            format!("{stops} static stops"),
+            format!("at least {fewest} for the {largest} terms of the catalogue"),
+            "stop in more attitudes",
+        ));
+    }
+    let all: Vec<usize> = (0..stops).collect();
+    let steps = search(positions, &all, &settings.search);
+    let mut gyros = Vec::new();
+    for gyro in 0..3 {
+        gyros.push(gyro_report(
+            &WeightedStops::of(positions, gyro, &all),
+            &steps,
+        )?);
+    }
+    let findings = steps
+        .iter()
+        .filter_map(|step| {
+            let data = WeightedStops::of(positions, step.gyro, &all);
+            finding(&data, step, &steps, &gyros[step.gyro], settings)
+        })
+        .collect();
+    let cross_validation = match steps.is_empty() {
+        true => None,
+        false => cross_validate(positions, settings.left_out, &settings.search),
+    };
+    let controls = negative_controls(positions, &steps, settings.shuffles, &settings.search);
+    Ok(MultiPositionReport {
+        stops,
+        gyros,
+        findings,
+        cross_validation,
+        controls,
+    })
+}
+
+fn gyro_report(data: &WeightedStops, steps: &[SearchStep]) -> Result<GyroReport, MeasuredError> {
+    let extended = terms_of(steps, data.gyro);
+    let (everything, undetermined) = determined_terms(data);
+    Ok(GyroReport {
+        gyro: format!("gyro_{}", terms::AXES[data.gyro]),
+        nominal: law_report(data, &Term::NOMINAL)?,
+        nominal_against_catalogue: f_test(data, &Term::NOMINAL, &everything)?,
+        extended_against_catalogue: f_test(data, &extended, &everything)?,
+        extended: law_report(data, &extended)?,
+        undetermined: undetermined
+            .into_iter()
+            .map(|term| term.id(data.gyro))
+            .collect(),
+    })
+}
+
+/// The nominal law with all terms of the catalogue that the stops determine in addition, and the terms
+/// that they do not determine.
+fn determined_terms(data: &WeightedStops) -> (Vec<Term>, Vec<Term>) {
+    let mut determined = Term::NOMINAL.to_vec();
+    let mut undetermined = Vec::new();
+    for term in Term::catalogue(data.gyro) {
+        determined.push(term);
+        if data.fit(&determined).is_none() {
+            undetermined.extend(determined.pop());
+        }
+    }
+    (determined, undetermined)
+}
+
+fn law_report(data: &WeightedStops, terms: &[Term]) -> Result<LawReport, MeasuredError> {
+    let with_standard_errors = data.fit(terms).ok_or_else(|| undetermined(data, terms))?;
+    let data = &data.with_excess_of(terms);
+    let fit = data.fit(terms).ok_or_else(|| undetermined(data, terms))?;
+    let coefficients = terms.iter().enumerate().map(|(i, term)| CoefficientReport {
+        name: term.id(data.gyro),
+        estimate: fit.estimates[i],
+        sigma: fit.cofactors[(i, i)].sqrt(),
+        unit: term.unit(data.gyro).to_owned(),
+    });
+    let chi_square = with_standard_errors.chi_square;
+    let p_value = chi_square_tail(chi_square, fit.freedom).unwrap_or(f64::NAN);
+    Ok(LawReport {
+        coefficients: coefficients.collect(),
+        chi_square,
+        degrees_of_freedom: fit.freedom,
+        p_value,
+        excess_deg_per_h: data.excess_deg_per_h,
+        residuals_deg_per_h: fit.residuals.component_mul(&data.sigma).as_slice().to_vec(),
+    })
+}
+
+fn f_test(data: &WeightedStops, law: &[Term], larger: &[Term]) -> Result<FTest, MeasuredError> {
+    // Both laws are fitted with the excess scatter of the larger one.
+    let data = &data.with_excess_of(larger);
+    let small = data.fit(law).ok_or_else(|| undetermined(data, law))?;
+    let large = data.fit(larger).ok_or_else(|| undetermined(data, larger))?;
+    let added = small.freedom - large.freedom;
+    let f = (small.chi_square - large.chi_square) / added / large.scale();
+    Ok(FTest {
+        f,
+        degrees_of_freedom: [added, large.freedom],
+        p_value: f_tail(f, [added, large.freedom]).unwrap_or(f64::NAN),
+    })
+}
+
+fn undetermined(data: &WeightedStops, terms: &[Term]) -> MeasuredError {
+    let names: Vec<String> = terms.iter().map(|term| term.id(data.gyro)).collect();
+    MeasuredError::unfit(
+        Unfit::Undetermined,
+        format!("stops that do not determine {} together", names.join(", ")),
+        "each axis up, down and in between",
+        "stop in more attitudes",
+    )
+}
+
+fn finding(
+    data: &WeightedStops,
+    step: &SearchStep,
+    steps: &[SearchStep],
+    gyro: &GyroReport,
+    settings: &MultiPositionSettings,
+) -> Option<Finding> {
+    let law = terms_of(steps, data.gyro);
+    let place = law.iter().position(|term| *term == step.term)?;
+    let coefficient = gyro.extended.coefficients.get(place)?;
+    let seed = settings.search.seed;
+    let data = &data.with_excess_of(&law);
+    let found = alternatives::alternatives(data, &law, step.term, settings.coverage, seed)?;
+    let along = gyro.extended.coefficients.get(1)?.estimate;
+    Some(Finding {
+        effect: coefficient.name.clone(),
+        estimate: coefficient.estimate,
+        sigma: coefficient.sigma,
+        unit: coefficient.unit.clone(),
+        regressor: data
+            .column(step.term)
+            .component_mul(&data.sigma)
+            .as_slice()
+            .to_vec(),
+        f: step.f,
+        p_value: step.p_value,
+        alternatives: found.members,
+        nearest_ruled_out: found.nearest,
+        deficit_limit: found.limit,
+        equivalents: step.term.equivalents(data.gyro),
+        misalignment_needed_rad: match step.term {
+            Term::Cross(_) => Some((coefficient.estimate / along).abs()),
+            _ => None,
+        },
+    })
+}

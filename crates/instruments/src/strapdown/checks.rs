@@ -1,0 +1,108 @@
+//! Checks of the settings, and of the log against a unit at rest on the Earth.
+
+use super::ImportSettings;
+use super::earth_rate::deg_per_h;
+use super::rotation_fit::RotationFit;
+use crate::description::Description;
+use crate::error::{MeasuredError, Unfit};
+use crate::log::Log;
+
+/// Largest rms residual of specific force about a uniform rotation at rest.
+const LARGEST_RESIDUAL_G: f64 = 0.01;
+
+/// Refuses logs in counts and settings out of range; returns the latitude \[deg\].
+pub(super) fn check(
+    log: &Log,
+    description: &Description,
+    settings: &ImportSettings,
+) -> Result<f64, MeasuredError> {
+    if log.gyro_in_counts || log.accel_in_counts {
+        return Err(MeasuredError::unfit(
+            Unfit::NoScale,
+            "counts whose scale is to be estimated",
+            "scales that are given",
+            "one attitude cannot tell them: give `counts_per_rad_per_s` and `counts_per_g`, as a \
+             multi-position test of the unit (gyrocal tumble) prints them",
+        ));
+    }
+    let setting = |found: String, expected: &str| {
+        MeasuredError::unfit(Unfit::Setting, found, expected, "change the option")
+    };
+    let longest_s = 0.5 * (log.time_s[log.len() - 1] - log.time_s[0]);
+    if !(2.0 * log.interval_s..=longest_s).contains(&settings.averaging_s) {
+        let found = format!("an averaging interval of {} s", settings.averaging_s);
+        let expected = format!("{:.4} to {longest_s:.1} s", 2.0 * log.interval_s);
+        return Err(setting(found, &expected));
+    }
+    if settings.quiet_factor.is_nan() || settings.quiet_factor <= 1.0 {
+        let found = format!("a quiet factor of {}", settings.quiet_factor);
+        return Err(setting(found, "more than 1"));
+    }
+    description.site.latitude_deg.ok_or_else(|| {
+        MeasuredError::unfit(
+            Unfit::Setting,
+            "a description without latitude",
+            "`latitude_deg` in `[site]`",
+            "the virtual platform turns against the Earth, whose rate depends on it",
+        )
+    })
+}
+
+/// Refuses specific force that does not rotate uniformly.
+pub(super) fn refuse_motion(fit: &RotationFit) -> Result<(), MeasuredError> {
+    if fit.residual_rms <= LARGEST_RESIDUAL_G {
+        return Ok(());
+    }
+    Err(MeasuredError::unfit(
+        Unfit::NeverStatic,
+        format!(
+            "specific force that differs by {:.3} g from gravity turning uniformly in inertial \
+             axes",
+            fit.residual_rms
+        ),
+        format!("at most {LARGEST_RESIDUAL_G} g on a static base"),
+        "use a stretch in which the unit stands still; if it did, check that the gyros' unit is \
+         right and that gyros and accelerometers have the same right-handed axes",
+    ))
+}
+
+/// Refuses a rate that is not the Earth's.
+pub(super) fn refuse_other_rates(
+    fit: &RotationFit,
+    [horizontal, vertical]: [f64; 2],
+    latitude_deg: f64,
+) -> Result<(), MeasuredError> {
+    let found = [fit.horizontal_rate[0], fit.vertical_rate[0]].map(deg_per_h);
+    let earth = horizontal.hypot(vertical);
+    let total = found[0].hypot(found[1]);
+    let ratio = total / earth;
+    if !(0.5..=2.0).contains(&ratio) {
+        let near = |expected: f64| (0.8..=1.25).contains(&(ratio / expected));
+        let degrees = 1.0_f64.to_degrees();
+        let advice = if near(degrees) || near(1.0 / degrees) {
+            "radians and degrees seem to be mixed up: change `unit`"
+        } else if near(3600.0) || near(1.0 / 3600.0) {
+            "seconds and hours seem to be mixed up: change `unit`"
+        } else {
+            "check unit and scale of the gyros; if they are right, gyros with errors as large as \
+             Earth rate cannot hold an analytic platform: use gyrocal tumble"
+        };
+        return Err(MeasuredError::unfit(
+            Unfit::GyroScale,
+            format!("a rate of {total:.4} deg/h at rest"),
+            format!("Earth rate, {earth:.4} deg/h, within a factor of two"),
+            advice,
+        ));
+    }
+    // Where the vertical part is small its sign tells nothing.
+    if vertical.abs() > 0.2 * earth && found[1] * vertical < 0.0 {
+        return Err(MeasuredError::unfit(
+            Unfit::Axes,
+            format!("a vertical rate of {:.3} deg/h", found[1]),
+            format!("{vertical:.3} deg/h at latitude {latitude_deg} deg"),
+            "the gyros' axes are left-handed or not those of the accelerometers, or specific force \
+             is down positive, or the sign of the latitude is wrong: change `axes` or `[site]`",
+        ));
+    }
+    Ok(())
+}
