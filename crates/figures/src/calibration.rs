@@ -1,4 +1,4 @@
-//! Calibration that can be trusted: consistency over a population, exactness, and what it costs.
+//! The batch calibration: consistency over a population, exactness, and cost.
 
 mod attitudes;
 mod cost;
@@ -7,10 +7,8 @@ mod paper;
 mod population;
 mod site;
 
+use crate::error::Error;
 use crate::figure::Figure;
-
-/// Why a figure could not be measured.
-pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
 
 /// All figures of the topic.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-/// What a job that runs on one thread makes, and its processor time, s; elapsed time where the
-/// kernel does not tell it.
+/// Result of a job on one thread and its processor time, s; its elapsed time if the kernel does not
+/// provide processor time.
 pub(crate) fn on_one_core<R>(job: impl FnOnce() -> R) -> (R, f64) {
     let (begin, begin_cpu_s) = (Instant::now(), thread_s());
     let made = job();
@@ -14,14 +14,14 @@ pub(crate) fn on_one_core<R>(job: impl FnOnce() -> R) -> (R, f64) {
     (made, seconds)
 }
 
-/// Processor time of this thread, where the kernel tells it.
+/// Processor time of this thread; `None` if the kernel does not provide it.
 fn thread_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
     Some(nanoseconds * 1e-9)
 }
 
-/// The largest memory that the process held since this was made.
+/// Peak memory of the process since the creation of this value.
 pub(crate) struct Peak;
 
 impl Peak {

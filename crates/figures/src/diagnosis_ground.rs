@@ -1,4 +1,4 @@
-//! The ground that a diagnosis stands on: the noise audit, and the signatures of effects.
+//! Foundations of the diagnosis: the noise audit, and the signatures of effects.
 
 mod audit;
 mod records;
@@ -7,11 +7,9 @@ mod whole;
 
 use gyrocal_evaluation::Campaign;
 
+use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
-
-/// Why a figure could not be measured.
-type Error = Box<dyn std::error::Error + Send + Sync>;
 
 /// All figures of the topic.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {

@@ -1,19 +1,21 @@
+//! Figures of the documentation with their targets, and their table.
+
 use comfy_table::{ContentArrangement, Table, presets};
 
-/// One figure: what was asked for and what was measured.
+/// One figure: target and measurement.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure {
-    /// What is measured.
+    /// Name of the figure.
     pub(crate) name: String,
-    /// What it should be.
+    /// Target, in words.
     pub(crate) target: String,
-    /// What it is.
+    /// Measured value, in words.
     pub(crate) measured: String,
-    /// How many runs it is measured over.
+    /// Number of runs that it is measured over.
     pub(crate) runs: usize,
-    /// Which seeds, or what else identifies the runs.
+    /// Seeds, or another identification of the runs.
     pub(crate) seeds: String,
-    /// Whether the target is met; `None` for a figure without one.
+    /// `true` if the target is met; `None` without a target.
     pub(crate) holds: Option<bool>,
 }
 
@@ -34,8 +36,7 @@ impl Figure {
         }
     }
 
-    /// A cost that must not be higher than a limit; one that is not a number was not measured, and
-    /// does not hold.
+    /// A cost with an upper limit. NaN stands for a failed measurement, which does not hold.
     pub(crate) fn at_most(name: &str, limit: f64, measured: f64, unit: &str) -> Self {
         Self {
             target: format!("<= {limit} {unit}"),
@@ -44,7 +45,7 @@ impl Figure {
         }
     }
 
-    /// A figure that is yes or no.
+    /// A statement that must be true.
     pub(crate) fn truth(name: &str, measured: bool) -> Self {
         Self {
             name: name.to_owned(),
@@ -56,7 +57,7 @@ impl Figure {
         }
     }
 
-    /// A figure that only informs.
+    /// A figure without a target.
     pub(crate) fn note(name: &str, measured: String) -> Self {
         Self {
             name: name.to_owned(),

@@ -1,4 +1,4 @@
-//! What extended models gain: under cross-validation, in the coefficients, on a second record.
+//! Gain of extended models: in cross-validation, in the coefficients, and on a second record.
 
 mod records;
 
@@ -10,14 +10,12 @@ use gyrocal_testkit::extended_comparison;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
 use records::{Errors, Extension, Second};
 
-/// Why a figure could not be measured.
-type Error = Box<dyn std::error::Error + Send + Sync>;
-
-/// First seed and number of records of each cell; small versions are of a fraction.
+/// First seed and number of records of each cell; small versions have a fraction of them.
 const CLEAN: [u64; 2] = [600_000, 2_000];
 const HIDDEN: [u64; 2] = [700_000, 1_000];
 const CROSS_AXIS: [u64; 2] = [800_000, 300];
@@ -25,7 +23,7 @@ const SECOND: [u64; 2] = [900_000, 1_000];
 const SMALL_SHARE: u64 = 50;
 const SMALL_LEAST: u64 = 16;
 
-/// Sigmas of its own bound that a hidden effect is large, and at least on second records.
+/// Strength of an injected effect, in sigmas of its own bound, and the least one for second records.
 const STRENGTH: f64 = 8.0;
 const LEAST_STRENGTH: f64 = 12.0;
 
@@ -63,7 +61,7 @@ fn filters() -> [Figure; 2] {
     ]
 }
 
-/// Runs a cell; a full one goes on from where it stopped.
+/// Runs a cell; the full version is resumable.
 fn cell<T: Serialize + DeserializeOwned + Send>(
     name: &str,
     [first, runs]: [u64; 2],
@@ -80,7 +78,7 @@ fn cell<T: Serialize + DeserializeOwned + Send>(
     Ok((campaign.run(job, |_| ())?, seeds))
 }
 
-/// A share that must not be lower than a target; a small population fails if it shows that it is.
+/// A fraction with a lower limit; a small population fails if it rejects it.
 fn at_least(name: &str, least: f64, found: Proportion, small: bool) -> Figure {
     let mut figure = Figure::within(name, [least, f64::INFINITY], found.share());
     if small {
@@ -100,7 +98,7 @@ fn failures<T>(cell: &str, outcome: &Outcome<T>) -> Option<Figure> {
     Some(figure)
 }
 
-/// Extensions of records in which nothing is hidden.
+/// Extensions of clean records.
 fn clean(small: bool) -> Result<Vec<Figure>, Error> {
     let (outcome, seeds) = cell("clean", CLEAN, small, records::clean)?;
     let of = |what: &dyn Fn(&Extension) -> bool| {
@@ -134,7 +132,7 @@ fn clean(small: bool) -> Result<Vec<Figure>, Error> {
         .collect())
 }
 
-/// Gain of what is found in records with one hidden effect.
+/// Gain of the findings in records with one injected effect.
 fn hidden(small: bool) -> Result<Vec<Figure>, Error> {
     let job = |seed| records::hidden(seed, STRENGTH);
     let (outcome, seeds) = cell("hidden", HIDDEN, small, job)?;

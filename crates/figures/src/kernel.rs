@@ -1,5 +1,5 @@
-//! The structured kernel: what a step costs against the textbook filter and against the number
-//! of states, what its numbers are worth, and how many instructions it takes.
+//! The structured kernel: cost of a step relative to the textbook filter and by number of states,
+//! rounding errors, and instruction counts.
 
 mod accuracy;
 mod against_crates;
@@ -10,10 +10,8 @@ mod timing;
 
 use gyrocal::Integration;
 
+use crate::error::Error;
 use crate::figure::Figure;
-
-/// Why a figure could not be measured.
-pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
 
 const RULES: [(&str, Integration); 2] = [("euler", Integration::EULER), ("rk4", Integration::RK4)];
 

@@ -1,9 +1,10 @@
-//! `cargo figures TOPIC` prints every figure that the documentation claims: target, measured
-//! value, runs, seeds, and whether it holds. The exit code is 1 if one does not.
+//! `cargo figures TOPIC` measures the figures that the documentation claims and prints them with target,
+//! number of runs and seeds. The exit code is 1 if a figure does not hold.
 
 mod calibration;
 mod cost;
 mod diagnosis_ground;
+mod error;
 mod figure;
 mod gain;
 mod kernel;
@@ -28,7 +29,7 @@ use figure::table;
     about = "Measures and prints the figures that the documentation claims"
 )]
 struct Arguments {
-    /// What to measure.
+    /// Topic to measure.
     topic: Topic,
     /// Fewer runs, and nothing that builds copies of the workspace: what continuous integration
     /// runs. Targets stay as they are.
@@ -52,11 +53,11 @@ enum Topic {
     Calibration,
     /// The structured kernel: speed, scaling, rounding errors, instructions.
     Kernel,
-    /// What a diagnosis stands on: the noise audit, and signatures against the simulation.
+    /// Foundations of the diagnosis: the noise audit, and signatures against the simulation.
     DiagnosisGround,
-    /// Causes hidden in records: detected, named, and what clean records show.
+    /// Operating characteristics of the diagnosis on records with injected effects and on clean ones.
     Naming,
-    /// What extended models gain: under cross-validation, in the coefficients, on a second record.
+    /// Gain of extended models: in cross-validation, in the coefficients, and on a second record.
     Gain,
     /// Two recordings of real gyros: docs/measured-data.md.
     Measured,
@@ -104,7 +105,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// A page of the documentation that holds what was printed.
+/// Writes the printed table as a page of the documentation.
 fn write_page(
     path: &std::path::Path,
     arguments: &Arguments,

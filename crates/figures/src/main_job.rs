@@ -1,5 +1,5 @@
-//! The main job: records of other simulators, populations of our own, the comparison with the
-//! paper's filter, and what a build costs.
+//! The main job: records of another simulator, populations of simulated records, the comparison with
+//! the paper's filter, and the cost of a build.
 
 mod builds;
 mod comparison;
@@ -7,10 +7,8 @@ mod population;
 mod runs;
 mod sealed;
 
+use crate::error::Error;
 use crate::figure::Figure;
-
-/// Why a figure could not be measured.
-pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
 
 /// All figures of the topic.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {

@@ -1,4 +1,4 @@
-//! Two recordings of real gyros: what docs/measured-data.md says of them.
+//! Two recordings of real gyros: the figures of docs/measured-data.md.
 
 mod allan;
 mod ring_laser;
@@ -6,22 +6,23 @@ mod xsens;
 
 use std::path::{Path, PathBuf};
 
+use crate::error::Error;
 use crate::figure::Figure;
-use crate::page::{self, Error};
+use crate::page;
 use crate::values::Values;
 
-/// What docs/measured-data.md is made from.
+/// Template of docs/measured-data.md.
 pub(crate) const TEMPLATE: &str = include_str!("measured/page.md");
 
-/// What a section adds: words and tables for the page, and figures with their targets.
+/// Result of a section: texts and tables for the page, and figures with their targets.
 #[derive(Default)]
 struct Measured {
     values: Values,
     figures: Vec<Figure>,
 }
 
-/// All figures of the topic. The last says whether the page is what was measured; with `write`
-/// it is renewed instead.
+/// All figures of the topic. The last compares the page with the measurement; with `write` it is renewed
+/// instead.
 pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
     let mut measured = Measured::default();
     xsens::measure(&mut measured)?;
@@ -48,7 +49,7 @@ fn data(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// What a command on a recording took: less than a minute, so that nobody minds to run it.
+/// Run time of a command on a recording; the target is one minute.
 fn run_time(command: &str, seconds: f64) -> Figure {
     Figure {
         measured: format!("{seconds:.1}"),

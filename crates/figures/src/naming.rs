@@ -1,18 +1,16 @@
-//! Causes hidden in simulated records: what is detected, what is named, and what clean records
-//! show. The cells are those of `gyrocal characterise`, which compares with other methods as well.
+//! Operating characteristics of the diagnosis: detection and identification of injected effects, and
+//! false alarms. The cells are those of `gyrocal characterise`, which adds baseline methods.
 
 mod cost;
 mod plan;
 
 use gyrocal_evaluation::{Characteristic, PopulationCell, Target, cell_campaign, cell_report};
 
+use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable::results;
 
-/// Why a figure could not be measured.
-type Error = Box<dyn std::error::Error + Send + Sync>;
-
-/// Records of each cell in the small version, which runs everywhere.
+/// Number of records of each cell in the small version.
 const SMALL_RUNS: [(PopulationCell, u64); 11] = [
     (PopulationCell::Clean, 16),
     (PopulationCell::Single(5), 8),

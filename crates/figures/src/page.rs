@@ -1,12 +1,9 @@
-//! Pages of the documentation: a template filled with what was measured, and held against what is
-//! committed.
+//! Pages of the documentation: templates filled with measurements and compared with committed pages.
 
 use std::path::{Path, PathBuf};
 
+use crate::error::Error;
 use crate::values::Values;
-
-/// Why a page could not be filled or compared.
-pub(crate) type Error = Box<dyn std::error::Error + Send + Sync>;
 
 /// The template with every `{{name}}` replaced.
 pub(crate) fn fill(template: &str, values: &Values) -> Result<String, Error> {
@@ -33,8 +30,8 @@ pub(crate) fn fill(template: &str, values: &Values) -> Result<String, Error> {
     }
 }
 
-/// Whether a committed file says the same, numbers to their printed digits. If not, says where,
-/// and that `cargo figures TOPIC --write` renews it.
+/// `true` if a committed file equals the measurement, numbers within their last printed digit. If not,
+/// the first difference is printed with the command that renews the file.
 pub(crate) fn is_committed(path: &Path, measured: &str, topic: &str) -> Result<bool, Error> {
     let committed = std::fs::read_to_string(path)
         .map_err(|error| format!("{}: {error}; write it with --write", path.display()))?;
@@ -57,7 +54,7 @@ pub(crate) fn docs() -> PathBuf {
 }
 
 /// The first line in which two texts differ by more than the last printed digit of a number:
-/// its number, and how the second text has it.
+/// its number, and the line of the second text.
 fn difference(committed: &str, measured: &str) -> Option<(usize, String)> {
     let (mut ours, mut theirs) = (committed.lines(), measured.lines());
     for line in 1.. {
@@ -80,7 +77,7 @@ enum Piece<'a> {
     Word(&'a str),
     Number {
         value: f64,
-        /// What one more in the last printed digit is worth.
+        /// Value of one unit in the last printed digit.
         digit: f64,
     },
 }
@@ -186,8 +183,8 @@ mod tests {
         }
     }
 
-    /// What the command checks with the numbers takes a while; this sees an edit of a page that
-    /// should have been one of its template, or a page not written again.
+    /// The measurement takes a while; this test only finds edits of a page in place of its template, and
+    /// pages that were not renewed.
     #[test]
     fn the_committed_pages_are_their_templates_filled() {
         for (name, template) in [

@@ -1,5 +1,4 @@
-//! The paper, reproduced and corrected: its tables and curves again, and what was wrong with
-//! them, measured.
+//! The paper, reproduced and corrected: its tables and curves, and measurements of its errors.
 
 mod bench;
 mod coordinates;
@@ -14,20 +13,20 @@ use crate::figure::Figure;
 use crate::page;
 use crate::values::Values;
 
-pub(crate) use crate::page::Error;
+use crate::error::Error;
 
-/// What docs/paper.md is made from.
+/// Template of docs/paper.md.
 pub(crate) const TEMPLATE: &str = include_str!("paper/page.md");
 
-/// What a section adds: words and tables for the page, and figures with their targets.
+/// Result of a section: texts and tables for the page, and figures with their targets.
 #[derive(Default)]
 struct Measured {
     values: Values,
     figures: Vec<Figure>,
 }
 
-/// All figures of the topic. The last says whether page and pictures in `docs` are what was
-/// measured; with `write` they are renewed instead.
+/// All figures of the topic. The last compares page and pictures in `docs` with the measurement; with
+/// `write` they are renewed instead.
 pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
     let mut measured = Measured::default();
     bench::describe(&mut measured.values);

@@ -1,15 +1,14 @@
-//! Populations that go on where they were stopped.
+//! Resumable campaigns of the full versions.
 
 use core::ops::Range;
 use std::path::PathBuf;
 
 use gyrocal_evaluation::{Campaign, Fingerprint, program};
 
-/// Why a file of results cannot be kept.
-type Error = Box<dyn std::error::Error + Send + Sync>;
+use crate::error::Error;
 
-/// A campaign over the records of a cell of a topic; the small version keeps nothing. Results are
-/// those of this very program: another build starts afresh.
+/// A campaign over the records of a cell of a topic; the small version keeps no results. Results belong
+/// to this build of the program: another build starts anew.
 pub(crate) fn campaign(
     topic: &str,
     cell: &str,
@@ -26,7 +25,7 @@ pub(crate) fn campaign(
     Ok(campaign.results(results(topic, cell)?))
 }
 
-/// Where the results of a cell are kept.
+/// File of the results of a cell.
 pub(crate) fn results(topic: &str, cell: &str) -> Result<PathBuf, Error> {
     let directory = gyrocal_testkit::workspace().join("target/figures");
     std::fs::create_dir_all(&directory)?;

@@ -1,8 +1,8 @@
-//! Named pieces of the page: numbers as they are printed, and tables of them.
+//! Named texts for templates: printed numbers and tables.
 
 use std::collections::BTreeMap;
 
-/// What the template's places are filled with.
+/// Texts by the names of their places in a template.
 #[derive(Default)]
 pub(crate) struct Values(BTreeMap<String, String>);
 

@@ -1,4 +1,4 @@
-//! What a second record from another attitude adds.
+//! Information of a second record at another attitude.
 
 use gyrocal_calibration::{Calibration, Options, Run, calibrate_runs};
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};

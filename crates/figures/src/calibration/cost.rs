@@ -1,4 +1,4 @@
-//! What a calibration takes: processor time and memory.
+//! Processor time and memory of a calibration.
 
 use gyrocal_calibration::{Options, calibrate};
 use gyrocal_statistics::median;
@@ -12,8 +12,7 @@ const THREE_DAYS_MS: f64 = 100.0;
 const MILLION_S: f64 = 30.0;
 const MILLION_MB: f64 = 500.0;
 
-/// Time of a row and a pass may differ by this factor between lengths: caches of a processor are
-/// not all as fast.
+/// Largest ratio of the time per row and pass between lengths, which differs by the caches in use.
 const LINEAR: f64 = 1.5;
 
 /// The same ten days, sampled more and more often.

@@ -8,8 +8,7 @@ use rayon::prelude::*;
 use super::{Error, names};
 use crate::figure::Figure;
 
-/// Errors of the paper's Table 2 in % of each coefficient, as its filter gives them on data made
-/// by its own rule.
+/// Errors of the paper's Table 2 in % of each coefficient, of its filter on data made by its own rule.
 const TABLE_2_PERCENT: [f64; 9] = [0.01, -0.03, -0.14, -0.05, 0.84, -1.59, 0.01, 0.00, -0.23];
 
 /// Half a digit of the table: a printed zero is not larger.

@@ -1,4 +1,4 @@
-//! A population of random records, calibrated by the batch estimator and held against the truth.
+//! A population of random records, calibrated by the batch estimator and compared with the truth.
 
 use gyrocal_calibration::Options;
 use gyrocal_statistics::mean;
@@ -132,8 +132,8 @@ fn nis(outcome: &Outcome<CalibrationTrial>, nis: Option<BandedMean>) -> Result<F
     Ok(figure)
 }
 
-/// How much less than their number normalised squares of each record are expected to be, because
-/// truths are uniform and not from the prior, a normal distribution of sigma 1.
+/// Expected deficit of the normalised squares of each record to their number, because truths are uniform
+/// and not from the prior, a normal distribution of sigma 1.
 ///
 /// For consistent covariances, a truth of variance v takes (1 - v) P from the NEES of all nine
 /// coefficients and (1 - v) (1 - P) from the least sum of squares, P being the coefficient's
@@ -155,7 +155,7 @@ fn lacking(outcome: &Outcome<CalibrationTrial>, share: impl Fn(f64) -> f64) -> V
     outcome.successes().map(|(_, trial)| of(trial)).collect()
 }
 
-/// Runs what has no result yet; few records are run afresh each time.
+/// Runs the population; the full version is resumable.
 fn run(records: u64) -> Result<Outcome<CalibrationTrial>, Error> {
     let population = Population::new(SEED);
     let options = Options::default();

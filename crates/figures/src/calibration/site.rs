@@ -1,4 +1,4 @@
-//! What latitude does: the exact symmetry, and the bias that an error of it brings.
+//! Latitude: its exact equivalents, and the bias by an error of latitude.
 
 use gyrocal_calibration::{Options, SiteQuantity, calibrate};
 use gyrocal_truth::{
@@ -8,13 +8,13 @@ use gyrocal_truth::{
 use super::Error;
 use crate::figure::Figure;
 
-/// Largest difference of two simulations that the symmetry says are one, g.
+/// Largest difference of two equivalent simulations, g.
 const SAME_G: f64 = 1e-8;
 
 /// Largest relative difference between predicted and found bias, %.
 const BIAS_PERCENT: f64 = 2.0;
 
-/// Error of latitude that is simulated: a deflection of the vertical that is common.
+/// Simulated error of latitude: a common deflection of the vertical.
 const LATITUDE_ERROR_DEG: f64 = 10.0 / 3600.0;
 
 /// Records in which latitude is wrong, and the seed of their population.

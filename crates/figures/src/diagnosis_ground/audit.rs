@@ -16,30 +16,30 @@ use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
 const RUNS: [u64; 3] = [2000, 1000, 100];
 const SMALL_RUNS: [u64; 3] = [60, 24, 8];
 
-/// Share of the records that must have the right finding, and the right size.
+/// Least fractions of the records with the right finding, and with the right size.
 const RIGHT: f64 = 0.95;
 
-/// F1 of outliers found against true ones.
+/// Least F1 score of the outliers.
 const F1: f64 = 0.95;
 
-/// Which upper bound on the share of alarms must hold.
+/// Confidence of the upper bound on the fraction of alarms.
 const ALARMS: f64 = 0.01;
 
-/// What the audit made of one record.
+/// Result of the audit of one record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Audited {
-    /// Effects found, in the order of the alphabet.
+    /// Ids of the findings, in alphabetical order.
     found: Vec<String>,
-    /// Whether sizes are as near the truth as asked for.
+    /// `true` if the sizes are within their limits.
     sized: bool,
-    /// Of outliers.
+    /// F1 score of the outliers.
     f1: f64,
 }
 
-/// A term of no catalogue, made anew for each record.
+/// A term that is not in the catalogue, made for each record.
 type Make = fn() -> Term;
 
-/// Physical causes far larger than any that must be found, which the audit should leave alone.
+/// Physical causes far larger than any that must be found; the audit of noise should not react.
 const CAUSES: [(&str, Make); 8] = [
     ("a step of 0.01 deg/h", || drift_step(0.01)),
     ("a step of 0.3 deg/h", || drift_step(0.3)),
@@ -152,7 +152,7 @@ fn seeds(runs: usize) -> String {
     format!("population {POPULATION}, 0 to {}", runs.saturating_sub(1))
 }
 
-/// How many records have findings, and which.
+/// Number of records with findings, and the findings.
 fn alarms(audited: &[Audited]) -> String {
     let mut named: BTreeMap<&str, usize> = BTreeMap::new();
     for effect in audited.iter().flat_map(|one| &one.found) {
@@ -202,7 +202,7 @@ fn audit(case: &FaultyRecord) -> Result<Audited, Error> {
     })
 }
 
-/// Of outliers found against true ones; 1 if there are neither.
+/// F1 score of found against true outliers; 1 if there are neither.
 fn f1(case: &FaultyRecord, audit: &NoiseAudit) -> f64 {
     let hit = |outlier: &&Outlier| case.outliers.contains(&(outlier.row, outlier.axis));
     let hits = audit.outliers.iter().filter(hit).count();
@@ -212,7 +212,7 @@ fn f1(case: &FaultyRecord, audit: &NoiseAudit) -> f64 {
     }
 }
 
-/// Whether each finding of a fault is there with its size: 5 %, and 0.03 of a correlation.
+/// `true` if each finding of a fault has its size within 5 %, a correlation within 0.03.
 fn is_sized(fault: Fault, audit: &NoiseAudit) -> bool {
     let within = |effect: &str, parameter: usize, truth: f64, tolerance: f64| {
         audit.finding(effect).is_some_and(|finding| {

@@ -1,4 +1,4 @@
-//! Records with noise other than declared, and what the audit should say of each kind.
+//! Records with noise other than declared, and the expected findings of each kind.
 
 use gyrocal_truth::Population;
 
@@ -12,13 +12,13 @@ pub(super) const POPULATION: u64 = 20;
 pub(super) struct Kind {
     pub(super) name: &'static str,
     pub(super) fault: Fault,
-    /// The findings that there should be, and no others.
+    /// The expected findings; others are errors.
     pub(super) expected: &'static [&'static str],
 }
 
 const EACH_NOISE: &[&str] = &["accel_x.noise", "accel_y.noise", "accel_z.noise"];
 
-/// The kinds that must be found.
+/// All kinds of faults.
 pub(super) const KINDS: [Kind; 5] = [
     Kind {
         name: "LSB of 3 sigma",
@@ -51,14 +51,14 @@ pub(super) const KINDS: [Kind; 5] = [
     },
 ];
 
-/// Three days each minute at any latitude and attitude, with drift.
+/// Three days with a row each minute, at any latitude and attitude, with drift.
 pub(super) fn three_days() -> Population {
     let mut population = Population::new(POPULATION);
     population.duration_days = [3.0, 3.0];
     population
 }
 
-/// The record of a number with a fault.
+/// Record `number` with a fault.
 pub(super) fn record(number: u64, fault: Fault) -> FaultyRecord {
     faulty_record(&three_days(), number, fault, &[])
 }

@@ -12,7 +12,7 @@ const POPULATION: u64 = 8;
 const SCENARIOS: u64 = 12;
 const FEW: u64 = 2;
 
-/// What a signature may differ from a finite difference, as a part of its norm.
+/// Largest difference of a signature to a finite difference, relative to its norm.
 const TARGET: f64 = 1e-3;
 
 pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {

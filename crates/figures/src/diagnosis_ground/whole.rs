@@ -1,4 +1,4 @@
-//! Noise other than declared through the whole diagnosis: no physical finding from it.
+//! The whole diagnosis of noise other than declared: there must be no physical finding.
 
 use std::collections::BTreeMap;
 
@@ -14,13 +14,13 @@ use crate::figure::Figure;
 const RUNS: u64 = 40;
 const SMALL_RUNS: u64 = 4;
 
-/// Numbers of the population that the audit's own cells do not use.
+/// First number of the records, above those of the cells of the audit.
 const FIRST: u64 = 10_000;
 
-/// Probability that a sound record shows anything, as the diagnosis promises by default.
+/// Family-wise false-alarm probability of the diagnosis, its default.
 const NOMINAL: f64 = 0.01;
 
-/// What a diagnosis made of one record.
+/// Result of the diagnosis of one record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Diagnosed {
     physical: Vec<String>,
@@ -94,8 +94,7 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
-/// Records whose noise findings are not those expected, with the effects that are missing or too
-/// many.
+/// Records with other noise findings than expected, with the missing or additional effects.
 fn others(all: &[&Diagnosed], expected: &[&str]) -> String {
     let wrong = |one: &&&Diagnosed| one.noise != expected;
     let mut effects: BTreeMap<String, usize> = BTreeMap::new();

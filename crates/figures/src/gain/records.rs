@@ -1,4 +1,4 @@
-//! One record, diagnosed, and what its extended model gains.
+//! Diagnosis of one record, and the gain of its extended model.
 
 use gyrocal_calibration::{Extended, Run};
 use gyrocal_diagnosis::plan::Named;
@@ -11,19 +11,19 @@ use serde::{Deserialize, Serialize};
 
 use super::Error;
 
-/// Numbers of these records in the population begin here: `gyrocal characterise` has those below.
+/// First number of these records in the population; `gyrocal characterise` has those below.
 const FIRST_NUMBER: u64 = 100_000_000;
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
-/// The second record begins so long after the first: whole days, so that waves of a day meet it in
-/// their first phase.
+/// Time from the start of the first record to that of the second: whole days, so that diurnal waves
+/// have the same phase.
 const LATER_S: f64 = 4.0 * SECONDS_PER_DAY;
 
 /// Added to the seed of a first record for that of its second.
 const LATER_SEED: u64 = 1 << 40;
 
-/// Mass unbalance across the input axis, deg/h/g: what the coefficients cannot take up.
+/// Mass unbalance across the input axis, deg/h/g, which the coefficients cannot absorb.
 const CROSS_AXIS: f64 = 0.05;
 const CROSS_AXES: [&str; 6] = [
     "gyro_x.g_y",
@@ -34,14 +34,14 @@ const CROSS_AXES: [&str; 6] = [
     "gyro_z.g_y",
 ];
 
-/// What a diagnosis put into the extended model.
+/// Extended model of a diagnosis.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Extension {
-    /// What was hidden; empty if nothing.
+    /// Id of the injected effect; empty for a clean record.
     pub(super) hidden: String,
-    /// Each finding with its gain and whether it was accepted.
+    /// Each finding with its gain, and `true` if it was accepted.
     pub(super) findings: Vec<(String, f64, bool)>,
-    /// What the extended model gains in all, nats.
+    /// Total gain of the extended model, nats.
     pub(super) gain_nats: Option<f64>,
 }
 
@@ -57,7 +57,7 @@ impl Extension {
         }
     }
 
-    /// Whether the model was extended.
+    /// `true` if the model was extended.
     pub(super) fn extended(&self) -> bool {
         self.findings.iter().any(|(_, _, accepted)| *accepted)
     }
@@ -67,7 +67,7 @@ fn scenario(seed: u64) -> Scenario {
     gyrocal_evaluation::scenario(FIRST_NUMBER + seed)
 }
 
-/// With a random effect in it, `strength` standard deviations of its own bound large.
+/// A scenario with a random effect of `strength` sigmas of its own bound.
 fn drawn(seed: u64, strength: f64) -> Result<(Scenario, InjectedEffect), Error> {
     let draw = &mut Draw::new(FIRST_NUMBER + seed, 0);
     Ok(inject_any(scenario(seed), strength, draw)?)
@@ -78,24 +78,24 @@ fn diagnosed(simulation: &Simulation) -> Result<Diagnosis<'_>, Error> {
     Ok(diagnose(&simulation.record, &simulation.bench, &options)?)
 }
 
-/// A record in which nothing is hidden.
+/// A clean record.
 pub(super) fn clean(seed: u64) -> Result<Extension, Error> {
     let simulation = simulate(&scenario(seed))?;
     Ok(Extension::of("", &diagnosed(&simulation)?))
 }
 
-/// A record with one hidden effect.
+/// A record with one injected effect.
 pub(super) fn hidden(seed: u64, strength: f64) -> Result<Extension, Error> {
     let (scenario, injected) = drawn(seed, strength)?;
     let simulation = simulate(&scenario)?;
     Ok(Extension::of(injected.effect.id, &diagnosed(&simulation)?))
 }
 
-/// What a cross-axis term does to the coefficients.
+/// Errors of the coefficients with a cross-axis term.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Errors {
     pub(super) effect: String,
-    /// Effects in the extended model.
+    /// Ids of the effects in the extended model.
     pub(super) accepted: Vec<String>,
     /// Largest error of a coefficient in sigmas: nominal, extended.
     pub(super) largest: [f64; 2],
@@ -133,45 +133,45 @@ pub(super) fn cross_axis(seed: u64) -> Result<Errors, Error> {
     })
 }
 
-/// What an extended model gains on a second record.
+/// Gain of an extended model on a second record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Second {
     pub(super) effect: String,
-    /// Effects in the extended model.
+    /// Ids of the effects in the extended model.
     pub(super) accepted: Vec<String>,
     /// Log score of the second record, extended less nominal; `None` without an extension.
     pub(super) gain_nats: Option<f64>,
     /// Angle after a day, arc minutes: nominal, extended, expected of the extended.
     pub(super) after_a_day_arcmin: Option<[f64; 3]>,
-    /// The same of a model that is told what was hidden, onset and time constant too.
+    /// The same of a model that is given the injected effect, its onset or time constant included.
     pub(super) told_arcmin: [f64; 3],
 }
 
-/// A nominal error of so many times what noise and the coefficients' own sigmas let one expect.
+/// Least error of the nominal model over the one expected from noise and coefficients.
 const BEYOND_NOISE: f64 = 2.0;
 
 impl Second {
-    /// Whether the drift is; a cause that is not found improves nothing.
+    /// `true` if the extended model predicts the drift better; without a finding it cannot.
     pub(super) fn predicted_better(&self) -> bool {
         let angles = self.after_a_day_arcmin;
         angles.is_some_and(|[nominal, extended, _]| extended < nominal)
     }
 
-    /// Whether a model that is told the cause predicts the drift better.
+    /// `true` if a model that is given the injected effect predicts the drift better.
     pub(super) fn within_reach(&self) -> bool {
         let [nominal, told, _] = self.told_arcmin;
         told < nominal
     }
 
-    /// Whether the nominal model is wrong by more than chance makes it.
+    /// `true` if the error of the nominal model exceeds chance.
     pub(super) fn beyond_noise(&self) -> bool {
         let [nominal, _, expected] = self.told_arcmin;
         nominal > BEYOND_NOISE * expected
     }
 }
 
-/// Diagnoses a record with an effect `least` to four times as many sigmas large, and predicts a
-/// second record of the same platform at another attitude.
+/// Diagnoses a record with an effect of `least` to four times as many sigmas, and predicts a second
+/// record of the same platform at another attitude.
 pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     // Log-uniform by the golden ratio: any number of seeds is spread evenly.
     let share = (seed as f64 * 0.618_033_988_749_894_9).fract();
@@ -210,8 +210,7 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     })
 }
 
-/// The same platform four days later, at another attitude: what changed stays changed, what ages
-/// has aged.
+/// The same platform four days later at another attitude, with the injected effect as it continues.
 fn later(first: &Scenario, injected: &InjectedEffect) -> Result<Scenario, Error> {
     let mut scenario = Scenario {
         seed: first.seed ^ LATER_SEED,

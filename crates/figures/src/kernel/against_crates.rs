@@ -1,5 +1,5 @@
-//! The textbook filter against the Joseph-form filters of crates.io: that the kernel is not
-//! measured against a slow one.
+//! Time of the textbook filter relative to Joseph-form filters of other packages: the reference of the
+//! kernel must not be a slow one.
 
 use std::hint::black_box;
 
@@ -14,7 +14,7 @@ use crate::figure::Figure;
 use gyrocal_testkit::extended_filter::samples;
 use gyrocal_testkit::peer_filters::{Adskalman, Multicalc};
 
-/// Within a tenth of the fastest.
+/// Largest time relative to the fastest of them.
 const ALLOWED: f64 = 1.1;
 const ANGLE_SIGMA_RAD: f64 = 2e-4;
 
@@ -60,7 +60,7 @@ pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
     ])
 }
 
-/// Seconds that a copy of a filter takes for the samples.
+/// Time of a copy of a filter for the samples, s.
 fn time<F: Clone>(
     start: &F,
     samples: &[[f64; 3]],

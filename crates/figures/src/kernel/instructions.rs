@@ -18,7 +18,7 @@ const STEPS: [u32; 2] = [512, 2560];
 /// Relative.
 const TOLERANCE: f64 = 0.02;
 
-/// The committed numbers, and what they were counted with.
+/// Committed counts, with compiler and target.
 #[derive(Debug, Deserialize, Serialize)]
 struct Counts {
     /// `rustc --version`.
@@ -31,15 +31,15 @@ struct Counts {
     rk4: f64,
 }
 
-/// What was counted.
+/// Counts of both forms.
 struct Counted {
-    /// Of the default form, which are committed.
+    /// Counts of the default form, which are committed.
     counts: Counts,
-    /// Of an Euler and a Runge-Kutta step on the factors.
+    /// Instructions of an Euler and a Runge-Kutta step on the factors.
     factors: [f64; 2],
 }
 
-/// Counts and judges; skips with the reason where that is impossible.
+/// Counts and compares with the committed numbers; without valgrind a note with the reason.
 pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
     let Counted {
         counts: counted,
@@ -109,7 +109,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The counts, or the reason why they cannot be had here.
+/// The counts, or the reason why they are not available here.
 fn counted() -> Result<Result<Counted, String>, Error> {
     let flags = [
         "RUSTFLAGS",
@@ -156,7 +156,7 @@ fn counts_of(example: &str) -> Result<[f64; 2], Error> {
     Ok(counts)
 }
 
-/// Builds an example and says where it is.
+/// Builds an example; returns its path.
 fn built(example: &str) -> Result<PathBuf, Error> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let messages = output(

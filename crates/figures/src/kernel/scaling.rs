@@ -9,9 +9,8 @@ use gyrocal_testkit::extended_filter::{SIZES, samples, start, step};
 
 /// Steps of one round: two hours.
 const STEPS: usize = 120;
-/// How much more than proportional to n² a step may cost. One-sided: at n = 12 a step is mostly
-/// what does not depend on n (sines, the update's divisions), so larger ones cost less than
-/// proportionally more.
+/// Largest cost of a step relative to proportionality to n². One-sided: at n = 12 most of a step does
+/// not depend on n (sines, divisions of the update), so larger ones cost less than in proportion.
 const ALLOWED: f64 = 1.3;
 
 pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {

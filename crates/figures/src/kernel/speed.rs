@@ -1,4 +1,4 @@
-//! A step of the shipped filter against one of the textbook filter, and what its other form takes.
+//! Time of a step of the structured filter, in both forms, relative to the textbook filter.
 
 use std::hint::black_box;
 
@@ -21,8 +21,8 @@ pub(super) const STEP_S: f64 = 60.0;
 pub(super) const DENSITY: [f64; 3] = [2.4e-4; 3];
 pub(super) const VARIANCE: [f64; 3] = [1e-10; 3];
 
-/// How many times faster a step is than one of `dense_joseph` of the bench `filter_step`: the
-/// same interval, samples and noise, Euler angles in one chart.
+/// Least ratio of the time of a step of `dense_joseph` of the bench `filter_step` (the same interval,
+/// samples and noise, Euler angles in one chart) to that of the structured filter.
 pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
     let samples = samples(STEPS)?;
     let site = Site::at_latitude_deg(39.1);
@@ -88,7 +88,7 @@ pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
-/// Seconds that a copy of the filter takes for the samples.
+/// Time of a copy of the filter for the samples, s.
 ///
 /// A function of its own for each form, called from one place: in one body with the other form,
 /// or called from two, a step is not inlined and takes a tenth longer.

@@ -1,12 +1,12 @@
-//! Timing of things against each other, in one process and interleaved.
+//! Interleaved timing of alternatives in one process.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Rounds that are run and not counted.
+/// Rounds before those that count.
 const WARM_UP: usize = 10;
 
-/// Seconds that `work` takes.
+/// Time of `work`, s.
 pub(crate) fn seconds<E>(work: impl FnOnce() -> Result<(), E>) -> Result<f64, E> {
     let begin = Instant::now();
     work()?;
@@ -15,8 +15,8 @@ pub(crate) fn seconds<E>(work: impl FnOnce() -> Result<(), E>) -> Result<f64, E>
 
 /// The shorter of two times of `work`, called with the stack 16 bytes apart.
 ///
-/// Where the stack begins changes from one start of a program to the next, and with it whether
-/// numbers on it lie across lines of the cache, which makes a fifth of the time of a dense step.
+/// The start of the stack differs between runs of a program, and with it the alignment of numbers to
+/// cache lines, which is a fifth of the time of a dense step.
 pub(crate) fn well_placed<E>(mut work: impl FnMut() -> Result<f64, E>) -> Result<f64, E> {
     Ok(placed::<2, E>(&mut work)?.min(placed::<4, E>(&mut work)?))
 }
@@ -29,11 +29,10 @@ fn placed<const WORDS: usize, E>(work: &mut dyn FnMut() -> Result<f64, E>) -> Re
     time
 }
 
-/// Calls `round` again and again, which times every contender once; returns the median of each
-/// contender's time, and the median over rounds of its ratio to the first one's.
+/// Calls `round`, which times every contender once, repeatedly; returns the median time of each
+/// contender, and the median over rounds of its ratio to the first one.
 ///
-/// Contenders of a round see the same state of the machine, so the ratio is taken before the
-/// median: what others do meanwhile hits both.
+/// The ratio is taken before the median: all contenders of a round see the same load of the machine.
 pub(crate) fn medians<const N: usize, E>(
     rounds: usize,
     mut round: impl FnMut() -> Result<[f64; N], E>,
@@ -55,7 +54,7 @@ pub(crate) fn medians<const N: usize, E>(
     Ok((absolute, relative))
 }
 
-/// Whether this build may use what every x86-64-v3 processor has.
+/// `true` if this build may use the instructions of x86-64-v3.
 pub(crate) const fn is_x86_64_v3() -> bool {
     cfg!(all(
         target_feature = "avx2",
@@ -64,7 +63,7 @@ pub(crate) const fn is_x86_64_v3() -> bool {
     ))
 }
 
-/// What this build was allowed to use.
+/// Target features of this build.
 pub(crate) fn target_features() -> String {
     let known = [
         ("sse2", cfg!(target_feature = "sse2")),

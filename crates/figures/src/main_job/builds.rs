@@ -1,4 +1,4 @@
-//! What a build costs, and that generation is reproducible: on temporary copies of the workspace.
+//! Cost of a build and reproducibility of the generation, on temporary copies of the workspace.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -22,7 +22,7 @@ fn seconds(name: &str, limit: f64, measured: Duration) -> Figure {
     figure.over(1, "this machine")
 }
 
-/// `cargo build --release` of the default members from nothing, without any Python to be found.
+/// Clean `cargo build --release` of the default members, without Python.
 fn clean_build() -> Result<Figure, Error> {
     let scratch = tempfile::tempdir()?;
     let copy = WorkspaceCopy::make(&scratch.path().to_string_lossy(), "clean");
@@ -41,7 +41,7 @@ fn clean_build() -> Result<Figure, Error> {
     ))
 }
 
-/// First environment, derivation and emission, and the bytes they give.
+/// First environment, derivation and emission, and the generated files.
 fn derivation() -> Result<Vec<Figure>, Error> {
     let scratch = tempfile::tempdir()?;
     let sources = gyrocal_testkit::workspace().join("codegen/derive");

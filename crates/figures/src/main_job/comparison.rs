@@ -11,17 +11,17 @@ use crate::figure::Figure;
 
 /// Seeds of the comparison, fixed beforehand.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=60;
-/// Mean NIS over the 4321 rows of one record that fits is 3 ± 0.037, so the median over 60 seeds
+/// Mean NIS over the 4321 rows of one consistent record is 3 ± 0.037, so the median over 60 seeds
 /// is 3 ± 0.006 (1.25 · 0.037 / √60). The rest of the interval is for the bias of a single pass,
 /// which may have either sign.
 const FITS: [f64; 2] = [2.95, 3.05];
 /// Euler angles as states are over-confident (see the NEES): nearly 3, and at times far above.
 const NEARLY_FITS: [f64; 2] = [2.9, 3.3];
-/// Far beyond chance: what a wrong rule must be seen as.
+/// Far beyond chance: least mean NIS of a wrong rule.
 const DOES_NOT_FIT: [f64; 2] = [100.0, f64::INFINITY];
 /// The median of a consistent filter is 8.3. One pass of an extended filter falls short of that:
 /// 13.4 was measured after one day, aligned. The seeds are fixed, so the limit need not allow for
-/// chance; it holds that filter to what it was.
+/// chance; a change of that filter shows.
 const NEES_LIMIT: f64 = 14.0;
 
 pub(crate) fn figures() -> Result<Vec<Figure>, Error> {

@@ -47,7 +47,7 @@ fn consistency(runs: u64) -> Result<Figure, Error> {
     ))
 }
 
-/// Share of coefficients within 3.5 of their sigmas.
+/// Fraction of coefficients within 3.5 of their sigmas.
 fn coverage(runs: u64) -> Result<Figure, Error> {
     let population = Population::new(COVERAGE_SEED);
     let inside = (0..runs)

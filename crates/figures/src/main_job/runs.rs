@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Error;
 
-/// A calibration beside the truth.
+/// A calibration and the truth.
 pub(crate) struct Judged {
     pub(crate) calibration: Calibration,
     /// Estimate minus truth.

@@ -3,10 +3,10 @@
 use gyrocal_statistics::allan::allan_deviation;
 
 use super::Measured;
+use crate::error::Error;
 use crate::figure::Figure;
-use crate::page::Error;
 
-/// Made by crates/statistics/tests/data/allan_reference.py with the library that it names.
+/// Made by crates/statistics/tests/data/allan_reference.py with the library named there.
 const REFERENCE: &str = include_str!("../../../statistics/tests/data/allan_reference.csv");
 
 const ONE_SIGMA: f64 = 0.682_689_492_137_085_9;
@@ -50,8 +50,8 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     Ok(())
 }
 
-/// The series that the reference names: the 1000 numbers of NIST SP 1065, section 12.4, as they
-/// are, their differences, their sums.
+/// The series of the reference: the 1000 numbers of NIST SP 1065, section 12.4, their differences, and
+/// their sums.
 fn series(name: &str) -> Vec<f64> {
     const MODULUS: u64 = 2_147_483_647;
     let numbers = std::iter::successors(Some(1_234_567_890_u64), |n| Some(16_807 * n % MODULUS));

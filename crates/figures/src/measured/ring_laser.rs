@@ -8,11 +8,11 @@ use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, imp
 use gyrocal_instruments::{Description, Log};
 
 use super::{Measured, data, run_time};
+use crate::error::Error;
 use crate::figure::Figure;
-use crate::page::Error;
 use crate::values::{Table, fixed};
 
-/// Averaging intervals and thresholds of quiet rows that are compared.
+/// Compared averaging intervals and thresholds of quiet rows.
 const AVERAGING_S: [f64; 3] = [15.0, 30.0, 60.0];
 const QUIET_FACTORS: [f64; 3] = [1.5, 2.0, 3.0];
 
@@ -129,7 +129,7 @@ fn rates(measured: &mut Measured, report: &ImportReport) {
     ]);
 }
 
-/// The errors along north, up and east at the first row, by calibration in the gyros' axes.
+/// The errors along north, up and east at the first row, from a calibration in the axes of the gyros.
 fn combinations(measured: &mut Measured, report: &ImportReport, calibration: &Calibration) {
     let mut table = Table::new([
         "error of the gyros toward",
@@ -170,8 +170,7 @@ fn combinations(measured: &mut Measured, report: &ImportReport, calibration: &Ca
     ));
 }
 
-/// Estimate of the error along east, north or up at the first row, its sigma, and that before the
-/// record.
+/// Estimate of the error along east, north or up at the first row, its sigma, and its prior sigma.
 fn along(report: &ImportReport, calibration: &Calibration, direction: usize) -> [f64; 3] {
     // What a coefficient of a gyro adds along a direction, at body specific force.
     let weights: [f64; 9] = core::array::from_fn(|i| {
@@ -188,7 +187,7 @@ fn along(report: &ImportReport, calibration: &Calibration, direction: usize) -> 
     ]
 }
 
-/// What the law of a platform with gyros of its own seems to determine.
+/// Apparent coefficients by the drift law of a platform with gyros of its own.
 fn platform_axes(measured: &mut Measured, report: &ImportReport, calibration: &Calibration) {
     let [_, sigma, before] = along(report, calibration, 0);
     let values = &mut measured.values;
@@ -219,7 +218,7 @@ fn verdict(diagnosis: &Diagnosis<'_>) -> String {
     }
 }
 
-/// What depends on the choices of a user.
+/// Dependence on the settings of the import.
 fn choices(measured: &mut Measured, log: &Log, description: &Description) -> Result<(), Error> {
     let mut table = Table::new([
         "rows of, s",

@@ -8,8 +8,8 @@ use gyrocal_instruments::multi_position::{
 use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
 
 use super::{Measured, data, run_time};
+use crate::error::Error;
 use crate::figure::Figure;
-use crate::page::Error;
 use crate::values::{Table, fixed};
 
 pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
@@ -28,8 +28,8 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     Ok(())
 }
 
-/// Chi-square of each law by the standard errors of the stops, and all terms of the catalogue
-/// against it.
+/// Chi-square of each law by the standard errors of the stops, and its F test against all terms of the
+/// catalogue.
 fn laws(measured: &mut Measured, report: &MultiPositionReport) {
     let mut table = Table::new([
         "gyro",

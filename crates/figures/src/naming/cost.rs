@@ -1,4 +1,4 @@
-//! What a diagnosis takes, and that it is the same each time.
+//! Time and memory of a diagnosis, and its reproducibility.
 
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_truth::{Coefficients, Hidden, Scenario, Simulation, simulate};
@@ -9,10 +9,10 @@ use crate::figure::Figure;
 
 const THREE_DAYS_S: f64 = 3.0 * 86_400.0;
 
-/// Of three days sampled each minute, s.
+/// Largest time for three days sampled each minute, s.
 const MINUTES_S: f64 = 1.0;
 
-/// Of three days sampled each second: s, and memory of the process, MB.
+/// Largest time for three days sampled each second, s, and memory of the process, MB.
 const SECONDS_S: f64 = 30.0;
 const SECONDS_MB: f64 = 1000.0;
 

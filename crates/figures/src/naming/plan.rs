@@ -1,4 +1,4 @@
-//! Planned runs, made: what was predicted of sigmas and named sets, beside what they are.
+//! Planned runs, made: predicted against actual sigmas and confidence sets.
 
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
 use gyrocal_diagnosis::plan::{Named, PlanOptions, Proposal, compare, plan};
@@ -12,37 +12,36 @@ use super::Error;
 use crate::figure::Figure;
 use crate::resumable;
 
-/// Population that the records are drawn from.
+/// Seed of the population of records.
 const POPULATION: u64 = 78;
 
-/// Seeds of records whose sigmas are planned for, and of records with something hidden, as strong
-/// as that: there named sets are large.
+/// Seeds of records for the sigmas, and of records with an injected effect of the given strength, at
+/// which confidence sets are large.
 const SIGMA_SEEDS: [u64; 2] = [600_000, 200];
 const SET_SEEDS: [u64; 2] = [610_000, 300];
 const STRENGTH: f64 = 6.0;
 
-/// In the small version, which runs everywhere, fewer.
+/// Numbers of records in the small version.
 const SMALL: [u64; 2] = [4, 10];
 
-/// A next run that is a twelfth of the record: long enough to tell some rivals apart, too short
-/// for all.
+/// Duration of the short next run, as a fraction of the record: it distinguishes some of the
+/// alternatives.
 const SHORT: f64 = 1.0 / 12.0;
 
-/// What "within 20 %" is.
+/// Ratios that are within 20 %.
 const WITHIN: [f64; 2] = [0.8, 1.2];
 
-/// A planned run that was made.
+/// Result of a planned run that was made.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Sigmas {
-    /// Least and largest of the nine ratios of the sigma that a joint calibration has and the
-    /// predicted one.
+    /// Least and largest of the nine ratios of the sigma of a joint calibration to the predicted one.
     ratios: [f64; 2],
 }
 
-/// Sizes of one named set: now, and predicted and found after a run.
+/// Sizes of one confidence set: of the record, and predicted and actual after a next run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Sets {
-    /// Now; `None` where there is no set of two or more.
+    /// Size of the set of the record; `None` without a set of two or more.
     now: Option<f64>,
     /// After a short run and one as long as the record: predicted, found.
     after: [[f64; 2]; 2],
@@ -138,7 +137,7 @@ fn scenario(seed: u64) -> Scenario {
     scenario
 }
 
-/// The next run as planned; what was hidden is there again or has left its traces.
+/// The next run as planned, with the injected effect as it continues.
 fn made(scenario: &Scenario, planned: &Proposal) -> Result<Simulation, Error> {
     let mut next = Scenario {
         seed: scenario.seed ^ 0x5ec0_4d00,

@@ -1,4 +1,4 @@
-//! The paper's bench, how records of it are made, and one record calibrated beside its truth.
+//! The paper's bench, its simulated records, and the calibration of one record.
 
 use gyrocal_calibration::{Calibration, Options, calibrate};
 use gyrocal_record::Bench;
@@ -11,16 +11,16 @@ use crate::values::{Table, Values, fixed};
 
 /// Seeds of all statistics, fixed beforehand.
 pub(super) const SEEDS: std::ops::RangeInclusive<u64> = 1..=60;
-/// The record that is shown by itself.
+/// Seed of the record of the curves.
 pub(super) const SHOWN_SEED: u64 = 1;
 pub(super) const DAY_S: f64 = 86_400.0;
-/// How long the paper simulates.
+/// Duration of the paper's simulation.
 pub(super) const PAPER_DAYS: f64 = 3.0;
 
-/// How a record is made.
+/// Simulation of a record.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Data {
-    /// By the simulator that shares nothing with the filters.
+    /// By the independent simulator.
     Exact,
     /// By the rule of the paper's filter.
     PaperRule,
@@ -45,13 +45,13 @@ pub(super) fn scenario(seed: u64, days: f64) -> Scenario {
     }
 }
 
-/// A calibration beside the truth.
+/// A calibration and the truth.
 pub(super) struct Judged {
     pub(super) truth: [f64; 9],
     pub(super) estimate: [f64; 9],
     pub(super) sigma: [f64; 9],
     pub(super) nis_mean: f64,
-    /// What holds it with 99.9% probability if the record fits.
+    /// Its band of 99.9 % probability for a consistent record.
     pub(super) nis_band: [f64; 2],
     /// Normalised estimation error squared of the nine; 9 is expected.
     pub(super) nees: f64,
@@ -127,7 +127,7 @@ pub(super) fn seeds() -> String {
     format!("{} to {}", SEEDS.start(), SEEDS.end())
 }
 
-/// Table 1 and what else the page says of the bench.
+/// Table 1 and further constants of the bench.
 pub(super) fn describe(values: &mut Values) {
     let scenario = scenario(SHOWN_SEED, PAPER_DAYS);
     let mut table = Table::new(["gyro", "D_F (deg/h)", "D_I (deg/h/g)", "D_II (deg/h/g²)"]);

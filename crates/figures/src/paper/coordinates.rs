@@ -1,4 +1,4 @@
-//! How honest the covariance is, by the coordinates in which it is carried.
+//! Consistency of the covariance by the coordinates of its attitude.
 
 use gyrocal::{Discretisation, Recentring};
 use gyrocal_calibration::Options;

@@ -12,7 +12,7 @@ use super::Error;
 use super::bench::{Data, Judged, PAPER_DAYS, SHOWN_SEED, names, scenario};
 use super::result::ways;
 
-/// Every how many rows a curve has a point.
+/// Number of rows between points of a curve.
 const THINNED: usize = 10;
 
 /// A picture and the stem of its files.

@@ -1,4 +1,4 @@
-//! First-order integration: its error without any noise, and how many sub-steps it would need.
+//! First-order integration: its error without noise, and the number of sub-steps that it needs.
 
 use gyrocal::{Discretisation, Integration};
 use gyrocal_calibration::Options;
@@ -13,7 +13,7 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     sub_steps(measured)
 }
 
-/// Both rules from one attitude, without noise: how far apart they are.
+/// Difference of both rules from one attitude, without noise.
 fn without_noise(measured: &mut Measured) -> Result<(), Error> {
     let mut quiet = scenario(SHOWN_SEED, PAPER_DAYS);
     quiet.accel_noise_g = 0.0;

@@ -1,4 +1,4 @@
-//! Page and pictures as they stand under `docs`.
+//! Page and pictures under `docs`.
 
 use std::path::PathBuf;
 
@@ -8,13 +8,13 @@ use super::Error;
 use super::curves::Named;
 use crate::page::{docs, is_committed};
 
-/// What renews them.
+/// Command that renews them.
 const TOPIC: &str = "paper";
 
 /// Width of the pictures as PNG, px.
 const PNG_WIDTH_PX: u32 = 1440;
 
-/// What is committed under `docs`.
+/// Committed files under `docs`.
 pub(super) struct Documents {
     pub(super) page: String,
     pub(super) pictures: Vec<Named>,
@@ -32,8 +32,8 @@ impl Documents {
         Ok(())
     }
 
-    /// Whether the committed files say the same, numbers to their printed digits. Of a PNG it
-    /// is only asked that it is there: it is written together with its SVG.
+    /// `true` if the committed files equal the measurement, numbers within their last printed digit. A
+    /// PNG only has to exist: it is written together with its SVG.
     pub(super) fn are_committed(&self) -> Result<bool, Error> {
         let mut same = is_committed(&page_path(), &self.page, TOPIC)?;
         for (stem, picture) in &self.pictures {

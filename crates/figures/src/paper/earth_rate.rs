@@ -11,7 +11,7 @@ use super::{Error, Measured};
 use crate::figure::Figure;
 use crate::values::{Table, fixed};
 
-/// As for records that fit in Table 2.
+/// The same limits as for consistent records in Table 2.
 const FITS: [f64; 2] = [2.95, 3.05];
 /// Far beyond chance.
 const DOES_NOT_FIT: [f64; 2] = [100.0, f64::INFINITY];

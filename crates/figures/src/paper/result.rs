@@ -1,4 +1,4 @@
-//! Table 2: errors after three days, and what the same filters do on exact data.
+//! Table 2: errors after three days, also of the same filters on exact data.
 
 use gyrocal_calibration::Options;
 use gyrocal_statistics::{median, root_mean_square};
@@ -10,7 +10,7 @@ use super::{Error, Measured};
 use crate::figure::Figure;
 use crate::values::{Table, fixed};
 
-/// One of the four ways.
+/// One of the four combinations of data and filter.
 pub(super) struct Way {
     /// For the page.
     pub(super) name: &'static str,
@@ -23,7 +23,7 @@ pub(super) struct Way {
     nis: [f64; 2],
 }
 
-/// The paper's way, the same filter on exact data, and what corrects it.
+/// The paper's combination, the same filter on exact data, and the corrected filters.
 pub(super) fn ways() -> [Way; 4] {
     [
         Way {
@@ -103,7 +103,7 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     Ok(())
 }
 
-/// Share of errors within 1.96 sigmas, %.
+/// Fraction of errors within 1.96 sigmas, %.
 pub(super) fn coverage_percent(in_sigmas: &[f64]) -> f64 {
     let inside = in_sigmas.iter().filter(|error| error.abs() < 1.96).count();
     100.0 * inside as f64 / in_sigmas.len() as f64

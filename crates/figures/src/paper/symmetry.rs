@@ -1,4 +1,4 @@
-//! What no record can tell apart: D_I, latitude and Earth rate.
+//! Exact equivalents: D_I, latitude and Earth rate.
 
 use gyrocal::EARTH_RATE_RAD_PER_S;
 use gyrocal_calibration::{Calibration, Options, SiteQuantity, calibrate};
@@ -9,9 +9,9 @@ use super::{Error, Measured};
 use crate::figure::Figure;
 use crate::values::{Table, fixed, two_digits};
 
-/// By how much the three D_I are lowered, deg/h/g.
+/// Decrease of the three D_I, deg/h/g.
 const LOWERED: f64 = 0.1;
-/// Largest difference of records that are the same, g: a thousandth of the noise of a sample.
+/// Largest difference of equivalent records, g: a thousandth of the noise of a sample.
 const SAME_G: f64 = 1e-8;
 /// An arc second.
 const ERROR_DEG: f64 = 1.0 / 3600.0;
@@ -31,7 +31,7 @@ fn moved_earth_rate(latitude_deg: f64, lowered: f64) -> (f64, f64) {
     (up.atan2(cosine).to_degrees(), up.hypot(cosine))
 }
 
-/// A bound for what is known by its order only.
+/// An upper limit by order of magnitude.
 fn power_of_ten_above(value: f64) -> String {
     let bound = 10_f64.powf(value.log10().ceil());
     if bound < 1e-3 {
@@ -41,7 +41,7 @@ fn power_of_ten_above(value: f64) -> String {
     }
 }
 
-/// Two simulations that must be one.
+/// Two simulations that must agree.
 fn exact(measured: &mut Measured) -> Result<(), Error> {
     let one = scenario(SHOWN_SEED, PAPER_DAYS);
     let (latitude_deg, rate) = moved_earth_rate(one.latitude_deg, LOWERED);
@@ -78,8 +78,8 @@ fn exact(measured: &mut Measured) -> Result<(), Error> {
     Ok(())
 }
 
-/// What a latitude that is wrong by an arc second does to each coefficient: as the estimator
-/// predicts it, and as it is when the bench stands elsewhere than assumed.
+/// Change of each coefficient by an error of latitude of one arc second: as predicted by the estimator,
+/// and as simulated with the bench at another latitude.
 fn arc_second(measured: &mut Measured) -> Result<(), Error> {
     let right = scenario(SHOWN_SEED, PAPER_DAYS);
     let wrong = Scenario {
