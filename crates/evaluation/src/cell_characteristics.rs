@@ -3,11 +3,14 @@
 use core::ops::Range;
 use std::collections::BTreeMap;
 
-use crate::campaign::Outcome;
+use gyrocal::EFFECTS;
+use gyrocal::effect::EffectKind;
 use gyrocal_statistics::{Proportion, quantile};
 
+use crate::campaign::Outcome;
+use crate::catalogue::effect_of;
 use crate::characteristic::{CellFigures, Characteristic};
-use crate::effect_family::families;
+use crate::effect_family::{FamilyRow, families};
 use crate::population::PopulationCell;
 use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
 
@@ -22,9 +25,6 @@ const SINGLE_TARGETS: [(u32, [f64; 2], Option<f64>); 4] = [
     (8, [0.995, 0.99], Some(0.91)),
     (12, [0.995, 0.99], Some(0.97)),
 ];
-
-/// Family of attitude jumps: three sizes at any row, found less often than effects without an onset.
-const ATTITUDE_JUMP: &str = "platform.knock";
 
 /// Strengths given the findings that count as the requested 10 sigmas.
 const REACHED: Range<f64> = 9.0..11.5;
@@ -62,7 +62,7 @@ pub fn characteristics(
         PopulationCell::Azimuth => {
             let first = share(&records, |record| {
                 let first = record.findings.first();
-                Some(first.is_some_and(|first| first.effect == "platform.initial_attitude"))
+                Some(first.is_some_and(|first| is_of_kind(&first.effect, EffectKind::InitialState)))
             });
             figures.at_least("named `platform.initial_attitude`", 0.95, first);
             figures.mean("its mean size in sigmas", &strengths(&records));
@@ -105,6 +105,11 @@ fn by_effect(
     effects.into_values().map(Proportion::of).collect()
 }
 
+/// `true` if an id is of an effect of a kind.
+fn is_of_kind(id: &str, kind: EffectKind) -> bool {
+    effect_of(id).is_some_and(|effect| effect.kind == kind)
+}
+
 fn strengths(records: &[&RecordScore]) -> Vec<f64> {
     let hidden = records.iter().flat_map(|record| &record.hidden);
     hidden.map(|hidden| hidden.strength).collect()
@@ -136,19 +141,22 @@ fn single(
         let of = by_effect(records, |record| Some(record.detected()));
         figures.average_at_least("detected, average of the effects", average, &of);
         let all = families(records);
-        let of = |knocks: bool| -> Vec<Proportion> {
-            let some = all
-                .iter()
-                .filter(|one| (one.family == ATTITUDE_JUMP) == knocks);
-            some.map(|one| one.detected()).collect()
+        // Jumps of the attitude have three sizes at any row, and are found less often.
+        let is_jump = |row: &FamilyRow| {
+            let mut effects = EFFECTS.iter().filter(|effect| effect.family == row.family);
+            effects.any(|effect| effect.kind == EffectKind::StateJump)
+        };
+        let of = |jumps: bool| -> Vec<Proportion> {
+            let some = all.iter().filter(|row| is_jump(row) == jumps);
+            some.map(|row| row.detected()).collect()
         };
         figures.none_below("detected, the worst family but knocks", worst, &of(false));
         // No test finds jumps of five and six sigmas as often: docs/characteristics.md.
         match of(true).as_slice() {
-            [knocks] if first.is_some() => {
-                figures.none_below("detected, knocks", worst, &[*knocks]);
+            [jumps] if first.is_some() => {
+                figures.none_below("detected, knocks", worst, &[*jumps]);
             }
-            [knocks] => figures.note("detected, knocks", *knocks),
+            [jumps] => figures.note("detected, knocks", *jumps),
             _ => {}
         }
     }

@@ -4,7 +4,8 @@ use gyrocal_statistics::{Proportion, mean};
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::BaselineMethod;
-use crate::record_score::{RecordScore, SAME_CLASS_COSINE, same_or_equivalent};
+use crate::catalogue::same_or_equivalent;
+use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
 
 /// Name of the diagnosis of this project in tables.
 pub const OWN_METHOD: &str = "gyrocal";

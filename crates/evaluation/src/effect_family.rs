@@ -3,6 +3,7 @@
 use gyrocal_statistics::{Proportion, mean};
 use serde::{Deserialize, Serialize};
 
+use crate::catalogue::effect_family;
 use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
 
 /// One family of effects in one cell.
@@ -40,7 +41,7 @@ pub fn families(records: &[&RecordScore]) -> Vec<FamilyRow> {
     for record in records {
         if let Some(hidden) = record.hidden.first() {
             by_family
-                .entry(effect_family(&hidden.effect))
+                .entry(effect_family(&hidden.effect).to_owned())
                 .or_default()
                 .push(record);
         }
@@ -70,54 +71,4 @@ pub fn families(records: &[&RecordScore]) -> Vec<FamilyRow> {
             }
         })
         .collect()
-}
-
-/// Family of an effect: its id with `i` for its own axis and `j`, `k` for others.
-#[must_use]
-pub fn effect_family(id: &str) -> String {
-    let Some((owner, rest)) = id.split_once('.') else {
-        return id.to_owned();
-    };
-    let Some((kind, axes)) = owner.split_once('_') else {
-        return match id {
-            // Exact equivalents in every record.
-            "clock.rate" => "site.latitude".to_owned(),
-            id => id.to_owned(),
-        };
-    };
-    let axes = match axes.len() {
-        1 => "i",
-        _ => "ij",
-    };
-    let rest = match rest.strip_prefix("g_") {
-        None => rest,
-        Some(letters) => match letters.len() {
-            1 => "g_j",
-            2 => "g_jk",
-            _ => "g_iii",
-        },
-    };
-    format!("{kind}_{axes}.{rest}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::effect_family;
-
-    #[test]
-    fn a_family_forgets_the_axes() {
-        for (id, expected) in [
-            ("gyro_x.g_y", "gyro_i.g_j"),
-            ("gyro_z.g_xy", "gyro_i.g_jk"),
-            ("gyro_z.g_yy", "gyro_i.g_jk"),
-            ("gyro_y.g_yyy", "gyro_i.g_iii"),
-            ("gyro_y.step", "gyro_i.step"),
-            ("accel_xz.nonorthogonality", "accel_ij.nonorthogonality"),
-            ("accel_x.bias", "accel_i.bias"),
-            ("clock.rate", "site.latitude"),
-            ("platform.knock", "platform.knock"),
-        ] {
-            assert_eq!(effect_family(id), expected);
-        }
-    }
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use gyrocal::effect::EffectKind;
 use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::DiagnoseError;
 
@@ -99,11 +100,13 @@ pub enum EvaluationError {
         /// Requested strength, in sigmas of the effect's Cramér–Rao bound.
         strength: f64,
     },
-    /// An effect id that the catalogue does not have.
-    #[error("found the effect `{id}`, expected one of the catalogue; `docs/model.md` lists them")]
-    UnknownEffect {
-        /// The id.
-        id: String,
+    /// The catalogue has no effect of a kind that a cell injects.
+    #[error(
+        "the catalogue of this build has no effect of the kind {kind:?}, which the cell injects"
+    )]
+    MissingEffect {
+        /// The kind.
+        kind: EffectKind,
     },
     /// A name that no cell has.
     #[error("found the cell `{name}`, expected one of {known}")]

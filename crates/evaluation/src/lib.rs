@@ -70,6 +70,7 @@ mod baseline;
 mod calibration_summary;
 mod calibration_trial;
 mod campaign;
+mod catalogue;
 mod cell_characteristics;
 mod characterise_report;
 mod characteristic;
@@ -90,11 +91,12 @@ pub use baseline::{BaselineMethod, BaselineResult};
 pub use calibration_summary::{BandedMean, CalibrationSummary, CoefficientSummary, MeasuredValue};
 pub use calibration_trial::CalibrationTrial;
 pub use campaign::{Campaign, Failure, Fingerprint, Outcome, Progress, program};
+pub use catalogue::{constant_of_channel, effect_family, effect_of, same_or_equivalent};
 pub use cell_characteristics::characteristics;
 pub use characterise_report::{CellReport, CharacteriseReport, cell_campaign, cell_report};
 pub use characteristic::{Characteristic, Target};
 pub use comparison::{ComparisonRow, OWN_METHOD, comparison};
-pub use effect_family::{FamilyRow, effect_family, families};
+pub use effect_family::{FamilyRow, families};
 pub use error::EvaluationError;
 pub use injection::{
     InjectedEffect, draw_shape, inject, inject_any, inject_into, nominal_fit, testable_effects,
@@ -103,7 +105,7 @@ pub use monte_carlo_report::MonteCarloReport;
 pub use population::PopulationCell;
 pub use projection::ProjectedScores;
 pub use record_score::{
-    BaselineScore, FindingScore, InjectedScore, RecordScore, SAME_CLASS_COSINE, same_or_equivalent,
+    BaselineScore, FindingScore, InjectedScore, RecordScore, SAME_CLASS_COSINE,
 };
 pub use scenario::scenario;
 pub use signature::{Signature, SignatureColumns};

@@ -128,8 +128,8 @@ impl PopulationCell {
             }
             Self::Pair => draws::pair(&scenario, 8.0, random)?,
             Self::OutOfCatalogue => return score_out_of_catalogue(seed, &scenario, 10.0, random),
-            Self::Step => draws::one_of(draws::STEPS, &scenario, 8.0, random)?,
-            Self::Cubic => draws::one_of(draws::CUBICS, &scenario, 3.0, random)?,
+            Self::Step => draws::one_of(draws::is_step, &scenario, 8.0, random)?,
+            Self::Cubic => draws::one_of(draws::is_cubic, &scenario, 3.0, random)?,
             Self::Azimuth => draws::azimuth(&scenario, random)?,
         };
         let hidden: Result<Vec<_>, _> = injected

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::BaselineResult;
+use crate::catalogue::same_or_equivalent;
 
 /// Two signatures are of one class if the cosine of the angle between them is at least this.
 pub const SAME_CLASS_COSINE: f64 = 0.9;
@@ -125,15 +126,6 @@ impl FindingScore {
     }
 }
 
-/// `true` if two ids are of one effect or of exact equivalents.
-#[must_use]
-pub fn same_or_equivalent(one: &str, other: &str) -> bool {
-    one == other
-        || gyrocal::EFFECTS
-            .iter()
-            .any(|effect| effect.id == one && effect.equivalents.contains(&other))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -183,17 +175,5 @@ mod tests {
         assert!(!pair(vec![both.clone(), found("accel_x.bias", &[])]).each_in_its_set());
         assert!(pair(vec![found("gyro_y.step", &["gyro_y.ramp"]), both.clone()]).each_in_its_set());
         assert_eq!(pair(vec![both]).set_size(), 2);
-    }
-
-    #[test]
-    fn exact_equivalents_are_the_same() {
-        assert!(
-            same_or_equivalent("gyro_x.g_yy", "gyro_x.g_zz")
-                && same_or_equivalent("clock.rate", "site.latitude")
-        );
-        assert!(
-            !same_or_equivalent("gyro_x.g_yy", "gyro_y.g_zz")
-                && !same_or_equivalent("no effect", "gyro_x.g_y")
-        );
     }
 }

@@ -1,7 +1,6 @@
 //! Comparison of the diagnosis of one record with the effects injected into it.
 
 use gyrocal::effect::Role;
-use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::NoiseModel;
 use gyrocal_diagnosis::cause::{Finding, FoundParameter, Ranked, SearchOptions, search};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
@@ -9,12 +8,11 @@ use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Scenario, Simulation};
 
 use crate::baseline::{BaselineMethod, LibraryEntry, library};
+use crate::catalogue::{effect_of, same_or_equivalent};
 use crate::error::EvaluationError;
 use crate::injection::{InjectedEffect, nominal_fit, testable_effects};
 use crate::projection::ProjectedScores;
-use crate::record_score::{
-    BaselineScore, FindingScore, InjectedScore, RecordScore, same_or_equivalent,
-};
+use crate::record_score::{BaselineScore, FindingScore, InjectedScore, RecordScore};
 use crate::signature::{Signature, SignatureColumns};
 
 /// Number of hypotheses next to the best of the first search that are kept.
@@ -49,8 +47,8 @@ pub(crate) fn score(
         })
         .collect();
     let first = found.findings.first().map(|finding| {
-        let signature =
-            row(finding.effect).and_then(|row| columns.signature(row, record, shape_of(finding)));
+        let signature = effect_of(finding.effect)
+            .and_then(|effect| columns.signature(effect, record, shape_of(finding)));
         (finding.effect, signature)
     });
     let library = if methods.iter().any(|method| method.identifies_effects()) {
@@ -199,7 +197,8 @@ fn nearest(ranking: &[Ranked]) -> Vec<(String, f64)> {
 }
 
 fn finding_score(finding: &Finding) -> FindingScore {
-    let has_equivalents = row(finding.effect).is_some_and(|effect| !effect.equivalents.is_empty());
+    let has_equivalents =
+        effect_of(finding.effect).is_some_and(|effect| !effect.equivalents.is_empty());
     FindingScore {
         effect: finding.effect.to_owned(),
         z: finding.z,
@@ -305,13 +304,9 @@ fn oracle_set_size(
     Ok(size(&searched.findings))
 }
 
-fn row(id: &str) -> Option<&'static Effect> {
-    EFFECTS.iter().find(|effect| effect.id == id)
-}
-
 /// Onset or time constant of a finding.
 fn shape_of(finding: &Finding) -> Option<f64> {
-    let shape = row(finding.effect)?.shape()?;
+    let shape = effect_of(finding.effect)?.shape()?;
     let mut parameters = finding.parameters.iter();
     let found = parameters.find(|parameter| parameter.name == shape.name);
     found.map(|parameter| parameter.estimate)

@@ -4,8 +4,9 @@ mod records;
 
 use core::ops::Range;
 
-use gyrocal_evaluation::Outcome;
+use gyrocal::effect::Enters;
 use gyrocal_statistics::{Proportion, mean_square_band, median};
+use gyrocal_evaluation::{Outcome, effect_of};
 use gyrocal_testkit::extended_comparison;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -194,6 +195,11 @@ fn cross_axis(small: bool) -> Result<Vec<Figure>, Error> {
         .collect())
 }
 
+/// `true` for an error of an accelerometer.
+fn enters_outputs(effect: &str) -> bool {
+    effect_of(effect).is_some_and(|effect| matches!(effect.enters, Enters::Outputs(_)))
+}
+
 /// Prediction of a second record.
 fn second(small: bool) -> Result<Vec<Figure>, Error> {
     let job = |seed| records::second(seed, LEAST_STRENGTH);
@@ -210,7 +216,7 @@ fn second(small: bool) -> Result<Vec<Figure>, Error> {
     let within_reach = better(&Second::within_reach);
     let beyond_noise = better(&Second::beyond_noise);
     let by_kind = |of_accelerometers: bool| {
-        let of_kind = |second: &Second| second.effect.starts_with("accel") == of_accelerometers;
+        let of_kind = |second: &Second| enters_outputs(&second.effect) == of_accelerometers;
         let ours = better(&of_kind);
         let told = found.iter().filter(|second| of_kind(second));
         let told = Proportion::of(told.map(|second| second.within_reach()));

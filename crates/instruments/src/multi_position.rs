@@ -15,6 +15,7 @@ mod report;
 mod search;
 mod terms;
 
+use gyrocal::generated::catalogue::RATES;
 use gyrocal_statistics::{chi_square_tail, f_tail};
 
 pub use alternatives::Alternative;
@@ -109,14 +110,14 @@ fn gyro_report(data: &WeightedStops, steps: &[SearchStep]) -> Result<GyroReport,
     let extended = terms_of(steps, data.gyro);
     let (everything, undetermined) = determined_terms(data);
     Ok(GyroReport {
-        gyro: format!("gyro_{}", terms::AXES[data.gyro]),
+        gyro: RATES[data.gyro].id.to_owned(),
         nominal: law_report(data, &Term::NOMINAL)?,
         nominal_against_catalogue: f_test(data, &Term::NOMINAL, &everything)?,
         extended_against_catalogue: f_test(data, &extended, &everything)?,
         extended: law_report(data, &extended)?,
         undetermined: undetermined
             .into_iter()
-            .map(|term| term.id(data.gyro))
+            .map(|term| term.id(data.gyro).to_owned())
             .collect(),
     })
 }
@@ -140,7 +141,7 @@ fn law_report(data: &WeightedStops, terms: &[Term]) -> Result<LawReport, Measure
     let data = &data.with_excess_of(terms);
     let fit = data.fit(terms).ok_or_else(|| undetermined(data, terms))?;
     let coefficients = terms.iter().enumerate().map(|(i, term)| CoefficientReport {
-        name: term.id(data.gyro),
+        name: term.id(data.gyro).to_owned(),
         estimate: fit.estimates[i],
         sigma: fit.cofactors[(i, i)].sqrt(),
         unit: term.unit(data.gyro).to_owned(),
@@ -172,7 +173,7 @@ fn f_test(data: &WeightedStops, law: &[Term], larger: &[Term]) -> Result<FTest, 
 }
 
 fn undetermined(data: &WeightedStops, terms: &[Term]) -> MeasuredError {
-    let names: Vec<String> = terms.iter().map(|term| term.id(data.gyro)).collect();
+    let names: Vec<&str> = terms.iter().map(|term| term.id(data.gyro)).collect();
     MeasuredError::unfit(
         Unfit::Undetermined,
         format!("stops that do not determine {} together", names.join(", ")),
@@ -196,6 +197,8 @@ fn finding(
     let found = alternatives::alternatives(data, &law, step.term, settings.coverage, seed)?;
     let along = gyro.extended.coefficients.get(1)?.estimate;
     Some(Finding {
+        gyro: data.gyro,
+        term: step.term,
         effect: coefficient.name.clone(),
         estimate: coefficient.estimate,
         sigma: coefficient.sigma,
@@ -210,7 +213,12 @@ fn finding(
         alternatives: found.members,
         nearest_ruled_out: found.nearest,
         deficit_limit: found.limit,
-        equivalents: step.term.equivalents(data.gyro),
+        equivalents: step
+            .term
+            .equivalents(data.gyro)
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
         misalignment_needed_rad: match step.term {
             Term::Cross(_) => Some((coefficient.estimate / along).abs()),
             _ => None,

@@ -160,7 +160,7 @@ fn squares_along_the_two_other_axes_are_one_term() {
     assert_eq!(Term::Product(1, 1).id(0), "gyro_x.g_yy");
     assert_eq!(Term::Product(1, 1).equivalents(0), ["gyro_x.g_zz"]);
     assert_eq!(Term::Product(0, 0).equivalents(2), ["gyro_z.g_yy"]);
-    let named: Vec<String> = Term::catalogue(2).iter().map(|term| term.id(2)).collect();
+    let named: Vec<&str> = Term::catalogue(2).iter().map(|term| term.id(2)).collect();
     let expected = [
         "g_x", "g_y", "g_xy", "g_xz", "g_yz", "g_xx", "g_zzz", "ramp",
     ];

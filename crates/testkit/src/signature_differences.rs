@@ -5,8 +5,8 @@
 //! filter about the same trajectory as the signature that the generated derivatives give: with
 //! the same whitening the two must be one.
 
-use gyrocal::effect::Role;
-use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, SHAPES};
+use gyrocal::effect::{Effect, EffectKind, Role};
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, RATES};
 use gyrocal_calibration::{BIASES, Column, Extended, Extension, NoiseModel, Options, Run};
 use gyrocal_record::Record;
 use gyrocal_truth::{Hidden, Scenario, simulate};
@@ -41,7 +41,7 @@ pub struct Compared {
 struct Probe {
     name: String,
     effect: &'static str,
-    parameter: &'static str,
+    parameter: String,
     /// Parameters that are held: onsets and time constants.
     held: Vec<(&'static str, f64)>,
     /// A size to begin with, in the simulator's unit.
@@ -72,7 +72,7 @@ pub fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
     };
     let nominal = Extended::nominal(&run, &Options::default(), &NoiseModel::default())?;
     let shaped = Extension {
-        shapes: core::array::from_fn(|place| shape(SHAPES[place].id, &record)),
+        shapes: core::array::from_fn(|index| held_shape(index, &record)),
         ..nominal.extension().clone()
     };
     let fitted = nominal.refitted(&shaped)?;
@@ -136,34 +136,45 @@ fn project(gram: &DMatrix<f64>, prior_sigma: &[f64]) -> Result<DMatrix<f64>, Err
     Ok(gram - cross.transpose() * cholesky.solve(&cross))
 }
 
-/// Onsets within a step, and time constants, that the catalogue's own parameters are taken at.
-fn shape(id: &str, record: &Record) -> f64 {
-    if id.ends_with("onset_s") {
-        let row = record.len() / 3;
-        0.7 * record.time_s[row] + 0.3 * record.time_s[row + 1] - record.time_s[0]
-    } else {
-        record.duration_s() / 3600.0 / 6.0
+/// Value at which an onset, within a step, or a time constant of the catalogue is held.
+fn held_value(role: Role, record: &Record) -> f64 {
+    match role {
+        Role::TimeConstant(_) => record.duration_s() / 3600.0 / 6.0,
+        _ => {
+            let row = record.len() / 3;
+            0.7 * record.time_s[row] + 0.3 * record.time_s[row + 1] - record.time_s[0]
+        }
     }
+}
+
+/// The same of a shape of the model.
+fn held_shape(index: usize, record: &Record) -> f64 {
+    EFFECTS
+        .iter()
+        .filter_map(Effect::shape)
+        .find(|own| own.role.shape_index() == Some(index))
+        .map_or(1.0, |own| held_value(own.role, record))
 }
 
 /// Every parameter of the catalogue, and the columns that stand for steps, warm-ups, attitude jumps
 /// and the initial attitude in a search.
 fn probes(record: &Record) -> Result<Vec<Probe>, Error> {
     let mut probes = parameter_probes(record)?;
-    for (gyro, [step, warm_up]) in [
-        ["gyro_x.step", "gyro_x.warmup"],
-        ["gyro_y.step", "gyro_y.warmup"],
-        ["gyro_z.step", "gyro_z.warmup"],
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        probes.extend(probed_rows(record).map(|row| step_probe(record, gyro, step, row)));
-        let time_constants_h = [1.0, 0.5 * record.duration_s() / 3600.0];
-        probes.extend(time_constants_h.map(|h| warm_up_probe(record, gyro, warm_up, h)));
+    let time_constants_h = [1.0, 0.5 * record.duration_s() / 3600.0];
+    for gyro in 0..RATES.len() {
+        for effect in EFFECTS.iter().filter(|effect| effect.rate() == Some(gyro)) {
+            match effect.kind {
+                EffectKind::Step => probes
+                    .extend(probed_rows(record).map(|row| step_probe(record, gyro, effect, row))),
+                EffectKind::Exponential => {
+                    probes.extend(time_constants_h.map(|h| warm_up_probe(record, gyro, effect, h)))
+                }
+                _ => {}
+            }
+        }
     }
     for axis in 0..3 {
-        probes.extend(attitude_probes(record, axis));
+        probes.extend(attitude_probes(record, axis)?);
     }
     Ok(probes)
 }
@@ -183,7 +194,9 @@ fn parameter_probes(record: &Record) -> Result<Vec<Probe>, Error> {
     let mut probes = Vec::new();
     for effect in EFFECTS.iter().filter(|effect| effect.has_term()) {
         let own = effect.shape().into_iter();
-        let held: Vec<(&str, f64)> = own.map(|own| (own.name, shape(own.name, record))).collect();
+        let held: Vec<(&str, f64)> = own
+            .map(|own| (own.name, held_value(own.role, record)))
+            .collect();
         for parameter in effect.sizes() {
             let Role::Parameter(place) = parameter.role else {
                 return Err("an effect without its parameter".into());
@@ -191,7 +204,7 @@ fn parameter_probes(record: &Record) -> Result<Vec<Probe>, Error> {
             probes.push(Probe {
                 name: PARAMETERS[place].id.to_owned(),
                 effect: effect.id,
-                parameter: parameter.name,
+                parameter: parameter.name.to_owned(),
                 held: held.clone(),
                 size: effect.typical_size,
                 unit: 1.0,
@@ -202,12 +215,12 @@ fn parameter_probes(record: &Record) -> Result<Vec<Probe>, Error> {
     Ok(probes)
 }
 
-fn step_probe(record: &Record, gyro: usize, effect: &'static str, row: usize) -> Probe {
+fn step_probe(record: &Record, gyro: usize, effect: &'static Effect, row: usize) -> Probe {
     let onset_s = since_first_s(record, row);
     Probe {
-        name: format!("{effect} at {onset_s} s"),
-        effect,
-        parameter: "size",
+        name: format!("{} at {onset_s} s", effect.id),
+        effect: effect.id,
+        parameter: "size".to_owned(),
         held: vec![("onset_s", onset_s)],
         size: 0.01,
         unit: 1.0,
@@ -221,7 +234,7 @@ fn step_probe(record: &Record, gyro: usize, effect: &'static str, row: usize) ->
 fn warm_up_probe(
     record: &Record,
     gyro: usize,
-    effect: &'static str,
+    effect: &'static Effect,
     time_constant_h: f64,
 ) -> Probe {
     let share = |pair: &[f64]| {
@@ -229,9 +242,9 @@ fn warm_up_probe(
         (-middle_s / (3600.0 * time_constant_h)).exp()
     };
     Probe {
-        name: format!("{effect} of {time_constant_h} h"),
-        effect,
-        parameter: "size",
+        name: format!("{} of {time_constant_h} h", effect.id),
+        effect: effect.id,
+        parameter: "size".to_owned(),
         held: vec![("time_constant_h", time_constant_h)],
         size: 0.01,
         unit: 1.0,
@@ -243,18 +256,24 @@ fn warm_up_probe(
 }
 
 /// The initial attitude and attitude jumps about one axis.
-fn attitude_probes(record: &Record, axis: usize) -> Vec<Probe> {
-    let rotation = |effect: &'static str, held, signature, at: String| Probe {
-        name: format!("{effect} about {}{at}", ["x", "y", "z"][axis]),
-        effect,
-        parameter: ["x_deg", "y_deg", "z_deg"][axis],
-        held,
-        size: 0.05,
-        unit: core::f64::consts::PI / 180.0,
-        signature: Signature::Further(signature),
+fn attitude_probes(record: &Record, axis: usize) -> Result<Vec<Probe>, Error> {
+    let rotation = |kind, held, signature, at: String| -> Result<Probe, Error> {
+        let mut effects = EFFECTS.iter().filter(|effect| effect.kind == kind);
+        let effect = effects.next().ok_or("a catalogue without states")?;
+        let angle = effect.sizes().nth(axis).ok_or("an attitude of two axes")?;
+        Ok(Probe {
+            name: format!("{} about {}{at}", effect.id, angle.name),
+            effect: effect.id,
+            // The simulator names an angle with its unit.
+            parameter: format!("{}_{}", angle.name, angle.unit),
+            held,
+            size: 0.05,
+            unit: angle.scale,
+            signature: Signature::Further(signature),
+        })
     };
     let initial = rotation(
-        "platform.initial_attitude",
+        EffectKind::InitialState,
         Vec::new(),
         Column::Start { axis },
         String::new(),
@@ -264,7 +283,7 @@ fn attitude_probes(record: &Record, axis: usize) -> Vec<Probe> {
         // differs by the motion of the platform in the rest of it.
         let onset_s = since_first_s(record, row + 1);
         rotation(
-            "platform.knock",
+            EffectKind::StateJump,
             vec![("onset_s", onset_s)],
             Column::Jump { row, axis },
             format!(" at {onset_s} s"),
@@ -276,8 +295,8 @@ fn attitude_probes(record: &Record, axis: usize) -> Vec<Probe> {
 /// Change of the readings by a unit of the column.
 fn change_g(quiet: &Scenario, probe: &Probe) -> Result<Vec<[f64; 3]>, Error> {
     let readings_g = |size: f64| -> Result<Vec<[f64; 3]>, Error> {
-        let mut parameters = probe.held.clone();
-        parameters.push((probe.parameter, size));
+        let mut parameters: Vec<(&str, f64)> = probe.held.clone();
+        parameters.push((&probe.parameter, size));
         let hidden = vec![Hidden::new(probe.effect, &parameters)?];
         let hiding = Scenario {
             hidden,

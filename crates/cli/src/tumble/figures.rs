@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
+use gyrocal::generated::catalogue::OUTPUTS;
+use gyrocal_instruments::multi_position::{Finding, MultiPositionReport, PreparedTest};
 use gyrocal_report::{ResidualChannel, Residuals, TermContribution, TermContributions};
 use gyrocal_statistics::format;
 
@@ -24,15 +25,6 @@ pub(super) fn pictures(log: &Path, prepared: &PreparedTest, report: &MultiPositi
 fn subtitle(log: &Path, report: &MultiPositionReport) -> String {
     let name = log.file_name().unwrap_or(log.as_os_str());
     format!("{}; {} static stops", name.display(), report.stops)
-}
-
-fn gyro_of<'a>(
-    report: &'a MultiPositionReport,
-    finding: &Finding,
-) -> Option<(usize, &'a GyroReport)> {
-    let (gyro, _) = finding.effect.split_once('.')?;
-    let mut gyros = report.gyros.iter().enumerate();
-    gyros.find(|(_, other)| other.gyro == gyro)
 }
 
 /// By gyro and then by name: findings come in the order of their significance.
@@ -70,11 +62,12 @@ fn contribution(
     report: &MultiPositionReport,
     finding: &Finding,
 ) -> Option<TermContribution> {
-    let (axis, gyro) = gyro_of(report, finding)?;
+    let axis = finding.gyro;
+    let gyro = report.gyros.get(axis)?;
     let sigmas = prepared.positions.sigma_deg_per_h.iter();
     let residuals = &gyro.extended.residuals_deg_per_h;
     let pairs = residuals.iter().zip(&finding.regressor);
-    let (regressor, regressor_unit) = regressor(&finding.effect);
+    let (regressor, regressor_unit) = regressor(finding);
     let [estimate, sigma] = format::estimate(finding.estimate, finding.sigma);
     Some(TermContribution {
         name: finding.effect.clone(),
@@ -90,15 +83,17 @@ fn contribution(
     })
 }
 
-/// Regressor of a term and its unit, by its name: `gyro_x.g_yz` multiplies forces along y and z.
-fn regressor(effect: &str) -> (String, String) {
-    match effect.split_once(".g_").map(|(_, axes)| axes) {
-        Some(axis) if axis.len() == 1 => (format!("specific force {axis}"), "g".to_owned()),
-        Some(axes) => {
-            let factors: Vec<String> = axes.chars().map(|axis| format!("a_{axis}")).collect();
+/// Regressor of a term and its unit.
+fn regressor(finding: &Finding) -> (String, String) {
+    let factors = finding.term.factors(finding.gyro);
+    let names: Vec<&str> = factors.iter().map(|axis| OUTPUTS[*axis].label).collect();
+    match &*names {
+        [] => ("time since the first stop".to_owned(), "days".to_owned()),
+        [axis] => (format!("specific force {axis}"), "g".to_owned()),
+        axes => {
+            let factors: Vec<String> = axes.iter().map(|axis| format!("a_{axis}")).collect();
             (factors.join(" "), format!("g^{}", axes.len()))
         }
-        None => ("time since the first stop".to_owned(), "days".to_owned()),
     }
 }
 

@@ -1,5 +1,7 @@
 //! Random draws of the effects that a cell injects, with their strengths.
 
+use gyrocal::effect::EffectKind;
+use gyrocal::generated::catalogue::parameters_index;
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_truth::{Scenario, simulate};
 
@@ -12,8 +14,12 @@ use gyrocal_statistics::deviates::Draw;
 /// Two effects are injected together if the cosine between their signatures is less.
 const LARGEST_COSINE: f64 = 0.6;
 
-pub(super) const STEPS: [&str; 3] = ["gyro_x.step", "gyro_y.step", "gyro_z.step"];
-pub(super) const CUBICS: [&str; 3] = ["gyro_x.g_xxx", "gyro_y.g_yyy", "gyro_z.g_zzz"];
+/// Indices of the cubic terms of the gyros along their input axes.
+const CUBICS: [usize; 3] = [
+    parameters_index::GYRO_X_G_XXX,
+    parameters_index::GYRO_Y_G_YYY,
+    parameters_index::GYRO_Z_G_ZZZ,
+];
 
 /// Error of the initial azimuth, deg.
 const AZIMUTH_DEG: f64 = 0.1;
@@ -21,6 +27,18 @@ const AZIMUTH_DEG: f64 = 0.1;
 /// Step of a low-discrepancy sequence: the fractional parts of its multiples fill the interval from 0
 /// to 1 evenly, however many there are. The golden ratio less one.
 const EVENLY: f64 = 0.618_033_988_749_894_9;
+
+/// The steps of the gyros.
+pub(super) fn is_step(effect: &Effect) -> bool {
+    effect.kind == EffectKind::Step && effect.rate().is_some()
+}
+
+/// The cubic terms of the gyros along their input axes.
+pub(super) fn is_cubic(effect: &Effect) -> bool {
+    effect
+        .model_parameters()
+        .any(|parameter| CUBICS.contains(&parameter))
+}
 
 type Drawn = Result<Vec<(InjectedEffect, f64)>, EvaluationError>;
 
@@ -79,15 +97,14 @@ pub(super) fn pair(scenario: &Scenario, strength: f64, random: &mut Draw) -> Dra
     not_injectable(strength)
 }
 
-/// One effect of a list.
+/// One of the effects that a condition selects.
 pub(super) fn one_of(
-    ids: [&str; 3],
+    selects: fn(&Effect) -> bool,
     scenario: &Scenario,
     strength: f64,
     random: &mut Draw,
 ) -> Drawn {
-    let listed = |effect: &&Effect| ids.contains(&effect.id);
-    let effects: Vec<&'static Effect> = EFFECTS.iter().filter(listed).collect();
+    let effects: Vec<&'static Effect> = EFFECTS.iter().filter(|effect| selects(effect)).collect();
     for _ in 0..MAX_DRAWS {
         let effect = *random.one_of(&effects);
         let with_shape = (effect, draw_shape(effect, scenario, random));
@@ -100,11 +117,11 @@ pub(super) fn one_of(
 
 /// A rotation of the platform about the vertical at the first row.
 pub(super) fn azimuth(scenario: &Scenario, random: &mut Draw) -> Drawn {
-    let id = "platform.initial_attitude";
+    let kind = EffectKind::InitialState;
     let effect = EFFECTS
         .iter()
-        .find(|effect| effect.id == id)
-        .ok_or_else(|| EvaluationError::UnknownEffect { id: id.to_owned() })?;
+        .find(|effect| effect.kind == kind)
+        .ok_or(EvaluationError::MissingEffect { kind })?;
     let platform_c_enu = scenario.platform().initial_platform_c_enu.matrix();
     let angle_deg = AZIMUTH_DEG * random.sign();
     let injected = InjectedEffect {

@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use gyrocal::effect::NoiseProperty;
 use gyrocal_diagnosis::{AuditOptions, NoiseAudit, Outlier, audit_noise};
 use gyrocal_statistics::{Proportion, mean};
+use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
 use gyrocal_truth::Term;
 use serde::{Deserialize, Serialize};
 
-use super::records::{KINDS, Kind, POPULATION, record, three_days};
+use super::records::{KINDS, Kind, POPULATION, accelerometer_noise, record, three_days};
 use super::{Error, campaign};
 use crate::figure::Figure;
-use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
 
 /// Clean records; records of each kind; records with each physical cause. With `--small` fewer.
 const RUNS: [u64; 3] = [2000, 1000, 100];
@@ -131,9 +132,10 @@ fn of_kind(kind: Kind, runs: u64, small: bool) -> Result<Vec<Figure>, Error> {
         Fault::Coloured(_) => "found with its correlation within 0.03",
         _ => "found with its size within 5 %",
     };
+    let expected = kind.expected();
     let mut figures = vec![
         share("the right noise findings, and no others", &|one| {
-            one.found == kind.expected
+            one.found == expected
         }),
         share(near, &|one| one.sized),
     ];
@@ -214,21 +216,23 @@ fn f1(case: &FaultyRecord, audit: &NoiseAudit) -> f64 {
 
 /// `true` if each finding of a fault has its size within 5 %, a correlation within 0.03.
 fn is_sized(fault: Fault, audit: &NoiseAudit) -> bool {
-    let within = |effect: &str, parameter: usize, truth: f64, tolerance: f64| {
-        audit.finding(effect).is_some_and(|finding| {
-            (finding.parameters[parameter].estimate - truth).abs() <= tolerance
+    let each = |property: NoiseProperty, parameter: usize, truth: f64, tolerance: f64| {
+        accelerometer_noise(property).iter().all(|effect| {
+            audit.finding(effect).is_some_and(|finding| {
+                (finding.parameters[parameter].estimate - truth).abs() <= tolerance
+            })
         })
-    };
-    let each = |kind: &str, truth: f64| {
-        ["x", "y", "z"]
-            .iter()
-            .all(|axis| within(&format!("accel_{axis}.{kind}"), 0, truth, 0.05 * truth))
     };
     match fault {
         Fault::None | Fault::GyroRatio(_) => audit.findings.is_empty(),
-        Fault::Quantised(step) => each("quantisation", step * 1e-5),
-        Fault::Outliers(_, size) => within("accel.outliers", 1, size * 1e-5, 0.05 * size * 1e-5),
-        Fault::Coloured(correlation) => within("accel.coloured_noise", 0, correlation, 0.03),
-        Fault::Ratio(ratio) => each("noise", ratio),
+        Fault::Quantised(step) => {
+            let step_g = step * 1e-5;
+            each(NoiseProperty::Quantisation, 0, step_g, 0.05 * step_g)
+        }
+        Fault::Outliers(_, size) => {
+            each(NoiseProperty::Outliers, 1, size * 1e-5, 0.05 * size * 1e-5)
+        }
+        Fault::Coloured(correlation) => each(NoiseProperty::Correlation, 0, correlation, 0.03),
+        Fault::Ratio(ratio) => each(NoiseProperty::Level, 0, ratio, 0.05 * ratio),
     }
 }

@@ -1,8 +1,9 @@
 //! Records with noise other than declared, and the expected findings of each kind.
 
-use gyrocal_truth::Population;
-
+use gyrocal::EFFECTS;
+use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
 use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
+use gyrocal_truth::Population;
 
 /// Seed of the population.
 pub(super) const POPULATION: u64 = 20;
@@ -12,42 +13,55 @@ pub(super) const POPULATION: u64 = 20;
 pub(super) struct Kind {
     pub(super) name: &'static str,
     pub(super) fault: Fault,
-    /// The expected findings; others are errors.
-    pub(super) expected: &'static [&'static str],
+    /// Property of the noise of each accelerometer that the audit must find; other findings are errors.
+    pub(super) property: NoiseProperty,
 }
 
-const EACH_NOISE: &[&str] = &["accel_x.noise", "accel_y.noise", "accel_z.noise"];
+impl Kind {
+    /// Ids of the expected findings, in alphabetical order.
+    pub(super) fn expected(&self) -> Vec<&'static str> {
+        accelerometer_noise(self.property)
+    }
+}
+
+/// Ids of the effects that are a property of the noise of accelerometers, in alphabetical order.
+pub(super) fn accelerometer_noise(property: NoiseProperty) -> Vec<&'static str> {
+    let mut ids: Vec<&str> = EFFECTS
+        .iter()
+        .filter(|effect| effect.kind == EffectKind::Noise(property))
+        .filter(|effect| matches!(effect.enters, Enters::Outputs(_)))
+        .map(|effect| effect.id)
+        .collect();
+    ids.sort_unstable();
+    ids
+}
 
 /// All kinds of faults.
 pub(super) const KINDS: [Kind; 5] = [
     Kind {
         name: "LSB of 3 sigma",
         fault: Fault::Quantised(3.0),
-        expected: &[
-            "accel_x.quantisation",
-            "accel_y.quantisation",
-            "accel_z.quantisation",
-        ],
+        property: NoiseProperty::Quantisation,
     },
     Kind {
         name: "0.5 % outliers of 8 sigma",
         fault: Fault::Outliers(0.005, 8.0),
-        expected: &["accel.outliers"],
+        property: NoiseProperty::Outliers,
     },
     Kind {
         name: "AR(1) of 0.3",
         fault: Fault::Coloured(0.3),
-        expected: &["accel.coloured_noise"],
+        property: NoiseProperty::Correlation,
     },
     Kind {
         name: "sigma 1.2 of declared",
         fault: Fault::Ratio(1.2),
-        expected: EACH_NOISE,
+        property: NoiseProperty::Level,
     },
     Kind {
         name: "sigma 0.8 of declared",
         fault: Fault::Ratio(0.8),
-        expected: EACH_NOISE,
+        property: NoiseProperty::Level,
     },
 ];
 

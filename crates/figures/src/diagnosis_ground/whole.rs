@@ -70,7 +70,7 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         figures.push(
             Figure::note(
                 &format!("{}: whole diagnoses with other noise findings", kind.name),
-                others(&all, kind.expected),
+                others(&all, &kind.expected()),
             )
             .over(all.len(), seeds.clone()),
         );

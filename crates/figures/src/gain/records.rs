@@ -1,9 +1,10 @@
 //! Diagnosis of one record, and the gain of its extended model.
 
+use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{Extended, Run};
 use gyrocal_diagnosis::plan::Named;
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, validated};
-use gyrocal_evaluation::{InjectedEffect, inject_any};
+use gyrocal_evaluation::{InjectedEffect, constant_of_channel, inject_any};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{DMatrix, DVector};
@@ -218,24 +219,22 @@ fn later(first: &Scenario, injected: &InjectedEffect) -> Result<Scenario, Error>
         hidden: Vec::new(),
         ..first.clone()
     };
-    let (channel, term) = injected.effect.id.split_once('.').unwrap_or_default();
-    let axis = ["gyro_x", "gyro_y", "gyro_z"]
-        .iter()
-        .position(|gyro| *gyro == channel);
+    let effect = injected.effect;
     let size = injected.sizes[0];
     let aged = size * LATER_S / SECONDS_PER_DAY;
-    match (term, axis) {
-        ("step", Some(axis)) => scenario.coefficients.bias_deg_per_h[axis] += size,
-        ("ramp", Some(axis)) => {
+    match (effect.kind, effect.rate()) {
+        (EffectKind::Step, Some(axis)) => scenario.coefficients.bias_deg_per_h[axis] += size,
+        (EffectKind::Ramp, Some(axis)) => {
             scenario.coefficients.bias_deg_per_h[axis] += aged;
             scenario.hidden.clone_from(&first.hidden);
         }
-        ("ramp", None) => {
+        (EffectKind::Ramp, None) => {
             scenario.hidden.clone_from(&first.hidden);
-            let bias = Hidden::new(&format!("{channel}.bias"), &[("size", aged)])?;
+            let constant = constant_of_channel(effect).ok_or("a ramp of no channel")?;
+            let bias = Hidden::new(constant, &[("size", aged)])?;
             scenario.hidden.push(bias);
         }
-        ("knock" | "initial_attitude", _) => {}
+        (EffectKind::StateJump | EffectKind::InitialState, _) => {}
         _ => scenario.hidden.clone_from(&first.hidden),
     }
     Ok(scenario)

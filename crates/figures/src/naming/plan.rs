@@ -1,9 +1,10 @@
 //! Planned runs, made: predicted against actual sigmas and confidence sets.
 
+use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
 use gyrocal_diagnosis::plan::{Named, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::{inject_any};
+use gyrocal_evaluation::{constant_of_channel, effect_of, inject_any};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, InitialAttitude, Population, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
@@ -152,18 +153,19 @@ fn made(scenario: &Scenario, planned: &Proposal) -> Result<Simulation, Error> {
             .parameters()
             .first()
             .map_or(0.0, |(_, size, _)| *size);
-        let (channel, term) = hidden.id().split_once('.').unwrap_or((hidden.id(), ""));
-        let grown = match term {
-            "initial_attitude" | "knock" => continue,
-            "step" => size,
-            "ramp" => size * days,
+        let effect = effect_of(hidden.id()).ok_or("an effect that the catalogue lacks")?;
+        let grown = match effect.kind {
+            EffectKind::InitialState | EffectKind::StateJump => continue,
+            EffectKind::Step => size,
+            EffectKind::Ramp => size * days,
             _ => 0.0,
         };
-        if term != "step" {
+        if effect.kind != EffectKind::Step {
             next.hidden.push(hidden.clone());
         }
         if grown != 0.0 {
-            let bias = Hidden::new(&format!("{channel}.bias"), &[("size", grown)])?;
+            let constant = constant_of_channel(effect).ok_or("a change of no channel")?;
+            let bias = Hidden::new(constant, &[("size", grown)])?;
             next.hidden.push(bias);
         }
     }

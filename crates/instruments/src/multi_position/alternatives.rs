@@ -95,7 +95,7 @@ pub(crate) fn alternatives(
         .zip(&found)
         .skip(1)
         .map(|((other, _), log_likelihood)| Alternative {
-            effect: other.id(data.gyro),
+            effect: other.id(data.gyro).to_owned(),
             log_likelihood_deficit: found[0] - log_likelihood,
         })
         .collect();

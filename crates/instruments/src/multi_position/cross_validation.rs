@@ -50,7 +50,7 @@ pub fn cross_validate(
             .collect();
         let steps = search(positions, &rest, settings);
         for step in &steps {
-            *found.entry(step.term.id(step.gyro)).or_insert(0) += 1;
+            *found.entry(step.term.id(step.gyro).to_owned()).or_insert(0) += 1;
         }
         let mut score = 0.0;
         for (gyro, squares) in squares.iter_mut().enumerate() {

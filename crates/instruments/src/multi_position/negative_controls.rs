@@ -90,7 +90,7 @@ fn new_name(step: &SearchStep) -> String {
         }
         other => other,
     };
-    term.id(gyro)
+    term.id(gyro).to_owned()
 }
 
 /// `true` if a term of renamed forces stands for an original finding or for an along-axis term.
@@ -104,7 +104,7 @@ fn is_there(step: &SearchStep, found: &[SearchStep]) -> bool {
 }
 
 fn name(step: &SearchStep) -> String {
-    step.term.id(step.gyro)
+    step.term.id(step.gyro).to_owned()
 }
 
 fn sorted(names: impl Iterator<Item = String>) -> Vec<String> {

@@ -95,12 +95,9 @@ impl WeightedStops {
 
     /// Whitened column of a term.
     pub(crate) fn column(&self, term: Term) -> DVector<f64> {
-        // A term that the catalogue lacks is a column of zeros, which no stops determine.
         let parameter = term.parameter(self.gyro);
         let values = self.responses.iter().zip(self.sigma.iter());
-        let values = values.map(|(response, sigma)| {
-            parameter.map_or(0.0, |parameter| response[parameter]) / sigma
-        });
+        let values = values.map(|(response, sigma)| response[parameter] / sigma);
         DVector::from_iterator(self.len(), values)
     }
 

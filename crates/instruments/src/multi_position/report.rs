@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::alternatives::Alternative;
 use super::cross_validation::CrossValidation;
 use super::negative_controls::NegativeControls;
+use super::terms::Term;
 
 /// Result of a multi-position test.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -83,6 +84,12 @@ pub struct FTest {
 /// A term that the nominal law lacks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
+    /// Index of the gyro.
+    #[serde(skip)]
+    pub gyro: usize,
+    /// The term.
+    #[serde(skip)]
+    pub term: Term,
     /// Name of the term.
     pub effect: String,
     /// Its coefficient in the extended law.

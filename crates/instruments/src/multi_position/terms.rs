@@ -1,18 +1,95 @@
 //! Terms of the drift law as functions of specific force: columns of a linear regression.
 
-use gyrocal::generated::catalogue::{PARAMETERS, SHAPES, dynamics_at_origin_jacobian};
+use gyrocal::generated::catalogue::{
+    PARAMETERS, SHAPES, dynamics_at_origin_jacobian, parameters_index as parameter,
+};
 use serde::Serialize;
 
-/// Letters of the axes.
-pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+/// Indices of the terms of one gyro among the parameters of the generated catalogue.
+struct Indices {
+    nominal: [usize; 3],
+    /// Linear terms by axis.
+    linear: [usize; 3],
+    /// Products of the components along x and x, x and y, x and z, y and y, y and z, z and z.
+    products: [usize; 6],
+    cubic: usize,
+    ramp: usize,
+}
 
-/// Power of specific force along the input axis in each nominal term.
-const NOMINAL_POWERS: [usize; 3] = [0, 1, 2];
+const INDICES: [Indices; 3] = [
+    Indices {
+        nominal: [
+            parameter::GYRO_X_BIAS,
+            parameter::GYRO_X_G_X,
+            parameter::GYRO_X_G_XX,
+        ],
+        linear: [
+            parameter::GYRO_X_G_X,
+            parameter::GYRO_X_G_Y,
+            parameter::GYRO_X_G_Z,
+        ],
+        products: [
+            parameter::GYRO_X_G_XX,
+            parameter::GYRO_X_G_XY,
+            parameter::GYRO_X_G_XZ,
+            parameter::GYRO_X_G_YY,
+            parameter::GYRO_X_G_YZ,
+            parameter::GYRO_X_G_ZZ,
+        ],
+        cubic: parameter::GYRO_X_G_XXX,
+        ramp: parameter::GYRO_X_RAMP,
+    },
+    Indices {
+        nominal: [
+            parameter::GYRO_Y_BIAS,
+            parameter::GYRO_Y_G_Y,
+            parameter::GYRO_Y_G_YY,
+        ],
+        linear: [
+            parameter::GYRO_Y_G_X,
+            parameter::GYRO_Y_G_Y,
+            parameter::GYRO_Y_G_Z,
+        ],
+        products: [
+            parameter::GYRO_Y_G_XX,
+            parameter::GYRO_Y_G_XY,
+            parameter::GYRO_Y_G_XZ,
+            parameter::GYRO_Y_G_YY,
+            parameter::GYRO_Y_G_YZ,
+            parameter::GYRO_Y_G_ZZ,
+        ],
+        cubic: parameter::GYRO_Y_G_YYY,
+        ramp: parameter::GYRO_Y_RAMP,
+    },
+    Indices {
+        nominal: [
+            parameter::GYRO_Z_BIAS,
+            parameter::GYRO_Z_G_Z,
+            parameter::GYRO_Z_G_ZZ,
+        ],
+        linear: [
+            parameter::GYRO_Z_G_X,
+            parameter::GYRO_Z_G_Y,
+            parameter::GYRO_Z_G_Z,
+        ],
+        products: [
+            parameter::GYRO_Z_G_XX,
+            parameter::GYRO_Z_G_XY,
+            parameter::GYRO_Z_G_XZ,
+            parameter::GYRO_Z_G_YY,
+            parameter::GYRO_Z_G_YZ,
+            parameter::GYRO_Z_G_ZZ,
+        ],
+        cubic: parameter::GYRO_Z_G_ZZZ,
+        ramp: parameter::GYRO_Z_RAMP,
+    },
+];
 
 /// One term of the drift of one gyro.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Term {
-    /// D_F, D_I or D_II, as the generated drift law has them.
+    /// D_F, D_I or D_II of the nominal law: proportional to this power of specific force along the input
+    /// axis.
     Nominal(usize),
     /// Proportional to specific force along another axis.
     Cross(usize),
@@ -48,36 +125,47 @@ impl Term {
 
     /// Public name, such as `gyro_x.g_y`.
     #[must_use]
-    pub fn id(self, gyro: usize) -> String {
-        let i = AXES[gyro];
-        match self {
-            Self::Nominal(which) => match NOMINAL_POWERS[which] {
-                0 => format!("gyro_{i}.bias"),
-                power => format!("gyro_{i}.g_{}", i.repeat(power)),
-            },
-            Self::Cross(j) => format!("gyro_{i}.g_{}", AXES[j]),
-            Self::Product(j, k) => format!("gyro_{i}.g_{}{}", AXES[j], AXES[k]),
-            Self::Cubic => format!("gyro_{i}.g_{}", i.repeat(3)),
-            Self::Ramp => format!("gyro_{i}.ramp"),
-        }
+    pub fn id(self, gyro: usize) -> &'static str {
+        PARAMETERS[self.parameter(gyro)].id
     }
 
     /// Unit of its coefficient.
     #[must_use]
     pub fn unit(self, gyro: usize) -> &'static str {
-        self.parameter(gyro)
-            .map_or("", |parameter| PARAMETERS[parameter].unit)
+        PARAMETERS[self.parameter(gyro)].unit
+    }
+
+    /// Axes of the components of specific force that it is the product of; empty for the ramp.
+    #[must_use]
+    pub fn factors(self, gyro: usize) -> Vec<usize> {
+        match self {
+            Self::Nominal(power) => vec![gyro; power],
+            Self::Cross(j) => vec![j],
+            Self::Product(j, k) => vec![j, k],
+            Self::Cubic => vec![gyro; 3],
+            Self::Ramp => Vec::new(),
+        }
     }
 
     /// Its index among the parameters of the generated catalogue.
-    pub(crate) fn parameter(self, gyro: usize) -> Option<usize> {
-        let id = self.id(gyro);
-        PARAMETERS.iter().position(|parameter| parameter.id == id)
+    pub(crate) fn parameter(self, gyro: usize) -> usize {
+        let indices = &INDICES[gyro];
+        match self {
+            Self::Nominal(power) => indices.nominal[power],
+            Self::Cross(j) => indices.linear[j],
+            Self::Product(j, k) => {
+                let (first, second) = (j.min(k), j.max(k));
+                // Starts of the rows of the upper triangle, less the column of the diagonal.
+                indices.products[[0, 2, 3][first] + second]
+            }
+            Self::Cubic => indices.cubic,
+            Self::Ramp => indices.ramp,
+        }
     }
 
     /// Names of its exact equivalents, which have the opposite sign.
     #[must_use]
-    pub fn equivalents(self, gyro: usize) -> Vec<String> {
+    pub fn equivalents(self, gyro: usize) -> Vec<&'static str> {
         match self {
             Self::Product(j, k) if j == k => {
                 let other = 3 - gyro - j;
@@ -137,10 +225,9 @@ mod tests {
                     Term::Ramp => 0.5,
                 };
                 let id = term.id(gyro);
-                let found = term.parameter(gyro).map(|parameter| response[parameter]);
+                let found = response[term.parameter(gyro)];
                 // A few operations, and the way to rad/s and back.
-                let error = found.map(|found| (found - expected).abs());
-                assert!(error.is_some_and(|error| error < 1e-14), "{id} {found:?}");
+                assert!((found - expected).abs() < 1e-14, "{id} {found:?}");
                 assert!(term.unit(gyro).starts_with("deg/h"), "{id}");
             }
         }
