@@ -45,7 +45,8 @@ fn assert_dense(simulation: &Simulation) {
     };
     let (record, bench) = (&simulation.record, &simulation.bench);
     let found = calibrate(record, bench, &options, |_| ()).unwrap();
-    let dense = DenseProblem::new(Run { record, bench }, options.discretisation.longest_step_s).solve();
+    let dense =
+        DenseProblem::new(Run { record, bench }, options.discretisation.longest_step_s).solve();
     let drift = found.drift.to_array();
     for i in 0..9 {
         let sigma = dense.covariance[(i, i)].sqrt();

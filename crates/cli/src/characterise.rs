@@ -177,7 +177,9 @@ fn method(name: &str) -> Result<Asked, String> {
     if name == "none" {
         return Ok(Asked::None);
     }
-    let found = BaselineMethod::ALL.into_iter().find(|method| method.name() == name);
+    let found = BaselineMethod::ALL
+        .into_iter()
+        .find(|method| method.name() == name);
     found.map(Asked::Method).ok_or_else(|| {
         let known = BaselineMethod::ALL.map(BaselineMethod::name).join(", ");
         format!("expected one of {known}, none")
@@ -192,6 +194,7 @@ fn methods(asked: &[Asked]) -> Result<Vec<BaselineMethod>, Failure> {
             "--method none excludes other methods".to_owned(),
         ));
     }
-    let is_asked = |method: &BaselineMethod| asked.is_empty() || asked.contains(&Asked::Method(*method));
+    let is_asked =
+        |method: &BaselineMethod| asked.is_empty() || asked.contains(&Asked::Method(*method));
     Ok(BaselineMethod::ALL.into_iter().filter(is_asked).collect())
 }
