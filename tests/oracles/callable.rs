@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use gyrocal_oracle::dual::{self, Dual};
 use gyrocal_oracle::points::State;
-use gyrocal_oracle::rounding::{RunningError, ROUNDOFF_F64};
+use gyrocal_oracle::rounding::{ROUNDOFF_F64, RunningError};
 use gyrocal_scalar::Lanes;
 
 use crate::programs;
@@ -64,7 +64,10 @@ impl Callable {
 
     /// Bound on the rounding error of each of its results in `f64`.
     pub(crate) fn rounding(&self, inputs: &[f64]) -> Vec<f64> {
-        let inputs: Vec<RunningError> = inputs.iter().map(|&value| RunningError::exact(value)).collect();
+        let inputs: Vec<RunningError> = inputs
+            .iter()
+            .map(|&value| RunningError::exact(value))
+            .collect();
         (self.bounded)(&inputs)
             .iter()
             .map(|result| ROUNDOFF_F64 * result.bound())

@@ -1,7 +1,7 @@
 //! One generated function for several types of numbers: lanes and single precision.
 
 use gyrocal_oracle::points::{Purpose, states};
-use gyrocal_oracle::rounding::{RunningError, ROUNDOFF_F32, ROUNDOFF_F64};
+use gyrocal_oracle::rounding::{ROUNDOFF_F32, ROUNDOFF_F64, RunningError};
 use gyrocal_scalar::Lanes;
 
 use crate::STATES;
@@ -41,7 +41,8 @@ fn single_precision_differs_by_its_rounding_only() {
         for state in &states {
             let single: Vec<f32> = function.inputs(state).iter().map(|&x| x as f32).collect();
             let double: Vec<f64> = single.iter().map(|&x| x.into()).collect();
-            let bounded: Vec<RunningError> = double.iter().map(|&x| RunningError::exact(x)).collect();
+            let bounded: Vec<RunningError> =
+                double.iter().map(|&x| RunningError::exact(x)).collect();
             let (single, double) = ((function.single)(&single), (function.double)(&double));
             for (nonzero, bound) in (function.bounded)(&bounded).iter().enumerate() {
                 let error = (f64::from(single[nonzero]) - double[nonzero]).abs();

@@ -26,28 +26,32 @@ use store::{Finished, Store, encode};
 /// A range of seeds, the fingerprint of the job, and the file that keeps the results.
 #[derive(Debug, Clone)]
 pub struct Campaign {
-    seeds: Range<u64>,
-    fingerprint: Fingerprint,
-    results: Option<PathBuf>,
-    threads: Option<NonZeroUsize>,
+    /// Seeds that the job runs over.
+    pub seeds: Range<u64>,
+    /// Everything but the seed that the results depend on.
+    pub fingerprint: Fingerprint,
+    /// File of the results; `None` keeps them in memory only.
+    pub results: Option<PathBuf>,
+    /// Number of threads; `None` for one on each core.
+    pub threads: Option<NonZeroUsize>,
 }
 
 /// Progress of a campaign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// Seeds with a result, those of earlier runs included.
+    /// Number of seeds with a result, those of earlier runs included.
     pub done: u64,
-    /// Seeds of the campaign.
+    /// Number of seeds of the campaign.
     pub total: u64,
-    /// Seeds whose results were in the file at the start.
+    /// Number of seeds whose results were in the file at the start.
     pub resumed: u64,
-    /// Seeds that failed.
+    /// Number of seeds whose job failed.
     pub failed: u64,
-    /// Time left at the pace of this run; `None` until a seed was finished in it.
+    /// Estimated time left, from the finished seeds of this run; `None` before the first.
     pub left: Option<Duration>,
 }
 
-/// The results of all seeds, in their order.
+/// Results of all seeds, in the order of the seeds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome<T> {
     results: BTreeMap<u64, Finished<T>>,
@@ -234,7 +238,7 @@ impl<T> Outcome<T> {
         })
     }
 
-    /// Seeds whose results were in the file at the start.
+    /// Number of seeds whose results were in the file at the start.
     #[must_use]
     pub fn resumed(&self) -> u64 {
         self.resumed

@@ -11,7 +11,11 @@ use crate::pictures::Named;
 
 /// Partial residuals of each effect found, and the residuals of both laws; only the latter if
 /// nothing was found.
-pub(super) fn pictures(log: &Path, prepared: &PreparedTest, report: &MultiPositionReport) -> Vec<Named> {
+pub(super) fn pictures(
+    log: &Path,
+    prepared: &PreparedTest,
+    report: &MultiPositionReport,
+) -> Vec<Named> {
     let mut pictures: Vec<Named> = Vec::new();
     if let Some(causes) = causes(log, prepared, report) {
         pictures.push(("causes", Box::new(causes)));
@@ -28,7 +32,11 @@ fn subtitle(log: &Path, report: &MultiPositionReport) -> String {
 }
 
 /// By gyro and then by name: findings come in the order of their significance.
-fn causes(log: &Path, prepared: &PreparedTest, report: &MultiPositionReport) -> Option<TermContributions> {
+fn causes(
+    log: &Path,
+    prepared: &PreparedTest,
+    report: &MultiPositionReport,
+) -> Option<TermContributions> {
     let mut findings: Vec<&Finding> = report.findings.iter().collect();
     findings.sort_by(|a, b| a.effect.cmp(&b.effect));
     let terms = findings

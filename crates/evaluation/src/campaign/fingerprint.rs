@@ -23,6 +23,12 @@ impl Fingerprint {
         self
     }
 
+    /// Names and values, in the order in which they were added.
+    #[must_use]
+    pub fn entries(&self) -> &[(String, String)] {
+        &self.0
+    }
+
     /// First difference to the fingerprint in a file, in words; `None` if they are equal.
     pub(crate) fn difference(&self, found: &Self) -> Option<String> {
         for (index, (name, expected)) in self.0.iter().enumerate() {
