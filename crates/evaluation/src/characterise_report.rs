@@ -2,13 +2,13 @@
 
 use core::ops::Range;
 
-use crate::campaign::{Campaign, Failure, Fingerprint, Outcome, program};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::DiagnoseOptions;
 use gyrocal_record::Manifest;
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::BaselineMethod;
+use crate::campaign::{Campaign, Failure, Fingerprint, Outcome, program};
 use crate::cell_characteristics::characteristics;
 use crate::characteristic::Characteristic;
 use crate::comparison::{ComparisonRow, comparison};

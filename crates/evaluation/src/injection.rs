@@ -3,12 +3,12 @@
 use gyrocal::effect::{EffectParameter, Need, Role};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{Extended, NoiseModel, Options, Run};
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::error::EvaluationError;
 use crate::projection::ProjectedScores;
-use gyrocal_statistics::deviates::Draw;
 use crate::scenario::duration_h;
 use crate::signature::{Signature, SignatureColumns};
 
@@ -88,11 +88,7 @@ pub fn testable_effects(scenario: &Scenario) -> Vec<&'static Effect> {
 }
 
 /// Draws an onset or a time constant for an effect that has one.
-pub fn draw_shape(
-    effect: &Effect,
-    scenario: &Scenario,
-    random: &mut Draw,
-) -> Option<f64> {
+pub fn draw_shape(effect: &Effect, scenario: &Scenario, random: &mut Draw) -> Option<f64> {
     match effect.shape()?.role {
         Role::TimeConstant(_) => {
             Some(random.log_uniform([SHORTEST_TIME_CONSTANT_H, 0.25 * duration_h(scenario)]))

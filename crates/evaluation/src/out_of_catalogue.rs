@@ -6,11 +6,11 @@
 
 use gyrocal_calibration::{Column, Extension, Further};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 
 use crate::error::EvaluationError;
 use crate::injection::nominal_fit;
-use gyrocal_statistics::deviates::Draw;
 use crate::record_score::{InjectedScore, RecordScore};
 use crate::scenario::duration_h;
 use crate::score::findings_score;

@@ -2,12 +2,12 @@
 
 mod draws;
 
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Scenario, simulate};
 
 use crate::baseline::BaselineMethod;
 use crate::error::EvaluationError;
 use crate::out_of_catalogue::score_out_of_catalogue;
-use gyrocal_statistics::deviates::Draw;
 use crate::record_score::RecordScore;
 use crate::scenario::scenario;
 use crate::score::score;

@@ -25,8 +25,7 @@ pub fn scenario(number: u64) -> Scenario {
         ..Population::varied(SEED)
     };
     Scenario {
-        temperature: (Draw::new(number, PURPOSE).uniform() < 0.5)
-            .then(Temperature::default),
+        temperature: (Draw::new(number, PURPOSE).uniform() < 0.5).then(Temperature::default),
         ..population.scenario(number)
     }
 }

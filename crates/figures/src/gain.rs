@@ -5,8 +5,8 @@ mod records;
 use core::ops::Range;
 
 use gyrocal::effect::Enters;
-use gyrocal_statistics::{Proportion, mean_square_band, median};
 use gyrocal_evaluation::{Outcome, effect_of};
+use gyrocal_statistics::{Proportion, mean_square_band, median};
 use gyrocal_testkit::extended_comparison;
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -71,13 +71,6 @@ fn each_of_two_effects_has_its_strength_given_the_other() {
         assert!((alone - expected).abs() < 1e-6, "{alone}, {expected}");
     }
     // Nothing is injected if the cosine between the two exceeds the limit.
-    let refused = inject(
-        &scenario,
-        &pair,
-        8.0,
-        0.9 * cosine,
-        &mut Draw::new(1, 2),
-    )
-    .unwrap();
+    let refused = inject(&scenario, &pair, 8.0, 0.9 * cosine, &mut Draw::new(1, 2)).unwrap();
     assert_eq!(refused, None);
 }

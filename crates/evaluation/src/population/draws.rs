@@ -3,13 +3,13 @@
 use gyrocal::effect::EffectKind;
 use gyrocal::generated::catalogue::parameters_index;
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Scenario, simulate};
 
 use crate::error::EvaluationError;
 use crate::injection::{
     InjectedEffect, MAX_DRAWS, draw_shape, inject, inject_into, nominal_fit, testable_effects,
 };
-use gyrocal_statistics::deviates::Draw;
 
 /// Two effects are injected together if the cosine between their signatures is less.
 const LARGEST_COSINE: f64 = 0.6;
@@ -55,12 +55,7 @@ fn schedule(effects: &[&'static Effect]) -> Vec<&'static Effect> {
 }
 
 /// One effect, evenly over the list; a randomly drawn one if the record does not show it.
-pub(super) fn single(
-    seed: u64,
-    scenario: &Scenario,
-    strength: f64,
-    random: &mut Draw,
-) -> Drawn {
+pub(super) fn single(seed: u64, scenario: &Scenario, strength: f64, random: &mut Draw) -> Drawn {
     let effects = schedule(&testable_effects(scenario));
     let clean = simulate(scenario)?;
     let fitted = nominal_fit(&clean)?;

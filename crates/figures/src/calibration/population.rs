@@ -1,8 +1,8 @@
 //! A population of random records, calibrated by the batch estimator and compared with the truth.
 
 use gyrocal_calibration::Options;
-use gyrocal_statistics::mean;
 use gyrocal_evaluation::{BandedMean, CalibrationSummary, CalibrationTrial, Outcome};
+use gyrocal_statistics::mean;
 use gyrocal_truth::Population;
 
 use super::Error;
