@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use comfy_table::Cell;
-use gyrocal_instruments::{MeasuredError, ResultFile, Unfit, read_columns};
+use gyrocal_instruments::{InstrumentError, ResultFile, Unfit, read_columns};
 use gyrocal_record::{InputErrorKind, SourceText, write_json};
 use gyrocal_statistics::allan::{
     AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
@@ -71,7 +71,7 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
     Ok(summary(arguments, &columns))
 }
 
-fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, MeasuredError> {
+fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, InstrumentError> {
     let source = SourceText::read(&arguments.log)?;
     let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
     let columns = read_columns(&source, &names)?.values;
@@ -99,8 +99,8 @@ fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, MeasuredError> {
         .collect()
 }
 
-fn overflow(name: &str, scale: f64) -> MeasuredError {
-    MeasuredError::Unfit {
+fn overflow(name: &str, scale: f64) -> InstrumentError {
+    InstrumentError::Unfit {
         kind: Unfit::Setting,
         found: format!("values of `{name}` that are too large when multiplied by {scale:e}"),
         expected: "finite numbers".to_owned(),
@@ -108,7 +108,7 @@ fn overflow(name: &str, scale: f64) -> MeasuredError {
     }
 }
 
-fn constant(source: &SourceText, name: &str) -> MeasuredError {
+fn constant(source: &SourceText, name: &str) -> InstrumentError {
     let error = source.error(
         InputErrorKind::Stuck,
         0..0,

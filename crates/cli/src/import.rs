@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, axes_csv, import};
-use gyrocal_instruments::{Description, Log, MeasuredError, ResultFile};
+use gyrocal_instruments::{Description, InstrumentError, Log, ResultFile};
 use gyrocal_record::Outputs;
 
 use crate::Failure;
@@ -119,7 +119,7 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<String, Failure> {
     Ok(summary(arguments, &imported.report))
 }
 
-fn work(arguments: &StrapdownArguments) -> Result<Imported, MeasuredError> {
+fn work(arguments: &StrapdownArguments) -> Result<Imported, InstrumentError> {
     let description = Description::read(&arguments.log_description)?;
     let log = Log::read(&arguments.log, &description)?;
     let settings = ImportSettings {

@@ -3,16 +3,16 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use gyrocal_instruments::MeasuredError;
+use gyrocal_instruments::InstrumentError;
 use miette::Diagnostic;
 
 use crate::Failure;
 
 /// An error of a log as a failure of the command.
-pub(crate) fn unusable(log: &Path, error: MeasuredError) -> Failure {
+pub(crate) fn unusable(log: &Path, error: InstrumentError) -> Failure {
     match error {
-        MeasuredError::File(error) => error.into(),
-        MeasuredError::Unfit {
+        InstrumentError::File(error) => error.into(),
+        InstrumentError::Unfit {
             found,
             expected,
             advice,

@@ -13,7 +13,7 @@ use gyrocal_instruments::multi_position::{
     multi_position_test, prepare,
 };
 use gyrocal_instruments::{
-    Description, Log, MeasuredError, ResultFile, StopSettings, find_stops, given_stops,
+    Description, InstrumentError, Log, ResultFile, StopSettings, find_stops, given_stops,
 };
 use gyrocal_record::Outputs;
 use gyrocal_statistics::format;
@@ -98,7 +98,9 @@ fn false_alarm(text: &str) -> Result<f64, String> {
         .map_err(|error| error.to_string())
 }
 
-fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, MultiPositionReport), MeasuredError> {
+fn work(
+    arguments: &TumbleArguments,
+) -> Result<(PreparedTest, MultiPositionReport), InstrumentError> {
     let description = Description::read(&arguments.log_description)?;
     let log = Log::read(&arguments.log, &description)?;
     let stops = match &arguments.stop[..] {

@@ -90,7 +90,7 @@ impl CellFigures {
 
     /// The unweighted average of fractions, with a lower limit.
     pub(crate) fn average_at_least(&mut self, figure: &str, least: f64, all: &[Proportion]) {
-        let average = mean(&all.iter().map(Proportion::share).collect::<Vec<_>>());
+        let average = mean(all.iter().map(Proportion::share));
         let variance = all.iter().map(Proportion::variance).sum::<f64>();
         let sigma = variance.sqrt() / all.len() as f64;
         let up_to = |sigmas: f64| f64::min(average + sigmas * sigma, 1.0);
@@ -169,7 +169,7 @@ impl CellFigures {
     /// The ratio of two means over the same records, with an upper limit.
     pub(crate) fn ratio_at_most(&mut self, figure: &str, most: f64, pairs: &[[f64; 2]]) {
         let column = |which: usize| -> Vec<f64> { pairs.iter().map(|pair| pair[which]).collect() };
-        let ratio = mean(&column(0)) / mean(&column(1));
+        let ratio = mean(column(0)) / mean(column(1));
         let excess: Vec<f64> = pairs.iter().map(|pair| pair[0] - most * pair[1]).collect();
         // The ratio exceeds the limit if the mean of this difference is positive; over tens of records
         // that mean is normal.

@@ -2,7 +2,7 @@
 
 use gyrocal_statistics::upper_median;
 
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 use crate::least_squares::{Minimum, minimise};
 use crate::stop_means::StopMeans;
 
@@ -40,9 +40,9 @@ const UNKNOWNS: usize = 9;
 ///
 /// [`Unfit::TooShort`] with fewer than three stops more than unknowns, [`Unfit::Undetermined`] if
 /// their attitudes do not determine the unknowns, [`Unfit::Norm`] if the norms do not fit.
-pub fn accel_from_norm(stops: &[StopMeans]) -> Result<AccelCalibration, MeasuredError> {
+pub fn accel_from_norm(stops: &[StopMeans]) -> Result<AccelCalibration, InstrumentError> {
     if stops.len() < UNKNOWNS + 3 {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::TooShort,
             format!("{} static stops", stops.len()),
             format!("at least {} for scales from the stops", UNKNOWNS + 3),
@@ -62,7 +62,7 @@ pub fn accel_from_norm(stops: &[StopMeans]) -> Result<AccelCalibration, Measured
     }
     const LARGEST_RMS_G: f64 = 0.02;
     if norm_rms_g > LARGEST_RMS_G {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::Norm,
             format!("norms of specific force that scatter by {norm_rms_g:.3} g at the stops"),
             format!("1 g in each attitude within {LARGEST_RMS_G} g"),
@@ -86,7 +86,7 @@ struct OutputRange {
 }
 
 /// The ranges of the three accelerometers, none of which may be much narrower than the widest.
-fn ranges(stops: &[StopMeans]) -> Result<[OutputRange; 3], MeasuredError> {
+fn ranges(stops: &[StopMeans]) -> Result<[OutputRange; 3], InstrumentError> {
     let ranges = [0, 1, 2].map(|axis| {
         let outputs = stops.iter().map(|stop| stop.accel[axis]);
         let low = outputs.clone().fold(f64::INFINITY, f64::min);
@@ -140,8 +140,8 @@ fn fit(stops: &[StopMeans], ranges: &[OutputRange; 3]) -> Minimum {
     minimise(&start, &[1e-5; UNKNOWNS], residuals)
 }
 
-fn undetermined(found: String) -> MeasuredError {
-    MeasuredError::unfit(
+fn undetermined(found: String) -> InstrumentError {
+    InstrumentError::unfit(
         Unfit::Undetermined,
         found,
         "stops with each axis up and down and in between",
@@ -161,7 +161,7 @@ fn unpack(unknowns: &[f64]) -> ([f64; 3], [[f64; 3]; 3]) {
 /// # Errors
 ///
 /// [`Unfit::Norm`].
-pub fn refuse_wrong_norm(norms_g: impl Iterator<Item = f64>) -> Result<(), MeasuredError> {
+pub fn refuse_wrong_norm(norms_g: impl Iterator<Item = f64>) -> Result<(), InstrumentError> {
     let mut norms: Vec<f64> = norms_g.collect();
     let median = upper_median(&mut norms).unwrap_or(f64::NAN);
     if (0.9..=1.1).contains(&median) {
@@ -179,7 +179,7 @@ pub fn refuse_wrong_norm(norms_g: impl Iterator<Item = f64>) -> Result<(), Measu
     } else {
         "check unit, scale and zero of the accelerometers"
     };
-    Err(MeasuredError::unfit(
+    Err(InstrumentError::unfit(
         Unfit::Norm,
         format!("a norm of specific force at rest of {median:.4} g"),
         "1 g within a tenth",

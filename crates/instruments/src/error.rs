@@ -1,56 +1,58 @@
+//! The error of this crate.
+
 use gyrocal_statistics::StatisticsError;
 
-/// Why a recording could not be used.
+/// Failure of an instrument test.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum MeasuredError {
-    /// A file is not what its format asks for.
+pub enum InstrumentError {
+    /// A file violates its format.
     #[error(transparent)]
     File(#[from] gyrocal_record::Error),
     /// A statistic has no meaning with these arguments.
     #[error(transparent)]
     Statistics(StatisticsError),
-    /// The recording contradicts what was said of it, or is not fit for the job.
+    /// The recording contradicts its description, or is not suitable for the test.
     #[error("found {found}, expected {expected}; {advice}")]
     Unfit {
-        /// What kind of thing is wrong.
+        /// Kind of the problem.
         kind: Unfit,
-        /// What the recording shows.
+        /// Found property of the recording.
         found: String,
-        /// What the job needs.
+        /// Expected property.
         expected: String,
-        /// What to do.
+        /// Advice to the user.
         advice: String,
     },
 }
 
-/// What can be wrong with a recording as a whole.
+/// Kind of a problem of a recording as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Unfit {
-    /// Too few samples, stops or turns for the job.
+    /// Too few samples, stops or turns.
     TooShort,
     /// Samples are missing.
     Gap,
     /// The intervals between time stamps scatter too much.
     Jitter,
-    /// There is no stretch at rest.
+    /// No interval is at rest.
     NeverStatic,
     /// The norm of specific force is not gravity.
     Norm,
-    /// The rate at rest, or between stops, does not fit the unit of the gyros.
+    /// The rate at rest or between stops contradicts the unit of the gyros.
     GyroScale,
-    /// Counts, and nothing that says what a count is.
+    /// The scale of raw counts is missing.
     NoScale,
     /// The axes are left-handed, or those of gyros and accelerometers are not the same.
     Axes,
-    /// The attitudes do not determine what is to be estimated.
+    /// The attitudes do not determine the unknowns.
     Undetermined,
     /// A setting outside its range.
     Setting,
 }
 
-impl MeasuredError {
+impl InstrumentError {
     pub(crate) fn unfit(
         kind: Unfit,
         found: impl Into<String>,
@@ -65,8 +67,7 @@ impl MeasuredError {
         }
     }
 
-    /// What kind of thing is wrong with the recording; `None` for errors of files and of
-    /// arguments.
+    /// Kind of a problem of the recording; `None` for errors of files and of arguments.
     #[must_use]
     pub fn kind(&self) -> Option<Unfit> {
         match self {
@@ -76,7 +77,7 @@ impl MeasuredError {
     }
 }
 
-impl From<StatisticsError> for MeasuredError {
+impl From<StatisticsError> for InstrumentError {
     fn from(error: StatisticsError) -> Self {
         match error {
             StatisticsError::AveragingTooLong { found, expected } => Self::unfit(

@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
 
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 use crate::least_squares::minimise;
 use crate::log::Log;
 use crate::stop_means::StopMeans;
@@ -53,10 +53,10 @@ pub fn gyro_from_turns(
     log: &Log,
     stops: &[StopMeans],
     forces_g: &[[f64; 3]],
-) -> Result<GyroCalibration, MeasuredError> {
+) -> Result<GyroCalibration, InstrumentError> {
     let turns = turns(log, stops, forces_g);
     if turns.len() < FEWEST_TURNS {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::TooShort,
             format!("{} turns between stops", turns.len()),
             format!("at least {FEWEST_TURNS} of {SMALLEST_TURN_RAD} rad or more"),
@@ -182,12 +182,12 @@ fn starts(unit: f64) -> Vec<Matrix3<f64>> {
     starts
 }
 
-fn refuse_bad_fit(gravity_rms_g: f64) -> Result<(), MeasuredError> {
+fn refuse_bad_fit(gravity_rms_g: f64) -> Result<(), InstrumentError> {
     const LARGEST_RMS_G: f64 = 0.1;
     if gravity_rms_g <= LARGEST_RMS_G {
         return Ok(());
     }
-    Err(MeasuredError::unfit(
+    Err(InstrumentError::unfit(
         Unfit::GyroScale,
         format!("turns that leave {gravity_rms_g:.2} g of gravity unexplained by any scale"),
         format!("at most {LARGEST_RMS_G} g"),
@@ -196,7 +196,7 @@ fn refuse_bad_fit(gravity_rms_g: f64) -> Result<(), MeasuredError> {
     ))
 }
 
-fn refuse_axes(matrix: &Matrix3<f64>, inverse: &Matrix3<f64>) -> Result<(), MeasuredError> {
+fn refuse_axes(matrix: &Matrix3<f64>, inverse: &Matrix3<f64>) -> Result<(), InstrumentError> {
     let axes_of = |gyro: usize| {
         let row = inverse.row(gyro);
         let larger = |a: &usize, b: &usize| row[*a].abs().total_cmp(&row[*b].abs());
@@ -213,7 +213,7 @@ fn refuse_axes(matrix: &Matrix3<f64>, inverse: &Matrix3<f64>) -> Result<(), Meas
     } else {
         "other axes of the gyros than of the accelerometers"
     };
-    Err(MeasuredError::unfit(
+    Err(InstrumentError::unfit(
         Unfit::Axes,
         format!(
             "{hand}: by the turns, gyros x, y, z turn about {}",
@@ -225,8 +225,8 @@ fn refuse_axes(matrix: &Matrix3<f64>, inverse: &Matrix3<f64>) -> Result<(), Meas
     ))
 }
 
-fn undetermined() -> MeasuredError {
-    MeasuredError::unfit(
+fn undetermined() -> InstrumentError {
+    InstrumentError::unfit(
         Unfit::Undetermined,
         "turns that leave a scale or an angle of the gyros undetermined",
         "turns about each axis",

@@ -28,7 +28,7 @@
 //! use gyrocal_instruments::multi_position::{MultiPositionSettings, multi_position_test, prepare};
 //! use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
 //!
-//! # fn main() -> Result<(), gyrocal_instruments::MeasuredError> {
+//! # fn main() -> Result<(), gyrocal_instruments::InstrumentError> {
 //! let description = Description::read("log.toml".as_ref())?;
 //! let log = Log::read("log.csv".as_ref(), &description)?;
 //! let stops = find_stops(&log, &StopSettings::default())?;
@@ -62,7 +62,7 @@ pub mod strapdown;
 pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
 pub use columns::{Columns, read_columns};
 pub use description::Description;
-pub use error::{MeasuredError, Unfit};
+pub use error::{InstrumentError, Unfit};
 pub use gyro_from_turns::{GyroCalibration, gyro_from_turns};
 pub use log::Log;
 pub use result_file::ResultFile;

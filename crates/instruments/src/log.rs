@@ -8,7 +8,7 @@ use gyrocal_statistics::median_interval_s;
 
 use crate::columns::{Columns, read_columns};
 use crate::description::{AccelUnit, CountScale, Description, Direction, GyroUnit};
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 
 /// Samples of six sensors; all vectors have the same length.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,9 +39,9 @@ impl Log {
     ///
     /// # Errors
     ///
-    /// [`MeasuredError::File`] at its place in the file; [`Unfit::Gap`], [`Unfit::Jitter`] and
+    /// [`InstrumentError::File`] at its place in the file; [`Unfit::Gap`], [`Unfit::Jitter`] and
     /// [`Unfit::NoScale`].
-    pub fn read(path: &Path, description: &Description) -> Result<Self, MeasuredError> {
+    pub fn read(path: &Path, description: &Description) -> Result<Self, InstrumentError> {
         Self::from_source(&SourceText::read(path)?, description)
     }
 
@@ -50,7 +50,11 @@ impl Log {
     /// # Errors
     ///
     /// As for [`Self::read`].
-    pub fn parse(text: &str, name: &str, description: &Description) -> Result<Self, MeasuredError> {
+    pub fn parse(
+        text: &str,
+        name: &str,
+        description: &Description,
+    ) -> Result<Self, InstrumentError> {
         Self::from_source(&SourceText::new(text, name)?, description)
     }
 
@@ -66,7 +70,10 @@ impl Log {
         self.time_s.is_empty()
     }
 
-    fn from_source(source: &SourceText, description: &Description) -> Result<Self, MeasuredError> {
+    fn from_source(
+        source: &SourceText,
+        description: &Description,
+    ) -> Result<Self, InstrumentError> {
         let gyro_scale = gyro_scale(description)?;
         let accel_scale = accel_scale(description)?;
         let mut names: Vec<&str> = Vec::new();
@@ -126,7 +133,7 @@ impl Log {
         Ok(log)
     }
 
-    fn refuse_gaps(&self) -> Result<(), MeasuredError> {
+    fn refuse_gaps(&self) -> Result<(), InstrumentError> {
         let longest_s = GAP * self.interval_s;
         let gaps: Vec<&[f64]> = self
             .time_s
@@ -136,7 +143,7 @@ impl Log {
         let Some(first) = gaps.first() else {
             return Ok(());
         };
-        Err(MeasuredError::unfit(
+        Err(InstrumentError::unfit(
             Unfit::Gap,
             format!(
                 "{} gap(s) in the time stamps, the first of {:.4} s after {} s",
@@ -150,14 +157,14 @@ impl Log {
         ))
     }
 
-    fn refuse_jitter(&self) -> Result<(), MeasuredError> {
+    fn refuse_jitter(&self) -> Result<(), InstrumentError> {
         let intervals = self.time_s.windows(2).map(|pair| pair[1] - pair[0]);
         let squares = intervals.map(|interval_s| (interval_s / self.interval_s - 1.0).powi(2));
         let scatter = (squares.sum::<f64>() / (self.len() - 1) as f64).sqrt();
         if scatter <= JITTER {
             return Ok(());
         }
-        Err(MeasuredError::unfit(
+        Err(InstrumentError::unfit(
             Unfit::Jitter,
             format!(
                 "intervals that scatter by {:.1} % of the usual {:.4} s",
@@ -172,7 +179,7 @@ impl Log {
 }
 
 /// Factor from counts above zero to rad/s; `None` if turns are to determine it.
-fn gyro_scale(description: &Description) -> Result<Option<[f64; 3]>, MeasuredError> {
+fn gyro_scale(description: &Description) -> Result<Option<[f64; 3]>, InstrumentError> {
     let per_hour = 1.0_f64.to_radians() / 3600.0;
     match (description.gyro.unit, description.gyro.counts_per_rad_per_s) {
         (GyroUnit::RadPerS, _) => Ok(Some([1.0; 3])),
@@ -184,7 +191,7 @@ fn gyro_scale(description: &Description) -> Result<Option<[f64; 3]>, MeasuredErr
 }
 
 /// Factor from counts above zero to g; `None` if stops are to determine it.
-fn accel_scale(description: &Description) -> Result<Option<[f64; 3]>, MeasuredError> {
+fn accel_scale(description: &Description) -> Result<Option<[f64; 3]>, InstrumentError> {
     match (description.accel.unit, description.accel.counts_per_g) {
         (AccelUnit::G, _) => Ok(Some([1.0; 3])),
         (AccelUnit::MetrePerS2, _) => {
@@ -204,8 +211,8 @@ fn per_unit(scale: CountScale) -> Option<[f64; 3]> {
     }
 }
 
-fn no_scale(table: &str, key: &str, estimate: &str) -> MeasuredError {
-    MeasuredError::unfit(
+fn no_scale(table: &str, key: &str, estimate: &str) -> InstrumentError {
+    InstrumentError::unfit(
         Unfit::NoScale,
         format!("`[{table}]` in counts without `{key}`"),
         "what a count is",
@@ -234,10 +241,10 @@ fn refuse_backwards(
     ))
 }
 
-fn usual_interval_s(time_s: &[f64]) -> Result<f64, MeasuredError> {
+fn usual_interval_s(time_s: &[f64]) -> Result<f64, InstrumentError> {
     const FEWEST: usize = 100;
     if time_s.len() < FEWEST {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::TooShort,
             format!("{} samples", time_s.len()),
             format!("at least {FEWEST}"),

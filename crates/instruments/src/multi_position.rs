@@ -27,7 +27,7 @@ pub use report::{CoefficientReport, FTest, Finding, GyroReport, LawReport, Multi
 pub use search::{LEAST_FALSE_ALARM, SearchSettings, SearchStep, search};
 pub use terms::Term;
 
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 use regression::WeightedStops;
 use search::terms_of;
 
@@ -64,12 +64,12 @@ impl Default for MultiPositionSettings {
 pub fn multi_position_test(
     positions: &Positions,
     settings: &MultiPositionSettings,
-) -> Result<MultiPositionReport, MeasuredError> {
+) -> Result<MultiPositionReport, InstrumentError> {
     let stops = positions.time_s.len();
     let largest = Term::NOMINAL.len() + Term::catalogue(0).len();
     let fewest = largest + 3;
     if stops < fewest {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::TooShort,
             format!("{stops} static stops"),
             format!("at least {fewest} for the {largest} terms of the catalogue"),
@@ -106,7 +106,7 @@ pub fn multi_position_test(
     })
 }
 
-fn gyro_report(data: &WeightedStops, steps: &[SearchStep]) -> Result<GyroReport, MeasuredError> {
+fn gyro_report(data: &WeightedStops, steps: &[SearchStep]) -> Result<GyroReport, InstrumentError> {
     let extended = terms_of(steps, data.gyro);
     let (everything, undetermined) = determined_terms(data);
     Ok(GyroReport {
@@ -136,7 +136,7 @@ fn determined_terms(data: &WeightedStops) -> (Vec<Term>, Vec<Term>) {
     (determined, undetermined)
 }
 
-fn law_report(data: &WeightedStops, terms: &[Term]) -> Result<LawReport, MeasuredError> {
+fn law_report(data: &WeightedStops, terms: &[Term]) -> Result<LawReport, InstrumentError> {
     let with_standard_errors = data.fit(terms).ok_or_else(|| undetermined(data, terms))?;
     let data = &data.with_excess_of(terms);
     let fit = data.fit(terms).ok_or_else(|| undetermined(data, terms))?;
@@ -158,7 +158,7 @@ fn law_report(data: &WeightedStops, terms: &[Term]) -> Result<LawReport, Measure
     })
 }
 
-fn f_test(data: &WeightedStops, law: &[Term], larger: &[Term]) -> Result<FTest, MeasuredError> {
+fn f_test(data: &WeightedStops, law: &[Term], larger: &[Term]) -> Result<FTest, InstrumentError> {
     // Both laws are fitted with the excess scatter of the larger one.
     let data = &data.with_excess_of(larger);
     let small = data.fit(law).ok_or_else(|| undetermined(data, law))?;
@@ -172,9 +172,9 @@ fn f_test(data: &WeightedStops, law: &[Term], larger: &[Term]) -> Result<FTest, 
     })
 }
 
-fn undetermined(data: &WeightedStops, terms: &[Term]) -> MeasuredError {
+fn undetermined(data: &WeightedStops, terms: &[Term]) -> InstrumentError {
     let names: Vec<&str> = terms.iter().map(|term| term.id(data.gyro)).collect();
-    MeasuredError::unfit(
+    InstrumentError::unfit(
         Unfit::Undetermined,
         format!("stops that do not determine {} together", names.join(", ")),
         "each axis up, down and in between",

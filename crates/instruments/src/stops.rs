@@ -1,6 +1,6 @@
 //! Detection of stops: intervals of a log at rest.
 
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 use crate::log::Log;
 
 /// Settings of the detection of stops.
@@ -50,11 +50,11 @@ const MOST_CORRELATED: f64 = 10.0;
 pub fn find_stops(
     log: &Log,
     settings: &StopSettings,
-) -> Result<Vec<core::ops::Range<usize>>, MeasuredError> {
+) -> Result<Vec<core::ops::Range<usize>>, InstrumentError> {
     let samples = |time_s: f64| (time_s / log.interval_s).round() as usize;
     let window = samples(settings.window_s).max(8);
     if log.len() < 4 * window {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::TooShort,
             format!("{} samples", log.len()),
             format!("at least four windows of {window}"),
@@ -88,7 +88,7 @@ pub fn find_stops(
         }
     }
     if stops.is_empty() {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::NeverStatic,
             format!(
                 "no stretch at rest of {} s or more in {:.1} s",
@@ -111,14 +111,14 @@ pub fn find_stops(
 pub fn given_stops(
     log: &Log,
     stops_s: &[[f64; 2]],
-) -> Result<Vec<core::ops::Range<usize>>, MeasuredError> {
+) -> Result<Vec<core::ops::Range<usize>>, InstrumentError> {
     stops_s
         .iter()
         .map(|[from_s, to_s]| {
             let first = log.time_s.partition_point(|time_s| time_s < from_s);
             let end = log.time_s.partition_point(|time_s| time_s < to_s);
             if first + 2 > end {
-                return Err(MeasuredError::unfit(
+                return Err(InstrumentError::unfit(
                     Unfit::Setting,
                     format!("a stop from {from_s} to {to_s} s without samples"),
                     format!(

@@ -34,7 +34,7 @@ pub use rotation_fit::{RotationFit, fit_rotation};
 
 use crate::accel_from_norm::refuse_wrong_norm;
 use crate::description::Description;
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 use crate::log::Log;
 use earth_rate::{deg_per_h, earth_deg_per_h};
 use gyro_noise::gyro_noise_deg_per_h;
@@ -135,11 +135,11 @@ pub fn import(
     log: &Log,
     description: &Description,
     settings: &ImportSettings,
-) -> Result<Imported, MeasuredError> {
+) -> Result<Imported, InstrumentError> {
     let latitude_deg = checks::check(log, description, settings)?;
     let rows = integrate(log, settings.averaging_s);
     if rows.len() < FEWEST_ROWS {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::TooShort,
             format!("{} intervals of {} s", rows.len(), settings.averaging_s),
             format!("at least {FEWEST_ROWS}"),
@@ -192,7 +192,7 @@ impl StaticFit {
         quiet: &[bool],
         latitude_deg: f64,
         settings: &ImportSettings,
-    ) -> Result<Self, MeasuredError> {
+    ) -> Result<Self, InstrumentError> {
         let used: Vec<&PlatformRow> = rows
             .iter()
             .zip(quiet)

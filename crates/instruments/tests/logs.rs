@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 
-use gyrocal_instruments::{Description, Log, MeasuredError, Unfit};
+use gyrocal_instruments::{Description, InstrumentError, Log, Unfit};
 use gyrocal_statistics::allan::{allan_deviation, noise_coefficients, octaves};
 
 const DESCRIPTION: &str = r#"
@@ -33,7 +33,7 @@ fn regular(row: usize) -> f64 {
     10.0 * row as f64
 }
 
-fn parse(log: &str, description: &str) -> Result<Log, MeasuredError> {
+fn parse(log: &str, description: &str) -> Result<Log, InstrumentError> {
     Log::parse(
         log,
         "log.csv",

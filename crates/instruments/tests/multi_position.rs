@@ -10,8 +10,8 @@ use gyrocal_instruments::multi_position::{
     prepare, search,
 };
 use gyrocal_instruments::{
-    Description, Log, MeasuredError, StopSettings, Unfit, accel_from_norm, find_stops, given_stops,
-    stop_means,
+    Description, InstrumentError, Log, StopSettings, Unfit, accel_from_norm, find_stops,
+    given_stops, stop_means,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -221,7 +221,7 @@ fn description(unit: &str) -> Description {
     Description::parse(&text, "log.toml").unwrap()
 }
 
-fn prepared(log: &Log) -> Result<PreparedTest, MeasuredError> {
+fn prepared(log: &Log) -> Result<PreparedTest, InstrumentError> {
     let stops = find_stops(log, &StopSettings::default())?;
     prepare(log, &description("rad/s"), &stops)
 }
@@ -346,7 +346,7 @@ fn logs_that_are_not_what_they_are_said_to_be_are_refused() {
         prepared(&log).unwrap_err()
     };
     let scaled = |values: &mut [f64; 3], factor: f64| values.iter_mut().for_each(|v| *v *= factor);
-    let says = |error: &MeasuredError, kind: Unfit, words: &str| {
+    let says = |error: &InstrumentError, kind: Unfit, words: &str| {
         assert_eq!(error.kind(), Some(kind), "{error}");
         assert!(error.to_string().contains(words), "{error}");
     };

@@ -6,7 +6,7 @@ mod common;
 
 use common::{EARTH_RATE_RAD_PER_S, log};
 use gyrocal_instruments::strapdown::{ImportSettings, Imported, import, integrate};
-use gyrocal_instruments::{Description, Log, MeasuredError, Unfit};
+use gyrocal_instruments::{Description, InstrumentError, Log, Unfit};
 use gyrocal_truth::{Attitude, Coefficients, InitialAttitude, Scenario, simulate};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -41,7 +41,7 @@ fn at_rest(error: Vector3<f64>, seconds: usize) -> Log {
     log(1.0, &vec![(rate, body_c_enu() * Vector3::z()); seconds])
 }
 
-fn imported(log: &Log) -> Result<Imported, MeasuredError> {
+fn imported(log: &Log) -> Result<Imported, InstrumentError> {
     let settings = ImportSettings {
         averaging_s: 10.0,
         ..ImportSettings::default()

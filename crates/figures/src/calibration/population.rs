@@ -42,7 +42,7 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         banded("mean NEES of the nine coefficients", summary.nees)?,
         Figure::note(
             "the same, expected of truths from this population",
-            format!("{:.3}", 9.0 - mean(&lacking(&outcome, |variance| variance))),
+            format!("{:.3}", 9.0 - mean(lacking(&outcome, |variance| variance))),
         ),
         banded(
             "mean NEES of the determined coefficients",

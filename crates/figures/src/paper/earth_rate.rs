@@ -75,7 +75,7 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
                 .flat_map(|error| [error[kind], error[3 + kind], error[6 + kind]])
                 .collect()
         };
-        let rms = |which: usize| fixed(root_mean_square(&kind(which)), 4);
+        let rms = |which: usize| fixed(root_mean_square(kind(which)), 4);
         let key = format!("nis_printed_{}", case.key);
         let text = if nis > LARGE {
             format!("{nis:.2e}")
@@ -89,7 +89,7 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
             rms(0),
             rms(1),
             rms(2),
-            fixed(mean(&kind(1)), 4),
+            fixed(mean(kind(1)), 4),
         ]);
         let name = format!("Earth rate, {}: mean NIS, median", case.name);
         let mut figure = Figure::within(&name, case.nis, nis);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::positions::{Instrument, Positions};
 use crate::accel_from_norm::{accel_from_norm, refuse_wrong_norm};
 use crate::description::Description;
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 use crate::gyro_from_turns::{GyroCalibration, gyro_from_turns};
 use crate::log::Log;
 use crate::stop_means::{StopMeans, stop_means};
@@ -57,7 +57,7 @@ pub fn prepare(
     log: &Log,
     description: &Description,
     stops: &[Range<usize>],
-) -> Result<PreparedTest, MeasuredError> {
+) -> Result<PreparedTest, InstrumentError> {
     let stops = stop_means(log, stops);
     let accel = match log.accel_in_counts {
         true => Some(accel_from_norm(&stops)?),
@@ -129,11 +129,11 @@ fn norm(force_g: &[f64; 3]) -> f64 {
         .sqrt()
 }
 
-fn has_too_few_turns(error: &MeasuredError) -> bool {
+fn has_too_few_turns(error: &InstrumentError) -> bool {
     matches!(error.kind(), Some(Unfit::TooShort | Unfit::Undetermined))
 }
 
-fn refuse_wrong_scale(turns: &GyroCalibration) -> Result<(), MeasuredError> {
+fn refuse_wrong_scale(turns: &GyroCalibration) -> Result<(), InstrumentError> {
     let wrong = |outputs: &&f64| (**outputs - 1.0).abs() > LARGEST_SCALE_ERROR;
     let Some(outputs) = turns.outputs_per_rad_per_s.iter().find(wrong) else {
         return Ok(());
@@ -152,7 +152,7 @@ fn refuse_wrong_scale(turns: &GyroCalibration) -> Result<(), MeasuredError> {
         "check unit and scale of the gyros; in counts, `counts_per_rad_per_s = \"from-turns\"` \
          estimates it"
     };
-    Err(MeasuredError::unfit(
+    Err(InstrumentError::unfit(
         Unfit::GyroScale,
         format!("gyros that read {outputs:.4} where the turns between stops are 1 rad"),
         "1 within a tenth",

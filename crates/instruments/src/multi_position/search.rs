@@ -7,7 +7,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::positions::Positions;
 use super::regression::WeightedStops;
 use super::terms::Term;
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 
 /// Settings of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,9 +41,9 @@ impl SearchSettings {
     /// # Errors
     ///
     /// [`Unfit::Setting`] if the probability is below [`LEAST_FALSE_ALARM`] or not below 1.
-    pub fn at(false_alarm_probability: f64, seed: u64) -> Result<Self, MeasuredError> {
+    pub fn at(false_alarm_probability: f64, seed: u64) -> Result<Self, InstrumentError> {
         if !(LEAST_FALSE_ALARM..1.0).contains(&false_alarm_probability) {
-            return Err(MeasuredError::unfit(
+            return Err(InstrumentError::unfit(
                 Unfit::Setting,
                 format!("a probability of false alarm of {false_alarm_probability:e}"),
                 format!("{LEAST_FALSE_ALARM:e} or more, and less than 1"),

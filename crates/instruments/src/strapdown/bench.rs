@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::ImportSettings;
 use super::earth_rate::earth_deg_per_h;
 use super::rotation_fit::RotationFit;
-use crate::error::MeasuredError;
+use crate::error::InstrumentError;
 
 /// The bench description, made as the text of a bench file and parsed as any other.
 pub(super) fn bench(
@@ -16,7 +16,7 @@ pub(super) fn bench(
     heading_deg: f64,
     gyro_noise_deg_per_h: f64,
     settings: &ImportSettings,
-) -> Result<Bench, MeasuredError> {
+) -> Result<Bench, InstrumentError> {
     let horizontal = earth_deg_per_h(latitude_deg)[0];
     let (turn_deg, heading_sigma_deg) = match settings.heading_deg {
         Some([given_deg, sigma_deg]) => (given_deg - heading_deg, sigma_deg),

@@ -4,7 +4,7 @@ use super::ImportSettings;
 use super::earth_rate::deg_per_h;
 use super::rotation_fit::RotationFit;
 use crate::description::Description;
-use crate::error::{MeasuredError, Unfit};
+use crate::error::{InstrumentError, Unfit};
 use crate::log::Log;
 
 /// Largest rms residual of specific force about a uniform rotation at rest.
@@ -15,9 +15,9 @@ pub(super) fn check(
     log: &Log,
     description: &Description,
     settings: &ImportSettings,
-) -> Result<f64, MeasuredError> {
+) -> Result<f64, InstrumentError> {
     if log.gyro_in_counts || log.accel_in_counts {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::NoScale,
             "counts whose scale is to be estimated",
             "scales that are given",
@@ -26,7 +26,7 @@ pub(super) fn check(
         ));
     }
     let setting = |found: String, expected: &str| {
-        MeasuredError::unfit(Unfit::Setting, found, expected, "change the option")
+        InstrumentError::unfit(Unfit::Setting, found, expected, "change the option")
     };
     let longest_s = 0.5 * (log.time_s[log.len() - 1] - log.time_s[0]);
     if !(2.0 * log.interval_s..=longest_s).contains(&settings.averaging_s) {
@@ -39,7 +39,7 @@ pub(super) fn check(
         return Err(setting(found, "more than 1"));
     }
     description.site.latitude_deg.ok_or_else(|| {
-        MeasuredError::unfit(
+        InstrumentError::unfit(
             Unfit::Setting,
             "a description without latitude",
             "`latitude_deg` in `[site]`",
@@ -49,11 +49,11 @@ pub(super) fn check(
 }
 
 /// Refuses specific force that does not rotate uniformly.
-pub(super) fn refuse_motion(fit: &RotationFit) -> Result<(), MeasuredError> {
+pub(super) fn refuse_motion(fit: &RotationFit) -> Result<(), InstrumentError> {
     if fit.residual_rms <= LARGEST_RESIDUAL_G {
         return Ok(());
     }
-    Err(MeasuredError::unfit(
+    Err(InstrumentError::unfit(
         Unfit::NeverStatic,
         format!(
             "specific force that differs by {:.3} g from gravity turning uniformly in inertial \
@@ -71,7 +71,7 @@ pub(super) fn refuse_other_rates(
     fit: &RotationFit,
     [horizontal, vertical]: [f64; 2],
     latitude_deg: f64,
-) -> Result<(), MeasuredError> {
+) -> Result<(), InstrumentError> {
     let found = [fit.horizontal_rate[0], fit.vertical_rate[0]].map(deg_per_h);
     let earth = horizontal.hypot(vertical);
     let total = found[0].hypot(found[1]);
@@ -87,7 +87,7 @@ pub(super) fn refuse_other_rates(
             "check unit and scale of the gyros; if they are right, gyros with errors as large as \
              Earth rate cannot hold an analytic platform: use gyrocal tumble"
         };
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::GyroScale,
             format!("a rate of {total:.4} deg/h at rest"),
             format!("Earth rate, {earth:.4} deg/h, within a factor of two"),
@@ -96,7 +96,7 @@ pub(super) fn refuse_other_rates(
     }
     // Where the vertical part is small its sign tells nothing.
     if vertical.abs() > 0.2 * earth && found[1] * vertical < 0.0 {
-        return Err(MeasuredError::unfit(
+        return Err(InstrumentError::unfit(
             Unfit::Axes,
             format!("a vertical rate of {:.3} deg/h", found[1]),
             format!("{vertical:.3} deg/h at latitude {latitude_deg} deg"),

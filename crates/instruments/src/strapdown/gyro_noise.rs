@@ -5,7 +5,7 @@ use gyrocal_statistics::allan::{allan_deviation, octaves};
 use super::earth_rate::deg_per_h;
 use super::integrate::PlatformRow;
 use super::rotation_fit::RotationFit;
-use crate::error::MeasuredError;
+use crate::error::InstrumentError;
 
 /// Upper limit of the white noise of the gyros about horizontal axes, as held over one minute
 /// \[deg/h\]: the least product of Allan deviation and root averaging time over the motion of gravity in
@@ -16,7 +16,7 @@ pub(super) fn gyro_noise_deg_per_h(
     norm_g: f64,
     fit: &RotationFit,
     averaging_s: f64,
-) -> Result<f64, MeasuredError> {
+) -> Result<f64, InstrumentError> {
     const CONFIDENCE: f64 = 0.683;
     const FEWEST_DEGREES_OF_FREEDOM: f64 = 4.0;
     let start_s = rows[0].time_s;
