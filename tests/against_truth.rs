@@ -13,7 +13,7 @@ const DAY_S: f64 = 86_400.0;
 /// Five days.
 const STEPS: usize = 7200;
 
-/// What the samples of the model may differ from those of the simulator.
+/// Largest difference between the samples of the model and those of the simulator.
 ///
 /// A sample of the noise is 1e-5 g, and the main job is judged at 1e-4 of that. A Runge-Kutta
 /// step of 60 s turns the platform by 4.4e-3 rad, of which the fifth power over 5! is 1.4e-14:
@@ -28,7 +28,7 @@ fn drift_of(coefficients: &Coefficients) -> Drift<f64> {
     Drift::from_array(coefficients.named().map(|(_, value, _)| value))
 }
 
-/// A filter that knows the platform.
+/// A filter with the true state of the platform.
 fn settings_of(platform: &gyrocal_truth::Platform) -> FilterSettings<f64> {
     let site = Site {
         gravity_g: platform.specific_force_at_rest_g,
@@ -43,8 +43,8 @@ fn settings_of(platform: &gyrocal_truth::Platform) -> FilterSettings<f64> {
 
 /// The largest difference of a sample over five days, and when.
 ///
-/// The filter takes no measurement, so its states move as the generated rates say. Its samples
-/// are taken twice: from its attitude, and from the generated output in its chart.
+/// The filter has no measurement update, so its states follow the generated rates. Its samples are
+/// computed twice: from its attitude, and by the generated output in its chart.
 fn worst(platform: &gyrocal_truth::Platform, settings: &FilterSettings<f64>) -> (f64, usize) {
     let gravity_g = settings.site.gravity_g;
     let attitude = InitialAttitude::Angles {
@@ -96,7 +96,7 @@ fn aligned() -> gyrocal_truth::Platform {
 #[test]
 fn the_model_follows_the_truth_past_gimbal_lock() {
     let platform = aligned();
-    // That the platform does pass it: half a degree from the pole, on the fourth day.
+    // The platform passes half a degree from the pole on the fourth day.
     let attitudes = platform.platform_c_enu(&minutes());
     let (from_pole_deg, step) = attitudes
         .iter()
@@ -133,8 +133,8 @@ fn the_model_follows_the_truth_from_any_attitude_at_any_latitude() {
     );
 }
 
-/// What the tests above would not let pass: small errors of what the model is given, and a
-/// coarser rule.
+/// Power of the tests above: small errors of the inputs of the model, and a coarser integration
+/// rule, are detected.
 #[test]
 fn a_slightly_wrong_model_does_not_follow() {
     let platform = aligned();

@@ -21,7 +21,7 @@ const STEP_S: f64 = 60.0;
 const DENSITY: [f64; 3] = [2.4e-4; 3];
 /// (1e-5 g)².
 const VARIANCE: [f64; 3] = [1e-10; 3];
-/// So small that a parameter of an effect stays what it is.
+/// Small enough to keep a parameter of an effect constant.
 const NOTHING: f64 = 1e-14;
 
 type Of<D, I> = Filter<f64, Anchored<D>, Chart<f64, I>, VecStorage<f64>, 3, 3>;
@@ -51,7 +51,7 @@ where
     .unwrap()
 }
 
-/// Samples that no drift explains to the last: what matters is that filters treat them alike.
+/// Samples that no drift reproduces exactly: both filters must process them equally.
 fn sample(step: usize) -> [f64; 3] {
     let angle = 2e-3 * step as f64;
     [

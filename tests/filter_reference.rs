@@ -134,7 +134,7 @@ fn equals_the_dense_filter_in_every_configuration() {
     }
 }
 
-/// Everything that a filter shows after a step, as bits.
+/// All public results of a filter after a step, as bits.
 fn bits<F: Form<f64>>(filter: &Kernel<ArrayStorage<f64, 3, 3, 12>, F>, nis: f64) -> Vec<u64> {
     let covariance = (0..144).map(|at| filter.covariance(at / 12, at % 12));
     let state = filter.state().iter().copied();

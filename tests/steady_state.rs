@@ -1,4 +1,4 @@
-//! No step of a filter allocates, wherever the filter keeps its numbers.
+//! No step of a filter allocates, with any storage of its numbers.
 //!
 //! `allocation-counter` replaces the allocator of this test binary only, counts by thread, and
 //! needs no unsafe code here.
@@ -113,7 +113,7 @@ fn no_step_allocates() {
     no_step_of_the_form_allocates::<Factors>("factors");
 }
 
-/// What every call of the filter of a platform allocates, in the number type `T`.
+/// Allocations of every call of the filter of a platform, in the number type `T`.
 fn calls_of<T: Real, F: Form<T>>(integration: Integration) -> u64 {
     let settings = FilterSettings {
         discretisation: Discretisation {

@@ -8,7 +8,7 @@ const STATES: usize = Platform::STATES;
 type PlatformKernel<F> =
     Filter<f64, Anchored<Platform>, Chart<f64>, ArrayStorage<f64, 3, 3, 12>, 3, 3, F>;
 
-/// What rounding may add to a sigma that a step leaves alone: a few units of the last place.
+/// Rounding error of a sigma that a step does not change: a few units in the last place.
 const SIGMA_ROUNDING: f64 = 1e-14;
 
 fn filter<F: Form<f64>>(integration: Integration, sigma: &[f64; STATES]) -> PlatformKernel<F> {
@@ -72,8 +72,8 @@ fn check_positive_definite<F: Form<f64>>(
     Ok(())
 }
 
-/// Runs a filter and checks it after step 1, 2, 3, … and then every `interval` steps. Returns
-/// what is wrong first.
+/// Runs a filter and checks it after step 1, 2, 3, … and then every `interval` steps. Returns the
+/// first violation.
 fn watch<F: Form<f64>>(
     mut filter: PlatformKernel<F>,
     truth: &mut Truth,
@@ -143,7 +143,7 @@ fn positive_definite_over_a_year_of_euler_steps() {
     a_year::<Factors>(Integration::EULER);
 }
 
-/// What goes wrong, by form: nothing, or what `watch` says.
+/// Violations by form, as `watch` returns them; none expected.
 fn badly_scaled_priors<F: Form<f64>>() -> Vec<String> {
     let uniform = |angle: f64, coefficient: f64| {
         core::array::from_fn(|i| if i < 3 { angle } else { coefficient })

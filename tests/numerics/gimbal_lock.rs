@@ -5,8 +5,8 @@ use gyrocal::{Anchored, Integration, Platform, Recentring};
 
 use crate::truth::{DENSITY, STEP_S, Truth, VARIANCE, chart};
 
-/// Euler angles as states in one chart, started on and around the singularity. What comes out
-/// may be huge or an error, but no NaN may stay behind in the state.
+/// Euler angles as states in one chart, started on and around the singularity. The result may be
+/// huge or an error, but the state must not contain NaN.
 #[test]
 fn near_gimbal_lock_numbers_are_huge_or_refused_but_never_nan() {
     let mut sigma = [1.0; Platform::STATES];

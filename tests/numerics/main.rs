@@ -1,5 +1,5 @@
-//! What the numbers of the filter are worth: against extended precision, over a year, from
-//! badly scaled priors, near gimbal lock, with poisoned workspace.
+//! Numerical accuracy of the filter: against extended precision, over a year, from badly scaled
+//! priors, near gimbal lock, with a poisoned workspace.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod accuracy;

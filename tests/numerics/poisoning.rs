@@ -15,7 +15,7 @@ const MOVING: usize = 3;
 
 /// A form whose buffers can be poisoned.
 trait Poison: Form<f64> {
-    /// Fills with NaN what this form must not read between two calls.
+    /// Fills with NaN the numbers that this form must not read between two calls.
     fn poison(buffers: &mut Buffers<'_, f64>);
 }
 
@@ -40,7 +40,7 @@ impl Poison for Factors {
     }
 }
 
-/// Hands out buffers in which everything that a step must write before it reads is NaN.
+/// Returns buffers in which all numbers that a step must write before reading are NaN.
 ///
 /// `stages` and `output` keep structural zeros and stay as they are.
 struct Poisoned<S, F> {
@@ -71,7 +71,7 @@ impl<S: Storage<f64>, F: Poison> Storage<f64> for Poisoned<S, F> {
     }
 }
 
-/// Every number that a run shows, as bits: innovations, states and covariances.
+/// All results of a run, as bits: innovations, states and covariances.
 fn trace<F, D, S>(
     model: D,
     integration: Integration,

@@ -1,4 +1,4 @@
-//! What each Jacobian is the derivative of, and the proof that none is left out.
+//! The function of which each Jacobian is the derivative, and a check that the list is complete.
 
 use gyrocal_oracle::points::State;
 use gyrocal_oracle::program::Function;
@@ -16,11 +16,11 @@ pub(crate) struct Derivative {
     pub(crate) output: &'static str,
     /// The function that it is the derivative of.
     pub(crate) of: Callable,
-    /// With respect to what.
+    /// Variables of the derivative.
     pub(crate) by: By,
 }
 
-/// What a derivative is taken with respect to.
+/// Variables of a derivative.
 #[derive(Clone, Copy)]
 pub(crate) enum By {
     /// All scalars of a group of inputs.
@@ -30,7 +30,7 @@ pub(crate) enum By {
     Bias,
 }
 
-/// function, output, what it is the derivative of, with respect to what.
+/// Function, output, differentiated function, variables.
 #[rustfmt::skip] // a table
 const NOMINAL: [(&str, &str, &str, By); 18] = [
     // C f_0 is linear in f_0, and the rate matrix turns angle rates into a rotation rate.
@@ -121,7 +121,7 @@ macro_rules! extended {
     }};
 }
 
-/// function, output, what it is the derivative of, with respect to what.
+/// Function, output, differentiated function, variables.
 fn table() -> Vec<(&'static str, &'static str, &'static str, By)> {
     let extended = [
         extended!("surveyed").0,
@@ -193,7 +193,7 @@ fn every_jacobian_of_every_program_is_compared() {
                 .into_iter()
                 .map(move |output| (f.name.clone(), output))
         })
-        // A function that returns nothing but a vector is a value; it has oracles of its own.
+        // A function that returns only a vector is a value; it has its own oracles.
         .filter(|(name, output)| output.columns > 1 || name.ends_with("_jacobian"))
         .map(|(name, output)| (name, output.name))
         .collect();

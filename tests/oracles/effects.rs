@@ -1,6 +1,7 @@
 //! Every effect of the catalogue against its equation, written out, and the table of effects.
 //!
-//! A new entry of the catalogue is told here too; until then the first test names it.
+//! A new entry of the catalogue needs its equation here; until then the first test fails with its
+//! id.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -17,7 +18,7 @@ const STATES: usize = 1000;
 const AXES: [&str; 3] = ["x", "y", "z"];
 const PARAMETERS: usize = catalogue::PARAMETERS.len();
 
-/// Values by their public ids, and which of them were asked for.
+/// Values by their public ids, with a record of those used.
 struct Named<'a> {
     elements: &'a [Element],
     values: &'a [f64],
@@ -39,7 +40,7 @@ impl<'a> Named<'a> {
         self.values[place.unwrap_or_else(|| panic!("there is no `{id}`"))]
     }
 
-    /// Ids that nothing asked for.
+    /// Ids that were not used.
     fn forgotten(&self) -> Vec<&str> {
         let asked = self.asked.borrow();
         let ids = self.elements.iter().map(|element| element.id);
@@ -55,8 +56,8 @@ fn cross(a: &Vector, b: &Vector) -> Vector {
     ]
 }
 
-/// What the equations say: inertial rate minus Earth rate in platform axes, deg/h, and what
-/// the accelerometers read.
+/// The equations: inertial rate minus Earth rate in platform axes, deg/h, and outputs of the
+/// accelerometers.
 fn by_hand(state: &State, p: &Named<'_>, shapes: &Named<'_>) -> [Vector; 2] {
     let [time_s, interval_s, temperature_k] = state.conditions;
     let (sine, cosine) = p.get("site.latitude").to_radians().sin_cos();
@@ -80,7 +81,7 @@ fn by_hand(state: &State, p: &Named<'_>, shapes: &Named<'_>) -> [Vector; 2] {
             }
         }
         drift += of(&format!("g_{0}{0}{0}", AXES[i])) * a[i].powi(3);
-        // The mean over the step of what is there from the onset on.
+        // Mean over the step of a constant that begins at the onset.
         let end_s = time_s + 0.5 * interval_s;
         let after_s = (end_s - shape("step.onset_s")).max(0.0).min(interval_s);
         drift += of("step") * after_s / interval_s;

@@ -1,7 +1,7 @@
 //! Generated values against the equations of the paper, written out with full matrices.
 //!
-//! The other oracles start from what the derivation says; this one would see a derivation
-//! that says something else than the paper. Equation numbers are those of Li Zhong, 2015.
+//! The other oracles start from the derivation; this one detects a derivation that differs from the
+//! paper. Equation numbers are those of Li Zhong, 2015.
 
 use core::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! The generated functions, and the proof that none is left out.
+//! The generated functions, and a check that the list is complete.
 
 use gyrocal::generated::{catalogue, oracle, platform, strapdown, surveyed};
 use gyrocal_oracle::nonzeros::Nonzeros;

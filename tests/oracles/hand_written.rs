@@ -1,4 +1,4 @@
-//! Functions that generated ones are derivatives of, where no generated function is.
+//! Hand-written functions whose derivatives are generated, where the function itself is not.
 
 use gyrocal::generated::{catalogue, platform, strapdown, surveyed};
 use gyrocal_scalar::Scalar;
@@ -93,7 +93,7 @@ fn surveyed_dynamics<T: Scalar>(inputs: &[T]) -> Vec<T> {
     surveyed::dynamics(theta, parameters, omega_0, f_0, east_0).to_vec()
 }
 
-/// What the accelerometers of the surveyed platform read at angles near zero.
+/// Outputs of the accelerometers of the surveyed platform at angles near zero.
 fn surveyed_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
     let mut rest = inputs;
     surveyed::accelerometers(take(&mut rest), take(&mut rest), take(&mut rest)).to_vec()
@@ -108,7 +108,7 @@ fn strapdown_dynamics<T: Scalar>(inputs: &[T]) -> Vec<T> {
     strapdown::dynamics(theta, parameters, omega_0, f_0, east_0, gyros).to_vec()
 }
 
-/// What the accelerometers of the analytic platform read at angles near zero.
+/// Outputs of the accelerometers of the analytic platform at angles near zero.
 fn strapdown_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
     let mut rest = inputs;
     strapdown::accelerometers(take(&mut rest), take(&mut rest), take(&mut rest)).to_vec()
@@ -126,7 +126,7 @@ fn catalogue_dynamics<T: Scalar>(inputs: &[T]) -> Vec<T> {
     .to_vec()
 }
 
-/// What the accelerometers of the platform with all effects read at angles near zero.
+/// Outputs of the accelerometers of the platform with all effects at angles near zero.
 fn catalogue_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
     let mut rest = inputs;
     let (theta, parameters) = (take(&mut rest), take(&mut rest));

@@ -1,4 +1,4 @@
-//! Where generated code says that the elements of its arrays are, against the programs.
+//! Layout of arrays in generated code, against the programs.
 
 use gyrocal::generated::{catalogue, oracle, platform, strapdown, surveyed};
 use gyrocal_oracle::points::{Purpose, State, states};

@@ -28,7 +28,7 @@ fn catalogue_inputs(state: &State) -> CatalogueInputs<f64> {
     }
 }
 
-/// What a model writes: value, derivatives by moving states, by noise, by parameters.
+/// Results of a model: value, derivatives by moving states, by noise, by parameters.
 type Written = ([f64; 3], [[f64; 3]; 3], [[f64; 3]; 3], Vec<f64>);
 
 /// Rates and output of a model at a state, in the full form or in that at the origin.

@@ -1,5 +1,5 @@
-//! Proof that the oracles can disagree: every instruction of every program is spoilt in
-//! turn, and every oracle must notice, and name an element that the instruction feeds.
+//! Mutation test of the oracles: every instruction of every program is changed in turn, and every
+//! oracle must detect it and name an element that the instruction feeds.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -81,7 +81,7 @@ fn spoilt(function: &Function, instruction: Instruction) -> Instruction {
     }
 }
 
-/// Which nonzeros depend on the instruction at `index`.
+/// Nonzeros that depend on the instruction at `index`.
 fn fed_by(function: &Function, index: usize) -> Vec<bool> {
     let mut work = vec![false; function.work_size];
     let mut outputs = vec![false; function.nonzero_count()];
@@ -101,14 +101,14 @@ fn fed_by(function: &Function, index: usize) -> Vec<bool> {
     outputs
 }
 
-/// What an oracle says of one output at one state.
+/// Expected value of one output at one state, by an oracle.
 struct Verdict {
     inputs: Vec<f64>,
     expected: Vec<f64>,
     rounding: Vec<f64>,
 }
 
-/// Compares one output of a program, right or spoilt, with what an oracle says.
+/// Compares one output of a program, original or mutated, with an oracle.
 fn compare(
     program: &Function,
     output: usize,
@@ -268,7 +268,7 @@ fn dual_numbers_and_differences_notice_every_spoilt_jacobian() {
             }
         }
     }
-    // What one derivative does not depend on in value another does.
+    // A value that one derivative does not depend on enters another.
     hidden.retain(|place, _| !noticed_somewhere.contains(place));
     for ((name, index), outputs) in hidden {
         let generated = function(name);
@@ -283,8 +283,8 @@ fn dual_numbers_and_differences_notice_every_spoilt_jacobian() {
     }
 }
 
-/// Whether a spoilt instruction computes something else at any of the inputs: a product with
-/// cos² + sin² is the quotient by it.
+/// Whether a mutated instruction has another value at any of the inputs: a product with cos² + sin²
+/// equals the quotient by it.
 fn is_changed(program: &Function, index: usize, inputs: &[Vec<f64>]) -> bool {
     let result = |instruction: Instruction| {
         let mut part = program.clone();
@@ -308,7 +308,7 @@ fn is_changed(program: &Function, index: usize, inputs: &[Vec<f64>]) -> bool {
     let (Some(right), Some(wrong)) = (result(right), result(spoilt(program, right))) else {
         return true;
     };
-    // No oracle can see less than some roundings.
+    // No oracle detects less than some rounding errors.
     let differs = |(right, wrong): (&f64, &f64)| (right - wrong).abs() > 1e-14 * right.abs();
     right.iter().zip(&wrong).any(differs)
 }

@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 const REFERENCE: &str = include_str!("../../../tests/data/numerics/reference.csv");
 const SAMPLES: &str = include_str!("../../../tests/data/numerics/samples.csv");
 
-/// Start of the script that made the references, under the same names.
+/// Initial values of the script, with the same names.
 const STEP_S: f64 = 60.0;
 const LATITUDE_RAD: f64 = -0.575;
 const ANGLES_RAD: [f64; 3] = [0.3, -0.5, 1.9];
@@ -21,14 +21,14 @@ const CHECKPOINTS: [usize; 5] = [1, 2, 10, 100, 1000];
 const DRIFT_DENSITY: [f64; 3] = [2.4e-4; 3];
 const ACCEL_VARIANCE: [f64; 3] = [1e-10; 3];
 
-/// Largest ratio of measured errors that is a tie. The rounding error of one run is one draw; its
-/// logarithm has a standard deviation of up to 0.9 over runs, so that of a mean over eight is 0.3 and
-/// that of a ratio 0.45. Two of these are a tie.
-pub const TIE: f64 = 2.5;
+/// Ratio of errors up to which two filters count as equally accurate. The rounding error of a run is
+/// one random draw; its logarithm has a standard deviation of up to 0.9 over runs, a mean over eight
+/// one of 0.3, a ratio one of 0.45. This is two of these.
+pub(crate) const TIE: f64 = 2.5;
 
-/// Largest ratio of the errors of `Factors` to those of the dense Joseph filter. Measured: 0.001, since
+/// Largest error of the factors over that of the dense Joseph filter. Measured: a thousandth, since
 /// factors keep small pivots to their own last digit.
-pub const FACTORS_LIMIT: f64 = 0.02;
+pub(crate) const FACTORS_LIMIT: f64 = 0.02;
 
 /// Errors of one filter against the reference, over the checkpoints of all runs of 1000 steps.
 #[derive(Clone, Copy, Debug, Default)]
@@ -124,7 +124,7 @@ fn sigmas(run: u32) -> [f64; 12] {
     core::array::from_fn(|i| if i < 3 { ANGLE_SIGMA_RAD } else { coefficient })
 }
 
-/// Estimate of a filter after a step.
+/// Results of a filter after a step.
 struct Estimate {
     platform_c_enu: [[f64; 3]; 3],
     coefficients: [f64; 9],
@@ -143,7 +143,7 @@ fn attitude(state: &[f64], chart: &Chart<f64>) -> [[f64; 3]; 3] {
     })
 }
 
-/// One line of the reference: a quantity, its indices, and its digits.
+/// One line of the reference: quantity, place, and its digits.
 struct Entry<'a> {
     quantity: &'a str,
     i: usize,

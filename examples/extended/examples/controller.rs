@@ -1,5 +1,5 @@
-//! Three days of samples, then a day without: how well do the nominal filter and the extended one
-//! know where the platform drifts? What they do not know, no torquer takes out.
+//! Prediction errors of the nominal and the extended filter: three days with samples, then a day
+//! without. The error is the drift that torquers cannot compensate.
 //!
 //! `cargo run --release --package gyrocal-extended --example controller -- RECORD.csv BENCH.toml`
 
@@ -9,9 +9,9 @@ use gyrocal::{FilterSettings, InitialAttitude, PlatformFilter, Site};
 use gyrocal_extended::Controller;
 use gyrocal_record::{Bench, Record};
 
-/// Samples are taken so long.
+/// Time with measurement updates, s.
 const LEARNING_S: f64 = 3.0 * 86_400.0;
-/// A line is printed so often.
+/// Interval of the printed lines, s.
 const LINE_S: f64 = 3.0 * 3600.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut nominal = PlatformFilter::new(&settings, &attitude)?;
     let mut extended = Controller::new(&settings, &attitude)?;
 
-    println!("hours alone   nominal off by   extended off by   torque it sends, deg/h");
+    println!("hours alone   nominal error    extended error    torquer command, deg/h");
     let mut next_line_s = 0.0;
     for (row, sample) in record.accel_g.iter().enumerate() {
         let time_s = record.time_s[row] - record.time_s[0];

@@ -19,7 +19,7 @@ pub type ExtendedFilter<T> = Filter<
 /// 1 rad/s in deg/h.
 const DEG_PER_H: f64 = 3600.0 * 180.0 / core::f64::consts::PI;
 
-/// Estimates the drift from accelerometer samples, and says what to send to the torquers.
+/// Estimates the drift from accelerometer samples, and computes the commands of the torquers.
 #[derive(Clone, Debug)]
 pub struct Controller<T> {
     filter: ExtendedFilter<T>,
@@ -30,7 +30,7 @@ pub struct Controller<T> {
 
 impl<T: Real + Default> Controller<T> {
     /// A controller at the first sample, which [`Self::take`] takes with an interval of zero. The
-    /// parameters of the effects start where the model file says.
+    /// parameters of the effects start at the values of the model file.
     ///
     /// # Errors
     /// [`EstimationError`] if the settings are refused.
@@ -67,10 +67,10 @@ impl<T: Real + Default> Controller<T> {
         })
     }
 
-    /// Goes on by `interval_s` without a sample.
+    /// Predicts over `interval_s` without a sample.
     ///
     /// # Errors
-    /// [`EstimationError`] if the interval is not positive or the filter left the numbers.
+    /// [`EstimationError`] if the interval is not positive or the prediction is not finite.
     pub fn coast(&mut self, interval_s: T) -> Result<(), EstimationError> {
         let middle_s = self.time_s + interval_s * T::from_f64(0.5);
         self.condition(middle_s, interval_s);
@@ -79,7 +79,7 @@ impl<T: Real + Default> Controller<T> {
         Ok(())
     }
 
-    /// Goes on by `interval_s`, zero for the first sample, and takes the sample at its end.
+    /// Predicts over `interval_s`, zero for the first sample, and updates with the sample at its end.
     ///
     /// # Errors
     /// As [`Self::coast`], and if the sample is infinite.
@@ -96,13 +96,13 @@ impl<T: Real + Default> Controller<T> {
             .update(specific_force_g, &self.accel_variance_g2)
     }
 
-    /// The drift of the gyros under this specific force \[deg/h\]: torque them by as much the
-    /// other way, and the platform stands still in inertial space.
+    /// The drift of the gyros under this specific force \[deg/h\]. Torquing them by its negative keeps
+    /// the platform fixed in inertial space.
     #[must_use]
     pub fn drift_deg_per_h(&self, specific_force_g: &[T; 3]) -> [T; 3] {
         let zero = [T::from_f64(0.0); 3];
         let mut inputs = *self.filter.inputs().inputs();
-        // Without the turning of the Earth, and at zero angles, the rates are the drift.
+        // Without Earth rate, and at zero angles, the rates are the drift.
         for (name, value) in [("omega_0", &zero), ("f_0", specific_force_g)] {
             if let Some(group) = inputs.group_mut(name) {
                 group.copy_from_slice(value);
@@ -127,8 +127,8 @@ impl<T: Real + Default> Controller<T> {
         &self.filter
     }
 
-    /// Tells models that ask for it what time it is. A model that takes the temperature is told
-    /// of its mean; put the measured one there.
+    /// Sets the conditions of models that use them: the time, and the mean of the temperature. Replace
+    /// it by the measured temperature if the model uses it.
     fn condition(&mut self, time_s: T, interval_s: T) {
         let inputs = self.filter.inputs_mut().inputs_mut();
         if let Some([time, interval, temperature_k]) = inputs.group_mut("conditions") {

@@ -1,8 +1,8 @@
-//! A controller with a filter on an extended model: what `extended.model.toml` says of the
-//! platform beside the nine drift coefficients is estimated and compensated too.
+//! A controller with a filter on an extended model: it estimates and compensates the effects of
+//! `extended.model.toml` together with the nine drift coefficients.
 //!
-//! Nothing here allocates or needs the standard library. README.md is the walk from a record
-//! with a fault to this package.
+//! Nothing here allocates or needs the standard library. README.md shows the way from a record with
+//! a fault to this package.
 
 #![no_std]
 

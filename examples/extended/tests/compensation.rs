@@ -1,4 +1,4 @@
-//! What the extended filter wins on a later record of the platform with the fault.
+//! Gain of the extended filter on a later record of the platform with the fault.
 #![allow(
     clippy::unwrap_used,
     reason = "a test may stop at what must not happen"
@@ -43,8 +43,8 @@ fn a_day_without_samples_is_predicted_to_a_tenth_of_the_nominal_error() {
             of_extended += squared_distance(&extended.expected_g(), sample);
         }
     }
-    // The fault is 300 sigmas of one record; what is left to the extended filter is noise and
-    // what four days leave open in ten coefficients.
+    // The fault is 300 sigmas of one record; the error of the extended filter is noise and the
+    // uncertainty of ten coefficients after four days.
     assert!(
         of_extended.sqrt() < 0.1 * of_nominal.sqrt(),
         "{of_extended:e} {of_nominal:e}"
