@@ -1,19 +1,20 @@
-//! The files of `gyrocal`: records, bench descriptions, results, and errors that point into them.
+//! File formats: records, bench descriptions, model files and results; errors with file, line and
+//! column.
 //!
-//! # The files
+//! # What it is
 //!
-//! A *record* is what the platform's accelerometers said while its gyros held it in inertial
-//! space: a CSV file with the header `time_s,accel_x_g,accel_y_g,accel_z_g` and, if a
-//! thermometer was logged, `temperature_c`. Specific force is in units of local gravity, up
-//! positive: an accelerometer at rest with its axis up reads +1. Rows may be missing, sampling
-//! may be irregular, time need not start at zero, and an accelerometer that has no value says
-//! `nan`.
+//! A *record* is a time series of the accelerometers of a platform that its gyros hold in inertial
+//! space: a CSV file with the header `time_s,accel_x_g,accel_y_g,accel_z_g` and optionally
+//! `temperature_c` ([`Record`]). Specific force is in units of local gravity, up positive: an
+//! accelerometer at rest with its axis up reads +1. Rows may be missing, sampling may be irregular,
+//! time need not start at zero, and a missing value is `nan`.
 //!
-//! A *bench description* stands beside it: a TOML file with latitude, initial attitude and
-//! noise ([`Bench`]).
+//! A *bench description* is a TOML file with the latitude, initial attitude, noise and priors of the
+//! record ([`Bench`]); a *model file* is a TOML file with the effects of an extended model
+//! ([`ModelFile`]).
 //!
-//! *Results* are JSON ([`CalibrationReport`]), with a [`Manifest`] that says which program made
-//! them from which inputs.
+//! *Results* are JSON, for example [`CalibrationReport`], with a [`Manifest`] of the program and its
+//! inputs. `docs/formats.md` describes all files.
 //!
 //! # Example
 //!
@@ -43,14 +44,14 @@
 //!
 //! # Errors
 //!
-//! Whatever is wrong with a file is an [`Error`] that names file, line, column, what was found,
-//! what was expected and what to do. It is a [`miette::Diagnostic`], so a program with
-//! miette's `fancy` feature shows the line itself with a mark under the place.
+//! A fault of a file is an [`Error`] with file, line, column, the value found, the value expected
+//! and advice. It is a [`miette::Diagnostic`], so a program with miette's `fancy` feature shows the
+//! line with a mark at the position.
 //!
 //! # What it does not do
 //!
-//! It prints nothing, interprets nothing beyond plausibility, and knows no filter. Output files
-//! are written whole or not at all ([`Outputs`]).
+//! It prints nothing, checks plausibility only, and has no filter. Output files are written whole or
+//! not at all ([`Outputs`]).
 
 mod bench;
 mod channel_report;
