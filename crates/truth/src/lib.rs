@@ -1,22 +1,27 @@
 //! An independent simulator of the platform, the reference for calibration and diagnosis.
 //!
+//! # What it is
+//!
+//! [`simulate`] makes the record, the bench description and the [`Truth`] of a [`Scenario`];
+//! [`Hidden`] effects are in the record and not in the bench description.
+//!
 //! # The platform
 //!
-//! Three gyros hold a platform in inertial space on a bench that turns with the Earth. They
-//! drift, so the platform turns slowly against the stars; each gyro drifts by a constant, by a
-//! part proportional to the specific force along its axis and by a part proportional to the
-//! square of that. Three accelerometers on the platform see gravity sweep round once a sidereal
-//! day.
+//! Three gyros hold a platform in inertial space on a bench that rotates with the Earth. They
+//! drift, so the platform rotates slowly in inertial space. The drift of a gyro is a constant, a
+//! part proportional to the specific force along its axis and a part proportional to its square.
+//! Three accelerometers on the platform measure gravity, which rotates once a sidereal day in
+//! platform axes.
 //!
 //! # How it is simulated
 //!
 //! The state is one unit quaternion, the platform against an inertial frame that is local
-//! east, north, up at the first row. Its rate is the drift, nothing else. The Earth's turn is
-//! applied exactly, by one rotation about its axis; gravity is fixed to the turned frame. The
-//! quaternion is carried by a Runge–Kutta rule of fourth order in steps of at most a minute,
-//! shorter where something changes fast, exact to 1e-12 rad over days. Where the drift jumps,
-//! a step ends. It has no Euler angle and shares nothing with the generated model, whose equations
-//! in Euler angles against an Earth-fixed chart it checks.
+//! east, north, up at the first row. Its rate is the drift alone. The rotation of the Earth is
+//! applied exactly, by one rotation about its axis; gravity is fixed to the rotated frame. The
+//! quaternion is integrated by a fourth-order Runge-Kutta rule with steps of at most a minute,
+//! shorter for fast changes, exact to 1e-12 rad over days. A step ends where the drift is
+//! discontinuous. The simulator has no Euler angles and shares nothing with the generated model,
+//! whose equations in Euler angles against an Earth-fixed chart it checks.
 //!
 //! # Example
 //!
@@ -41,20 +46,20 @@
 //!
 //! # Entry points
 //!
-//! - [`simulate`]: a [`Scenario`] in, a record, its bench description and the [`Truth`] out.
-//! - [`Hidden`]: an effect by its id and parameters, which a scenario hides in the record;
-//!   [`simulate_with`] adds [`Term`]s defined by the caller.
-//! - [`euler_rule`]: the same by the paper's own rule, explicit Euler steps on the three angles.
-//! - [`Platform::specific_force_g`]: readings of ideal accelerometers at given times.
-//! - [`Population`]: random scenarios by the hundred.
+//! - [`simulate`]: record, bench description and [`Truth`] of a [`Scenario`].
+//! - [`Hidden`]: a hidden effect of a scenario, by its id and parameters; [`simulate_with`] adds
+//!   [`Term`]s defined by the caller.
+//! - [`euler_rule`]: the same by the paper's rule, explicit Euler steps of the three angles.
+//! - [`Platform::specific_force_g`]: outputs of ideal accelerometers at given times.
+//! - [`Population`]: random scenarios.
 //!
-//! Same scenario, same record, bit for bit: random numbers are ChaCha with one stream for each
+//! The same scenario gives the same record, bit for bit: random numbers are ChaCha with one stream for each
 //! seed and purpose, so that hiding an effect leaves all other random numbers as they are; sine,
 //! cosine and logarithm are those of `libm` on every machine.
 //!
 //! # What it does not do
 //!
-//! It estimates nothing and knows no filter.
+//! It has no estimator and no filter.
 
 mod attitude;
 mod check;
