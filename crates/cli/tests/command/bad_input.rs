@@ -301,7 +301,7 @@ fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
     assert_says(&errors, "the filter stopped at row 2 of the data");
     assert_says(
         &errors,
-        "help: the prior is very wide against the noise: give [prior] and",
+        "help: the prior is very wide against the noise: give realistic",
     );
     assert_says(&errors, "as factors with --factorised");
     // Every cause is said once.
