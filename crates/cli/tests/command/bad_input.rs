@@ -303,7 +303,7 @@ fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
         &errors,
         "help: the prior is very wide against the noise: give realistic",
     );
-    assert_says(&errors, "as factors with --factorised");
+    assert_says(&errors, "use the factorised covariance (--factorised)");
     // Every cause is said once.
     let cause = "the prior is too wide against the noise of output";
     for said in ["the filter stopped", cause] {
