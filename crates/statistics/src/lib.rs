@@ -6,10 +6,11 @@
 //! - [`periodogram`], [`FrequencySearch`]: spectral lines, and the probability of the largest.
 //! - [`binned_means`]: regression of residuals on a covariate.
 //! - [`allan`]: overlapping Allan deviation, types of noise, noise coefficients; [`allan_test`]:
-//!   do innovations average out as white noise does?
-//! - [`Proportion`], [`chi_square_band`] and others: exact intervals of shares and of mean squares.
+//!   test of innovations against white noise at all averaging times.
+//! - [`Proportion`], [`chi_square_band`] and others: exact intervals of proportions and of mean
+//!   squares.
 //! - [`median`], [`quantile`], [`robust_sigma`] and others: descriptive statistics.
-//! - [`deviates`]: normal deviates of a seed.
+//! - [`deviates`]: normal deviates from a seed.
 //! - [`format`]: p-values, estimates and rounded numbers as text.
 //! - [`math`]: exponential, logarithm, sine and others, the same on every machine.
 //! - [`two_sided_p`], [`ln_chi_square_tail`] and others: tail probabilities and their inverses.
@@ -17,10 +18,10 @@
 //! # The domain in brief
 //!
 //! The innovation of a filter is a measurement less its prediction. Divided by its predicted
-//! standard deviation it is *whitened*: if model and noise are right it is white, standard normal
-//! noise. Each test here asks whether a series is that, against one kind of departure, and
-//! returns a p-value: the probability of as large a departure from white noise. `NaN` is a missing
-//! value everywhere.
+//! standard deviation it is *whitened*: for a right model and noise it is white and standard normal.
+//! Each test has this null hypothesis and power against one kind of departure, and returns a
+//! p-value: the probability of as large a departure in white noise. `NaN` is a missing value
+//! everywhere. Terms are defined in `docs/glossary.md`.
 //!
 //! # Example
 //!
@@ -38,7 +39,7 @@
 //!
 //! # What it does not do
 //!
-//! It knows no gyro, no record and no file, and prints nothing.
+//! It has no gyros, records or files, and prints nothing.
 
 pub mod allan;
 mod allan_test;
