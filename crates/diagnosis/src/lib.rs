@@ -34,6 +34,7 @@ pub mod plan;
 mod remainder;
 mod request;
 mod residuals;
+pub mod result;
 mod series;
 
 pub use diagnose::{DiagnoseError, DiagnoseOptions, Diagnosis, Verdict, diagnose, validated};

@@ -9,6 +9,7 @@ use crate::error::Error;
 
 /// Which program made a result, from which inputs, and how.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Manifest {
     /// Name of the program.
     pub program: String,
@@ -26,6 +27,7 @@ pub struct Manifest {
 
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Input {
     /// The path as it was given.
     pub path: String,

@@ -168,6 +168,7 @@ pub struct OtherAzimuth {
 
 /// Noise by maximum likelihood over the declared one, of instruments x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NoiseReport {
     /// Of the accelerometers.
     pub accel: [NoiseRatioReport; 3],
@@ -177,6 +178,7 @@ pub struct NoiseReport {
 
 /// An estimated standard deviation over the declared one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NoiseRatioReport {
     /// The estimate.
     pub ratio: f64,

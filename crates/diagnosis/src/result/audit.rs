@@ -1,0 +1,54 @@
+//! Size of a record, and the noise audit of its accelerometers.
+
+use serde::{Deserialize, Serialize};
+
+/// Size of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RecordSummary {
+    /// Number of rows.
+    pub rows: usize,
+    /// Time from the first row to the last \[s\].
+    pub duration_s: f64,
+    /// Missing rows and values.
+    pub gaps: Gaps,
+}
+
+/// Missing rows and values.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Gaps {
+    /// Number of intervals longer than one and a half median ones.
+    pub count: usize,
+    /// Time in them beyond a median interval \[s\].
+    pub missing_s: f64,
+    /// Longest interval between rows \[s\].
+    pub longest_s: f64,
+    /// Fraction of the values of existing rows that are missing.
+    pub missing_values: f64,
+}
+
+/// Noise audit of the accelerometers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct NoiseAuditSummary {
+    /// Standard deviation of the noise of x, y, z over the declared one, without outliers and
+    /// quantisation; `None` if the record is too short for a spectrum of its noise.
+    pub accel_ratio: Option<[Estimated; 3]>,
+    /// Correlation of the noise from one row to the next; `None` as above.
+    pub correlation: Option<Estimated>,
+    /// Least significant bit of x, y, z where it matters \[g\].
+    pub quantisation_g: [Option<f64>; 3],
+    /// Number of values that are outliers; they are left out of everything else.
+    pub outliers: usize,
+}
+
+/// A number with its standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Estimated {
+    /// The estimate.
+    pub estimate: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}

@@ -1,0 +1,85 @@
+//! Gain of the extended model over the nominal one.
+
+use serde::{Deserialize, Serialize};
+
+/// Gain of an extended model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Gain {
+    /// Effects in the model: the accepted ones; if none is, all significant causes.
+    pub effects: Vec<String>,
+    /// Predictive log score of the blocks of the record, each given the others: extended less
+    /// nominal, sum over all blocks \[nats\].
+    pub cross_validated_log_score_nats: f64,
+    /// The same block by block \[nats\].
+    pub block_log_score_nats: Vec<f64>,
+    /// Error of the open-loop simulation.
+    pub free_run_rms_g: FreeRun,
+    /// Change of each drift coefficient.
+    pub coefficient_shift: Vec<CoefficientShift>,
+    /// Validation on a later record, if one was given and an effect is accepted.
+    pub validation: Option<Validation>,
+}
+
+/// Root mean square of measured less simulated specific force, the simulation running from the
+/// first attitude without measurement updates \[g\]. Values that the noise audit left out do not
+/// count.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FreeRun {
+    /// Of the nominal model.
+    pub before: f64,
+    /// Of the extended model.
+    pub after: f64,
+    /// Noise of the accelerometers alone; that of the gyros adds to the drift with time.
+    pub noise: f64,
+}
+
+/// Change of a drift coefficient by an extension.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CoefficientShift {
+    /// Id of the coefficient.
+    pub coefficient: String,
+    /// Extended less nominal estimate, in `unit`.
+    pub shift: f64,
+    /// Standard deviation of the shift, in `unit`: the root of the difference of the two variances
+    /// (Hausman 1978).
+    pub sigma: f64,
+    /// 95 % interval of the shift.
+    pub interval: [f64; 2],
+    /// The shift over the standard deviation that the nominal fit claimed.
+    pub in_sigmas: f64,
+    /// 95 % interval of that.
+    pub in_sigmas_interval: [f64; 2],
+    /// The unit.
+    pub unit: String,
+}
+
+/// Validation of nominal and extended model on another record of the same platform.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Validation {
+    /// Predictive log score of that record given the diagnosed one: extended less nominal \[nats\].
+    pub log_score_nats: f64,
+    /// Attitude error under compensation.
+    pub compensation: Compensation,
+}
+
+/// Angle between the attitude that the diagnosed record predicts and the one that the later
+/// record's own accelerometers determine: root mean squares over several starts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Compensation {
+    /// Number of starts.
+    pub starts: usize,
+    /// Time of the prediction \[h\]: a day, or the length of a shorter record.
+    pub after_h: f64,
+    /// With the coefficients of the nominal model \[arc minutes\].
+    pub nominal_arcmin: f64,
+    /// With those of the extended model \[arc minutes\].
+    pub extended_arcmin: f64,
+    /// Expectation from the covariance of the extended model and the noise of the gyros
+    /// \[arc minutes\].
+    pub expected_arcmin: f64,
+}

@@ -1,0 +1,68 @@
+//! Reading a written result.
+
+use std::path::Path;
+
+use gyrocal_record::{Error, InputErrorKind, SourceText};
+use serde::Deserialize;
+
+use super::{DiagnosisResult, SCHEMA_VERSION};
+
+/// The key that results of any version have.
+#[derive(Deserialize)]
+struct Versioned {
+    schema_version: u32,
+}
+
+/// Reads a result that `gyrocal diagnose --json` wrote.
+///
+/// # Errors
+/// As [`read_text`], and [`Error::Unreadable`] if there is no such file.
+pub fn read(path: &Path) -> Result<DiagnosisResult, Error> {
+    read_text(&SourceText::read(path)?)
+}
+
+/// Reads a result from a text. The version is checked before anything else, as another version may
+/// have other keys.
+///
+/// # Errors
+/// [`Error::Input`] with line and column if the text is no result of this version.
+pub fn read_text(source: &SourceText) -> Result<DiagnosisResult, Error> {
+    let text = source.text();
+    let versioned: Versioned =
+        serde_json::from_str(text).map_err(|error| no_diagnosis(source, &error))?;
+    if versioned.schema_version != SCHEMA_VERSION {
+        let place = text.find("\"schema_version\"").unwrap_or(0);
+        return Err(source.error(
+            InputErrorKind::OutOfRange,
+            place..place,
+            format!("schema_version {}", versioned.schema_version),
+            format!("{SCHEMA_VERSION}, the version that this program reads"),
+            "write it again with `gyrocal diagnose` of this version",
+        ));
+    }
+    serde_json::from_str(text).map_err(|error| no_diagnosis(source, &error))
+}
+
+fn no_diagnosis(source: &SourceText, error: &serde_json::Error) -> Error {
+    let place = offset(source.text(), error.line(), error.column());
+    let reason = error.to_string();
+    let reason = reason.split(" at line ").next().unwrap_or_default();
+    source.error(
+        InputErrorKind::Syntax,
+        place..place,
+        format!("JSON that is no result of a diagnosis ({reason})"),
+        "what `gyrocal diagnose --json` writes",
+        "write it again with `gyrocal diagnose`",
+    )
+}
+
+/// The byte of a line and column, both counted from 1, the column in bytes.
+fn offset(text: &str, line: usize, column: usize) -> usize {
+    let before = text.split_inclusive('\n').take(line.saturating_sub(1));
+    let start: usize = before.map(str::len).sum();
+    let mut place = (start + column.saturating_sub(1)).min(text.len());
+    while !text.is_char_boundary(place) {
+        place -= 1;
+    }
+    place
+}
