@@ -1,15 +1,7 @@
 //! `gyrocal diagnose`: a record and its bench description in, what the model gets wrong out.
 
-mod apart;
-mod blind;
-mod channels;
 mod failed;
 mod figures;
-mod filter;
-mod json;
-mod residuals;
-mod tables;
-mod words;
 
 use std::path::{Path, PathBuf};
 
@@ -17,9 +9,12 @@ use clap::{Args, ValueEnum};
 use gyrocal::Platform;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{CalibrationError, Run};
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Validation, diagnose, validated};
-use gyrocal_record::{Bench, DiagnosisReport, DiagnosisVerdict, Outputs, Record};
+use gyrocal_diagnosis::{
+    DiagnoseOptions, Diagnosis, FILTER_EFFECT, TestedFilter, Verdict, diagnose, prose,
+};
+use gyrocal_record::{Bench, Outputs, Record};
 
+use crate::layout::layout;
 use crate::numbers::probability;
 use crate::outputs::{self, manifest, same_file};
 use crate::pictures;
@@ -29,14 +24,14 @@ pub(crate) use failed::NotDiagnosed;
 
 /// Show what the model gets wrong about a record, and name the cause.
 ///
-/// Says whether anything is wrong and with what probability of error, which effects of the
-/// catalogue explain it, which the record cannot tell apart and what would, how much better the
-/// model is with them, and what is left.
+/// Says whether the record contradicts the model and with what probability of error, which effects
+/// of the catalogue explain it, which effects are indistinguishable and which experiment would
+/// distinguish them, the cross-validated gain, and the residual after them.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Exit codes: 0 the answer was written, whatever it is; 1 an input or the work \
                         failed; 2 the command line is wrong. With --exit-code also 3 effects found, \
-                        4 something is left unexplained."
+                        4 the residuals are unexplained, 5 the set-up is wrong."
 )]
 pub(crate) struct DiagnoseArguments {
     /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c.
@@ -57,39 +52,35 @@ pub(crate) struct DiagnoseArguments {
     validate_bench: Option<PathBuf>,
     #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
-    /// Look for these effects too, beside those of the usual search: gyro_xy.axis_misalignment,
-    /// say, or gyro_x.magnetic.
+    /// Also test these effects, which are not in the default set: gyro_xy.axis_misalignment,
+    /// gyro_x.magnetic.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     effects: Vec<String>,
-    /// Probability that a sound record shows anything.
+    /// Family-wise false-alarm probability.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
-    /// Judge this filter on the record too.
+    /// Also test the consistency of this filter.
     #[arg(long, value_enum)]
     filter: Option<Filter>,
-    /// Exit with 3 if effects were found and with 4 if something is left unexplained.
+    /// Exit with 3 if effects were found, with 4 if the residuals are unexplained, with 5 if the
+    /// set-up is wrong.
     #[arg(long)]
     exit_code: bool,
 }
 
-/// A filter that may be judged.
+/// A filter that can be tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Filter {
-    /// That of the paper: Euler angles as states, one Euler step a sample.
+    /// The paper's: Euler angles as states, one Euler step a sample.
     Euler,
 }
 
-/// What there is to tell.
-struct Found<'a> {
+/// A diagnosis with its inputs.
+struct DiagnosisRun<'a> {
     path: &'a Path,
     record: &'a Record,
     bench: &'a Bench,
     diagnosis: Diagnosis<'a>,
-    /// Of the later record, if there is one and an effect is in the model.
-    validation: Option<Validation>,
-    /// The later record.
-    later: Option<&'a Path>,
-    report: DiagnosisReport,
 }
 
 /// Runs the command; returns what is to be said on stdout.
@@ -113,10 +104,10 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
             later.display()
         )));
     }
-    if arguments.effects.iter().any(|id| id == filter::EFFECT) {
+    if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {
         return Err(Failure::Usage(format!(
-            "{} is an error of a filter and not of the record: it is looked for with --filter euler",
-            filter::EFFECT
+            "{} is an error of a filter and not of the record: --filter euler tests it",
+            FILTER_EFFECT
         )));
     }
     let bench = Bench::read(&arguments.bench)?;
@@ -133,6 +124,9 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     let options = DiagnoseOptions {
         false_alarm_probability: arguments.false_alarm,
         also: arguments.effects.clone(),
+        filter: arguments.filter.map(|filter| match filter {
+            Filter::Euler => TestedFilter::Euler,
+        }),
         ..DiagnoseOptions::default()
     };
     let failed = |source| NotDiagnosed::new(&arguments.record, &bench, source);
@@ -140,59 +134,48 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
     let progress = Progress::waiting("diagnosing", record.len());
-    let diagnosis = diagnose(&record, &bench, &options).map_err(failed)?;
-    let judged = match arguments.filter {
-        Some(Filter::Euler) => {
-            Some(filter::judge(&record, &bench).map_err(|source| failed(source.into()))?)
-        }
-        None => None,
-    };
-    let validation = match &later {
-        Some((path, later, later_bench)) => {
-            let failed = |source| NotDiagnosed::new(path, later_bench, source);
-            let [first, later] = [(&record, &bench), (later, later_bench)]
-                .map(|(record, bench)| Run { record, bench });
-            validated(&diagnosis, &first, &later, &options).map_err(failed)?
-        }
-        None => None,
-    };
+    let mut diagnosis = diagnose(&record, &bench, &options).map_err(failed)?;
+    diagnosis.result.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
+    if let Some((path, later, later_bench)) = &later {
+        let failed = |source| NotDiagnosed::new(path, later_bench, source);
+        let [first, later] =
+            [(&record, &bench), (later, later_bench)].map(|(record, bench)| Run { record, bench });
+        diagnosis
+            .validate(&first, &later, &options)
+            .map_err(failed)?;
+    }
     drop(progress);
-    tracing::info!(verdict = ?diagnosis.verdict, "diagnosed");
-    let blind = blind::blind(&diagnosis, &record).map_err(|source| failed(source.into()))?;
-    let shown = residuals::report(&diagnosis, &record).map_err(failed)?;
-    let report = json::report(
-        &diagnosis,
-        validation.as_ref(),
-        judged,
-        blind,
-        &bench,
-        shown,
-        manifest(MODEL_HASH, options.seed, &inputs)?,
-    );
-    let found = Found {
-        path: &arguments.record,
-        record: &record,
-        bench: &bench,
-        diagnosis,
-        validation,
-        later: later.as_ref().map(|(path, ..)| *path),
-        report,
-    };
-    let mut text = words::summary(&found);
+    tracing::info!(verdict = ?diagnosis.result.verdict, "diagnosed");
+    answer(
+        arguments,
+        &DiagnosisRun {
+            path: &arguments.record,
+            record: &record,
+            bench: &bench,
+            diagnosis,
+        },
+    )
+}
+
+/// Writes all outputs, and lays out the words.
+fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answer, Failure> {
+    let result = &run.diagnosis.result;
+    let mut text = layout(&prose::diagnosis(result));
     let mut outputs = Outputs::new();
     if let Some(folder) = &arguments.figures {
-        text.push_str(&figures::stage(&found, folder, &mut outputs)?);
+        text.push_str(&figures::stage(run, folder, &mut outputs)?);
     }
     if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &found.report)?;
+        outputs.stage_json(path, result)?;
         text.push_str(&format!("\n{}: the result for programs\n", path.display()));
     }
     outputs.commit()?;
     Ok(Answer {
         text,
-        exit_code: match (arguments.exit_code, found.report.verdict) {
-            (true, DiagnosisVerdict::EffectsFound) => 3,
-            (true, DiagnosisVerdict::Unexplained) => 4,
+        exit_code: match (arguments.exit_code, result.verdict) {
+            (true, Verdict::EffectsFound) => 3,
+            (true, Verdict::Unexplained) => 4,
+            (true, Verdict::Setup) => 5,
             _ => 0,
         },
     })

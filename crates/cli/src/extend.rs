@@ -1,6 +1,5 @@
 //! `gyrocal extend`: the model file of an extended filter from a diagnosis.
 
-pub(crate) mod diagnosis;
 mod effects;
 
 use std::fmt::Write as _;
@@ -8,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_diagnosis::result;
 use gyrocal_record::{Manifest, Outputs, SCHEMA_VERSION};
 use serde::Serialize;
 
@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<String, Failure> {
         ],
     )?;
     let extension = match &arguments.diagnosis {
-        Some(path) => of_diagnosis(&diagnosis::read(path)?, &path.display().to_string()),
+        Some(path) => of_diagnosis(&result::read(path)?, &path.display().to_string()),
         None => of_list(arguments.effects.as_deref().unwrap_or_default()),
     }
     .map_err(Failure::Work)?;

@@ -15,6 +15,7 @@ mod diagnose;
 mod error_report;
 mod extend;
 mod import;
+mod layout;
 mod measured;
 mod monte_carlo;
 mod noise;

@@ -2,22 +2,21 @@
 
 mod failed;
 mod found;
-mod json;
 mod options;
-mod tables;
-mod words;
 
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use gyrocal::Platform;
+use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
-use gyrocal_diagnosis::plan::{Aim, PlanOptions, Planned, plan};
+use gyrocal_diagnosis::plan::{Aim, PlanOptions, plan, prose};
 use gyrocal_record::{Bench, Outputs, Record};
 
 use crate::Failure;
+use crate::layout::layout;
 use crate::numbers::{positive, probability};
-use crate::outputs;
+use crate::outputs::{self, manifest};
 use crate::progress::Progress;
 use failed::NotPlanned;
 use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
@@ -84,15 +83,6 @@ enum AimArgument {
     Sigmas,
 }
 
-/// The plan with its inputs.
-struct Found<'a> {
-    arguments: &'a PlanArguments,
-    record: &'a Record,
-    planned: Planned,
-    /// The goal as text, if there is one.
-    wish: Option<String>,
-}
-
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
@@ -109,7 +99,6 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     let progress = Progress::waiting("planning on", record.len());
     let known = found::known(arguments, &run)?;
     tracing::info!(named = known.named.len(), "known");
-    let goal = goal(arguments);
     let options = PlanOptions {
         durations_s: durations_s(&arguments.hours),
         limits: limits(&arguments.limits, &bench),
@@ -117,22 +106,17 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
             AimArgument::Set => Aim::Set,
             AimArgument::Sigmas => Aim::Sigmas,
         }),
-        goal: goal.clone(),
+        goal: goal(arguments),
         ..PlanOptions::default()
     };
-    let planned = plan(&known.fitted, &run, &known.noise, &known.named, &options)
+    let mut planned = plan(&known.fitted, &run, &known.noise, &known.named, &options)
         .map_err(|source| NotPlanned::new(&arguments.record, source))?;
     drop(progress);
-    let found = Found {
-        arguments,
-        record: &record,
-        planned,
-        wish: options::in_words(&goal),
-    };
-    let mut text = words::summary(&found);
+    planned.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
+    let mut text = layout(&prose(&planned));
     let mut outputs = Outputs::new();
     if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &json::report(&found, options.seed, &inputs)?)?;
+        outputs.stage_json(path, &planned)?;
         text.push_str(&format!("\n{}: the result for programs\n", path.display()));
     }
     outputs.commit()?;

@@ -1,13 +1,17 @@
+use gyrocal_calibration::CalibrationError;
 use gyrocal_statistics::StatisticsError;
 
-/// Why a record could not be examined.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+/// Why there is no diagnosis, or no plan.
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DiagnosisError {
+    /// A model could not be fitted, or a record not be passed over.
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
     /// Two series that belong together differ in length.
     #[error("{found} rows of {what}, expected {expected}, as many as the record has")]
     UnequalLengths {
-        /// What has another length.
+        /// The series of another length.
         what: &'static str,
         /// Its number of rows.
         found: usize,
@@ -37,10 +41,66 @@ pub enum DiagnosisError {
         what: &'static str,
         /// Its value.
         found: f64,
-        /// What it may be.
+        /// Values that it may have.
         expected: &'static str,
     },
     /// A statistic that could not be computed.
     #[error(transparent)]
     Statistics(#[from] StatisticsError),
+    /// An effect was asked for that the catalogue does not hold.
+    #[error("there is no effect `{id}` in the catalogue{nearest}")]
+    UnknownEffect {
+        /// Its id.
+        id: String,
+        /// The nearest ones, as the end of the sentence.
+        nearest: String,
+    },
+    /// An effect was asked for that this record and its bench cannot show.
+    #[error("`{effect}` cannot be looked for: {why}")]
+    Unavailable {
+        /// Its id.
+        effect: &'static str,
+        /// The missing input.
+        why: String,
+    },
+    /// A plan was asked for an effect that has no signature, or is in no catalogue.
+    #[error("`{effect}` is no effect that a run can be planned for")]
+    NotPlannable {
+        /// Its id.
+        effect: String,
+    },
+    /// A goal speaks of a coefficient that there is not.
+    #[error("there is no coefficient `{name}`; they are {known}")]
+    UnknownCoefficient {
+        /// Its id.
+        name: String,
+        /// All there are, as a list in words.
+        known: String,
+    },
+    /// A run of a duration that cannot be planned.
+    #[error(
+        "a run of {found_s} s was asked for, expected from {least_s} s, twelve rows, to {most_s} s"
+    )]
+    Duration {
+        /// The duration \[s\].
+        found_s: f64,
+        /// The shortest run \[s\].
+        least_s: f64,
+        /// The longest run \[s\].
+        most_s: f64,
+    },
+    /// The gimbals reach a limit in any run of that duration.
+    #[error(
+        "no attitude that was tried keeps the gimbals within their limits for {wanted_h:.1} h, as \
+         the Earth turns under the platform; the longest lasts {longest_h:.1} h, from \
+         {angles_deg:.0?} deg; plan for a shorter run or widen the limits"
+    )]
+    Limits {
+        /// Duration that was asked for \[h\].
+        wanted_h: f64,
+        /// The longest that stays within the limits \[h\].
+        longest_h: f64,
+        /// Platform angles at its start \[deg\].
+        angles_deg: [f64; 3],
+    },
 }

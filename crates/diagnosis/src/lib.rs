@@ -25,29 +25,35 @@
 pub mod cause;
 mod continuation;
 mod diagnose;
+mod distinguishability;
 mod error;
+pub mod error_budget;
+mod filter_test;
 mod gain;
 mod magnitude;
 mod magnitude_test;
 mod noise;
 pub mod plan;
-mod remainder;
+mod power;
+pub mod prose;
 mod request;
+mod residual_test;
 mod residuals;
 pub mod result;
 mod series;
+mod untested;
 
-pub use diagnose::{DiagnoseError, DiagnoseOptions, Diagnosis, Verdict, diagnose, validated};
+pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, predict_later};
 pub use error::DiagnosisError;
-pub use gain::{Acceptance, CoefficientShift, Compensation, Gain, Validation, validate};
+pub use filter_test::{FILTER_EFFECT, TestedFilter};
+pub use gain::{AttitudeErrors, LaterPrediction};
 pub use magnitude::{MagnitudeChannel, magnitude_channel};
 pub use magnitude_test::{MagnitudeTest, magnitude_test};
 pub use noise::{
-    AuditOptions, Cleaned, DeclaredNoise, Estimate, Gaps, NoiseAudit, NoiseFinding, Outlier,
-    Shares, audit_noise,
+    AuditOptions, Cleaned, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, Outlier, Shares,
+    audit_noise,
 };
-pub use remainder::{Remainder, remainder};
-pub use residuals::{Abscissa, Residuals, residuals};
+pub use result::{DiagnosisResult, Verdict};
 pub use series::Innovations;
 
 /// Number of drift coefficients of the nominal model.

@@ -16,7 +16,8 @@ mod outlier;
 mod spectrum;
 
 pub use audit::{AuditOptions, DeclaredNoise, audit_noise};
-pub use finding::{Cleaned, Estimate, Gaps, NoiseAudit, NoiseFinding, Shares};
+pub use finding::{Cleaned, Estimate, NoiseAudit, NoiseFinding, Shares};
 pub use outlier::Outlier;
 
+pub(crate) use audit::gaps;
 pub(crate) use open_loop::runs;

@@ -5,7 +5,7 @@ use gyrocal_calibration::check_record;
 use gyrocal_record::{Bench, Record};
 
 use crate::cause::missing;
-use crate::diagnose::DiagnoseError;
+use crate::error::DiagnosisError;
 
 /// So many near ids are told of a mistyped one.
 const NEAREST: usize = 3;
@@ -16,16 +16,16 @@ pub(crate) fn check(
     effects: &[String],
     record: &Record,
     bench: &Bench,
-) -> Result<(), DiagnoseError> {
+) -> Result<(), DiagnosisError> {
     for id in effects {
         let Some(effect) = EFFECTS.iter().find(|effect| effect.id == id) else {
-            return Err(DiagnoseError::UnknownEffect {
+            return Err(DiagnosisError::UnknownEffect {
                 id: id.clone(),
                 nearest: nearest(id),
             });
         };
         if let Some(why) = missing(effect, record, bench) {
-            return Err(DiagnoseError::Unavailable {
+            return Err(DiagnosisError::Unavailable {
                 effect: effect.id,
                 why,
             });
@@ -105,7 +105,7 @@ mod tests {
             .and_then(|bench| check(&[], &short, &bench).err());
         assert!(matches!(
             error,
-            Some(DiagnoseError::Calibration(CalibrationError::TooShort {
+            Some(DiagnosisError::Calibration(CalibrationError::TooShort {
                 found: 11,
                 ..
             }))

@@ -1,13 +1,14 @@
-//! What the residuals of the nominal model show, before anything is named: in size, from row to row,
-//! in frequency, and against specific force, time and temperature. It makes no finding.
+//! Residuals of the nominal model before the search: size, correlation, spectral lines, regression on
+//! specific force, time and temperature, and the error of the open-loop simulation. They make no
+//! finding.
 
 use gyrocal_calibration::Extended;
 use gyrocal_record::Record;
 use gyrocal_statistics::{
-    Autocorrelation, BinnedMeans, Nis, SpectralLine, StatisticsError, autocorrelation,
-    binned_means, nis, periodogram, rms_of_present,
+    SpectralLine, StatisticsError, autocorrelation, binned_means, nis, periodogram, rms_of_present,
 };
 
+use crate::result::{Against, Autocorrelation, Line, Nis, Residuals};
 use crate::series::Innovations;
 
 /// Lags of the autocorrelation.
@@ -16,38 +17,11 @@ const LAGS: usize = 20;
 /// Bins of each abscissa.
 const BINS: usize = 12;
 
-/// An abscissa that residuals may depend on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Abscissa {
-    /// Specific force along platform axis 0, 1, 2 of x, y, z, g.
-    Force(usize),
-    /// Time since the first row, s.
-    Time,
-    /// Temperature, °C.
-    Temperature,
-}
-
-/// Residuals of a model, looked at in every way. What a short record does not show is `None`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Residuals {
-    /// Normalised innovations squared.
-    pub nis: Option<Nis>,
-    /// Correlation of innovations over rows.
-    pub autocorrelation: Option<Autocorrelation>,
-    /// The largest line of each axis.
-    pub lines: Option<[SpectralLine; 3]>,
-    /// Root mean square of measured less simulated specific force of each axis, the simulation
-    /// running by itself from the first attitude, g.
-    pub free_run_rms_g: [f64; 3],
-    /// Means of normalised innovations of each axis over each abscissa.
-    pub against: Vec<(Abscissa, [BinnedMeans; 3])>,
-}
-
-/// Looks at the innovations of the nominal model, and at its free run.
+/// Statistics of the innovations of the nominal model, and the error of its open-loop simulation.
 ///
 /// # Errors
 /// As [`Extended::free_run_g`].
-pub fn residuals(
+pub(crate) fn residuals(
     nominal: &Extended<'_>,
     innovations: &Innovations,
     record: &Record,
@@ -66,12 +40,31 @@ pub fn residuals(
             let [x, y, z] = channels
                 .each_ref()
                 .map(|series| binned_means(&at, series, 1.0, BINS));
-            Some((abscissa, [x.ok()?, y.ok()?, z.ok()?]))
+            let axes = [x.ok()?, y.ok()?, z.ok()?];
+            Some(Against {
+                abscissa,
+                p_value: axes.each_ref().map(|axis| axis.p_value),
+                at: axes
+                    .each_ref()
+                    .map(|axis| axis.bins.iter().map(|bin| bin.at).collect()),
+                mean: axes.map(|axis| axis.bins.iter().map(|bin| bin.mean).collect()),
+            })
         })
         .collect();
     Ok(Residuals {
-        nis: nis(normalised, false_alarm).ok(),
-        autocorrelation: autocorrelation(normalised, LAGS, false_alarm).ok(),
+        nis: nis(normalised, false_alarm).ok().map(|nis| Nis {
+            mean: nis.mean,
+            band: nis.band,
+            p_value: nis.p_value,
+        }),
+        autocorrelation: autocorrelation(normalised, LAGS, false_alarm)
+            .ok()
+            .map(|found| Autocorrelation {
+                ljung_box: found.ljung_box,
+                degrees_of_freedom: found.degrees_of_freedom,
+                p_value: found.p_value,
+                correlation: found.correlation,
+            }),
         lines: all(lines.map(|found| found.map(|found| found.line))),
         free_run_rms_g: core::array::from_fn(|axis| {
             let misses = record.accel_g.iter().zip(&simulated_g);
@@ -81,26 +74,33 @@ pub fn residuals(
     })
 }
 
-fn abscissae(innovations: &Innovations, record: &Record) -> Vec<(Abscissa, Vec<f64>)> {
+fn abscissae(innovations: &Innovations, record: &Record) -> Vec<(String, Vec<f64>)> {
     let forces = innovations.specific_force_g.iter();
-    let mut all: Vec<(Abscissa, Vec<f64>)> = (0..3)
-        .map(|axis| {
+    let mut all: Vec<(String, Vec<f64>)> = ["force_x_g", "force_y_g", "force_z_g"]
+        .into_iter()
+        .enumerate()
+        .map(|(axis, name)| {
             let along = forces.clone().map(|force_g| force_g[axis]);
-            (Abscissa::Force(axis), along.collect())
+            (name.to_owned(), along.collect())
         })
         .collect();
     let first_s = innovations.time_s.first().copied().unwrap_or(0.0);
     let times = innovations.time_s.iter().map(|time_s| time_s - first_s);
-    all.push((Abscissa::Time, times.collect()));
+    all.push(("time_s".to_owned(), times.collect()));
     if let Some(temperature) = &record.temperature_c
         && record.temperature_changes()
     {
-        all.push((Abscissa::Temperature, temperature.clone()));
+        all.push(("temperature_c".to_owned(), temperature.clone()));
     }
     all
 }
 
-fn all(lines: [Result<SpectralLine, StatisticsError>; 3]) -> Option<[SpectralLine; 3]> {
+fn all(lines: [Result<SpectralLine, StatisticsError>; 3]) -> Option<[Line; 3]> {
     let [x, y, z] = lines;
-    Some([x.ok()?, y.ok()?, z.ok()?])
+    let line = |line: SpectralLine| Line {
+        period_h: 1.0 / (3600.0 * line.frequency_hz),
+        amplitude: line.amplitude,
+        p_value: line.p_value,
+    };
+    Some([line(x.ok()?), line(y.ok()?), line(z.ok()?)])
 }

@@ -1,7 +1,7 @@
 //! Effects hidden in simulated records: each kind of search finds its own.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use gyrocal_diagnosis::cause::{Channel, Pattern};
+use gyrocal_diagnosis::result::{FindingKind, UnmodelledPattern};
 use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
@@ -21,39 +21,28 @@ fn record(seed: u64, effect: &str, parameters: &[(&str, f64)]) -> (Record, Bench
 }
 
 /// Diagnoses, and returns the parameters of the one finding there must be.
-fn only_finding(effect: &str, parameters: &[(&str, f64)]) -> Vec<(&'static str, f64, Option<f64>)> {
+fn only_finding(effect: &str, parameters: &[(&str, f64)]) -> Vec<(String, f64, Option<f64>)> {
     let (record, bench) = record(5, effect, parameters);
     let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+    let found = found.result;
     assert_eq!(found.verdict, Verdict::EffectsFound);
-    let names: Vec<&str> = found
-        .findings
-        .iter()
-        .map(|finding| finding.effect)
-        .collect();
+    let names: Vec<&str> = found.causes().map(|f| f.effect.as_str()).collect();
     assert_eq!(names, [effect]);
-    assert!(
-        found.noise_findings.is_empty(),
-        "{:?}",
-        found.noise_findings
-    );
-    assert!(
-        !found.remainder.unexplained,
-        "{}",
-        found.remainder.description
-    );
+    let noise: Vec<_> = found.of_kind(FindingKind::Noise).collect();
+    assert!(noise.is_empty(), "{noise:?}");
+    assert!(!found.is_unexplained(), "{}", found.remainder.description);
     // All these are large: a model without them predicts left-out blocks worse.
-    assert!(found.gain.unwrap().log_score_nats() > 8.0);
-    found.findings[0]
-        .parameters
-        .iter()
-        .map(|parameter| (parameter.name, parameter.estimate, parameter.sigma))
+    assert!(found.gain.unwrap().cross_validated_log_score_nats > 8.0);
+    let parameters = found.findings[0].parameters.iter();
+    parameters
+        .map(|parameter| (parameter.name.clone(), parameter.estimate, parameter.sigma))
         .collect()
 }
 
 #[test]
 fn a_term_of_the_drift_is_found_with_its_size() {
     let found = only_finding("gyro_y.g_z", &[("size", 0.01)]);
-    let (_, estimate, sigma) = found[0];
+    let (_, estimate, sigma) = &found[0];
     // One in sixteen thousand is farther off than four sigmas.
     assert!((estimate - 0.01).abs() < 4.0 * sigma.unwrap());
 }
@@ -90,32 +79,34 @@ fn a_random_walk_is_no_cause_with_a_law() {
 
 #[test]
 fn what_the_catalogue_does_not_hold_has_no_name_and_is_told() {
-    use Channel::{Drift, Readings};
-    type Case<'a> = (&'a str, &'a [(&'a str, f64)], Channel, Option<usize>);
+    type Case<'a> = (&'a str, &'a [(&'a str, f64)], &'a str, Option<&'a str>);
     let tone = |size| [("size", size), ("period_h", 5.3)];
     let cases: [Case<'_>; 4] = [
-        ("gyro_x.tone", &tone(0.004), Drift(0), None),
-        ("accel_y.tone", &tone(6e-6), Readings(1), None),
-        ("gyro_y.sign_y", &[("size", 0.01)], Drift(1), Some(1)),
-        ("accel_y.sign", &[("size", 5e-5)], Readings(1), Some(1)),
+        ("gyro_x.tone", &tone(0.004), "gyro_x", None),
+        ("accel_y.tone", &tone(6e-6), "accel_y", None),
+        ("gyro_y.sign_y", &[("size", 0.01)], "gyro_y", Some("y")),
+        ("accel_y.sign", &[("size", 5e-5)], "accel_y", Some("y")),
     ];
     for (effect, parameters, channel, axis) in cases {
         let (record, bench) = record(6, effect, parameters);
         let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+        let found = found.result;
         let described = &found.remainder.description;
-        assert!(found.remainder.unexplained, "{effect}: {described}");
-        let strongest = found.unnamed.first().expect(effect);
+        assert!(found.is_unexplained(), "{effect}: {described}");
+        let strongest = found.remainder.unmodelled.first().expect(effect);
         assert_eq!(strongest.channel, channel, "{effect}: {described}");
-        match (strongest.pattern, axis) {
+        match (strongest.pattern, strongest.period_h) {
             // Known to a fraction of one cycle in the two days, which would be a tenth.
-            (Pattern::Line { period_h }, None) => {
+            (UnmodelledPattern::Line, Some(period_h)) if axis.is_none() => {
                 assert!((period_h / 5.3 - 1.0).abs() < 0.03, "{period_h}");
                 // A tone has nothing of any cause.
-                assert!(found.findings.is_empty(), "{effect}");
+                assert!(found.causes().next().is_none(), "{effect}");
                 assert_eq!(found.verdict, Verdict::Unexplained);
             }
-            (Pattern::Curve { axis }, Some(expected)) => assert_eq!(axis, expected, "{effect}"),
-            (other, _) => panic!("{effect}: {other:?}"),
+            (UnmodelledPattern::Curve, None) => {
+                assert_eq!(strongest.force_axis.as_deref(), axis, "{effect}");
+            }
+            other => panic!("{effect}: {other:?}"),
         }
     }
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal_calibration::Run;
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Validation, diagnose, validated};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, LaterPrediction, diagnose, predict_later};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 /// A day or more at a random attitude.
@@ -27,16 +27,16 @@ fn a_step_in_the_last_block_is_judged_too() {
     let simulation = simulation(11, 2.0, &hidden);
     let options = DiagnoseOptions::default();
     let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap();
-    assert!(!found.findings.is_empty());
-    for acceptance in &found.acceptances {
-        assert!(acceptance.gain_nats.is_finite(), "{acceptance:?}");
-        assert_eq!(acceptance.accepted, acceptance.gain_nats > 0.0);
+    let causes: Vec<_> = found.result.causes().collect();
+    assert!(!causes.is_empty());
+    for cause in &causes {
+        let gain_nats = cause.gain_nats.unwrap();
+        assert!(gain_nats.is_finite(), "{cause:?}");
+        assert_eq!(cause.accepted, Some(gain_nats > 0.0));
     }
-    let any = found
-        .acceptances
-        .iter()
-        .any(|acceptance| acceptance.accepted);
+    let any = causes.iter().any(|cause| cause.accepted == Some(true));
     assert_eq!(found.extended.is_some(), any);
+    assert_eq!(found.result.coefficients.unwrap().extended.is_some(), any);
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn a_later_record_is_predicted_better_by_what_was_found_in_the_first() {
     let (first, later) = (simulation(7, 2.0, &hidden), simulation(8, 2.0, &hidden));
     let options = DiagnoseOptions::default();
     let found = diagnose(&first.record, &first.bench, &options).unwrap();
-    assert_eq!(found.findings[0].effect, "gyro_y.g_z");
+    assert_eq!(found.result.findings[0].effect, "gyro_y.g_z");
     let validation = predicted(&found, &first, &later);
     // The effect is some hundred sigmas.
     assert!(
@@ -53,7 +53,7 @@ fn a_later_record_is_predicted_better_by_what_was_found_in_the_first() {
         "{:?}",
         validation.log_score_nats
     );
-    let left = &validation.compensation;
+    let left = &validation.attitude;
     let [nominal, extended, expected] = left.at_end_arcmin();
     assert!(extended < 0.2 * nominal, "{left:?}");
     // Root mean square of three axes over starts that share one error of the coefficients: three
@@ -67,14 +67,14 @@ fn a_later_record_is_predicted_better_by_what_was_found_in_the_first() {
 }
 
 /// The later record as it is told by what was found in the first.
-fn predicted(found: &Diagnosis<'_>, first: &Simulation, later: &Simulation) -> Validation {
+fn predicted(found: &Diagnosis<'_>, first: &Simulation, later: &Simulation) -> LaterPrediction {
     let [first, later] = [first, later].map(|simulation| Run {
         record: &simulation.record,
         bench: &simulation.bench,
     });
-    validated(found, &first, &later, &DiagnoseOptions::default())
-        .unwrap()
-        .unwrap()
+    let models = [&found.nominal, found.extended.as_ref().unwrap()];
+    let options = DiagnoseOptions::default();
+    predict_later(models, &found.noise_model, &first, &later, &options).unwrap()
 }
 
 /// A record of hours leaves its own attitude open: then no model can be held against it.
@@ -94,7 +94,7 @@ fn a_short_later_record_lets_one_expect_little() {
     ];
     for (hours, seed) in cases {
         let later = simulation(seed, hours / 24.0, &hidden);
-        let left = predicted(&found, &first, &later).compensation;
+        let left = predicted(&found, &first, &later).attitude;
         let [_, extended, expected] = left.at_end_arcmin();
         squares += (extended / expected).powi(2) / cases.len() as f64;
         shortest = f64::min(shortest, expected);
@@ -110,6 +110,7 @@ fn a_shift_is_known_as_well_as_the_effect_that_makes_it() {
     let hidden = [Hidden::new("gyro_y.g_z", &[("size", 0.004)]).unwrap()];
     let first = simulation(9, 2.0, &hidden);
     let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default()).unwrap();
+    let found = found.result;
     assert_eq!(found.findings.len(), 1);
     let size = &found.findings[0].parameters[0];
     let relative = size.sigma.unwrap() / size.estimate.abs();
@@ -122,7 +123,7 @@ fn a_shift_is_known_as_well_as_the_effect_that_makes_it() {
             compared += 1;
             let found = shift.sigma / shift.shift.abs();
             assert!((found / relative - 1.0).abs() < 0.1, "{shift:?} {relative}");
-            let [low, high] = shift.interval();
+            let [low, high] = shift.interval;
             assert!((high - low - 3.92 * shift.sigma).abs() < 1e-3 * shift.sigma);
         }
     }

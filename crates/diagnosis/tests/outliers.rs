@@ -1,6 +1,7 @@
 //! Values far off, in rows that the audit of the noise cannot judge.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use gyrocal_diagnosis::result::FindingKind;
 use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
@@ -34,10 +35,12 @@ fn an_outlier_is_found_wherever_it_stands() {
         record.accel_g[row][2] += size_g;
         let found = diagnose(&record, &sound.bench, &DiagnoseOptions::default()).unwrap();
         let case = format!("row {row}, {size_g} g");
-        assert_eq!(found.verdict, Verdict::EffectsFound, "{case}");
-        assert!(found.findings.is_empty(), "{case}: {:?}", found.findings);
-        let names: Vec<&str> = found.noise_findings.iter().map(|f| f.effect).collect();
+        let result = &found.result;
+        assert_eq!(result.verdict, Verdict::EffectsFound, "{case}");
+        let names: Vec<&str> = result.findings.iter().map(|f| f.effect.as_str()).collect();
         assert_eq!(names, ["accel.outliers"], "{case}");
+        assert_eq!(result.findings[0].kind, FindingKind::Noise);
+        assert_eq!(result.findings[0].coverage, None);
         let [only] = found.audit.outliers.as_slice() else {
             panic!("{case}: {:?}", found.audit.outliers)
         };
@@ -45,8 +48,8 @@ fn an_outlier_is_found_wherever_it_stands() {
         // A hundredth is noise; an hour after the start the filter is still settling, too.
         assert!((only.size_g / size_g - 1.0).abs() < 0.1, "{case}: {only:?}");
         // It is none of the other things that are said.
-        assert!(!found.norm.unwrap().accelerometers, "{case}");
-        assert!(!found.remainder.unexplained, "{case}");
+        assert!(!result.norm.as_ref().unwrap().accelerometers, "{case}");
+        assert!(!result.is_unexplained(), "{case}");
     }
 }
 
@@ -62,7 +65,7 @@ fn what_a_cause_explains_is_no_outlier() {
         &DiagnoseOptions::default(),
     );
     let found = found.unwrap();
-    assert_eq!(found.findings[0].effect, "gyro_x.g_y");
+    assert_eq!(found.result.findings[0].effect, "gyro_x.g_y");
     assert!(
         found.audit.outliers.is_empty(),
         "{:?}",

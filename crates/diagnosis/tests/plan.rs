@@ -2,9 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
-use gyrocal_diagnosis::plan::{
-    Aim, Goal, Named, PlanError, PlanOptions, Planned, Proposal, compare, plan,
-};
+use gyrocal_diagnosis::DiagnosisError;
+use gyrocal_diagnosis::plan::{Aim, Goal, Named, PlanOptions, PlanResult, Proposal, compare, plan};
 use gyrocal_record::{GimbalLimits, Prior};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
@@ -62,7 +61,7 @@ fn planned(
     first: &Simulation,
     named: &[Named],
     options: &PlanOptions,
-) -> Result<Planned, PlanError> {
+) -> Result<PlanResult, DiagnosisError> {
     let noise = NoiseModel::default();
     let fitted = Named::fitted(named, &run(first), &noise, &Options::default())?;
     plan(&fitted, &run(first), &noise, named, options)
@@ -115,7 +114,7 @@ fn near_twins_are_planned_apart_and_the_run_tells_them_apart() {
     let best = &planned.proposals[0];
     assert!(best.outlook.sets[0].one_left > 0.95);
     // A run that is just long enough is shorter, and by less than a rung of the ladder too long.
-    let enough = planned.reached.unwrap().run.unwrap();
+    let enough = planned.goal.unwrap().run.unwrap();
     assert!(enough.duration_s < best.duration_s);
     assert!((0.95..1.0).contains(&enough.outlook.sets[0].one_left));
 
@@ -151,7 +150,7 @@ fn a_twin_outside_of_the_search_is_planned_for_if_its_size_may_be() {
     let members = planned.now.sets[0]
         .members
         .iter()
-        .map(|member| member.effect);
+        .map(|member| member.effect.clone());
     assert!(
         members
             .into_iter()
@@ -199,7 +198,7 @@ fn a_run_keeps_the_gimbals_within_their_limits_or_there_is_none() {
     // The Earth turns by a whole circle.
     let error = planned(&first, &[], &options(86_400.0)).unwrap_err();
     assert!(
-        matches!(error, PlanError::Limits { longest_h, .. } if (3.0..24.0).contains(&longest_h)),
+        matches!(error, DiagnosisError::Limits { longest_h, .. } if (3.0..24.0).contains(&longest_h)),
         "{error}"
     );
 }
@@ -230,5 +229,8 @@ fn what_makes_no_sense_is_refused() {
     );
     let noise = [named("accel_x.noise", &[])];
     let error = planned(&first, &noise, &PlanOptions::default()).unwrap_err();
-    assert!(matches!(error, PlanError::UnknownEffect { .. }), "{error}");
+    assert!(
+        matches!(error, DiagnosisError::NotPlannable { .. }),
+        "{error}"
+    );
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use gyrocal::effect::EffectKind;
 use gyrocal_calibration::CalibrationError;
-use gyrocal_diagnosis::DiagnoseError;
+use gyrocal_diagnosis::DiagnosisError;
 
 /// Failure of a campaign, or of the evaluation of one record.
 #[derive(Debug, thiserror::Error)]
@@ -85,7 +85,7 @@ pub enum EvaluationError {
     Calibration(#[from] CalibrationError),
     /// A record cannot be diagnosed.
     #[error("the record could not be diagnosed")]
-    Diagnosis(#[from] DiagnoseError),
+    Diagnosis(#[from] DiagnosisError),
     /// The covariance of a trial has no inverse.
     #[error("the covariance of the coefficients is not positive definite")]
     NotPositiveDefinite,

@@ -184,7 +184,7 @@ fn diagnosed(
         if (factor - 1.0).abs() < NEAR || corrections > CORRECTIONS {
             return Ok(Some(RecordScore {
                 hidden: vec![injected_score(&effect, reached)],
-                ..findings_score(&found)
+                ..findings_score(&found.result)
             }));
         }
         effect.size = (effect.size * factor.min(LARGEST_CORRECTION)).min(effect.largest_size);

@@ -2,7 +2,8 @@
 
 use gyrocal::effect::Role;
 use gyrocal_calibration::NoiseModel;
-use gyrocal_diagnosis::cause::{Finding, FoundParameter, Ranked, SearchOptions, search};
+use gyrocal_diagnosis::cause::{SearchOptions, search};
+use gyrocal_diagnosis::result::{DiagnosisResult, Finding, FindingKind, Parameter, RankedEffect};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Scenario, Simulation};
@@ -46,10 +47,10 @@ pub(crate) fn score(
             signature: columns.signature(injected.effect, record, injected.shape),
         })
         .collect();
-    let first = found.findings.first().map(|finding| {
-        let signature = effect_of(finding.effect)
+    let first = found.result.causes().next().map(|finding| {
+        let signature = effect_of(&finding.effect)
             .and_then(|effect| columns.signature(effect, record, shape_of(finding)));
-        (finding.effect, signature)
+        (finding.effect.as_str(), signature)
     });
     let library = if methods.iter().any(|method| method.identifies_effects()) {
         library(&testable_effects(scenario), record, &mut columns)
@@ -72,7 +73,7 @@ pub(crate) fn score(
             let first_cosine = first.as_ref().map_or(0.0, |(name, signature)| {
                 truth.cosine(name, signature.as_ref(), scores.as_ref())
             });
-            injected_score(&found, truth, first_cosine, scenario.duration_s)
+            injected_score(&found.result, truth, first_cosine, scenario.duration_s)
         })
         .collect();
     let methods = scores.as_ref().map_or_else(Vec::new, |scores| {
@@ -84,7 +85,7 @@ pub(crate) fn score(
         hidden,
         oracle_set_size: oracle_set_size(simulation, &found)?,
         methods,
-        ..findings_score(&found)
+        ..findings_score(&found.result)
     })
 }
 
@@ -151,24 +152,22 @@ fn baseline_score(
 }
 
 /// The findings of a diagnosis, without the comparison with injected effects.
-pub(crate) fn findings_score(found: &Diagnosis<'_>) -> RecordScore {
+pub(crate) fn findings_score(found: &DiagnosisResult) -> RecordScore {
     RecordScore {
         hidden: Vec::new(),
         verdict: match found.verdict {
-            Verdict::Clean => "clean",
             Verdict::EffectsFound => "effects-found",
             Verdict::Unexplained => "unexplained",
+            _ => "clean",
         }
         .to_owned(),
-        findings: found.findings.iter().map(finding_score).collect(),
+        findings: found.causes().map(finding_score).collect(),
         noise: found
-            .noise_findings
-            .iter()
-            .map(|finding| finding.effect.to_owned())
+            .of_kind(FindingKind::Noise)
+            .map(|finding| finding.effect.clone())
             .collect(),
         unexplained: found
-            .remainder
-            .unexplained
+            .is_unexplained()
             .then(|| found.remainder.description.clone()),
         oracle_set_size: None,
         nearest: nearest(&found.ranking),
@@ -176,18 +175,18 @@ pub(crate) fn findings_score(found: &Diagnosis<'_>) -> RecordScore {
     }
 }
 
-fn nearest(ranking: &[Ranked]) -> Vec<(String, f64)> {
+fn nearest(ranking: &[RankedEffect]) -> Vec<(String, f64)> {
     let Some(best) = ranking.first() else {
         return Vec::new();
     };
     let mut nearest: Vec<(String, f64)> = Vec::with_capacity(NEAREST_KEPT);
     for ranked in &ranking[1..] {
-        let listed = same_or_equivalent(ranked.effect, best.effect)
+        let listed = same_or_equivalent(&ranked.effect, &best.effect)
             || nearest
                 .iter()
-                .any(|(other, _)| same_or_equivalent(ranked.effect, other));
+                .any(|(other, _)| same_or_equivalent(&ranked.effect, other));
         if !listed {
-            nearest.push((ranked.effect.to_owned(), best.statistic - ranked.statistic));
+            nearest.push((ranked.effect.clone(), best.statistic - ranked.statistic));
         }
         if nearest.len() == NEAREST_KEPT {
             break;
@@ -198,9 +197,9 @@ fn nearest(ranking: &[Ranked]) -> Vec<(String, f64)> {
 
 fn finding_score(finding: &Finding) -> FindingScore {
     let has_equivalents =
-        effect_of(finding.effect).is_some_and(|effect| !effect.equivalents.is_empty());
+        effect_of(&finding.effect).is_some_and(|effect| !effect.equivalents.is_empty());
     FindingScore {
-        effect: finding.effect.to_owned(),
+        effect: finding.effect.clone(),
         z: finding.z,
         parameters: finding
             .parameters
@@ -208,21 +207,21 @@ fn finding_score(finding: &Finding) -> FindingScore {
             .map(|parameter| (parameter.name.to_owned(), parameter.estimate))
             .collect(),
         alternatives: finding
-            .rivals
+            .alternatives
             .iter()
-            .map(|rival| (rival.effect.to_owned(), 2.0 * rival.log_likelihood_deficit))
+            .map(|other| (other.effect.clone(), 2.0 * other.log_likelihood_deficit))
             .collect(),
         equivalents: finding
             .equivalents
             .iter()
-            .map(|(id, _)| (*id).to_owned())
+            .map(|equivalent| equivalent.effect.clone())
             .collect(),
         lacks_equivalents: has_equivalents && finding.equivalents.is_empty(),
     }
 }
 
 fn injected_score(
-    found: &Diagnosis<'_>,
+    found: &DiagnosisResult,
     truth: &Truth<'_>,
     first_cosine: f64,
     duration_s: f64,
@@ -230,17 +229,18 @@ fn injected_score(
     let injected = truth.injected;
     let id = injected.effect.id;
     // Those of the effect, or those of an exact equivalent that a finding lists.
-    let parameters: Option<&[FoundParameter]> = found.findings.iter().find_map(|finding| {
+    let parameters: Option<&[Parameter]> = found.causes().find_map(|finding| {
         if finding.effect == id {
             return Some(finding.parameters.as_slice());
         }
-        let listed = finding.equivalents.iter().find(|(other, _)| *other == id);
-        listed.map(|(_, parameters)| parameters.as_slice())
+        let mut equivalents = finding.equivalents.iter();
+        let listed = equivalents.find(|other| other.effect == id);
+        listed.map(|other| other.parameters.as_slice())
     });
-    let in_set = found.findings.iter().any(|finding| {
-        let mut rivals = finding.rivals.iter();
-        same_or_equivalent(finding.effect, id)
-            || rivals.any(|rival| same_or_equivalent(rival.effect, id))
+    let in_set = found.causes().any(|finding| {
+        let mut others = finding.alternatives.iter();
+        same_or_equivalent(&finding.effect, id)
+            || others.any(|other| same_or_equivalent(&other.effect, id))
     });
     let shape = injected.effect.shape();
     let shape = shape.filter(|shape| matches!(shape.role, Role::Onset(_)));
@@ -254,7 +254,7 @@ fn injected_score(
     let own = found
         .ranking
         .iter()
-        .find(|ranked| same_or_equivalent(ranked.effect, id));
+        .find(|ranked| same_or_equivalent(&ranked.effect, id));
     let names = injected
         .effect
         .parameters
@@ -277,7 +277,7 @@ fn injected_score(
 }
 
 /// `true` if the simultaneous 95 % intervals of all sizes cover the true ones.
-fn covers(parameters: &[FoundParameter], sizes: &[f64]) -> bool {
+fn covers(parameters: &[Parameter], sizes: &[f64]) -> bool {
     let sigmas = HALF_WIDTHS[sizes.len().clamp(1, HALF_WIDTHS.len()) - 1];
     parameters.iter().zip(sizes).all(|(found, size)| {
         found
@@ -291,23 +291,23 @@ fn oracle_set_size(
     simulation: &Simulation,
     found: &Diagnosis<'_>,
 ) -> Result<Option<usize>, EvaluationError> {
-    let size = |findings: &[Finding]| findings.first().map(|finding| 1 + finding.rivals.len());
     if found.noise_model == NoiseModel::default() {
-        return Ok(size(&found.findings));
+        let first = found.result.causes().next();
+        return Ok(first.map(|finding| 1 + finding.alternatives.len()));
     }
     let options = SearchOptions {
-        false_alarm_probability: found.search_false_alarm_probability,
+        false_alarm_probability: found.result.false_alarm_shares.search,
         ..SearchOptions::default()
     };
     let nominal = nominal_fit(simulation)?;
     let searched = search(nominal, &simulation.record, &simulation.bench, &options)?;
-    Ok(size(&searched.findings))
+    let first = searched.findings.first();
+    Ok(first.map(|finding| 1 + finding.rivals.len()))
 }
 
 /// Onset or time constant of a finding.
 fn shape_of(finding: &Finding) -> Option<f64> {
-    let shape = effect_of(finding.effect)?.shape()?;
-    let mut parameters = finding.parameters.iter();
-    let found = parameters.find(|parameter| parameter.name == shape.name);
+    let shape = effect_of(&finding.effect)?.shape()?;
+    let found = finding.parameter(shape.name);
     found.map(|parameter| parameter.estimate)
 }

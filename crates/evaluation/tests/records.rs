@@ -100,7 +100,7 @@ fn a_record_that_nothing_like_noise_explains_is_diagnosed() {
             &gyrocal_diagnosis::DiagnoseOptions::default(),
         )
         .unwrap();
-        let names: Vec<&str> = found.findings.iter().map(|f| f.effect).collect();
+        let names: Vec<&str> = found.result.causes().map(|f| f.effect.as_str()).collect();
         assert_eq!(names, [effect]);
     }
 }

@@ -54,52 +54,31 @@
 //! not at all ([`Outputs`]).
 
 mod bench;
-mod channel_report;
-mod diagnosis_report;
 mod error;
 pub mod fields;
-mod gain_report;
 mod gimbals;
 mod header;
 mod manifest;
 mod model_file;
 mod output;
-mod plan_report;
 mod record;
 mod report;
-mod residuals_report;
 mod rows;
 mod source;
 mod suggest;
 mod tables;
 
 pub use bench::{Bench, Gravity, Prior, SiteUncertainty};
-pub use channel_report::{AllanCourse, AllanPointReport, AllanReport, NormReport};
-pub use diagnosis_report::{
-    CannotTellReport, DiagnosisReport, DiagnosisVerdict, EquivalentReport, FilterReport,
-    FindingReport, NotSearchedReport, ParameterReport, RankedReport, RemainderReport,
-    RemainderVerdict, RivalReport,
-};
 pub use error::{Error, InputError, InputErrorKind};
-pub use gain_report::{
-    CompensationReport, FreeRunReport, GainReport, ShiftReport, ValidationReport,
-};
 pub use gimbals::GimbalLimits;
 pub use manifest::{Input, Manifest};
 pub use model_file::{KnownEffect, ModelFile, ParameterEstimate, Standing};
 pub use output::{Outputs, write_json, write_whole};
-pub use plan_report::{
-    GoalReport, OutlookReport, PlanAim, PlanReport, ProposalReport, SetMemberReport, SetReport,
-    SigmaReport,
-};
 pub use record::Record;
 pub use report::{
     AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, FitVerdict,
     NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport,
     SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
-};
-pub use residuals_report::{
-    AgainstReport, AutocorrelationReport, LineReport, NisReport, ResidualsReport,
 };
 pub use source::SourceText;
 pub use suggest::nearest_few;

@@ -18,6 +18,12 @@ pub fn two_sided_p(z: f64) -> f64 {
     erfc(z.abs() / core::f64::consts::SQRT_2)
 }
 
+/// Probability that a standard normal variable is at most `z`.
+#[must_use]
+pub fn normal_probability(z: f64) -> f64 {
+    0.5 * erfc(-z / core::f64::consts::SQRT_2)
+}
+
 /// The `z` that a two-sided probability belongs to; at most 38, where doubles end.
 #[must_use]
 pub fn z_of_two_sided_p(p: f64) -> f64 {

@@ -24,11 +24,11 @@ const ACCEL_VARIANCE: [f64; 3] = [1e-10; 3];
 /// Ratio of errors up to which two filters count as equally accurate. The rounding error of a run is
 /// one random draw; its logarithm has a standard deviation of up to 0.9 over runs, a mean over eight
 /// one of 0.3, a ratio one of 0.45. This is two of these.
-pub(crate) const TIE: f64 = 2.5;
+pub const TIE: f64 = 2.5;
 
 /// Largest error of the factors over that of the dense Joseph filter. Measured: a thousandth, since
 /// factors keep small pivots to their own last digit.
-pub(crate) const FACTORS_LIMIT: f64 = 0.02;
+pub const FACTORS_LIMIT: f64 = 0.02;
 
 /// Errors of one filter against the reference, over the checkpoints of all runs of 1000 steps.
 #[derive(Clone, Copy, Debug, Default)]

@@ -247,8 +247,8 @@ fn main() {
     })
     .unwrap();
     let options = DiagnoseOptions::default();
-    let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap();
-    println!("{:?} {}", found.verdict, found.remainder.unexplained);
+    let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap().result;
+    println!("{:?} {}", found.verdict, found.is_unexplained());
     for finding in &found.findings {
         print!("{}", finding.effect);
         for parameter in &finding.parameters {
@@ -257,8 +257,9 @@ fn main() {
         println!();
     }
     let gain = found.gain.unwrap();
-    let [before, after] = gain.free_run_rms_g;
-    println!("{:e} {before:e} {after:e} {:e}", gain.log_score_nats(), gain.noise_rms_g);
+    let rms_g = gain.free_run_rms_g;
+    let nats = gain.cross_validated_log_score_nats;
+    println!("{nats:e} {:e} {:e} {:e}", rms_g.before, rms_g.after, rms_g.noise);
 }
 "#;
 

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::path::Path;
 
 use gyrocal_calibration::CalibrationError;
-use gyrocal_diagnosis::DiagnoseError;
+use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_record::Bench;
 use miette::Diagnostic;
 
@@ -17,11 +17,11 @@ use crate::noise::{GYRO_ADVICE, has_tiny_gyro_noise};
 pub(crate) struct NotDiagnosed {
     record: String,
     tiny_gyro_noise: bool,
-    source: DiagnoseError,
+    source: DiagnosisError,
 }
 
 impl NotDiagnosed {
-    pub(crate) fn new(record: &Path, bench: &Bench, source: DiagnoseError) -> Self {
+    pub(crate) fn new(record: &Path, bench: &Bench, source: DiagnosisError) -> Self {
         Self {
             record: record.display().to_string(),
             tiny_gyro_noise: has_tiny_gyro_noise(bench),
@@ -31,12 +31,16 @@ impl NotDiagnosed {
 
     fn advice(&self) -> &'static str {
         use CalibrationError as Fit;
-        use DiagnoseError as Why;
+        use DiagnosisError as Why;
 
         match &self.source {
             Why::UnknownEffect { .. } => "docs/diagnosis.md lists the effects",
             Why::Unavailable { .. } => "leave it out of --effects, or supply what is missing",
-            Why::Calibration(Fit::TooShort { .. }) | Why::Residuals(_) => "record for longer",
+            Why::Calibration(Fit::TooShort { .. })
+            | Why::TooShort { .. }
+            | Why::UnequalLengths { .. }
+            | Why::NotPositiveDefinite { .. }
+            | Why::InvalidArgument { .. } => "record for longer",
             Why::Calibration(Fit::NoAttitude) => {
                 "leave out --filter: the filter needs initial_angles_deg, the diagnosis does not"
             }

@@ -6,18 +6,19 @@ mod residual;
 
 use std::path::Path;
 
-use gyrocal_diagnosis::DiagnosisError;
-use gyrocal_record::{DiagnosisVerdict, Outputs};
+use gyrocal_diagnosis::result::FindingKind;
+use gyrocal_diagnosis::{DiagnosisError, Verdict};
+use gyrocal_record::Outputs;
 use gyrocal_report::Picture;
 use miette::miette;
 
-use super::{Found, filter};
+use super::DiagnosisRun;
 use crate::Failure;
 use crate::pictures::{self, Named};
 
 /// Writes all pictures, to be committed with the other outputs; returns what is to be said.
 pub(super) fn stage(
-    found: &Found<'_>,
+    found: &DiagnosisRun<'_>,
     folder: &Path,
     outputs: &mut Outputs,
 ) -> Result<String, Failure> {
@@ -28,7 +29,7 @@ pub(super) fn stage(
 }
 
 /// A record that is too short for one picture leaves that out.
-fn pictures(found: &Found<'_>) -> Result<Vec<Named>, gyrocal_calibration::CalibrationError> {
+fn pictures(found: &DiagnosisRun<'_>) -> Result<Vec<Named>, gyrocal_calibration::CalibrationError> {
     let runs = residual::OpenLoopRuns::of(found)?;
     let mut pictures: Vec<Named> = vec![
         ("residuals", Box::new(runs.residuals(found))),
@@ -49,7 +50,7 @@ fn pictures(found: &Found<'_>) -> Result<Vec<Named>, gyrocal_calibration::Calibr
     if let Some(ranking) = model::ranking(found) {
         pictures.push(("ranking", Box::new(ranking)));
     }
-    if let Some(gain) = &found.report.gain {
+    if let Some(gain) = &found.diagnosis.result.gain {
         pictures.push(("gain", Box::new(model::gain(found, gain))));
     }
     if let Some(coefficients) = model::coefficients(found) {
@@ -62,16 +63,16 @@ fn pictures(found: &Found<'_>) -> Result<Vec<Named>, gyrocal_calibration::Calibr
 }
 
 /// Effects in the extended model, for titles: `gyro_y.g_z and gyro_x.ramp`.
-fn causes(found: &Found<'_>) -> Option<String> {
-    let (findings, acceptances) = (&found.diagnosis.findings, &found.diagnosis.acceptances);
-    let accepted = findings.iter().zip(acceptances).filter(|(_, a)| a.accepted);
-    listed(&accepted.map(|(f, _)| f.effect).collect::<Vec<_>>())
+fn causes(found: &DiagnosisRun<'_>) -> Option<String> {
+    let causes = found.diagnosis.result.causes();
+    let accepted = causes.filter(|cause| cause.accepted == Some(true));
+    listed(&accepted.map(|cause| &*cause.effect).collect::<Vec<_>>())
 }
 
-/// All reported effects, in the extended model or not.
-fn named(found: &Found<'_>) -> Option<String> {
-    let findings = found.diagnosis.findings.iter();
-    listed(&findings.map(|finding| finding.effect).collect::<Vec<_>>())
+/// All reported causes, in the extended model or not.
+fn named(found: &DiagnosisRun<'_>) -> Option<String> {
+    let causes = found.diagnosis.result.causes();
+    listed(&causes.map(|cause| &*cause.effect).collect::<Vec<_>>())
 }
 
 fn listed(ids: &[&str]) -> Option<String> {
@@ -83,24 +84,20 @@ fn listed(ids: &[&str]) -> Option<String> {
 }
 
 /// Record and verdict, below every title.
-fn subtitle(found: &Found<'_>) -> String {
-    let verdict = match found.report.verdict {
-        DiagnosisVerdict::EffectsFound => {
-            let ids: Vec<&str> = found
-                .report
-                .findings
-                .iter()
-                .map(|finding| finding.effect.as_str())
-                // The pictures are of the record and not of another filter.
-                .filter(|effect| *effect != filter::EFFECT)
-                .collect();
+fn subtitle(found: &DiagnosisRun<'_>) -> String {
+    let verdict = match found.diagnosis.result.verdict {
+        Verdict::EffectsFound => {
+            // The pictures are of the record and not of another filter.
+            let findings = found.diagnosis.result.findings.iter();
+            let findings = findings.filter(|finding| finding.kind != FindingKind::Filter);
+            let ids: Vec<&str> = findings.map(|finding| &*finding.effect).collect();
             if ids.is_empty() {
                 "no effects found".to_owned()
             } else {
                 format!("effects found: {}", ids.join(", "))
             }
         }
-        DiagnosisVerdict::Unexplained => "unexplained residual".to_owned(),
+        Verdict::Unexplained => "unexplained residual".to_owned(),
         _ => "no effects found".to_owned(),
     };
     let name = found.path.file_name().unwrap_or(found.path.as_os_str());

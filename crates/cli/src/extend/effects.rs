@@ -3,9 +3,8 @@
 use gyrocal::effect::{Enters, Role};
 use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_record::{
-    DiagnosisReport, DiagnosisVerdict, KnownEffect, ModelFile, ParameterEstimate, Standing,
-};
+use gyrocal_diagnosis::{DiagnosisResult, Verdict};
+use gyrocal_record::{KnownEffect, ModelFile, ParameterEstimate, Standing};
 use miette::{Report, miette};
 
 /// A model file, with the findings left out and the exact equivalents.
@@ -43,8 +42,8 @@ fn known_effect(row: &'static Effect) -> KnownEffect<'static> {
     }
 }
 
-/// The model of the findings of a diagnosis.
-pub(super) fn of_diagnosis(diagnosis: &DiagnosisReport, name: &str) -> Result<Extension, Report> {
+/// The model of what a diagnosis found.
+pub(super) fn of_diagnosis(diagnosis: &DiagnosisResult, name: &str) -> Result<Extension, Report> {
     let mut extension = Extension {
         model: ModelFile::default(),
         left_out: Vec::new(),
@@ -152,10 +151,10 @@ pub(super) fn of_list(ids: &[String]) -> Result<Extension, Report> {
     })
 }
 
-fn nothing(diagnosis: &DiagnosisReport, extension: &Extension, name: &str) -> Report {
+fn nothing(diagnosis: &DiagnosisResult, extension: &Extension, name: &str) -> Report {
     if extension.left_out.is_empty() {
         let (verdict, help) = match diagnosis.verdict {
-            DiagnosisVerdict::Unexplained => (
+            Verdict::Unexplained => (
                 "unexplained",
                 "add the missing effect to the catalogue first: docs/adding-a-term.md",
             ),

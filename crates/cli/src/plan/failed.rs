@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use gyrocal_diagnosis::plan::PlanError;
+use gyrocal_diagnosis::DiagnosisError;
 use miette::Diagnostic;
 
 use crate::Failure;
@@ -15,7 +15,7 @@ const CODE: &str = "gyrocal::plan";
 #[error("{record}: no plan")]
 pub(super) struct NotPlanned {
     record: String,
-    source: PlanError,
+    source: DiagnosisError,
 }
 
 /// A diagnosis is of another record, or was made with another bench file.
@@ -33,7 +33,7 @@ pub(super) struct OtherInput {
 }
 
 impl NotPlanned {
-    pub(super) fn new(record: &Path, source: PlanError) -> Self {
+    pub(super) fn new(record: &Path, source: DiagnosisError) -> Self {
         Self {
             record: record.display().to_string(),
             source,
@@ -42,12 +42,12 @@ impl NotPlanned {
 
     fn advice(&self) -> &'static str {
         match &self.source {
-            PlanError::UnknownEffect { .. } => {
+            DiagnosisError::NotPlannable { .. } => {
                 "write the diagnosis again with `gyrocal diagnose` of this version"
             }
-            PlanError::UnknownCoefficient { .. } => "name one of them in --sigma",
-            PlanError::Duration { .. } => "give other --hours",
-            PlanError::Limits { .. } => {
+            DiagnosisError::UnknownCoefficient { .. } => "name one of them in --sigma",
+            DiagnosisError::Duration { .. } => "give other --hours",
+            DiagnosisError::Limits { .. } => {
                 "give shorter --hours, or wider --limits or [gimbal_limits_deg]"
             }
             _ => {

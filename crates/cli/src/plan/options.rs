@@ -74,19 +74,6 @@ pub(super) fn goal(arguments: &PlanArguments) -> Goal {
     }
 }
 
-/// A goal as text.
-pub(super) fn in_words(goal: &Goal) -> Option<String> {
-    let mut wishes: Vec<String> = goal
-        .sigmas
-        .iter()
-        .map(|(id, sigma)| format!("a sigma of {id} of at most {sigma:e}"))
-        .collect();
-    if goal.one_name {
-        wishes.push("one member in each confidence set with a probability of 95 %".to_owned());
-    }
-    (!wishes.is_empty()).then(|| wishes.join(" and "))
-}
-
 #[cfg(test)]
 mod tests {
     use super::{durations_s, limit, wished_sigma};

@@ -7,7 +7,8 @@ mod validation;
 use std::fs;
 use std::sync::OnceLock;
 
-use gyrocal_record::{AllanCourse, DiagnosisReport, DiagnosisVerdict, RemainderVerdict};
+use gyrocal_diagnosis::result::{AllanCourse, FindingKind, Relation, ResidualVerdict};
+use gyrocal_diagnosis::{DiagnosisResult, Verdict};
 
 use crate::folder::{Folder, repository};
 
@@ -25,7 +26,7 @@ fn folder() -> Folder {
     folder
 }
 
-fn report(folder: &Folder, name: &str) -> DiagnosisReport {
+fn report(folder: &Folder, name: &str) -> DiagnosisResult {
     serde_json::from_str(&folder.text(name)).unwrap()
 }
 
@@ -54,11 +55,12 @@ fn whole() -> &'static (String, Folder) {
 fn the_hidden_fault_is_named_with_its_size() {
     let (said, folder) = whole();
     let report = report(folder, "o.json");
-    assert_eq!(report.schema_version, 1);
-    assert_eq!(report.verdict, DiagnosisVerdict::EffectsFound);
+    assert_eq!(report.schema_version, 2);
+    assert_eq!(report.verdict, Verdict::EffectsFound);
     assert_eq!(report.false_alarm_probability, 0.01);
     let finding = &report.findings[0];
     assert_eq!(finding.effect, "gyro_y.g_z");
+    assert_eq!(finding.kind, FindingKind::Cause);
     assert!(finding.z > 12.0 && finding.p_value < 1e-20);
     let size = &finding.parameters[0];
     let sigma = size.sigma.unwrap();
@@ -66,10 +68,15 @@ fn the_hidden_fault_is_named_with_its_size() {
     // sixteen thousand.
     assert!((size.estimate - 0.0012).abs() < 4.0 * sigma, "{size:?}");
     assert!(
+        said.contains("\nModel mismatch detected: 2 effects (family-wise p = 3e-59;"),
+        "{said}"
+    );
+    assert!(
         said.contains("\n1. gyro_y.g_z: mass unbalance of gyro y"),
         "{said}"
     );
-    assert_eq!(report.remainder.verdict, RemainderVerdict::White);
+    assert!(said.contains("\nWhiteness: passed. The innovations of the extended model"));
+    assert_eq!(report.remainder.verdict, ResidualVerdict::White);
 }
 
 #[test]
@@ -89,20 +96,22 @@ fn residuals_of_the_nominal_model_are_told_and_written() {
         assert!(against.mean.iter().all(|mean| mean.len() == 12));
     }
     assert!(
-        said.contains("Residuals of the nominal model; mean NIS of a value"),
+        said.contains("Residuals of the nominal model; mean NIS 1.0"),
         "{said}"
     );
 }
 
 #[test]
-fn the_norm_says_which_side_and_averaging_what_is_left() {
+fn magnitude_test_and_allan_test_are_reported() {
     let (said, folder) = whole();
     let report = report(folder, "o.json");
     let norm = report.norm.unwrap();
     assert!(!norm.accelerometers && norm.description.is_empty());
     // 2 sigma of a sample over twice the root of 4321 rows.
     assert!((norm.mean_sigma_g / 1.52e-7 - 1.0).abs() < 0.01);
-    let norm_at = said.find("says: not the accelerometers' side").unwrap();
+    let norm_at = said
+        .find("Specific-force magnitude test: consistent with gravity")
+        .unwrap();
     assert!(norm_at < said.find("\n1. gyro_y.g_z").unwrap(), "{said}");
     let allan = report.allan.unwrap();
     assert_eq!(allan.course, AllanCourse::White);
@@ -114,11 +123,11 @@ fn the_norm_says_which_side_and_averaging_what_is_left() {
             assert!(interval[0] < *deviation && *deviation < interval[1]);
         }
     }
-    assert!(said.contains("it falls as white noise of the believed size does"));
+    assert!(said.contains("Allan deviation of the innovations follows white noise"));
 }
 
 #[test]
-fn an_error_of_an_accelerometer_is_on_the_accelerometers_side() {
+fn an_accelerometer_error_fails_the_magnitude_test() {
     let folder = bad_input::shortened(720);
     let biased: String = folder
         .text(RECORD)
@@ -134,14 +143,17 @@ fn an_error_of_an_accelerometer_is_on_the_accelerometers_side() {
         .collect();
     folder.put(RECORD, biased);
     let said = folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"]);
-    assert!(said.contains("says: the accelerometers' side"), "{said}");
+    assert!(
+        said.contains("Specific-force magnitude test: not gravity, "),
+        "{said}"
+    );
     // The nominal model follows it in half a day, as in a wave of more.
     assert!(said.contains("  longer than the record, "), "{said}");
     assert!(report(&folder, "o.json").norm.unwrap().accelerometers);
 }
 
 #[test]
-fn what_is_gained_is_told() {
+fn the_gain_is_reported() {
     let (said, folder) = whole();
     let report = report(folder, "o.json");
     let gain = report.gain.unwrap();
@@ -153,7 +165,7 @@ fn what_is_gained_is_told() {
     assert!(rms.noise == 1e-5 && rms.after < 0.7 * rms.before, "{rms:?}");
     assert_eq!(gain.coefficient_shift.len(), 9);
     assert!(
-        said.contains("With gyro_y.g_z in the model it predicts"),
+        said.contains("6-fold blocked cross-validation: gyro_y.g_z improves"),
         "{said}"
     );
 }
@@ -166,10 +178,11 @@ fn near_twins_are_listed_with_what_would_separate_them() {
         .iter()
         .find(|group| group.members.iter().any(|id| id == "gyro_y.magnetic"))
         .unwrap();
+    assert_eq!(twins.relation, Relation::NearTwins);
     assert_eq!(twins.members[0], "gyro_y.g_z");
     assert!(twins.would_separate.contains("another initial attitude"));
     assert!(
-        said.contains("Not told apart, and what would separate it"),
+        said.contains("Not distinguishable, and the experiment that would distinguish them:"),
         "{said}"
     );
 }
@@ -180,6 +193,7 @@ fn the_filter_of_the_paper_is_named_for_its_rule() {
     let report = report(folder, "o.json");
     let last = report.findings.last().unwrap();
     assert_eq!(last.effect, "filter.discretisation");
+    assert_eq!((last.kind, last.coverage), (FindingKind::Filter, None));
     let filter = report.filter.unwrap();
     assert_eq!(filter.name, "euler");
     // Exact data: the rule's error is as large as the noise, its NIS some hundreds.
@@ -244,7 +258,7 @@ fn a_clean_record_is_called_clean() {
     ];
     let said = folder.succeed(&arguments);
     assert!(
-        said.contains("\nNothing is wrong: noise as declared"),
+        said.contains("\nNo model mismatch detected: noise as declared"),
         "{said}"
     );
     let value: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();

@@ -13,31 +13,36 @@ fn finding(effect: &str, parameters: &[(&str, f64)]) -> Value {
     json!({
         "effect": effect,
         "parameters": parameters.collect::<Vec<_>>(),
-        "z": 18.9, "p_value": 1e-12, "coverage": 0.95,
-        "rivals": [], "equivalents": []
+        "name": "?", "kind": "cause", "z": 18.9, "p_value": 1e-12, "coverage": 0.95,
+        "rivals": [], "alternatives": [], "equivalents": []
     })
 }
 
 /// A result of `gyrocal diagnose --json`.
 fn diagnosis(verdict: &str, findings: &[Value]) -> String {
-    let ratios = vec![json!({ "ratio": 1.0, "interval": [0.9, 1.1] }); 3];
     let result = json!({
-        "schema_version": 1,
+        "schema_version": 2,
         "manifest": {
             "program": "gyrocal", "version": "0.1.0", "model_hash": "00",
             "inputs": [], "seed": 0, "command": "gyrocal diagnose r.csv --bench b.toml"
         },
+        "record": {
+            "rows": 100, "duration_s": 6000.0,
+            "gaps": { "count": 0, "missing_s": 0.0, "longest_s": 60.0, "missing_values": 0.0 }
+        },
         "verdict": verdict,
         "false_alarm_probability": 0.01,
+        "false_alarm_shares": {
+            "noise_audit": 1e-3, "gyro_noise": 1e-4, "search": 7e-3, "residual_test": 1e-3,
+            "magnitude_test": 1e-3, "allan_test": 1e-3
+        },
+        "setup": [],
         "findings": findings,
-        "gain": null,
-        "remainder": { "verdict": "white", "p_value": 0.4, "description": "" },
+        "remainder": { "verdict": "white", "p_value": 0.4, "description": "", "unmodelled": [] },
         "cannot_tell": [],
         "ranking": [],
-        "threshold": null,
-        "noise": { "accel": ratios, "gyro": ratios },
-        "not_searched": [],
-        "filter": null
+        "power": [],
+        "not_searched": []
     });
     serde_json::to_string_pretty(&result).unwrap()
 }
@@ -137,14 +142,18 @@ fn what_gives_no_model_says_why() {
 fn a_file_that_is_no_diagnosis_is_shown_where_it_is_wrong() {
     let good = diagnosis("clean", &[]);
     let said = refused(&good.replace("\"findings\": []", "\"findings\": 3"));
-    // Fields are written in the order of the alphabet: line 5 has the findings.
-    assert_says(&said, "d.json:5:");
+    // Keys are written in the order of the alphabet: after `false_alarm_shares` with its six.
+    assert_says(&said, "d.json:12:");
     assert_says(&said, "expected the result of `gyrocal diagnose --json`");
-    let said = refused(&good.replace("\"schema_version\": 1", "\"schema_version\": 2"));
-    assert_says(&said, "found schema_version 2, expected 1");
+    let said = refused(&good.replace("\"schema_version\": 2", "\"schema_version\": 1"));
+    assert_says(&said, "found schema_version 1, expected 2");
+    assert_says(
+        &said,
+        "write it again with `gyrocal diagnose` of this version",
+    );
     // Another version may have other fields, and is still told for what it is.
-    let said = refused("{ \"schema_version\": 2 }");
-    assert_says(&said, "found schema_version 2, expected 1");
+    let said = refused("{ \"schema_version\": 3 }");
+    assert_says(&said, "found schema_version 3, expected 2");
     let said = refused(&good.replace("\"clean\"", "\"fine\""));
     assert_says(&said, "unknown variant `fine`");
     assert_says(

@@ -26,21 +26,64 @@ pub fn information(
     let Some(row) = EFFECTS.iter().find(|row| row.id == effect) else {
         return Ok(None);
     };
-    let Some((further, columns)) = columns(row, record, shape) else {
-        return Ok(None);
-    };
-    let bank = Bank::new(fitted, &further)?;
-    if columns.is_empty() || !columns.iter().all(|column| bank.visible(*column)) {
-        return Ok(None);
-    }
-    let scale = row.parameters.first().map_or(1.0, |size| size.scale);
-    Ok(Some(DMatrix::from_fn(
-        columns.len(),
-        columns.len(),
-        |i, j| scale * scale * bank.information[(columns[i], columns[j])],
-    )))
+    Ok(informations(fitted, record, &[(row, shape)])?
+        .pop()
+        .flatten())
 }
 
+/// Cramér-Rao bounds of the first sizes of several effects, each with its shape: their standard
+/// deviations. All come from one pass over the record.
+///
+/// # Errors
+/// As [`Extended::signatures`].
+pub(crate) fn bounds(
+    fitted: &Extended<'_>,
+    record: &Record,
+    effects: &[(&Effect, Option<f64>)],
+) -> Result<Vec<Option<f64>>, CalibrationError> {
+    let bound = |information: DMatrix<f64>| {
+        let sigma = information.try_inverse()?[(0, 0)].sqrt();
+        sigma.is_finite().then_some(sigma)
+    };
+    let informations = informations(fitted, record, effects)?;
+    Ok(informations.into_iter().map(|i| bound(i?)).collect())
+}
+
+fn informations(
+    fitted: &Extended<'_>,
+    record: &Record,
+    effects: &[(&Effect, Option<f64>)],
+) -> Result<Vec<Option<DMatrix<f64>>>, CalibrationError> {
+    let mut further = Vec::new();
+    let places: Vec<Option<Vec<usize>>> = effects
+        .iter()
+        .map(|(row, shape)| {
+            let (own, mut columns) = columns(row, record, *shape)?;
+            if !own.is_empty() {
+                columns
+                    .iter_mut()
+                    .for_each(|column| *column += further.len());
+            }
+            further.extend(own);
+            Some(columns)
+        })
+        .collect();
+    let bank = Bank::new(fitted, &further)?;
+    let of = |row: &Effect, columns: Vec<usize>| {
+        if columns.is_empty() || !columns.iter().all(|column| bank.visible(*column)) {
+            return None;
+        }
+        let scale = row.parameters.first().map_or(1.0, |size| size.scale);
+        Some(DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
+            scale * scale * bank.information[(columns[i], columns[j])]
+        }))
+    };
+    let all = effects.iter().zip(places);
+    Ok(all.map(|((row, _), columns)| of(row, columns?)).collect())
+}
+
+/// Columns of an effect beside the parameters of the catalogue, and where they are if these are the
+/// first further ones.
 fn columns(row: &Effect, record: &Record, shape: Option<f64>) -> Option<(Vec<Column>, Vec<usize>)> {
     let first_s = record.time_s.first().copied().unwrap_or(0.0);
     let row_at = |time_s: f64| {

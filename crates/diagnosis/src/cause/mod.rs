@@ -31,11 +31,13 @@ mod settle;
 mod unnamed;
 mod walk;
 
+pub(crate) use bound::bounds;
 pub use bound::information;
 pub use family::{Candidate, Family, Plan, Unavailable};
 pub(crate) use family::{extend, jump, missing, parameter, warm_up};
 pub(crate) use finding::SET_CONSTANT;
 pub use finding::{Finding, FoundParameter, Rival};
+pub(crate) use null::DETECTION_PENALTY_FRACTION;
 pub(crate) use score::RICHER;
 pub use score::Ranked;
 pub use search::{SearchOptions, Searched, search};

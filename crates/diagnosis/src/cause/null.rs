@@ -28,7 +28,7 @@ const EQUAL_SINGLE: f64 = CHI_SQUARE_99;
 /// reaches, with a probability of 0.68, where a constant term exceeds 14.5 with 0.88 (normal
 /// distribution about 5): this brings them nearer. The threshold is drawn with it, so that the
 /// probability of a false alarm does not depend on it.
-const PAID: f64 = 0.6;
+pub(crate) const DETECTION_PENALTY_FRACTION: f64 = 0.6;
 
 /// A tail of fewer draws says little: beyond these it is that of one degree of freedom.
 const TAIL: usize = 10;
@@ -175,7 +175,7 @@ impl Null {
                 }
             }
             for (maximum, reached) in maxima.iter_mut().zip(&reached) {
-                *maximum = maximum.max(reached - PAID * *penalty);
+                *maximum = maximum.max(reached - DETECTION_PENALTY_FRACTION * *penalty);
             }
         }
         // A knock comes with its own probability, as one more signature.
@@ -186,7 +186,10 @@ impl Null {
         }
         maxima.sort_unstable_by(f64::total_cmp);
         Self {
-            paid: penalties.iter().map(|penalty| PAID * penalty).collect(),
+            paid: penalties
+                .iter()
+                .map(|penalty| DETECTION_PENALTY_FRACTION * penalty)
+                .collect(),
             penalties,
             maxima,
         }

@@ -18,8 +18,6 @@ pub struct SearchOptions {
     pub false_alarm_probability: f64,
     /// Probability that such a record shows anything that has no name.
     pub unnamed_probability: f64,
-    /// Probability that the named set holds the cause.
-    pub coverage: f64,
     /// Effects beside those of the default search.
     pub also: Vec<String>,
     /// Seed of the draws that thresholds come from.
@@ -31,7 +29,6 @@ impl Default for SearchOptions {
         Self {
             false_alarm_probability: 0.01,
             unnamed_probability: 0.001,
-            coverage: 0.95,
             also: Vec::new(),
             seed: 0,
         }

@@ -36,19 +36,7 @@ impl Channel {
     }
 }
 
-impl core::fmt::Display for Channel {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let (what, axis) = match self {
-            Self::Drift(axis) => ("the drift of gyro", axis),
-            Self::Readings(axis) => ("the readings of accelerometer", axis),
-        };
-        write!(f, "{what} {}", AXES[*axis])
-    }
-}
-
 const SIDEREAL_DAY_H: f64 = 23.934_47;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// How it goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,24 +109,6 @@ impl Unnamed {
         (1..=3).any(|harmonic| {
             (f64::from(harmonic) / SIDEREAL_DAY_H - 1.0 / period_h).abs() < half_told_per_h
         })
-    }
-
-    /// In words.
-    #[must_use]
-    pub fn description(&self) -> String {
-        let Self { channel, size, .. } = self;
-        let unit = channel.unit();
-        match self.pattern {
-            Pattern::Line { period_h } => format!(
-                "a line in {channel} with a period of {period_h:.2} h and an amplitude of \
-                 {size:.2e} {unit}, which no effect of the catalogue explains"
-            ),
-            Pattern::Curve { axis } => format!(
-                "{channel} depends on specific force along {} as no polynomial of the catalogue \
-                 does, {size:.2e} {unit} rms",
-                AXES[axis]
-            ),
-        }
     }
 }
 

@@ -9,12 +9,12 @@ use crate::cause::Searched;
 
 /// What cross-validation says of a cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Acceptance {
+pub(crate) struct Acceptance {
     /// By how much blocks of the record are predicted better with the cause in the model than
     /// without it, beside the other causes, nats.
-    pub gain_nats: f64,
+    pub(crate) gain_nats: f64,
     /// Whether the cause is in the extended model: whether that is more than nothing.
-    pub accepted: bool,
+    pub(crate) accepted: bool,
 }
 
 /// A model with all causes that gain, and what became of each.

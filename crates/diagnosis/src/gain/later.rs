@@ -1,4 +1,4 @@
-//! What an extended model gains on another record of the same platform.
+//! Prediction of another record of the same platform with the nominal and the extended model.
 
 use gyrocal::trajectory::{Orientation, rotation_between};
 use gyrocal_calibration::{CalibrationError, Expectation, Extended, Extension, Run};
@@ -18,20 +18,20 @@ const BETWEEN_STARTS_S: f64 = 3.0 * 3600.0;
 /// One radian in arc minutes.
 const ARCMIN: f64 = 60.0 * 180.0 / core::f64::consts::PI;
 
-/// What another record says of the nominal and the extended model of a first one.
+/// Prediction of another record with the nominal and the extended model of a first one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Validation {
+pub struct LaterPrediction {
     /// Predictive log score of the whole record given the first one, nats: nominal, extended.
     pub log_score_nats: [f64; 2],
-    /// How far the platform drifts from where it is predicted to be.
-    pub compensation: Compensation,
+    /// Error of the predicted attitude.
+    pub attitude: AttitudeErrors,
 }
 
 /// Attitude of a platform that is compensated by the coefficients of another record, against that
 /// which its own accelerometers tell: root mean squares of the angle between them, arc minutes,
 /// over several starts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Compensation {
+pub struct AttitudeErrors {
     /// Number of starts.
     pub starts: usize,
     /// Time since the start, s: zero, then rising to a day or the length of the record.
@@ -45,7 +45,7 @@ pub struct Compensation {
     pub expected_arcmin: Vec<f64>,
 }
 
-impl Validation {
+impl LaterPrediction {
     /// What the extended model gains, nats.
     #[must_use]
     pub fn gain_nats(&self) -> f64 {
@@ -53,7 +53,7 @@ impl Validation {
     }
 }
 
-impl Compensation {
+impl AttitudeErrors {
     /// Nominal, extended and expected error at the end, arc minutes.
     #[must_use]
     pub fn at_end_arcmin(&self) -> [f64; 3] {
@@ -66,21 +66,21 @@ impl Compensation {
     }
 }
 
-/// Holds two models of a first record against a later one, which `fitted`, a nominal model at
-/// its best fit, is of.
+/// Predicts a later record with two models of a first one; `fitted` is the nominal model of the later
+/// record at its best fit.
 ///
 /// The attitude of the later record is that of a fit of its own, in which all parameters that
 /// either model has are free: nothing of the first record is in it.
 ///
 /// # Errors
 /// [`CalibrationError::Pass`] and [`CalibrationError::NotPositiveDefinite`].
-pub fn validate(
+pub(crate) fn predict(
     nominal: &Extended<'_>,
     extended: &Extended<'_>,
     first: &Run<'_>,
     fitted: &Extended<'_>,
     later: &Run<'_>,
-) -> Result<Validation, CalibrationError> {
+) -> Result<LaterPrediction, CalibrationError> {
     let carried = [nominal, extended].map(|fit| Carried::new(fit, first, later.record));
     let own = own_fit(fitted, &carried[1])?;
     let [of_nominal, of_extended] = &carried;
@@ -88,12 +88,12 @@ pub fn validate(
         of_nominal.expectation(nominal)?,
         of_extended.expectation(extended)?,
     ];
-    Ok(Validation {
+    Ok(LaterPrediction {
         log_score_nats: [
             own.log_density_given(&expected[0])?,
             own.log_density_given(&expected[1])?,
         ],
-        compensation: compensation(&own, &expected, &later.record.time_s)?,
+        attitude: attitude_errors(&own, &expected, &later.record.time_s)?,
     })
 }
 
@@ -115,11 +115,11 @@ fn own_fit<'b>(fitted: &Extended<'b>, carried: &Carried) -> Result<Extended<'b>,
         .or_else(|_| fitted.refitted(&plain))
 }
 
-fn compensation(
+fn attitude_errors(
     own: &Extended<'_>,
     [nominal, extended]: &[Expectation; 2],
     time_s: &[f64],
-) -> Result<Compensation, CalibrationError> {
+) -> Result<AttitudeErrors, CalibrationError> {
     let first_s = time_s.first().copied().unwrap_or(0.0);
     let last_s = time_s.last().copied().unwrap_or(0.0);
     let horizon_s = HORIZON_S.min(last_s - first_s);
@@ -166,7 +166,7 @@ fn compensation(
             .map(|square| ARCMIN * (square[which] / starts as f64).sqrt())
             .collect()
     };
-    Ok(Compensation {
+    Ok(AttitudeErrors {
         starts,
         time_s: (0..=POINTS)
             .map(|point| horizon_s * point as f64 / POINTS as f64)

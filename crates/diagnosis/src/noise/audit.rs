@@ -4,13 +4,14 @@ use gyrocal_record::Record;
 use gyrocal_statistics::{median_interval_s, two_sided_p, z_of_two_sided_p};
 
 use super::decision::{decide, ratio};
-use super::finding::{Cleaned, Estimate, Gaps, NoiseAudit, NoiseFinding, Shares};
+use super::finding::{Cleaned, Estimate, NoiseAudit, NoiseFinding, Shares};
 use super::lattice::{self, Lattice};
 use super::likelihood::{CORRELATION, WALK};
 use super::open_loop::{open_loop, runs};
 use super::outlier::{self, Outlier};
 use super::spectrum::Spectrum;
 use crate::error::DiagnosisError;
+use crate::result::Gaps;
 use crate::series::Innovations;
 
 /// Smallest quantisation step tested for, in standard deviations of the noise: it increases the
@@ -135,7 +136,7 @@ pub fn audit_noise(
         gyro_ratio: fit.as_ref().map(|fit| ratio(fit, WALK)),
         quantisation_g: lattices.map(|lattice| lattice.map(|lattice| lattice.step)),
         outliers,
-        gaps: gaps(record, interval_s, runs.len()),
+        gaps: gaps(record),
         cleaned,
     };
     audit.sort();
@@ -331,7 +332,10 @@ impl NoiseAudit {
     }
 }
 
-fn gaps(record: &Record, interval_s: f64, runs: usize) -> Gaps {
+/// Missing rows and values of a record.
+pub(crate) fn gaps(record: &Record) -> Gaps {
+    let interval_s = median_interval_s(&record.time_s);
+    let runs = runs(&record.time_s).len();
     let intervals = record.time_s.windows(2).map(|pair| pair[1] - pair[0]);
     let missing = record
         .accel_g

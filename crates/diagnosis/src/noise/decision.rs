@@ -6,6 +6,7 @@ use gyrocal_statistics::{chi_square_tail, two_sided_p, z_of_two_sided_p};
 use super::finding::{Estimate, NoiseFinding, Shares};
 use super::likelihood::{Bins, CORRELATION, NoiseFit, NoiseModel, fit};
 use super::spectrum::Spectrum;
+use crate::error_budget::INSTRUMENTS;
 
 /// Smallest correlation that is reported: less is immaterial, however significant.
 const LEAST_CORRELATION: f64 = 0.01;
@@ -112,7 +113,7 @@ pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Share
             0.0
         };
         let matters = 2.0 * LEAST_EXCESS + 0.3 * coarse;
-        let p_value = (3.0 * two_sided_p(z)).min(1.0);
+        let p_value = (INSTRUMENTS * two_sided_p(z)).min(1.0);
         variance[axis] = nearest;
         if p_value < shares.accel_noise && (found / nearest - 1.0).abs() > matters {
             variance[axis] = found;

@@ -1,6 +1,8 @@
 //! Results of the audit.
 
 use super::outlier::Outlier;
+use crate::error_budget::NOISE_AUDIT_PARTS;
+use crate::result::Gaps;
 
 /// An estimate with its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +47,7 @@ impl Shares {
     /// Equal shares. Quantisation needs none: continuous values are never on a lattice.
     #[must_use]
     pub fn of(false_alarm: f64) -> Self {
-        let share = false_alarm / 4.0;
+        let share = false_alarm / NOISE_AUDIT_PARTS;
         Self {
             outliers: share,
             accel_noise: share,
@@ -76,19 +78,6 @@ pub struct NoiseAudit {
     pub gaps: Gaps,
     /// Values and noise to use from here on.
     pub cleaned: Cleaned,
-}
-
-/// Missing rows and values; for information.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Gaps {
-    /// Number of intervals longer than one and a half median ones.
-    pub count: usize,
-    /// Time in them beyond a median interval \[s\].
-    pub missing_s: f64,
-    /// Longest interval between rows \[s\].
-    pub longest_s: f64,
-    /// Fraction of the values of existing rows that are missing.
-    pub missing_values: f64,
 }
 
 /// Values and noise model for later stages, instead of record and declared noise.

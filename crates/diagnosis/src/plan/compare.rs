@@ -2,14 +2,14 @@
 
 use gyrocal_calibration::{CalibrationError, Extended, NoiseModel, Options, Run};
 
-use super::error::PlanError;
 use super::named::{Named, fitted_alone};
-use super::outlook::Forecast;
 use super::present::{duration_s, suspects, times};
+use super::result::Forecast;
 use super::said::Said;
 use super::set::{Comparison, deficits, stays};
 use super::sigma::sigmas;
 use super::universe::{Case, Universe};
+use crate::error::DiagnosisError;
 
 /// What two records say together.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct ComparedMember {
 /// fit to the first with what was named; `noise` holds for both.
 ///
 /// # Errors
-/// [`PlanError`].
+/// [`DiagnosisError`].
 pub fn compare(
     fitted: &Extended<'_>,
     first: &Run<'_>,
@@ -46,7 +46,7 @@ pub fn compare(
     noise: &NoiseModel,
     named: &[Named],
     options: &Options,
-) -> Result<Compared, PlanError> {
+) -> Result<Compared, DiagnosisError> {
     let sets = suspects(fitted, first, named)?;
     let times = times(first, duration_s(second.record));
     let universe = Universe::new(fitted, first, &sets, &times);

@@ -8,8 +8,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::attitude::of_angles;
 use super::expected::{Deviates, Posteriors, expected};
-use super::outlook::{Forecast, Outlook, SetForecast, SetMember, ratio};
 use super::present::duration_s as duration_s_of;
+use super::result::{Forecast, Outlook, SetForecast, ratio};
 use super::said::{Said, foreseen};
 use super::sigma::sigmas;
 use super::universe::Universe;
@@ -109,20 +109,9 @@ impl<'a> Setting<'a> {
             .iter()
             .filter_map(|case| {
                 let size = case.members.len();
-                Some(SetForecast {
-                    effect: case.members.first()?.suspect.row.id,
-                    mean_size: size as f64,
-                    one_left: f64::from(u8::from(size == 1)),
-                    members: case
-                        .members
-                        .iter()
-                        .enumerate()
-                        .map(|(index, member)| SetMember {
-                            effect: member.suspect.row.id,
-                            equivalents: member.suspect.equivalents.clone(),
-                            told_apart: f64::from(u8::from(index == 0)),
-                        })
-                        .collect(),
+                let one_left = f64::from(u8::from(size == 1));
+                case.forecast(size as f64, one_left, |index| {
+                    f64::from(u8::from(index == 0))
                 })
             })
             .collect();

@@ -5,7 +5,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-use super::outlook::{SetForecast, SetMember};
+use super::result::SetForecast;
 use super::said::Said;
 use super::set::{Comparison, deficits, stays};
 use super::universe::{Case, Unknown};
@@ -82,7 +82,6 @@ pub(crate) fn expected(
     deviates: &Deviates,
 ) -> Option<SetForecast> {
     let count = case.members.len();
-    let effect = case.members.first()?.suspect.row.id;
     let comparison = if count > 1 {
         let total = &now.information + next;
         Some(Comparison::new(case, unknowns, &total)?)
@@ -116,26 +115,13 @@ pub(crate) fn expected(
     if weights == 0.0 {
         (mean_size, one_left, weights) = (1.0, 1.0, 1.0);
     }
-    Some(SetForecast {
-        effect,
-        mean_size: mean_size / weights,
-        one_left: one_left / weights,
-        members: case
-            .members
-            .iter()
-            .enumerate()
-            .map(|(index, member)| SetMember {
-                effect: member.suspect.row.id,
-                equivalents: member.suspect.equivalents.clone(),
-                told_apart: if index == 0 {
-                    1.0
-                } else {
-                    let [own, first] = apart[index];
-                    let total = odds[index] + odds[0];
-                    (odds[index] * own + odds[0] * first) / total.max(f64::MIN_POSITIVE)
-                },
-            })
-            .collect(),
+    case.forecast(mean_size / weights, one_left / weights, |index| {
+        if index == 0 {
+            return 1.0;
+        }
+        let [own, first] = apart[index];
+        let total = odds[index] + odds[0];
+        (odds[index] * own + odds[0] * first) / total.max(f64::MIN_POSITIVE)
     })
 }
 

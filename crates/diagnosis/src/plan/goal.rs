@@ -2,10 +2,10 @@
 
 use gyrocal::generated::platform::DRIFT;
 
-use super::error::PlanError;
 use super::evaluate::Looked;
-use super::outlook::Outlook;
-use super::proposal::{FINE, Planner, Proposal};
+use super::proposal::{FINE, Planner};
+use super::result::{Outlook, Proposal, Reached};
+use crate::error::DiagnosisError;
 
 /// A set counts as resolved if one member is left with this probability.
 const RESOLVED: f64 = 0.95;
@@ -25,17 +25,6 @@ pub struct Goal {
     pub one_name: bool,
 }
 
-/// What was found for a goal.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Reached {
-    /// Whether the record so far reaches it already.
-    pub already: bool,
-    /// The run; `None` if none is needed or none that was looked at reaches the goal.
-    pub run: Option<Proposal>,
-    /// The longest that was looked at, s.
-    pub longest_s: f64,
-}
-
 impl Goal {
     /// Whether there is none.
     #[must_use]
@@ -43,17 +32,29 @@ impl Goal {
         self.sigmas.is_empty() && !self.one_name
     }
 
-    pub(crate) fn check(&self) -> Result<(), PlanError> {
+    pub(crate) fn check(&self) -> Result<(), DiagnosisError> {
         for (name, _) in &self.sigmas {
             if !DRIFT.iter().any(|coefficient| coefficient.id == name) {
                 let known: Vec<&str> = DRIFT.iter().map(|coefficient| coefficient.id).collect();
-                return Err(PlanError::UnknownCoefficient {
+                return Err(DiagnosisError::UnknownCoefficient {
                     name: name.clone(),
                     known: known.join(", "),
                 });
             }
         }
         Ok(())
+    }
+
+    /// The goal in words; `None` if there is none.
+    #[must_use]
+    pub fn in_words(&self) -> Option<String> {
+        let sigmas = self.sigmas.iter();
+        let sigmas = sigmas.map(|(id, sigma)| format!("a sigma of {id} of at most {sigma:e}"));
+        let one_name = self
+            .one_name
+            .then(|| "one member in each confidence set with a probability of 95 %".to_owned());
+        let wishes: Vec<String> = sigmas.chain(one_name).collect();
+        (!wishes.is_empty()).then(|| wishes.join(" and "))
     }
 
     pub(crate) fn is_met(&self, outlook: &Outlook) -> bool {
@@ -68,7 +69,7 @@ impl Goal {
 
 /// The shortest run that reaches the goal, by halves: first from an attitude that is good for the
 /// duration asked for, then from one that is good for the duration found.
-pub(crate) fn reach(planner: &Planner<'_, '_>, first: [f64; 3]) -> Result<Reached, PlanError> {
+pub(crate) fn reach(planner: &Planner<'_, '_>, first: [f64; 3]) -> Result<Reached, DiagnosisError> {
     let mut ladder = vec![planner.least_s()];
     while let Some(last) = ladder.last()
         && last * RATIO < LONGEST_S
@@ -98,6 +99,7 @@ pub(crate) fn reach(planner: &Planner<'_, '_>, first: [f64; 3]) -> Result<Reache
         }
     }
     Ok(Reached {
+        wish: planner.options.goal.in_words().unwrap_or_default(),
         already: false,
         run: found,
         longest_s: LONGEST_S,
@@ -109,7 +111,7 @@ fn shortest(
     planner: &Planner<'_, '_>,
     ladder: &[f64],
     angles_deg: [f64; 3],
-) -> Result<Option<Proposal>, PlanError> {
+) -> Result<Option<Proposal>, DiagnosisError> {
     let at = |duration_s: f64| {
         planner.with(duration_s, FINE, |setting| {
             Ok(match setting.look(angles_deg)? {

@@ -18,16 +18,16 @@
 
 mod attitude;
 mod compare;
-mod error;
 mod evaluate;
 mod expected;
 mod goal;
 mod named;
 mod options;
-mod outlook;
 mod piece;
 mod present;
 mod proposal;
+mod prose;
+mod result;
 mod said;
 mod set;
 mod sigma;
@@ -35,9 +35,13 @@ mod signature;
 mod universe;
 
 pub use compare::{Compared, ComparedMember, compare};
-pub use error::PlanError;
-pub use goal::{Goal, Reached};
-pub use named::Named;
-pub use options::{Aim, PlanOptions};
-pub use outlook::{Forecast, Outlook, SetForecast, SetMember};
-pub use proposal::{Planned, Proposal, plan};
+pub use goal::Goal;
+pub use named::{Named, noise_of};
+pub use options::PlanOptions;
+pub use proposal::plan;
+pub use prose::prose;
+#[cfg(feature = "schema")]
+pub use result::schema;
+pub use result::{
+    Aim, Forecast, Outlook, PlanResult, Proposal, Reached, SCHEMA_VERSION, SetForecast, SetMember,
+};

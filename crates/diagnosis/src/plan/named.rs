@@ -1,12 +1,13 @@
 //! What was named in a record, as a plan needs it.
 
-use gyrocal::effect::EffectKind;
+use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{CalibrationError, Extended, Extension, NoiseModel, Options, Run};
 
-use super::error::PlanError;
-use crate::cause::{self, Finding, extend};
+use crate::cause::{self, extend};
 use crate::continuation::recurs;
+use crate::error::DiagnosisError;
+use crate::result::{DiagnosisResult, Finding};
 
 /// A cause that was named, and what the record does not tell it from.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +21,15 @@ pub struct Named {
 }
 
 impl Named {
-    /// Of a finding of a search.
+    /// The causes of a diagnosis that a run can be planned for.
+    #[must_use]
+    pub fn all(diagnosis: &DiagnosisResult) -> Vec<Self> {
+        let causes = diagnosis.causes();
+        let plannable = causes.filter(|finding| Self::is_cause(&finding.effect));
+        plannable.map(Self::of).collect()
+    }
+
+    /// A cause of a diagnosis.
     #[must_use]
     pub fn of(finding: &Finding) -> Self {
         let row = EFFECTS.iter().find(|row| row.id == finding.effect);
@@ -29,15 +38,14 @@ impl Named {
             let first = row.parameters.first().filter(|_| is_walk(row));
             row.shape().or(first)
         });
-        let mut found = finding.parameters.iter();
-        let shape = found.find(|parameter| Some(parameter.name) == wanted.map(|p| p.name));
+        let shape = wanted.and_then(|wanted| finding.parameter(wanted.name));
         Self {
-            effect: finding.effect.to_owned(),
+            effect: finding.effect.clone(),
             shape: shape.map(|parameter| parameter.estimate),
             rivals: finding
-                .rivals
+                .alternatives
                 .iter()
-                .map(|rival| (rival.effect.to_owned(), rival.log_likelihood_deficit))
+                .map(|other| (other.effect.clone(), other.log_likelihood_deficit))
                 .collect(),
         }
     }
@@ -49,7 +57,7 @@ impl Named {
         effects.any(|row| row.id == effect && (row.has_signature() || is_walk(row)))
     }
 
-    pub(crate) fn row(&self) -> Result<&'static Effect, PlanError> {
+    pub(crate) fn row(&self) -> Result<&'static Effect, DiagnosisError> {
         row(&self.effect)
     }
 
@@ -57,13 +65,13 @@ impl Named {
     /// there is no diagnosis at hand.
     ///
     /// # Errors
-    /// [`PlanError::UnknownEffect`], and [`PlanError::Calibration`] if the model cannot be fitted.
+    /// [`DiagnosisError::NotPlannable`], and [`DiagnosisError::Calibration`] if the model cannot be fitted.
     pub fn fitted<'a>(
         named: &[Self],
         run: &Run<'a>,
         noise: &NoiseModel,
         options: &Options,
-    ) -> Result<Extended<'a>, PlanError> {
+    ) -> Result<Extended<'a>, DiagnosisError> {
         let nominal = Extended::nominal(run, options, noise)?;
         let extension = extension(named, run, nominal.extension())?;
         Ok(if extension == *nominal.extension() {
@@ -74,12 +82,35 @@ impl Named {
     }
 }
 
+/// Noise other than declared, where a diagnosis found it: that of the accelerometers and of the gyros.
+#[must_use]
+pub fn noise_of(diagnosis: &DiagnosisResult) -> NoiseModel {
+    let ratio = |enters: &dyn Fn(Enters) -> bool| {
+        let level = EffectKind::Noise(NoiseProperty::Level);
+        let effect = EFFECTS.iter().find(|e| e.kind == level && enters(e.enters));
+        let mut findings = diagnosis.findings.iter();
+        let found = findings.find(|f| effect.is_some_and(|effect| effect.id == f.effect));
+        found
+            .and_then(|finding| finding.parameters.first())
+            .map_or(1.0, |parameter| parameter.estimate)
+    };
+    NoiseModel {
+        accel_ratio: core::array::from_fn(|axis| {
+            ratio(&|enters| matches!(enters, Enters::Outputs([at]) if *at == axis))
+        }),
+        gyro_ratio: core::array::from_fn(|axis| {
+            ratio(&|enters| matches!(enters, Enters::Rates([at]) if *at == axis))
+        }),
+        weights: None,
+    }
+}
+
 /// The model that has these causes.
 pub(crate) fn extension(
     named: &[Named],
     run: &Run<'_>,
     base: &Extension,
-) -> Result<Extension, PlanError> {
+) -> Result<Extension, DiagnosisError> {
     let also: Vec<&str> = named.iter().map(|named| named.effect.as_str()).collect();
     let plan = cause::Plan::new(run.record, run.bench, &also);
     let mut extension = base.clone();
@@ -100,7 +131,7 @@ pub(crate) fn extension(
 }
 
 /// A row of the catalogue.
-pub(crate) fn row(effect: &str) -> Result<&'static Effect, PlanError> {
+pub(crate) fn row(effect: &str) -> Result<&'static Effect, DiagnosisError> {
     EFFECTS
         .iter()
         .find(|row| row.id == effect && (row.has_signature() || is_walk(row)))
@@ -111,8 +142,8 @@ pub(crate) fn is_walk(row: &Effect) -> bool {
     row.kind == EffectKind::RandomWalk
 }
 
-fn unknown(effect: &str) -> PlanError {
-    PlanError::UnknownEffect {
+fn unknown(effect: &str) -> DiagnosisError {
+    DiagnosisError::NotPlannable {
         effect: effect.to_owned(),
     }
 }

@@ -2,16 +2,7 @@ use gyrocal_calibration::Options;
 use gyrocal_record::GimbalLimits;
 
 use super::goal::Goal;
-
-/// What proposals are ranked by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Aim {
-    /// What is left of the named sets, then the sigmas.
-    Set,
-    /// The sigmas of the nine coefficients: their geometric mean.
-    Sigmas,
-}
+use super::result::Aim;
 
 /// How a next run is looked for.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,13 +5,13 @@ use gyrocal_calibration::{Extended, Run};
 use gyrocal_record::Record;
 use nalgebra::DVector;
 
-use super::error::PlanError;
 use super::named::{Named, is_walk, row};
 use super::said::Said;
 use super::set::{Comparison, stays};
 use super::signature::Times;
 use super::universe::{Case, Suspect, Universe};
 use crate::cause;
+use crate::error::DiagnosisError;
 
 /// A near twin that would have to be so many times its typical size is not worth a run.
 const PLAUSIBLE: f64 = 10.0;
@@ -44,7 +44,7 @@ pub(crate) fn suspects(
     fitted: &Extended<'_>,
     run: &Run<'_>,
     named: &[Named],
-) -> Result<Vec<Vec<Suspect>>, PlanError> {
+) -> Result<Vec<Vec<Suspect>>, DiagnosisError> {
     let mut drafts = Vec::with_capacity(named.len());
     for named in named {
         drafts.push(draft(named, run)?);
@@ -60,7 +60,7 @@ pub(crate) fn suspects(
 }
 
 /// All candidates: of effects with an onset or a time constant one for each that the search tries.
-fn draft(named: &Named, run: &Run<'_>) -> Result<Vec<Suspect>, PlanError> {
+fn draft(named: &Named, run: &Run<'_>) -> Result<Vec<Suspect>, DiagnosisError> {
     let mut rows = Vec::with_capacity(named.rivals.len());
     for (id, _) in &named.rivals {
         rows.push(row(id)?);

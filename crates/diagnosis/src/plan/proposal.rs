@@ -4,15 +4,16 @@ use gyrocal_calibration::{CalibrationError, Extended, NoiseModel, Run};
 use rayon::prelude::*;
 
 use super::attitude::{apart_deg, beside, first};
-use super::error::PlanError;
 use super::evaluate::{Detail, Looked, Setting, interval_s};
-use super::goal::{Reached, reach};
+use super::goal::reach;
 use super::named::Named;
-use super::options::{Aim, PlanOptions};
-use super::outlook::Outlook;
+use super::options::PlanOptions;
 use super::present::{duration_s, suspects, times};
+use super::result::{Aim, Outlook, PlanResult, Proposal, Reached, SCHEMA_VERSION};
 use super::said::Said;
 use super::universe::{Suspect, Universe};
+use crate::diagnose::{manifest, summary};
+use crate::error::DiagnosisError;
 
 /// How finely attitudes are looked at while they are searched, and in the end.
 const COARSE: Detail = Detail {
@@ -42,45 +43,17 @@ const MOST_S: f64 = 366.0 * 86_400.0;
 /// set is all but resolved, sigmas decide.
 const SIGMAS_IN_SETS: f64 = 0.2;
 
-/// A next run and what it would leave.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Proposal {
-    /// Platform angles about x, then y, then z at its first row; `None` if the record goes on.
-    pub angles_deg: Option<[f64; 3]>,
-    /// How long it takes, s.
-    pub duration_s: f64,
-    /// What record and run leave together.
-    pub outlook: Outlook,
-}
-
-/// What was planned.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Planned {
-    /// What proposals are ranked by.
-    pub aim: Aim,
-    /// What the record so far leaves.
-    pub now: Outlook,
-    /// What going on in the present attitude would leave, for each duration.
-    pub going_on: Vec<Proposal>,
-    /// For each duration the best runs, the best first.
-    pub proposals: Vec<Proposal>,
-    /// What was found for the goal, if there is one.
-    pub reached: Option<Reached>,
-    /// Effects that no run tells apart, as far as they are in question.
-    pub inseparable: Vec<Vec<&'static str>>,
-}
-
 /// Looks for the next run that says most, given a fit with what was named in its record.
 ///
 /// # Errors
-/// [`PlanError`].
+/// [`DiagnosisError`].
 pub fn plan(
     fitted: &Extended<'_>,
     run: &Run<'_>,
     noise: &NoiseModel,
     named: &[Named],
     options: &PlanOptions,
-) -> Result<Planned, PlanError> {
+) -> Result<PlanResult, DiagnosisError> {
     options.goal.check()?;
     let planner = Planner::new(fitted, *run, noise, named, options)?;
     let own = [duration_s(run.record)];
@@ -92,7 +65,7 @@ pub fn plan(
     let least_s = planner.least_s();
     for found_s in durations_s {
         if !(least_s..=MOST_S).contains(found_s) {
-            return Err(PlanError::Duration {
+            return Err(DiagnosisError::Duration {
                 found_s: *found_s,
                 least_s,
                 most_s: MOST_S,
@@ -116,6 +89,7 @@ pub fn plan(
     let now = now.ok_or(CalibrationError::NotPositiveDefinite)?;
     let reached = match proposals.first().and_then(|best| best.angles_deg) {
         Some(_) if !options.goal.is_empty() && options.goal.is_met(&now) => Some(Reached {
+            wish: options.goal.in_words().unwrap_or_default(),
             already: true,
             run: None,
             longest_s: 0.0,
@@ -130,15 +104,19 @@ pub fn plan(
         .filter(|suspect| !suspect.equivalents.is_empty())
         .map(|suspect| {
             let others = suspect.equivalents.iter().copied();
-            std::iter::once(suspect.row.id).chain(others).collect()
+            let class = std::iter::once(suspect.row.id).chain(others);
+            class.map(Into::into).collect()
         })
         .collect();
-    Ok(Planned {
+    Ok(PlanResult {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest(options.seed),
+        record: summary(run.record),
         aim: planner.aim,
         now,
         going_on,
         proposals,
-        reached,
+        goal: reached,
         inseparable,
     })
 }
@@ -162,7 +140,7 @@ impl<'a, 'b> Planner<'a, 'b> {
         noise: &'b NoiseModel,
         named: &[Named],
         options: &'b PlanOptions,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<Self, DiagnosisError> {
         let sets = suspects(fitted, &run, named)?;
         let own = times(&run, duration_s(run.record));
         let universe = Universe::new(fitted, &run, &sets, &own);
@@ -195,8 +173,8 @@ impl<'a, 'b> Planner<'a, 'b> {
         &self,
         duration_s: f64,
         detail: Detail,
-        ask: impl FnOnce(&Setting<'_>) -> Result<R, PlanError>,
-    ) -> Result<R, PlanError> {
+        ask: impl FnOnce(&Setting<'_>) -> Result<R, DiagnosisError>,
+    ) -> Result<R, DiagnosisError> {
         let times = times(&self.run, duration_s);
         let universe = Universe::new(self.fitted, &self.run, &self.sets, &times);
         let setting = Setting::new(
@@ -214,7 +192,7 @@ impl<'a, 'b> Planner<'a, 'b> {
     }
 
     /// The best runs of a duration, the best first.
-    pub(crate) fn search(&self, duration_s: f64) -> Result<Vec<Proposal>, PlanError> {
+    pub(crate) fn search(&self, duration_s: f64) -> Result<Vec<Proposal>, DiagnosisError> {
         let ends = self.with(duration_s, COARSE, |setting| {
             let tried = first(&self.options.limits);
             let mut seen = self.look(setting, tried, duration_s)?;
@@ -246,7 +224,7 @@ impl<'a, 'b> Planner<'a, 'b> {
         setting: &Setting<'_>,
         tried: Vec<[f64; 3]>,
         duration_s: f64,
-    ) -> Result<Vec<Seen>, PlanError> {
+    ) -> Result<Vec<Seen>, DiagnosisError> {
         let looked: Vec<_> = tried
             .into_par_iter()
             .map(|angles_deg| (angles_deg, setting.look(angles_deg)))
@@ -266,7 +244,7 @@ impl<'a, 'b> Planner<'a, 'b> {
         match failed {
             _ if !seen.is_empty() => Ok(seen),
             Some(error) => Err(error.into()),
-            None => Err(PlanError::Limits {
+            None => Err(DiagnosisError::Limits {
                 wanted_h: duration_s / 3600.0,
                 longest_h: longest.0 / 3600.0,
                 angles_deg: longest.1,

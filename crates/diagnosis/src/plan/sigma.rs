@@ -3,7 +3,7 @@
 use gyrocal::generated::platform::DRIFT;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::outlook::Forecast;
+use super::result::Forecast;
 use super::universe::Universe;
 use crate::COEFFICIENTS;
 
@@ -41,9 +41,9 @@ pub(crate) fn sigmas(
     }
     let coefficients = (0..COEFFICIENTS)
         .map(|i| Forecast {
-            name: DRIFT[i].id.to_owned(),
+            name: DRIFT[i].id.into(),
             sigma: variance[i].sqrt(),
-            unit: DRIFT[i].unit,
+            unit: DRIFT[i].unit.into(),
         })
         .collect();
     let mut sizes = Vec::new();
@@ -53,9 +53,9 @@ pub(crate) fn sigmas(
         for index in 0..member.places.len() {
             if !member.is_walk() {
                 sizes.push(Forecast {
-                    name: format!("{} {}", row.id, row.parameters[index].name),
+                    name: format!("{} {}", row.id, row.parameters[index].name).into(),
                     sigma: variance[place].sqrt() / row.parameters[index].scale,
-                    unit: row.parameters[index].unit,
+                    unit: row.parameters[index].unit.into(),
                 });
             }
             place += 1;

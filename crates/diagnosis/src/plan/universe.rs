@@ -6,6 +6,7 @@ use gyrocal_calibration::{BIASES, Column, Extended, Run, SiteQuantity};
 use nalgebra::{DMatrix, DVector};
 
 use super::piece::Piece;
+use super::result::{SetForecast, SetMember};
 use super::said::Said;
 use super::signature::{Sum, Times, sizes};
 use crate::COEFFICIENTS;
@@ -51,7 +52,37 @@ pub(crate) struct Case {
     pub(crate) members: Vec<Member>,
 }
 
-/// All of it.
+impl Case {
+    /// The forecast of the set; `apart` is the probability that a member is distinguished from the
+    /// first. `None` of an empty set.
+    pub(crate) fn forecast(
+        &self,
+        mean_size: f64,
+        one_left: f64,
+        apart: impl Fn(usize) -> f64,
+    ) -> Option<SetForecast> {
+        let members = self.members.iter().enumerate();
+        Some(SetForecast {
+            effect: self.members.first()?.suspect.row.id.into(),
+            mean_size,
+            one_left,
+            members: members
+                .map(|(index, member)| SetMember {
+                    effect: member.suspect.row.id.into(),
+                    equivalents: member
+                        .suspect
+                        .equivalents
+                        .iter()
+                        .map(|id| (*id).into())
+                        .collect(),
+                    told_apart: apart(index),
+                })
+                .collect(),
+        })
+    }
+}
+
+/// All unknowns, and the columns that they are sums of.
 #[derive(Clone, Debug)]
 pub(crate) struct Universe {
     pub(crate) unknowns: Vec<Unknown>,

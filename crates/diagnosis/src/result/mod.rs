@@ -33,8 +33,8 @@ pub use filter::FilterTest;
 pub use finding::{Alternative, Equivalent, Finding, FindingKind, Parameter};
 pub use gain::{CoefficientShift, Compensation, FreeRun, Gain, Validation};
 pub use limits::{
-    Experiment, ExperimentKind, Indistinguishable, NotTested, NotTestedReason, Power,
-    RankedEffect, Relation,
+    Experiment, ExperimentKind, Indistinguishable, NotTested, NotTestedReason, Power, RankedEffect,
+    Relation,
 };
 pub use magnitude::MagnitudeTest;
 pub use read::{read, read_text};
@@ -106,6 +106,35 @@ pub struct DiagnosisResult {
     pub not_searched: Vec<NotTested>,
     /// Consistency test of another filter, if one was asked for.
     pub filter: Option<FilterTest>,
+}
+
+impl DiagnosisResult {
+    /// Findings of one kind.
+    pub fn of_kind(&self, kind: FindingKind) -> impl Iterator<Item = &Finding> {
+        let findings = self.findings.iter();
+        findings.filter(move |finding| finding.kind == kind)
+    }
+
+    /// Causes: findings of the search.
+    pub fn causes(&self) -> impl Iterator<Item = &Finding> {
+        self.of_kind(FindingKind::Cause)
+    }
+
+    /// Whether the residual test failed.
+    #[must_use]
+    pub fn is_unexplained(&self) -> bool {
+        self.remainder.verdict == ResidualVerdict::Unexplained
+    }
+}
+
+impl Finding {
+    /// The parameter of a name.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<&Parameter> {
+        self.parameters
+            .iter()
+            .find(|parameter| parameter.name == name)
+    }
 }
 
 /// A diagnosis in one word.

@@ -36,7 +36,7 @@ pub fn read_text(source: &SourceText) -> Result<DiagnosisResult, Error> {
             InputErrorKind::OutOfRange,
             place..place,
             format!("schema_version {}", versioned.schema_version),
-            format!("{SCHEMA_VERSION}, the version that this program reads"),
+            format!("{SCHEMA_VERSION}, the version of this program"),
             "write it again with `gyrocal diagnose` of this version",
         ));
     }
@@ -50,8 +50,8 @@ fn no_diagnosis(source: &SourceText, error: &serde_json::Error) -> Error {
     source.error(
         InputErrorKind::Syntax,
         place..place,
-        format!("JSON that is no result of a diagnosis ({reason})"),
-        "what `gyrocal diagnose --json` writes",
+        format!("JSON that is not the result of a diagnosis ({reason})"),
+        "the result of `gyrocal diagnose --json`",
         "write it again with `gyrocal diagnose`",
     )
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use gyrocal_diagnosis::result::FindingKind;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_statistics::Proportion;
 use serde::{Deserialize, Serialize};
@@ -37,18 +38,14 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
             let case = record(number, kind.fault);
             let bench = three_days().scenario(number).bench();
             let found = diagnose(&case.record, &bench, &DiagnoseOptions::default())?;
-            let mut noise: Vec<String> = found
-                .noise_findings
-                .iter()
-                .map(|finding| finding.effect.to_owned())
-                .collect();
+            let found = found.result;
+            let ids = |kind: FindingKind| -> Vec<String> {
+                found.of_kind(kind).map(|f| f.effect.clone()).collect()
+            };
+            let mut noise = ids(FindingKind::Noise);
             noise.sort_unstable();
             Ok(Diagnosed {
-                physical: found
-                    .findings
-                    .iter()
-                    .map(|finding| finding.effect.to_owned())
-                    .collect(),
+                physical: ids(FindingKind::Cause),
                 noise,
             })
         };

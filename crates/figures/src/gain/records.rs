@@ -3,7 +3,8 @@
 use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{Extended, Run};
 use gyrocal_diagnosis::plan::Named;
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, validated};
+use gyrocal_diagnosis::result::Finding;
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, DiagnosisResult, diagnose, predict_later};
 use gyrocal_evaluation::{InjectedEffect, constant_of_channel, inject_any};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
@@ -47,14 +48,16 @@ pub(super) struct Extension {
 }
 
 impl Extension {
-    fn of(hidden: &str, found: &Diagnosis<'_>) -> Self {
-        let findings = found.findings.iter().zip(&found.acceptances);
+    fn of(hidden: &str, found: &DiagnosisResult) -> Self {
+        let cause = |cause: &Finding| {
+            let gain_nats = cause.gain_nats.unwrap_or(f64::NAN);
+            (cause.effect.clone(), gain_nats, is_accepted(cause))
+        };
+        let gain = found.gain.as_ref();
         Self {
             hidden: hidden.to_owned(),
-            findings: findings
-                .map(|(f, a)| (f.effect.to_owned(), a.gain_nats, a.accepted))
-                .collect(),
-            gain_nats: found.gain.as_ref().map(|gain| gain.log_score_nats()),
+            findings: found.causes().map(cause).collect(),
+            gain_nats: gain.map(|gain| gain.cross_validated_log_score_nats),
         }
     }
 
@@ -62,6 +65,16 @@ impl Extension {
     pub(super) fn extended(&self) -> bool {
         self.findings.iter().any(|(_, _, accepted)| *accepted)
     }
+}
+
+fn is_accepted(cause: &Finding) -> bool {
+    cause.accepted == Some(true)
+}
+
+/// Effects in the extended model.
+fn accepted(found: &DiagnosisResult) -> Vec<String> {
+    let causes = found.causes().filter(|cause| is_accepted(cause));
+    causes.map(|cause| cause.effect.clone()).collect()
 }
 
 fn scenario(seed: u64) -> Scenario {
@@ -82,14 +95,17 @@ fn diagnosed(simulation: &Simulation) -> Result<Diagnosis<'_>, Error> {
 /// A clean record.
 pub(super) fn clean(seed: u64) -> Result<Extension, Error> {
     let simulation = simulate(&scenario(seed))?;
-    Ok(Extension::of("", &diagnosed(&simulation)?))
+    Ok(Extension::of("", &diagnosed(&simulation)?.result))
 }
 
 /// A record with one injected effect.
 pub(super) fn hidden(seed: u64, strength: f64) -> Result<Extension, Error> {
     let (scenario, injected) = drawn(seed, strength)?;
     let simulation = simulate(&scenario)?;
-    Ok(Extension::of(injected.effect.id, &diagnosed(&simulation)?))
+    Ok(Extension::of(
+        injected.effect.id,
+        &diagnosed(&simulation)?.result,
+    ))
 }
 
 /// Errors of the coefficients with a cross-axis term.
@@ -122,13 +138,9 @@ pub(super) fn cross_axis(seed: u64) -> Result<Errors, Error> {
         (largest, solved.map_or(f64::NAN, |s| s.dot(&error)))
     };
     let (before, after) = (of(&found.nominal), of(extended));
-    let accepted = found.findings.iter().zip(&found.acceptances);
     Ok(Errors {
         effect: effect.to_owned(),
-        accepted: accepted
-            .filter(|(_, acceptance)| acceptance.accepted)
-            .map(|(finding, _)| finding.effect.to_owned())
-            .collect(),
+        accepted: accepted(&found.result),
         largest: [before.0, after.0],
         nees: [before.1, after.1],
     })
@@ -185,29 +197,23 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
         bench: &simulation.bench,
     });
     let options = DiagnoseOptions::default();
-    let validation = validated(&found, &one, &other, &options)?;
+    let predicted = |extended: &Extended<'_>| {
+        let models = [&found.nominal, extended];
+        predict_later(models, &found.noise_model, &one, &other, &options)
+    };
+    let of_found = found.extended.as_ref().map(predicted).transpose()?;
     let named = Named {
         effect: injected.effect.id.to_owned(),
         shape: injected.shape,
         rivals: Vec::new(),
     };
-    let fitted = Named::fitted(&[named], &one, &found.noise_model, &options.calibration)?;
-    let accepted = found.findings.iter().zip(&found.acceptances);
-    let accepted = accepted
-        .filter(|(_, acceptance)| acceptance.accepted)
-        .map(|(finding, _)| finding.effect.to_owned())
-        .collect();
-    let told = Diagnosis {
-        extended: Some(fitted),
-        ..found
-    };
-    let of_told = validated(&told, &one, &other, &options)?.ok_or("nothing to validate")?;
+    let told = Named::fitted(&[named], &one, &found.noise_model, &options.calibration)?;
     Ok(Second {
         effect: injected.effect.id.to_owned(),
-        accepted,
-        gain_nats: validation.as_ref().map(|v| v.gain_nats()),
-        after_a_day_arcmin: validation.map(|v| v.compensation.at_end_arcmin()),
-        told_arcmin: of_told.compensation.at_end_arcmin(),
+        accepted: accepted(&found.result),
+        gain_nats: of_found.as_ref().map(|found| found.gain_nats()),
+        after_a_day_arcmin: of_found.map(|found| found.attitude.at_end_arcmin()),
+        told_arcmin: predicted(&told)?.attitude.at_end_arcmin(),
     })
 }
 

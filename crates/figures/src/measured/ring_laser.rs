@@ -201,20 +201,21 @@ fn judged(measured: &mut Measured, diagnosis: &Diagnosis<'_>) {
         Figure::within(
             "ring laser: physical causes that its diagnosis names",
             [0.0, 0.0],
-            diagnosis.findings.len() as f64,
+            diagnosis.result.causes().count() as f64,
         ),
         Figure::note("ring laser: verdict of its diagnosis", verdict(diagnosis)),
     ]);
 }
 
 fn verdict(diagnosis: &Diagnosis<'_>) -> String {
-    let noise = diagnosis.noise_findings.iter().map(|found| found.effect);
-    let causes = diagnosis.findings.iter().map(|found| found.effect);
-    let names: Vec<String> = noise.chain(causes).map(|id| format!("`{id}`")).collect();
-    match diagnosis.verdict {
-        Verdict::Clean => "nothing".to_owned(),
-        Verdict::Unexplained => "correlated rows, unexplained".to_owned(),
+    let findings = diagnosis.result.findings.iter();
+    let names: Vec<String> = findings
+        .map(|found| format!("`{}`", found.effect))
+        .collect();
+    match diagnosis.result.verdict {
         Verdict::EffectsFound => names.join(", "),
+        Verdict::Unexplained => "correlated rows, unexplained".to_owned(),
+        _ => "nothing".to_owned(),
     }
 }
 
@@ -246,7 +247,7 @@ fn choices(measured: &mut Measured, log: &Log, description: &Description) -> Res
             let difference =
                 report.horizontal_rate_deg_per_h[0] - report.expected_horizontal_rate_deg_per_h;
             differences.push(difference);
-            named += diagnosis.findings.len();
+            named += diagnosis.result.causes().count();
             table.row([
                 fixed(averaging_s, 0),
                 fixed(quiet_factor, 1),

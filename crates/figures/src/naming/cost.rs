@@ -78,12 +78,7 @@ fn told(simulation: &Simulation) -> Result<(String, f64), Error> {
     let (found, seconds) =
         on_one_core(|| diagnose(&simulation.record, &simulation.bench, &options));
     let found = found?;
-    let all = (
-        (&found.findings, &found.unnamed, &found.noise_findings),
-        (&found.ranking, found.threshold, &found.acceptances),
-        (&found.gain, &found.noise, &found.remainder),
-        found.nominal.values(),
-    );
+    let all = (&found.result, found.nominal.values());
     // Numbers are written with as many digits as tell them from all others.
     Ok((format!("{all:?}"), seconds))
 }

@@ -198,7 +198,7 @@ fn sets(seed: u64) -> Result<Sets, Error> {
     let (scenario, _) = inject_any(scenario(seed), STRENGTH, &mut Draw::new(seed, 0))?;
     let first = simulate(&scenario)?;
     let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default())?;
-    let named: Vec<Named> = found.findings.iter().map(Named::of).collect();
+    let named = Named::all(&found.result);
     let fitted = found.extended.as_ref().unwrap_or(&found.nominal);
     let mut sets = Sets {
         now: None,

@@ -4,13 +4,15 @@ use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{CalibrationError, Estimates, Extended};
 use gyrocal_report::{Convergence, EstimateHistory, ParameterHistory};
 
-use super::{Found, causes, subtitle};
+use super::{DiagnosisRun, causes, subtitle};
 
 /// Points of a curve, evenly over the record.
 const POINTS: usize = 240;
 
 /// `None` without an extended model.
-pub(super) fn convergence(found: &Found<'_>) -> Result<Option<Convergence>, CalibrationError> {
+pub(super) fn convergence(
+    found: &DiagnosisRun<'_>,
+) -> Result<Option<Convergence>, CalibrationError> {
     let diagnosis = &found.diagnosis;
     let Some(extended) = &diagnosis.extended else {
         return Ok(None);

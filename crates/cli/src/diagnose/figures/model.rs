@@ -1,21 +1,20 @@
 //! Effects by test statistic, and the gain of the extended model.
 
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_record::GainReport;
+use gyrocal_diagnosis::{prose, result};
 use gyrocal_report::{
     ComparedEstimate, ComparedQuantity, Comparison, CrossValidation, Omitted, PredictionError,
     RankedEffect, Ranking, RankingGroup, Role,
 };
 
-use super::{Found, causes, named, subtitle};
-use crate::diagnose::words::likelihood;
+use super::{DiagnosisRun, causes, named, subtitle};
 
 /// Number of effects shown that are neither reported nor alternatives.
 const OTHERS_SHOWN: usize = 10;
 
 /// All effects of the first search by their statistic; `None` if nothing could be searched.
-pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
-    let report = &found.report;
+pub(super) fn ranking(found: &DiagnosisRun<'_>) -> Option<Ranking> {
+    let report = &found.diagnosis.result;
     let threshold = report.threshold.filter(|threshold| *threshold > 0.0)?;
     let largest = report.ranking.first()?;
     let statistic = |effect: &str| {
@@ -24,10 +23,7 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
     };
     let mut groups = Vec::new();
     let mut shown: Vec<&str> = Vec::new();
-    for finding in &found.diagnosis.findings {
-        let Some(finding) = report.findings.iter().find(|f| f.effect == finding.effect) else {
-            continue;
-        };
+    for finding in report.causes() {
         let mut effects = vec![RankedEffect {
             effect: finding.effect.clone(),
             statistic: statistic(&finding.effect),
@@ -41,11 +37,11 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
             note: "exact equivalent".to_owned(),
         });
         effects.extend(equal.filter(|effect| effect.statistic.is_finite()));
-        effects.extend(finding.rivals.iter().map(|rival| RankedEffect {
+        effects.extend(finding.alternatives.iter().map(|rival| RankedEffect {
             effect: rival.effect.clone(),
             statistic: statistic(&rival.effect),
             role: Role::Alternative,
-            note: likelihood(rival),
+            note: prose::likelihood(rival),
         }));
         let label = if effects.len() == 1 {
             format!("{}, no alternatives", finding.effect)
@@ -53,7 +49,7 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
             format!("{} and its alternatives", finding.effect)
         };
         shown.push(&finding.effect);
-        shown.extend(finding.rivals.iter().map(|r| r.effect.as_str()));
+        shown.extend(finding.alternatives.iter().map(|r| r.effect.as_str()));
         shown.extend(finding.equivalents.iter().map(|e| e.effect.as_str()));
         groups.push(RankingGroup { label, effects });
     }
@@ -88,7 +84,7 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
         subtitle: format!("first search, nominal model; {}", subtitle(found)),
         statistic: "score statistic (chi-square, penalised for search)".to_owned(),
         threshold,
-        false_alarm_probability: found.diagnosis.search_false_alarm_probability,
+        false_alarm_probability: report.false_alarm_shares.search,
         tested: report.ranking.len(),
         groups,
         omitted: rest.get(OTHERS_SHOWN).map(|next| Omitted {
@@ -99,8 +95,8 @@ pub(super) fn ranking(found: &Found<'_>) -> Option<Ranking> {
 }
 
 /// Gain of the extended model in cross-validation, and its prediction of a later record.
-pub(super) fn gain(found: &Found<'_>, gain: &GainReport) -> CrossValidation {
-    let compensation = found.validation.as_ref().map(|v| &v.compensation);
+pub(super) fn gain(found: &DiagnosisRun<'_>, gain: &result::Gain) -> CrossValidation {
+    let compensation = found.diagnosis.later.as_ref().map(|later| &later.attitude);
     let blocks = &gain.block_log_score_nats;
     let better = blocks.iter().filter(|nats| **nats > 0.0).count();
     CrossValidation {
@@ -125,9 +121,9 @@ pub(super) fn gain(found: &Found<'_>, gain: &GainReport) -> CrossValidation {
 }
 
 /// The coefficients of the nominal and of the extended model.
-pub(super) fn coefficients(found: &Found<'_>) -> Option<Comparison> {
+pub(super) fn coefficients(found: &DiagnosisRun<'_>) -> Option<Comparison> {
     let (nominal, extended) = (&found.diagnosis.nominal, found.diagnosis.extended.as_ref()?);
-    let shifts = &found.report.gain.as_ref()?.coefficient_shift;
+    let shifts = &found.diagnosis.result.gain.as_ref()?.coefficient_shift;
     let largest = shifts
         .iter()
         .max_by(|a, b| a.in_sigmas.abs().total_cmp(&b.in_sigmas.abs()))?;

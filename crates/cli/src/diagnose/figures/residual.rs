@@ -12,7 +12,7 @@ use gyrocal_statistics::{
     rms_of_present,
 };
 
-use super::{Found, causes, subtitle};
+use super::{DiagnosisRun, causes, subtitle};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -34,7 +34,7 @@ pub(super) struct OpenLoopRuns {
 }
 
 impl OpenLoopRuns {
-    pub(super) fn of(found: &Found<'_>) -> Result<Self, CalibrationError> {
+    pub(super) fn of(found: &DiagnosisRun<'_>) -> Result<Self, CalibrationError> {
         let diagnosis = &found.diagnosis;
         Ok(Self {
             nominal_g: diagnosis.nominal.free_run_g()?,
@@ -47,7 +47,7 @@ impl OpenLoopRuns {
     }
 
     /// Measured minus simulated specific force of both models.
-    pub(super) fn residuals(&self, found: &Found<'_>) -> Residuals {
+    pub(super) fn residuals(&self, found: &DiagnosisRun<'_>) -> Residuals {
         let before = differences(found, &self.nominal_g);
         let after = self.extended_g.as_deref().map(|g| differences(found, g));
         let miss = amount(rms(&before));
@@ -75,7 +75,7 @@ impl OpenLoopRuns {
     }
 
     /// Open-loop simulation of the nominal model and the record.
-    pub(super) fn open_loop(&self, found: &Found<'_>) -> OpenLoop {
+    pub(super) fn open_loop(&self, found: &DiagnosisRun<'_>) -> OpenLoop {
         let miss = amount(rms(&differences(found, &self.nominal_g)));
         let days = found.record.duration_s() / SECONDS_PER_DAY;
         let (measured, simulated) = (columns(&found.record.accel_g), columns(&self.nominal_g));
@@ -100,7 +100,7 @@ impl OpenLoopRuns {
     }
 
     /// Open-loop residuals against each component of specific force, and temperature.
-    pub(super) fn against_force(&self, found: &Found<'_>) -> ResidualVsCovariate {
+    pub(super) fn against_force(&self, found: &DiagnosisRun<'_>) -> ResidualVsCovariate {
         let residuals = differences(found, &self.nominal_g);
         let forces = columns(&self.nominal_g);
         let mut panels = Vec::new();
@@ -145,8 +145,8 @@ impl OpenLoopRuns {
 }
 
 /// Periodograms of the innovations of the nominal and of the extended model.
-pub(super) fn periodograms(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
-    let probability = found.report.false_alarm_probability;
+pub(super) fn periodograms(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
+    let probability = found.diagnosis.result.false_alarm_probability;
     let time_s = &found.record.time_s;
     let mut channels = Vec::new();
     let mut frequency = Vec::new();
@@ -213,14 +213,20 @@ pub(super) fn periodograms(found: &Found<'_>) -> Result<Box<dyn Picture>, Diagno
 }
 
 /// Autocorrelations of the same innovations.
-pub(super) fn autocorrelations(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
+pub(super) fn autocorrelations(
+    found: &DiagnosisRun<'_>,
+) -> Result<Box<dyn Picture>, DiagnosisError> {
     let mut channels = Vec::new();
     let mut worst: Option<(f64, String)> = None;
     let mut beyond = 0;
     for (label, innovations) in whitened(found) {
         let Autocorrelation {
             correlation, sigma, ..
-        } = autocorrelation(innovations, LAGS, found.report.false_alarm_probability)?;
+        } = autocorrelation(
+            innovations,
+            LAGS,
+            found.diagnosis.result.false_alarm_probability,
+        )?;
         for (axis, name) in AXES.iter().enumerate() {
             let values: Vec<f64> = correlation.iter().map(|lag| lag[axis]).collect();
             let band = sigma
@@ -263,7 +269,7 @@ pub(super) fn autocorrelations(found: &Found<'_>) -> Result<Box<dyn Picture>, Di
 }
 
 /// Squared magnitude of specific force against its components and time: accelerometers only.
-pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
+pub(super) fn norm(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
     let noise_g = [found.bench.accel_noise_g; 3];
     let gravity_g = found.bench.specific_force_at_rest();
     let norm = magnitude_channel(found.record, &noise_g, gravity_g, BINS)?;
@@ -309,7 +315,7 @@ pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError
         .map(|test| test.p_value)
         .fold(norm.mean_p_value, f64::min);
     let count = 1.0 + panels.len() as f64;
-    let title = if least * count < found.report.false_alarm_probability {
+    let title = if least * count < found.diagnosis.result.false_alarm_probability {
         "Specific-force magnitude test: not consistent with gravity, accelerometer error"
     } else {
         "Specific-force magnitude test: consistent with gravity"
@@ -329,16 +335,16 @@ pub(super) fn norm(found: &Found<'_>) -> Result<Box<dyn Picture>, DiagnosisError
 }
 
 /// Innovations of the nominal model and, if there is one, of the extended model.
-fn whitened<'a>(found: &'a Found<'_>) -> Vec<(&'static str, &'a [[f64; 3]])> {
+fn whitened<'a>(found: &'a DiagnosisRun<'_>) -> Vec<(&'static str, &'a [[f64; 3]])> {
     let diagnosis = &found.diagnosis;
     let mut all = vec![("nominal model", diagnosis.innovations.normalised.as_slice())];
     if diagnosis.extended.is_some() {
-        all.push(("extended model", diagnosis.remainder.whitened.as_slice()));
+        all.push(("extended model", diagnosis.whitened.as_slice()));
     }
     all
 }
 
-fn differences(found: &Found<'_>, simulated_g: &[[f64; 3]]) -> [Vec<f64>; 3] {
+fn differences(found: &DiagnosisRun<'_>, simulated_g: &[[f64; 3]]) -> [Vec<f64>; 3] {
     std::array::from_fn(|axis| {
         found
             .record

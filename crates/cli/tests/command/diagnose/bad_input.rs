@@ -1,6 +1,7 @@
 //! What cannot be diagnosed: exit code 1 or 2, one message, no output.
 
-use gyrocal_record::{DiagnosisVerdict, RemainderVerdict};
+use gyrocal_diagnosis::Verdict;
+use gyrocal_diagnosis::result::{NotTestedReason, ResidualVerdict};
 
 use super::{BENCH, RECORD, folder};
 
@@ -94,7 +95,7 @@ fn a_record_shorter_than_the_state_is_refused() {
 fn a_short_record_says_what_it_could_not_show() {
     let folder = shortened(240);
     let said = folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"]);
-    assert!(said.contains("That says little"), "{said}");
+    assert!(said.contains("Low power: "), "{said}");
     let report = super::report(&folder, "o.json");
     // In four hours the platform turns by a sixth of the circle: no cross-axis term of 0.05
     // deg/h/g is told from drift and attitude.
@@ -103,7 +104,14 @@ fn a_short_record_says_what_it_could_not_show() {
         .iter()
         .find(|entry| entry.effect == "gyro_y.g_z")
         .unwrap();
+    assert_eq!(unseen.reason, NotTestedReason::LowPower);
     assert!(unseen.why.contains("too short"), "{unseen:?}");
+    let power = report
+        .power
+        .iter()
+        .find(|p| p.effect == "gyro_y.g_z")
+        .unwrap();
+    assert!(power.power.is_none_or(|power| power < 0.85), "{power:?}");
 }
 
 #[test]
@@ -112,21 +120,24 @@ fn what_a_record_is_too_short_to_be_tested_for_is_named() {
     let folder = shortened(29);
     let said = folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"]);
     let report = super::report(&folder, "o.json");
-    assert_eq!(report.verdict, DiagnosisVerdict::Clean);
+    assert_eq!(report.verdict, Verdict::Clean);
     assert_eq!(report.findings, []);
-    assert_eq!(report.remainder.verdict, RemainderVerdict::NotTested);
+    assert_eq!(report.remainder.verdict, ResidualVerdict::NotTested);
     assert_eq!(
         report.remainder.description,
         "correlation of neighbouring rows"
     );
     for words in [
         "the record is too short for a spectrum of its noise",
-        "What is left was not tested for correlation of neighbouring rows",
-        "No stretch of rows without a gap and with all axes is long enough for an Allan deviation",
+        "Whiteness: not tested for correlation of neighbouring rows",
+        "Allan deviation: not computed, no stretch of rows without a gap and with all axes is long",
     ] {
         assert!(said.replace('\n', " ").contains(words), "{words}\n{said}");
     }
-    assert!(!said.contains("white"), "{said}");
+    assert!(
+        !said.contains("are white") && !said.contains("innovations white"),
+        "{said}"
+    );
     let why = |effect: &str| {
         let mut all = report.not_searched.iter();
         all.find(|entry| entry.effect == effect)
@@ -150,7 +161,7 @@ fn a_record_without_an_axis_is_diagnosed_and_drawn_as_far_as_it_goes() {
     folder.put(RECORD, without_z + "\n");
     let command = ["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"];
     let said = folder.succeed(&[&command[..], &["--figures", "figures"]].concat());
-    assert!(said.contains("all three axes"), "{said}");
+    assert!(said.replace('\n', " ").contains("all three axes"), "{said}");
     assert!(folder.path("figures/residuals.svg").exists(), "{said}");
     assert!(!folder.path("figures/autocorrelation.svg").exists());
     super::report(&folder, "o.json");

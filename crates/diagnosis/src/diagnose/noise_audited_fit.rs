@@ -1,4 +1,4 @@
-//! The nominal model of a record with the noise that the audit finds in it.
+//! Noise audit, and the nominal model fitted with the noise that it found.
 
 use gyrocal::estimation::Factors;
 use gyrocal::{Discretisation, Drift, FilterSettings, InitialAttitude, PlatformFilter};
@@ -7,8 +7,8 @@ use gyrocal_calibration::{
 };
 use gyrocal_record::{Bench, Record};
 
-use super::DiagnoseError;
-use super::unsettled::{standing_off, unsettled};
+use super::untestable_rows::{detect_outliers, untestable_rows};
+use crate::error::DiagnosisError;
 use crate::noise::{AuditOptions, DeclaredNoise, NoiseAudit, Outlier, audit_noise};
 use crate::series::Innovations;
 
@@ -16,24 +16,25 @@ use crate::series::Innovations;
 /// of a sample, so that the first rows correct the attitude.
 const FITTED_ATTITUDE_SIGMA_DEG: f64 = 0.01;
 
-/// The nominal model of a record with the noise that its audit left.
-pub(super) struct Audited<'a> {
+/// The nominal model, fitted with the noise that the audit found.
+pub(super) struct AuditedFit<'a> {
     pub(super) nominal: Extended<'a>,
     pub(super) noise_model: NoiseModel,
     pub(super) innovations: Innovations,
     pub(super) audit: NoiseAudit,
-    /// Values that the audit could not judge and that this model makes nothing of: outliers, if
-    /// no other model does. They are left out.
+    /// Suspected outliers: not testable by the audit, not explained by the nominal model. They are
+    /// left out of the fit.
     pub(super) suspects: Vec<Outlier>,
 }
 
-/// Audits the noise of a record, believing `before` until then.
-pub(super) fn audited<'a>(
+/// Audits the noise of a record and fits the nominal model with what it finds; `before` is the noise
+/// assumed until then.
+pub(super) fn noise_audited_fit<'a>(
     run: &Run<'a>,
     before: &NoiseModel,
     false_alarm: f64,
     options: &Options,
-) -> Result<Audited<'a>, DiagnoseError> {
+) -> Result<AuditedFit<'a>, DiagnosisError> {
     let Run { record, bench } = *run;
     let gross = gross_errors(record, bench.accel_noise_g);
     let whole: Vec<[usize; 2]> = gross
@@ -56,12 +57,12 @@ pub(super) fn audited<'a>(
     )?;
     noise_model = NoiseModel {
         gyro_ratio: before.gyro_ratio,
-        ..believed(&audit, record)
+        ..noise_from_audit(&audit, record)
     };
     let noise_g = noise_model
         .accel_ratio
         .map(|ratio| ratio * bench.accel_noise_g);
-    let mut suspects = standing_off(record, &unsettled(record, &gross), &first, noise_g);
+    let mut suspects = detect_outliers(record, &untestable_rows(record, &gross), &first, noise_g);
     let known = |one: &Outlier| audit.outliers.iter().any(|o| o.place() == one.place());
     suspects.retain(|one| !known(one));
     let places: Vec<[usize; 2]> = suspects.iter().map(Outlier::place).collect();
@@ -78,7 +79,7 @@ pub(super) fn audited<'a>(
     } else {
         match first.with_noise(bench, &noise_model) {
             Ok(nominal) => nominal,
-            // What the model misses by far may look like noise that no fit bears: as declared.
+            // A gross mismatch may look like noise with which no fit converges: use the declared one.
             Err(_) => {
                 noise_model = before.clone();
                 leave_out(&mut noise_model, record.len(), &whole);
@@ -86,7 +87,7 @@ pub(super) fn audited<'a>(
             }
         }
     };
-    Ok(Audited {
+    Ok(AuditedFit {
         nominal,
         noise_model,
         innovations: seen,
@@ -95,7 +96,7 @@ pub(super) fn audited<'a>(
     })
 }
 
-/// Gives values, each a row and an axis, no weight.
+/// Sets the weight of values, each a row and an axis, to zero.
 fn leave_out(noise_model: &mut NoiseModel, rows: usize, places: &[[usize; 2]]) {
     if places.is_empty() {
         return;
@@ -108,8 +109,8 @@ fn leave_out(noise_model: &mut NoiseModel, rows: usize, places: &[[usize; 2]]) {
     }
 }
 
-/// The noise of the accelerometers as the audit left it.
-fn believed(audit: &NoiseAudit, record: &Record) -> NoiseModel {
+/// Noise of the accelerometers as the audit found it.
+fn noise_from_audit(audit: &NoiseAudit, record: &Record) -> NoiseModel {
     let cleaned = &audit.cleaned;
     let dropped = cleaned
         .keep
@@ -134,7 +135,7 @@ fn innovations(
     record: &Record,
     bench: &Bench,
     fitted: &Extended<'_>,
-) -> Result<Innovations, DiagnoseError> {
+) -> Result<Innovations, DiagnosisError> {
     let settings = FilterSettings {
         drift: Drift::from_array(core::array::from_fn(|i| fitted.values()[i])),
         ..filter_settings(bench, Discretisation::default())

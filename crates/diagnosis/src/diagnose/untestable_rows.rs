@@ -1,26 +1,23 @@
-//! Values that the audit of the noise cannot judge: those of rows in which the filter has not settled,
-//! and gross ones, with which no fit can begin.
+//! Outliers among rows that the noise audit cannot test: those in which the filter has not settled,
+//! and gross errors, with which no fit converges.
 
 use core::ops::Range;
 
 use gyrocal_calibration::Extended;
 use gyrocal_record::Record;
 
+use crate::error_budget::UNTESTABLE_OUTLIER_Z;
 use crate::noise::{Outlier, runs};
 
-/// A value whose smoothed residual is farther from those of its neighbours than this, in standard
-/// deviations of the noise, is none of noise: of a million such values of sound records not one is.
-const STANDS_OFF: f64 = 7.0;
-
-/// Rows on either side that a value is compared with.
+/// Neighbours on either side that a value is compared with.
 const REACH: usize = 4;
 
-/// Rows that the audit passes over, at the start of a record and after a gap.
+/// Rows that the audit does not test at the start of a record, and after a gap.
 const EARLY_ROWS: usize = 48;
 const ROWS_AFTER_GAP: usize = 8;
 
-/// The rows to look at, with some that are gross.
-pub(super) fn unsettled(record: &Record, gross: &[usize]) -> Vec<usize> {
+/// The untestable rows, gross ones among them.
+pub(super) fn untestable_rows(record: &Record, gross: &[usize]) -> Vec<usize> {
     let early = runs(&record.time_s).into_iter().flat_map(|run| {
         let rows = if run.start == 0 {
             EARLY_ROWS
@@ -35,8 +32,9 @@ pub(super) fn unsettled(record: &Record, gross: &[usize]) -> Vec<usize> {
     rows
 }
 
-/// The values of some rows that stand off their neighbours; the noise is `noise_g`.
-pub(super) fn standing_off(
+/// Values of some rows whose smoothed residuals differ from those of their neighbours by more than
+/// [`UNTESTABLE_OUTLIER_Z`] standard deviations of the noise `noise_g`.
+pub(super) fn detect_outliers(
     record: &Record,
     rows: &[usize],
     fitted: &Extended<'_>,
@@ -60,7 +58,7 @@ pub(super) fn standing_off(
             };
             let size_g = residual(row, axis) - middle;
             let deviation = size_g / noise_g;
-            if deviation.abs() > STANDS_OFF {
+            if deviation.abs() > UNTESTABLE_OUTLIER_Z {
                 found.push(Outlier {
                     row,
                     axis,

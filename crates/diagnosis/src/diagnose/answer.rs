@@ -1,0 +1,239 @@
+//! The answer, assembled from the outcomes of all tests.
+
+use gyrocal::generated::MODEL_HASH;
+use gyrocal::generated::platform::DRIFT;
+use gyrocal_calibration::{Extended, NoiseEstimate, NoiseRatio, Run};
+use gyrocal_record::{Manifest, NoiseRatioReport, NoiseReport, Record};
+use gyrocal_statistics::{self as statistics, NoiseCourse};
+
+use super::{DiagnoseOptions, findings};
+use crate::cause::Searched;
+use crate::distinguishability::indistinguishable;
+use crate::filter_test::Tested;
+use crate::gain::Judged;
+use crate::magnitude_test;
+use crate::noise::{NoiseAudit, NoiseFinding, gaps};
+use crate::power::{needs_caveat, undetectable};
+use crate::result::{
+    AllanCourse, AllanPoint, AllanTest, CoefficientEstimate, Coefficients, DiagnosisResult,
+    Estimated, FalseAlarmShares, Finding, Gain, Indistinguishable, MagnitudeTest,
+    NoiseAuditSummary, NotTested, NotTestedReason, Power, RankedEffect, RecordSummary,
+    ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION, Verdict,
+};
+use crate::untested::{Tests, not_tested, untested};
+
+/// Outcomes of all tests of one diagnosis.
+pub(super) struct Evidence<'e, 'a> {
+    pub(super) run: &'e Run<'a>,
+    pub(super) options: &'e DiagnoseOptions,
+    pub(super) shares: FalseAlarmShares,
+    pub(super) magnitude: Option<magnitude_test::MagnitudeTest>,
+    pub(super) residuals: Residuals,
+    pub(super) audit: &'e NoiseAudit,
+    pub(super) gyro_noise: Vec<NoiseFinding>,
+    pub(super) nominal: &'e Extended<'a>,
+    pub(super) power: Vec<Power>,
+    pub(super) searched: &'e Searched<'a>,
+    pub(super) estimate: &'e NoiseEstimate,
+    pub(super) remainder: ResidualTest,
+    pub(super) allan: Option<statistics::AllanTest>,
+    pub(super) judged: &'e Judged<'a>,
+    pub(super) gain: Option<Gain>,
+    pub(super) filter: Option<Tested>,
+}
+
+impl Evidence<'_, '_> {
+    /// The answer.
+    pub(super) fn answer(self) -> DiagnosisResult {
+        let findings = self.findings();
+        let verdict = if !findings.is_empty() {
+            Verdict::EffectsFound
+        } else if self.remainder.verdict == ResidualVerdict::Unexplained {
+            Verdict::Unexplained
+        } else {
+            Verdict::Clean
+        };
+        let ranking = &self.searched.ranking;
+        let threshold = self.searched.threshold;
+        DiagnosisResult {
+            schema_version: SCHEMA_VERSION,
+            manifest: manifest(self.options.seed),
+            record: summary(self.run.record),
+            later_record: None,
+            verdict,
+            false_alarm_probability: self.options.false_alarm_probability,
+            false_alarm_shares: self.shares,
+            setup: Vec::new(),
+            norm: self.magnitude.as_ref().map(magnitude),
+            cannot_tell: self.indistinguishable(&findings),
+            findings,
+            coefficients: Some(self.coefficients()),
+            ranking: ranking
+                .iter()
+                .map(|ranked| RankedEffect {
+                    effect: ranked.effect.to_owned(),
+                    statistic: ranked.statistic,
+                })
+                .collect(),
+            threshold: Some(threshold).filter(|threshold| threshold.is_finite()),
+            noise: Some(noise(self.estimate)),
+            noise_audit: Some(audit(self.audit)),
+            allan: self.allan.as_ref().map(allan),
+            not_searched: self.not_tested(),
+            power: self.power,
+            residuals: Some(self.residuals),
+            gain: self.gain,
+            remainder: self.remainder,
+            filter: self.filter.map(|filter| filter.test),
+        }
+    }
+
+    /// Noise, then causes, then the filter.
+    fn findings(&self) -> Vec<Finding> {
+        let noise = self.audit.findings.iter().chain(&self.gyro_noise);
+        let causes = self.searched.findings.iter().zip(&self.judged.acceptances);
+        let causes = causes
+            .map(|(finding, acceptance)| findings::of_cause(finding, acceptance, self.run.record));
+        let filter = self.filter.as_ref().and_then(|tested| tested.inconsistent);
+        noise
+            .map(findings::of_noise)
+            .chain(causes)
+            .chain(filter.map(findings::of_filter))
+            .collect()
+    }
+
+    fn indistinguishable(&self, findings: &[Finding]) -> Vec<Indistinguishable> {
+        let field_is_known = self.run.bench.magnetic_field_gauss.is_some();
+        let searched: Vec<&str> = self.searched.ranking.iter().map(|r| r.effect).collect();
+        findings
+            .iter()
+            .flat_map(|finding| indistinguishable(finding, &searched, field_is_known))
+            .collect()
+    }
+
+    /// Effects that a short record could not show, then those that were not tested.
+    fn not_tested(&self) -> Vec<NotTested> {
+        let threshold = self.searched.threshold;
+        let found = |effect: &str| self.searched.findings.iter().any(|f| f.effect == effect);
+        let mut all: Vec<NotTested> = Vec::new();
+        if needs_caveat(self.run.record) {
+            let undetected = self.power.iter();
+            let undetected =
+                undetected.filter(|power| undetectable(power, threshold) && !found(&power.effect));
+            all.extend(
+                undetected.map(|power| not_tested(&power.effect, NotTestedReason::LowPower, None)),
+            );
+        }
+        all.extend(untested(&Tests {
+            ranking: &self.searched.ranking,
+            unavailable: &self.searched.unavailable,
+            audit: self.audit,
+            filter: self.filter.is_some(),
+        }));
+        all
+    }
+
+    fn coefficients(&self) -> Coefficients {
+        let estimates = |fit: &Extended<'_>| {
+            let all = DRIFT.iter().enumerate();
+            all.map(|(index, element)| CoefficientEstimate {
+                name: element.id.to_owned(),
+                estimate: fit.values()[index],
+                sigma: fit.covariance()[(index, index)].sqrt(),
+                unit: element.unit.to_owned(),
+            })
+            .collect()
+        };
+        let extended = self.judged.extended.as_ref();
+        let covariance = extended.unwrap_or(self.nominal).covariance();
+        let row = |i: usize| (0..DRIFT.len()).map(|j| covariance[(i, j)]).collect();
+        Coefficients {
+            nominal: estimates(self.nominal),
+            extended: extended.map(estimates),
+            covariance: (0..DRIFT.len()).map(row).collect(),
+        }
+    }
+}
+
+/// Manifest of a result that no command made: without inputs and command line.
+pub(crate) fn manifest(seed: u64) -> Manifest {
+    Manifest {
+        program: "gyrocal".to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        model_hash: MODEL_HASH.to_owned(),
+        inputs: Vec::new(),
+        seed,
+        command: String::new(),
+    }
+}
+
+/// Size of a record, and what is missing in it.
+pub(crate) fn summary(record: &Record) -> RecordSummary {
+    RecordSummary {
+        rows: record.len(),
+        duration_s: record.duration_s(),
+        gaps: gaps(record),
+    }
+}
+
+fn magnitude(verdict: &magnitude_test::MagnitudeTest) -> MagnitudeTest {
+    MagnitudeTest {
+        accelerometers: verdict.accelerometers,
+        p_value: verdict.p_value,
+        mean_g: verdict.mean_g,
+        mean_sigma_g: verdict.mean_sigma_g,
+        description: verdict.description.clone(),
+    }
+}
+
+fn noise(estimate: &NoiseEstimate) -> NoiseReport {
+    let ratio = |found: NoiseRatio| NoiseRatioReport {
+        ratio: found.ratio,
+        interval: found.interval,
+    };
+    NoiseReport {
+        accel: estimate.accel.map(ratio),
+        gyro: estimate.gyro.map(ratio),
+    }
+}
+
+fn audit(audit: &NoiseAudit) -> NoiseAuditSummary {
+    let estimated = |found: &crate::noise::Estimate| Estimated {
+        estimate: found.estimate,
+        sigma: found.sigma,
+    };
+    NoiseAuditSummary {
+        accel_ratio: audit
+            .accel_ratio
+            .as_ref()
+            .map(|ratios| ratios.each_ref().map(estimated)),
+        correlation: audit.correlation.as_ref().map(estimated),
+        quantisation_g: audit.quantisation_g,
+        outliers: audit.outliers.len(),
+    }
+}
+
+fn allan(test: &statistics::AllanTest) -> AllanTest {
+    let [x, y, z] = &test.points;
+    AllanTest {
+        course: match test.course {
+            NoiseCourse::White => AllanCourse::White,
+            NoiseCourse::LargerWhite => AllanCourse::LargerWhite,
+            NoiseCourse::Flicker => AllanCourse::Flicker,
+            // A course that has no word of its own is at least not white.
+            _ => AllanCourse::Slow,
+        },
+        p_value: test.p_value,
+        rows: test.rows,
+        points: x
+            .iter()
+            .zip(y.iter().zip(z))
+            .map(|(x, (y, z))| AllanPoint {
+                tau_s: x.tau_s,
+                white: (x.averaging as f64).sqrt().recip(),
+                deviation: [x.deviation, y.deviation, z.deviation],
+                interval: [x.interval, y.interval, z.interval],
+            })
+            .collect(),
+    }
+}

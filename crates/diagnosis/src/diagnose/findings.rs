@@ -1,0 +1,128 @@
+//! Findings of the tests as entries of the answer.
+
+use gyrocal::effect::Role;
+use gyrocal::{EFFECTS, Effect};
+use gyrocal_record::Record;
+use gyrocal_statistics::NORMAL_97_5;
+
+use crate::cause::{self, FoundParameter};
+use crate::error_budget::CONFIDENCE_SET_COVERAGE;
+use crate::filter_test::FILTER_EFFECT;
+use crate::gain::Acceptance;
+use crate::noise::NoiseFinding;
+use crate::result::{Alternative, Equivalent, Finding, FindingKind, Parameter};
+
+/// A finding of the noise audit or of the gyro noise.
+pub(super) fn of_noise(finding: &NoiseFinding) -> Finding {
+    let parameters = finding.parameters.iter().map(|found| Parameter {
+        name: found.name.to_owned(),
+        estimate: found.estimate,
+        sigma: Some(found.sigma),
+        interval: None,
+        unit: found.unit.to_owned(),
+    });
+    Finding {
+        parameters: parameters.collect(),
+        ..bare(
+            finding.effect,
+            FindingKind::Noise,
+            finding.z,
+            finding.p_value,
+        )
+    }
+}
+
+/// A finding of the search, with its gain in cross-validation.
+pub(super) fn of_cause(
+    finding: &cause::Finding,
+    acceptance: &Acceptance,
+    record: &Record,
+) -> Finding {
+    let alternatives: Vec<Alternative> = finding
+        .rivals
+        .iter()
+        .map(|other| Alternative {
+            effect: other.effect.to_owned(),
+            log_likelihood_deficit: other.log_likelihood_deficit,
+        })
+        .collect();
+    let equivalents = finding
+        .equivalents
+        .iter()
+        .map(|(effect, found)| Equivalent {
+            effect: (*effect).to_owned(),
+            parameters: parameters(effect, found, record),
+        });
+    Finding {
+        parameters: parameters(finding.effect, &finding.parameters, record),
+        coverage: Some(CONFIDENCE_SET_COVERAGE),
+        rivals: alternatives.clone(),
+        alternatives,
+        equivalents: equivalents.collect(),
+        gain_nats: Some(acceptance.gain_nats),
+        accepted: Some(acceptance.accepted),
+        ..bare(
+            finding.effect,
+            FindingKind::Cause,
+            finding.z,
+            finding.p_value,
+        )
+    }
+}
+
+/// The finding of an inconsistent filter.
+pub(super) fn of_filter([z, p_value]: [f64; 2]) -> Finding {
+    bare(FILTER_EFFECT, FindingKind::Filter, z, p_value)
+}
+
+fn bare(effect: &str, kind: FindingKind, z: f64, p_value: f64) -> Finding {
+    Finding {
+        effect: effect.to_owned(),
+        name: row(effect).map_or("", |row| row.name).to_owned(),
+        kind,
+        parameters: Vec::new(),
+        z,
+        p_value,
+        coverage: None,
+        rivals: Vec::new(),
+        alternatives: Vec::new(),
+        none_of_these: None,
+        equivalents: Vec::new(),
+        gain_nats: None,
+        accepted: None,
+    }
+}
+
+fn row(effect: &str) -> Option<&'static Effect> {
+    EFFECTS.iter().find(|row| row.id == effect)
+}
+
+fn parameters(effect: &str, found: &[FoundParameter], record: &Record) -> Vec<Parameter> {
+    let shape = row(effect).and_then(Effect::shape);
+    let interval = |found: &FoundParameter| {
+        let shape = shape.filter(|shape| shape.name == found.name)?;
+        Some(vec![interval(shape.role, found, record)?])
+    };
+    let parameter = |found: &FoundParameter| Parameter {
+        name: found.name.to_owned(),
+        estimate: found.estimate,
+        sigma: found.sigma,
+        interval: interval(found),
+        unit: found.unit.to_owned(),
+    };
+    found.iter().map(parameter).collect()
+}
+
+/// The 95 % interval of an onset or a time constant where its likelihood is quadratic, within the
+/// values that it can have.
+fn interval(role: Role, found: &FoundParameter, record: &Record) -> Option<[f64; 2]> {
+    let most = match role {
+        Role::Onset(_) => record.duration_s(),
+        _ => f64::INFINITY,
+    };
+    let half = NORMAL_97_5 * found.sigma?;
+    Some([
+        (found.estimate - half).max(0.0),
+        (found.estimate + half).min(most),
+    ])
+}

@@ -1,0 +1,77 @@
+//! Validation of a diagnosis on a later record of the same platform.
+
+use gyrocal_calibration::{Extended, NoiseModel, Run};
+
+use super::answer::summary;
+use super::noise_audited_fit::noise_audited_fit;
+use super::{DiagnoseOptions, Diagnosis};
+use crate::error::DiagnosisError;
+use crate::error_budget::shares;
+use crate::gain::{LaterPrediction, predict};
+use crate::request;
+use crate::result::{Compensation, Validation};
+
+impl Diagnosis<'_> {
+    /// Predicts a later record of the same platform with the nominal and the extended model, and
+    /// adds that to the answer; `first` is the record of the diagnosis. Without an extended model
+    /// there is nothing to compare, and the answer says only that the record was given.
+    ///
+    /// # Errors
+    /// [`DiagnosisError`], of the later record.
+    pub fn validate(
+        &mut self,
+        first: &Run<'_>,
+        later: &Run<'_>,
+        options: &DiagnoseOptions,
+    ) -> Result<(), DiagnosisError> {
+        self.result.later_record = Some(summary(later.record));
+        let Some(extended) = &self.extended else {
+            return Ok(());
+        };
+        let models = [&self.nominal, extended];
+        let prediction = predict_later(models, &self.noise_model, first, later, options)?;
+        if let Some(gain) = &mut self.result.gain {
+            gain.validation = Some(validation(&prediction));
+        }
+        self.later = Some(prediction);
+        Ok(())
+    }
+}
+
+/// Predicts a later record with the nominal and an extended model of a first one, which were fitted
+/// with the noise `assumed`. The gyros are taken to be as noisy in the later record; its outliers
+/// are left out.
+///
+/// # Errors
+/// [`DiagnosisError`], of the later record.
+pub fn predict_later(
+    [nominal, extended]: [&Extended<'_>; 2],
+    assumed: &NoiseModel,
+    first: &Run<'_>,
+    later: &Run<'_>,
+    options: &DiagnoseOptions,
+) -> Result<LaterPrediction, DiagnosisError> {
+    request::check(&[], later.record, later.bench)?;
+    let assumed = NoiseModel {
+        gyro_ratio: assumed.gyro_ratio,
+        ..NoiseModel::default()
+    };
+    let alpha = shares(options.false_alarm_probability).noise_audit;
+    let fitted = noise_audited_fit(later, &assumed, alpha, &options.calibration)?.nominal;
+    Ok(predict(nominal, extended, first, &fitted, later)?)
+}
+
+fn validation(prediction: &LaterPrediction) -> Validation {
+    let attitude = &prediction.attitude;
+    let [nominal_arcmin, extended_arcmin, expected_arcmin] = attitude.at_end_arcmin();
+    Validation {
+        log_score_nats: prediction.gain_nats(),
+        compensation: Compensation {
+            starts: attitude.starts,
+            after_h: attitude.time_s.last().copied().unwrap_or(0.0) / 3600.0,
+            nominal_arcmin,
+            extended_arcmin,
+            expected_arcmin,
+        },
+    }
+}

@@ -1,0 +1,134 @@
+//! Detected effects, one entry each.
+
+use gyrocal_statistics::format::{p_value, percent};
+
+use super::Block;
+use super::format::{short, with_sigma};
+use crate::result::{Alternative, DiagnosisResult, Finding, Parameter};
+
+/// Alternatives that an entry names; the ranking shows all of them.
+const ALTERNATIVES_SHOWN: usize = 4;
+
+/// One entry for each detected effect.
+pub(super) fn entries(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
+    let findings = result.findings.iter().enumerate();
+    findings.map(|(index, finding)| Block::Entry {
+        number: index + 1,
+        title: format!("{}: {}", finding.effect, finding.name),
+        paragraphs: paragraphs(finding),
+    })
+}
+
+fn paragraphs(finding: &Finding) -> Vec<String> {
+    let mut paragraphs = vec![estimate(finding)];
+    if let (Some(nats), Some(false)) = (finding.gain_nats, finding.accepted) {
+        paragraphs.push(format!(
+            "Significant, but not in the extended model: with it cross-validation does not improve \
+             ({nats:+.1} nats)."
+        ));
+    }
+    if !finding.alternatives.is_empty() {
+        paragraphs.push(alternatives(finding));
+    }
+    let equivalents = finding.equivalents.iter();
+    paragraphs.extend(equivalents.map(|equivalent| {
+        format!(
+            "Exact equivalent, in any record: {}, {}.",
+            equivalent.effect,
+            parameter_values(&equivalent.parameters)
+        )
+    }));
+    paragraphs
+}
+
+fn estimate(finding: &Finding) -> String {
+    let significance = format!("{:.1} sigma, {}", finding.z, p_value(finding.p_value));
+    if finding.parameters.is_empty() {
+        significance
+    } else {
+        format!("{}; {significance}", parameter_values(&finding.parameters))
+    }
+}
+
+fn alternatives(finding: &Finding) -> String {
+    let shown = finding.alternatives.iter().take(ALTERNATIVES_SHOWN);
+    let shown: Vec<String> = shown
+        .map(|other| format!("{} ({})", other.effect, likelihood(other)))
+        .collect();
+    let more = match finding
+        .alternatives
+        .len()
+        .saturating_sub(ALTERNATIVES_SHOWN)
+    {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let set = match finding.coverage {
+        Some(coverage) => format!("{} confidence set", percent(coverage)),
+        None => "confidence set".to_owned(),
+    };
+    let none = match finding.none_of_these {
+        Some(probability) => format!(" None of these: probability {}.", percent(probability)),
+        None => String::new(),
+    };
+    format!("Alternatives ({set}): {}{more}.{none}", shown.join(", "))
+}
+
+/// All parameters with their sigmas and units.
+#[must_use]
+pub fn parameter_values(parameters: &[Parameter]) -> String {
+    let each = parameters.iter().map(|parameter| {
+        let unit = match parameter.unit.as_str() {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        format!("{} {}{unit}", parameter.name, value(parameter))
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// Estimate and sigma of a parameter.
+pub(super) fn value(parameter: &Parameter) -> String {
+    match parameter.sigma {
+        Some(sigma) => with_sigma(parameter.estimate, sigma),
+        None => short(parameter.estimate),
+    }
+}
+
+/// Likelihood of an alternative against the reported effect.
+#[must_use]
+pub fn likelihood(alternative: &Alternative) -> String {
+    // Beyond this the factor carries no information.
+    let factor = alternative.log_likelihood_deficit.clamp(-50.0, 50.0).exp();
+    if factor >= 1.05 {
+        format!("{factor:.1} times less likely")
+    } else if factor > 0.95 {
+        "equally likely".to_owned()
+    } else {
+        format!(
+            "likelihood ratio {:.1} in its favour, but it has more parameters",
+            factor.recip()
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_alternative_is_described_by_its_likelihood() {
+        let of = |log_likelihood_deficit| {
+            likelihood(&Alternative {
+                effect: "gyro_x.ramp".to_owned(),
+                log_likelihood_deficit,
+            })
+        };
+        assert_eq!(of(2.0), "7.4 times less likely");
+        assert_eq!(of(0.0), "equally likely");
+        assert_eq!(
+            of(-1.0),
+            "likelihood ratio 2.7 in its favour, but it has more parameters"
+        );
+    }
+}

@@ -1,0 +1,122 @@
+//! Limits of the answer: effects that are indistinguishable, undetectable or untested.
+
+use std::collections::BTreeMap;
+
+use gyrocal_statistics::format::percent;
+
+use super::Block;
+use crate::result::{DiagnosisResult, Experiment, ExperimentKind, NotTestedReason};
+
+/// Groups of indistinguishable effects, each with the experiment that would distinguish them.
+pub(super) fn indistinguishable(result: &DiagnosisResult) -> Option<Block> {
+    (!result.cannot_tell.is_empty()).then(|| Block::List {
+        title: "Not distinguishable, and the experiment that would distinguish them:".to_owned(),
+        entries: result
+            .cannot_tell
+            .iter()
+            .map(|group| {
+                format!(
+                    "{}: {}. Experiment: {}.",
+                    group.members.join(", "),
+                    group.why,
+                    group.would_separate
+                )
+            })
+            .collect(),
+    })
+}
+
+/// Effects that were not tested or are not detectable, by reason.
+pub(super) fn untested(result: &DiagnosisResult) -> Option<Block> {
+    let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for effect in &result.not_searched {
+        by_reason
+            .entry(&effect.why)
+            .or_default()
+            .push(&effect.effect);
+    }
+    (!by_reason.is_empty()).then(|| Block::List {
+        title: "Not tested, or not detectable in this record:".to_owned(),
+        entries: by_reason
+            .into_iter()
+            .map(|(why, effects)| format!("{}: {why}", effects.join(", ")))
+            .collect(),
+    })
+}
+
+/// Reason why the members of a confidence set are not distinguished.
+#[must_use]
+pub fn why_not_distinguished(coverage: Option<f64>) -> String {
+    let set = coverage.map_or_else(String::new, |coverage| {
+        format!(
+            "; the confidence set has a coverage of {}",
+            percent(coverage)
+        )
+    });
+    format!(
+        "they explain this record nearly equally well, once the nine coefficients and the first \
+         attitude have absorbed what they can{set}"
+    )
+}
+
+/// Reason why near twins are not distinguished.
+#[must_use]
+pub fn near_twins() -> String {
+    "near twins outside the default search: at one attitude they look alike".to_owned()
+}
+
+/// Experiments that would distinguish effects, and the option that tests some of them.
+#[must_use]
+pub fn would_distinguish(testable: &[String], experiments: &[Experiment]) -> String {
+    let option = (!testable.is_empty())
+        .then(|| format!("--effects {} tests them against it", testable.join(",")));
+    let experiments = experiments.iter().map(experiment);
+    let all: Vec<String> = option.into_iter().chain(experiments).collect();
+    all.join("; ")
+}
+
+fn experiment(experiment: &Experiment) -> String {
+    let what = experiment.what.as_deref().unwrap_or("an input");
+    match experiment.kind {
+        ExperimentKind::OtherAttitude => {
+            "a second run from another initial attitude, which does far more than a longer run: \
+             terms of specific force change their course, functions of time do not"
+                .to_owned()
+        }
+        ExperimentKind::OtherStart => {
+            "a second run from another initial attitude or started at another time of day, which \
+             does far more than a longer run"
+                .to_owned()
+        }
+        ExperimentKind::MeasureAttitude => {
+            "an independent measurement of the attitude at the first row".to_owned()
+        }
+        ExperimentKind::ControlRegressor => {
+            format!("a run with the {what} held or stepped on purpose")
+        }
+        ExperimentKind::ChangeInput => format!("a run with {what}"),
+        ExperimentKind::StartLate => "a run that starts long after switching on".to_owned(),
+        ExperimentKind::MeasureInput | ExperimentKind::Other => what.to_owned(),
+    }
+}
+
+/// Reason why an effect was not tested or is not detectable; of a missing input, `missing` says
+/// what is missing.
+#[must_use]
+pub fn not_tested(reason: NotTestedReason, missing: Option<&str>) -> String {
+    match reason {
+        NotTestedReason::LowPower => {
+            "the record is too short: an effect of typical size would go undetected"
+        }
+        NotTestedReason::MissingInput => missing.unwrap_or("an input is missing"),
+        NotTestedReason::FilterNotAsked => "an error of a filter: --filter euler",
+        NotTestedReason::HiddenByCorrelation => "correlated noise of the accelerometers hides it",
+        NotTestedReason::NoSpectrum => "the record is too short for a spectrum of its noise",
+        NotTestedReason::NotDefault => "only on request: --effects",
+        NotTestedReason::Unobservable => {
+            "the fit of the nine coefficients absorbs it in so short a record, or so small a part \
+             of the circle"
+        }
+    }
+    .to_owned()
+}

@@ -1,0 +1,257 @@
+//! The tables of an answer.
+
+use gyrocal_record::NoiseRatioReport;
+use gyrocal_statistics::format::p_cell;
+
+use super::findings::{likelihood, value};
+use super::format::short;
+use super::{AXES, Block, Column, Table};
+use crate::result::{DiagnosisResult, Finding, Gain, Residuals};
+
+/// Rows of the ranking that are shown.
+const TOP: usize = 12;
+
+/// An interval that spans more than this factor says that the record does not determine the noise.
+const UNDETERMINED: f64 = 100.0;
+
+/// All tables.
+pub(super) fn all(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
+    let tables = [
+        findings(result),
+        result
+            .residuals
+            .as_ref()
+            .map(|shown| residuals(shown, result.record.duration_s / 3600.0)),
+        ranking(result),
+        result.gain.as_ref().map(shifts),
+        noise(result),
+    ];
+    tables.into_iter().flatten().map(Block::Table)
+}
+
+fn findings(result: &DiagnosisResult) -> Option<Table> {
+    let columns = vec![
+        Column::words("effect"),
+        Column::words("parameter"),
+        Column::numbers("estimate"),
+        Column::words("unit"),
+        Column::numbers("z"),
+        Column::numbers("p"),
+        Column::numbers("gain, nats"),
+    ];
+    let mut rows = Vec::new();
+    for finding in &result.findings {
+        let mut head = [
+            finding.effect.clone(),
+            format!("{:.1}", finding.z),
+            p_cell(finding.p_value),
+            gain(finding),
+        ];
+        let parameters = finding.parameters.iter().map(|parameter| {
+            [
+                parameter.name.clone(),
+                value(parameter),
+                parameter.unit.clone(),
+            ]
+        });
+        let mut parameters: Vec<[String; 3]> = parameters.collect();
+        if parameters.is_empty() {
+            parameters.push(Default::default());
+        }
+        for [name, value, unit] in parameters {
+            let [effect, z, p, gain] = core::mem::take(&mut head);
+            rows.push(vec![effect, name, value, unit, z, p, gain]);
+        }
+    }
+    (!rows.is_empty()).then(|| Table {
+        title: "Findings:".to_owned(),
+        columns,
+        rows,
+    })
+}
+
+/// Gain of a cause; effects of noise and filter have none.
+fn gain(finding: &Finding) -> String {
+    match (finding.gain_nats, finding.accepted) {
+        (Some(nats), Some(false)) => format!("{nats:+.1}, not in the model"),
+        (Some(nats), _) => format!("{nats:+.1}"),
+        (None, _) => String::new(),
+    }
+}
+
+fn residuals(shown: &Residuals, duration_h: f64) -> Table {
+    let nis = shown.nis.map_or_else(String::new, |nis| {
+        let [low, high] = nis.band;
+        format!(
+            "; mean NIS {:.3} per value (acceptance band {low:.3} to {high:.3})",
+            nis.mean
+        )
+    });
+    let correlation = shown.autocorrelation.as_ref();
+    let ljung_box = correlation.map_or_else(String::new, |found| {
+        format!(
+            "; Ljung-Box {:.0} for {} degrees of freedom",
+            found.ljung_box, found.degrees_of_freedom
+        )
+    });
+    let mut rows = Vec::new();
+    let mut row = |name: String, cells: [String; 3]| {
+        rows.push(core::iter::once(name).chain(cells).collect());
+    };
+    row(
+        "open-loop simulation error, g rms".to_owned(),
+        shown.free_run_rms_g.map(|rms| format!("{rms:.2e}")),
+    );
+    if let Some(first) = correlation.and_then(|found| found.correlation.first()) {
+        row(
+            "lag-1 correlation".to_owned(),
+            first.map(|correlation| format!("{correlation:+.3}")),
+        );
+    }
+    if let Some(lines) = &shown.lines {
+        row(
+            "largest spectral line: period, p".to_owned(),
+            lines.map(|line| {
+                let period = if line.period_h > duration_h {
+                    "longer than the record".to_owned()
+                } else {
+                    format!("{} h", short(line.period_h))
+                };
+                format!("{period}, {}", p_cell(line.p_value))
+            }),
+        );
+    }
+    for against in &shown.against {
+        let covariate = match against.abscissa.as_str() {
+            "time_s" => "time",
+            "temperature_c" => "temperature",
+            "force_x_g" => "specific force along x",
+            "force_y_g" => "specific force along y",
+            "force_z_g" => "specific force along z",
+            other => other,
+        };
+        row(
+            format!("regression on {covariate}, p"),
+            against.p_value.map(p_cell),
+        );
+    }
+    Table {
+        title: format!("Residuals of the nominal model{nis}{ljung_box}:"),
+        columns: by_axis(),
+        rows,
+    }
+}
+
+fn ranking(result: &DiagnosisResult) -> Option<Table> {
+    let all = &result.ranking;
+    let threshold = result.threshold.map_or_else(String::new, |threshold| {
+        format!("; detection threshold {threshold:.1}")
+    });
+    (!all.is_empty()).then(|| Table {
+        title: format!(
+            "Top {} of {} hypotheses, score statistic (chi-square, penalised for the search over \
+             onset or time constant){threshold}:",
+            all.len().min(TOP),
+            all.len()
+        ),
+        columns: vec![
+            Column::words("effect"),
+            Column::numbers("statistic"),
+            Column::words(""),
+        ],
+        rows: all
+            .iter()
+            .take(TOP)
+            .map(|ranked| {
+                vec![
+                    ranked.effect.clone(),
+                    format!("{:.1}", ranked.statistic),
+                    role(result, &ranked.effect),
+                ]
+            })
+            .collect(),
+    })
+}
+
+/// Role of a ranked effect in the answer.
+fn role(result: &DiagnosisResult, effect: &str) -> String {
+    for finding in &result.findings {
+        if finding.effect == effect {
+            return "detected".to_owned();
+        }
+        if finding.equivalents.iter().any(|e| e.effect == effect) {
+            return format!("exact equivalent of {}", finding.effect);
+        }
+        if let Some(other) = finding.alternatives.iter().find(|a| a.effect == effect) {
+            return format!("alternative to {}, {}", finding.effect, likelihood(other));
+        }
+    }
+    String::new()
+}
+
+fn shifts(gain: &Gain) -> Table {
+    let rows = gain.coefficient_shift.iter().map(|shift| {
+        let [low, high] = shift.interval;
+        let [low_sigmas, high_sigmas] = shift.in_sigmas_interval;
+        vec![
+            shift.coefficient.clone(),
+            format!("{:+.2e}", shift.shift),
+            format!("{low:+.2e} to {high:+.2e}"),
+            format!("{:+.1}", shift.in_sigmas),
+            format!("{low_sigmas:+.1} to {high_sigmas:+.1}"),
+            shift.unit.clone(),
+        ]
+    });
+    Table {
+        title: format!(
+            "Coefficient changes with {} in the model (95 % CI):",
+            gain.effects.join(", ")
+        ),
+        columns: vec![
+            Column::words("coefficient"),
+            Column::numbers("change"),
+            Column::numbers("interval"),
+            Column::numbers("in sigmas"),
+            Column::numbers("interval"),
+            Column::words("unit"),
+        ],
+        rows: rows.collect(),
+    }
+}
+
+fn noise(result: &DiagnosisResult) -> Option<Table> {
+    let noise = result.noise.as_ref()?;
+    let extended = result.coefficients.as_ref();
+    let model = if extended.is_some_and(|coefficients| coefficients.extended.is_some()) {
+        "extended model"
+    } else {
+        "nominal model"
+    };
+    let row = |name: &str, ratios: &[NoiseRatioReport; 3]| {
+        let cells = ratios.iter().map(interval);
+        core::iter::once(name.to_owned()).chain(cells).collect()
+    };
+    Some(Table {
+        title: format!("Estimated / declared noise (95 % CI), {model}:"),
+        columns: by_axis(),
+        rows: vec![
+            row("accelerometers", &noise.accel),
+            row("gyros", &noise.gyro),
+        ],
+    })
+}
+
+fn interval(found: &NoiseRatioReport) -> String {
+    let [low, high] = found.interval;
+    if high <= UNDETERMINED * low {
+        format!("{:.3} ({low:.3} to {high:.3})", found.ratio)
+    } else {
+        "not determined".to_owned()
+    }
+}
+
+/// A column for names, then one for each axis.
+fn by_axis() -> Vec<Column> {
+    let axes = AXES.iter().map(|axis| Column::numbers(axis));
+    core::iter::once(Column::words("")).chain(axes).collect()
+}

@@ -1,0 +1,101 @@
+//! The record and the verdict on it.
+
+use super::Block;
+use gyrocal_statistics::format::{p_value, percent};
+
+use super::format::counted;
+use crate::result::{DiagnosisResult, FindingKind, NotTestedReason, ResidualVerdict, Verdict};
+
+/// The record and its size.
+pub(super) fn record(result: &DiagnosisResult) -> String {
+    let path = result.manifest.inputs.first();
+    format!(
+        "{}: {} over {:.2} days",
+        path.map_or("record", |input| &input.path),
+        counted(result.record.rows, "row"),
+        result.record.duration_s / 86_400.0
+    )
+}
+
+/// The verdict with its error probabilities.
+pub(super) fn verdict(result: &DiagnosisResult) -> String {
+    let alarm = format!(
+        "false-alarm rate of the diagnosis {}",
+        percent(result.false_alarm_probability)
+    );
+    match result.verdict {
+        Verdict::EffectsFound => format!(
+            "Model mismatch detected: {} (family-wise {}; {alarm}).",
+            counted(result.findings.len(), "effect"),
+            p_value(least_p_value(result)),
+        ),
+        Verdict::Unexplained => format!(
+            "Model mismatch detected: no effect of the catalogue explains it (family-wise {}; \
+             {alarm}).",
+            p_value(result.remainder.p_value)
+        ),
+        Verdict::Setup => "Error of the set-up: the record was not diagnosed.".to_owned(),
+        Verdict::Clean => {
+            let noise = if result
+                .noise_audit
+                .is_some_and(|audit| audit.correlation.is_some())
+            {
+                "noise as declared"
+            } else {
+                "no outliers, no quantisation (the record is too short for a spectrum of its noise)"
+            };
+            let white = match result.remainder.verdict {
+                ResidualVerdict::White => ", innovations white",
+                _ => "",
+            };
+            format!(
+                "No model mismatch detected: {noise}, no effect of the catalogue significant{white} \
+                 ({alarm}).{}",
+                low_power(result)
+            )
+        }
+    }
+}
+
+/// The smallest p-value: of the diagnosis itself, and of a filter only if there is nothing else.
+fn least_p_value(result: &DiagnosisResult) -> f64 {
+    let least = |of_filter: bool| {
+        let mut all = result.findings.iter();
+        let first = all
+            .clone()
+            .any(|f| (f.kind == FindingKind::Filter) == of_filter);
+        first.then(|| {
+            all.by_ref()
+                .filter(|finding| (finding.kind == FindingKind::Filter) == of_filter)
+                .map(|finding| finding.p_value)
+                .fold(1.0, f64::min)
+        })
+    };
+    least(false).or_else(|| least(true)).unwrap_or(1.0)
+}
+
+/// The caveat on the verdict of a short record.
+fn low_power(result: &DiagnosisResult) -> String {
+    let undetected = result.not_searched.iter();
+    let undetected = undetected.filter(|effect| effect.reason == NotTestedReason::LowPower);
+    match undetected.count() {
+        0 => String::new(),
+        count => format!(
+            " Low power: {count} of {} of typical size would go undetected in so short a record. \
+             Record for a day or longer.",
+            counted(result.ranking.len(), "effect")
+        ),
+    }
+}
+
+/// Gross errors of the set-up.
+pub(super) fn setup(result: &DiagnosisResult) -> Option<Block> {
+    (!result.setup.is_empty()).then(|| Block::List {
+        title: "Errors of the set-up:".to_owned(),
+        entries: result
+            .setup
+            .iter()
+            .map(|problem| format!("{} ({})", problem.description, problem.evidence))
+            .collect(),
+    })
+}

@@ -1,0 +1,117 @@
+//! Residual test: whiteness of the innovations with all causes in the model.
+
+use gyrocal_calibration::{CalibrationError, Extended};
+use gyrocal_record::Record;
+use gyrocal_statistics::{autocorrelation, periodogram, strongest_line};
+
+use crate::cause::{Channel, Pattern, Unnamed};
+use crate::error_budget::RESIDUAL_TESTS;
+use crate::prose::residual_description;
+use crate::result::{
+    ResidualCorrelation, ResidualLine, ResidualTest, ResidualVerdict, UnmodelledPattern,
+    UnmodelledTerm,
+};
+
+/// Lags of the portmanteau test: structure shorter than these many rows.
+const LAGS: usize = 20;
+
+/// Channels by name.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The innovations of a fit, whitened.
+///
+/// # Errors
+/// As [`Extended::signatures`].
+pub(crate) fn whitened(
+    fitted: &Extended<'_>,
+    record: &Record,
+) -> Result<Vec<[f64; 3]>, CalibrationError> {
+    let mut whitened = vec![[f64::NAN; 3]; record.len()];
+    fitted.signatures(&[], |value| {
+        whitened[value.row][value.output] = value.columns[0]
+    })?;
+    Ok(whitened)
+}
+
+/// Tests whitened innovations; `unnamed` holds the terms that the search found beside the catalogue,
+/// and `alpha` is the probability of a false alarm of all residual tests.
+pub(crate) fn residual_test(
+    time_s: &[f64],
+    whitened: &[[f64; 3]],
+    unnamed: &[Unnamed],
+    alpha: f64,
+) -> ResidualTest {
+    let line = largest_line(time_s, whitened, alpha);
+    let correlation =
+        autocorrelation(whitened, LAGS, alpha)
+            .ok()
+            .map(|found| ResidualCorrelation {
+                ljung_box: found.ljung_box,
+                degrees_of_freedom: found.degrees_of_freedom,
+                p_value: found.p_value,
+                significant: RESIDUAL_TESTS * found.p_value < alpha,
+            });
+    let of_line = line.as_ref().map(|line| line.p_value);
+    let of_correlation = correlation.as_ref().map(|found| found.p_value);
+    let tested = of_line.into_iter().chain(of_correlation);
+    let tested = tested.map(|p| RESIDUAL_TESTS * p).fold(1.0, f64::min);
+    let unmodelled: Vec<UnmodelledTerm> = unnamed.iter().map(term).collect();
+    let p_value = unmodelled
+        .iter()
+        .map(|term| term.p_value)
+        .fold(tested, f64::min);
+    let verdict = if tested < alpha || !unmodelled.is_empty() {
+        ResidualVerdict::Unexplained
+    } else if line.is_none() || correlation.is_none() {
+        ResidualVerdict::NotTested
+    } else {
+        ResidualVerdict::White
+    };
+    let mut test = ResidualTest {
+        verdict,
+        p_value,
+        description: String::new(),
+        line,
+        correlation,
+        unmodelled,
+    };
+    test.description = residual_description(&test);
+    test
+}
+
+/// The largest line in the spectra of all channels; `None` if they are too short for one.
+fn largest_line(time_s: &[f64], whitened: &[[f64; 3]], alpha: f64) -> Option<ResidualLine> {
+    let [x, y, z] = [0, 1, 2].map(|axis| {
+        let series: Vec<f64> = whitened.iter().map(|row| row[axis]).collect();
+        periodogram(time_s, &series, alpha)
+    });
+    let lines = [x.ok()?.line, y.ok()?.line, z.ok()?.line];
+    let (axis, p_value) = strongest_line(&lines);
+    Some(ResidualLine {
+        channel: AXES[axis].to_owned(),
+        period_h: 1.0 / (3600.0 * lines[axis].frequency_hz),
+        amplitude: lines[axis].amplitude,
+        p_value,
+        significant: RESIDUAL_TESTS * p_value < alpha,
+    })
+}
+
+fn term(found: &Unnamed) -> UnmodelledTerm {
+    let channel = match found.channel {
+        Channel::Drift(axis) => format!("gyro_{}", AXES[axis]),
+        Channel::Readings(axis) => format!("accel_{}", AXES[axis]),
+    };
+    let (pattern, period_h, force_axis) = match found.pattern {
+        Pattern::Line { period_h } => (UnmodelledPattern::Line, Some(period_h), None),
+        Pattern::Curve { axis } => (UnmodelledPattern::Curve, None, Some(AXES[axis].to_owned())),
+    };
+    UnmodelledTerm {
+        channel,
+        pattern,
+        period_h,
+        force_axis,
+        size: found.size,
+        unit: found.channel.unit().to_owned(),
+        p_value: found.ln_probability.exp(),
+    }
+}
