@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn every_effect_of_the_search_has_an_experiment() {
-        for effect in EFFECTS.iter().filter(|effect| effect.has_term()) {
+        for effect in EFFECTS.iter().filter(|e| e.has_term() && !e.is_nominal) {
             assert_ne!(experiments(&[effect.id.to_owned()]), [], "{}", effect.id);
         }
     }

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-use gyrocal_diagnosis::DiagnosisResult;
 use sha2::{Digest, Sha256};
 
 use crate::folder::{Folder, repository};
@@ -21,7 +20,7 @@ fn fault(case: &str, seals: &BTreeSet<String>) -> Option<String> {
     let input = |kind: &str| data.join(format!("{case}.{kind}")).display().to_string();
     let (record, bench) = (input("csv"), input("toml"));
     folder.succeed(&["diagnose", &record, "--bench", &bench, "--json", "o.json"]);
-    let report: DiagnosisResult = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report = super::report(&folder, "o.json");
     let named: Vec<&str> = match report.findings.as_slice() {
         [] => vec!["none"],
         findings => findings.iter().map(|f| f.effect.as_str()).collect(),
