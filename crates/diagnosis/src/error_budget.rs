@@ -4,7 +4,7 @@
 //! A diagnosis promises one family-wise probability α that a record of the nominal model with the
 //! declared noise shows any finding. By Bonferroni's inequality the shares of its tests may add up
 //! to one at most. [`TABLE`] lists all of them, and all constants that decide what is reported, as
-//! `docs/diagnosis.md` prints them.
+//! `docs/method.md` prints them.
 
 use crate::cause::{DETECTION_PENALTY_FRACTION, RICHER, SET_CONSTANT};
 use crate::result::FalseAlarmShares;
@@ -207,9 +207,9 @@ mod tests {
     #[test]
     #[allow(clippy::unwrap_used)]
     fn the_documentation_prints_this_table() {
-        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/diagnosis.md");
+        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/method.md");
         let page = std::fs::read_to_string(page).unwrap().replace("\r\n", "\n");
         let table = markdown();
-        assert!(page.contains(&table), "docs/diagnosis.md lacks\n{table}");
+        assert!(page.contains(&table), "docs/method.md lacks\n{table}");
     }
 }
