@@ -2,12 +2,12 @@
 
 use gyrocal::generated::catalogue::EFFECTS;
 use gyrocal_calibration::check_record;
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{Bench, Record, any_of, nearest_names};
 
 use crate::cause::missing;
 use crate::error::DiagnosisError;
 
-/// So many near ids are told of a mistyped one.
+/// Number of ids that are suggested for an unknown one.
 const NEAREST: usize = 3;
 
 /// Refuses effects that are in no catalogue, effects whose input is missing, and a record with
@@ -36,19 +36,9 @@ pub(crate) fn check(
 
 /// The nearest ids as the end of a sentence.
 fn nearest(typed: &str) -> String {
-    let typed = typed.to_lowercase();
-    let mut known: Vec<(usize, &str)> = EFFECTS
-        .iter()
-        .map(|effect| (strsim::osa_distance(&typed, effect.id), effect.id))
-        .collect();
-    // Of equally near ones the order of the catalogue.
-    known.sort_by_key(|(distance, _)| *distance);
-    let names: Vec<String> = known
-        .iter()
-        .take(NEAREST)
-        .map(|(_, id)| format!("`{id}`"))
-        .collect();
-    format!("; the nearest are {}", names.join(", "))
+    let known: Vec<&str> = EFFECTS.iter().map(|effect| effect.id).collect();
+    let nearest = nearest_names(typed, &known, NEAREST);
+    format!("; the nearest are {}", any_of(&nearest))
 }
 
 #[cfg(test)]

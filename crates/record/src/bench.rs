@@ -3,10 +3,14 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::bound::Bound;
+use crate::document::Document;
 use crate::error::{Error, InputErrorKind};
 use crate::gimbals::GimbalLimits;
 use crate::output::write_whole;
-use crate::tables::{Bound, Document, Table};
+use crate::site::{Gravity, Site, SiteUncertainty};
+use crate::table::Table;
+use crate::white_noise::WhiteNoise;
 
 /// What is known of the bench before the record is looked at.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,15 +38,6 @@ pub struct Bench {
     pub prior: Prior,
 }
 
-/// Local gravity, and the gravity that the accelerometers call 1 g.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gravity {
-    /// Gravity at the bench.
-    pub local_m_per_s2: f64,
-    /// The acceleration that the record's unit stands for.
-    pub unit_m_per_s2: f64,
-}
-
 /// Standard deviations of the drift coefficients about zero, of gyros x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prior {
@@ -55,17 +50,6 @@ pub struct Prior {
     /// Of the constant drift of one turn-on about the gyro's mean, which `bias_sigma_deg_per_h`
     /// speaks of; 0 if it is the same each time.
     pub turn_on_sigma_deg_per_h: [f64; 3],
-}
-
-/// Standard deviations of what is known of the site; `None` where the bench does not say.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SiteUncertainty {
-    /// Of the astronomic latitude.
-    pub latitude_sigma_deg: Option<f64>,
-    /// Of the sidereal rotation rate of the Earth, relative to it.
-    pub earth_rate_relative_sigma: Option<f64>,
-    /// Of local gravity in the unit of the data, relative to it.
-    pub gravity_relative_sigma: Option<f64>,
 }
 
 impl Default for Prior {
@@ -134,27 +118,17 @@ impl Bench {
 
     fn from_document(document: &Document) -> Result<Self, Error> {
         document.interpret(&KNOWN, |root| {
-            let [latitude_sigma, rate_sigma, gravity_sigma] = SiteUncertainty::KEYS;
-            let site = root.table(
-                "site",
-                &[
-                    "latitude_deg",
-                    Gravity::KEYS[0],
-                    Gravity::KEYS[1],
-                    latitude_sigma,
-                    rate_sigma,
-                    gravity_sigma,
-                    MAGNETIC_FIELD,
-                ],
-            )?;
+            let keys = [&Site::KEYS[..], &SiteUncertainty::KEYS].concat();
+            let site_table = root.table(Site::TABLE, &keys)?;
             let platform = root.table(
                 "platform",
                 &["initial_angles_deg", "initial_angles_sigma_deg"],
             )?;
-            let noise = root.table("noise", &["accel_g", "gyro_deg_per_h"])?;
+            let noise = WhiteNoise::from_root(root)?;
+            let site = Site::from_table(&site_table)?;
             // Angles and their sigmas are given together, or the attitude is not known.
             let initial_angles_deg =
-                platform.optional_three_numbers("initial_angles_deg", ANGLE_DEG)?;
+                platform.optional_three_numbers("initial_angles_deg", Bound::ANGLE_DEG)?;
             let initial_angles_sigma_deg = match initial_angles_deg {
                 Some(_) => platform.three_numbers("initial_angles_sigma_deg", Bound::Positive)?,
                 None => platform
@@ -169,28 +143,32 @@ impl Bench {
                     })?,
             };
             Ok(Self {
-                latitude_deg: site.number("latitude_deg", Bound::Within(-90.0, 90.0))?,
-                gravity: Gravity::from_site(&site)?,
-                uncertainty: SiteUncertainty::from_site(&site)?,
-                magnetic_field_gauss: site.optional_three_numbers(MAGNETIC_FIELD, FIELD_GAUSS)?,
+                latitude_deg: site.latitude_deg,
+                gravity: site.gravity,
+                uncertainty: SiteUncertainty::from_site(&site_table)?,
+                magnetic_field_gauss: site.magnetic_field_gauss,
                 initial_angles_deg,
                 initial_angles_sigma_deg,
                 gimbal_limits: GimbalLimits::from_root(root)?,
-                accel_noise_g: noise.number("accel_g", Bound::Positive)?,
-                gyro_noise_deg_per_h: noise.number("gyro_deg_per_h", Bound::Positive)?,
+                accel_noise_g: noise.accel_g,
+                gyro_noise_deg_per_h: noise.gyro_deg_per_h,
                 prior: Prior::from_root(root)?,
             })
         })
     }
 
     fn format(&self) -> String {
-        let mut text = format!("[site]\nlatitude_deg = {:?}\n", self.latitude_deg);
+        let mut text = format!(
+            "[{}]\nlatitude_deg = {:?}\n",
+            Site::TABLE,
+            self.latitude_deg
+        );
         if let Some(gravity) = self.gravity {
             text.push_str(&gravity.to_toml());
         }
         text.push_str(&self.uncertainty.to_toml());
         if let Some(field_gauss) = self.magnetic_field_gauss {
-            let _ = writeln!(text, "{MAGNETIC_FIELD} = {field_gauss:?}");
+            let _ = writeln!(text, "{} = {field_gauss:?}", Site::MAGNETIC_FIELD_KEY);
         }
         text.push_str("\n[platform]\n");
         if let Some(angles_deg) = self.initial_angles_deg {
@@ -219,107 +197,11 @@ impl Bench {
     }
 }
 
-impl Gravity {
-    /// The keys of the table `[site]` that give it: both or none.
-    pub const KEYS: [&'static str; 2] = ["local_gravity_m_per_s2", "unit_gravity_m_per_s2"];
-
-    /// Specific force at rest in the accelerometers' unit.
-    #[must_use]
-    pub fn ratio(self) -> f64 {
-        self.local_m_per_s2 / self.unit_m_per_s2
-    }
-
-    /// Takes it from the table `[site]` of a file, where it may be absent.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Input`] if only one key is there, or a value that is no gravity of the Earth.
-    pub fn from_site(site: &Table<'_>) -> Result<Option<Self>, Error> {
-        // Gravity on the Earth is 9.76 to 9.84 m/s^2; anything else is a mistake in the unit.
-        const RANGE: Bound = Bound::Within(9.7, 9.9);
-        let [local, unit] = Self::KEYS;
-        match (
-            site.optional_number(local, RANGE)?,
-            site.optional_number(unit, RANGE)?,
-        ) {
-            (None, None) => Ok(None),
-            (Some(local_m_per_s2), Some(unit_m_per_s2)) => Ok(Some(Self {
-                local_m_per_s2,
-                unit_m_per_s2,
-            })),
-            (given, _) => Err(site.error_at(
-                if given.is_some() { unit } else { local },
-                InputErrorKind::MissingKey,
-                "local and unit gravity are given together or not at all",
-                "",
-            )),
-        }
-    }
-
-    /// The lines of the table `[site]` that give it.
-    #[must_use]
-    pub fn to_toml(self) -> String {
-        let [local, unit] = Self::KEYS;
-        format!(
-            "{local} = {:?}\n{unit} = {:?}\n",
-            self.local_m_per_s2, self.unit_m_per_s2
-        )
-    }
-}
-
-impl SiteUncertainty {
-    /// The keys of the table `[site]` that give it, each of them optional.
-    pub const KEYS: [&'static str; 3] = [
-        "latitude_sigma_deg",
-        "earth_rate_relative_sigma",
-        "gravity_relative_sigma",
-    ];
-
-    /// Takes it from the table `[site]` of a file.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Input`] if a value is not positive.
-    pub fn from_site(site: &Table<'_>) -> Result<Self, Error> {
-        let [latitude, rate, gravity] = Self::KEYS;
-        Ok(Self {
-            latitude_sigma_deg: site.optional_number(latitude, Bound::Positive)?,
-            earth_rate_relative_sigma: site.optional_number(rate, Bound::Positive)?,
-            gravity_relative_sigma: site.optional_number(gravity, Bound::Positive)?,
-        })
-    }
-
-    /// The lines of the table `[site]` that give it.
-    #[must_use]
-    pub fn to_toml(self) -> String {
-        let values = [
-            self.latitude_sigma_deg,
-            self.earth_rate_relative_sigma,
-            self.gravity_relative_sigma,
-        ];
-        let mut text = String::new();
-        for (key, value) in Self::KEYS.iter().zip(values) {
-            if let Some(value) = value {
-                let _ = writeln!(text, "{key} = {value:?}");
-            }
-        }
-        text
-    }
-}
-
 /// Tables of a bench file.
 const KNOWN: [&str; 5] = ["site", "platform", "noise", "prior", GimbalLimits::TABLE];
 
-const MAGNETIC_FIELD: &str = "magnetic_field_gauss";
-
-/// The Earth's field is at most 0.67 gauss; tesla or nanotesla are a mistake in the unit.
-const FIELD_GAUSS: Bound = Bound::Within(-1.0, 1.0);
-
 /// What [`Bench::initial_angles_sigma_deg`] says of angles that are not known.
 const UNKNOWN_ANGLES_SIGMA_DEG: [f64; 3] = [180.0; 3];
-
-/// Angles beyond a turn are a mistake in the unit.
-const ANGLE_DEG: Bound = Bound::Within(-360.0, 360.0);
 
 const PRIOR_KEYS: [&str; 4] = [
     "bias_sigma_deg_per_h",

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
+use crate::bound::Bound;
 use crate::error::{Error, InputErrorKind};
-use crate::tables::{Bound, Table};
+use crate::table::Table;
 
 /// Limits of the platform angles: those about x, then y, then z, as `initial_angles_deg` has them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -26,7 +27,7 @@ impl GimbalLimits {
     /// Whether a gimbal with these ends makes sense.
     #[must_use]
     pub fn is_sound([from, to]: [f64; 2]) -> bool {
-        let angle = Bound::Within(-360.0, 360.0);
+        let angle = Bound::ANGLE_DEG;
         angle.holds(from) && angle.holds(to) && from <= to && to - from < 360.0
     }
 
@@ -52,7 +53,7 @@ impl GimbalLimits {
         let mut limits = Self::default();
         if let Some(table) = root.optional_table(Self::TABLE, &Self::KEYS)? {
             for (limit, key) in limits.deg.iter_mut().zip(Self::KEYS) {
-                *limit = table.optional_two_numbers(key, Bound::Within(-360.0, 360.0))?;
+                *limit = table.optional_two_numbers(key, Bound::ANGLE_DEG)?;
                 if limit.is_some_and(|limit| !Self::is_sound(limit)) {
                     let kind = InputErrorKind::OutOfRange;
                     return Err(table.error_at(key, kind, Self::EXPECTED, ""));

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::error::{Error, InputErrorKind};
 use crate::fields::Line;
 use crate::source::{SourceText, quoted};
-use crate::suggest::{any_of, nearest};
+use crate::suggest::{any_of, similar_names};
 
 /// The columns that a record must have.
 pub(crate) const REQUIRED_COLUMNS: [&str; 4] = ["time_s", "accel_x_g", "accel_y_g", "accel_z_g"];
@@ -83,9 +83,9 @@ fn unknown(source: &SourceText, span: Range<usize>, name: &str, names: &[&str]) 
         .into_iter()
         .filter(|column| !names.contains(column))
         .collect();
-    let advice = match nearest(name, &absent) {
-        Some(near) => format!("did you mean `{near}`? (names carry their unit)"),
-        None => "rename it if it is one of these, remove it if it is not".to_owned(),
+    let advice = match similar_names(name, &absent, 1)[..] {
+        [near, ..] => format!("did you mean `{near}`? (names carry their unit)"),
+        [] => "rename it if it is one of these, remove it if it is not".to_owned(),
     };
     source.error(
         InputErrorKind::Header,

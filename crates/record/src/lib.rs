@@ -54,6 +54,8 @@
 //! not at all ([`Outputs`]).
 
 mod bench;
+mod bound;
+mod document;
 mod error;
 pub mod fields;
 mod gimbals;
@@ -64,11 +66,15 @@ mod output;
 mod record;
 mod report;
 mod rows;
+mod site;
 mod source;
 mod suggest;
-mod tables;
+mod table;
+mod white_noise;
 
-pub use bench::{Bench, Gravity, Prior, SiteUncertainty};
+pub use bench::{Bench, Prior};
+pub use bound::Bound;
+pub use document::Document;
 pub use error::{Error, InputError, InputErrorKind};
 pub use gimbals::GimbalLimits;
 pub use manifest::{Input, Manifest};
@@ -80,6 +86,8 @@ pub use report::{
     NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport,
     SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
 };
+pub use site::{Gravity, Site, SiteUncertainty};
 pub use source::SourceText;
-pub use suggest::nearest_few;
-pub use tables::{Bound, Document, Table};
+pub use suggest::{any_of, nearest_names, similar_names};
+pub use table::Table;
+pub use white_noise::WhiteNoise;

@@ -3,11 +3,13 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::bound::Bound;
+use crate::document::Document;
 use crate::error::{Error, InputErrorKind};
 use crate::output::write_whole;
 use crate::report::SCHEMA_VERSION;
-use crate::suggest::{any_of, nearest_few};
-use crate::tables::{Bound, Document, Table};
+use crate::suggest::{any_of, nearest_names};
+use crate::table::Table;
 
 /// Content of a model file: the effects of a model in addition to the nine drift coefficients, and
 /// their estimates.
@@ -208,7 +210,7 @@ fn effects<'k, 'a>(
                 "the id of an effect",
                 format!(
                     "the nearest are {}",
-                    any_of(&nearest_few(text.text, &terms, 3))
+                    any_of(&nearest_names(text.text, &terms, 3))
                 ),
             ));
         };

@@ -43,7 +43,7 @@ impl Record {
         read_rows_of_a_platform(&SourceText::read(path)?, rows)
     }
 
-    /// Whether temperature was logged and changes: only then can anything go with it.
+    /// Whether temperature was logged and changes: only then can an effect depend on it.
     #[must_use]
     pub fn temperature_changes(&self) -> bool {
         let logged = self.temperature_c.as_deref().unwrap_or_default();

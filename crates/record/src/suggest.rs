@@ -1,30 +1,35 @@
-//! The nearest of some known names to a mistyped one.
+//! Names that are similar to a mistyped one.
 
-/// The known name that takes the fewest single-character edits, if few enough to be a slip.
-pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
-    let typed = typed.to_lowercase();
-    known
-        .iter()
-        .map(|name| (edits(&typed, name), *name))
-        .min()
-        .filter(|(edits, name)| *edits <= name.len().max(typed.len()) / 2)
+/// At most `count` of the known names, by increasing number of single-character edits from the
+/// typed one: insertions, deletions, substitutions and transpositions (Damerau-Levenshtein
+/// distance). Of equally near names, permutations of the typed one come first, then the order of
+/// `known` counts. Known names are lower case; the case of the typed one does not matter.
+#[must_use]
+pub fn nearest_names<'a>(typed: &str, known: &[&'a str], count: usize) -> Vec<&'a str> {
+    let ranked = ranked(typed, known);
+    ranked
+        .into_iter()
+        .take(count)
         .map(|(_, name)| name)
+        .collect()
 }
 
-/// The known names that take the fewest single-character edits, the fewest first.
+/// Those of the nearest names that are similar enough for a slip of the keyboard: at most a third
+/// of the letters are edited.
 #[must_use]
-pub fn nearest_few<'a>(typed: &str, known: &[&'a str], count: usize) -> Vec<&'a str> {
-    let typed = typed.to_lowercase();
-    let mut all: Vec<(usize, &str)> = known
-        .iter()
-        .map(|name| (edits(&typed, name), *name))
-        .collect();
-    all.sort();
-    all.into_iter().take(count).map(|(_, name)| name).collect()
+pub fn similar_names<'a>(typed: &str, known: &[&'a str], count: usize) -> Vec<&'a str> {
+    let typed_letters = typed.chars().count();
+    let is_slip = |edits: usize, name: &str| 3 * edits <= typed_letters.max(name.chars().count());
+    let ranked = ranked(typed, known).into_iter().take(count);
+    ranked
+        .filter(|(edits, name)| is_slip(*edits, name))
+        .map(|(_, name)| name)
+        .collect()
 }
 
 /// A list of names for a message: `a`, `b` or `c`.
-pub(crate) fn any_of(names: &[&str]) -> String {
+#[must_use]
+pub fn any_of(names: &[&str]) -> String {
     match names {
         [] => "nothing".to_owned(),
         [one] => format!("`{one}`"),
@@ -35,42 +40,51 @@ pub(crate) fn any_of(names: &[&str]) -> String {
     }
 }
 
-/// Levenshtein distance: the fewest insertions, deletions and substitutions.
-fn edits(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (above, letter) in from.chars().enumerate() {
-        let mut diagonal = above;
-        let mut left = above + 1;
-        row[0] = left;
-        for (column, other) in to.iter().enumerate() {
-            let substituted = diagonal + usize::from(letter != *other);
-            diagonal = row[column + 1];
-            left = substituted.min(diagonal + 1).min(left + 1);
-            row[column + 1] = left;
-        }
-    }
-    row[to.len()]
+/// All known names with their distance, the nearest first.
+fn ranked<'a>(typed: &str, known: &[&'a str]) -> Vec<(usize, &'a str)> {
+    let typed = typed.to_lowercase();
+    let letters = sorted_letters(&typed);
+    let mut ranked: Vec<(usize, bool, &str)> = known
+        .iter()
+        .map(|name| {
+            let edits = strsim::damerau_levenshtein(&typed, name);
+            (edits, sorted_letters(name) != letters, *name)
+        })
+        .collect();
+    ranked.sort_by_key(|(edits, other_letters, _)| (*edits, *other_letters));
+    ranked
+        .into_iter()
+        .map(|(edits, _, name)| (edits, name))
+        .collect()
+}
+
+fn sorted_letters(name: &str) -> Vec<char> {
+    let mut letters: Vec<char> = name.chars().collect();
+    letters.sort_unstable();
+    letters
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, clippy::expect_used)]
 mod tests {
     use super::*;
 
     #[test]
-    fn edits_are_counted() {
-        assert_eq!(edits("kitten", "sitting"), 3);
-        assert_eq!(edits("", "abc"), 3);
-        assert_eq!(edits("abc", ""), 3);
-        assert_eq!(edits("same", "same"), 0);
+    fn a_slip_finds_its_name_and_nonsense_finds_none() {
+        let known = ["latitude_deg", "local_gravity_m_per_s2"];
+        for typed in ["lattitude_deg", "Latitude_Deg", "latitude", "altitude_deg"] {
+            assert_eq!(similar_names(typed, &known, 1), ["latitude_deg"], "{typed}");
+        }
+        assert!(similar_names("qqqq", &known, 1).is_empty());
     }
 
     #[test]
-    fn a_slip_finds_its_name_and_nonsense_finds_none() {
-        let known = ["latitude_deg", "local_gravity_m_per_s2"];
-        assert_eq!(nearest("lattitude_deg", &known), Some("latitude_deg"));
-        assert_eq!(nearest("Latitude_Deg", &known), Some("latitude_deg"));
-        assert_eq!(nearest("qqqq", &known), None);
+    fn the_nearest_come_first_and_permutations_before_others() {
+        let known = ["gyro_y.g_z", "gyro_y.g_yz", "gyro_x.ramp"];
+        assert_eq!(nearest_names("gyro_y.g_zy", &known, 1), ["gyro_y.g_yz"]);
+        assert_eq!(
+            nearest_names("gyro_y.gz", &known, 2),
+            ["gyro_y.g_z", "gyro_y.g_yz"]
+        );
+        assert_eq!(nearest_names("x", &known, 9).len(), 3);
     }
 }

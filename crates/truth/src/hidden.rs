@@ -153,7 +153,7 @@ fn unknown(id: &str) -> Error {
          the Euler rule"
             .to_owned()
     } else {
-        nearest(id)
+        advice(id)
     };
     Error::UnknownEffect {
         id: id.to_owned(),
@@ -161,33 +161,14 @@ fn unknown(id: &str) -> Error {
     }
 }
 
-/// The ids that take the fewest edits, at most three.
-fn nearest(id: &str) -> String {
+/// Advice with similar ids.
+fn advice(id: &str) -> String {
+    /// Most ids that are named.
     const MOST: usize = 3;
-    let letters = |id: &str| {
-        let mut letters: Vec<char> = id.chars().collect();
-        letters.sort_unstable();
-        letters
-    };
-    // Of equally near ones those come first that have the same letters in another order.
-    let mut ids: Vec<(usize, bool, String)> = Hidden::ids()
-        .into_iter()
-        .map(|known| {
-            let edits = strsim::damerau_levenshtein(id, &known);
-            (edits, letters(id) != letters(&known), known)
-        })
-        .collect();
-    ids.sort();
-    let near: Vec<String> = ids
-        .into_iter()
-        // Beyond a third of its letters it is no slip.
-        .filter(|(edits, _, known)| 3 * edits <= known.len())
-        .take(MOST)
-        .map(|(_, _, known)| format!("`{known}`"))
-        .collect();
-    if near.is_empty() {
-        "see the list of effects in docs/formats.md".to_owned()
-    } else {
-        format!("did you mean {}?", near.join(" or "))
+    let ids = Hidden::ids();
+    let known: Vec<&str> = ids.iter().map(String::as_str).collect();
+    match &gyrocal_record::similar_names(id, &known, MOST)[..] {
+        [] => "see the list of effects in docs/formats.md".to_owned(),
+        similar => format!("did you mean {}?", gyrocal_record::any_of(similar)),
     }
 }

@@ -6,7 +6,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use gyrocal_record::{Bound, Document, Error, Gravity, InputErrorKind, Prior, SourceText, Table};
+use gyrocal_record::{
+    Bound, Document, Error, InputErrorKind, Prior, Site, SourceText, Table, WhiteNoise,
+};
 
 use crate::coefficients::Coefficients;
 use crate::hidden_file::{self, HIDDEN, read_hidden};
@@ -24,7 +26,6 @@ const ROOT_KEYS: [&str; 9] = [
     "temperature",
     HIDDEN,
 ];
-const MAGNETIC_FIELD: &str = "magnetic_field_gauss";
 const TEMPERATURE_KEYS: [&str; 3] = ["mean_c", "daily_k", "wander_k"];
 const GYRO_KEYS: [&str; 3] = ["bias_deg_per_h", "g_deg_per_h_per_g", "gg_deg_per_h_per_g2"];
 const SAMPLING_KEYS: [&str; 5] = [
@@ -65,7 +66,7 @@ impl Scenario {
             text.push_str(&gravity.to_toml());
         }
         if let Some(field_gauss) = self.magnetic_field_gauss {
-            let _ = writeln!(text, "{MAGNETIC_FIELD} = {field_gauss:?}");
+            let _ = writeln!(text, "{} = {field_gauss:?}", Site::MAGNETIC_FIELD_KEY);
         }
         text.push_str("\n[platform]\ninitial_angles_deg = ");
         let _ = match self.initial {
@@ -135,35 +136,25 @@ impl Scenario {
 
     fn from_document(document: &Document) -> Result<Self, Error> {
         document.interpret(&ROOT_KEYS, |root| {
-            let site = root.table(
-                "site",
-                &[
-                    "latitude_deg",
-                    Gravity::KEYS[0],
-                    Gravity::KEYS[1],
-                    MAGNETIC_FIELD,
-                ],
-            )?;
+            let site = Site::from_table(&root.table(Site::TABLE, &Site::KEYS)?)?;
             let platform = root.table(
                 "platform",
                 &["initial_angles_deg", "initial_angles_sigma_deg"],
             )?;
-            let noise = root.table("noise", &["accel_g", "gyro_deg_per_h"])?;
+            let noise = WhiteNoise::from_root(root)?;
             let scenario = Self {
                 seed: root.whole_number("seed")?,
-                latitude_deg: site.number("latitude_deg", Bound::Within(-90.0, 90.0))?,
-                gravity: Gravity::from_site(&site)?,
+                latitude_deg: site.latitude_deg,
+                gravity: site.gravity,
                 coefficients: read_coefficients(root)?,
                 initial: read_initial(&platform)?,
                 // A bench file, which goes with every record, asks for positive sigmas.
                 initial_angles_sigma_deg: platform
                     .three_numbers("initial_angles_sigma_deg", Bound::Positive)?,
-                accel_noise_g: noise.number("accel_g", Bound::Positive)?,
-                gyro_noise_deg_per_h: noise.number("gyro_deg_per_h", Bound::Positive)?,
+                accel_noise_g: noise.accel_g,
+                gyro_noise_deg_per_h: noise.gyro_deg_per_h,
                 prior: Prior::from_root(root)?,
-                // As in a bench file: the Earth's field is at most 0.67 gauss.
-                magnetic_field_gauss: site
-                    .optional_three_numbers(MAGNETIC_FIELD, Bound::Within(-1.0, 1.0))?,
+                magnetic_field_gauss: site.magnetic_field_gauss,
                 temperature: read_temperature(root)?,
                 ..Self::default()
             };
@@ -187,7 +178,7 @@ fn read_initial(platform: &Table<'_>) -> Result<InitialAttitude, Error> {
         return Ok(InitialAttitude::Random);
     }
     platform
-        .three_numbers(KEY, Bound::Within(-360.0, 360.0))
+        .three_numbers(KEY, Bound::ANGLE_DEG)
         .map(InitialAttitude::AnglesDeg)
 }
 

@@ -4,7 +4,9 @@ use gyrocal::effect::{Enters, Role};
 use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_diagnosis::{DiagnosisResult, Verdict};
-use gyrocal_record::{KnownEffect, ModelFile, ParameterEstimate, Standing};
+use gyrocal_record::{
+    KnownEffect, ModelFile, ParameterEstimate, Standing, any_of, nearest_names,
+};
 use miette::{Report, miette};
 
 /// A model file, with the findings left out and the exact equivalents.
@@ -184,9 +186,9 @@ fn row(id: &str) -> Result<&'static Effect, Report> {
             .iter()
             .filter(|row| row.has_term() && !row.is_nominal);
         let terms: Vec<&str> = terms.map(|row| row.id).collect();
-        let near = gyrocal_record::nearest_few(id, &terms, 3).join("`, `");
+        let near = any_of(&nearest_names(id, &terms, 3));
         miette!(
-            help = format!("the nearest are `{near}`"),
+            help = format!("the nearest are {near}"),
             "found `{id}`, expected the id of an effect"
         )
     })

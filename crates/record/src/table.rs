@@ -1,35 +1,15 @@
-//! TOML tables read key by key, so that every mistake has its place.
+//! TOML tables, read key by key with located errors.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::bound::Bound;
 use crate::error::{Error, InputErrorKind};
 use crate::source::{SourceText, quoted};
-use crate::suggest::{any_of, nearest};
-
-/// A TOML file that [`Table`]s are taken from.
-#[derive(Debug, Clone)]
-pub struct Document {
-    source: SourceText,
-}
-
-/// What range a number may have. All are finite.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Bound {
-    /// Any finite number.
-    Finite,
-    /// Greater than zero.
-    Positive,
-    /// Zero or greater.
-    NotNegative,
-    /// From the first to the second, both included.
-    Within(f64, f64),
-}
+use crate::suggest::{any_of, similar_names};
 
 /// One table of a TOML file, with the keys that it may have.
 #[derive(Debug)]
@@ -63,60 +43,23 @@ impl Text<'_> {
     }
 }
 
-impl Document {
-    /// Reads a TOML file.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unreadable`] if that is not possible, [`Error::Input`] if it is empty or not
-    /// UTF-8.
-    pub fn read(path: &Path) -> Result<Self, Error> {
-        SourceText::read(path).map(|source| Self { source })
-    }
-
-    /// Takes the text of a TOML file.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Input`] if it is empty.
-    pub fn new(text: &str, name: &str) -> Result<Self, Error> {
-        SourceText::new(text, name).map(|source| Self { source })
-    }
-
-    /// Parses the file and hands its root table, which may have the keys `known`, to `interpret`.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Input`] if the file is not TOML or has an unknown key, and what `interpret`
-    /// says.
-    pub fn interpret<T>(
-        &self,
+impl<'a> Table<'a> {
+    /// The root table of a file, which may have the keys `known`.
+    pub(crate) fn root(
+        source: &'a SourceText,
+        entries: &'a DeTable<'a>,
         known: &[&str],
-        interpret: impl FnOnce(&Table<'_>) -> Result<T, Error>,
-    ) -> Result<T, Error> {
-        let root = DeTable::parse(self.source.text()).map_err(|error| {
-            let span = error.span().unwrap_or(0..0);
-            let there = self.source.text().get(span.clone()).unwrap_or("");
-            self.source.error(
-                InputErrorKind::Syntax,
-                span,
-                quoted(there),
-                format!("valid TOML ({})", error.message().replace('\n', ", ")),
-                "see toml.io for the format",
-            )
-        })?;
-        let table = Table {
-            source: &self.source,
+    ) -> Result<Self, Error> {
+        let table = Self {
+            source,
             name: String::new(),
-            entries: root.get_ref(),
+            entries,
             span: 0..0,
         };
         table.refuse_unknown(known)?;
-        interpret(&table)
+        Ok(table)
     }
-}
 
-impl<'a> Table<'a> {
     /// A table inside this one, which may have the keys `known`.
     ///
     /// # Errors
@@ -341,9 +284,9 @@ impl<'a> Table<'a> {
             .filter(|key| self.entry(key).is_none())
             .collect();
         let absent: Vec<&str> = absent.into_iter().collect();
-        let advice = match nearest(name.get_ref(), &absent) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "remove it, or see the format in the documentation".to_owned(),
+        let advice = match similar_names(name.get_ref(), &absent, 1)[..] {
+            [near, ..] => format!("did you mean `{near}`?"),
+            [] => "remove it, or see the format in the documentation".to_owned(),
         };
         Err(self.source.error(
             InputErrorKind::UnknownKey,
@@ -428,30 +371,5 @@ impl<'a> Table<'a> {
         let there = self.source.text().get(value.span()).unwrap_or("");
         self.source
             .error(kind, value.span(), quoted(there), expected, advice)
-    }
-}
-
-impl Bound {
-    /// Whether a number is finite and within the bound.
-    #[must_use]
-    pub fn holds(self, number: f64) -> bool {
-        number.is_finite()
-            && match self {
-                Self::Finite => true,
-                Self::Positive => number > 0.0,
-                Self::NotNegative => number >= 0.0,
-                Self::Within(low, high) => (low..=high).contains(&number),
-            }
-    }
-
-    /// The bound in words.
-    #[must_use]
-    pub fn describe(self) -> String {
-        match self {
-            Self::Finite => "a finite number".to_owned(),
-            Self::Positive => "a finite number greater than 0".to_owned(),
-            Self::NotNegative => "a finite number not less than 0".to_owned(),
-            Self::Within(low, high) => format!("a number from {low} to {high}"),
-        }
     }
 }
