@@ -9,11 +9,11 @@ use crate::error::CalibrationError;
 /// of an accelerometer as the nominal model has states.
 ///
 /// # Errors
+///
 /// [`CalibrationError::UnequalLengths`] and [`CalibrationError::TooShort`].
 pub fn check_record(record: &Record) -> Result<(), CalibrationError> {
     check_lengths(record)?;
-    let measured = |row: &&[f64; 3]| row.iter().any(|component| !component.is_nan());
-    let found = record.accel_g.iter().filter(measured).count();
+    let found = record.measured_rows();
     if found < Platform::STATES {
         return Err(CalibrationError::TooShort {
             found,

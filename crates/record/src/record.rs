@@ -6,8 +6,6 @@ use std::path::Path;
 use crate::error::Error;
 use crate::header::{COLUMNS, REQUIRED_COLUMNS};
 use crate::output::write_whole;
-use crate::rows::{read_rows, read_rows_of_a_platform};
-use crate::source::SourceText;
 
 /// Accelerometer samples, one a row.
 ///
@@ -24,25 +22,6 @@ pub struct Record {
 }
 
 impl Record {
-    /// Reads a record.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
-    pub fn read(path: &Path) -> Result<Self, Error> {
-        read_rows(&SourceText::read(path)?)
-    }
-
-    /// Reads a record of a platform that something is to be estimated from: with at least some
-    /// number of rows, as many as a filter has states, not too far apart, and not all the same.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
-    pub fn read_at_least(path: &Path, rows: usize) -> Result<Self, Error> {
-        read_rows_of_a_platform(&SourceText::read(path)?, rows)
-    }
-
     /// Whether temperature was logged and changes: only then can an effect depend on it.
     #[must_use]
     pub fn temperature_changes(&self) -> bool {
@@ -58,15 +37,6 @@ impl Record {
             rest.accel_g[row][axis] = f64::NAN;
         }
         rest
-    }
-
-    /// Parses the text of a record; errors call it `name`.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Input`] for whatever is wrong in it.
-    pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
-        read_rows(&SourceText::new(text, name)?)
     }
 
     /// Writes the record whole or not at all. Reading it gives the same numbers.
@@ -96,6 +66,13 @@ impl Record {
     #[must_use]
     pub fn len(&self) -> usize {
         self.time_s.len()
+    }
+
+    /// Number of rows in which at least one accelerometer has a value.
+    #[must_use]
+    pub fn measured_rows(&self) -> usize {
+        let has_value = |row: &&[f64; 3]| row.iter().any(|component| !component.is_nan());
+        self.accel_g.iter().filter(has_value).count()
     }
 
     /// Whether there are no rows.

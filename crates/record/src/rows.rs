@@ -1,6 +1,7 @@
-//! The rows of a record, and whether they can be what they say.
+//! Reads the rows of a record and checks that they are plausible.
 
 use std::ops::Range;
+use std::path::Path;
 
 use crate::error::{Error, InputErrorKind};
 use crate::fields::{Field, Line, Lines};
@@ -30,17 +31,38 @@ const STUCK_ROWS: usize = 100;
 /// readings are equal says less, since it grows with the rate of samples.
 const STUCK_SHARE: f64 = 0.9;
 
-/// Reads header and rows.
-pub(crate) fn read_rows(source: &SourceText) -> Result<Record, Error> {
-    Ok(read_with_places(source, 1)?.0)
-}
+impl Record {
+    /// Reads a record.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Ok(read_with_places(&SourceText::read(path)?, 1)?.0)
+    }
 
-/// The same for a job that needs at least so many rows, and rows that tell of a platform.
-pub(crate) fn read_rows_of_a_platform(source: &SourceText, least: usize) -> Result<Record, Error> {
-    let (record, places) = read_with_places(source, least)?;
-    check_intervals(&record, source, &places)?;
-    check_stuck(&record, source, &places)?;
-    Ok(record)
+    /// Reads a record of a platform that something is to be estimated from: with at least some
+    /// number of rows, as many as a filter has states, not too far apart, and not all the same.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    pub fn read_at_least(path: &Path, rows: usize) -> Result<Self, Error> {
+        let source = SourceText::read(path)?;
+        let (record, places) = read_with_places(&source, rows)?;
+        check_intervals(&record, &source, &places)?;
+        check_stuck(&record, &source, &places)?;
+        Ok(record)
+    }
+
+    /// Parses the text of a record; errors call it `name`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] for whatever is wrong in it.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
+        Ok(read_with_places(&SourceText::new(text, name)?, 1)?.0)
+    }
 }
 
 fn read_with_places(
@@ -72,8 +94,7 @@ fn refuse_too_few(
     last: &Range<usize>,
     least: usize,
 ) -> Result<(), Error> {
-    let measured = |row: &&[f64; 3]| row.iter().any(|component| !component.is_nan());
-    let found = record.accel_g.iter().filter(measured).count();
+    let found = record.measured_rows();
     if found >= least {
         return Ok(());
     }
