@@ -12,6 +12,7 @@ mod operation;
 mod schema;
 mod table;
 
+pub use names::is_snake_case;
 pub(crate) use names::{pascal_case, screaming_case};
 pub use operation::{BinaryOperation, UnaryOperation};
 pub use table::{Field, Kind, Table, Value};

@@ -38,6 +38,17 @@ pub enum Error {
         /// What it would have to be.
         expected: String,
     },
+    /// The name of a model file gives no name of a Rust module.
+    #[error(
+        "{}: not written: found the module name `{found}`, expected lower-case words joined by `_` \
+         before the first dot that are no Rust keyword", path.display()
+    )]
+    ModuleName {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// Its name up to the first dot.
+        found: String,
+    },
 }
 
 impl Diagnostic for Error {
@@ -47,6 +58,7 @@ impl Diagnostic for Error {
             Self::Unreadable { .. } => "gyrocal::file::unreadable",
             Self::Unwritable { .. } => "gyrocal::file::unwritable",
             Self::InvalidValue { .. } => "gyrocal::file::invalid_value",
+            Self::ModuleName { .. } => "gyrocal::file::module_name",
         };
         Some(Box::new(code))
     }
@@ -59,6 +71,7 @@ impl Diagnostic for Error {
                 "check that the folder exists, that you may write there and that the disk has room"
             }
             Self::InvalidValue { .. } => return None,
+            Self::ModuleName { .. } => "give the file another name, such as `extended.model.toml`",
         };
         Some(Box::new(advice))
     }

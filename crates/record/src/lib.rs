@@ -62,6 +62,7 @@ mod gimbals;
 mod header;
 mod manifest;
 mod model_file;
+mod module_name;
 mod output;
 mod record;
 mod report;
@@ -79,6 +80,7 @@ pub use error::{Error, InputError, InputErrorKind};
 pub use gimbals::GimbalLimits;
 pub use manifest::{Input, Manifest};
 pub use model_file::{KnownEffect, ModelFile, ParameterEstimate, Standing};
+pub use module_name::module_name;
 pub use output::{Outputs, write_json, write_whole};
 pub use record::Record;
 pub use report::{

@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::bound::Bound;
 use crate::document::Document;
 use crate::error::{Error, InputErrorKind};
+use crate::module_name::module_name;
 use crate::output::write_whole;
 use crate::report::SCHEMA_VERSION;
 use crate::suggest::{any_of, nearest_names};
@@ -109,7 +110,8 @@ impl ModelFile {
     ///
     /// # Errors
     ///
-    /// [`Error::InvalidValue`] if [`ModelFile::read`] would refuse it, [`Error::Unwritable`].
+    /// [`Error::InvalidValue`] if [`ModelFile::read`] would refuse it, [`Error::ModuleName`],
+    /// [`Error::Unwritable`].
     pub fn write(&self, path: &Path, known: &[KnownEffect<'_>]) -> Result<(), Error> {
         write_whole(path, self.to_toml(path, known)?.as_bytes())
     }
@@ -118,8 +120,10 @@ impl ModelFile {
     ///
     /// # Errors
     ///
-    /// [`Error::InvalidValue`] if [`ModelFile::parse`] would refuse it.
+    /// [`Error::InvalidValue`] if [`ModelFile::parse`] would refuse it; [`Error::ModuleName`] if no
+    /// build could derive a module from a file of this name.
     pub fn to_toml(&self, path: &Path, known: &[KnownEffect<'_>]) -> Result<String, Error> {
+        module_name(path)?;
         let text = self.format();
         match Self::parse(&text, "", known) {
             Ok(_) => Ok(text),

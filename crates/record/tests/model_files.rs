@@ -4,7 +4,9 @@
 
 use std::path::Path;
 
-use gyrocal_record::{Error, InputErrorKind, KnownEffect, ModelFile, ParameterEstimate, Standing};
+use gyrocal_record::{
+    Error, InputErrorKind, KnownEffect, ModelFile, ParameterEstimate, Standing, module_name,
+};
 
 fn effect(
     id: &'static str,
@@ -85,6 +87,51 @@ fn what_no_reader_would_take_is_not_written() {
         error.to_string(),
         "m.toml: not written: found `0.0`, expected a finite number greater than 0"
     );
+}
+
+#[test]
+fn a_file_name_that_is_no_module_name_is_refused() {
+    let model = ModelFile::parse(GOOD, "m.toml", &known()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for (file, found) in [
+        ("fn.model.toml", "fn"),
+        ("a b;c.model.toml", "a b;c"),
+        ("Extended.model.toml", "Extended"),
+        (".model.toml", ""),
+    ] {
+        let path = folder.path().join(file);
+        let error = model.write(&path, &known()).unwrap_err();
+        assert!(!path.exists(), "{file}");
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "{}: not written: found the module name `{found}`, expected lower-case words \
+                 joined by `_` before the first dot that are no Rust keyword",
+                path.display()
+            )
+        );
+        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        assert!(help.contains("`extended.model.toml`"), "{help}");
+    }
+    model
+        .write(&folder.path().join("plant_2.model.toml"), &known())
+        .unwrap();
+}
+
+/// Keywords of Rust, names that look like them, and names of other forms.
+const NAMES: &str = "abstract as async auto await become box break const continue crate default do \
+    dyn else enum extern false final fn for gen if impl in let loop macro macro_rules match mod move \
+    mut override priv pub raw ref return safe self Self static struct super trait true try type \
+    typeof union unsafe unsized use virtual where while yield _ __ a a1 a_1 1a _a a_ a__b A aB ä a-b a; \
+    extended gyro_2";
+
+#[test]
+fn a_module_name_is_what_the_build_takes_for_one() {
+    for name in NAMES.split_whitespace().chain([""]) {
+        let accepted = module_name(Path::new(&format!("{name}.model.toml"))).is_ok();
+        let by_the_build = gyrocal_codegen::program::is_snake_case(name);
+        assert_eq!(accepted, by_the_build, "{name}");
+    }
 }
 
 #[test]

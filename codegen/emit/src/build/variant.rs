@@ -8,6 +8,7 @@ use super::fingerprint::{Input, fingerprint};
 use super::outcome::Outcome;
 use super::run::Timings;
 use super::settings::{Settings, WRITE_VARIABLE};
+use crate::program::is_snake_case;
 
 /// One program that a file of another package asks of a derivation.
 ///
@@ -61,14 +62,12 @@ impl Variant {
         let file = file.canonicalize().map_err(at("find", file))?;
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let program = name.split('.').next().unwrap_or_default().to_owned();
-        let mut letters = program.chars();
-        let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-        if !(letters.next().is_some_and(|c| c.is_ascii_lowercase()) && letters.all(plain)) {
+        if !is_snake_case(&program) {
             return Err(Error::Declaration {
                 reason: format!(
-                    "the module would be called `{program}`, expected a file name that begins \
-                     with lower-case letters, digits and `_` before its first dot, such as \
-                     `extended.model.toml`"
+                    "found the module name `{program}`, expected lower-case words joined by `_` \
+                     before the first dot that are no Rust keyword; give the file another name, \
+                     such as `extended.model.toml`"
                 ),
                 path: file,
             });
@@ -199,10 +198,17 @@ mod tests {
 
     #[test]
     fn a_file_that_names_no_module_is_refused() {
-        let path = std::env::temp_dir().join(format!("2-wrong-{}.toml", std::process::id()));
-        std::fs::write(&path, "").unwrap();
-        let error = Variant::open("nowhere", &path).unwrap_err();
-        std::fs::remove_file(&path).unwrap();
-        assert!(error.to_string().contains("`2-wrong-"), "{error}");
+        let folder = std::env::temp_dir().join(format!("gyrocal-names-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let refused = ["2-wrong", "fn", "a b;c", "a__b", ""].map(|name| {
+            let path = folder.join(format!("{name}.model.toml"));
+            std::fs::write(&path, "").unwrap();
+            (name, Variant::open("nowhere", &path).unwrap_err())
+        });
+        std::fs::remove_dir_all(&folder).unwrap();
+        for (name, error) in refused {
+            let found = format!("found the module name `{name}`");
+            assert!(error.to_string().contains(&found), "{error}");
+        }
     }
 }

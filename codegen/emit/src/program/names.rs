@@ -1,7 +1,10 @@
 //! Names: fit for Rust, and in its cases.
 
-/// `theta_x`: words of lower-case letters and digits, and no keyword.
-pub(super) fn is_snake_case(name: &str) -> bool {
+/// Whether a name is fit for a Rust module, function or variable: `theta_x`, words of lower-case
+/// letters and digits joined by `_`, no keyword of Rust. Programs, and so the files that variants
+/// are derived from, are called by such names.
+#[must_use]
+pub fn is_snake_case(name: &str) -> bool {
     name.starts_with(|first: char| first.is_ascii_lowercase())
         && name.split('_').all(|word| {
             !word.is_empty()

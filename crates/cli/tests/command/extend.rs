@@ -185,6 +185,21 @@ fn lists_that_no_model_can_have_are_refused() {
 }
 
 #[test]
+fn a_file_name_that_is_no_module_name_is_refused() {
+    for (file, found) in [
+        ("fn.model.toml", "`fn`"),
+        ("a b;c.model.toml", "`a b;c`"),
+        ("Extended.model.toml", "`Extended`"),
+    ] {
+        let folder = Folder::new();
+        let said = folder.fail(&["extend", "--effects", "gyro_y.g_z", "--out", file]);
+        assert_says(&said, &format!("{file}: not written"));
+        assert_says(&said, &format!("found the module name {found}"));
+        assert_says(&said, "such as `extended.model.toml`");
+    }
+}
+
+#[test]
 fn a_diagnosis_or_a_list_is_asked_for() {
     let folder = Folder::new();
     folder.put("d.json", "{}");
