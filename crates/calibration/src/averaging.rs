@@ -40,6 +40,10 @@ const ENOUGH: f64 = 0.5;
 /// Tolerance of the interval boundaries for sampling times, as a share of an interval.
 const ON_BOUNDARY: f64 = 1e-6;
 
+/// Share of the variance of a mean from which on [`attitude_walk_share`] matters; a smaller one does
+/// not change the consistency test of a record of some days.
+pub const SIGNIFICANT_WALK_SHARE: f64 = 0.05;
+
 /// A record of averages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AveragedRecord {
@@ -48,6 +52,8 @@ pub struct AveragedRecord {
     pub record: Record,
     /// Number of values in each mean.
     pub values: Vec<[usize; 3]>,
+    /// Number of means.
+    pub means: usize,
     /// Noise of a mean over that of one value: the root of the mean of one over the number of
     /// values.
     pub noise_ratio: f64,
@@ -266,6 +272,10 @@ fn assemble(
     let mut values: Vec<[usize; 3]> = means.iter().map(|mean| mean.count).collect();
     let mut accel_g = corrected;
     let mut temperature_c: Option<Vec<f64>> = means.iter().map(|mean| mean.temperature_c).collect();
+    let means_with_value = accel_g
+        .iter()
+        .filter(|row: &&[f64; 3]| row.iter().any(|value| !value.is_nan()))
+        .count();
     let inverse = mean(
         values
             .as_flattened()
@@ -294,6 +304,7 @@ fn assemble(
             temperature_c: record.temperature_c.as_ref().and(temperature_c),
         },
         values,
+        means: means_with_value,
         // A record without values has no noise either.
         noise_ratio: if inverse.is_nan() {
             1.0

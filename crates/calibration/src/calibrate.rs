@@ -84,6 +84,31 @@ pub fn calibrate_strapdown(
     batch::calibrate(model, runs, Some(gyro_axes), options, &mut progress)
 }
 
+/// Standard deviations of the coefficients from the first of several runs alone, in the order of
+/// [`Calibration::covariance`]; `gyro_axes` is empty or has one entry for each run. `None` if there
+/// is only one run.
+///
+/// # Errors
+/// As [`calibrate_runs`] and [`calibrate_strapdown`] for the first run.
+pub fn first_run_sigmas(
+    runs: &[Run<'_>],
+    gyro_axes: &[GyroAxes],
+    options: &Options,
+) -> Result<Option<[f64; PARAMETERS]>, CalibrationError> {
+    let [first, _, ..] = runs else {
+        return Ok(None);
+    };
+    let options = Options {
+        noise: false,
+        ..*options
+    };
+    let alone = match gyro_axes.get(..1) {
+        None => calibrate_runs(&[*first], &options, |_| ()),
+        Some(axes) => calibrate_strapdown(&[*first], axes, &options, |_| ()),
+    }?;
+    Ok(Some(alone.coefficients().map(|found| found.sigma)))
+}
+
 fn check_records(runs: &[Run<'_>]) -> Result<(), CalibrationError> {
     for (index, run) in runs.iter().enumerate() {
         check_record(run.record).map_err(|error| error.of_record(index, runs.len()))?;

@@ -88,35 +88,37 @@ impl FitStatistics {
         }
     }
 
-    /// The result of the consistency test in a sentence.
+    /// The result of the consistency test in a few sentences.
     #[must_use]
     pub fn consistency_text(&self) -> String {
         let [low, high] = self.nis_band();
         let mean = self.nis_mean();
-        let figures = format!("mean NIS {mean:.3}, 99.9 % band {low:.3} to {high:.3}");
+        let statistic = format!("mean NIS {mean:.3}, 99.9 % band {low:.3} to {high:.3}");
         match self.consistency() {
-            Consistency::Consistent => {
-                format!("the record fits the model within the declared noise ({figures})")
-            }
-            // Nothing that a model lacks makes it as large as a mistake in the inputs does.
+            Consistency::Consistent => format!(
+                "Consistency test passed: the innovations agree with the declared noise ({statistic})."
+            ),
+            // No effect that a model lacks is as large as a mistake in the inputs.
             Consistency::Overconfident if mean > GROSS => format!(
-                "the innovations are far larger than the declared noise explains ({figures}): \
-                 check that time is in seconds, that up is positive, and the latitude and initial \
-                 angles of the bench file; the coefficients mean nothing"
+                "Consistency test failed: the innovations are far larger than the declared noise \
+                 predicts ({statistic}). Check that time is in seconds, that up is positive, and \
+                 the latitude and initial angles of the bench file; the coefficients are not \
+                 usable."
             ),
             Consistency::Overconfident => format!(
-                "the innovations are larger than the declared noise explains ({figures}): {}; the \
-                 sigmas cannot be trusted",
+                "Consistency test failed: the innovations are larger than the declared noise \
+                 predicts ({statistic}). {}; the sigmas are too small.",
                 if self.one_pass {
-                    "the model lacks something, the noise is larger than declared, or the prior \
-                     is too wide for one pass of the filter"
+                    "The model is incomplete, the noise is larger than declared, or the prior is \
+                     too wide for the streaming filter"
                 } else {
-                    "the model lacks something, or the noise is larger than declared"
+                    "The model is incomplete, or the noise is larger than declared"
                 }
             ),
             Consistency::Underconfident => format!(
-                "the innovations are smaller than the declared noise explains ({figures}): the \
-                 noise is smaller than declared; the sigmas are too large"
+                "Consistency test failed: the innovations are smaller than the declared noise \
+                 predicts ({statistic}). The noise is smaller than declared; the sigmas are too \
+                 large."
             ),
         }
     }
@@ -183,11 +185,11 @@ mod tests {
         assert_eq!(fit(11_000.0).consistency(), Consistency::Underconfident);
         let one_pass = fit(13_000.0);
         assert!(one_pass.consistency_text().contains("mean NIS 3.250"));
-        assert!(one_pass.consistency_text().contains("one pass"));
+        assert!(one_pass.consistency_text().contains("streaming filter"));
         let joint = FitStatistics {
             one_pass: false,
             ..one_pass
         };
-        assert!(!joint.consistency_text().contains("one pass"));
+        assert!(!joint.consistency_text().contains("streaming filter"));
     }
 }

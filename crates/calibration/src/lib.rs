@@ -122,14 +122,15 @@ mod problem;
 mod result;
 mod robust;
 mod run;
+mod same_rows;
 mod settings;
 mod single_run;
 mod solve;
 mod streaming;
 mod uncertainty;
 
-pub use averaging::{AveragedRecord, attitude_walk_share, average_record};
-pub use calibrate::{calibrate, calibrate_runs, calibrate_strapdown};
+pub use averaging::{AveragedRecord, SIGNIFICANT_WALK_SHARE, attitude_walk_share, average_record};
+pub use calibrate::{calibrate, calibrate_runs, calibrate_strapdown, first_run_sigmas};
 pub use check::check_record;
 pub use coefficients::BIASES;
 pub use cramer_rao::cramer_rao_bound;
@@ -140,11 +141,14 @@ pub use further::{Column, Further};
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;
 pub use layout::SiteQuantity;
-pub use noise::{NoiseEstimate, NoiseRatio};
+pub use noise::{NoiseDifference, NoiseEstimate, NoiseRatio, is_gyro_noise_implausible};
 pub use observability::UnobservableCombination;
 pub use options::{Method, Options};
 pub use planned_run::{PlannedRun, PredictedInformation};
-pub use result::{AzimuthSearch, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult};
+pub use result::{
+    AzimuthSearch, Bias, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult,
+};
 pub use run::Run;
+pub use same_rows::{SharedRows, shared_rows, times_overlap};
 pub use settings::{declared_attitude, filter_settings};
 pub use streaming::run_filter;

@@ -1,14 +1,15 @@
-//! `gyrocal calibrate`: records and their bench descriptions in, nine drift coefficients out.
+//! `gyrocal calibrate`: nine drift coefficients from records and their bench descriptions.
 
 mod failed;
 mod inputs;
 mod json;
+mod prose;
 mod tables;
-mod words;
 
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
+use gyrocal::Platform;
 use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
@@ -23,9 +24,9 @@ use inputs::Measurement;
 
 /// Estimate the nine drift coefficients from one record or several.
 ///
-/// Says whether the records fit the model, what they determine and what they do not, how large
-/// the noise is, and what errors of latitude, Earth rate and gravity would do; prints each
-/// coefficient with its standard deviation.
+/// Prints each coefficient with its standard deviation, the consistency test of the innovations,
+/// unobservable combinations of coefficients, the estimated noise, and the sensitivity to errors of
+/// latitude, Earth rate and gravity.
 ///
 /// Several records are several turn-ons of one platform, each with its own initial attitude and
 /// clock.
@@ -38,36 +39,36 @@ pub(crate) struct CalibrateArguments {
     /// examples/data/three_days.bench.toml is one.
     #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
     benches: Vec<PathBuf>,
-    /// The result to write for programs (JSON).
+    /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    /// Average fast records over intervals of so many seconds, 600 at most: quicker, and nothing
-    /// is lost as long as the noise is white.
+    /// Average fast records over intervals of this length, 600 s at most: quicker, and without loss
+    /// of information while the noise is white.
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     average: Option<f64>,
-    /// Bound the influence of values that are so many sigmas of the noise off; 3 if no number is
-    /// given.
+    /// Reduce the weight of values whose residual exceeds this many sigmas of the noise (Huber); 3 if
+    /// no number is given.
     #[arg(long, value_name = "SIGMAS", num_args = 0..=1, default_missing_value = "3",
           value_parser = sigmas)]
     robust: Option<f64>,
-    /// How the gyros lie in the platform at each row (CSV), one file for each record: for
-    /// platforms that `import strapdown` computed, whose gyros are fixed to a body. Coefficients
-    /// are then those of the gyros in their own axes.
+    /// Axes of the gyros in the platform at each row (CSV), one file for each record: for platforms
+    /// that `import strapdown` computed, whose gyros are fixed to a body. Coefficients are then
+    /// those of the gyros in their own axes.
     #[arg(long, value_name = "AXES.csv", action = ArgAction::Append,
           conflicts_with_all = ["average", "streaming", "paper"])]
     gyro_axes: Vec<PathBuf>,
-    /// Leave out the estimate of the noise.
+    /// Do not estimate the noise.
     #[arg(long)]
     no_noise: bool,
-    /// One pass of the filter that a controller embeds, instead of the batch estimator.
+    /// Use the streaming filter that a controller embeds, instead of the batch estimator.
     #[arg(long)]
     streaming: bool,
-    /// Filter as the paper does: Euler angles as states, one Euler step a sample. It is right
-    /// only for records that were simulated by the same rule.
+    /// Use the paper's filter: Euler angles as states, one Euler step a sample. It is consistent
+    /// only with records simulated by the same rule.
     #[arg(long, conflicts_with = "streaming")]
     paper: bool,
-    /// Carry the filter's covariance as factors: slower, for priors that are too wide otherwise;
-    /// with --streaming or --paper.
+    /// Carry the filter's covariance as factors: slower, for very wide priors; with --streaming or
+    /// --paper.
     #[arg(long)]
     factorised: bool,
 }
@@ -95,7 +96,7 @@ impl CalibrateArguments {
         }
     }
 
-    /// What clap cannot see.
+    /// Checks what clap cannot express.
     fn check(&self) -> Result<(), Failure> {
         let usage = |message: String| Err(Failure::Usage(message));
         let (records, benches) = (self.records.len(), self.benches.len());
@@ -144,7 +145,7 @@ impl CalibrateArguments {
     }
 }
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
     arguments.check()?;
     let inputs: Vec<&Path> = arguments
@@ -164,30 +165,36 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
     let calibration = calibrate(&runs, &gyro_axes, rows, &options, arguments.method())
         .map_err(|source| NotCalibrated::new(arguments, &runs, source))?;
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
-    let found = Found {
+    let found = CalibrationRun {
         method: arguments.method(),
-        first_alone: first_alone(&runs, &gyro_axes, &options),
+        first_run_sigmas: first_run_sigmas(&runs, &gyro_axes, &options),
         calibration,
         measurements,
     };
     if let Some(path) = &arguments.json {
         write_json(path, &json::report(&found, &inputs)?)?;
     }
-    let mut text = words::summary(&found);
+    let mut text = prose::summary(&found);
     if let Some(path) = &arguments.json {
         text.push_str(&format!("\n{}: the result for programs\n", path.display()));
     }
     Ok(text)
 }
 
-/// What there is to tell.
-struct Found {
+/// Inputs and result of the command.
+struct CalibrationRun {
     method: CalibrationMethod,
     measurements: Vec<Measurement>,
     calibration: Calibration,
     /// Sigmas of the coefficients from the first record alone, if there are several and it can
     /// be calibrated alone.
-    first_alone: Option<Vec<f64>>,
+    first_run_sigmas: Option<[f64; Platform::PARAMETERS]>,
+}
+
+impl CalibrationRun {
+    fn has_several_records(&self) -> bool {
+        self.measurements.len() > 1
+    }
 }
 
 fn calibrate(
@@ -198,7 +205,7 @@ fn calibrate(
     method: CalibrationMethod,
 ) -> Result<Calibration, CalibrationError> {
     if method == CalibrationMethod::Batch {
-        // Passes are not counted beforehand.
+        // The number of passes is not known beforehand.
         let _progress = Progress::waiting("calibrating", rows);
         return with_axes(runs, gyro_axes, options);
     }
@@ -217,20 +224,16 @@ fn with_axes(
     }
 }
 
-/// A record that says too little by itself is no failure of all together.
-fn first_alone(runs: &[Run<'_>], gyro_axes: &[GyroAxes], options: &Options) -> Option<Vec<f64>> {
-    let [first, _, ..] = runs else { return None };
-    let options = Options {
-        noise: false,
-        ..*options
-    };
-    match with_axes(&[*first], gyro_axes.get(..1).unwrap_or_default(), &options) {
-        Ok(alone) => Some(alone.coefficients().map(|found| found.sigma).to_vec()),
-        Err(error) => {
-            tracing::warn!(%error, "the first record alone could not be calibrated");
-            None
-        }
-    }
+/// A first record that cannot be calibrated alone is no failure of all together.
+fn first_run_sigmas(
+    runs: &[Run<'_>],
+    gyro_axes: &[GyroAxes],
+    options: &Options,
+) -> Option<[f64; Platform::PARAMETERS]> {
+    gyrocal_calibration::first_run_sigmas(runs, gyro_axes, options).unwrap_or_else(|error| {
+        tracing::warn!(%error, "the first record alone could not be calibrated");
+        None
+    })
 }
 
 fn sigmas(text: &str) -> Result<f64, String> {

@@ -1,4 +1,4 @@
-//! `gyrocal monte-carlo`: a scenario over many seeds in, the quality of the calibration out.
+//! `gyrocal monte-carlo`: consistency and accuracy of the calibration over many simulated records.
 
 pub(crate) mod progress;
 mod summary;
@@ -21,43 +21,42 @@ use crate::Failure;
 use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
 use progress::SeedProgress;
 
-/// Judge the calibration by many simulated records.
+/// Evaluate the calibration by Monte Carlo simulation.
 ///
-/// Simulates the scenario with each seed, calibrates each record, and prints bias, errors against
-/// sigmas, NEES and NIS with their bands, and how often 95 % intervals hold the truth. The result
-/// depends on the scenario and the seeds alone. With --results, a run that was stopped goes on
-/// where it was.
+/// Simulates the scenario with each seed, calibrates each record, and prints bias, RMSE over sigma,
+/// NEES and NIS with their bands, and the coverage of 95 % intervals. The result depends on the
+/// scenario and the seeds alone. With --results, an interrupted run can be resumed.
 #[derive(Debug, Args)]
 pub(crate) struct MonteCarloArguments {
     /// The scenario (TOML); examples/data/three_days.scenario.toml is one. Its seed is replaced.
     scenario: PathBuf,
-    /// The seeds, from A to before B: 0..2000 are two thousand.
+    /// Range of seeds from A to B - 1: 0..2000 are two thousand.
     #[arg(long, value_name = "A..B", value_parser = seeds)]
     seeds: Range<u64>,
-    /// Keep each finished run in this file and go on from those that are in it (JSON lines); those of
-    /// another build of the program are refused.
+    /// Store each finished run in this file and resume from the runs in it (JSON lines); a file of
+    /// another build of the program is refused.
     #[arg(long, value_name = "FILE.jsonl")]
     results: Option<PathBuf>,
     /// Use this many threads instead of one for each core.
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
-    /// The result to write for programs (JSON).
+    /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    /// Draw latitude to 80 deg, coefficients, initial attitude and one to fourteen days at
-    /// random; all else stays that of the scenario. Its seed is that of the population, and
-    /// --seeds are numbers in it.
+    /// Draw latitude (up to 80 deg), coefficients, initial attitude and duration (one to fourteen
+    /// days) at random; the rest is that of the scenario. Its seed is that of the population, and
+    /// --seeds are numbers of scenarios in it.
     #[arg(long)]
     population: bool,
-    /// Judge one pass of the streaming filter, which a controller embeds.
+    /// Evaluate the streaming filter, which a controller embeds.
     #[arg(long)]
     streaming: bool,
 }
 
-/// More are a mistake: results are held in memory.
-const MOST_SEEDS: u64 = 10_000_000;
+/// Largest number of seeds: results are held in memory.
+const MAX_SEEDS: u64 = 10_000_000;
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
     refuse_overlap(
         &[&arguments.scenario],
@@ -67,7 +66,7 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
         ],
     )?;
     let scenario = Scenario::read(&arguments.scenario)?;
-    // Hours of work are not to end at a folder that is not there.
+    // Checked before hours of work: the folders must exist.
     refuse_unwritable(&[arguments.json.as_deref()], None)?;
     let seed = scenario.seed;
     let outcome = outcome(arguments, scenario)?;
@@ -155,8 +154,8 @@ fn seeds(text: &str) -> Result<Range<u64>, String> {
     });
     match range {
         None => Err("expected two whole numbers A..B with A less than B".to_owned()),
-        Some(seeds) if seeds.end - seeds.start > MOST_SEEDS => {
-            Err(format!("expected at most {MOST_SEEDS} seeds"))
+        Some(seeds) if seeds.end - seeds.start > MAX_SEEDS => {
+            Err(format!("expected at most {MAX_SEEDS} seeds"))
         }
         Some(seeds) => Ok(seeds),
     }

@@ -3,13 +3,13 @@
 use std::fmt::Display;
 
 use gyrocal::EstimationError;
-use gyrocal_calibration::{CalibrationError, Run};
+use gyrocal_calibration::{CalibrationError, Run, is_gyro_noise_implausible};
 use gyrocal_record::CalibrationMethod;
 use miette::Diagnostic;
 
 use super::CalibrateArguments;
 use crate::Failure;
-use crate::noise::{GYRO_ADVICE, has_tiny_gyro_noise};
+use crate::noise::GYRO_ADVICE;
 
 /// The records could not be calibrated.
 #[derive(Debug, thiserror::Error)]
@@ -43,7 +43,7 @@ impl NotCalibrated {
             records: names.join(", "),
             method: arguments.method(),
             factorised: arguments.factorised,
-            tiny_gyro_noise: runs.iter().any(|run| has_tiny_gyro_noise(run.bench)),
+            tiny_gyro_noise: runs.iter().any(|run| is_gyro_noise_implausible(run.bench)),
             source,
         }
     }

@@ -1,19 +1,14 @@
-//! Records and bench descriptions as they are read, held against each other.
+//! Records and bench descriptions, read and checked against each other.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use gyrocal::Platform;
-use gyrocal_calibration::{GyroAxes, Run, attitude_walk_share, average_record};
+use gyrocal_calibration::{GyroAxes, Run, attitude_walk_share, average_record, shared_rows};
 use gyrocal_instruments::strapdown::read_axes;
 use gyrocal_record::{AveragedReport, Bench, Record, SourceText};
 use miette::miette;
 
 use crate::Failure;
-
-/// Two records share rows if so many that follow each other are equal to the last bit: as many
-/// noisy values do not repeat by chance, not even coarse ones.
-const SHARED_ROWS: usize = 24;
 
 /// One record with the bench that it was taken on.
 pub(super) struct Measurement {
@@ -21,7 +16,17 @@ pub(super) struct Measurement {
     pub(super) bench_path: PathBuf,
     pub(super) record: Record,
     pub(super) bench: Bench,
-    pub(super) averaged: Option<AveragedReport>,
+    pub(super) averaged: Option<Averaging>,
+}
+
+/// How the rows of a record were averaged.
+#[derive(Clone, Copy)]
+pub(super) struct Averaging {
+    pub(super) report: AveragedReport,
+    /// Number of means.
+    pub(super) means: usize,
+    /// Share of the variance of a mean that is the attitude random walk within an interval.
+    pub(super) walk_share: f64,
 }
 
 impl Measurement {
@@ -31,17 +36,10 @@ impl Measurement {
             bench: &self.bench,
         }
     }
-
-    /// Share of the variance of a mean that is the platform's own random turning meanwhile.
-    pub(super) fn walk_share(&self) -> f64 {
-        self.averaged.map_or(0.0, |averaged| {
-            attitude_walk_share(&self.bench, averaged.interval_s)
-        })
-    }
 }
 
-/// Reads everything, averages if that is wanted, and refuses what cannot belong together. There
-/// is one bench for all records or one for each.
+/// Reads records and benches (one for all records or one for each), averages if requested, and refuses
+/// inputs that cannot belong together.
 pub(super) fn read(
     records: &[PathBuf],
     benches: &[PathBuf],
@@ -77,7 +75,7 @@ pub(super) fn read(
     Ok(measurements)
 }
 
-/// How the gyros lie in each record, if that is given.
+/// Axes of the gyros in each record, if files of them are given.
 pub(super) fn gyro_axes(
     paths: &[PathBuf],
     measurements: &[Measurement],
@@ -107,7 +105,8 @@ fn refuse_twins(records: &[PathBuf]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The coefficients are shared, so their prior is; a site that is given twice is one site.
+/// Refuses benches with different priors, as the coefficients are shared, and with different
+/// uncertainties of one site.
 fn refuse_differing(paths: &[PathBuf], benches: &[Bench]) -> Result<(), Failure> {
     let differ = |path: &Path, what: &str, other: &Path, advice: &str| {
         Err(Failure::Work(miette!(
@@ -136,52 +135,19 @@ fn refuse_differing(paths: &[PathBuf], benches: &[Bench]) -> Result<(), Failure>
 }
 
 fn refuse_shared_rows(one: &Measurement, other: &Measurement) -> Result<(), Failure> {
-    let Some((first, rows)) = shared_rows(&one.record, &other.record) else {
+    let Some(shared) = shared_rows(&one.record, &other.record) else {
         return Ok(());
     };
     Err(Failure::Work(miette!(
         help = "leave one of them out, or cut the rows that both have from one",
-        "{}: found {rows} rows in succession that {} has too, from row {} of the data (t = {} s) \
-         on, expected rows of its own: they would count twice",
+        "{}: found {} consecutive rows that {} has too, from row {} of the data (t = {} s) on, \
+         expected rows of its own: they would count twice",
         other.path.display(),
+        shared.rows,
         one.path.display(),
-        first + 1,
-        other.record.time_s[first],
+        shared.first + 1,
+        other.record.time_s[shared.first],
     )))
-}
-
-/// First row in `other` of the longest stretch of samples that both have, and its length.
-fn shared_rows(one: &Record, other: &Record) -> Option<(usize, usize)> {
-    let bits = |row: &[f64; 3]| row.map(|value| if value.is_nan() { 0 } else { value.to_bits() });
-    let mut places: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
-    for (row, sample) in one.accel_g.iter().enumerate() {
-        if sample.iter().all(|value| !value.is_nan()) {
-            places.entry(bits(sample)).or_default().push(row);
-        }
-    }
-    let enough = SHARED_ROWS.min(one.len()).min(other.len());
-    let mut longest: Option<(usize, usize)> = None;
-    let mut row = 0;
-    while row < other.len() {
-        let starts = places.get(&bits(&other.accel_g[row]));
-        // Values of a coarse converter stand in many places: the first few will do.
-        let length = starts
-            .into_iter()
-            .flatten()
-            .take(64)
-            .map(|start| {
-                let pairs = one.accel_g[*start..].iter().zip(&other.accel_g[row..]);
-                pairs.take_while(|(a, b)| bits(a) == bits(b)).count()
-            })
-            .max()
-            .unwrap_or(0);
-        if length >= enough && longest.is_none_or(|(_, rows)| length > rows) {
-            longest = Some((row, length));
-        }
-        // A stretch that is long enough need not be looked at from its middle again.
-        row += if length >= enough { length } else { 1 };
-    }
-    longest
 }
 
 fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Failure> {
@@ -192,56 +158,18 @@ fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Fail
             measurement.path.display()
         ))
     })?;
-    measurement.averaged = Some(AveragedReport {
-        interval_s,
-        rows_read: measurement.record.len(),
-        left_out: averaged.left_out,
-        noise_ratio: averaged.noise_ratio,
+    let bench = averaged.bench(&measurement.bench);
+    measurement.averaged = Some(Averaging {
+        report: AveragedReport {
+            interval_s,
+            rows_read: measurement.record.len(),
+            left_out: averaged.left_out,
+            noise_ratio: averaged.noise_ratio,
+        },
+        means: averaged.means,
+        walk_share: attitude_walk_share(&bench, interval_s),
     });
-    measurement.bench = averaged.bench(&measurement.bench);
+    measurement.bench = bench;
     measurement.record = averaged.record;
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use gyrocal_record::Record;
-
-    use super::shared_rows;
-
-    fn record(rows: core::ops::Range<u32>) -> Record {
-        Record {
-            time_s: rows.clone().map(f64::from).collect(),
-            accel_g: rows
-                .map(|row| {
-                    let row = f64::from(row);
-                    [
-                        row.sin(),
-                        if row == 40.0 { f64::NAN } else { row.cos() },
-                        0.5,
-                    ]
-                })
-                .collect(),
-            temperature_c: None,
-        }
-    }
-
-    #[test]
-    fn a_stretch_of_equal_rows_is_found_wherever_it_is() {
-        assert_eq!(
-            shared_rows(&record(0..100), &record(30..200)),
-            Some((0, 70))
-        );
-        assert_eq!(
-            shared_rows(&record(30..200), &record(0..100)),
-            Some((30, 70))
-        );
-        assert_eq!(shared_rows(&record(0..100), &record(100..200)), None);
-        // 23 rows are one too few.
-        assert_eq!(shared_rows(&record(0..100), &record(77..200)), None);
-        assert_eq!(
-            shared_rows(&record(0..100), &record(76..200)),
-            Some((0, 24))
-        );
-    }
 }

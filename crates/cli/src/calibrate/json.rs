@@ -1,4 +1,4 @@
-//! The result for programs.
+//! The JSON result.
 
 use std::path::Path;
 
@@ -13,13 +13,16 @@ use gyrocal_record::{
     SCHEMA_VERSION, SiteReport, TurnOn, UndeterminedReport,
 };
 
-use super::Found;
+use super::CalibrationRun;
 use super::inputs::Measurement;
 use crate::Failure;
 use crate::noise;
 use crate::outputs::manifest;
 
-pub(super) fn report(found: &Found, inputs: &[&Path]) -> Result<CalibrationReport, Failure> {
+pub(super) fn report(
+    found: &CalibrationRun,
+    inputs: &[&Path],
+) -> Result<CalibrationReport, Failure> {
     let calibration = &found.calibration;
     let fit = &calibration.fit;
     let runs = found.measurements.iter().zip(&calibration.runs);
@@ -52,10 +55,10 @@ pub(super) fn report(found: &Found, inputs: &[&Path]) -> Result<CalibrationRepor
         method: found.method,
         undetermined: calibration.unobservable.iter().map(undetermined).collect(),
         runs: runs
-            .map(|(measurement, run)| of_run(measurement, run))
+            .map(|(measurement, run)| run_report(measurement, run))
             .collect(),
         site: calibration.site_sensitivities.iter().map(site).collect(),
-        first_record_sigmas: found.first_alone.clone(),
+        first_record_sigmas: found.first_run_sigmas.map(Vec::from),
     })
 }
 
@@ -67,13 +70,13 @@ fn undetermined(combination: &UnobservableCombination) -> UndeterminedReport {
     }
 }
 
-fn of_run(measurement: &Measurement, run: &RunResult) -> RunReport {
+fn run_report(measurement: &Measurement, run: &RunResult) -> RunReport {
     let angles_deg = |platform_c_enu| angles_rad(platform_c_enu).map(f64::to_degrees);
     RunReport {
         record: measurement.path.display().to_string(),
         bench: measurement.bench_path.display().to_string(),
         rows: measurement.record.len(),
-        averaged: measurement.averaged,
+        averaged: measurement.averaged.map(|averaged| averaged.report),
         initial_angles_deg: angles_deg(&run.first_platform_c_enu),
         final_angles_deg: angles_deg(&run.last_platform_c_enu),
         turn_on: run

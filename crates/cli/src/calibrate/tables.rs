@@ -1,16 +1,16 @@
-//! The tables below the words.
+//! Tables of `gyrocal calibrate`.
 
 use comfy_table::Cell;
-use gyrocal_calibration::{Calibration, ConsiderSensitivity, SiteQuantity};
+use gyrocal_calibration::{BIASES, Calibration, ConsiderSensitivity, SiteQuantity};
 use gyrocal_statistics::format;
 
-use super::Found;
-use super::words::site_error;
+use super::CalibrationRun;
+use super::prose::site_error;
 use crate::tables::{right, table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The nine, with sigmas.
+/// The coefficients with their sigmas.
 pub(super) fn coefficients(calibration: &Calibration) -> String {
     let header = [
         "coefficient",
@@ -35,41 +35,39 @@ pub(super) fn coefficients(calibration: &Calibration) -> String {
     table.trim_fmt()
 }
 
-/// What errors of the site would do that nothing in the record shows.
-pub(super) fn silent_biases(calibration: &Calibration) -> String {
+/// Biases of the coefficients by errors of the site; `None` for the streaming filter.
+pub(super) fn site_sensitivities(calibration: &Calibration) -> Option<String> {
     let order = [
         SiteQuantity::Latitude,
         SiteQuantity::EarthRate,
         SiteQuantity::Gravity,
     ];
-    let influences: Vec<&ConsiderSensitivity> = order
+    let sensitivities: Vec<&ConsiderSensitivity> = order
         .iter()
-        .filter_map(|quantity| {
-            calibration
-                .site_sensitivities
-                .iter()
-                .find(|i| i.quantity == *quantity)
-        })
+        .filter_map(|quantity| calibration.site_sensitivity(*quantity))
         .collect();
-    let header = influences
+    if sensitivities.is_empty() {
+        return None;
+    }
+    let header = sensitivities
         .iter()
-        .flat_map(|influence| [site_error(influence), "in sigmas".to_owned()]);
+        .flat_map(|sensitivity| [site_error(sensitivity), "in sigmas".to_owned()]);
     let mut table = table(["coefficient".to_owned()].into_iter().chain(header));
     for (index, coefficient) in calibration.coefficients().into_iter().enumerate() {
-        let shifts = influences.iter().flat_map(|influence| {
-            let shift = influence.bias_per_unit[index] * influence.assumed_error();
+        let biases = sensitivities.iter().flat_map(|sensitivity| {
+            let bias = calibration.biases(sensitivity)[index];
             [
-                right(format!("{shift:+.1e}")),
-                right(format!("{:+.2}", shift / coefficient.sigma)),
+                right(format!("{:+.1e}", bias.bias)),
+                right(format!("{:+.2}", bias.in_sigmas)),
             ]
         });
-        table.add_row([Cell::new(coefficient.id)].into_iter().chain(shifts));
+        table.add_row([Cell::new(coefficient.id)].into_iter().chain(biases));
     }
-    table.trim_fmt()
+    Some(table.trim_fmt())
 }
 
-/// What each turn-on added to the constant drifts; `None` if turn-ons are taken as alike.
-pub(super) fn turn_ons(found: &Found) -> Option<String> {
+/// Offsets of the turn-ons from the mean constant drifts; `None` if turn-ons are declared alike.
+pub(super) fn turn_ons(found: &CalibrationRun) -> Option<String> {
     let header = AXES.map(|axis| format!("gyro_{axis}.bias"));
     let mut table = table(["record".to_owned()].into_iter().chain(header));
     for (measurement, run) in found.measurements.iter().zip(&found.calibration.runs) {
@@ -83,12 +81,10 @@ pub(super) fn turn_ons(found: &Found) -> Option<String> {
     (table.row_count() > 0).then(|| table.trim_fmt())
 }
 
-/// Sigmas of the first record alone beside those of all; `None` of one record. Where turn-ons
-/// differ, one record's constant drifts are others than those of their mean, and left out.
-pub(super) fn gains(found: &Found) -> Option<String> {
-    let alone = found.first_alone.as_ref()?;
-    let runs = &found.calibration.runs;
-    let differ = runs.iter().any(|run| run.turn_on_deg_per_h.is_some());
+/// Sigmas from the first record alone and from all records; `None` of one record. Where turn-ons
+/// differ, constant drifts are left out: those of one record are not their means over turn-ons.
+pub(super) fn first_run_sigmas(found: &CalibrationRun) -> Option<String> {
+    let alone = found.first_run_sigmas?;
     let header = [
         "coefficient",
         "first record alone",
@@ -97,13 +93,14 @@ pub(super) fn gains(found: &Found) -> Option<String> {
         "unit",
     ];
     let mut table = table(header);
-    for (coefficient, alone) in found.calibration.coefficients().into_iter().zip(alone) {
-        if differ && coefficient.id.ends_with(".bias") {
+    let coefficients = found.calibration.coefficients();
+    for (index, (coefficient, alone)) in coefficients.into_iter().zip(alone).enumerate() {
+        if found.calibration.has_turn_ons() && BIASES.contains(&index) {
             continue;
         }
         table.add_row([
             Cell::new(coefficient.id),
-            right(format::estimate(0.0, *alone)[1].clone()),
+            right(format::estimate(0.0, alone)[1].clone()),
             right(format::estimate(0.0, coefficient.sigma)[1].clone()),
             right(format!("{:.2}", coefficient.sigma / alone)),
             Cell::new(coefficient.unit),

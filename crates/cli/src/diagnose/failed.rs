@@ -3,13 +3,13 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use gyrocal_calibration::CalibrationError;
+use gyrocal_calibration::{CalibrationError, is_gyro_noise_implausible};
 use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_record::Bench;
 use miette::Diagnostic;
 
 use crate::Failure;
-use crate::noise::{GYRO_ADVICE, has_tiny_gyro_noise};
+use crate::noise::GYRO_ADVICE;
 
 /// The record could not be diagnosed.
 #[derive(Debug, thiserror::Error)]
@@ -24,7 +24,7 @@ impl NotDiagnosed {
     pub(crate) fn new(record: &Path, bench: &Bench, source: DiagnosisError) -> Self {
         Self {
             record: record.display().to_string(),
-            tiny_gyro_noise: has_tiny_gyro_noise(bench),
+            tiny_gyro_noise: is_gyro_noise_implausible(bench),
             source,
         }
     }

@@ -10,7 +10,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 #[derive(Debug)]
 pub(crate) struct SeedProgress {
     bar: ProgressBar,
-    /// What is run, where a command runs several things.
+    /// Name of the part that is run, if a command has several.
     of: String,
 }
 
@@ -37,7 +37,8 @@ impl SeedProgress {
     pub(crate) fn reach(&mut self, state: Progress) {
         self.bar.set_length(state.total);
         self.bar.set_position(state.done);
-        self.bar.set_message(format!("{}{}", self.of, said(state)));
+        self.bar
+            .set_message(format!("{}{}", self.of, message(state)));
     }
 }
 
@@ -47,14 +48,14 @@ impl Drop for SeedProgress {
     }
 }
 
-fn said(state: Progress) -> String {
+fn message(state: Progress) -> String {
     let failed = match state.failed {
         0 => String::new(),
         failed => format!("{failed} failed, "),
     };
     let left = state.left.map_or_else(
         || "estimating time left".to_owned(),
-        // Whole seconds: a bar that flickers says no more.
+        // Whole seconds, so that the bar does not flicker.
         |left| {
             format!(
                 "{} left",
@@ -70,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_left_and_failures_are_said() {
+    fn time_left_and_failures_are_shown() {
         let state = Progress {
             done: 4,
             total: 10,
@@ -78,13 +79,13 @@ mod tests {
             failed: 0,
             left: None,
         };
-        assert_eq!(said(state), "estimating time left");
+        assert_eq!(message(state), "estimating time left");
         let left = Some(Duration::from_millis(125_700));
         let state = Progress {
             failed: 2,
             left,
             ..state
         };
-        assert_eq!(said(state), "2 failed, 2 minutes left");
+        assert_eq!(message(state), "2 failed, 2 minutes left");
     }
 }

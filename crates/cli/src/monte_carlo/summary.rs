@@ -1,4 +1,4 @@
-//! What `gyrocal monte-carlo` prints.
+//! Text of `gyrocal monte-carlo`, made from its summary alone.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use gyrocal_statistics::format;
 use super::MonteCarloArguments;
 use crate::tables::{right, table};
 
-/// Failed runs that are shown; the JSON has all.
+/// Number of failed runs that are listed; the JSON result has all.
 const FAILURES_SHOWN: usize = 5;
 
 pub(super) fn text(arguments: &MonteCarloArguments, summary: &CalibrationSummary) -> String {
@@ -19,7 +19,7 @@ pub(super) fn text(arguments: &MonteCarloArguments, summary: &CalibrationSummary
         "{}: {} {} to {}, {} calibrated, {} failed\n",
         arguments.scenario.display(),
         if arguments.population {
-            "population around it, numbers"
+            "scenarios of its population"
         } else {
             "seeds"
         },
@@ -37,15 +37,15 @@ pub(super) fn text(arguments: &MonteCarloArguments, summary: &CalibrationSummary
     }
     let _ = writeln!(text, "\n{}\n", coefficients(summary).trim_fmt());
     text.push_str(
-        "Each coefficient over the runs that determined it: sigma below a tenth of the prior's.\n\
-         In parentheses 95 % intervals.\n\n",
+        "Statistics of a coefficient are over the runs that determine it: sigma below a tenth of the\n\
+         prior's. CRB: Cramér-Rao bound. In parentheses: 95 % confidence intervals.\n\n",
     );
     let lines = [
         (
             "NEES of the determined coefficients",
             summary.nees_determined,
         ),
-        // The same, if all are determined in all runs.
+        // Equal to the first if all coefficients are determined in all runs.
         (
             "NEES of all nine, for a truth drawn from the prior",
             nine(summary),
@@ -60,12 +60,12 @@ pub(super) fn text(arguments: &MonteCarloArguments, summary: &CalibrationSummary
     if let Some(share) = summary.consistent {
         let _ = writeln!(
             text,
-            "Runs whose own NIS lies in its 99.9 % band: {} %.",
+            "Runs that pass the consistency test (NIS within its 99.9 % band): {} %.",
             measured_text(share, 100.0, 1)
         );
     }
     if let Some(path) = &arguments.results {
-        let _ = writeln!(text, "{}: every run", path.display());
+        let _ = writeln!(text, "{}: results of all runs", path.display());
     }
     if let Some(path) = &arguments.json {
         let _ = writeln!(text, "{}: the result for programs", path.display());
@@ -90,14 +90,14 @@ fn coefficients(summary: &CalibrationSummary) -> Table {
         "unit",
         "determined",
         "bias",
-        "its error",
+        "std. error",
         "RMSE",
         "RMSE / sigma",
     ];
     if bounded {
-        header.push("RMSE / bound");
+        header.push("RMSE / CRB");
     }
-    header.push("95 % interval holds, %");
+    header.push("95 % CI coverage, %");
     let mut table = table(header);
     for coefficient in &summary.coefficients {
         let ratio = |ratio: Option<MeasuredValue>| {
@@ -140,7 +140,7 @@ fn measured_text(measured: MeasuredValue, scale: f64, decimals: usize) -> String
 fn banded_text(banded: &BandedMean) -> String {
     let [low, high] = banded.band;
     format!(
-        "mean {:.3}, {:.3} expected, 99.9 % band {low:.3} to {high:.3}: {}; median {:.3}",
+        "mean {:.3}, {:.3} expected, 99.9 % band {low:.3} to {high:.3} ({}); median {:.3}",
         banded.mean,
         banded.expected,
         if banded.holds() { "inside" } else { "outside" },
@@ -204,22 +204,22 @@ mod tests {
     }
 
     #[test]
-    fn the_bound_has_a_column_if_it_is_known() {
+    fn the_cramer_rao_bound_has_a_column_if_it_is_known() {
         let without = said(&summary(None));
-        assert!(!without.contains("bound"), "{without}");
-        let cells = "7   -0.00123     0.00056   0.018   0.950 (0.940 to 0.960)";
+        assert!(!without.contains("RMSE / CRB"), "{without}");
+        let cells = "7   -0.00123      0.00056   0.018   0.950 (0.940 to 0.960)";
         assert!(without.contains(cells), "{without}");
         assert!(without.contains("95.0 (94.0 to 96.0)"), "{without}");
         let with = said(&summary(Some(MeasuredValue {
             value: 1.02,
             interval: [0.99, 1.05],
         })));
-        assert!(with.contains("RMSE / bound"), "{with}");
+        assert!(with.contains("RMSE / CRB"), "{with}");
         assert!(with.contains("1.020 (0.990 to 1.050)"), "{with}");
     }
 
     #[test]
-    fn failures_and_bands_are_said() {
+    fn failures_and_bands_are_printed() {
         let said = said(&summary(None));
         assert!(
             said.starts_with("s.toml: seeds 0 to 15, 9 calibrated, 7 failed\n  0: lost\n"),
@@ -228,7 +228,7 @@ mod tests {
         assert!(said.contains("  4: lost\n  and 2 more\n"), "{said}");
         assert!(
             said.contains(
-                "NIS of a row: mean 3.200, 3.000 expected, 99.9 % band 2.900 to 3.100: outside"
+                "NIS of a row: mean 3.200, 3.000 expected, 99.9 % band 2.900 to 3.100 (outside)"
             ),
             "{said}"
         );

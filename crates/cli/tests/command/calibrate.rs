@@ -57,7 +57,7 @@ fn the_record_that_ships_gives_the_coefficients_of_its_scenario() {
         "{said}"
     );
     assert!(
-        said.contains("Fit: the record fits the model within the declared noise"),
+        said.contains("Consistency test passed: the innovations agree with the declared noise"),
         "{said}"
     );
     assert!(
@@ -227,7 +227,9 @@ fn the_filter_of_the_paper_does_not_fit_what_it_did_not_simulate() {
     arguments.push("--paper");
     let said = folder.succeed(&arguments);
     assert!(
-        said.contains("Fit: the innovations are larger than the declared noise"),
+        said.contains(
+            "Consistency test failed: the innovations are larger than the declared noise"
+        ),
         "{said}"
     );
     let json: Value = serde_json::from_str(&folder.text("o.json")).unwrap();

@@ -18,7 +18,7 @@ fn rows_that_two_records_share_are_refused() {
     let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
     assert_says(
         &errors,
-        "b.csv: found 40 rows in succession that a.csv has too, from row 1 of the data \
+        "b.csv: found 40 consecutive rows that a.csv has too, from row 1 of the data \
          (t = 3600 s) on, expected rows of its own: they would count twice",
     );
     // A copy by another name is the same record.
@@ -26,7 +26,7 @@ fn rows_that_two_records_share_are_refused() {
     let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
     assert_says(
         &errors,
-        "b.csv: found 100 rows in succession that a.csv has too",
+        "b.csv: found 100 consecutive rows that a.csv has too",
     );
 }
 
