@@ -1,4 +1,4 @@
-//! What is said of a record beforehand, against what the same fit says by other ways.
+//! Predictive densities and convergence of a fitted model, each against another computation.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal::Catalogue;
@@ -28,7 +28,7 @@ fn fitted(simulation: &Simulation) -> Extended<'_> {
 }
 
 #[test]
-fn what_the_prior_says_beforehand_is_the_evidence() {
+fn the_predictive_density_of_the_prior_is_the_evidence() {
     let simulation = simulation();
     let fit = fitted(&simulation);
     let mut factor = DMatrix::zeros(Catalogue::PARAMETERS, 9);
@@ -117,9 +117,9 @@ fn drift_from_the_first_row_is_the_free_run() {
     assert!(fit.drift_from(&fit.parameters(), 100..rows + 1).is_err());
 }
 
-/// The same products by two ways, one of them from what the fit kept of its passes.
+/// The same products by two ways, one of them from the kept steps of the fit.
 #[test]
-fn columns_beside_a_fit_are_in_the_order_of_its_values() {
+fn columns_of_a_fit_are_in_the_order_of_its_values() {
     let simulation = simulation();
     let nominal = fitted(&simulation);
     let place = |id: &str| PARAMETERS.iter().position(|p| p.id == id).unwrap();

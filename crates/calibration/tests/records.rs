@@ -1,4 +1,4 @@
-//! Whole records: of another simulator, and of the independent one.
+//! Whole records of two independent simulators.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use std::path::Path;
@@ -134,7 +134,7 @@ fn coefficients_and_attitude_of_simulated_records_are_recovered_within_their_sig
 }
 
 #[test]
-fn a_filter_that_stops_says_where_and_its_source_says_why() {
+fn an_error_of_the_filter_has_the_row_and_its_source() {
     let (mut record, bench) = case("S01");
     record.accel_g[40][1] = f64::INFINITY;
     for factorised in [false, true] {
@@ -237,7 +237,7 @@ fn wide(bench: &Bench, sigma: f64) -> Bench {
 }
 
 #[test]
-fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
+fn a_prior_too_wide_for_the_covariance_works_with_its_factors() {
     let (record, bench) = case("S01");
     let (record, bench) = (first_rows(&record, 60), wide(&bench, 1e7));
     let error = calibrate(&record, &bench, &form(false), |_| ()).unwrap_err();
@@ -250,7 +250,7 @@ fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
 }
 
 #[test]
-fn no_covariance_gets_out_that_is_none() {
+fn an_indefinite_covariance_is_an_error() {
     let (mut good, mut refused) = (0, 0);
     for name in ["S01", "S11"] {
         let (record, bench) = case(name);

@@ -1,4 +1,4 @@
-//! Runs as they come: unknown azimuth, several turn-ons, wrong latitude, outliers, wide priors,
+//! Runs as in practice: unknown azimuth, several turn-ons, wrong latitude, outliers, wide priors,
 //! fast sampling.
 // Failing here is what tests are for.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
@@ -291,7 +291,7 @@ fn wide(bench: &Bench, sigma: f64) -> Bench {
 }
 
 #[test]
-fn wide_priors_do_not_lead_it_astray() {
+fn the_iteration_converges_from_wide_priors() {
     for seed in 0..4 {
         let mut simulation = simulate(&scenario(seed)).unwrap();
         let usual = found(&simulation, &Options::default());
@@ -330,7 +330,7 @@ fn a_record_at_one_hertz_is_used_as_it_is() {
 }
 
 #[test]
-fn noise_is_estimated_beside_what_is_declared() {
+fn noise_is_estimated_relative_to_the_declared_one() {
     let mut simulation = simulate(&scenario(6)).unwrap();
     // Declared too small by half and too large by two.
     simulation.bench.accel_noise_g /= 1.5;
@@ -351,8 +351,8 @@ fn noise_is_estimated_beside_what_is_declared() {
     }
 }
 
-/// At the pole of the angles two of them turn about one axis. The platform is off by one sigma of
-/// the declared about another axis, about which angles alone would leave it no error at all.
+/// At the pole of the angles two of them rotate about one axis. The attitude error is one declared sigma
+/// about another axis, about which the covariance of the angles alone would be zero.
 #[test]
 fn the_pole_of_the_angles_is_an_attitude_like_any_other() {
     for (seed, angles_deg) in [
@@ -384,9 +384,9 @@ fn the_pole_of_the_angles_is_an_attitude_like_any_other() {
     }
 }
 
-/// A tenth of g in one row, early or late: no start goes through it, and no weight is left to it.
+/// A tenth of g in one row, early or late: the initial guess leaves it out, and its weight vanishes.
 #[test]
-fn a_gross_error_of_one_row_harms_no_robust_estimate() {
+fn a_gross_error_of_one_row_does_not_affect_a_robust_estimate() {
     for row in [0, 8, 40, 700, 1440] {
         let mut simulation = simulate(&scenario(5)).unwrap();
         let robust = Options {

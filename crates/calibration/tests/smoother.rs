@@ -12,7 +12,7 @@ use gyrocal_record::Prior;
 use gyrocal_testkit::dense_least_squares::DenseProblem;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 
-/// What is asked for; 2e-8 was seen, and at times 1e-6 where steps converge slowly.
+/// Largest difference allowed, in sigmas; 2e-8 was seen, and at times 1e-6 where steps converge slowly.
 const SIGMAS: f64 = 1e-6;
 
 /// Forty rows, some in a gap that is divided into parts, and a tenth of the values missing.
@@ -89,7 +89,7 @@ fn equals_dense_least_squares() {
 }
 
 #[test]
-fn equals_dense_least_squares_whatever_is_declared() {
+fn equals_dense_least_squares_for_any_declaration() {
     // Sigmas of the angles that differ, far from level.
     assert_dense(&short(11, |scenario| {
         scenario.initial = InitialAttitude::AnglesDeg([50.0, -60.0, 120.0]);
@@ -152,7 +152,7 @@ fn the_bound_is_the_covariance_at_the_truth() {
 }
 
 #[test]
-fn the_bound_grows_with_what_is_not_known() {
+fn the_bound_grows_with_unknown_latitude_and_azimuth() {
     let simulation = short(3, |scenario| scenario.duration_s = 86_400.0);
     let drift = simulation
         .truth

@@ -287,22 +287,6 @@ fn latitude_of_records(latitude: &ConsiderSensitivity, several: bool) -> String 
     )
 }
 
-/// Name and size of the site error that a table of sensitivities is for.
-pub(super) fn site_error(sensitivity: &ConsiderSensitivity) -> String {
-    let error = sensitivity.assumed_error();
-    let size = match sensitivity.quantity {
-        SiteQuantity::Latitude => format!("latitude +{:.3} arcsec", 3600.0 * error),
-        SiteQuantity::EarthRate => format!("Earth rate +{error:.1e}"),
-        SiteQuantity::Gravity => format!("gravity +{error:.1e}"),
-        _ => format!("+{error:.1e}"),
-    };
-    if sensitivity.declared_sigma.is_some() {
-        format!("{size} (1 sigma)")
-    } else {
-        size
-    }
-}
-
 fn overlapping_times(measurements: &[Measurement]) -> String {
     let mut text = String::new();
     for (index, one) in measurements.iter().enumerate() {

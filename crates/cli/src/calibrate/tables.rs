@@ -5,7 +5,6 @@ use gyrocal_calibration::{BIASES, Calibration, ConsiderSensitivity, SiteQuantity
 use gyrocal_statistics::format;
 
 use super::CalibrationRun;
-use super::prose::site_error;
 use crate::tables::{right, table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -64,6 +63,22 @@ pub(super) fn site_sensitivities(calibration: &Calibration) -> Option<String> {
         table.add_row([Cell::new(coefficient.id)].into_iter().chain(biases));
     }
     Some(table.trim_fmt())
+}
+
+/// Name and size of the site error that a table of sensitivities is for.
+fn site_error(sensitivity: &ConsiderSensitivity) -> String {
+    let error = sensitivity.assumed_error();
+    let size = match sensitivity.quantity {
+        SiteQuantity::Latitude => format!("latitude +{:.3} arcsec", 3600.0 * error),
+        SiteQuantity::EarthRate => format!("Earth rate +{error:.1e}"),
+        SiteQuantity::Gravity => format!("gravity +{error:.1e}"),
+        _ => format!("+{error:.1e}"),
+    };
+    if sensitivity.declared_sigma.is_some() {
+        format!("{size} (1 sigma)")
+    } else {
+        size
+    }
 }
 
 /// Offsets of the turn-ons from the mean constant drifts; `None` if turn-ons are declared alike.

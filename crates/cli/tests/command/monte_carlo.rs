@@ -192,7 +192,7 @@ fn a_population_differs_from_run_to_run_and_is_that_of_the_seed_of_the_file() {
     );
     let first = said(&folder, "0..3", "--population --results a.jsonl");
     assert!(
-        first.starts_with("s.toml: population around it, numbers 0 to 2, 3 calibrated, 0 failed\n"),
+        first.starts_with("s.toml: scenarios of its population 0 to 2, 3 calibrated, 0 failed\n"),
         "{first}"
     );
     let truths: Vec<String> = folder
