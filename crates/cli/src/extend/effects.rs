@@ -4,9 +4,7 @@ use gyrocal::effect::{Enters, Role};
 use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_diagnosis::{DiagnosisResult, Verdict};
-use gyrocal_record::{
-    KnownEffect, ModelFile, ParameterEstimate, Standing, any_of, nearest_names,
-};
+use gyrocal_record::{KnownEffect, ModelFile, ParameterEstimate, Standing, any_of, nearest_names};
 use miette::{Report, miette};
 
 /// A model file, with the findings left out and the exact equivalents.
