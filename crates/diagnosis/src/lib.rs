@@ -1,26 +1,71 @@
-//! What a calibrated record says against its model.
+//! Diagnosis of a record against its model: detection, identification and gain of model errors.
 //!
 //! # What it is
 //!
-//! Statistics of residuals and an audit of the noise, as pure functions of plain data: a record
-//! ([`gyrocal_record::Record`]) and the [`Innovations`] that a filter made of it.
+//! [`diagnose`] takes a record and its bench description, and returns a [`Diagnosis`]: the answer
+//! ([`DiagnosisResult`], plain data that is also the JSON contract) with the fits behind it.
 //!
-//! - [`residuals`]: the usual tests of innovations, by `gyrocal-statistics`.
-//! - [`magnitude_channel`]: |E|², which sees accelerometer errors only, without any filter;
-//!   [`magnitude_test`] says which side it speaks for.
-//! - [`audit_noise`]: is the noise as declared? Robust, with one false-alarm probability for all.
+//! 1. *Noise audit* ([`audit_noise`]): quantisation, outliers, variance and correlation of the
+//!    accelerometer noise on time scales below an hour.
+//! 2. *Search* ([`cause`]): score tests of all effects of the catalogue, one family-wise error rate,
+//!    one accepted effect after the other, each with a confidence set of alternatives and its exact
+//!    equivalents.
+//! 3. *Validation*: blocked cross-validation decides which effects are in the extended model;
+//!    [`Diagnosis::validate`] predicts a later record.
+//! 4. *Residual test*: whiteness of the innovations, lines and curves outside the catalogue.
 //!
-//! # The audit
+//! The [`magnitude_test`] and the residuals of the nominal model are reported beside these and make
+//! no finding. [`plan`] designs the next run, [`error_budget`] lists all false-alarm shares and
+//! decision constants, and [`prose`] makes the sentences of an answer from the result alone.
 //!
-//! Physical causes are slow: hours and days. The audit looks at what is fast, so that neither
-//! takes the other for itself: at the values themselves (a lattice is the converter's), at
-//! samples against their neighbours (outliers), and at the spectrum within an hour (variance,
-//! correlation). It undoes the filter's feedback first, so that the noise of a sample stands at
-//! that sample alone. The gyros' noise, a random walk there, is left free and blamed on nobody.
+//! # The statistics in brief
+//!
+//! Letters are those of `docs/glossary.md`; `docs/method.md` has all equations, and code refers to
+//! them by number. The fit leaves whitened innovations r and their derivatives C by the parameters
+//! (signatures), n for the nuisance parameters of the fitted model, t for those of a hypothesis:
+//!
+//! ```text
+//! s = −Cᵀ r,   J = Cᵀ C                                     score, Fisher information      (3)
+//! s_t·n = s_t − J_tn J_nn⁻¹ s_n                             projection                     (4)
+//! J_t·n = J_tt − J_tn J_nn⁻¹ J_nt                                                          (5)
+//! l = s_t·nᵀ J_t·n⁻¹ s_t·n   ~ χ²_k without the effect      score test                     (6)
+//! l_h = max_v l_h,v                                         over onsets or time constants  (9)
+//! c_h = Q_0.99(l_h) − χ²_1;0.99                             search penalty                (12)
+//! M = max_h (l_h − 0.6 c_h) > T,   P_0(M > T) = α_s         detection: maximum statistic  (13)
+//! m_h = l_h − c_h                                           ranking                       (14)
+//! {h : m_h* − m_h < 3.5}                                    confidence set of the cause   (15)
+//! ```
+//!
+//! The null distribution P_0 of all statistics together is drawn from the joint normal distribution
+//! of the scores.
+//!
+//! # Example
+//!
+//! ```no_run
+//! use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
+//! use gyrocal_record::{Bench, Record};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let record = Record::read("record.csv".as_ref())?;
+//! let bench = Bench::read("bench.toml".as_ref())?;
+//! let diagnosis = diagnose(&record, &bench, &DiagnoseOptions::default())?;
+//! if diagnosis.result.verdict != Verdict::Clean {
+//!     for finding in &diagnosis.result.findings {
+//!         println!("{}: p = {:.1e}", finding.effect, finding.p_value);
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Features
+//!
+//! - `schema`: the JSON Schema of the results.
 //!
 //! # What it does not do
 //!
-//! It runs no filter, reads and writes no files and prints nothing.
+//! It reads no records and prints nothing; [`result::read`] reads a written result. It tests effects
+//! of the catalogue, sinusoids and functions of specific force, on a static base only.
 
 pub mod cause;
 mod continuation;

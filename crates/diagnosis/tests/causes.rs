@@ -20,7 +20,7 @@ fn record(seed: u64, effect: &str, parameters: &[(&str, f64)]) -> (Record, Bench
     (simulation.record, simulation.bench)
 }
 
-/// Diagnoses, and returns the parameters of the one finding there must be.
+/// Diagnoses, and returns the parameters of the single expected finding.
 fn only_finding(effect: &str, parameters: &[(&str, f64)]) -> Vec<(String, f64, Option<f64>)> {
     let (record, bench) = record(5, effect, parameters);
     let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
@@ -72,8 +72,8 @@ fn a_knock_is_found_in_its_step() {
 #[test]
 fn a_random_walk_is_no_cause_with_a_law() {
     let found = only_finding("gyro_z.random_walk", &[("size", 0.001)]);
-    // Forty increments tell a variance to a fifth, hence its root to a tenth, and a walk has only
-    // some of them where it is seen: a factor of two.
+    // Forty increments determine a variance to a fifth and its root to a tenth; the walk is
+    // observable in some of them only: a factor of two.
     assert!((0.5..2.0).contains(&(found[0].1 / 0.001)), "{found:?}");
 }
 
@@ -96,10 +96,10 @@ fn what_the_catalogue_does_not_hold_has_no_name_and_is_told() {
         let strongest = found.remainder.unmodelled.first().expect(effect);
         assert_eq!(strongest.channel, channel, "{effect}: {described}");
         match (strongest.pattern, strongest.period_h) {
-            // Known to a fraction of one cycle in the two days, which would be a tenth.
+            // Determined to a fraction of one cycle in the two days, which would be a tenth.
             (UnmodelledPattern::Line, Some(period_h)) if axis.is_none() => {
                 assert!((period_h / 5.3 - 1.0).abs() < 0.03, "{period_h}");
-                // A tone has nothing of any cause.
+                // A tone is no effect of the catalogue.
                 assert!(found.causes().next().is_none(), "{effect}");
                 assert_eq!(found.verdict, Verdict::Unexplained);
             }

@@ -1,4 +1,4 @@
-//! What goes into an extended model, and what that gains on a later record.
+//! Effects of an extended model, and its gain on a later record.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal_calibration::Run;
@@ -21,7 +21,7 @@ fn simulation(seed: u64, days: f64, hidden: &[Hidden]) -> Simulation {
 
 #[test]
 fn a_step_in_the_last_block_is_judged_too() {
-    // Nothing of the other five sixths tells of it.
+    // The other five sixths have no information on it.
     let parameters = [("size", 0.02), ("onset_s", 1.85 * 86_400.0)];
     let hidden = [Hidden::new("gyro_x.step", &parameters).unwrap()];
     let simulation = simulation(11, 2.0, &hidden);
@@ -66,7 +66,7 @@ fn a_later_record_is_predicted_better_by_what_was_found_in_the_first() {
     );
 }
 
-/// The later record as it is told by what was found in the first.
+/// The later record, predicted with the findings of the first.
 fn predicted(found: &Diagnosis<'_>, first: &Simulation, later: &Simulation) -> LaterPrediction {
     let [first, later] = [first, later].map(|simulation| Run {
         record: &simulation.record,
@@ -77,7 +77,7 @@ fn predicted(found: &Diagnosis<'_>, first: &Simulation, later: &Simulation) -> L
     predict_later(models, &found.noise_model, &first, &later, &options).unwrap()
 }
 
-/// A record of hours leaves its own attitude open: then no model can be held against it.
+/// A record of hours does not determine its own attitude: no model can be compared with it.
 #[test]
 fn a_short_later_record_lets_one_expect_little() {
     let hidden = [Hidden::new("gyro_y.g_z", &[("size", 0.02)]).unwrap()];

@@ -162,7 +162,7 @@ fn noise_of_another_size_is_called_that() {
 
 #[test]
 fn physical_effects_are_no_noise() {
-    // Each is far larger than any that must be found: hundreds of sigmas of its own bound.
+    // Each is hundreds of standard deviations of its Cramér-Rao bound.
     let terms: [fn() -> Term; 4] = [
         || {
             Term::Drift(Box::new(|m| {
@@ -220,7 +220,7 @@ fn what_cannot_be_audited_says_why() {
     case.innovations.time_s.truncate(100);
     case.innovations.weighted_per_g.truncate(100);
     case.innovations.specific_force_g.truncate(100);
-    // One block of 64 rows an axis says nothing of a spectrum.
+    // One block of 64 rows per axis is too few for a spectrum.
     let short = audit(&case);
     assert!(short.accel_ratio.is_none() && short.findings.is_empty());
     case.declared.accel_g[1] = 0.0;

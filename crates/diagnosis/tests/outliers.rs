@@ -1,4 +1,4 @@
-//! Values far off, in rows that the audit of the noise cannot judge.
+//! Gross errors in rows that the noise audit cannot test.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal_diagnosis::result::FindingKind;
@@ -18,7 +18,7 @@ fn simulation(hidden: &[Hidden]) -> Simulation {
     .unwrap()
 }
 
-/// A hundred and ten thousand sigmas: the second is more than any fit bears.
+/// A hundred and ten thousand sigmas: no fit converges with the second.
 #[test]
 fn an_outlier_is_found_wherever_it_stands() {
     let sound = simulation(&[]);
@@ -53,8 +53,8 @@ fn an_outlier_is_found_wherever_it_stands() {
     }
 }
 
-/// Beside what the nominal model makes of a large term, sound values stand off; beside what
-/// explains them they do not.
+/// Fault-free values deviate from the nominal model with a large hidden term, and not from the model
+/// that includes it.
 #[test]
 fn what_a_cause_explains_is_no_outlier() {
     let term = Hidden::new("gyro_x.g_y", &[("size", 0.05)]).unwrap();

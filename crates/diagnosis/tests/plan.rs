@@ -1,4 +1,4 @@
-//! Planned runs, made: what was predicted of them holds.
+//! Planned runs, simulated: their results agree with the predictions.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
@@ -19,7 +19,7 @@ fn scenario(seed: u64) -> Scenario {
     }
 }
 
-/// With a cross-axis term that its near twin, the field along the axis, explains as well.
+/// With a cross-axis term whose near twin, the magnetic sensitivity, explains it as well.
 fn with_twin(seed: u64) -> Scenario {
     Scenario {
         magnetic_field_gauss: Some([0.02, 0.25, -0.4]),
@@ -81,7 +81,7 @@ fn sigmas_after_the_planned_run_are_as_predicted() {
         let planned = planned(&first, &[], &PlanOptions::default()).unwrap();
         assert_eq!(planned.aim, Aim::Sigmas);
         let best = &planned.proposals[0];
-        // From another attitude far more is learnt than by going on.
+        // Another attitude gives far more information than continuing.
         assert!(best.outlook.sigma_ratio < 0.8 * planned.going_on[0].outlook.sigma_ratio);
         let second = made(&scenario, best);
         let found =
@@ -99,7 +99,7 @@ fn sigmas_after_the_planned_run_are_as_predicted() {
 fn near_twins_are_planned_apart_and_the_run_tells_them_apart() {
     let scenario = with_twin(33);
     let first = simulate(&scenario).unwrap();
-    // The wrong one is named, as this record has it.
+    // This record names the wrong effect.
     let named = [named("gyro_y.magnetic", &[("gyro_y.g_z", 0.1)])];
     let options = PlanOptions {
         goal: Goal {
@@ -113,7 +113,7 @@ fn near_twins_are_planned_apart_and_the_run_tells_them_apart() {
     assert_eq!(planned.now.sets[0].mean_size, 2.0);
     let best = &planned.proposals[0];
     assert!(best.outlook.sets[0].one_left > 0.95);
-    // A run that is just long enough is shorter, and by less than a rung of the ladder too long.
+    // The shortest run is shorter, and too long by less than one step of the search.
     let enough = planned.goal.unwrap().run.unwrap();
     assert!(enough.duration_s < best.duration_s);
     assert!((0.95..1.0).contains(&enough.outlook.sets[0].one_left));
@@ -168,7 +168,7 @@ fn what_no_run_separates_is_told_and_not_planned_for() {
     let named = [named("gyro_x.g_yy", &[("gyro_x.g_zz", 0.0)])];
     let planned = planned(&first, &named, &PlanOptions::default()).unwrap();
     assert_eq!(planned.inseparable, [["gyro_x.g_yy", "gyro_x.g_zz"]]);
-    // They count as one, and nothing else is in question.
+    // They count as one effect, without other alternatives.
     assert_eq!(planned.now.sets[0].members.len(), 1);
     assert_eq!(planned.aim, Aim::Sigmas);
 }
@@ -195,7 +195,7 @@ fn a_run_keeps_the_gimbals_within_their_limits_or_there_is_none() {
             assert!(limits.hold(near), "{angles:?}");
         }
     }
-    // The Earth turns by a whole circle.
+    // The Earth rotates once.
     let error = planned(&first, &[], &options(86_400.0)).unwrap_err();
     assert!(
         matches!(error, DiagnosisError::Limits { longest_h, .. } if (3.0..24.0).contains(&longest_h)),

@@ -1,9 +1,9 @@
 //! Signatures of effects against finite differences of the nonlinear simulation.
 //!
-//! The simulator hides an effect twice, with either sign, and half the difference of the two
-//! records is what a unit of it does to the readings. Taken as a column of its own, it passes the
-//! filter about the same trajectory as the signature that the generated derivatives give: with
-//! the same whitening the two must be one.
+//! The simulator adds a hidden effect with either sign, and half the difference of the two records is
+//! the change of the outputs by a unit of it. As a further column it passes the filter about the same
+//! trajectory as the signature from the generated derivatives: with the same whitening the two must
+//! be equal.
 
 use gyrocal::effect::{Effect, EffectKind, Role};
 use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, RATES};
@@ -15,11 +15,11 @@ use nalgebra::{DMatrix, DVector};
 /// Failure of a comparison.
 pub type Error = Box<dyn std::error::Error + Send + Sync>;
 
-/// How far the readings are moved: the second order of a difference with either sign cancels, and
-/// the third is some 1e-9 of it, while the simulator's own error of 1e-12 rad is 1e-7 of it.
+/// Change of the outputs: the second order of a central difference cancels, the third is 1e-9 of it,
+/// and the simulator's error of 1e-12 rad is 1e-7 of it.
 const MOVED_G: f64 = 3e-5;
 
-/// Drift coefficients: the first columns, which every fit takes up.
+/// Drift coefficients: the first columns, nuisance parameters of every fit.
 const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;
 
 /// A signature with the coefficients projected out is compared if at least this part of it is left:
@@ -42,11 +42,11 @@ struct Probe {
     name: String,
     effect: &'static str,
     parameter: String,
-    /// Parameters that are held: onsets and time constants.
+    /// Fixed parameters: onsets and time constants.
     held: Vec<(&'static str, f64)>,
-    /// A size to begin with, in the simulator's unit.
+    /// Initial size, in the unit of the simulator.
     size: f64,
-    /// Units of the column in a unit of the simulator's.
+    /// Unit of the column over the unit of the simulator.
     unit: f64,
     signature: Signature,
 }

@@ -33,7 +33,7 @@ fn report(folder: &Folder, name: &str) -> DiagnosisResult {
     serde_json::from_str(&folder.text(name)).unwrap()
 }
 
-/// One run with everything, which several tests look at: stdout and what was written.
+/// One run with all outputs, used by several tests: stdout and files.
 fn whole() -> &'static (String, Folder) {
     static WHOLE: OnceLock<(String, Folder)> = OnceLock::new();
     WHOLE.get_or_init(|| {
@@ -86,7 +86,7 @@ fn the_hidden_fault_is_named_with_its_size() {
 fn residuals_of_the_nominal_model_are_told_and_written() {
     let (said, folder) = whole();
     let shown = report(folder, "o.json").residuals.unwrap();
-    // The cross-axis term makes the nominal model miss the record by more than noise explains.
+    // The residual of the nominal model with the cross-axis term exceeds the noise.
     let nis = shown.nis.unwrap();
     assert!(nis.mean > nis.band[1] && nis.p_value < 0.01, "{nis:?}");
     assert_eq!(shown.autocorrelation.unwrap().correlation.len(), 20);

@@ -151,7 +151,7 @@ fn a_file_that_is_no_diagnosis_is_shown_where_it_is_wrong() {
         &said,
         "write it again with `gyrocal diagnose` of this version",
     );
-    // Another version may have other fields, and is still told for what it is.
+    // A result of another version may have other fields; the version is reported.
     let said = refused("{ \"schema_version\": 3 }");
     assert_says(&said, "found schema_version 3, expected 2");
     let said = refused(&good.replace("\"clean\"", "\"fine\""));

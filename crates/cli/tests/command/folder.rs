@@ -7,7 +7,7 @@ use std::process::Output;
 use assert_cmd::Command;
 use tempfile::TempDir;
 
-/// A folder of its own for one test, in which the command runs.
+/// Temporary folder of one test, in which the command runs.
 pub(crate) struct Folder {
     folder: TempDir,
 }
@@ -31,7 +31,7 @@ impl Folder {
         self.put(name, example(name));
     }
 
-    /// That the files are those of the examples, which a scenario gives.
+    /// Checks that the files equal those of the examples, made from a scenario.
     pub(crate) fn assert_examples(&self, names: &[&str]) {
         for name in names {
             assert!(
@@ -87,7 +87,7 @@ impl Folder {
             .unwrap()
     }
 
-    /// Runs what must work; returns stdout.
+    /// Runs a command that must succeed; returns stdout.
     pub(crate) fn succeed(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         let errors = String::from_utf8(output.stderr).unwrap();
@@ -95,8 +95,8 @@ impl Folder {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs what must fail with exit code 1, says nothing on stdout, leaves the files as they
-    /// were and does not panic; returns stderr.
+    /// Runs a command that must fail with exit code 1, without output on stdout, changed files or a
+    /// panic; returns stderr.
     pub(crate) fn fail(&self, arguments: &[&str]) -> String {
         let before = self.names();
         let output = self.run(arguments);

@@ -72,7 +72,7 @@ fn a_rate_that_is_not_the_earths_is_called_far_off() {
     let folder = Folder::new();
     folder.put(
         "l.toml",
-        // Where the horizontal rate is higher by a tenth of a degree an hour, forty sigmas.
+        // At this latitude the horizontal rate is higher by 0.1 deg/h, forty sigmas.
         description.replace("latitude_deg = 34.246048", "latitude_deg = 33.5"),
     );
     let text = folder.succeed(&arguments(&repository_argument(LOG), "l.toml"));

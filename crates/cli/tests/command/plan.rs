@@ -57,7 +57,7 @@ fn a_run_is_planned_from_a_diagnosis() {
     assert_eq!(report.now.sizes[0].name, "gyro_y.g_z size");
     let best = &report.proposals[0];
     assert_eq!(best.duration_s, 86_400.0);
-    // A day from another attitude does more than one in the same.
+    // A day in another attitude gives more information than one in the same.
     assert!(best.outlook.sigma_ratio < 0.8 * report.going_on[0].outlook.sigma_ratio);
     let goal = report.goal.unwrap();
     let run = goal.run.unwrap();
@@ -87,7 +87,7 @@ fn mistakes_are_told() {
         BENCH,
         "--json",
         "other.json",
-        // The record is among the inputs, but is not the one that was diagnosed.
+        // The record is an input of the diagnosis, but only as the later record.
         "--validate",
         RECORD,
         "--validate-bench",
@@ -160,7 +160,7 @@ fn the_example_of_the_page_is_what_its_commands_print() {
     let (words, numbers) = with_numbers(&shown);
     let (printed, found) = with_numbers(&said);
     assert!(printed.starts_with(&words), "{said}");
-    // The best attitude and what is drawn there move a little where arithmetic rounds otherwise.
+    // The best attitude and the draws there change slightly with the rounding of arithmetic.
     for (shown, found) in numbers.iter().zip(&found) {
         assert!(
             (shown - found).abs() <= 3.0_f64.min(0.1 * shown.abs()).max(0.02),
@@ -169,7 +169,7 @@ fn the_example_of_the_page_is_what_its_commands_print() {
     }
 }
 
-/// A text with its numbers taken out, and these.
+/// A text without its numbers, and the numbers.
 fn with_numbers(text: &str) -> (String, Vec<f64>) {
     let (mut words, mut numbers, mut number) = (String::new(), Vec::new(), String::new());
     for letter in text.chars().chain(['\n']) {

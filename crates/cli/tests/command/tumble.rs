@@ -25,7 +25,7 @@ fn the_nominal_law_of_the_recorded_instrument_is_wrong_and_cross_axis_terms_are_
     let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     let sensors = &json["sensors"];
     for gyro in 0..3 {
-        // What came with the recording: about 4770; half a percent is its accuracy.
+        // The scale published with the recording is about 4770, accurate to half a percent.
         let outputs = sensors["gyro_outputs_per_rad_per_s"][gyro]
             .as_f64()
             .unwrap();
@@ -54,7 +54,7 @@ fn the_nominal_law_of_the_recorded_instrument_is_wrong_and_cross_axis_terms_are_
             .unwrap();
         // By far: an F of 45 or more with 8 and 27 degrees of freedom.
         assert!(p_value < 1e-10, "{p_value}");
-        // What the stops scatter beyond their standard errors is at most as large as these.
+        // The excess scatter of the stops is at most as large as their standard errors.
         let excess = gyro["extended"]["excess_deg_per_h"].as_f64().unwrap();
         assert!(excess < 60.0, "{excess}");
     }
@@ -168,8 +168,8 @@ fn a_rare_false_alarm_does_not_hide_what_is_there() {
 
 #[test]
 fn a_log_that_is_never_static_is_told() {
-    // The unit turns in hand all the time: every stop but the turns between them is cut out, and
-    // what is left is put together on one clock.
+    // The unit rotates all the time: all stops are removed, and the turns between them are joined on
+    // one clock.
     let log = std::fs::read_to_string(repository(LOG)).unwrap();
     let folder = Folder::new();
     let mut lines = log.lines();
@@ -285,7 +285,7 @@ fn stops_can_be_given_and_too_few_are_told() {
         &["--stop", "5"][..],
         &["--shortest-stop-s", "nan"],
         &["--quiet-factor", "inf"],
-        // They would do nothing to stops that are given.
+        // They have no effect on given stops.
         &["--stop", "1:50", "--shortest-stop-s", "3"],
         &["--stop", "1:50", "--quiet-factor", "3"],
     ] {

@@ -1,4 +1,4 @@
-//! What cannot be diagnosed: exit code 1 or 2, one message, no output.
+//! Refused inputs of `gyrocal diagnose`: exit code 1 or 2, one message, no output.
 
 use gyrocal_diagnosis::Verdict;
 use gyrocal_diagnosis::result::{NotTestedReason, ResidualVerdict};

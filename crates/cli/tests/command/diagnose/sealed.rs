@@ -1,4 +1,4 @@
-//! Twelve records of another simulator whose answers are sealed (tests/data/cases/README.md).
+//! Twelve records of an independent simulator with sealed answers (tests/data/cases/README.md).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -13,7 +13,7 @@ fn seal(case: &str, effect: &str) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// What is wrong with the answer to a case, if anything.
+/// Error of the answer to a case, if any.
 fn fault(case: &str, seals: &BTreeSet<String>) -> Option<String> {
     let folder = Folder::new();
     let data = repository("tests/data/cases");

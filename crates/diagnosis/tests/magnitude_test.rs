@@ -12,7 +12,7 @@ fn minutes() -> Vec<f64> {
     (0..ROWS).map(|row| 60.0 * row as f64).collect()
 }
 
-/// A day in which gravity sweeps round the platform.
+/// A day in which gravity rotates once in platform axes.
 fn record(seed: u64, error_g: impl Fn(usize, [f64; 3]) -> [f64; 3]) -> Record {
     let noise = Normals::of_seed(seed).rows(ROWS);
     let accel_g = noise.iter().enumerate().map(|(row, noise)| {
@@ -47,15 +47,15 @@ fn sound_records_are_told_of_no_more_often_than_they_may() {
         let norm = magnitude_test(&sound, &bench, &[SIGMA_G; 3], FALSE_ALARM).unwrap();
         alarms += u32::from(norm.accelerometers);
     }
-    // At most 20 are expected, with a sigma of 4.4: four sigmas. Tests that share samples need
-    // less than each its share; none at all would be a test that sees nothing.
+    // At most 20 are expected, with a sigma of 4.4: the limit is four sigmas. Tests on the same
+    // samples use less than their Bonferroni shares; none at all would be a test without power.
     assert!((2..=38).contains(&alarms), "{alarms}");
 }
 
 #[test]
 fn errors_of_accelerometers_are_told_by_what_they_go_with() {
     type ErrorG = fn(usize, [f64; 3]) -> [f64; 3];
-    // In the norm each is 8 sigmas and more: 2 e·a over 2 sigma, times the root of 1440 rows.
+    // In the magnitude each is 8 sigmas and more: 2 e·a over 2 sigma, times the root of 1440 rows.
     let cases: [(ErrorG, &str); 3] = [
         (|_, a| a.map(|a| 3e-6 * a), "above gravity by"),
         (|_, _| [5e-6, 0.0, 0.0], "specific force along x"),
@@ -69,7 +69,7 @@ fn errors_of_accelerometers_are_told_by_what_they_go_with() {
         assert!(norm.accelerometers);
         assert!(norm.description.contains(words), "{}", norm.description);
     }
-    // Where gravity itself is uncertain, its error is none of the accelerometers.
+    // With uncertain gravity its error is not attributed to the accelerometers.
     let scaled = record(1, |_, a| a.map(|a| 3e-6 * a));
     let uncertain = bench("gravity_relative_sigma = 1e-4");
     let norm = magnitude_test(&scaled, &uncertain, &[SIGMA_G; 3], 1e-3).unwrap();
