@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::figure::{Legend, figure};
 use crate::geometry::Rect;
 use crate::layout::Layout;
-use crate::number::{percent, short};
+use crate::number::{percent, with_uncertainty};
 use crate::picture::Picture;
 use crate::span::Span;
 use crate::style::{BAND_OPACITY, BLACK, BLUE, DATA, ORANGE, SKY, THIN, VERMILION};
@@ -223,26 +223,5 @@ impl EstimateHistory {
         finite.next().map_or(String::new(), |(estimate, sigma)| {
             with_uncertainty(factor * estimate, 2.0 * factor * sigma)
         })
-    }
-}
-
-/// A value and its uncertainty, both to the place of the second digit of the uncertainty.
-fn with_uncertainty(value: f64, uncertainty: f64) -> String {
-    let places = 1.0 - uncertainty.log10().floor();
-    if !(0.0..8.0).contains(&places) {
-        return format!("{} ± {}", short(value, 3), short(uncertainty, 2));
-    }
-    let places = places as usize;
-    format!("{value:.places$} ± {uncertainty:.places$}").replace('-', "−")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_value_has_the_places_of_its_uncertainty() {
-        assert_eq!(with_uncertainty(-0.026_251, 1.62e-4), "−0.02625 ± 0.00016");
-        assert_eq!(with_uncertainty(12.3, 0.0), "12.3 ± 0");
     }
 }

@@ -1,33 +1,39 @@
 //! Numbers and units as text.
 
-/// A number to some significant digits: `0.00342`, `-12`, `3.1·10⁻⁶`, with a true minus sign.
+use gyrocal_statistics::format;
+
+/// A number to some significant digits: `0.00342`, `−12`, `3.1·10⁻⁶`.
 pub(crate) fn short(value: f64, digits: usize) -> String {
-    let digits = digits.max(1);
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    if !value.is_finite() {
-        return "not a number".to_owned();
-    }
-    let scientific = format!("{:.*e}", digits - 1, value);
-    let Some((mantissa, exponent)) = scientific.split_once('e') else {
-        return scientific;
-    };
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let text = if (-3..5).contains(&exponent) {
-        let places = digits as i32 - 1 - exponent;
-        format!("{:.*}", places.max(0) as usize, value)
+    if value.is_finite() {
+        typographic(&format::significant(value, digits))
     } else {
-        format!("{mantissa}·10{}", superscript(exponent))
-    };
-    text.replace('-', "−")
+        "not a number".to_owned()
+    }
+}
+
+/// A value and its uncertainty, both to the place of the second digit of the uncertainty.
+pub(crate) fn with_uncertainty(value: f64, uncertainty: f64) -> String {
+    if !(1e-6..100.0).contains(&uncertainty) {
+        return format!("{} ± {}", short(value, 3), short(uncertainty, 2));
+    }
+    typographic(&format::estimate(value, uncertainty).join(" ± "))
 }
 
 /// A probability in percent: `1%`, `0.1%`.
 pub(crate) fn percent(probability: f64) -> String {
-    let text = format!("{:.6}", 100.0 * probability);
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    format!("{text}%")
+    format::percent(probability).replace(' ', "")
+}
+
+/// A number with a true minus sign and a power of ten in place of `e`.
+fn typographic(number: &str) -> String {
+    let text = match number.split_once('e') {
+        Some((mantissa, exponent)) => {
+            let exponent = exponent.parse().unwrap_or(0);
+            format!("{mantissa}·10{}", superscript(exponent))
+        }
+        None => number.to_owned(),
+    };
+    text.replace('-', "−")
 }
 
 /// An integer with groups of three digits, if it has more than four.
@@ -100,6 +106,8 @@ mod tests {
         assert_eq!(short(-12.34, 2), "−12");
         assert_eq!(short(3.14e-6, 2), "3.1·10⁻⁶");
         assert_eq!(short(0.0, 3), "0");
+        assert_eq!(with_uncertainty(-0.026_251, 1.62e-4), "−0.02625 ± 0.00016");
+        assert_eq!(with_uncertainty(12.3, 0.0), "12.3 ± 0");
         assert_eq!(percent(0.01), "1%");
         assert_eq!(percent(0.0005), "0.05%");
         assert_eq!(count(4320), "4320");

@@ -1,5 +1,7 @@
 //! Open-loop simulation against measurement.
 
+use gyrocal_statistics::rms_of_present;
+
 use crate::axes::{Axes, Labels};
 use crate::axis::{Axis, elapsed};
 use crate::canvas::{Canvas, LineStyle};
@@ -10,7 +12,7 @@ use crate::geometry::Rect;
 use crate::layout::Layout;
 use crate::number::{count, readable_unit, short};
 use crate::picture::Picture;
-use crate::scale::{Scale, rms};
+use crate::scale::Scale;
 use crate::span::Span;
 use crate::style::{BLACK, DATA, HAIR, LEGEND_LINE, SKY, THIN, VERMILION};
 
@@ -93,14 +95,15 @@ impl OpenLoop {
                 x: Axis::time(span, 5),
                 y: self.ordinate(),
             };
-            let (_, number) = rms(&differences[index]);
+            let (_, number) = rms_of_present(&differences[index]);
             let labels = Labels {
                 name: &channel.name,
                 note: &format!("n = {}", count(number)),
                 abscissa: false,
                 ordinate_title: layout.is_first_in_row(index),
             };
-            let has_data = rms(&channel.measured).1 + rms(&channel.simulated).1 > 0;
+            let has_data =
+                rms_of_present(&channel.measured).1 + rms_of_present(&channel.simulated).1 > 0;
             axes.draw(canvas, labels, has_data, |axes, canvas| {
                 let [measured, simulated] = [(SKY, BROAD), (BLACK, THIN)]
                     .map(|(colour, width)| LineStyle::solid(colour, width));
@@ -124,7 +127,7 @@ impl OpenLoop {
                 abscissa: true,
                 ordinate_title: layout.is_first_in_row(below),
             };
-            let has_data = rms(difference).1 > 0;
+            let has_data = rms_of_present(difference).1 > 0;
             axes.draw(canvas, labels, has_data, |axes, canvas| {
                 axes.zero_line(canvas);
                 let style = LineStyle::solid(VERMILION, DATA);
@@ -145,7 +148,7 @@ impl OpenLoop {
     }
 
     fn note(&self, scale: &Scale, difference: &[f64], sigma: f64) -> String {
-        let (size, _) = rms(difference);
+        let (size, _) = rms_of_present(difference);
         let (factor, unit) = readable_unit(&self.unit, size.max(sigma));
         let mut note = format!(
             "rms {}, noise {} {unit}",

@@ -1,5 +1,7 @@
 //! From columns of points to lines and bands on the canvas: gaps, decimation, clipping.
 
+use gyrocal_statistics::median_interval_s;
+
 use crate::geometry::{Point, Rect};
 
 /// Intervals longer than so many times the usual one are gaps.
@@ -7,13 +9,7 @@ const GAP_FACTOR: f64 = 4.0;
 
 /// The longest interval, in units of the abscissa, that is not a gap.
 pub(crate) fn longest_interval(abscissa: &[f64]) -> f64 {
-    let mut intervals: Vec<f64> = abscissa.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if intervals.is_empty() {
-        return f64::INFINITY;
-    }
-    let middle = intervals.len() / 2;
-    let (_, median, _) = intervals.select_nth_unstable_by(middle, f64::total_cmp);
-    GAP_FACTOR * *median
+    GAP_FACTOR * median_interval_s(abscissa)
 }
 
 /// The lines through points, broken at missing values and at gaps, no more than four points for

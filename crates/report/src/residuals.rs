@@ -1,5 +1,7 @@
 //! Residuals against time.
 
+use gyrocal_statistics::rms_of_present;
+
 use crate::axes::{Axes, Labels};
 use crate::axis::{Axis, elapsed};
 use crate::canvas::{Canvas, LineStyle};
@@ -10,7 +12,7 @@ use crate::geometry::Rect;
 use crate::layout::Layout;
 use crate::number::{count, readable_unit, short};
 use crate::picture::Picture;
-use crate::scale::{Scale, rms};
+use crate::scale::Scale;
 use crate::style::{BLACK, BLUE, Colour, LEGEND_LINE, THIN, VERMILION};
 
 /// Residuals of some channels against time, of one model or before and after a change of it, all
@@ -117,7 +119,7 @@ impl Residuals {
                 abscissa: layout.shows_abscissa(index),
                 ordinate_title: true,
             };
-            let has_data = channel.columns().any(|column| rms(column).1 > 0);
+            let has_data = channel.columns().any(|column| rms_of_present(column).1 > 0);
             axes.draw(canvas, labels, has_data, |axes, canvas| {
                 axes.zero_line(canvas);
                 axes.line(canvas, &elapsed, &channel.before, before);
@@ -141,12 +143,12 @@ impl ResidualChannel {
     /// Root mean squares in the order of the legend, number of values, and values outside the
     /// scale.
     fn note(&self, scale: &Scale, unit: &str) -> String {
-        let (before, samples) = rms(&self.before);
+        let (before, samples) = rms_of_present(&self.before);
         let (factor, unit) = readable_unit(unit, before.max(self.sigma));
         let amount = |value: f64| short(value * factor, 2);
         let mut note = format!("rms {}", amount(before));
         if let Some(after) = &self.after {
-            note += &format!(" → {}", amount(rms(after).0));
+            note += &format!(" → {}", amount(rms_of_present(after).0));
         }
         note += &format!(", noise {} {unit}", amount(self.sigma));
         note.truncate(note.trim_end().len());

@@ -59,15 +59,6 @@ impl Scale {
     }
 }
 
-/// Root mean square of the finite values, and their number.
-pub(crate) fn rms(values: &[f64]) -> (f64, usize) {
-    let there = values.iter().filter(|value| value.is_finite());
-    let (sum, count) = there.fold((0.0, 0), |(sum, count), value| {
-        (sum + value * value, count + 1)
-    });
-    ((sum / f64::from(count.max(1))).sqrt(), count as usize)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,11 +73,5 @@ mod tests {
         let cut = Scale::about_zero([values.as_slice()], 0.0);
         assert!(cut.half > 3.0 && cut.half < 6.0);
         assert_eq!(cut.beyond(&values), Some((1, 100.0)));
-    }
-
-    #[test]
-    fn root_mean_square_leaves_missing_values_out() {
-        assert_eq!(rms(&[3.0, f64::NAN, -3.0]), (3.0, 2));
-        assert_eq!(rms(&[]), (0.0, 0));
     }
 }
