@@ -45,12 +45,19 @@ pub fn calibrate_runs(
     options: &Options,
     mut progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
+    calibrate_platform(runs, options, &mut progress)
+}
+
+/// Not generic: callers compile no estimator.
+fn calibrate_platform(
+    runs: &[Run<'_>],
+    options: &Options,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Calibration, CalibrationError> {
     check_records(runs)?;
     match (options.method, runs) {
-        (Method::Batch, _) => {
-            batch::calibrate(&Anchored(Surveyed), runs, None, options, &mut progress)
-        }
-        (Method::Streaming, [run]) => streaming(run, options, &mut progress),
+        (Method::Batch, _) => batch::calibrate(&Anchored(Surveyed), runs, None, options, progress),
+        (Method::Streaming, [run]) => streaming(run, options, progress),
         (Method::Streaming, _) => Err(CalibrationError::OneRecord { found: runs.len() }),
     }
 }
@@ -71,6 +78,16 @@ pub fn calibrate_strapdown(
     options: &Options,
     mut progress: impl FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
+    calibrate_unit(runs, gyro_axes, options, &mut progress)
+}
+
+/// Not generic: callers compile no estimator.
+fn calibrate_unit(
+    runs: &[Run<'_>],
+    gyro_axes: &[GyroAxes],
+    options: &Options,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Calibration, CalibrationError> {
     check_records(runs)?;
     let rows = runs.iter().map(|run| run.record.len()).collect::<Vec<_>>();
     let attitudes = gyro_axes.iter().map(GyroAxes::len).collect::<Vec<_>>();
@@ -81,7 +98,7 @@ pub fn calibrate_strapdown(
         });
     }
     let model = &Anchored(Strapdown);
-    batch::calibrate(model, runs, Some(gyro_axes), options, &mut progress)
+    batch::calibrate(model, runs, Some(gyro_axes), options, progress)
 }
 
 /// Standard deviations of the coefficients from the first of several runs alone, in the order of
@@ -125,7 +142,7 @@ fn streaming(
     let settings = filter_settings(run.bench, options.discretisation);
     let attitude = declared_attitude(run.bench).ok_or(CalibrationError::NoAttitude)?;
     let form = options.factorised;
-    let filtered = streaming::filter(run.record, &settings, &attitude, form, |row| {
+    let filtered = streaming::filter(run.record, &settings, &attitude, form, &mut |row| {
         if row % 1024 == 0 {
             progress(row);
         }

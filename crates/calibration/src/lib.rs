@@ -151,4 +151,4 @@ pub use result::{
 pub use run::Run;
 pub use same_rows::{SharedRows, shared_rows, times_overlap};
 pub use settings::{declared_attitude, filter_settings};
-pub use streaming::run_filter;
+pub use streaming::{FilterWatch, run_factorised_filter};

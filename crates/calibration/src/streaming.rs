@@ -26,7 +26,7 @@ pub(crate) fn filter(
     settings: &FilterSettings<f64>,
     attitude: &InitialAttitude<f64>,
     factorised: bool,
-    watch: impl FnMut(usize),
+    watch: &mut dyn FnMut(usize),
 ) -> Result<Filtered, CalibrationError> {
     if factorised {
         filter_in::<Factors>(record, settings, attitude, watch)
@@ -39,7 +39,7 @@ fn filter_in<F: Form<f64>>(
     record: &Record,
     settings: &FilterSettings<f64>,
     attitude: &InitialAttitude<f64>,
-    mut watch: impl FnMut(usize),
+    watch: &mut dyn FnMut(usize),
 ) -> Result<Filtered, CalibrationError> {
     let mut fit = FitStatistics::of_nothing();
     let filter = PlatformFilter::<f64, F>::with_form(settings, attitude);
@@ -56,13 +56,33 @@ fn filter_in<F: Form<f64>>(
     })
 }
 
+/// Runs the streaming filter, its covariance in factors, over a record. `watch` gets each row
+/// number, the filter after the update, and the innovation.
+///
+/// # Errors
+/// [`CalibrationError::Filter`] with the row at which the filter stopped; the first row if it
+/// cannot be made.
+pub fn run_factorised_filter(
+    record: &Record,
+    settings: &FilterSettings<f64>,
+    attitude: &InitialAttitude<f64>,
+    watch: &mut FilterWatch<'_>,
+) -> Result<(), CalibrationError> {
+    let filter = PlatformFilter::<f64, Factors>::with_form(settings, attitude);
+    run_filter(record, record.len(), filter, watch).map(|_| ())
+}
+
+/// Sees a row number, the filter after the update, and the innovation.
+pub type FilterWatch<'a> =
+    dyn FnMut(usize, &PlatformFilter<f64, Factors>, &Innovation<f64, 3>) + 'a;
+
 /// Runs a filter over the first `rows` rows of a record. `watch` gets each row number, the filter
 /// after the update, and the innovation.
 ///
 /// # Errors
 /// [`CalibrationError::Filter`] with the row at which the filter stopped; the first row if
 /// `filter` is an error.
-pub fn run_filter<F: Form<f64>>(
+pub(crate) fn run_filter<F: Form<f64>>(
     record: &Record,
     rows: usize,
     filter: Result<PlatformFilter<f64, F>, EstimationError>,

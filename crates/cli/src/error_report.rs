@@ -77,7 +77,7 @@ pub(crate) struct ErrorReport {
 impl ErrorReport {
     /// The form that suits standard error.
     ///
-    /// Lines are wrapped for people only: scripts look for `file:line:column` in one piece.
+    /// Lines are wrapped on a terminal only: scripts search for an unbroken `file:line:column`.
     pub(crate) fn of_stderr() -> Self {
         let terminal = std::io::stderr().is_terminal();
         let signs = if supports_unicode::on(supports_unicode::Stream::Stderr) {

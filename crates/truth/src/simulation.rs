@@ -90,6 +90,15 @@ pub fn simulate_watched(
     terms: &[Term],
     mut rows_done: impl FnMut(usize),
 ) -> Result<Simulation, Error> {
+    run(scenario, terms, &mut rows_done)
+}
+
+/// Not generic: callers compile no simulator.
+fn run(
+    scenario: &Scenario,
+    terms: &[Term],
+    rows_done: &mut dyn FnMut(usize),
+) -> Result<Simulation, Error> {
     scenario.check()?;
     let temperature_c = scenario.temperature_course_c();
     let temperature_k = about_mean(scenario, temperature_c.as_deref());

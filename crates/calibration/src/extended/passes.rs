@@ -74,10 +74,10 @@ impl Extended<'_> {
     pub fn signatures(
         &self,
         further: &[Column],
-        watch: impl FnMut(&Whitened<'_>),
+        mut watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
         let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
-        self.reduced(&all, None, further, watch)
+        self.reduced(&all, None, further, &mut watch)
     }
 
     /// The same with the parameters of the fit as columns only, in the order of
@@ -94,7 +94,7 @@ impl Extended<'_> {
         active.sort_unstable();
         active.dedup();
         let tape = self.solution.tapes[0].as_deref();
-        let mut reduced = self.reduced(&active, tape, further, |_| ())?;
+        let mut reduced = self.reduced(&active, tape, further, &mut |_| ())?;
         let first = active.len() + 1;
         let columns: Vec<usize> = core::iter::once(0)
             .chain(
@@ -112,7 +112,7 @@ impl Extended<'_> {
         active: &[usize],
         tape: Option<&Tape<3>>,
         further: &[Column],
-        watch: impl FnMut(&Whitened<'_>),
+        watch: &mut dyn FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
         let leg = &self.problem.runs[0];
         let own = self.extension.further.columns().len();

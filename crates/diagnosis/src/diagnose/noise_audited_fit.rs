@@ -1,9 +1,8 @@
 //! Noise audit, and the nominal model fitted with the noise that it found.
 
-use gyrocal::estimation::Factors;
-use gyrocal::{Discretisation, Drift, FilterSettings, InitialAttitude, PlatformFilter};
+use gyrocal::{Discretisation, Drift, FilterSettings, InitialAttitude};
 use gyrocal_calibration::{
-    Extended, NoiseModel, Options, Run, filter_settings, gross_errors, run_filter,
+    Extended, NoiseModel, Options, Run, filter_settings, gross_errors, run_factorised_filter,
 };
 use gyrocal_record::{Bench, Record};
 
@@ -144,25 +143,29 @@ fn innovations(
         north_and_up: fitted.points()[0],
         sigma_rad: [FITTED_ATTITUDE_SIGMA_DEG.to_radians(); 3],
     };
-    let filter = PlatformFilter::<f64, Factors>::with_form(&settings, &attitude);
     let mut innovations = Innovations::default();
     let mut refused = None;
-    run_filter(record, record.len(), filter, |row, filter, innovation| {
-        let residual_g = core::array::from_fn(|axis| {
-            if innovation.observed[axis] {
-                innovation.residual[axis]
-            } else {
-                f64::NAN
-            }
-        });
-        let pushed = innovations.push(
-            record.time_s[row],
-            residual_g,
-            &innovation.covariance(),
-            filter.kernel().inputs().inputs().f_0,
-        );
-        refused = refused.take().or(pushed.err());
-    })?;
+    run_factorised_filter(
+        record,
+        &settings,
+        &attitude,
+        &mut |row, filter, innovation| {
+            let residual_g = core::array::from_fn(|axis| {
+                if innovation.observed[axis] {
+                    innovation.residual[axis]
+                } else {
+                    f64::NAN
+                }
+            });
+            let pushed = innovations.push(
+                record.time_s[row],
+                residual_g,
+                &innovation.covariance(),
+                filter.kernel().inputs().inputs().f_0,
+            );
+            refused = refused.take().or(pushed.err());
+        },
+    )?;
     if let Some(error) = refused {
         return Err(error.into());
     }

@@ -89,6 +89,9 @@ pub struct Smoothed<const M: usize> {
     pub corrections: Vec<[f64; M]>,
 }
 
+/// Sees an output, its Jacobian and its covariance with the moving states.
+type OutputWatch<'a, const M: usize> = dyn FnMut(&Whitened<'_>, &[f64; M], [f64; M]) + 'a;
+
 impl<D, S, C, const M: usize, const Y: usize> Clone for Linearisation<'_, D, S, C, M, Y>
 where
     D: Manifold<M, Y>,
@@ -181,7 +184,7 @@ where
     /// and each step's transition to `step`.
     pub(crate) fn forward(
         &self,
-        output: &mut dyn FnMut(&Whitened<'_>, &[f64; M], [f64; M]),
+        output: &mut OutputWatch<'_, M>,
         step: &mut dyn FnMut(&[[f64; M]; M]),
     ) -> Result<(), EstimationError> {
         let count = self.active.len() + self.further.count();
