@@ -1,6 +1,7 @@
 //! The streaming filter's kernel against the textbook dense filter on the platform model.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+use chacha20::ChaCha12Rng;
 use gyrocal::estimation::dense::DenseFilter;
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{ArrayStorage, Covariance, Factors, Filter, Storage, VecStorage};
@@ -11,7 +12,6 @@ use gyrocal::{
 };
 use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha12Rng;
 
 const SIGMA: [f64; 12] = [
     2e-4, 3e-4, 4e-4, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,

@@ -1,9 +1,9 @@
 //! A platform that drifts without noise, and its samples.
 
+use chacha20::ChaCha12Rng;
 use gyrocal::scalar::{Model, Recentre};
 use gyrocal::{Anchored, Chart, Platform, Site};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha12Rng;
 
 pub(crate) const STEP_S: f64 = 60.0;
 /// (0.002 deg/h)² held over 60 s.
@@ -18,7 +18,7 @@ pub(crate) fn chart() -> Chart<f64> {
 }
 
 /// The platform itself, and the noise of its accelerometers.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Truth {
     chart: Chart<f64>,
     rng: ChaCha12Rng,

@@ -4,6 +4,7 @@
 
 mod common;
 
+use chacha20::ChaCha12Rng;
 use common::{BIAS, Pendulum, STIFFNESS};
 use gyrocal_estimation::dense::DenseFilter;
 use gyrocal_estimation::form::Form;
@@ -14,7 +15,6 @@ use gyrocal_estimation::{
 use gyrocal_scalar::Model;
 use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha12Rng;
 
 const STATE: [f64; 6] = [0.5, 0.0, 0.0, 0.0, 4.0, 0.1];
 const SIGMA: [f64; 6] = [0.1, 0.2, 0.05, 0.02, 0.5, 0.05];

@@ -2,8 +2,8 @@
 
 use core::f64::consts::PI;
 
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Earth rate in rad/s (WGS 84).
 pub const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;

@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use chacha20::ChaCha8Rng;
 use gyrocal_report::{
     Bin, ComparedEstimate, ComparedQuantity, Comparison, Convergence, Correlation,
     CorrelationChannel, CovariatePanel, CrossValidation, EstimateHistory, MarkedFrequency, Omitted,
@@ -11,7 +12,6 @@ use gyrocal_report::{
     Spectrum, SpectrumChannel, write_png, write_svg,
 };
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 const STEP_S: f64 = 60.0;
 const DAY_S: f64 = 86_400.0;

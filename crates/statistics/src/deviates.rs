@@ -2,8 +2,8 @@
 
 use core::f64::consts::TAU;
 
-use rand_chacha::rand_core::{Rng, SeedableRng};
-use rand_chacha::{ChaCha8Rng, ChaCha12Rng};
+use chacha20::rand_core::{Rng, SeedableRng};
+use chacha20::{ChaCha8Rng, ChaCha12Rng};
 
 use crate::math::{ln, pow};
 
@@ -31,7 +31,7 @@ pub fn polar(generator: &mut impl Rng) -> f64 {
 }
 
 /// Random numbers of one seed and one purpose.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Draw(ChaCha8Rng);
 
 impl Draw {
@@ -74,7 +74,7 @@ impl Draw {
 }
 
 /// Normal and uniform deviates of one seed, for simulated noise.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Normals(ChaCha12Rng);
 
 impl Normals {

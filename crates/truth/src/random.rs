@@ -1,8 +1,8 @@
 //! Random numbers: one ChaCha stream for each seed and purpose.
 
+use chacha20::ChaCha12Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 use libm::{log, sincos, sqrt};
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::attitude::Attitude;
 

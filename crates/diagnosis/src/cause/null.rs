@@ -1,10 +1,10 @@
 //! What the statistics reach if the model is right: drawn from their joint distribution.
 
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::SeedableRng;
 use gyrocal_statistics::deviates::polar;
 use gyrocal_statistics::{CHI_SQUARE_99, two_sided_p, z_of_two_sided_p};
 use nalgebra::{Cholesky, DMatrix, DMatrixView};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 
 use super::bank::Bank;
 use super::family::Family;

@@ -1,9 +1,9 @@
 //! What is left of a set after a next run, on average.
 
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::SeedableRng;
 use gyrocal_statistics::deviates::polar;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 
 use super::result::SetForecast;
 use super::said::Said;

@@ -1,11 +1,11 @@
 //! A short record of a pendulum with gaps, and Gauss-Newton steps on it.
 
+use chacha20::ChaCha12Rng;
 use gyrocal_estimation::batch::{Columns, Linearisation, Series};
 use gyrocal_estimation::{Integration, Manifold};
 use gyrocal_scalar::Model;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha12Rng;
 
 use crate::common::Pendulum;
 

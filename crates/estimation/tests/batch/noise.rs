@@ -1,9 +1,9 @@
 //! Score and information of the noise against the joint Gaussian density.
 
+use chacha20::ChaCha12Rng;
 use gyrocal_estimation::batch::NoColumns;
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha12Rng;
 
 use crate::chain::Chain;
 use crate::density::Density;

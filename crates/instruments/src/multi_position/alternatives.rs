@@ -1,8 +1,8 @@
 //! Confidence set of a finding: terms that explain the stops as well in its place.
 
+use chacha20::ChaCha12Rng;
+use chacha20::rand_core::SeedableRng;
 use nalgebra::DVector;
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::SeedableRng;
 use serde::Serialize;
 
 use super::regression::{Fit, WeightedStops};

@@ -1,7 +1,7 @@
 //! Negative controls: searches in data without effects, or with other ones.
 
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::SeedableRng;
+use chacha20::ChaCha12Rng;
+use chacha20::rand_core::SeedableRng;
 use serde::Serialize;
 
 use super::positions::Positions;

@@ -1,8 +1,8 @@
 //! Forward selection of terms with family-wise p-values.
 
+use chacha20::ChaCha12Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 use nalgebra::{DMatrix, DVector};
-use rand_chacha::ChaCha12Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::positions::Positions;
 use super::regression::WeightedStops;
