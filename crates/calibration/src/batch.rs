@@ -119,12 +119,15 @@ where
     })
 }
 
+/// The joint problem at its initial guess, with the search for each run's azimuth.
+type ProblemAtGuess<'a, D, I> = (Problem<'a, D, I>, Vec<Option<AzimuthSearch>>);
+
 /// The joint problem at its initial guess, and the search for each run's azimuth.
 fn problem_at_guess<'a, D, I>(
     task: &Task<'a, '_, D>,
     careful: bool,
     progress: &mut dyn FnMut(usize),
-) -> Result<(Problem<'a, D, I>, Vec<Option<AzimuthSearch>>), CalibrationError>
+) -> Result<ProblemAtGuess<'a, D, I>, CalibrationError>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,

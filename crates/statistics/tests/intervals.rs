@@ -150,7 +150,7 @@ fn the_interval_of_a_ratio_is_that_of_a_chi_square() {
 #[test]
 fn moments_and_quantiles_are_those_of_their_definitions() {
     let values = [4.0, 1.0, 3.0, 2.0];
-    assert_eq!(mean(&values), 2.5);
+    assert_eq!(mean(values), 2.5);
     assert_eq!(median(&values), 2.5);
     assert_eq!(median(&values[..3]), 3.0);
     // R: quantile(1:4, c(0, 0.1, 1)) is 1, 1.3, 4.

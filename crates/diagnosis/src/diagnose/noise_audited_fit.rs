@@ -167,7 +167,7 @@ fn innovations(
         },
     )?;
     if let Some(error) = refused {
-        return Err(error.into());
+        return Err(error);
     }
     Ok(innovations)
 }
