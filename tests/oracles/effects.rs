@@ -6,11 +6,13 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
+use gyrocal::Catalogue;
 use gyrocal::Effect;
 use gyrocal::effect::{Need, Role};
+use gyrocal::generated::catalogue::CatalogueInputs;
 use gyrocal::generated::{catalogue, platform};
 use gyrocal_oracle::points::{Purpose, State, states};
-use gyrocal_scalar::Element;
+use gyrocal_scalar::{Element, Model, RatesJacobian};
 
 use crate::equations::{RAD_PER_S_IN_DEG_PER_H, Vector, apply, platform_c_chart, rate_matrix};
 
@@ -214,6 +216,54 @@ fn without_effects_the_catalogue_is_the_nominal_platform() {
             assert!((read[i] - force[i]).abs() <= 5e-16, "{point}");
         }
     }
+}
+
+/// A weight is what the exact Jacobian says: the derivative by the parameter is the weight times the
+/// derivative by the constant of the channel.
+#[test]
+fn weights_are_ratios_of_derivatives() {
+    let mut compared = 0;
+    for state in &states(Purpose::Equations, 100) {
+        let parameters: [f64; PARAMETERS] = state.parameters(PARAMETERS).try_into().unwrap();
+        let shapes = shape_values(state).try_into().unwrap();
+        let inputs = CatalogueInputs {
+            omega_0: state.omega_0,
+            f_0: state.f_0,
+            east_0: state.east_0,
+            field_0: state.field_0,
+            conditions: state.conditions,
+            shapes,
+        };
+        let mut columns = [0.0; 3 * PARAMETERS];
+        let mut jacobian = RatesJacobian {
+            moving: [[0.0; 3]; 3],
+            noise: [[0.0; 3]; 3],
+            parameters: &mut columns,
+        };
+        Catalogue.rates_jacobian(&state.theta, &parameters, &inputs, &mut jacobian);
+        let weights = catalogue::weights(&state.f_0, &state.conditions, &shapes);
+        for effect in &catalogue::EFFECTS {
+            let Some(rate) = effect.rate() else { continue };
+            let constant = catalogue::RATES[rate].constant;
+            for parameter in effect.parameters {
+                let (Role::Parameter(index), Some(weight)) = (parameter.role, parameter.weight)
+                else {
+                    continue;
+                };
+                for row in 0..3 {
+                    let by_constant = columns[row * PARAMETERS + constant];
+                    let expected = weights[weight] * by_constant;
+                    let found = columns[row * PARAMETERS + index];
+                    // Products in another order: some roundings of a Jacobian that stays below 1e-4.
+                    let allowed = 1e-14 * weights[weight].abs().max(1.0) * 1e-4;
+                    assert!((found - expected).abs() <= allowed, "{}", effect.id);
+                    compared += 1;
+                }
+            }
+        }
+    }
+    // Ramp, step, warm-up, temperature and two of the diurnal wave, of three gyros in three rates.
+    assert_eq!(compared, 100 * 6 * 3 * 3);
 }
 
 #[test]

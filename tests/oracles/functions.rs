@@ -98,6 +98,7 @@ generated! {
         -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
     catalogue::accelerometers_at_origin_jacobian(parameters, f_0, conditions)
         -> [reading, reading_d_theta, reading_d_parameters];
+    catalogue::weights(force, conditions, shapes);
 }
 
 /// The generated function called `name`.

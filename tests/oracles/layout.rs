@@ -176,6 +176,7 @@ fn groups_have_the_elements_of_the_program() {
         ("east_0", &catalogue::EAST_0),
         ("field_0", &catalogue::FIELD_0),
         ("conditions", &catalogue::CONDITIONS),
+        ("force", &catalogue::FORCE),
         ("catalogue::shapes", &catalogue::SHAPES),
     ];
     let programs = programs();

@@ -66,7 +66,8 @@ impl State {
             "drift" => &self.drift,
             "drift_noise" => &self.drift_noise,
             "omega_0" => &self.omega_0,
-            "f_0" => &self.f_0,
+            // At zero angles the axes of the gyros are those of the chart.
+            "f_0" | "force" => &self.f_0,
             "step" => &self.step,
             "east_0" => &self.east_0,
             "field_0" => &self.field_0,

@@ -39,7 +39,10 @@ fn a_run_is_planned_from_a_diagnosis() {
         "p.json",
     ];
     let said = folder.succeed(&arguments);
-    assert!(said.contains("Next run: from platform angles x"), "{said}");
+    assert!(
+        said.contains("Recommended next run: 24 h from platform angles x"),
+        "{said}"
+    );
     assert!(
         said.contains("The same duration in the present attitude"),
         "{said}"
