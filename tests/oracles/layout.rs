@@ -146,7 +146,7 @@ fn sparse_outputs_stand_where_the_program_has_them() {
 
 #[test]
 fn groups_have_the_elements_of_the_program() {
-    let generated: [(&str, &[Element]); 30] = [
+    let generated: [(&str, &[Element]); 31] = [
         ("theta", &platform::THETA),
         ("drift", &platform::DRIFT),
         ("omega_0", &platform::OMEGA_0),

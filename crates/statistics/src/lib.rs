@@ -11,7 +11,7 @@
 //!   squares.
 //! - [`median`], [`quantile`], [`robust_sigma`] and others: descriptive statistics.
 //! - [`deviates`]: normal deviates from a seed.
-//! - [`format`]: p-values, estimates and rounded numbers as text.
+//! - [`mod@format`]: p-values, estimates and rounded numbers as text.
 //! - [`math`]: exponential, logarithm, sine and others, the same on every machine.
 //! - [`two_sided_p`], [`ln_chi_square_tail`] and others: tail probabilities and their inverses.
 //!

@@ -3,7 +3,7 @@
 //! [`DiagnosisResult`] holds all that a user is told. It is what `gyrocal diagnose --json` writes,
 //! key by key, what [`read`] reads back, and all that [`crate::prose`] makes sentences from. Keys of
 //! one schema version keep their meaning; a version may gain keys. With the feature `schema` every
-//! type has its JSON Schema ([`schema`]); `docs/schema/diagnosis.schema.json` is the committed copy.
+//! type has its JSON Schema (feature `schema`); `docs/schema/diagnosis.schema.json` is the committed copy.
 //!
 //! What pictures need beyond it, series over the rows of a record, stays beside it in
 //! [`crate::Diagnosis`].
