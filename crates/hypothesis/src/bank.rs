@@ -1,0 +1,204 @@
+//! The score bank: scores and information of all signatures, with the fitted unknowns projected out
+//! (equations (1) and (2) of the crate).
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::column::Column;
+use crate::error::Singular;
+use crate::model::FittedModel;
+
+/// A signature of which the fit leaves less than this share cannot be seen.
+const VISIBLE: f64 = 1e-9;
+
+/// Scores and information of signatures, given the model that was fitted.
+#[derive(Clone, Debug)]
+pub struct ScoreBank {
+    /// Sum of products of each signature with the innovations.
+    pub(crate) score: DVector<f64>,
+    /// Sums of products of signatures.
+    pub(crate) information: DMatrix<f64>,
+    /// Information of each signature before anything was projected out.
+    pub(crate) raw: DVector<f64>,
+}
+
+/// Sums of products of residual and columns over a record, for a fitted model.
+#[derive(Clone, Debug)]
+pub(crate) struct GramProducts {
+    gram: DMatrix<f64>,
+    /// Columns of the model's own values; column 0 is the residual.
+    nuisance: Vec<usize>,
+    /// Columns of the signatures.
+    signatures: Vec<usize>,
+    values: Vec<f64>,
+    prior_sigma: Vec<f64>,
+}
+
+impl GramProducts {
+    /// One pass with all parameters of the plant, then `further` columns, as signatures.
+    pub(crate) fn new<F: FittedModel>(fitted: &F, further: &[Column]) -> Result<Self, F::Error> {
+        let gram = fitted.signatures_gram(further)?;
+        let plant = fitted.plant();
+        let parameters = plant.parameters.len();
+        let extension = fitted.extension();
+        // In the Gram matrix: innovations, parameters, the extension's own columns, then further.
+        let further = parameters + extension.columns.columns().len();
+        let nuisance = (0..plant.nominal_parameters)
+            .chain(extension.parameters.iter().map(|(parameter, _)| *parameter))
+            .chain(parameters..further)
+            .map(|column| column + 1)
+            .collect();
+        let signatures = (1..=parameters).chain(further + 1..gram.nrows()).collect();
+        Ok(Self::of(fitted, gram, nuisance, signatures))
+    }
+
+    /// One pass with `further` columns only, beside the unknowns of the fit.
+    pub(crate) fn conditional<F: FittedModel>(
+        fitted: &F,
+        further: &[Column],
+    ) -> Result<Self, F::Error> {
+        let gram = fitted.conditional_gram(further)?;
+        let own = fitted.values().len();
+        let (nuisance, signatures) = ((1..=own).collect(), (own + 1..gram.nrows()).collect());
+        Ok(Self::of(fitted, gram, nuisance, signatures))
+    }
+
+    fn of<F: FittedModel>(
+        fitted: &F,
+        gram: DMatrix<f64>,
+        nuisance: Vec<usize>,
+        signatures: Vec<usize>,
+    ) -> Self {
+        Self {
+            gram,
+            nuisance,
+            signatures,
+            values: fitted.values().to_vec(),
+            prior_sigma: fitted.prior_sigma(),
+        }
+    }
+
+    /// With what the fit takes up of each signature projected out, but for the values at the places
+    /// `without` (counted like [`Extended::values`]): scores are then those of a model that lacks
+    /// them.
+    pub(crate) fn bank(&self, without: &[usize]) -> Result<ScoreBank, Singular> {
+        let Self {
+            gram,
+            nuisance,
+            signatures,
+            values,
+            prior_sigma,
+        } = self;
+        let dropped: Vec<(usize, f64)> = without
+            .iter()
+            .map(|index| (nuisance[*index], values[*index]))
+            .collect();
+        // Score of a column of the Gram matrix, in the model without what was dropped. Columns
+        // are derivatives of the innovations, hence the sign.
+        let score_of = |column: usize| {
+            -gram[(0, column)]
+                + dropped
+                    .iter()
+                    .map(|(at, value)| gram[(*at, column)] * value)
+                    .sum::<f64>()
+        };
+        let (mut gradient, mut precision, mut kept) = (Vec::new(), Vec::new(), Vec::new());
+        for (index, column) in nuisance.iter().enumerate() {
+            if without.contains(&index) {
+                continue;
+            }
+            let weight = prior_sigma[index].powi(-2);
+            // Priors have mean zero.
+            gradient.push(score_of(*column) - weight * values[index]);
+            precision.push(weight);
+            kept.push(*column);
+        }
+        let nuisance = kept;
+        let count = nuisance.len();
+        let mut inner = DMatrix::from_fn(count, count, |i, j| gram[(nuisance[i], nuisance[j])]);
+        for (i, precision) in precision.iter().enumerate() {
+            inner[(i, i)] += precision;
+        }
+        let cholesky = Cholesky::new(inner).ok_or(Singular)?;
+        let columns = signatures.len();
+        let cross = DMatrix::from_fn(count, columns, |i, j| gram[(nuisance[i], signatures[j])]);
+        // L⁻¹ of the cross terms: what is projected out is its own product.
+        let mut taken = cross;
+        let lower = cholesky.l();
+        lower.solve_lower_triangular_mut(&mut taken);
+        let mut gradient = DVector::from_vec(gradient);
+        lower.solve_lower_triangular_mut(&mut gradient);
+        let mut information = DMatrix::from_fn(columns, columns, |i, j| {
+            gram[(signatures[i], signatures[j])]
+        });
+        let raw = information.diagonal();
+        information.gemm_tr(-1.0, &taken, &taken, 1.0);
+        let mut score = DVector::from_fn(columns, |j, _| score_of(signatures[j]));
+        score.gemv_tr(-1.0, &taken, &gradient, 1.0);
+        Ok(ScoreBank {
+            score,
+            information,
+            raw,
+        })
+    }
+}
+
+impl ScoreBank {
+    /// Signatures of all parameters of the plant, then of `further` columns.
+    ///
+    /// # Errors
+    /// Those of a pass over the record, and [`Singular`].
+    pub fn new<F: FittedModel>(fitted: &F, further: &[Column]) -> Result<Self, F::Error> {
+        Ok(GramProducts::new(fitted, further)?.bank(&[])?)
+    }
+
+    /// Signatures of `further` columns only.
+    ///
+    /// # Errors
+    /// Those of a pass over the record, and [`Singular`].
+    pub fn conditional<F: FittedModel>(fitted: &F, further: &[Column]) -> Result<Self, F::Error> {
+        Ok(GramProducts::conditional(fitted, further)?.bank(&[])?)
+    }
+
+    /// Whether the fit leaves enough of a column to be seen.
+    #[must_use]
+    pub fn visible(&self, column: usize) -> bool {
+        self.information[(column, column)] > VISIBLE * self.raw[column] && self.raw[column] > 0.0
+    }
+
+    /// Information and scores of some columns.
+    pub(crate) fn part(&self, columns: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
+        let count = columns.len();
+        (
+            DMatrix::from_fn(count, count, |i, j| {
+                self.information[(columns[i], columns[j])]
+            }),
+            DVector::from_fn(count, |i, _| self.score[columns[i]]),
+        )
+    }
+
+    /// Estimate and covariance of some columns jointly, and their statistic: chi-square with as
+    /// many degrees of freedom as there are columns if the effect is absent. `None` if the fit
+    /// leaves too little of them.
+    #[must_use]
+    pub fn joint(&self, columns: &[usize]) -> Option<JointScore> {
+        if !columns.iter().all(|column| self.visible(*column)) {
+            return None;
+        }
+        let (information, score) = self.part(columns);
+        let cholesky = Cholesky::new(information)?;
+        let estimate = cholesky.solve(&score);
+        Some(JointScore {
+            statistic: estimate.dot(&score),
+            covariance: cholesky.inverse(),
+            estimate,
+        })
+    }
+}
+
+/// What the bank says of one candidate.
+#[derive(Clone, Debug)]
+pub struct JointScore {
+    pub(crate) statistic: f64,
+    pub(crate) estimate: DVector<f64>,
+    pub(crate) covariance: DMatrix<f64>,
+}

@@ -1,0 +1,114 @@
+//! Options, data and state of a search.
+
+use crate::hypothesis::HypothesisSet;
+use crate::model::{FittedModel, ModelExtension};
+use crate::pattern::Unmodelled;
+use crate::plant::Plant;
+use crate::result::{Accepted, FittedStage};
+use crate::rows::Rows;
+
+/// Error rates of a search.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SearchOptions {
+    /// Family-wise probability of a false alarm of all hypotheses together.
+    pub false_alarm_probability: f64,
+    /// Probability of a false alarm of the tests for unmodelled terms.
+    pub unmodelled_probability: f64,
+    /// Seed of the draws of the null distribution.
+    pub seed: u64,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self {
+            false_alarm_probability: 0.01,
+            unmodelled_probability: 0.001,
+            seed: 0,
+        }
+    }
+}
+
+/// Largest number of effects in one record: more mean that the catalogue lacks the true one.
+pub(crate) const MOST_EFFECTS: usize = 6;
+
+/// Data and hypotheses of one search.
+pub(crate) struct SearchContext<'t> {
+    pub(crate) plant: &'static Plant,
+    pub(crate) set: HypothesisSet,
+    /// The extension of the nominal model.
+    pub(crate) base: ModelExtension,
+    pub(crate) rows: Rows,
+    pub(crate) options: &'t SearchOptions,
+}
+
+impl SearchContext<'_> {
+    /// The model with these effects, fitted from another one.
+    pub(crate) fn fitted<F: FittedModel>(
+        &self,
+        from: &F,
+        accepted: &[Accepted],
+        unmodelled: &[Unmodelled],
+    ) -> Result<F, F::Error> {
+        let context = (self.plant, &self.set, &self.rows);
+        from.refitted(&extension(&self.base, context, accepted, unmodelled))
+    }
+
+    /// The same with all its signatures.
+    pub(crate) fn stage<F: FittedModel>(
+        &self,
+        from: &F,
+        accepted: &[Accepted],
+        unmodelled: &[Unmodelled],
+    ) -> Result<FittedStage<F>, F::Error> {
+        let fitted = self.fitted(from, accepted, unmodelled)?;
+        FittedStage::new(fitted, &self.set, &self.rows, accepted)
+    }
+}
+
+/// Current model and accepted effects.
+#[derive(Clone)]
+pub(crate) struct SearchState<F> {
+    pub(crate) stage: FittedStage<F>,
+    pub(crate) accepted: Vec<Accepted>,
+    /// Hypotheses that cannot be fitted beside the accepted ones.
+    pub(crate) inseparable: Vec<usize>,
+    pub(crate) unmodelled: Vec<Unmodelled>,
+    /// Whether unmodelled terms are still looked for.
+    pub(crate) seeks_unmodelled: bool,
+}
+
+impl<F> SearchState<F> {
+    pub(crate) fn new(stage: FittedStage<F>) -> Self {
+        Self {
+            stage,
+            accepted: Vec::new(),
+            inseparable: Vec::new(),
+            unmodelled: Vec::new(),
+            seeks_unmodelled: true,
+        }
+    }
+}
+
+/// The extension that all accepted effects and unmodelled terms make up.
+pub(crate) fn extension(
+    base: &ModelExtension,
+    (plant, set, rows): (&Plant, &HypothesisSet, &Rows),
+    accepted: &[Accepted],
+    unmodelled: &[Unmodelled],
+) -> ModelExtension {
+    let mut extension = base.clone();
+    for found in unmodelled {
+        let columns = found.columns.iter().cloned();
+        extension.columns.extend(columns, f64::INFINITY);
+    }
+    for accepted in accepted {
+        set.add_to_model(
+            plant,
+            rows,
+            &mut extension,
+            accepted.hypothesis,
+            accepted.shape,
+        );
+    }
+    extension
+}

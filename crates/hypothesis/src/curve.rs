@@ -1,0 +1,195 @@
+//! Curves: rates and outputs that depend on a covariate as no polynomial of the catalogue does, such
+//! as dead zones, friction and hysteresis about zero. They are piecewise linear functions of each
+//! covariate, with its sign.
+
+use std::sync::Arc;
+
+use gyrocal_statistics::math::ln;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use crate::bank::ScoreBank;
+use crate::column::Column;
+use crate::model::FittedModel;
+use crate::pattern::{ChannelIndex, Pattern, Unmodelled};
+use crate::plant::Plant;
+use crate::rows::{Covariate, Rows};
+
+/// Knots of a function, from the least to the largest specific force that the record visits.
+const KNOTS: usize = 10;
+
+/// Combinations of functions of which a fit leaves less than this share of the best seen one are not
+/// tried: constants and low powers, which the coefficients take up.
+const SEEN: f64 = 1e-4;
+
+/// The most significant curve, the unknowns of the fit free.
+pub(crate) fn strongest<F: FittedModel>(
+    fitted: &F,
+    rows: &Rows,
+) -> Result<Option<Unmodelled>, F::Error> {
+    let plant = fitted.plant();
+    let covariates = fitted.covariates();
+    let channels = ChannelIndex::all(plant);
+    // Every covariate is tested in each channel.
+    let ln_tests = ln((covariates.len() * channels.len()) as f64);
+    let mut best: Option<Unmodelled> = None;
+    // One channel after the other: columns of outputs are large.
+    for channel in channels {
+        let columns: Vec<(Pattern, Vec<Column>)> = covariates
+            .iter()
+            .enumerate()
+            .filter_map(|(index, covariate)| {
+                let pattern = Pattern::Curve {
+                    covariate: index,
+                    name: covariate.name,
+                };
+                Some((pattern, functions(plant, rows, covariate, channel)?))
+            })
+            .collect();
+        let all: Vec<Column> = columns
+            .iter()
+            .flat_map(|(_, columns)| columns.iter().cloned())
+            .collect();
+        if all.is_empty() {
+            continue;
+        }
+        let bank = ScoreBank::conditional(fitted, &all)?;
+        let mut first = 0;
+        for (pattern, own) in &columns {
+            let places: Vec<usize> = (first..first + own.len()).collect();
+            first += own.len();
+            let found = spanned(plant, &bank, &places, own, (channel, *pattern), ln_tests);
+            if let Some(found) = found
+                && best
+                    .as_ref()
+                    .is_none_or(|best| found.ln_probability < best.ln_probability)
+            {
+                best = Some(found);
+            }
+        }
+    }
+    Ok(best)
+}
+
+/// The best function of what some columns span.
+fn spanned(
+    plant: &Plant,
+    bank: &ScoreBank,
+    places: &[usize],
+    columns: &[Column],
+    which: (ChannelIndex, Pattern),
+    ln_tests: f64,
+) -> Option<Unmodelled> {
+    let (information, score) = bank.part(places);
+    let scale = DVector::from_iterator(
+        places.len(),
+        places.iter().map(|place| bank.raw[*place].sqrt().recip()),
+    );
+    if !scale.iter().all(|scale| scale.is_finite()) {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(places.len(), places.len(), |i, j| {
+        information[(i, j)] * scale[i] * scale[j]
+    });
+    let eigen = SymmetricEigen::new(scaled);
+    let most = eigen.eigenvalues.max();
+    let along = eigen.eigenvectors.tr_mul(&score.component_mul(&scale));
+    let mut statistic = 0.0;
+    let mut combinations = Vec::new();
+    let mut size = 0.0;
+    for (index, value) in eigen.eigenvalues.iter().enumerate() {
+        if *value <= SEEN * most || *value <= SEEN {
+            continue;
+        }
+        statistic += along[index].powi(2) / value;
+        let weights = eigen.eigenvectors.column(index).component_mul(&scale);
+        let amplitude = along[index] / value;
+        let (combined, mean_square) = combination(columns, &weights)?;
+        size += amplitude * amplitude * mean_square;
+        combinations.push(combined);
+    }
+    let degrees_of_freedom = combinations.len();
+    if degrees_of_freedom == 0 {
+        return None;
+    }
+    Some(Unmodelled::new(
+        plant,
+        which,
+        size.sqrt(),
+        (statistic, degrees_of_freedom),
+        ln_tests,
+        combinations,
+    ))
+}
+
+/// A weighted sum of columns of one channel, and its mean square.
+fn combination(columns: &[Column], weights: &DVector<f64>) -> Option<(Column, f64)> {
+    let values = |column: &Column| -> Option<Arc<[f64]>> {
+        match column {
+            Column::TimeProfile { steps, .. } => Some(Arc::clone(steps)),
+            Column::Output { change, .. } => Some(Arc::clone(change)),
+            _ => None,
+        }
+    };
+    let first = columns.first()?;
+    let mut sum = vec![0.0; values(first)?.len()];
+    for (column, weight) in columns.iter().zip(weights.iter()) {
+        for (sum, value) in sum.iter_mut().zip(values(column)?.iter()) {
+            *sum += weight * value;
+        }
+    }
+    let mean_square = sum.iter().map(|value| value * value).sum::<f64>() / sum.len() as f64;
+    let sum = sum.into();
+    let column = match *first {
+        Column::TimeProfile { parameter, .. } => Column::TimeProfile {
+            parameter,
+            steps: sum,
+        },
+        Column::Output { output, .. } => Column::Output {
+            output,
+            change: sum,
+        },
+        _ => return None,
+    };
+    Some((column, mean_square))
+}
+
+/// Hat functions of a covariate and, where it changes its sign, that sign, which they cannot form:
+/// in the middle of each step or at each row.
+fn functions(
+    plant: &Plant,
+    rows: &Rows,
+    covariate: &Covariate,
+    channel: ChannelIndex,
+) -> Option<Vec<Column>> {
+    let values = &covariate.values;
+    let (least, most) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, value| {
+            (ends.0.min(*value), ends.1.max(*value))
+        });
+    if rows.len() < 2 || most - least < covariate.least_range {
+        return None;
+    }
+    let spacing = (most - least) / (KNOTS - 1) as f64;
+    let hat =
+        |knot: usize, value: f64| (1.0 - ((value - least) / spacing - knot as f64).abs()).max(0.0);
+    let function = |index: usize, value: f64| match index {
+        KNOTS.. => value.signum(),
+        knot => hat(knot, value),
+    };
+    let column = |index: usize| match channel {
+        ChannelIndex::Rate(rate) => Column::TimeProfile {
+            parameter: plant.rates[rate].constant,
+            steps: values
+                .windows(2)
+                .map(|pair| function(index, 0.5 * (pair[0] + pair[1])))
+                .collect(),
+        },
+        ChannelIndex::Output(output) => Column::Output {
+            output,
+            change: values.iter().map(|value| function(index, *value)).collect(),
+        },
+    };
+    let switches = least < 0.0 && most > 0.0;
+    Some((0..KNOTS + usize::from(switches)).map(column).collect())
+}

@@ -1,0 +1,319 @@
+//! Hypotheses: the effects that are tested, each with the signatures that stand for it.
+
+use gyrocal_scalar::effect::{Effect, EffectKind, Role};
+use gyrocal_statistics::math::pow;
+
+use crate::column::Column;
+use crate::model::ModelExtension;
+use crate::plant::Plant;
+use crate::rows::Rows;
+use crate::signature::{Source, shape_derivative, signature};
+
+/// Onsets on the grid of the search: they are two and a half percent of the record apart, across
+/// which the statistic of a step falls by a few percent.
+const ONSETS: usize = 40;
+
+/// Time constants on the grid of the search.
+const TIME_CONSTANTS: usize = 10;
+
+/// The shortest of them, h.
+const SHORTEST_TIME_CONSTANT_H: f64 = 0.3;
+
+/// Share of a time constant over which a derivative is taken.
+const NEAR: f64 = 0.05;
+
+/// One variant of a hypothesis: its signature at one onset or time constant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// Its columns in the score bank.
+    pub(crate) columns: Vec<usize>,
+    /// Onset, s, or time constant, h, if the effect has one.
+    pub(crate) shape: Option<f64>,
+}
+
+impl Variant {
+    /// Onset, s, or time constant, h, if the effect has one.
+    #[must_use]
+    pub fn shape(&self) -> Option<f64> {
+        self.shape
+    }
+}
+
+/// An effect with all variants that are tested.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hypothesis {
+    /// The effect.
+    pub(crate) effect: &'static Effect,
+    pub(crate) variants: Vec<Variant>,
+    /// Of a random walk, the columns of the steps that it is made of.
+    pub(crate) walk: Option<Vec<usize>>,
+    /// Whether it is a jump of states, which is tested in every step by itself.
+    pub(crate) is_jump: bool,
+}
+
+impl Hypothesis {
+    /// The same hypothesis, or one without variants if it is masked.
+    pub(crate) fn masked(&self, masked: bool) -> Self {
+        if !masked {
+            return self.clone();
+        }
+        Self {
+            effect: self.effect,
+            variants: Vec::new(),
+            walk: None,
+            is_jump: false,
+        }
+    }
+
+    /// The effect.
+    #[must_use]
+    pub fn effect(&self) -> &'static Effect {
+        self.effect
+    }
+
+    /// Public id of the effect.
+    #[must_use]
+    pub fn id(&self) -> &'static str {
+        self.effect.id
+    }
+
+    /// Its variants.
+    #[must_use]
+    pub fn variants(&self) -> &[Variant] {
+        &self.variants
+    }
+}
+
+/// An effect that a record cannot show, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unavailable {
+    /// Public id of the effect.
+    pub effect: &'static str,
+    /// The missing data.
+    pub why: String,
+}
+
+/// Effects that are tested in a record.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Selection {
+    /// Effects to test, in the order of the plant's table.
+    pub effects: Vec<&'static Effect>,
+    /// Effects that the record cannot show.
+    pub unavailable: Vec<Unavailable>,
+}
+
+/// All hypotheses that are tested in a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HypothesisSet {
+    pub(crate) hypotheses: Vec<Hypothesis>,
+    /// Columns beside the parameters of the model; in the bank they follow these.
+    pub(crate) extra: Vec<Column>,
+    /// For each rate channel the columns of its steps, in the order of their onsets.
+    pub(crate) steps: Vec<Vec<usize>>,
+    /// Rows of these onsets.
+    pub(crate) onset_rows: Vec<usize>,
+}
+
+impl HypothesisSet {
+    /// The hypotheses of some effects over a record.
+    #[must_use]
+    pub fn new(plant: &Plant, rows: &Rows, effects: &[&'static Effect]) -> Self {
+        let last = rows.len().saturating_sub(1);
+        let mut onset_rows: Vec<usize> = (1..=ONSETS)
+            .map(|index| index * last / (ONSETS + 1))
+            .filter(|row| *row > 0)
+            .collect();
+        onset_rows.dedup();
+        let mut set = Self {
+            hypotheses: Vec::new(),
+            extra: Vec::new(),
+            steps: vec![Vec::new(); plant.rates.len()],
+            onset_rows,
+        };
+        let is_walk = |effect: &&&'static Effect| effect.kind == EffectKind::RandomWalk;
+        for effect in effects.iter().filter(|effect| !is_walk(effect)) {
+            set.add(plant, rows, effect);
+        }
+        // Last, as it can mimic every slow cause.
+        for effect in effects.iter().filter(is_walk) {
+            let Some(rate) = effect.rate() else { continue };
+            set.ensure_steps(plant, rate);
+            set.hypotheses.push(Hypothesis {
+                effect,
+                variants: Vec::new(),
+                walk: Some(set.steps[rate].clone()),
+                is_jump: false,
+            });
+        }
+        set
+    }
+
+    /// The hypotheses.
+    #[must_use]
+    pub fn hypotheses(&self) -> &[Hypothesis] {
+        &self.hypotheses
+    }
+
+    /// Rows of the onsets that steps are tested at.
+    #[must_use]
+    pub fn onset_rows(&self) -> &[usize] {
+        &self.onset_rows
+    }
+
+    fn add(&mut self, plant: &Plant, rows: &Rows, effect: &'static Effect) {
+        let is_jump = effect.kind == EffectKind::StateJump;
+        let shapes: Vec<Option<f64>> = match effect.shape().map(|shape| shape.role) {
+            _ if is_jump => Vec::new(),
+            Some(Role::Onset(_)) => {
+                let onsets = self.onset_rows.iter();
+                onsets.map(|row| Some(rows.since_first_s(*row))).collect()
+            }
+            Some(_) => time_constants_h(rows.duration_s())
+                .into_iter()
+                .map(Some)
+                .collect(),
+            None => vec![None],
+        };
+        let mut variants = Vec::with_capacity(shapes.len());
+        for shape in shapes {
+            let Some(sources) = signature(plant, effect, shape, rows) else {
+                return;
+            };
+            let columns = sources.into_iter().map(|source| match source {
+                Source::Parameter(parameter) => parameter,
+                Source::Column(column) => {
+                    self.extra.push(column);
+                    plant.parameters.len() + self.extra.len() - 1
+                }
+            });
+            variants.push(Variant {
+                columns: columns.collect(),
+                shape,
+            });
+        }
+        if effect.kind == EffectKind::Step
+            && let Some(rate) = effect.rate()
+        {
+            let columns = variants.iter().flat_map(|variant| variant.columns.iter());
+            self.steps[rate] = columns.copied().collect();
+        }
+        self.hypotheses.push(Hypothesis {
+            effect,
+            variants,
+            walk: None,
+            is_jump,
+        });
+    }
+
+    /// Steps of a rate channel at every onset, for a walk, where no step is tested by itself.
+    fn ensure_steps(&mut self, plant: &Plant, rate: usize) {
+        if !self.steps[rate].is_empty() {
+            return;
+        }
+        for row in &self.onset_rows {
+            self.extra.push(Column::Step {
+                parameter: plant.rates[rate].constant,
+                row: *row,
+            });
+            self.steps[rate].push(plant.parameters.len() + self.extra.len() - 1);
+        }
+    }
+
+    /// Mean time between the onsets that a random walk is made of, h.
+    #[must_use]
+    pub fn onset_interval_h(&self, rows: &Rows) -> f64 {
+        match self.onset_rows.as_slice() {
+            [first, .., last] => {
+                (rows.time_s[*last] - rows.time_s[*first])
+                    / (3600.0 * (self.onset_rows.len() - 1) as f64)
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// Whether a hypothesis is an exact equivalent of one of some others.
+    pub(crate) fn is_equivalent(&self, hypothesis: usize, others: &[usize]) -> bool {
+        let id = self.hypotheses[hypothesis].id();
+        let mut others = others.iter();
+        others.any(|other| self.hypotheses[*other].effect.equivalents.contains(&id))
+    }
+
+    /// Index of the hypothesis of an effect.
+    #[must_use]
+    pub fn index_of(&self, effect: &str) -> Option<usize> {
+        self.hypotheses.iter().position(|one| one.id() == effect)
+    }
+
+    /// Adds a hypothesis to a model: at an onset or with a time constant, or, for a random walk, with
+    /// the variance of its increments from onset to onset.
+    pub fn add_to_model(
+        &self,
+        plant: &Plant,
+        rows: &Rows,
+        extension: &mut ModelExtension,
+        hypothesis: usize,
+        shape: Option<f64>,
+    ) {
+        let own = &self.hypotheses[hypothesis];
+        if let (Some(steps), Some(variance)) = (&own.walk, shape) {
+            let base = plant.parameters.len();
+            let columns = steps.iter().map(|column| self.extra[column - base].clone());
+            extension.columns.extend(columns, variance.sqrt());
+            return;
+        }
+        if own.effect.has_term() {
+            for parameter in own.effect.model_parameters() {
+                extension.parameters.push((parameter, f64::INFINITY));
+            }
+            if let (Some(own), Some(shape)) = (own.effect.shape(), shape) {
+                extension.set_role(own.role, shape);
+            }
+            return;
+        }
+        let sources = signature(plant, own.effect, shape, rows).unwrap_or_default();
+        let columns = sources.into_iter().filter_map(|source| match source {
+            Source::Column(column) => Some(column),
+            Source::Parameter(_) => None,
+        });
+        extension.columns.extend(columns, f64::INFINITY);
+    }
+}
+
+/// Columns of an effect with one size at an onset or a time constant: of the size, and of the shape
+/// to first order, the size being `size`. `None` for effects without a shape.
+pub(crate) fn with_shape(
+    plant: &Plant,
+    rows: &Rows,
+    effect: &Effect,
+    shape: f64,
+    size: f64,
+) -> Option<[Column; 2]> {
+    let own = effect.shape()?;
+    let sources = signature(plant, effect, Some(shape), rows)?;
+    let [Source::Column(column)] = sources.as_slice() else {
+        return None;
+    };
+    let between = match own.role {
+        Role::Onset(_) => {
+            // From one onset of the grid to the next: nearer ones are not distinguished.
+            let row = rows.rows_before(shape);
+            let half = rows.len() / (2 * ONSETS);
+            [row.saturating_sub(half), (row + half).min(rows.len() - 1)]
+                .map(|row| rows.since_first_s(row))
+        }
+        _ => [(1.0 - NEAR) * shape, (1.0 + NEAR) * shape],
+    };
+    let change = shape_derivative(plant, effect, size, between, rows)?;
+    Some([column.clone(), change])
+}
+
+/// From the shortest to half the record, in equal ratios.
+fn time_constants_h(duration_s: f64) -> Vec<f64> {
+    let longest_h = (0.5 * duration_s / 3600.0).max(2.0 * SHORTEST_TIME_CONSTANT_H);
+    let ratio = longest_h / SHORTEST_TIME_CONSTANT_H;
+    (0..TIME_CONSTANTS)
+        .map(|index| {
+            SHORTEST_TIME_CONSTANT_H * pow(ratio, index as f64 / (TIME_CONSTANTS - 1) as f64)
+        })
+        .collect()
+}

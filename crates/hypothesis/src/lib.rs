@@ -1,0 +1,108 @@
+//! Score tests of named effects in a fitted model: detection, naming, alternatives.
+//!
+//! # What it is
+//!
+//! [`search`] takes a [`FittedModel`] and a selection of the effects of its [`Plant`], adds those that
+//! the record shows to the model, one after the other, and returns them with estimates,
+//! family-wise p-values, confidence sets and exact equivalents. What no effect explains is
+//! returned as [`Unmodelled`]. [`signature`] is the one place that makes columns of an effect.
+//!
+//! # The equations
+//!
+//! Let θ be the fitted parameters and β the sizes of further effects, zero in the model. Linearised
+//! about the fit, with the moving states at all rows eliminated, the whitened innovations are
+//!
+//! ```text
+//! e = e₀ − X_θ δθ − X_β β,     e ~ N(0, I)
+//! ```
+//!
+//! where the columns of X are the derivatives of the predicted innovations: the *signatures*. Score
+//! and information of β, with θ projected out (W is the inverse of the prior covariance of θ), are
+//!
+//! ```text
+//! s = X_βᵀ e₀ − J_βθ (J_θθ + W)⁻¹ (X_θᵀ e₀ − W θ)                               (1)
+//! J = J_ββ − J_βθ (J_θθ + W)⁻¹ J_θβ,        J_ab = X_aᵀ X_b                     (2)
+//! ```
+//!
+//! The *score test* (Rao 1948) of one hypothesis with columns h is
+//!
+//! ```text
+//! l_h = s_hᵀ J_hh⁻¹ s_h  ~  χ²(number of columns)  if the effect is absent       (3)
+//! ```
+//!
+//! An effect with an unknown onset or time constant has several *variants*; its statistic is the
+//! largest of theirs, l = max_v l_v, whose distribution lies above χ². The *search penalty* q of a
+//! hypothesis is the excess of its 99 % quantile over that of χ²(1). Hypotheses are ranked by l − q;
+//! the detection test takes the *maximum statistic*
+//!
+//! ```text
+//! M = max_h (l_h − c q_h),        c = 0.6                                       (4)
+//! ```
+//!
+//! Under the null hypothesis s ~ N(0, J) jointly: q, the threshold of M at the family-wise
+//! probability of a false alarm, and its p-value come from 4096 draws of s,
+//!
+//! ```text
+//! P(M ≥ m) = share of the draws with M ≥ m, beyond the last ten the tail of χ²(1) (5)
+//! ```
+//!
+//! The *confidence set* of a detected effect a holds every hypothesis b with
+//!
+//! ```text
+//! (l_a − q_a) − (l_b − q_b) < 3.5                                               (6)
+//! ```
+//!
+//! given the other effects. [`CONFIDENCE_SET_DEVIANCE`] is calibrated by simulation. An effect gives way
+//! to one that is nested in it unless it is better by the 5 % point of χ²(1), [`NESTED_MODEL_CHI2`]. A
+//! random walk is a common variance v of steps at all onsets, with the restricted likelihood of
+//! their scores as its statistic,
+//!
+//! ```text
+//! l = max_v Σ_i [ v z_i² / (1 + v λ_i) − ln(1 + v λ_i) ]                         (7)
+//! ```
+//!
+//! λ_i and z_i being the eigenvalues of their information and the scores along its eigenvectors.
+//!
+//! # What it does not do
+//!
+//! It knows no gyro, no file and no filter: a plant is data ([`Plant`]), a fit is a trait.
+
+mod bank;
+mod column;
+mod context;
+mod curve;
+mod error;
+mod forward;
+mod hypothesis;
+mod information;
+mod jump;
+mod line;
+mod model;
+mod null_distribution;
+mod pattern;
+mod plant;
+mod random_walk;
+mod reassess;
+mod refine;
+mod result;
+mod rows;
+mod score;
+mod search;
+mod signature;
+mod unmodelled;
+
+pub use bank::{JointScore, ScoreBank};
+pub use column::{Column, ExtraColumns};
+pub use context::SearchOptions;
+pub use error::Singular;
+pub use hypothesis::{Hypothesis, HypothesisSet, Selection, Unavailable, Variant};
+pub use information::information;
+pub use model::{FittedModel, ModelExtension, StateJump};
+pub use pattern::{ChannelIndex, Pattern, Unmodelled};
+pub use plant::{Plant, WeightInputs};
+pub use random_walk::WalkScore;
+pub use result::{Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, Finding};
+pub use rows::{Covariate, Rows};
+pub use score::{NESTED_MODEL_CHI2, Ranked};
+pub use search::{Searched, search, select};
+pub use signature::{Source, scale, shape_derivative, signature};

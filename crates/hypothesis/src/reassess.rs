@@ -1,0 +1,83 @@
+//! Reassessment after the forward selection: an effect found early may have another name, or none,
+//! given those found later.
+
+use crate::context::{MOST_EFFECTS, SearchContext, SearchState};
+use crate::model::FittedModel;
+use crate::null_distribution::GaussianDraws;
+use crate::refine::refine_shape;
+use crate::result::{Accepted, Finding, evaluate};
+use crate::score::Best;
+
+/// Swaps names and removes insignificant effects until nothing changes; the conditional result of
+/// each effect that remains.
+pub(crate) fn reassess<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &mut SearchState<F>,
+    threshold: f64,
+    draws: &mut GaussianDraws,
+) -> Result<Vec<Finding>, F::Error> {
+    let mut swaps = 0;
+    loop {
+        let mut findings = Vec::with_capacity(state.accepted.len());
+        let mut weakest: Option<(usize, f64)> = None;
+        let mut better: Option<(usize, Best, f64)> = None;
+        for index in 0..state.accepted.len() {
+            let SearchState {
+                stage, accepted, ..
+            } = &*state;
+            let result = evaluate(stage, &context.set, &context.rows, accepted, index, draws)?;
+            findings.push(result.finding);
+            if weakest.is_none_or(|(_, least)| result.tested < least) {
+                weakest = Some((index, result.tested));
+            }
+            if let Some((other, advantage)) = result.better
+                && better.is_none_or(|(.., most)| advantage > most)
+            {
+                better = Some((index, other, advantage));
+            }
+        }
+        // A single effect has been compared with all others already.
+        if let Some((index, other, _)) = better
+            && state.accepted.len() > 1
+            && swaps < MOST_EFFECTS
+        {
+            swaps += 1;
+            // An effect stays if its successor cannot be fitted.
+            if swap(context, state, index, &other).is_ok() {
+                continue;
+            }
+        }
+        match weakest {
+            Some((index, strength))
+                if strength <= threshold && state.accepted.len() + state.unmodelled.len() > 1 =>
+            {
+                state.accepted.remove(index);
+                let (accepted, unmodelled) = (&state.accepted, &state.unmodelled);
+                state.stage = context.stage(&state.stage.fitted, accepted, unmodelled)?;
+            }
+            _ => return Ok(findings),
+        }
+    }
+}
+
+/// Puts another effect in the place of an accepted one. An error leaves the state unchanged.
+fn swap<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &mut SearchState<F>,
+    index: usize,
+    other: &Best,
+) -> Result<(), F::Error> {
+    let mut accepted = state.accepted.clone();
+    let own = accepted.remove(index);
+    let without = context.fitted(&state.stage.fitted, &accepted, &state.unmodelled)?;
+    let swapped = Accepted {
+        hypothesis: other.hypothesis,
+        shape: refine_shape(&without, context, other)?,
+        searched: other.searched,
+        ..own
+    };
+    accepted.insert(index, swapped);
+    state.stage = context.stage(&without, &accepted, &state.unmodelled)?;
+    state.accepted = accepted;
+    Ok(())
+}
