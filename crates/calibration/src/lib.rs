@@ -8,7 +8,7 @@
 //! embeds. A [`Calibration`] holds the estimates, their covariance, the statistics of the
 //! consistency test, unobservable combinations of coefficients, and the sensitivity to errors of
 //! the site. Further entry points: [`average_record`] reduces fast records, [`cramer_rao_bound`]
-//! gives the least covariance of any estimator, [`Extended`] fits the nominal model with effects of
+//! gives the least covariance of any estimator, [`FittedPlatform`] fits the nominal model with effects of
 //! the catalogue, and [`PlannedRun`] predicts the information of a run that has not been made.
 //!
 //! # Method of the batch estimator
@@ -106,9 +106,8 @@ mod coefficients;
 mod convergence_tests;
 mod cramer_rao;
 mod error;
-mod extended;
 mod fit;
-mod further;
+mod fitted_platform;
 mod gross_errors;
 mod gyro_axes;
 mod initial_guess;
@@ -118,6 +117,7 @@ mod noise;
 mod observability;
 mod options;
 mod planned_run;
+mod platform;
 mod problem;
 mod result;
 mod robust;
@@ -135,9 +135,8 @@ pub use check::check_record;
 pub use coefficients::BIASES;
 pub use cramer_rao::cramer_rao_bound;
 pub use error::CalibrationError;
-pub use extended::{Estimates, Expectation, Extended, Extension, Jump, NoiseModel};
 pub use fit::{Consistency, FitStatistics};
-pub use further::{Column, Further};
+pub use fitted_platform::{Estimates, Expectation, FittedPlatform, NoiseModel};
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;
 pub use layout::SiteQuantity;
@@ -145,6 +144,7 @@ pub use noise::{NoiseDifference, NoiseEstimate, NoiseRatio, is_gyro_noise_implau
 pub use observability::UnobservableCombination;
 pub use options::{Method, Options};
 pub use planned_run::{PlannedRun, PredictedInformation};
+pub use platform::{PLATFORM, rows};
 pub use result::{
     AzimuthSearch, Bias, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult,
 };

@@ -3,13 +3,14 @@
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Chart};
+use gyrocal_hypothesis::{Column, Covariate, ExtraColumns};
 use nalgebra::DMatrix;
 
 use crate::attitude::attitude_hypotheses;
 use crate::error::CalibrationError;
-use crate::extended::NoiseModel;
-use crate::further::{Column, Further};
+use crate::fitted_platform::NoiseModel;
 use crate::options::Options;
+use crate::platform::covariates;
 use crate::problem::{Problem, RunProblem};
 use crate::run::{Run, WeightedRows};
 use crate::settings::filter_settings;
@@ -47,12 +48,25 @@ impl PlannedRun<'_> {
     /// # Errors
     /// As [`crate::cramer_rao_bound`].
     pub fn trajectory(&self, options: &Options) -> Result<Vec<Orientation>, CalibrationError> {
-        let none = Further::default();
+        let none = ExtraColumns::default();
         let points = vec![self.start; self.run.record.len()];
         let problem = self.problem(points, options)?;
         problem
             .with_active(0, self.parameters, &[], &none, |pass| pass.free_run())
             .map_err(|source| CalibrationError::pass(0, source))
+    }
+
+    /// Covariates at each row along a trajectory, g.
+    ///
+    /// # Errors
+    /// As [`crate::cramer_rao_bound`].
+    pub fn covariates(
+        &self,
+        points: &[Orientation],
+        options: &Options,
+    ) -> Result<Vec<Covariate>, CalibrationError> {
+        let problem = self.problem(points.to_vec(), options)?;
+        Ok(covariates(&problem.outputs(0, points, self.parameters)))
     }
 
     /// Information of the rows from `first` on, given the earlier ones, on the parameters `active`
@@ -68,7 +82,7 @@ impl PlannedRun<'_> {
         first: usize,
         options: &Options,
     ) -> Result<PredictedInformation, CalibrationError> {
-        let further = Further::new(columns.to_vec());
+        let further = ExtraColumns::new(columns.to_vec());
         let count = active.len() + columns.len();
         let problem = self.problem(points, options)?;
         let mut earlier = DMatrix::zeros(count, count);
@@ -128,7 +142,7 @@ impl PlannedRun<'_> {
                 prior_covariance,
                 points,
                 parameter_unknowns: Vec::new(),
-                further: Further::default(),
+                further: ExtraColumns::default(),
                 amplitudes: Vec::new(),
             }],
         })

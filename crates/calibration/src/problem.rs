@@ -8,8 +8,8 @@ use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Chart, Integration};
 
-use crate::further::Further;
 use crate::run::{Conditions, WeightedRows};
+use gyrocal_hypothesis::ExtraColumns;
 
 /// One unknown of the joint problem.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +62,7 @@ pub(crate) struct RunProblem<'a, I> {
     /// zero.
     pub(crate) parameter_unknowns: Vec<Vec<usize>>,
     /// Columns that are no parameters of the model.
-    pub(crate) further: Further,
+    pub(crate) further: ExtraColumns,
     /// The unknown that is the amplitude of each of them.
     pub(crate) amplitudes: Vec<usize>,
 }
@@ -109,8 +109,12 @@ where
     }
 
     /// Specific force of the model at each row of a run for the attitudes `points`, g.
-    pub(crate) fn outputs(&self, run: usize, points: &[Orientation]) -> Vec<[f64; 3]> {
-        let parameters = self.parameters(run);
+    pub(crate) fn outputs(
+        &self,
+        run: usize,
+        points: &[Orientation],
+        parameters: &[f64],
+    ) -> Vec<[f64; 3]> {
         let run = &self.runs[run];
         let (mut chart, mut moving) = (run.chart, [0.0; 3]);
         points
@@ -119,9 +123,9 @@ where
             .map(|(row, point)| {
                 self.model.place(point, &mut moving, &mut chart);
                 Series::<Chart<f64, I>, 3>::at(&run.rows, row, &mut chart);
-                let mut outputs_g = self.model.output(&moving, &parameters, &chart);
+                let mut outputs_g = self.model.output(&moving, parameters, &chart);
                 for (output, reading_g) in outputs_g.iter_mut().enumerate() {
-                    *reading_g += run.further.reading_g(row, output);
+                    *reading_g += run.further.output_change(row, output);
                 }
                 outputs_g
             })
@@ -133,7 +137,7 @@ where
         &self,
         index: usize,
         parameters: &[f64],
-        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, Further, 3, 3>) -> R,
+        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, ExtraColumns, 3, 3>) -> R,
     ) -> R {
         self.with_columns(index, parameters, &self.runs[index].further, pass)
     }
@@ -155,7 +159,7 @@ where
         index: usize,
         parameters: &[f64],
         left_out: core::ops::Range<usize>,
-        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, Further, 3, 3>) -> R,
+        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, ExtraColumns, 3, 3>) -> R,
     ) -> R {
         let mut rows = self.runs[index].rows.clone();
         rows.exclude(left_out);

@@ -6,7 +6,6 @@ use gyrocal::{Anchored, Chart, ChartInputs, Drift, FilterSettings, Surveyed};
 
 use crate::attitude::{AttitudeHypothesis, AttitudePrior};
 use crate::error::CalibrationError;
-use crate::further::Further;
 use crate::initial_trajectory::{InitialTrajectory, filtered_trajectory};
 use crate::layout::Layout;
 use crate::options::Options;
@@ -14,6 +13,7 @@ use crate::problem::{Problem, RunProblem};
 use crate::run::{Run, WeightedRows};
 use crate::solve::MAX_ITERATIONS;
 use crate::uncertainty::Uncertainty;
+use gyrocal_hypothesis::ExtraColumns;
 
 /// Mean NIS over values, 1 expected, above which a filter counts as diverged.
 pub(crate) const DIVERGED_NIS: f64 = 10.0;
@@ -38,7 +38,7 @@ pub(crate) fn run_problem<'a, I: ChartInputs<f64>>(
         prior_covariance: prior.covariance,
         points,
         parameter_unknowns,
-        further: Further::default(),
+        further: ExtraColumns::default(),
         amplitudes: Vec::new(),
     }
 }

@@ -4,7 +4,8 @@
 use gyrocal::Catalogue;
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal::trajectory::rotation_between;
-use gyrocal_calibration::{Expectation, Extended, Extension, NoiseModel, Options, Run};
+use gyrocal_calibration::{Expectation, FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_hypothesis::ModelExtension;
 use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
 use nalgebra::DMatrix;
 
@@ -19,12 +20,12 @@ fn simulation() -> Simulation {
     .unwrap()
 }
 
-fn fitted(simulation: &Simulation) -> Extended<'_> {
+fn fitted(simulation: &Simulation) -> FittedPlatform<'_> {
     let run = Run {
         record: &simulation.record,
         bench: &simulation.bench,
     };
-    Extended::nominal(&run, &Options::default(), &NoiseModel::default()).unwrap()
+    FittedPlatform::nominal(&run, &Options::default(), &NoiseModel::default()).unwrap()
 }
 
 #[test]
@@ -67,9 +68,9 @@ fn the_order_of_an_extension_does_not_matter() {
         (place("gyro_z.g_x"), 1e-7),
     );
     let evidence = |parameters: Vec<(usize, f64)>| {
-        let extension = Extension {
+        let extension = ModelExtension {
             parameters,
-            ..Extension::default()
+            ..ModelExtension::default()
         };
         let fit = fit.refitted(&extension).unwrap();
         fit.log_evidence_without(0..40).unwrap()
@@ -126,28 +127,28 @@ fn columns_of_a_fit_are_in_the_order_of_its_values() {
     // Not in the order of the model.
     let later = ["gyro_z.g_xy", "accel_y.scale", "gyro_x.g_y"].map(place);
     assert!(!later.is_sorted());
-    let extension = Extension {
+    let extension = ModelExtension {
         parameters: later.map(|place| (place, f64::INFINITY)).to_vec(),
         ..nominal.extension().clone()
     };
     let fit = nominal.refitted(&extension).unwrap();
-    let onset = [gyrocal_calibration::Column::Onset {
+    let onset = [gyrocal_hypothesis::Column::Step {
         parameter: 0,
         row: 100,
     }];
     let all = fit.signatures(&onset, |_| ()).unwrap().gram;
-    let beside = fit.beside(&onset).unwrap().gram;
+    let conditional = fit.conditional(&onset).unwrap().gram;
     let columns: Vec<usize> = (0..10)
         .chain(later.map(|place| place + 1))
         .chain([all.ncols() - 1])
         .collect();
     let expected = all.select_rows(&columns).select_columns(&columns);
-    assert_eq!(beside.shape(), expected.shape());
+    assert_eq!(conditional.shape(), expected.shape());
     for i in 0..columns.len() {
         for j in 0..columns.len() {
             let scale = (expected[(i, i)] * expected[(j, j)]).sqrt();
             // Sums of a thousand products in another order.
-            let error = (beside[(i, j)] - expected[(i, j)]).abs();
+            let error = (conditional[(i, j)] - expected[(i, j)]).abs();
             assert!(error < 1e-12 * scale, "{i} {j}: {error} of {scale}");
         }
     }

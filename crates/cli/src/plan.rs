@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use gyrocal::Platform;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
-use gyrocal_diagnosis::plan::{Aim, PlanOptions, plan, prose};
+use gyrocal_design::{Aim, PlanOptions, plan, prose};
 use gyrocal_record::{Bench, Outputs, Record};
 
 use crate::Failure;

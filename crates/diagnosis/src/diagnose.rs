@@ -7,11 +7,11 @@ mod noise_audited_fit;
 mod noise_update;
 mod untestable_rows;
 
-use gyrocal_calibration::{CalibrationError, Extended, NoiseModel, Options, Run};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_hypothesis::{SearchOptions, Searched};
 use gyrocal_record::{Bench, Record};
 use gyrocal_statistics::allan_test;
 
-use crate::cause::{SearchOptions, Searched};
 use crate::error::DiagnosisError;
 use crate::error_budget::{RESIDUAL_TESTS, shares};
 use crate::filter_test::{TestedFilter, filter_test};
@@ -25,7 +25,7 @@ use crate::residuals::residuals;
 use crate::result::{DiagnosisResult, FalseAlarmShares, Gain};
 use crate::series::Innovations;
 use answer::Evidence;
-pub(crate) use answer::{manifest, summary};
+pub use answer::{manifest, record_summary};
 pub use later::predict_later;
 use noise_audited_fit::noise_audited_fit;
 use noise_update::{gyro_noise_findings, search_with_noise};
@@ -64,9 +64,9 @@ pub struct Diagnosis<'a> {
     /// The answer.
     pub result: DiagnosisResult,
     /// The nominal model at its best fit.
-    pub nominal: Extended<'a>,
+    pub nominal: FittedPlatform<'a>,
     /// The model with all accepted causes, if there are any.
-    pub extended: Option<Extended<'a>>,
+    pub extended: Option<FittedPlatform<'a>>,
     /// The noise that the search assumed.
     pub noise_model: NoiseModel,
     /// The noise audit with the values that it left out.
@@ -102,8 +102,16 @@ pub fn diagnose<'a>(
     let cleaned = audit.cleaned.apply(record);
     let magnitude = magnitude_test(&cleaned, bench, &accel_noise_g, shares.magnitude_test).ok();
 
+    let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
+    let selection = request::selection(record, bench, &also);
     let search = search_options(options, &shares);
-    let found = search_with_noise(audited.nominal, audited.noise_model, &run, &search)?;
+    let found = search_with_noise(
+        audited.nominal,
+        audited.noise_model,
+        &run,
+        &selection,
+        &search,
+    )?;
     let (nominal, searched) = (found.nominal, found.searched);
     let outliers = unexplained_outliers(record, &audited.suspects, &searched, accel_noise_g);
     audit.add_outliers(outliers, bench.accel_noise_g);
@@ -118,10 +126,10 @@ pub fn diagnose<'a>(
 
     let whitened = whitened(&searched.fitted, record)?;
     let (time_s, alpha) = (&record.time_s, shares.residual_test);
-    let remainder = residual_test(time_s, &whitened, &searched.unnamed, alpha);
+    let remainder = residual_test(time_s, &whitened, &searched.unmodelled, alpha);
     let allan = allan_test(time_s, &whitened, shares.allan_test).ok();
 
-    let judged = judge(&nominal, &searched, record)?;
+    let judged = judge(&nominal, &searched)?;
     let gain = model_gain(&nominal, &searched, &judged, &run, &found.noise_model)?;
     let filter = options
         .filter
@@ -161,8 +169,7 @@ pub fn diagnose<'a>(
 fn search_options(options: &DiagnoseOptions, shares: &FalseAlarmShares) -> SearchOptions {
     SearchOptions {
         false_alarm_probability: shares.search,
-        unnamed_probability: shares.residual_test / RESIDUAL_TESTS,
-        also: options.also.clone(),
+        unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
         seed: options.seed,
     }
 }
@@ -171,7 +178,7 @@ fn search_options(options: &DiagnoseOptions, shares: &FalseAlarmShares) -> Searc
 fn unexplained_outliers(
     record: &Record,
     suspects: &[Outlier],
-    searched: &Searched<'_>,
+    searched: &Searched<FittedPlatform<'_>>,
     accel_noise_g: [f64; 3],
 ) -> Vec<Outlier> {
     let mut rows: Vec<usize> = suspects.iter().map(|outlier| outlier.row).collect();
@@ -184,8 +191,8 @@ fn unexplained_outliers(
 /// Gain of the extended model; of the model with all causes if none is accepted, `None` if there is
 /// none.
 fn model_gain(
-    nominal: &Extended<'_>,
-    searched: &Searched<'_>,
+    nominal: &FittedPlatform<'_>,
+    searched: &Searched<FittedPlatform<'_>>,
     judged: &Judged<'_>,
     run: &Run<'_>,
     noise_model: &NoiseModel,

@@ -1,7 +1,7 @@
 use gyrocal_calibration::CalibrationError;
 use gyrocal_statistics::StatisticsError;
 
-/// Why there is no diagnosis, or no plan.
+/// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DiagnosisError {
@@ -62,45 +62,5 @@ pub enum DiagnosisError {
         effect: &'static str,
         /// The missing input.
         why: String,
-    },
-    /// A plan was asked for an effect that has no signature, or is in no catalogue.
-    #[error("`{effect}` is no effect that a run can be planned for")]
-    NotPlannable {
-        /// Its id.
-        effect: String,
-    },
-    /// A goal speaks of a coefficient that there is not.
-    #[error("there is no coefficient `{name}`; they are {known}")]
-    UnknownCoefficient {
-        /// Its id.
-        name: String,
-        /// All there are, as a list in words.
-        known: String,
-    },
-    /// A run of a duration that cannot be planned.
-    #[error(
-        "a run of {found_s} s was asked for, expected from {least_s} s, twelve rows, to {most_s} s"
-    )]
-    Duration {
-        /// The duration \[s\].
-        found_s: f64,
-        /// The shortest run \[s\].
-        least_s: f64,
-        /// The longest run \[s\].
-        most_s: f64,
-    },
-    /// The gimbals reach a limit in any run of that duration.
-    #[error(
-        "no attitude that was tried keeps the gimbals within their limits for {wanted_h:.1} h, as \
-         the Earth turns under the platform; the longest lasts {longest_h:.1} h, from \
-         {angles_deg:.0?} deg; plan for a shorter run or widen the limits"
-    )]
-    Limits {
-        /// Duration that was asked for \[h\].
-        wanted_h: f64,
-        /// The longest that stays within the limits \[h\].
-        longest_h: f64,
-        /// Platform angles at its start \[deg\].
-        angles_deg: [f64; 3],
     },
 }

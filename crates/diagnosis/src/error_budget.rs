@@ -6,7 +6,8 @@
 //! to one at most. [`TABLE`] lists all of them, and all constants that decide what is reported, as
 //! `docs/method.md` prints them.
 
-use crate::cause::{DETECTION_PENALTY_FRACTION, RICHER, SET_CONSTANT};
+use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, DETECTION_PENALTY_FRACTION, NESTED_MODEL_CHI2};
+
 use crate::result::FalseAlarmShares;
 
 /// Share of α for the noise audit of the accelerometers.
@@ -141,13 +142,13 @@ pub const TABLE: [Line; 13] = [
     },
     Line {
         test: "nested models",
-        value: RICHER,
+        value: NESTED_MODEL_CHI2,
         meaning: "chi-square by which an effect with more parameters must be better",
         origin: Origin::Theory("5 % point of chi-square, one degree of freedom"),
     },
     Line {
         test: "confidence set",
-        value: SET_CONSTANT,
+        value: CONFIDENCE_SET_DEVIANCE,
         meaning: "largest difference of penalised statistics within the set",
         origin: Origin::Calibrated("`cargo figures naming`: 95 % coverage at 5 sigma"),
     },

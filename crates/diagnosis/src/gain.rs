@@ -7,7 +7,7 @@ mod later;
 mod score;
 
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_calibration::{CalibrationError, Extended, NoiseModel};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel};
 use gyrocal_record::Record;
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
@@ -23,9 +23,9 @@ use crate::result::{CoefficientShift, FreeRun, Gain};
 /// with each, and `effects` the causes that the second has.
 ///
 /// # Errors
-/// As [`Extended::free_run_g`].
+/// As [`FittedPlatform::free_run_g`].
 pub(crate) fn gain(
-    [nominal, extended]: [&Extended<'_>; 2],
+    [nominal, extended]: [&FittedPlatform<'_>; 2],
     [before, after]: [[f64; BLOCKS]; 2],
     record: &Record,
     noise: &NoiseModel,
@@ -53,7 +53,7 @@ pub(crate) fn gain(
 
 /// Change of a coefficient with its standard deviation: extended = nominal + shift, the two
 /// independent (Hausman, Econometrica 46, 1251, 1978).
-fn shift([nominal, extended]: [&Extended<'_>; 2], index: usize) -> CoefficientShift {
+fn shift([nominal, extended]: [&FittedPlatform<'_>; 2], index: usize) -> CoefficientShift {
     let element = &DRIFT[index];
     let shift = extended.values()[index] - nominal.values()[index];
     let [before, after] = [nominal, extended].map(|fit| fit.covariance()[(index, index)]);

@@ -67,8 +67,6 @@
 //! It reads no records and prints nothing; [`result::read`] reads a written result. It tests effects
 //! of the catalogue, sinusoids and functions of specific force, on a static base only.
 
-pub mod cause;
-mod continuation;
 mod diagnose;
 mod distinguishability;
 mod error;
@@ -78,7 +76,6 @@ mod gain;
 mod magnitude;
 mod magnitude_test;
 mod noise;
-pub mod plan;
 mod power;
 pub mod prose;
 mod request;
@@ -88,7 +85,7 @@ pub mod result;
 mod series;
 mod untested;
 
-pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, predict_later};
+pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, manifest, predict_later, record_summary};
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};
 pub use gain::{AttitudeErrors, LaterPrediction};
@@ -98,6 +95,7 @@ pub use noise::{
     AuditOptions, Cleaned, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, Outlier, Shares,
     audit_noise,
 };
+pub use request::{missing_input, selection};
 pub use result::{DiagnosisResult, Verdict};
 pub use series::Innovations;
 

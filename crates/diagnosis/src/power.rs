@@ -2,11 +2,11 @@
 
 use gyrocal::effect::Role;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_calibration::{CalibrationError, Extended};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, rows};
+use gyrocal_hypothesis::{FittedModel, Ranked, sigmas};
 use gyrocal_record::Record;
 use gyrocal_statistics::normal_probability;
 
-use crate::cause::{Ranked, bounds};
 use crate::result::Power;
 
 /// Records as long as a sidereal day \[s\] show effects of typical size: their verdict needs no
@@ -23,9 +23,9 @@ const MARGIN: f64 = 1.0;
 /// Power of the search for each ranked effect at its typical size.
 ///
 /// # Errors
-/// As [`Extended::signatures`].
+/// As [`FittedPlatform::signatures`].
 pub(crate) fn powers(
-    nominal: &Extended<'_>,
+    nominal: &FittedPlatform<'_>,
     record: &Record,
     ranking: &[Ranked],
     threshold: f64,
@@ -38,7 +38,7 @@ pub(crate) fn powers(
         .iter()
         .map(|effect| (*effect, typical_shape(effect, record)))
         .collect();
-    let sigmas = bounds(nominal, record, &asked)?;
+    let sigmas = sigmas(nominal, &rows(record, nominal.covariates()), &asked)?;
     Ok(effects
         .into_iter()
         .zip(sigmas)

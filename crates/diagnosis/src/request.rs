@@ -1,10 +1,11 @@
 //! Whether effects that were asked for exist, and can be looked for.
 
-use gyrocal::generated::catalogue::EFFECTS;
-use gyrocal_calibration::check_record;
+use gyrocal::effect::Need;
+use gyrocal::{EFFECTS, Effect};
+use gyrocal_calibration::{PLATFORM, check_record};
+use gyrocal_hypothesis::{Selection, select};
 use gyrocal_record::{Bench, Record, any_of, nearest_names};
 
-use crate::cause::missing;
 use crate::error::DiagnosisError;
 
 /// Number of ids that are suggested for an unknown one.
@@ -24,7 +25,7 @@ pub(crate) fn check(
                 nearest: nearest(id),
             });
         };
-        if let Some(why) = missing(effect, record, bench) {
+        if let Some(why) = missing_input(effect, record, bench) {
             return Err(DiagnosisError::Unavailable {
                 effect: effect.id,
                 why,
@@ -32,6 +33,34 @@ pub(crate) fn check(
         }
     }
     Ok(check_record(record)?)
+}
+
+/// The data that an effect needs and the record or its bench lacks.
+#[must_use]
+pub fn missing_input(effect: &Effect, record: &Record, bench: &Bench) -> Option<String> {
+    for need in effect.needs {
+        match need {
+            Need::Column(name) if record.temperature_c.is_none() => {
+                return Some(format!("the record has no column `{name}`"));
+            }
+            Need::Column(name) if !record.temperature_changes() => {
+                return Some(format!("the column `{name}` never changes"));
+            }
+            Need::Key(key) if bench.magnetic_field_gauss.is_none() => {
+                return Some(format!("the bench file has no `{key}` in `[site]`"));
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+/// The effects that are tested in a record: those of the default search, and those in `also`.
+#[must_use]
+pub fn selection(record: &Record, bench: &Bench, also: &[&str]) -> Selection {
+    select(&PLATFORM, also, |effect| {
+        missing_input(effect, record, bench)
+    })
 }
 
 /// The nearest ids as the end of a sentence.

@@ -1,10 +1,10 @@
 //! Residual test: whiteness of the innovations with all causes in the model.
 
-use gyrocal_calibration::{CalibrationError, Extended};
+use gyrocal_calibration::{CalibrationError, FittedPlatform};
+use gyrocal_hypothesis::{Pattern, Unmodelled};
 use gyrocal_record::Record;
 use gyrocal_statistics::{autocorrelation, periodogram, strongest_line};
 
-use crate::cause::{Channel, Pattern, Unnamed};
 use crate::error_budget::RESIDUAL_TESTS;
 use crate::prose::residual_description;
 use crate::result::{
@@ -21,9 +21,9 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The innovations of a fit, whitened.
 ///
 /// # Errors
-/// As [`Extended::signatures`].
+/// As [`FittedPlatform::signatures`].
 pub(crate) fn whitened(
-    fitted: &Extended<'_>,
+    fitted: &FittedPlatform<'_>,
     record: &Record,
 ) -> Result<Vec<[f64; 3]>, CalibrationError> {
     let mut whitened = vec![[f64::NAN; 3]; record.len()];
@@ -33,12 +33,12 @@ pub(crate) fn whitened(
     Ok(whitened)
 }
 
-/// Tests whitened innovations; `unnamed` holds the terms that the search found beside the catalogue,
+/// Tests whitened innovations; `unmodelled` holds the terms that the search found beside the catalogue,
 /// and `alpha` is the probability of a false alarm of all residual tests.
 pub(crate) fn residual_test(
     time_s: &[f64],
     whitened: &[[f64; 3]],
-    unnamed: &[Unnamed],
+    unmodelled: &[Unmodelled],
     alpha: f64,
 ) -> ResidualTest {
     let line = largest_line(time_s, whitened, alpha);
@@ -55,7 +55,7 @@ pub(crate) fn residual_test(
     let of_correlation = correlation.as_ref().map(|found| found.p_value);
     let tested = of_line.into_iter().chain(of_correlation);
     let tested = tested.map(|p| RESIDUAL_TESTS * p).fold(1.0, f64::min);
-    let unmodelled: Vec<UnmodelledTerm> = unnamed.iter().map(term).collect();
+    let unmodelled: Vec<UnmodelledTerm> = unmodelled.iter().map(term).collect();
     let p_value = unmodelled
         .iter()
         .map(|term| term.p_value)
@@ -96,22 +96,21 @@ fn largest_line(time_s: &[f64], whitened: &[[f64; 3]], alpha: f64) -> Option<Res
     })
 }
 
-fn term(found: &Unnamed) -> UnmodelledTerm {
-    let channel = match found.channel {
-        Channel::Drift(axis) => format!("gyro_{}", AXES[axis]),
-        Channel::Readings(axis) => format!("accel_{}", AXES[axis]),
-    };
+fn term(found: &Unmodelled) -> UnmodelledTerm {
     let (pattern, period_h, force_axis) = match found.pattern {
         Pattern::Line { period_h } => (UnmodelledPattern::Line, Some(period_h), None),
-        Pattern::Curve { axis } => (UnmodelledPattern::Curve, None, Some(AXES[axis].to_owned())),
+        Pattern::Curve { covariate, .. } => {
+            let axis = AXES[covariate].to_owned();
+            (UnmodelledPattern::Curve, None, Some(axis))
+        }
     };
     UnmodelledTerm {
-        channel,
+        channel: found.describes.id.to_owned(),
         pattern,
         period_h,
         force_axis,
         size: found.size,
-        unit: found.channel.unit().to_owned(),
+        unit: found.describes.unit.to_owned(),
         p_value: found.ln_probability.exp(),
     }
 }

@@ -2,7 +2,7 @@
 //! specific force, time and temperature, and the error of the open-loop simulation. They make no
 //! finding.
 
-use gyrocal_calibration::Extended;
+use gyrocal_calibration::FittedPlatform;
 use gyrocal_record::Record;
 use gyrocal_statistics::{
     SpectralLine, StatisticsError, autocorrelation, binned_means, nis, periodogram, rms_of_present,
@@ -20,9 +20,9 @@ const BINS: usize = 12;
 /// Statistics of the innovations of the nominal model, and the error of its open-loop simulation.
 ///
 /// # Errors
-/// As [`Extended::free_run_g`].
+/// As [`FittedPlatform::free_run_g`].
 pub(crate) fn residuals(
-    nominal: &Extended<'_>,
+    nominal: &FittedPlatform<'_>,
     innovations: &Innovations,
     record: &Record,
     false_alarm: f64,

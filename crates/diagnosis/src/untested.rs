@@ -2,8 +2,8 @@
 
 use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_hypothesis::{Ranked, Unavailable};
 
-use crate::cause::{Ranked, Unavailable};
 use crate::noise::NoiseAudit;
 use crate::prose;
 use crate::result::{NotTested, NotTestedReason};

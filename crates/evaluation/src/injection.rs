@@ -2,7 +2,7 @@
 
 use gyrocal::effect::{EffectParameter, Need, Role};
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_calibration::{Extended, NoiseModel, Options, Run};
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -59,7 +59,7 @@ impl InjectedEffect {
     /// Strength of the effect, in sigmas of its own bound; 0 if the record does not show it.
     ///
     /// # Errors
-    /// As [`simulate`], [`Extended::nominal`] and [`ProjectedScores::new`].
+    /// As [`simulate`], [`FittedPlatform::nominal`] and [`ProjectedScores::new`].
     pub fn strength(&self, scenario: &Scenario) -> Result<f64, EvaluationError> {
         let clean = simulate(scenario)?;
         let mut columns = SignatureColumns::default();
@@ -100,13 +100,13 @@ pub fn draw_shape(effect: &Effect, scenario: &Scenario, random: &mut Draw) -> Op
 /// The nominal model fitted to a record, with the noise that its bench declares.
 ///
 /// # Errors
-/// As [`Extended::nominal`].
-pub fn nominal_fit(simulation: &Simulation) -> Result<Extended<'_>, EvaluationError> {
+/// As [`FittedPlatform::nominal`].
+pub fn nominal_fit(simulation: &Simulation) -> Result<FittedPlatform<'_>, EvaluationError> {
     let run = Run {
         record: &simulation.record,
         bench: &simulation.bench,
     };
-    Ok(Extended::nominal(
+    Ok(FittedPlatform::nominal(
         &run,
         &Options::default(),
         &NoiseModel::default(),
@@ -119,7 +119,7 @@ pub fn nominal_fit(simulation: &Simulation) -> Result<Extended<'_>, EvaluationEr
 /// between the signatures of two exceeds `largest_cosine`.
 ///
 /// # Errors
-/// As [`simulate`], [`Extended::nominal`] and [`ProjectedScores::new`].
+/// As [`simulate`], [`FittedPlatform::nominal`] and [`ProjectedScores::new`].
 pub fn inject(
     scenario: &Scenario,
     effects: &[(&'static Effect, Option<f64>)],
@@ -169,7 +169,7 @@ pub fn inject_any(
 /// As [`ProjectedScores::new`].
 pub fn inject_into(
     clean: &Simulation,
-    fitted: &Extended<'_>,
+    fitted: &FittedPlatform<'_>,
     effects: &[(&'static Effect, Option<f64>)],
     strength: f64,
     largest_cosine: f64,

@@ -4,8 +4,8 @@
 //! in the whitened residuals: the fitted model, with the effects that the diagnosis named in it, is
 //! fitted to the record with and without the effect, the noise of both being the same.
 
-use gyrocal_calibration::{Column, Extension, Further};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_hypothesis::{Column, ExtraColumns, ModelExtension};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 
@@ -127,7 +127,7 @@ pub(crate) fn score_out_of_catalogue(
     random: &mut Draw,
 ) -> Result<RecordScore, EvaluationError> {
     let clean = simulate(scenario)?;
-    let residuals = whitened_residuals(&clean, &Extension::default())?;
+    let residuals = whitened_residuals(&clean, &ModelExtension::default())?;
     for attempt in 0..MAX_DRAWS {
         let mut effect = UnlistedEffect::draw(number + attempt as u64, scenario, random);
         if !scale(scenario, &residuals, &mut effect, strength)? {
@@ -164,10 +164,10 @@ fn diagnosed(
         let named = found
             .extended
             .as_ref()
-            .map_or_else(Extension::default, |extended| {
+            .map_or_else(ModelExtension::default, |extended| {
                 named_effects(extended.extension())
             });
-        let without = if named == Extension::default() {
+        let without = if named == ModelExtension::default() {
             Ok(nominal_residuals.to_vec())
         } else {
             whitened_residuals(clean, &named)
@@ -202,7 +202,7 @@ fn scale(
         let Ok(simulation) = effect.simulate(scenario) else {
             return Ok(false);
         };
-        let Ok(with) = whitened_residuals(&simulation, &Extension::default()) else {
+        let Ok(with) = whitened_residuals(&simulation, &ModelExtension::default()) else {
             return Ok(false);
         };
         let factor = strength / distance(without, &with);
@@ -223,10 +223,10 @@ fn scale(
 /// Whitened residuals of a model that is fitted to a record.
 fn whitened_residuals(
     simulation: &Simulation,
-    extension: &Extension,
+    extension: &ModelExtension,
 ) -> Result<Vec<[f64; 3]>, EvaluationError> {
     let nominal = nominal_fit(simulation)?;
-    if *extension == Extension::default() {
+    if *extension == ModelExtension::default() {
         return Ok(nominal.whitened()?);
     }
     Ok(nominal.refitted(extension)?.whitened()?)
@@ -248,16 +248,16 @@ fn distance(without: &[[f64; 3]], with: &[[f64; 3]]) -> f64 {
 
 /// The extension without unmodelled terms: the spectral lines and curves that the search added have no
 /// name and count as unexplained.
-fn named_effects(extension: &Extension) -> Extension {
-    let further = &extension.further;
-    let mut named = Further::default();
+fn named_effects(extension: &ModelExtension) -> ModelExtension {
+    let further = &extension.columns;
+    let mut named = ExtraColumns::default();
     for (column, sigma) in further.columns().iter().zip(further.sigmas()) {
-        if !matches!(column, Column::Course { .. } | Column::Readings { .. }) {
+        if !matches!(column, Column::TimeProfile { .. } | Column::Output { .. }) {
             named.extend([column.clone()], *sigma);
         }
     }
-    Extension {
-        further: named,
+    ModelExtension {
+        columns: named,
         ..extension.clone()
     }
 }
@@ -293,7 +293,7 @@ mod tests {
             ..scenario(3)
         };
         let clean = simulate(&scenario).unwrap();
-        let without = whitened_residuals(&clean, &Extension::default()).unwrap();
+        let without = whitened_residuals(&clean, &ModelExtension::default()).unwrap();
         let mut scaled = 0;
         for kind in 0..6 {
             let random = &mut Draw::new(kind, 0);
@@ -301,7 +301,7 @@ mod tests {
             if scale(&scenario, &without, &mut effect, 10.0).unwrap() {
                 scaled += 1;
                 let other = effect.simulate(&scenario).unwrap();
-                let with = whitened_residuals(&other, &Extension::default()).unwrap();
+                let with = whitened_residuals(&other, &ModelExtension::default()).unwrap();
                 let strength = distance(&without, &with);
                 assert!(
                     (10.0 / REACHED..10.0 * REACHED).contains(&strength),

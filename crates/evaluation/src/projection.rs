@@ -4,7 +4,8 @@
 
 use gyrocal::Platform;
 use gyrocal::generated::catalogue::PARAMETERS;
-use gyrocal_calibration::{CalibrationError, Column, Extended};
+use gyrocal_calibration::{CalibrationError, FittedPlatform};
+use gyrocal_hypothesis::Column;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::signature::Signature;
@@ -32,13 +33,13 @@ impl ProjectedScores {
     /// # Errors
     /// [`CalibrationError::Pass`], and [`CalibrationError::NotPositiveDefinite`] if the record does not
     /// determine the fitted parameters.
-    pub fn new(fitted: &Extended<'_>, further: &[Column]) -> Result<Self, CalibrationError> {
+    pub fn new(fitted: &FittedPlatform<'_>, further: &[Column]) -> Result<Self, CalibrationError> {
         let mut whitened = vec![[f64::NAN; 3]; fitted.points().len()];
         let reduced = fitted.signatures(further, |value| {
             whitened[value.row][value.output] = value.columns[0];
         })?;
         let extension = fitted.extension();
-        let own = extension.further.columns().len();
+        let own = extension.columns.columns().len();
         let catalogue = PARAMETERS.len();
         // In the Gram matrix: residual, catalogue, the fit's own further columns, these.
         let fitted_columns: Vec<usize> = (0..Platform::PARAMETERS)

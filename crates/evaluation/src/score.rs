@@ -1,10 +1,10 @@
 //! Comparison of the diagnosis of one record with the effects injected into it.
 
 use gyrocal::effect::Role;
-use gyrocal_calibration::NoiseModel;
-use gyrocal_diagnosis::cause::{SearchOptions, search};
+use gyrocal_calibration::{NoiseModel, rows};
 use gyrocal_diagnosis::result::{DiagnosisResult, Finding, FindingKind, Parameter, RankedEffect};
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose, selection};
+use gyrocal_hypothesis::{FittedModel, SearchOptions, search};
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Scenario, Simulation};
 
@@ -300,9 +300,11 @@ fn oracle_set_size(
         ..SearchOptions::default()
     };
     let nominal = nominal_fit(simulation)?;
-    let searched = search(nominal, &simulation.record, &simulation.bench, &options)?;
+    let (record, bench) = (&simulation.record, &simulation.bench);
+    let rows = rows(record, nominal.covariates());
+    let searched = search(nominal, rows, &selection(record, bench, &[]), &options)?;
     let first = searched.findings.first();
-    Ok(first.map(|finding| 1 + finding.rivals.len()))
+    Ok(first.map(|finding| 1 + finding.alternatives.len()))
 }
 
 /// Onset or time constant of a finding.

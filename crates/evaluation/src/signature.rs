@@ -6,7 +6,8 @@
 use gyrocal::Effect;
 use gyrocal::effect::EffectKind;
 use gyrocal::generated::catalogue::PARAMETERS;
-use gyrocal_calibration::{BIASES, Column};
+use gyrocal_calibration::BIASES;
+use gyrocal_hypothesis::Column;
 use gyrocal_record::Record;
 
 /// The columns of one effect at one onset or time constant.
@@ -42,12 +43,16 @@ impl SignatureColumns {
                 .partition_point(|time_s| time_s - first_s < onset_s)
         };
         let further = match (effect.kind, shape, effect.rate()) {
-            (EffectKind::InitialState, ..) => [0, 1, 2].map(|axis| Column::Start { axis }).to_vec(),
+            (EffectKind::InitialState, ..) => [0, 1, 2]
+                .map(|axis| Column::InitialState { state: axis })
+                .to_vec(),
             (EffectKind::StateJump, Some(onset_s), _) => {
                 let row = rows_before(onset_s).saturating_sub(1).min(last_step);
-                [0, 1, 2].map(|axis| Column::Jump { row, axis }).to_vec()
+                [0, 1, 2]
+                    .map(|axis| Column::StateJump { row, state: axis })
+                    .to_vec()
             }
-            (EffectKind::Step, Some(onset_s), Some(gyro)) => vec![Column::Onset {
+            (EffectKind::Step, Some(onset_s), Some(gyro)) => vec![Column::Step {
                 parameter: BIASES[gyro],
                 row: rows_before(onset_s).min(last_step),
             }],
@@ -57,7 +62,7 @@ impl SignatureColumns {
                     let middle_s = 0.5 * (pair[0] + pair[1]) - first_s;
                     libm::exp(-middle_s / (3600.0 * time_constant_h))
                 };
-                vec![Column::Course {
+                vec![Column::TimeProfile {
                     parameter: BIASES[gyro],
                     steps: record.time_s.windows(2).map(share).collect(),
                 }]

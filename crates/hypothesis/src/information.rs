@@ -1,4 +1,4 @@
-//! The Cramér-Rao bound of an effect in a record.
+//! The Cramér-Rao bound of effects in a record.
 
 use gyrocal_scalar::effect::Effect;
 use nalgebra::DMatrix;
@@ -21,26 +21,61 @@ pub fn information<F: FittedModel>(
     effect: &Effect,
     shape: Option<f64>,
 ) -> Result<Option<DMatrix<f64>>, F::Error> {
-    let plant = fitted.plant();
-    let Some(sources) = signature(plant, effect, shape, rows) else {
-        return Ok(None);
+    Ok(informations(fitted, rows, &[(effect, shape)])?
+        .pop()
+        .flatten())
+}
+
+/// Cramér-Rao bounds of the first sizes of several effects, each with its shape, as standard
+/// deviations. One pass over the record serves all of them.
+///
+/// # Errors
+/// Those of a pass over the record.
+pub fn sigmas<F: FittedModel>(
+    fitted: &F,
+    rows: &Rows,
+    effects: &[(&Effect, Option<f64>)],
+) -> Result<Vec<Option<f64>>, F::Error> {
+    let bound = |information: DMatrix<f64>| {
+        let sigma = information.try_inverse()?[(0, 0)].sqrt();
+        sigma.is_finite().then_some(sigma)
     };
+    let informations = informations(fitted, rows, effects)?;
+    Ok(informations.into_iter().map(|i| bound(i?)).collect())
+}
+
+fn informations<F: FittedModel>(
+    fitted: &F,
+    rows: &Rows,
+    effects: &[(&Effect, Option<f64>)],
+) -> Result<Vec<Option<DMatrix<f64>>>, F::Error> {
+    let plant = fitted.plant();
     let mut extra = Vec::new();
-    let columns: Vec<usize> = sources
-        .into_iter()
-        .map(|source| match source {
-            Source::Parameter(parameter) => parameter,
-            Source::Column(column) => {
-                extra.push(column);
-                plant.parameters.len() + extra.len() - 1
-            }
+    let places: Vec<Option<Vec<usize>>> = effects
+        .iter()
+        .map(|(effect, shape)| {
+            let sources = signature(plant, effect, *shape, rows)?.into_iter();
+            let columns = sources.map(|source| match source {
+                Source::Parameter(parameter) => parameter,
+                Source::Column(column) => {
+                    extra.push(column);
+                    plant.parameters.len() + extra.len() - 1
+                }
+            });
+            Some(columns.collect())
         })
         .collect();
     let bank = ScoreBank::new(fitted, &extra)?;
-    if columns.is_empty() || !columns.iter().all(|column| bank.visible(*column)) {
-        return Ok(None);
-    }
-    let scale = scale(effect);
-    let (information, _) = bank.part(&columns);
-    Ok(Some(scale * scale * information))
+    let of = |effect: &Effect, columns: Vec<usize>| {
+        if columns.is_empty() || !columns.iter().all(|column| bank.visible(*column)) {
+            return None;
+        }
+        let scale = scale(effect);
+        let (information, _) = bank.part(&columns);
+        Some(scale * scale * information)
+    };
+    let all = effects.iter().zip(places);
+    Ok(all
+        .map(|((effect, _), columns)| of(effect, columns?))
+        .collect())
 }

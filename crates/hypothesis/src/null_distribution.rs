@@ -27,7 +27,7 @@ const PENALTY_QUANTILE: f64 = 0.99;
 /// reaches, with a probability of 0.68, where a constant term exceeds 14.5 with 0.88 (normal
 /// distribution about 5): this brings them nearer. The threshold is drawn with it, so that the
 /// probability of a false alarm does not depend on it.
-const DETECTION_PENALTY_FRACTION: f64 = 0.6;
+pub const DETECTION_PENALTY_FRACTION: f64 = 0.6;
 
 /// A tail of fewer draws says little: beyond these it is that of one degree of freedom.
 const TAIL: usize = 10;

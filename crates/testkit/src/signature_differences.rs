@@ -6,8 +6,9 @@
 //! be equal.
 
 use gyrocal::effect::{Effect, EffectKind, Role};
-use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, RATES};
-use gyrocal_calibration::{BIASES, Column, Extended, Extension, NoiseModel, Options, Run};
+use gyrocal::generated::catalogue::{EFFECTS, PARAMETERS, RATES, SHAPES};
+use gyrocal_calibration::{BIASES, FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_hypothesis::{Column, ModelExtension};
 use gyrocal_record::Record;
 use gyrocal_truth::{Hidden, Scenario, simulate};
 use nalgebra::{DMatrix, DVector};
@@ -70,9 +71,11 @@ pub fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
         record: &record,
         bench: &bench,
     };
-    let nominal = Extended::nominal(&run, &Options::default(), &NoiseModel::default())?;
-    let shaped = Extension {
-        shapes: core::array::from_fn(|index| held_shape(index, &record)),
+    let nominal = FittedPlatform::nominal(&run, &Options::default(), &NoiseModel::default())?;
+    let shaped = ModelExtension {
+        shapes: (0..SHAPES.len())
+            .map(|index| held_shape(index, &record))
+            .collect(),
         ..nominal.extension().clone()
     };
     let fitted = nominal.refitted(&shaped)?;
@@ -91,9 +94,9 @@ pub fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
     let first = PARAMETERS.len() + further.len();
     for probe in &probes {
         let change_g = change_g(&quiet, probe)?;
-        further.extend([0, 1, 2].map(|axis| Column::Readings {
-            axis,
-            change_g: change_g.iter().map(|row| row[axis]).collect(),
+        further.extend([0, 1, 2].map(|axis| Column::Output {
+            output: axis,
+            change: change_g.iter().map(|row| row[axis]).collect(),
         }));
     }
     let reduced = fitted.signatures(&further, |_| ())?;
@@ -224,7 +227,7 @@ fn step_probe(record: &Record, gyro: usize, effect: &'static Effect, row: usize)
         held: vec![("onset_s", onset_s)],
         size: 0.01,
         unit: 1.0,
-        signature: Signature::Further(Column::Onset {
+        signature: Signature::Further(Column::Step {
             parameter: BIASES[gyro],
             row,
         }),
@@ -248,7 +251,7 @@ fn warm_up_probe(
         held: vec![("time_constant_h", time_constant_h)],
         size: 0.01,
         unit: 1.0,
-        signature: Signature::Further(Column::Course {
+        signature: Signature::Further(Column::TimeProfile {
             parameter: BIASES[gyro],
             steps: record.time_s.windows(2).map(share).collect(),
         }),
@@ -275,7 +278,7 @@ fn attitude_probes(record: &Record, axis: usize) -> Result<Vec<Probe>, Error> {
     let initial = rotation(
         EffectKind::InitialState,
         Vec::new(),
-        Column::Start { axis },
+        Column::InitialState { state: axis },
         String::new(),
     );
     let jumps = probed_rows(record).map(|row| {
@@ -285,7 +288,7 @@ fn attitude_probes(record: &Record, axis: usize) -> Result<Vec<Probe>, Error> {
         rotation(
             EffectKind::StateJump,
             vec![("onset_s", onset_s)],
-            Column::Jump { row, axis },
+            Column::StateJump { row, state: axis },
             format!(" at {onset_s} s"),
         )
     });

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use gyrocal_diagnosis::DiagnosisError;
+use gyrocal_design::DesignError;
 use miette::Diagnostic;
 
 use crate::Failure;
@@ -15,7 +15,7 @@ const CODE: &str = "gyrocal::plan";
 #[error("{record}: no plan")]
 pub(super) struct NotPlanned {
     record: String,
-    source: DiagnosisError,
+    source: DesignError,
 }
 
 /// A diagnosis is of another record, or was made with another bench file.
@@ -33,7 +33,7 @@ pub(super) struct OtherInput {
 }
 
 impl NotPlanned {
-    pub(super) fn new(record: &Path, source: DiagnosisError) -> Self {
+    pub(super) fn new(record: &Path, source: DesignError) -> Self {
         Self {
             record: record.display().to_string(),
             source,
@@ -42,12 +42,12 @@ impl NotPlanned {
 
     fn advice(&self) -> &'static str {
         match &self.source {
-            DiagnosisError::NotPlannable { .. } => {
+            DesignError::NotPlannable { .. } => {
                 "write the diagnosis again with `gyrocal diagnose` of this version"
             }
-            DiagnosisError::UnknownCoefficient { .. } => "name one of them in --sigma",
-            DiagnosisError::Duration { .. } => "give other --hours",
-            DiagnosisError::Limits { .. } => {
+            DesignError::UnknownCoefficient { .. } => "name one of them in --sigma",
+            DesignError::Duration { .. } => "give other --hours",
+            DesignError::Limits { .. } => {
                 "give shorter --hours, or wider --limits or [gimbal_limits_deg]"
             }
             _ => {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use gyrocal_calibration::{Extended, NoiseModel, Options, Run};
-use gyrocal_diagnosis::plan::{Named, noise_of};
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_design::{NamedCause, noise_of};
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, diagnose, result};
 use gyrocal_record::Input;
 
@@ -14,9 +14,9 @@ use crate::diagnose::NotDiagnosed;
 
 /// Starting point of a plan.
 pub(super) struct Known<'a> {
-    pub(super) fitted: Extended<'a>,
+    pub(super) fitted: FittedPlatform<'a>,
     pub(super) noise: NoiseModel,
-    pub(super) named: Vec<Named>,
+    pub(super) named: Vec<NamedCause>,
 }
 
 pub(super) fn known<'a>(arguments: &PlanArguments, run: &Run<'a>) -> Result<Known<'a>, Failure> {
@@ -35,7 +35,7 @@ fn made<'a>(arguments: &PlanArguments, run: &Run<'a>) -> Result<Known<'a>, Failu
     let found = diagnose(run.record, run.bench, &options)
         .map_err(|source| NotDiagnosed::new(&arguments.record, run.bench, source))?;
     Ok(Known {
-        named: Named::all(&found.result),
+        named: NamedCause::all(&found.result),
         noise: found.noise_model,
         fitted: found.extended.unwrap_or(found.nominal),
     })
@@ -48,9 +48,9 @@ fn written<'a>(
 ) -> Result<Known<'a>, Failure> {
     let diagnosis = result::read(path)?;
     check_inputs(path, &diagnosis, arguments)?;
-    let named = Named::all(&diagnosis);
+    let named = NamedCause::all(&diagnosis);
     let noise = noise_of(&diagnosis);
-    let fitted = Named::fitted(&named, run, &noise, &Options::default())
+    let fitted = NamedCause::fitted(&named, run, &noise, &Options::default())
         .map_err(|source| NotPlanned::new(&arguments.record, source))?;
     Ok(Known {
         fitted,

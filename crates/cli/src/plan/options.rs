@@ -1,6 +1,6 @@
 //! Limits and goals of the command line.
 
-use gyrocal_diagnosis::plan::Goal;
+use gyrocal_design::Goal;
 use gyrocal_record::{Bench, GimbalLimits};
 
 use super::PlanArguments;

@@ -44,7 +44,7 @@ pub(crate) fn assert_plan(folder: &Folder, name: &str) {
 fn schemas_that_are_committed_are_those_of_the_types() {
     let schemas = [
         (DIAGNOSIS, gyrocal_diagnosis::result::schema()),
-        (PLAN, gyrocal_diagnosis::plan::schema()),
+        (PLAN, gyrocal_design::schema()),
     ];
     for (path, schema) in schemas {
         let mut expected = serde_json::to_string_pretty(&schema).unwrap();

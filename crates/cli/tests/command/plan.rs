@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use gyrocal_diagnosis::plan::{Aim, PlanResult};
+use gyrocal_design::{Aim, PlanResult};
 
 use crate::contract::assert_plan;
 use crate::folder::{Folder, repository};

@@ -2,12 +2,12 @@
 
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_calibration::{Extended, NoiseEstimate, NoiseRatio, Run};
+use gyrocal_calibration::{FittedPlatform, NoiseEstimate, NoiseRatio, Run};
+use gyrocal_hypothesis::Searched;
 use gyrocal_record::{Manifest, NoiseRatioReport, NoiseReport, Record};
 use gyrocal_statistics::{self as statistics, NoiseCourse};
 
 use super::{DiagnoseOptions, findings};
-use crate::cause::Searched;
 use crate::distinguishability::indistinguishable;
 use crate::filter_test::Tested;
 use crate::gain::Judged;
@@ -31,9 +31,9 @@ pub(super) struct Evidence<'e, 'a> {
     pub(super) residuals: Residuals,
     pub(super) audit: &'e NoiseAudit,
     pub(super) gyro_noise: Vec<NoiseFinding>,
-    pub(super) nominal: &'e Extended<'a>,
+    pub(super) nominal: &'e FittedPlatform<'a>,
     pub(super) power: Vec<Power>,
-    pub(super) searched: &'e Searched<'a>,
+    pub(super) searched: &'e Searched<FittedPlatform<'a>>,
     pub(super) estimate: &'e NoiseEstimate,
     pub(super) remainder: ResidualTest,
     pub(super) allan: Option<statistics::AllanTest>,
@@ -58,7 +58,7 @@ impl Evidence<'_, '_> {
         DiagnosisResult {
             schema_version: SCHEMA_VERSION,
             manifest: manifest(self.options.seed),
-            record: summary(self.run.record),
+            record: record_summary(self.run.record),
             later_record: None,
             verdict,
             false_alarm_probability: self.options.false_alarm_probability,
@@ -134,7 +134,7 @@ impl Evidence<'_, '_> {
     }
 
     fn coefficients(&self) -> Coefficients {
-        let estimates = |fit: &Extended<'_>| {
+        let estimates = |fit: &FittedPlatform<'_>| {
             let all = DRIFT.iter().enumerate();
             all.map(|(index, element)| CoefficientEstimate {
                 name: element.id.to_owned(),
@@ -156,7 +156,8 @@ impl Evidence<'_, '_> {
 }
 
 /// Manifest of a result that no command made: without inputs and command line.
-pub(crate) fn manifest(seed: u64) -> Manifest {
+#[must_use]
+pub fn manifest(seed: u64) -> Manifest {
     Manifest {
         program: "gyrocal".to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -168,7 +169,8 @@ pub(crate) fn manifest(seed: u64) -> Manifest {
 }
 
 /// Size of a record, and what is missing in it.
-pub(crate) fn summary(record: &Record) -> RecordSummary {
+#[must_use]
+pub fn record_summary(record: &Record) -> RecordSummary {
     RecordSummary {
         rows: record.len(),
         duration_s: record.duration_s(),

@@ -2,10 +2,10 @@
 
 use gyrocal::effect::Role;
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_hypothesis::{self as hypothesis, EffectEstimate};
 use gyrocal_record::Record;
 use gyrocal_statistics::NORMAL_97_5;
 
-use crate::cause::{self, FoundParameter};
 use crate::error_budget::CONFIDENCE_SET_COVERAGE;
 use crate::filter_test::FILTER_EFFECT;
 use crate::gain::Acceptance;
@@ -34,12 +34,12 @@ pub(super) fn of_noise(finding: &NoiseFinding) -> Finding {
 
 /// A finding of the search, with its gain in cross-validation.
 pub(super) fn of_cause(
-    finding: &cause::Finding,
+    finding: &hypothesis::Finding,
     acceptance: &Acceptance,
     record: &Record,
 ) -> Finding {
     let alternatives: Vec<Alternative> = finding
-        .rivals
+        .alternatives
         .iter()
         .map(|other| Alternative {
             effect: other.effect.to_owned(),
@@ -47,7 +47,7 @@ pub(super) fn of_cause(
         })
         .collect();
     let equivalents = finding
-        .equivalents
+        .exact_equivalents
         .iter()
         .map(|(effect, found)| Equivalent {
             effect: (*effect).to_owned(),
@@ -97,13 +97,13 @@ fn row(effect: &str) -> Option<&'static Effect> {
     EFFECTS.iter().find(|row| row.id == effect)
 }
 
-fn parameters(effect: &str, found: &[FoundParameter], record: &Record) -> Vec<Parameter> {
+fn parameters(effect: &str, found: &[EffectEstimate], record: &Record) -> Vec<Parameter> {
     let shape = row(effect).and_then(Effect::shape);
-    let interval = |found: &FoundParameter| {
+    let interval = |found: &EffectEstimate| {
         let shape = shape.filter(|shape| shape.name == found.name)?;
         Some(vec![interval(shape.role, found, record)?])
     };
-    let parameter = |found: &FoundParameter| Parameter {
+    let parameter = |found: &EffectEstimate| Parameter {
         name: found.name.to_owned(),
         estimate: found.estimate,
         sigma: found.sigma,
@@ -115,7 +115,7 @@ fn parameters(effect: &str, found: &[FoundParameter], record: &Record) -> Vec<Pa
 
 /// The 95 % interval of an onset or a time constant where its likelihood is quadratic, within the
 /// values that it can have.
-fn interval(role: Role, found: &FoundParameter, record: &Record) -> Option<[f64; 2]> {
+fn interval(role: Role, found: &EffectEstimate, record: &Record) -> Option<[f64; 2]> {
     let most = match role {
         Role::Onset(_) => record.duration_s(),
         _ => f64::INFINITY,

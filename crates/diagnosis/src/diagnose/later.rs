@@ -1,8 +1,8 @@
 //! Validation of a diagnosis on a later record of the same platform.
 
-use gyrocal_calibration::{Extended, NoiseModel, Run};
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Run};
 
-use super::answer::summary;
+use super::answer::record_summary;
 use super::noise_audited_fit::noise_audited_fit;
 use super::{DiagnoseOptions, Diagnosis};
 use crate::error::DiagnosisError;
@@ -24,7 +24,7 @@ impl Diagnosis<'_> {
         later: &Run<'_>,
         options: &DiagnoseOptions,
     ) -> Result<(), DiagnosisError> {
-        self.result.later_record = Some(summary(later.record));
+        self.result.later_record = Some(record_summary(later.record));
         let Some(extended) = &self.extended else {
             return Ok(());
         };
@@ -45,7 +45,7 @@ impl Diagnosis<'_> {
 /// # Errors
 /// [`DiagnosisError`], of the later record.
 pub fn predict_later(
-    [nominal, extended]: [&Extended<'_>; 2],
+    [nominal, extended]: [&FittedPlatform<'_>; 2],
     assumed: &NoiseModel,
     first: &Run<'_>,
     later: &Run<'_>,

@@ -2,7 +2,7 @@
 
 use gyrocal::{Discretisation, Drift, FilterSettings, InitialAttitude};
 use gyrocal_calibration::{
-    Extended, NoiseModel, Options, Run, filter_settings, gross_errors, run_factorised_filter,
+    FittedPlatform, NoiseModel, Options, Run, filter_settings, gross_errors, run_factorised_filter,
 };
 use gyrocal_record::{Bench, Record};
 
@@ -17,7 +17,7 @@ const FITTED_ATTITUDE_SIGMA_DEG: f64 = 0.01;
 
 /// The nominal model, fitted with the noise that the audit found.
 pub(super) struct AuditedFit<'a> {
-    pub(super) nominal: Extended<'a>,
+    pub(super) nominal: FittedPlatform<'a>,
     pub(super) noise_model: NoiseModel,
     pub(super) innovations: Innovations,
     pub(super) audit: NoiseAudit,
@@ -42,7 +42,7 @@ pub(super) fn noise_audited_fit<'a>(
         .collect();
     let mut noise_model = before.clone();
     leave_out(&mut noise_model, record.len(), &whole);
-    let first = Extended::nominal(run, options, &noise_model)?;
+    let first = FittedPlatform::nominal(run, options, &noise_model)?;
     let mut screened = record.without(whole.iter().copied());
     let mut seen = innovations(&screened, bench, &first)?;
     let mut audit = audit_noise(
@@ -133,7 +133,7 @@ fn noise_from_audit(audit: &NoiseAudit, record: &Record) -> NoiseModel {
 fn innovations(
     record: &Record,
     bench: &Bench,
-    fitted: &Extended<'_>,
+    fitted: &FittedPlatform<'_>,
 ) -> Result<Innovations, DiagnosisError> {
     let settings = FilterSettings {
         drift: Drift::from_array(core::array::from_fn(|i| fitted.values()[i])),

@@ -2,10 +2,10 @@
 
 use gyrocal::EFFECTS;
 use gyrocal::effect::{EffectKind, NoiseProperty};
-use gyrocal_calibration::{Extended, NoiseEstimate, NoiseModel, NoiseRatio, Run};
+use gyrocal_calibration::{FittedPlatform, NoiseEstimate, NoiseModel, NoiseRatio, Run, rows};
+use gyrocal_hypothesis::{Finding, FittedModel, SearchOptions, Searched, Selection, search};
 use gyrocal_statistics::{NORMAL_97_5, two_sided_p};
 
-use crate::cause::{Finding, SearchOptions, Searched, search};
 use crate::error::DiagnosisError;
 use crate::error_budget::{INSTRUMENTS, NOISE_UPDATE_Z};
 use crate::noise::{Estimate, NoiseAudit, NoiseFinding};
@@ -20,11 +20,11 @@ const MOST_ROUNDS: usize = 3;
 /// A search with the noise that it assumed.
 pub(super) struct NoiseUpdate<'a> {
     /// The nominal model, fitted with that noise.
-    pub(super) nominal: Extended<'a>,
+    pub(super) nominal: FittedPlatform<'a>,
     /// The noise.
     pub(super) noise_model: NoiseModel,
     /// The search.
-    pub(super) searched: Searched<'a>,
+    pub(super) searched: Searched<FittedPlatform<'a>>,
     /// Maximum-likelihood noise over the assumed one, with all causes in the model.
     pub(super) estimate: NoiseEstimate,
 }
@@ -32,12 +32,17 @@ pub(super) struct NoiseUpdate<'a> {
 /// Searches, and searches again with the noise of the gyros that the first search leaves, until it
 /// changes no more.
 pub(super) fn search_with_noise<'a>(
-    mut nominal: Extended<'a>,
+    mut nominal: FittedPlatform<'a>,
     mut noise_model: NoiseModel,
     run: &Run<'a>,
+    selection: &Selection,
     options: &SearchOptions,
 ) -> Result<NoiseUpdate<'a>, DiagnosisError> {
-    let mut searched = search(nominal.clone(), run.record, run.bench, options)?;
+    let search = |nominal: &FittedPlatform<'a>| {
+        let rows = rows(run.record, nominal.covariates());
+        search(nominal.clone(), rows, selection, options)
+    };
+    let mut searched = search(&nominal)?;
     let mut estimate = searched.fitted.noise()?;
     for _ in 1..MOST_ROUNDS {
         let gyro_ratio = gyro_ratio(&estimate, &noise_model);
@@ -57,7 +62,7 @@ pub(super) fn search_with_noise<'a>(
             break;
         };
         (nominal, noise_model) = (refitted, updated);
-        searched = search(nominal.clone(), run.record, run.bench, options)?;
+        searched = search(&nominal)?;
         estimate = searched.fitted.noise()?;
     }
     Ok(NoiseUpdate {

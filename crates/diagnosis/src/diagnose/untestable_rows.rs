@@ -3,7 +3,7 @@
 
 use core::ops::Range;
 
-use gyrocal_calibration::Extended;
+use gyrocal_calibration::FittedPlatform;
 use gyrocal_record::Record;
 
 use crate::error_budget::UNTESTABLE_OUTLIER_Z;
@@ -37,7 +37,7 @@ pub(super) fn untestable_rows(record: &Record, gross: &[usize]) -> Vec<usize> {
 pub(super) fn detect_outliers(
     record: &Record,
     rows: &[usize],
-    fitted: &Extended<'_>,
+    fitted: &FittedPlatform<'_>,
     noise_g: [f64; 3],
 ) -> Vec<Outlier> {
     let predicted_g = fitted.predicted_g();

@@ -1,11 +1,10 @@
 //! Which causes go into the extended model: those without which blocks of the record are
 //! predicted worse.
 
-use gyrocal_calibration::{CalibrationError, Extended};
-use gyrocal_record::Record;
+use gyrocal_calibration::{CalibrationError, FittedPlatform};
+use gyrocal_hypothesis::Searched;
 
 use super::score::{BLOCKS, block_log_scores};
-use crate::cause::Searched;
 
 /// What cross-validation says of a cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +19,7 @@ pub(crate) struct Acceptance {
 /// A model with all causes that gain, and what became of each.
 pub(crate) struct Judged<'a> {
     /// The extended model; `None` if no cause gains.
-    pub(crate) extended: Option<Extended<'a>>,
+    pub(crate) extended: Option<FittedPlatform<'a>>,
     /// Log scores of the blocks with the nominal model, and with the extended one or, if no cause
     /// gains, with all causes; `None` without causes.
     pub(crate) scores: Option<[[f64; BLOCKS]; 2]>,
@@ -31,18 +30,15 @@ pub(crate) struct Judged<'a> {
 /// Takes causes without gain out of the model, the least useful first, with a full fit after
 /// each.
 pub(crate) fn judge<'a>(
-    nominal: &Extended<'a>,
-    searched: &Searched<'a>,
-    record: &Record,
+    nominal: &FittedPlatform<'a>,
+    searched: &Searched<FittedPlatform<'a>>,
 ) -> Result<Judged<'a>, CalibrationError> {
     let count = searched.findings.len();
     let fit = |kept: &[bool]| {
         if kept.iter().all(|kept| *kept) {
             return Ok(searched.fitted.clone());
         }
-        searched
-            .fitted
-            .refitted(&searched.extension_with(record, kept))
+        searched.fitted.refitted(&searched.extension_with(kept))
     };
     if count == 0 {
         return Ok(Judged {
@@ -53,7 +49,7 @@ pub(crate) fn judge<'a>(
     }
     let before = block_log_scores(nominal)?;
     let mut told: Vec<(Vec<bool>, [f64; BLOCKS])> = Vec::new();
-    if searched.unnamed.is_empty() {
+    if searched.unmodelled.is_empty() {
         told.push((vec![false; count], before));
     }
     let acceptances = sieve(count, |kept| {

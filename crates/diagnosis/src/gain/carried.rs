@@ -2,13 +2,13 @@
 
 use core::f64::consts::SQRT_2;
 
-use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
-use gyrocal_calibration::{BIASES, CalibrationError, Column, Expectation, Extended, Run};
+use gyrocal::generated::catalogue::PARAMETERS;
+use gyrocal_calibration::{BIASES, CalibrationError, Expectation, FittedPlatform, PLATFORM, Run};
+use gyrocal_hypothesis::{Column, Phase, RecordOffset, continued, continued_shapes};
 use gyrocal_record::Record;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::COEFFICIENTS;
-use crate::continuation::{RecordOffset, continued, shapes};
 
 /// How the parameters of a later record follow from the values of a fit.
 ///
@@ -22,35 +22,35 @@ pub(crate) struct Carried {
     /// Standard deviation that a new turn-on adds to each constant drift, deg/h.
     turn_on: [f64; 3],
     /// Onsets and time constants as the later record has them.
-    pub(crate) shapes: [f64; SHAPES.len()],
+    pub(crate) shapes: Vec<f64>,
 }
 
 impl Carried {
     /// From a fit to a record to a later record.
-    pub(crate) fn new(fit: &Extended<'_>, first: &Run<'_>, later: &Record) -> Self {
+    pub(crate) fn new(fit: &FittedPlatform<'_>, first: &Run<'_>, later: &Record) -> Self {
         let extension = fit.extension();
-        let further = extension.further.columns();
+        let further = extension.columns.columns();
         let values = COEFFICIENTS + extension.parameters.len() + further.len();
         let mut map = DMatrix::zeros(PARAMETERS.len(), values);
         for coefficient in 0..COEFFICIENTS {
             map[(coefficient, coefficient)] = 1.0;
         }
-        let offset = RecordOffset::between(first.record, later);
+        let offset = offset_between(first.record, later);
         for (place, (parameter, _)) in extension.parameters.iter().enumerate() {
-            for (target, factor) in continued(*parameter, &offset) {
+            for (target, factor) in continued(&PLATFORM, *parameter, &offset) {
                 map[(target, COEFFICIENTS + place)] += factor;
             }
         }
         let base = COEFFICIENTS + extension.parameters.len();
         for (offset, column) in further.iter().enumerate() {
-            if let Column::Onset { parameter, .. } = column {
+            if let Column::Step { parameter, .. } = column {
                 map[(*parameter, base + offset)] = 1.0;
             }
         }
         Self {
             map,
             turn_on: first.bench.prior.turn_on_sigma_deg_per_h,
-            shapes: shapes(&extension.shapes, &offset),
+            shapes: continued_shapes(&PLATFORM, &extension.all_shapes(&PLATFORM), &offset),
         }
     }
 
@@ -64,7 +64,10 @@ impl Carried {
     ///
     /// # Errors
     /// [`CalibrationError::NotPositiveDefinite`].
-    pub(crate) fn expectation(&self, fit: &Extended<'_>) -> Result<Expectation, CalibrationError> {
+    pub(crate) fn expectation(
+        &self,
+        fit: &FittedPlatform<'_>,
+    ) -> Result<Expectation, CalibrationError> {
         let values = DVector::from_column_slice(fit.values());
         let cholesky =
             Cholesky::new(fit.covariance().clone()).ok_or(CalibrationError::NotPositiveDefinite)?;
@@ -81,11 +84,38 @@ impl Carried {
     }
 }
 
+/// Clocks and thermometers of two records. A clock that began again says nothing: the later record
+/// then counts as if it followed the first at once.
+fn offset_between(first: &Record, later: &Record) -> RecordOffset {
+    let ends = |record: &Record| {
+        let first_s = record.time_s.first().copied().unwrap_or(0.0);
+        [first_s, record.time_s.last().copied().unwrap_or(first_s)]
+    };
+    let ([from_s, to_s], [later_s, _]) = (ends(first), ends(later));
+    let goes_on = later_s > to_s;
+    let mean = |record: &Record| {
+        let logged = record.temperature_c.as_ref()?;
+        Some(logged.iter().sum::<f64>() / logged.len().max(1) as f64)
+    };
+    RecordOffset {
+        elapsed_s: if goes_on { later_s } else { to_s } - from_s,
+        phase: if goes_on {
+            Phase::Elapsed
+        } else {
+            Phase::Unknown
+        },
+        regressors: vec![match (mean(first), mean(later)) {
+            (Some(first), Some(later)) => later - first,
+            _ => 0.0,
+        }],
+    }
+}
+
 /// The factor of what a fit knows of its own parameters: a row for each parameter of the catalogue.
 ///
 /// # Errors
 /// [`CalibrationError::NotPositiveDefinite`].
-pub(crate) fn factor(fit: &Extended<'_>) -> Result<DMatrix<f64>, CalibrationError> {
+pub(crate) fn factor(fit: &FittedPlatform<'_>) -> Result<DMatrix<f64>, CalibrationError> {
     let cholesky =
         Cholesky::new(fit.covariance().clone()).ok_or(CalibrationError::NotPositiveDefinite)?;
     let own = cholesky.l();
@@ -105,7 +135,7 @@ mod tests {
     /// Parameters of a later record that one of a first record becomes, with their factors.
     fn carried(id: &str, offset: &RecordOffset) -> Vec<(&'static str, f64)> {
         let index = PARAMETERS.iter().position(|p| p.id == id);
-        let mut found = continued(index.unwrap_or(usize::MAX), offset);
+        let mut found = continued(&PLATFORM, index.unwrap_or(usize::MAX), offset);
         found.sort_by_key(|(index, _)| *index);
         let named = found.into_iter();
         named
@@ -136,7 +166,7 @@ mod tests {
     fn what_changed_stays_and_what_ages_goes_on() {
         // Two days and six hours later, three kelvin warmer.
         let (first, later) = (record(100.0, 20.0), record(100.0 + 2.25 * 86_400.0, 23.0));
-        let offset = RecordOffset::between(&first, &later);
+        let offset = offset_between(&first, &later);
         assert_carried("gyro_y.step", &offset, &[("gyro_y.bias", 1.0)]);
         assert_carried("gyro_x.g_y", &offset, &[("gyro_x.g_y", 1.0)]);
         assert_carried("gyro_z.warmup", &offset, &[("gyro_z.warmup", 1.0)]);
@@ -148,14 +178,14 @@ mod tests {
 
     #[test]
     fn a_wave_of_a_day_goes_on_in_phase() {
-        let offset = RecordOffset::between(&record(0.0, 20.0), &record(2.25 * 86_400.0, 20.0));
+        let offset = offset_between(&record(0.0, 20.0), &record(2.25 * 86_400.0, 20.0));
         // A quarter of a day on: sin(x + 90°) = cos x, cos(x + 90°) = -sin x.
         let cosine = [("gyro_x.diurnal.cosine", 1.0)];
         assert_carried("gyro_x.diurnal.sine", &offset, &cosine);
         let sine = [("gyro_x.diurnal.sine", -1.0)];
         assert_carried("gyro_x.diurnal.cosine", &offset, &sine);
         // A clock that began again has lost its phase.
-        let again = RecordOffset::between(&record(0.0, 20.0), &record(0.0, 20.0));
+        let again = offset_between(&record(0.0, 20.0), &record(0.0, 20.0));
         assert_carried("gyro_x.diurnal.sine", &again, &[]);
     }
 }

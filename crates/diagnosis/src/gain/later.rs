@@ -1,7 +1,8 @@
 //! Prediction of another record of the same platform with the nominal and the extended model.
 
 use gyrocal::trajectory::{Orientation, rotation_between};
-use gyrocal_calibration::{CalibrationError, Expectation, Extended, Extension, Run};
+use gyrocal_calibration::{CalibrationError, Expectation, FittedPlatform, Run};
+use gyrocal_hypothesis::ModelExtension;
 
 use super::carried::{Carried, factor};
 
@@ -75,10 +76,10 @@ impl AttitudeErrors {
 /// # Errors
 /// [`CalibrationError::Pass`] and [`CalibrationError::NotPositiveDefinite`].
 pub(crate) fn predict(
-    nominal: &Extended<'_>,
-    extended: &Extended<'_>,
+    nominal: &FittedPlatform<'_>,
+    extended: &FittedPlatform<'_>,
     first: &Run<'_>,
-    fitted: &Extended<'_>,
+    fitted: &FittedPlatform<'_>,
     later: &Run<'_>,
 ) -> Result<LaterPrediction, CalibrationError> {
     let carried = [nominal, extended].map(|fit| Carried::new(fit, first, later.record));
@@ -98,9 +99,12 @@ pub(crate) fn predict(
 }
 
 /// The later record's own fit, with all that the extended model says it may show.
-fn own_fit<'b>(fitted: &Extended<'b>, carried: &Carried) -> Result<Extended<'b>, CalibrationError> {
-    let mut extension = Extension {
-        shapes: carried.shapes,
+fn own_fit<'b>(
+    fitted: &FittedPlatform<'b>,
+    carried: &Carried,
+) -> Result<FittedPlatform<'b>, CalibrationError> {
+    let mut extension = ModelExtension {
+        shapes: carried.shapes.clone(),
         ..fitted.extension().clone()
     };
     let plain = extension.clone();
@@ -116,7 +120,7 @@ fn own_fit<'b>(fitted: &Extended<'b>, carried: &Carried) -> Result<Extended<'b>,
 }
 
 fn attitude_errors(
-    own: &Extended<'_>,
+    own: &FittedPlatform<'_>,
     [nominal, extended]: &[Expectation; 2],
     time_s: &[f64],
 ) -> Result<AttitudeErrors, CalibrationError> {

@@ -1,6 +1,6 @@
 //! Predictive log scores under contiguous blocked cross-validation.
 
-use gyrocal_calibration::{CalibrationError, Extended};
+use gyrocal_calibration::{CalibrationError, FittedPlatform};
 
 /// Contiguous blocks that are left out in turn. A last-block hold-out would misjudge effects at
 /// the start of a record.
@@ -9,8 +9,10 @@ pub(crate) const BLOCKS: usize = 6;
 /// Logarithm of the density of each block of the record given the others, nats.
 ///
 /// # Errors
-/// As [`Extended::log_evidence_without`].
-pub(crate) fn block_log_scores(fit: &Extended<'_>) -> Result<[f64; BLOCKS], CalibrationError> {
+/// As [`FittedPlatform::log_evidence_without`].
+pub(crate) fn block_log_scores(
+    fit: &FittedPlatform<'_>,
+) -> Result<[f64; BLOCKS], CalibrationError> {
     let rows = fit.points().len();
     let whole = fit.log_evidence_without(0..0)?;
     let mut scores = [0.0; BLOCKS];

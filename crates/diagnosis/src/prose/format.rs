@@ -23,7 +23,8 @@ pub(super) fn duration(seconds: f64) -> String {
 }
 
 /// `1 effect`, `2 effects`.
-pub(crate) fn counted(count: usize, thing: &str) -> String {
+#[must_use]
+pub fn counted(count: usize, thing: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {thing}{plural}")
 }

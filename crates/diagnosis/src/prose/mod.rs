@@ -17,7 +17,7 @@ use serde::Serialize;
 use crate::result::DiagnosisResult;
 
 pub use findings::{likelihood, parameter_values};
-pub(crate) use format::counted;
+pub use format::counted;
 pub use limits::{near_twins, not_tested, why_not_distinguished, would_distinguish};
 pub use tests::residual_description;
 
@@ -70,7 +70,8 @@ pub struct Column {
 
 impl Column {
     /// A column of words.
-    pub(crate) fn words(head: &str) -> Self {
+    #[must_use]
+    pub fn words(head: &str) -> Self {
         Self {
             head: head.to_owned(),
             is_number: false,
@@ -78,7 +79,8 @@ impl Column {
     }
 
     /// A column of numbers.
-    pub(crate) fn numbers(head: &str) -> Self {
+    #[must_use]
+    pub fn numbers(head: &str) -> Self {
         Self {
             head: head.to_owned(),
             is_number: true,

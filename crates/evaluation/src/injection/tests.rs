@@ -1,4 +1,5 @@
-use gyrocal_diagnosis::cause::information;
+use gyrocal_calibration::rows;
+use gyrocal_hypothesis::{FittedModel, information};
 
 use super::*;
 use crate::scenario::scenario;
@@ -20,6 +21,7 @@ fn the_strength_agrees_with_the_information_of_the_diagnosis() {
     let scenario = short(4);
     let clean = simulate(&scenario).unwrap();
     let fitted = nominal_fit(&clean).unwrap();
+    let rows = rows(&clean.record, fitted.covariates());
     for id in [
         "gyro_x.g_y",
         "gyro_y.step",
@@ -36,9 +38,7 @@ fn the_strength_agrees_with_the_information_of_the_diagnosis() {
             .unwrap()
             .unwrap();
         let sizes = DVector::from_column_slice(&injected[0].sizes);
-        let information = information(&fitted, &clean.record, id, shape)
-            .unwrap()
-            .unwrap();
+        let information = information(&fitted, &rows, effect, shape).unwrap().unwrap();
         let length = (&information * &sizes).dot(&sizes).sqrt();
         // Two orders of the same sums; what is projected out costs up to six digits.
         assert!((length - 8.0).abs() < 1e-6, "{id}: {length}");

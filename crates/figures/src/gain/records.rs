@@ -1,8 +1,8 @@
 //! Diagnosis of one record, and the gain of its extended model.
 
 use gyrocal::effect::EffectKind;
-use gyrocal_calibration::{Extended, Run};
-use gyrocal_diagnosis::plan::Named;
+use gyrocal_calibration::{FittedPlatform, Run};
+use gyrocal_design::NamedCause;
 use gyrocal_diagnosis::result::Finding;
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, DiagnosisResult, diagnose, predict_later};
 use gyrocal_evaluation::{InjectedEffect, constant_of_channel, inject_any};
@@ -129,7 +129,7 @@ pub(super) fn cross_axis(seed: u64) -> Result<Errors, Error> {
     let found = diagnosed(&simulation)?;
     let truth = simulation.truth.coefficients.named().map(|(_, v, _)| v);
     let extended = found.extended.as_ref().unwrap_or(&found.nominal);
-    let of = |fit: &Extended<'_>| {
+    let of = |fit: &FittedPlatform<'_>| {
         let error = DVector::from_fn(9, |i, _| fit.values()[i] - truth[i]);
         let covariance: DMatrix<f64> = fit.covariance().view((0, 0), (9, 9)).into_owned();
         let largest = (0..9).map(|i| error[i].abs() / covariance[(i, i)].sqrt());
@@ -197,17 +197,17 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
         bench: &simulation.bench,
     });
     let options = DiagnoseOptions::default();
-    let predicted = |extended: &Extended<'_>| {
+    let predicted = |extended: &FittedPlatform<'_>| {
         let models = [&found.nominal, extended];
         predict_later(models, &found.noise_model, &one, &other, &options)
     };
     let of_found = found.extended.as_ref().map(predicted).transpose()?;
-    let named = Named {
+    let named = NamedCause {
         effect: injected.effect.id.to_owned(),
         shape: injected.shape,
         rivals: Vec::new(),
     };
-    let told = Named::fitted(&[named], &one, &found.noise_model, &options.calibration)?;
+    let told = NamedCause::fitted(&[named], &one, &found.noise_model, &options.calibration)?;
     Ok(Second {
         effect: injected.effect.id.to_owned(),
         accepted: accepted(&found.result),

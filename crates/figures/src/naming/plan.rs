@@ -2,7 +2,7 @@
 
 use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
-use gyrocal_diagnosis::plan::{Named, PlanOptions, Proposal, compare, plan};
+use gyrocal_design::{NamedCause, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_evaluation::{constant_of_channel, effect_of, inject_any};
 use gyrocal_statistics::deviates::Draw;
@@ -176,7 +176,7 @@ fn sigmas(seed: u64) -> Result<Sigmas, Error> {
     let scenario = scenario(seed);
     let first = simulate(&scenario)?;
     let noise = NoiseModel::default();
-    let fitted = Named::fitted(&[], &run(&first), &noise, &Options::default())?;
+    let fitted = NamedCause::fitted(&[], &run(&first), &noise, &Options::default())?;
     let planned = plan(&fitted, &run(&first), &noise, &[], &PlanOptions::default())?;
     let best = planned.proposals.first().ok_or("no proposal")?;
     let second = made(&scenario, best)?;
@@ -198,7 +198,7 @@ fn sets(seed: u64) -> Result<Sets, Error> {
     let (scenario, _) = inject_any(scenario(seed), STRENGTH, &mut Draw::new(seed, 0))?;
     let first = simulate(&scenario)?;
     let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default())?;
-    let named = Named::all(&found.result);
+    let named = NamedCause::all(&found.result);
     let fitted = found.extended.as_ref().unwrap_or(&found.nominal);
     let mut sets = Sets {
         now: None,

@@ -1,7 +1,7 @@
 //! Estimates of the coefficients against record length, nominal and extended model.
 
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_calibration::{CalibrationError, Estimates, Extended};
+use gyrocal_calibration::{CalibrationError, Estimates, FittedPlatform};
 use gyrocal_report::{Convergence, EstimateHistory, ParameterHistory};
 
 use super::{DiagnosisRun, causes, subtitle};
@@ -22,7 +22,7 @@ pub(super) fn convergence(
         .map(|point| point * (all - 1) / POINTS)
         .collect();
     rows.dedup();
-    let of = |fit: &Extended<'_>| fit.convergence(&rows);
+    let of = |fit: &FittedPlatform<'_>| fit.convergence(&rows);
     let (nominal, extended) = (of(&diagnosis.nominal)?, of(extended)?);
     Ok(Some(Convergence {
         title: format!(

@@ -127,7 +127,7 @@ pub(super) fn coefficients(found: &DiagnosisRun<'_>) -> Option<Comparison> {
     let largest = shifts
         .iter()
         .max_by(|a, b| a.in_sigmas.abs().total_cmp(&b.in_sigmas.abs()))?;
-    let estimate = |fit: &gyrocal_calibration::Extended<'_>, index: usize| ComparedEstimate {
+    let estimate = |fit: &gyrocal_calibration::FittedPlatform<'_>, index: usize| ComparedEstimate {
         value: fit.values()[index],
         sigma: fit.covariance()[(index, index)].sqrt(),
     };

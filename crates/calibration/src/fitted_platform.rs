@@ -1,0 +1,313 @@
+//! The nominal model with effects of the catalogue, fitted to one record.
+
+mod evidence;
+mod hypothesis;
+mod passes;
+mod prediction;
+
+use gyrocal::generated::catalogue::{self, CatalogueInputs};
+use gyrocal::trajectory::Orientation;
+use gyrocal::{Anchored, Catalogue, Chart, Discretisation};
+use gyrocal_hypothesis::{ExtraColumns, ModelExtension};
+use gyrocal_record::Bench;
+use nalgebra::DMatrix;
+
+use crate::coefficients::PARAMETERS;
+use crate::error::CalibrationError;
+use crate::initial_guess::initial_guess;
+use crate::layout::SiteQuantity;
+use crate::options::Options;
+use crate::problem::{Problem, RunProblem, Unknown};
+use crate::run::{Run, WeightedRows};
+use crate::settings::filter_settings;
+use crate::solve::{MAX_ITERATIONS, Solution};
+use crate::uncertainty::Uncertainty;
+
+pub use prediction::{Estimates, Expectation};
+
+const SHAPES: usize = catalogue::SHAPES.len();
+
+/// Onsets and time constants as [`Catalogue`] takes them.
+fn shapes(extension: &ModelExtension) -> [f64; SHAPES] {
+    core::array::from_fn(|index| extension.shape(index))
+}
+
+/// What a bench declares uncertain of its site is free to take that up in every fit.
+fn of_site(bench: &Bench) -> ModelExtension {
+    ModelExtension {
+        parameters: SiteQuantity::ALL
+            .into_iter()
+            .filter_map(|quantity| {
+                let place = catalogue::PARAMETERS
+                    .iter()
+                    .position(|element| element.id == quantity.id())?;
+                Some((place, quantity.declared_sigma(bench)?))
+            })
+            .collect(),
+        ..ModelExtension::default()
+    }
+}
+
+/// The noise that is believed of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseModel {
+    /// Standard deviation of the accelerometers over the declared one.
+    pub accel_ratio: [f64; 3],
+    /// Standard deviation of the gyros' white noise over the declared one.
+    pub gyro_ratio: [f64; 3],
+    /// Weight of each value, if some are not trusted: 0 leaves a value out.
+    pub weights: Option<Vec<[f64; 3]>>,
+}
+
+impl Default for NoiseModel {
+    /// As declared.
+    fn default() -> Self {
+        Self {
+            accel_ratio: [1.0; 3],
+            gyro_ratio: [1.0; 3],
+            weights: None,
+        }
+    }
+}
+
+/// An extended model at its best fit to a record.
+#[derive(Clone)]
+pub struct FittedPlatform<'a> {
+    problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
+    solution: Solution,
+    uncertainty: Uncertainty,
+    extension: ModelExtension,
+}
+
+impl<'a> FittedPlatform<'a> {
+    /// Fits the nominal model; what the bench declares uncertain of its site is in the extension.
+    ///
+    /// # Errors
+    /// As [`crate::calibrate`].
+    pub fn nominal(
+        run: &Run<'a>,
+        options: &Options,
+        noise: &NoiseModel,
+    ) -> Result<Self, CalibrationError> {
+        let settings = filter_settings(run.bench, options.moving_chart());
+        let fit = |careful| {
+            let beginning = initial_guess(run, &settings, options, careful)?;
+            let extension = of_site(run.bench);
+            let mut values = beginning.start.drift.to_vec();
+            values.resize(PARAMETERS + extension.parameters.len(), 0.0);
+            let accel_noise_g = noise
+                .accel_ratio
+                .map(|ratio| ratio * settings.accel_noise_g);
+            let mut rows = WeightedRows::new(run.record, run.record.len(), accel_noise_g);
+            rows.weights.clone_from(&noise.weights);
+            let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
+            if let Some(field_gauss) = run.bench.magnetic_field_gauss {
+                chart.set_field_gauss(field_gauss);
+            }
+            let density = settings.drift_noise_density();
+            let leg = RunProblem {
+                rows,
+                chart,
+                noise_density: noise.gyro_ratio.map(|ratio| ratio * ratio * density),
+                prior: beginning.prior.orientation,
+                prior_covariance: beginning.prior.covariance,
+                points: beginning.start.points,
+                parameter_unknowns: Vec::new(),
+                further: ExtraColumns::default(),
+                amplitudes: Vec::new(),
+            };
+            let problem = Problem {
+                model: &Anchored(Catalogue),
+                integration: options.discretisation.integration,
+                longest_step_s: options.discretisation.longest_step_s,
+                unknowns: settings
+                    .drift_sigma
+                    .to_array()
+                    .into_iter()
+                    .chain(extension.parameters.iter().map(|(_, sigma)| *sigma))
+                    .map(Unknown::estimated)
+                    .collect(),
+                runs: vec![leg],
+                values,
+            };
+            Self::solved(problem, extension)
+        };
+        fit(false).or_else(|_| fit(true))
+    }
+
+    /// Fits another extension, from where this one is.
+    ///
+    /// # Errors
+    /// [`CalibrationError::NotConverged`], [`CalibrationError::NoDescent`],
+    /// [`CalibrationError::NotPositiveDefinite`], [`CalibrationError::Pass`].
+    pub fn refitted(&self, extension: &ModelExtension) -> Result<Self, CalibrationError> {
+        self.refitted_with(extension, |_| ())
+    }
+
+    fn refitted_with(
+        &self,
+        extension: &ModelExtension,
+        change: impl FnOnce(&mut RunProblem<'a, CatalogueInputs<f64>>),
+    ) -> Result<Self, CalibrationError> {
+        let before = self.parameters();
+        let leg = &self.problem.runs[0];
+        let mut unknowns = self.problem.unknowns[..PARAMETERS].to_vec();
+        let mut values = self.problem.values[..PARAMETERS].to_vec();
+        for (parameter, sigma) in &extension.parameters {
+            unknowns.push(Unknown::estimated(*sigma));
+            values.push(before[*parameter]);
+        }
+        let further = &extension.columns;
+        for (column, sigma) in further.columns().iter().zip(further.sigmas()) {
+            unknowns.push(Unknown::estimated(*sigma));
+            let same = self
+                .extension
+                .columns
+                .columns()
+                .iter()
+                .position(|c| c == column);
+            values.push(same.map_or(0.0, |same| self.problem.values[leg.amplitudes[same]]));
+        }
+        let mut chart = leg.chart;
+        chart.inputs_mut().shapes = shapes(extension);
+        let mut problem = Problem {
+            model: self.problem.model,
+            integration: self.problem.integration,
+            longest_step_s: self.problem.longest_step_s,
+            unknowns,
+            runs: vec![RunProblem {
+                rows: leg.rows.clone(),
+                chart,
+                noise_density: leg.noise_density,
+                prior: leg.prior,
+                prior_covariance: leg.prior_covariance,
+                points: leg.points.clone(),
+                parameter_unknowns: Vec::new(),
+                further: ExtraColumns::default(),
+                amplitudes: Vec::new(),
+            }],
+            values,
+        };
+        change(&mut problem.runs[0]);
+        Self::solved(problem, extension.clone())
+    }
+
+    /// The same extension fitted with another noise.
+    ///
+    /// # Errors
+    /// As [`Self::refitted`].
+    pub fn with_noise(&self, bench: &Bench, noise: &NoiseModel) -> Result<Self, CalibrationError> {
+        let density = filter_settings(bench, Discretisation::default()).drift_noise_density();
+        self.refitted_with(&self.extension, |leg| {
+            leg.rows
+                .set_noise(noise.accel_ratio.map(|ratio| ratio * bench.accel_noise_g));
+            leg.rows.weights.clone_from(&noise.weights);
+            leg.noise_density = noise.gyro_ratio.map(|ratio| ratio * ratio * density);
+        })
+    }
+
+    fn solved(
+        mut problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
+        extension: ModelExtension,
+    ) -> Result<Self, CalibrationError> {
+        let mut sums = vec![Vec::new(); Catalogue::PARAMETERS];
+        for (parameter, sum) in sums.iter_mut().enumerate().take(PARAMETERS) {
+            sum.push(parameter);
+        }
+        for (offset, (parameter, _)) in extension.parameters.iter().enumerate() {
+            sums[*parameter].push(PARAMETERS + offset);
+        }
+        let first = PARAMETERS + extension.parameters.len();
+        let last = first + extension.columns.columns().len();
+        problem.values.resize(last, 0.0);
+        let leg = &mut problem.runs[0];
+        leg.parameter_unknowns = sums;
+        leg.further = extension.columns.clone();
+        leg.amplitudes = (first..last).collect();
+        leg.further
+            .set_amplitudes(problem.values[first..].iter().copied());
+        let solution = problem.solve(MAX_ITERATIONS)?;
+        let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
+            .ok_or(CalibrationError::NotPositiveDefinite)?;
+        Ok(Self {
+            problem,
+            solution,
+            uncertainty,
+            extension,
+        })
+    }
+
+    /// What the model has beyond the nine coefficients.
+    #[must_use]
+    pub fn extension(&self) -> &ModelExtension {
+        &self.extension
+    }
+
+    /// Estimates: the nine coefficients, then the extension's parameters, then its further
+    /// columns.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.problem.values
+    }
+
+    /// Covariance of their errors.
+    #[must_use]
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.uncertainty.total
+    }
+
+    /// Standard deviations before the record, in the order of [`Self::values`].
+    #[must_use]
+    pub fn prior_sigma(&self) -> Vec<f64> {
+        self.problem
+            .unknowns
+            .iter()
+            .map(|unknown| unknown.sigma)
+            .collect()
+    }
+
+    /// Twice the cost: squares of all residuals, of the noise between rows and of distances from
+    /// priors, over their variances. As many are expected as there are values.
+    #[must_use]
+    pub fn cost(&self) -> f64 {
+        self.solution.cost
+    }
+
+    /// Steps that the fit took.
+    #[must_use]
+    pub fn iterations(&self) -> usize {
+        self.solution.iterations
+    }
+
+    /// Smoothed attitude at each row.
+    #[must_use]
+    pub fn points(&self) -> &[Orientation] {
+        &self.problem.runs[0].points
+    }
+
+    /// All parameters of [`Catalogue`]: those that are not estimated are zero.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<f64> {
+        self.problem.parameters(0)
+    }
+
+    /// Specific force that the model gives at each row for the smoothed attitude, g.
+    #[must_use]
+    pub fn predicted_g(&self) -> Vec<[f64; 3]> {
+        self.problem.outputs(0, self.points(), &self.parameters())
+    }
+
+    /// Specific force that the model gives when it runs by itself from the first attitude, with
+    /// the estimated parameters and without the record, g.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn free_run_g(&self) -> Result<Vec<[f64; 3]>, CalibrationError> {
+        let parameters = self.parameters();
+        let points = self
+            .problem
+            .with_run(0, &parameters, |pass| pass.free_run())
+            .map_err(|error| CalibrationError::pass(0, error))?;
+        Ok(self.problem.outputs(0, &points, &parameters))
+    }
+}

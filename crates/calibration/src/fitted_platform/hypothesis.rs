@@ -1,0 +1,64 @@
+//! Score tests of the catalogue's effects in a fitted platform.
+
+use gyrocal_hypothesis::{
+    Column, Covariate, FittedModel, ModelExtension, Plant, Singular, StateJump,
+};
+use nalgebra::DMatrix;
+
+use super::FittedPlatform;
+use crate::error::CalibrationError;
+use crate::platform::{PLATFORM, covariates};
+
+impl From<Singular> for CalibrationError {
+    fn from(_: Singular) -> Self {
+        Self::NotPositiveDefinite
+    }
+}
+
+impl FittedModel for FittedPlatform<'_> {
+    type Error = CalibrationError;
+
+    fn plant(&self) -> &'static Plant {
+        &PLATFORM
+    }
+
+    fn extension(&self) -> &ModelExtension {
+        FittedPlatform::extension(self)
+    }
+
+    fn covariates(&self) -> Vec<Covariate> {
+        covariates(&self.predicted_g())
+    }
+
+    fn values(&self) -> &[f64] {
+        FittedPlatform::values(self)
+    }
+
+    fn covariance(&self) -> &DMatrix<f64> {
+        FittedPlatform::covariance(self)
+    }
+
+    fn prior_sigma(&self) -> Vec<f64> {
+        FittedPlatform::prior_sigma(self)
+    }
+
+    fn cost(&self) -> f64 {
+        FittedPlatform::cost(self)
+    }
+
+    fn refitted(&self, extension: &ModelExtension) -> Result<Self, CalibrationError> {
+        FittedPlatform::refitted(self, extension)
+    }
+
+    fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, CalibrationError> {
+        Ok(self.signatures(further, |_| ())?.gram)
+    }
+
+    fn conditional_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, CalibrationError> {
+        Ok(self.conditional(further)?.gram)
+    }
+
+    fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, CalibrationError> {
+        self.jumps()
+    }
+}

@@ -1,0 +1,184 @@
+//! What the record so far says: who is suspected, and with which onset or time constant.
+
+use gyrocal::{EFFECTS, Effect};
+use gyrocal_calibration::{FittedPlatform, PLATFORM, Run, rows as rows_of};
+use gyrocal_diagnosis::{missing_input, selection};
+use gyrocal_hypothesis::{HypothesisSet, Variant};
+use gyrocal_record::Record;
+use nalgebra::DVector;
+
+use crate::effect_columns::Times;
+use crate::error::DesignError;
+use crate::joint_unknowns::{Candidate, ConfidenceSet, JointUnknowns};
+use crate::named_cause::{NamedCause, is_walk, row};
+use crate::run_information::RunInformation;
+use crate::set_comparison::{Comparison, stays};
+
+/// A near twin that would have to be so many times its typical size is not worth a run.
+const PLAUSIBLE: f64 = 10.0;
+
+/// When the record is, and a next run of some duration.
+pub(crate) fn times(run: &Run<'_>, next_s: f64) -> Times {
+    let rows = rows_of(run.record, Vec::new());
+    let set = HypothesisSet::new(&PLATFORM, &rows, &[]);
+    Times {
+        first_s: duration_s(run.record),
+        next_s,
+        onsets_s: set
+            .onset_rows()
+            .iter()
+            .map(|row| rows.since_first_s(*row))
+            .collect(),
+    }
+}
+
+pub(crate) fn duration_s(record: &Record) -> f64 {
+    match record.time_s.as_slice() {
+        [first, .., last] => last - first,
+        _ => 0.0,
+    }
+}
+
+/// The members of all named sets, each with what is best of it in the record. Near twins that the
+/// usual search leaves out are among them, if they explain as much by a size that may be.
+pub(crate) fn candidates(
+    fitted: &FittedPlatform<'_>,
+    run: &Run<'_>,
+    named: &[NamedCause],
+) -> Result<Vec<Vec<Candidate>>, DesignError> {
+    let mut drafts = Vec::with_capacity(named.len());
+    for named in named {
+        drafts.push(draft(named, run)?);
+    }
+    let times = times(run, duration_s(run.record));
+    let universe = JointUnknowns::new(fitted, run, &drafts, &times);
+    let said = universe.of_first(&RunInformation::of_record(
+        fitted,
+        run.record,
+        &universe.first,
+    )?);
+    let mut sets = Vec::with_capacity(named.len());
+    for (case, named) in universe.cases.iter().zip(named) {
+        sets.push(settled(case, named, &universe, &said));
+    }
+    Ok(sets)
+}
+
+/// All candidates: of effects with an onset or a time constant one for each that the search tries.
+fn draft(named: &NamedCause, run: &Run<'_>) -> Result<Vec<Candidate>, DesignError> {
+    let mut rows = Vec::with_capacity(named.rivals.len());
+    for (id, _) in &named.rivals {
+        rows.push(row(id)?);
+    }
+    let own = named.row()?;
+    let twins = own
+        .near_twins
+        .iter()
+        .filter_map(|id| EFFECTS.iter().find(|effect| effect.id == *id))
+        .filter(|twin| !twin.default_search && twin.has_term() && twin.shape().is_none())
+        .filter(|twin| missing_input(twin, run.record, run.bench).is_none());
+    for twin in twins {
+        if !rows.iter().any(|row| row.id == twin.id) {
+            rows.push(twin);
+        }
+    }
+    let also: Vec<&str> = rows.iter().map(|row| row.id).collect();
+    let selection = selection(run.record, run.bench, &also);
+    let rows_of_run = rows_of(run.record, Vec::new());
+    let set = HypothesisSet::new(&PLATFORM, &rows_of_run, &selection.effects);
+    let mut candidates = vec![candidate(own, named.shape.filter(|_| !is_walk(own)))];
+    for row in rows {
+        // What no run tells from one that is there already is one with it.
+        if let Some(same) = candidates
+            .iter_mut()
+            .find(|other| other.row.equivalents.contains(&row.id))
+        {
+            if !same.equivalents.contains(&row.id) {
+                same.equivalents.push(row.id);
+            }
+            continue;
+        }
+        let shapes = set.index_of(row.id).map_or_else(Vec::new, |index| {
+            let variants = set.hypotheses()[index].variants().iter();
+            variants.map(Variant::shape).collect()
+        });
+        if shapes.is_empty() {
+            candidates.push(candidate(row, None));
+        }
+        candidates.extend(shapes.into_iter().map(|shape| candidate(row, shape)));
+    }
+    Ok(candidates)
+}
+
+fn candidate(row: &'static Effect, shape: Option<f64>) -> Candidate {
+    Candidate {
+        row,
+        shape,
+        deficit: 0.0,
+        equivalents: row.equivalents.to_vec(),
+        variance: 0.0,
+        handicap: 0.0,
+    }
+}
+
+/// The best candidate of each, with what the diagnosis said of it.
+fn settled(
+    case: &ConfidenceSet,
+    named: &NamedCause,
+    universe: &JointUnknowns,
+    said: &RunInformation,
+) -> Vec<Candidate> {
+    let alone = |candidate: &Candidate| vec![candidate.clone()];
+    let Some(own) = case.members.first() else {
+        return Vec::new();
+    };
+    let Some(comparison) = Comparison::new(case, &universe.unknowns, &said.information) else {
+        return alone(&own.candidate);
+    };
+    let projected: DVector<f64> = &comparison.projection * &said.score;
+    let statistics = comparison.statistics(projected.as_slice());
+    let Some(Some((best, variance))) = statistics.first().copied() else {
+        return alone(&own.candidate);
+    };
+    let mut set = vec![Candidate {
+        variance,
+        ..own.candidate.clone()
+    }];
+    let mut seen: Vec<&str> = vec![own.candidate.row.id];
+    for member in &case.members[1..] {
+        let id = member.candidate.row.id;
+        if seen.contains(&id) {
+            continue;
+        }
+        seen.push(id);
+        let of_it = case.members.iter().enumerate().zip(&statistics);
+        let strongest = of_it
+            .filter(|((_, other), _)| other.candidate.row.id == id)
+            .filter_map(|((index, _), statistic)| Some((index, (*statistic)?)))
+            .max_by(|a, b| a.1.0.total_cmp(&b.1.0));
+        let Some((index, (statistic, variance))) = strongest else {
+            continue;
+        };
+        let told = named.rivals.iter().find(|(rival, _)| rival == id);
+        let deficit = match told {
+            Some((_, deficit)) => *deficit,
+            None => {
+                let row = member.candidate.row;
+                let size = comparison.estimates(index, projected.as_slice());
+                let [size, _] = size.first().copied().unwrap_or([0.0; 2]);
+                let deficit = 0.5 * (best - statistic);
+                if !stays(deficit) || size.abs() > PLAUSIBLE * row.typical_size {
+                    continue;
+                }
+                deficit
+            }
+        };
+        set.push(Candidate {
+            deficit,
+            variance,
+            handicap: statistic - best + 2.0 * deficit,
+            ..case.members[index].candidate.clone()
+        });
+    }
+    set
+}

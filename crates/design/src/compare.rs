@@ -1,0 +1,107 @@
+//! Two records together: what is left of the sets that the first one had.
+
+use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run};
+
+use crate::candidates::{candidates, duration_s, times};
+use crate::error::DesignError;
+use crate::joint_unknowns::{ConfidenceSet, JointUnknowns};
+use crate::named_cause::{NamedCause, fitted_alone};
+use crate::result::Forecast;
+use crate::run_information::RunInformation;
+use crate::set_comparison::{Comparison, deficits, stays};
+use crate::sigma::sigmas;
+
+/// What two records say together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// Standard deviations of the nine coefficients, with what was named in the model.
+    pub coefficients: Vec<Forecast>,
+    /// The members of each named set, the one that was named in the first record first.
+    pub sets: Vec<Vec<ComparedMember>>,
+}
+
+/// A member of a named set, judged by both records.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComparedMember {
+    /// Its id.
+    pub effect: &'static str,
+    /// How much less likely it makes the records than the one that they name together.
+    pub log_likelihood_deficit: f64,
+    /// Whether it is in the set that is left.
+    pub stays: bool,
+    /// Estimate and standard deviation of each size, in the units of the model; none of a random
+    /// walk.
+    pub sizes: Vec<[f64; 2]>,
+}
+
+/// Compares the members of the sets of a record on that record and another one. `fitted` is the
+/// fit to the first with what was named; `noise` holds for both.
+///
+/// # Errors
+/// [`DesignError`].
+pub fn compare(
+    fitted: &FittedPlatform<'_>,
+    first: &Run<'_>,
+    second: &Run<'_>,
+    noise: &NoiseModel,
+    named: &[NamedCause],
+    options: &Options,
+) -> Result<Compared, DesignError> {
+    let sets = candidates(fitted, first, named)?;
+    let times = times(first, duration_s(second.record));
+    let universe = JointUnknowns::new(fitted, first, &sets, &times);
+    // Values that the first record's noise has no trust in are no rows of the second.
+    let noise = NoiseModel {
+        weights: None,
+        ..noise.clone()
+    };
+    let other = fitted_alone(named, second, &noise, options)?;
+    let mut information = universe.of_first(&RunInformation::of_record(
+        fitted,
+        first.record,
+        &universe.first,
+    )?);
+    let next = universe.of_next(&RunInformation::of_record(
+        &other,
+        second.record,
+        &universe.next,
+    )?);
+    information.information += next.information;
+    information.score += next.score;
+    let (coefficients, _) =
+        sigmas(&universe, &information.information).ok_or(CalibrationError::NotPositiveDefinite)?;
+    let judged = universe
+        .cases
+        .iter()
+        .map(|case| judged(case, &universe, &information));
+    Ok(Compared {
+        coefficients,
+        sets: judged
+            .collect::<Option<_>>()
+            .ok_or(CalibrationError::NotPositiveDefinite)?,
+    })
+}
+
+fn judged(
+    case: &ConfidenceSet,
+    universe: &JointUnknowns,
+    information: &RunInformation,
+) -> Option<Vec<ComparedMember>> {
+    let comparison = Comparison::new(case, &universe.unknowns, &information.information)?;
+    let projected = &comparison.projection * &information.score;
+    let statistics = comparison.statistics(projected.as_slice());
+    let (_, deficits) = deficits(&case.members, &statistics)?;
+    Some(
+        case.members
+            .iter()
+            .zip(deficits)
+            .enumerate()
+            .map(|(index, (member, deficit))| ComparedMember {
+                effect: member.candidate.row.id,
+                log_likelihood_deficit: deficit,
+                stays: stays(deficit),
+                sizes: comparison.estimates(index, projected.as_slice()),
+            })
+            .collect(),
+    )
+}

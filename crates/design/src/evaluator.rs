@@ -1,0 +1,328 @@
+//! One attitude and duration, looked at.
+
+use gyrocal::Discretisation;
+use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
+use gyrocal_calibration::{
+    CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, PlannedRun, Run,
+};
+use gyrocal_hypothesis::{RecordOffset, continued, continued_shapes};
+use gyrocal_record::{Bench, GimbalLimits, Record};
+use nalgebra::{DMatrix, DVector};
+
+use crate::attitude::of_angles;
+use crate::candidates::duration_s as duration_s_of;
+use crate::effect_columns::offset_after;
+use crate::expected_sets::{Deviates, Posteriors, expected};
+use crate::joint_unknowns::JointUnknowns;
+use crate::result::{Forecast, Outlook, SetForecast, ratio};
+use crate::run_information::{RunInformation, predicted_information};
+use crate::sigma::sigmas;
+
+/// How finely a run is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Detail {
+    /// Most rows; fewer rows with as much information in all stand for more.
+    pub(crate) rows: usize,
+    /// Draws of the next run for each member of a set.
+    pub(crate) draws: usize,
+}
+
+/// What the platform turns in longer steps than this, 2.5°, is still integrated to 1e-9 rad.
+const LONGEST_STEP_S: f64 = 600.0;
+
+/// Everything but the attitude.
+pub(crate) struct Evaluator<'a> {
+    pub(crate) universe: &'a JointUnknowns,
+    pub(crate) run: Run<'a>,
+    noise: &'a NoiseModel,
+    limits: GimbalLimits,
+    options: Options,
+    /// In the record, and in the next run, which begins with what a step or a ramp has come to.
+    parameters: Vec<f64>,
+    next_parameters: Vec<f64>,
+    shapes: Vec<f64>,
+    next_shapes: Vec<f64>,
+    start: Orientation,
+    now: RunInformation,
+    before: Vec<Forecast>,
+    posteriors: Vec<Posteriors>,
+    deviates: Deviates,
+    duration_s: f64,
+    detail: Detail,
+}
+
+/// What was seen of an attitude.
+pub(crate) enum Evaluation {
+    /// What record and run leave together.
+    At(Outlook),
+    /// The gimbals come to a limit after so long, s.
+    Stopped(f64),
+}
+
+impl<'a> Evaluator<'a> {
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn new(
+        universe: &'a JointUnknowns,
+        fitted: &FittedPlatform<'_>,
+        run: Run<'a>,
+        noise: &'a NoiseModel,
+        said: &RunInformation,
+        limits: GimbalLimits,
+        options: Options,
+        (duration_s, detail, seed): (f64, Detail, u64),
+    ) -> Option<Self> {
+        let now = universe.of_first(said);
+        let (before, _) = sigmas(universe, &now.information)?;
+        let posteriors = universe
+            .cases
+            .iter()
+            .map(|case| Posteriors::new(case, &universe.unknowns, &now))
+            .collect();
+        let parameters = fitted.parameters();
+        let shapes = fitted.extension().all_shapes(&PLATFORM);
+        let offset = offset_after(duration_s_of(run.record));
+        Some(Self {
+            universe,
+            run,
+            noise,
+            limits,
+            options: Options {
+                discretisation: Discretisation {
+                    longest_step_s: options.discretisation.longest_step_s.max(LONGEST_STEP_S),
+                    ..options.discretisation
+                },
+                ..options
+            },
+            next_parameters: next_parameters(universe, &parameters, &offset),
+            parameters,
+            next_shapes: continued_shapes(&PLATFORM, &shapes, &offset),
+            shapes,
+            start: *fitted.points().first()?,
+            now,
+            before,
+            posteriors,
+            deviates: Deviates::new(universe.unknowns.len(), detail.draws, seed),
+            duration_s,
+            detail,
+        })
+    }
+
+    /// What the record so far leaves.
+    pub(crate) fn present(&self) -> Option<Outlook> {
+        let (coefficients, sizes) = sigmas(self.universe, &self.now.information)?;
+        let sets = self
+            .universe
+            .cases
+            .iter()
+            .filter_map(|case| {
+                let size = case.members.len();
+                let one_left = f64::from(u8::from(size == 1));
+                case.forecast(size as f64, one_left, |index| {
+                    f64::from(u8::from(index == 0))
+                })
+            })
+            .collect();
+        Some(Outlook {
+            sigma_ratio: 1.0,
+            coefficients,
+            sizes,
+            sets,
+        })
+    }
+
+    /// A run from platform angles.
+    pub(crate) fn look(&self, angles_deg: [f64; 3]) -> Result<Evaluation, CalibrationError> {
+        let start = of_angles(angles_deg);
+        let (mut record, noise_factor) = self.rows(self.duration_s);
+        // Where the bench gives no attitude the first samples have to tell it.
+        let up = start[1].map(|component| component * self.run.bench.specific_force_at_rest());
+        record.accel_g.fill(up);
+        let given = self.run.bench.initial_angles_deg.is_some();
+        let bench = Bench {
+            initial_angles_deg: given.then_some(angles_deg),
+            accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
+            ..self.run.bench.clone()
+        };
+        let planned = self.planned(
+            &record,
+            &bench,
+            start,
+            (&self.next_parameters, &self.next_shapes),
+        );
+        let points = planned.trajectory(&self.options)?;
+        if let Some(row) = points.iter().position(|point| !self.allowed(point)) {
+            return Ok(Evaluation::Stopped(
+                record.time_s[row.saturating_sub(1)] - record.time_s[0],
+            ));
+        }
+        let columns = &self.universe.next;
+        let information = predicted_information(&planned, columns, 0, points, &self.options)?;
+        let next = self.universe.of_next(&silent(information)).information;
+        Ok(self
+            .outlook(&next)
+            .map_or(Evaluation::Stopped(0.0), Evaluation::At))
+    }
+
+    /// The record gone on with for the duration of the next run.
+    pub(crate) fn going_on(&self) -> Result<Option<Outlook>, CalibrationError> {
+        let first_s = duration_s_of(self.run.record);
+        let (mut record, noise_factor) = self.rows(first_s + self.duration_s);
+        let given = self.run.bench.initial_angles_deg.is_some();
+        if !given {
+            let up = self.start[1].map(|x| x * self.run.bench.specific_force_at_rest());
+            record.accel_g.fill(up);
+        }
+        let bench = Bench {
+            accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
+            ..self.run.bench.clone()
+        };
+        let planned = self.planned(
+            &record,
+            &bench,
+            self.start,
+            (&self.parameters, &self.shapes),
+        );
+        let points = planned.trajectory(&self.options)?;
+        let from = record.time_s.partition_point(|t| *t <= first_s);
+        // A fit's own columns, which are of the record's own rows, say nothing here.
+        let columns = &self.universe.first;
+        let information = predicted_information(&planned, columns, from, points, &self.options)?;
+        let next = self.universe.of_first(&silent(information)).information;
+        Ok(self.outlook(&next))
+    }
+
+    fn outlook(&self, next: &DMatrix<f64>) -> Option<Outlook> {
+        let total = &self.now.information + next;
+        let (coefficients, sizes) = sigmas(self.universe, &total)?;
+        let sets: Option<Vec<SetForecast>> = self
+            .universe
+            .cases
+            .iter()
+            .zip(&self.posteriors)
+            .map(|(case, posteriors)| {
+                expected(
+                    case,
+                    &self.universe.unknowns,
+                    posteriors,
+                    &self.now,
+                    next,
+                    &self.deviates,
+                )
+            })
+            .collect();
+        Some(Outlook {
+            sigma_ratio: ratio(&coefficients, &self.before),
+            coefficients,
+            sizes,
+            sets: sets?,
+        })
+    }
+
+    fn allowed(&self, point: &Orientation) -> bool {
+        let angles = angles_rad(&platform_c_enu(point)).map(f64::to_degrees);
+        // The same attitude by the other way round.
+        let other = [angles[0] + 180.0, 180.0 - angles[1], angles[2] + 180.0];
+        self.limits.hold(angles) || self.limits.hold(other)
+    }
+
+    fn planned<'b>(
+        &'b self,
+        record: &'b Record,
+        bench: &'b Bench,
+        start: Orientation,
+        (parameters, shapes): (&'b [f64], &[f64]),
+    ) -> PlannedRun<'b> {
+        PlannedRun {
+            run: Run { record, bench },
+            start,
+            parameters,
+            shapes: core::array::from_fn(|index| shapes[index]),
+            noise: self.noise,
+        }
+    }
+
+    /// Rows over a duration, and what the noise of a sample is multiplied by where one of them
+    /// stands for several of the logger's.
+    fn rows(&self, duration_s: f64) -> (Record, f64) {
+        let logged_s = interval_s(self.run.record);
+        let steps = (duration_s / logged_s).round().max(1.0);
+        let taken = steps.min(self.detail.rows as f64).max(1.0);
+        let interval_s = duration_s / taken;
+        let time_s: Vec<f64> = (0..=taken as usize)
+            .map(|row| row as f64 * interval_s)
+            .collect();
+        let temperature_c = self.run.record.temperature_c.as_ref().map(|temperature| {
+            time_s
+                .iter()
+                .map(|t| self.temperature_c(temperature, *t))
+                .collect()
+        });
+        let rows = time_s.len();
+        (
+            Record {
+                time_s,
+                accel_g: vec![[0.0, 0.0, 1.0]; rows],
+                temperature_c,
+            },
+            (logged_s / interval_s).sqrt(),
+        )
+    }
+
+    /// The temperature of the record at a time since the start of a run; whole days later it is
+    /// the same again.
+    fn temperature_c(&self, temperature: &[f64], time_s: f64) -> f64 {
+        const DAY_S: f64 = 86_400.0;
+        let record = self.run.record;
+        let first_s = record.time_s.first().copied().unwrap_or(0.0);
+        let length_s = duration_s_of(record);
+        let days_s = (length_s / DAY_S).floor() * DAY_S;
+        let at = if days_s > 0.0 {
+            time_s.rem_euclid(days_s)
+        } else {
+            time_s.min(length_s)
+        };
+        let row = record.time_s.partition_point(|t| t - first_s < at);
+        temperature
+            .get(row.min(temperature.len().saturating_sub(1)))
+            .copied()
+            .unwrap_or(0.0)
+    }
+}
+
+/// Parameters at the start of the next run, each named effect as it continues there.
+fn next_parameters(
+    universe: &JointUnknowns,
+    parameters: &[f64],
+    offset: &RecordOffset,
+) -> Vec<f64> {
+    let mut next = parameters.to_vec();
+    let named = universe.cases.iter();
+    for named in named.filter_map(|case| case.members.first()) {
+        for parameter in named.candidate.row.model_parameters() {
+            next[parameter] -= parameters[parameter];
+            for (target, factor) in continued(&PLATFORM, parameter, offset) {
+                next[target] += factor * parameters[parameter];
+            }
+        }
+    }
+    next
+}
+
+/// The usual interval of a record, s.
+pub(crate) fn interval_s(record: &Record) -> f64 {
+    let mut intervals: Vec<f64> = record
+        .time_s
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .collect();
+    intervals.sort_unstable_by(f64::total_cmp);
+    intervals.get(intervals.len() / 2).copied().unwrap_or(60.0)
+}
+
+/// A run of which only the information is known.
+fn silent(information: DMatrix<f64>) -> RunInformation {
+    RunInformation {
+        score: DVector::zeros(information.nrows()),
+        information,
+    }
+}

@@ -1,0 +1,258 @@
+//! All unknowns of a record and the run after it, and which of them each question is about.
+
+use gyrocal::Effect;
+use gyrocal::generated::catalogue::PARAMETERS;
+use gyrocal_calibration::{BIASES, FittedPlatform, Run, SiteQuantity};
+use gyrocal_hypothesis::Column;
+use nalgebra::{DMatrix, DVector};
+
+use crate::COEFFICIENTS;
+use crate::design_column::DesignColumn;
+use crate::effect_columns::{Combination, Times, size_columns};
+use crate::result::{SetForecast, SetMember};
+use crate::run_information::RunInformation;
+
+/// One unknown: what it is in the columns of the record, and in those of the next run.
+#[derive(Clone, Debug)]
+pub(crate) struct Unknown {
+    /// Standard deviation before both.
+    pub(crate) sigma: f64,
+    first: Vec<(usize, f64)>,
+    next: Vec<(usize, f64)>,
+}
+
+/// A cause in question with the onset or time constant that is best in the record.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    pub(crate) row: &'static Effect,
+    pub(crate) shape: Option<f64>,
+    /// How much less likely it makes the record than the cause that is named does, as a
+    /// difference of log-likelihoods with searching allowed for.
+    pub(crate) deficit: f64,
+    /// Effects of its set that no run tells from it.
+    pub(crate) equivalents: Vec<&'static str>,
+    /// Variance of the increments, if it is a random walk.
+    pub(crate) variance: f64,
+    /// What its statistic has to be lowered by.
+    pub(crate) handicap: f64,
+}
+
+/// A candidate with its unknowns.
+#[derive(Clone, Debug)]
+pub(crate) struct Member {
+    pub(crate) candidate: Candidate,
+    pub(crate) places: Vec<usize>,
+}
+
+/// One named set: the first member is the cause that is named.
+#[derive(Clone, Debug)]
+pub(crate) struct ConfidenceSet {
+    /// Unknowns that the members are judged beside.
+    pub(crate) nuisance: Vec<usize>,
+    pub(crate) members: Vec<Member>,
+}
+
+impl ConfidenceSet {
+    /// The forecast of the set; `apart` is the probability that a member is distinguished from the
+    /// first. `None` of an empty set.
+    pub(crate) fn forecast(
+        &self,
+        mean_size: f64,
+        one_left: f64,
+        apart: impl Fn(usize) -> f64,
+    ) -> Option<SetForecast> {
+        let members = self.members.iter().enumerate();
+        Some(SetForecast {
+            effect: self.members.first()?.candidate.row.id.into(),
+            mean_size,
+            one_left,
+            members: members
+                .map(|(index, member)| SetMember {
+                    effect: member.candidate.row.id.into(),
+                    equivalents: member
+                        .candidate
+                        .equivalents
+                        .iter()
+                        .map(|id| (*id).into())
+                        .collect(),
+                    told_apart: apart(index),
+                })
+                .collect(),
+        })
+    }
+}
+
+/// All unknowns, and the columns that they are sums of.
+#[derive(Clone, Debug)]
+pub(crate) struct JointUnknowns {
+    pub(crate) unknowns: Vec<Unknown>,
+    /// Columns of the record.
+    pub(crate) first: Vec<DesignColumn>,
+    /// Columns of the next run.
+    pub(crate) next: Vec<DesignColumn>,
+    /// Unknowns of the site, which sigmas take as considered.
+    pub(crate) site: [usize; 3],
+    /// Turn-ons, and what is in the model without a name.
+    pub(crate) common: Vec<usize>,
+    pub(crate) cases: Vec<ConfidenceSet>,
+}
+
+impl JointUnknowns {
+    /// Of a fit to a record, with a set for each cause that was named.
+    pub(crate) fn new(
+        fitted: &FittedPlatform<'_>,
+        run: &Run<'_>,
+        sets: &[Vec<Candidate>],
+        times: &Times,
+    ) -> Self {
+        let prior = &run.bench.prior;
+        let differ = prior.turn_on_sigma_deg_per_h.iter().any(|s| *s > 0.0);
+        let mut all = Self {
+            unknowns: Vec::new(),
+            first: Vec::new(),
+            next: Vec::new(),
+            site: [0; 3],
+            common: Vec::new(),
+            cases: Vec::new(),
+        };
+        let both = |index: usize| vec![(DesignColumn::Parameter(index), 1.0)];
+        let mut sigmas = fitted.prior_sigma();
+        if differ {
+            // The fit has the prior of one turn-on; this is that of their mean.
+            for (axis, bias) in BIASES.into_iter().enumerate() {
+                sigmas[bias] = prior.bias_sigma_deg_per_h[axis];
+            }
+        }
+        for (index, sigma) in sigmas.into_iter().take(COEFFICIENTS).enumerate() {
+            all.add(&both(index), &both(index), sigma);
+        }
+        for (place, quantity) in SiteQuantity::ALL.into_iter().enumerate() {
+            let sum = PARAMETERS
+                .iter()
+                .position(|element| element.id == quantity.id())
+                .map_or_else(Vec::new, both);
+            let sigma = quantity.declared_sigma(run.bench).unwrap_or(0.0);
+            all.site[place] = all.add(&sum, &sum, sigma);
+        }
+        if differ {
+            for next in [false, true] {
+                for (axis, bias) in BIASES.into_iter().enumerate() {
+                    // A gyro whose turn-ons are the same has next to nothing to add.
+                    let sigma = prior.turn_on_sigma_deg_per_h[axis].max(1e-9);
+                    let (own, none) = (both(bias), Combination::new());
+                    let place = if next {
+                        all.add(&none, &own, sigma)
+                    } else {
+                        all.add(&own, &none, sigma)
+                    };
+                    all.common.push(place);
+                }
+            }
+        }
+        // Lines, which have no name.
+        for (index, column) in fitted.extension().columns.columns().iter().enumerate() {
+            if matches!(column, Column::TimeProfile { .. }) {
+                let own = vec![(DesignColumn::Fitted(index), 1.0)];
+                let place = all.add(&own, &Combination::new(), f64::INFINITY);
+                all.common.push(place);
+            }
+        }
+        let members: Vec<Vec<Member>> = sets
+            .iter()
+            .map(|set| {
+                set.iter()
+                    .map(|candidate| all.member(candidate, times))
+                    .collect()
+            })
+            .collect();
+        for (index, own) in members.iter().enumerate() {
+            let mut nuisance: Vec<usize> = (0..COEFFICIENTS).collect();
+            let declared = |place: &usize| all.unknowns[*place].sigma > 0.0;
+            nuisance.extend(all.site.iter().filter(|place| declared(place)));
+            nuisance.extend(&all.common);
+            let others = members.iter().enumerate().filter(|(i, _)| *i != index);
+            nuisance.extend(
+                others
+                    .filter_map(|(_, members)| members.first())
+                    .flat_map(|named| named.places.iter()),
+            );
+            all.cases.push(ConfidenceSet {
+                nuisance,
+                members: own.clone(),
+            });
+        }
+        all
+    }
+
+    /// Information on the unknowns, and their score, from what the record says.
+    pub(crate) fn of_first(&self, information: &RunInformation) -> RunInformation {
+        self.fold(information, |unknown| &unknown.first)
+    }
+
+    /// The same from what the next run says.
+    pub(crate) fn of_next(&self, information: &RunInformation) -> RunInformation {
+        self.fold(information, |unknown| &unknown.next)
+    }
+
+    fn fold<'a>(
+        &'a self,
+        run: &RunInformation,
+        of: impl Fn(&'a Unknown) -> &'a Vec<(usize, f64)>,
+    ) -> RunInformation {
+        let count = self.unknowns.len();
+        let mut information = DMatrix::zeros(count, count);
+        let mut score = DVector::zeros(count);
+        for (i, a) in self.unknowns.iter().enumerate() {
+            for (column, factor) in of(a) {
+                score[i] += factor * run.score[*column];
+                for (j, b) in self.unknowns.iter().enumerate() {
+                    for (other, times) in of(b) {
+                        information[(i, j)] += factor * times * run.information[(*column, *other)];
+                    }
+                }
+            }
+        }
+        RunInformation { information, score }
+    }
+
+    fn member(&mut self, candidate: &Candidate, times: &Times) -> Member {
+        // A random walk has a prior: the variance of its increments.
+        let sigma = if candidate.variance > 0.0 {
+            candidate.variance.sqrt()
+        } else {
+            f64::INFINITY
+        };
+        Member {
+            places: size_columns(candidate.row, candidate.shape, times)
+                .iter()
+                .map(|size| self.add(&size.first, &size.next, sigma))
+                .collect(),
+            candidate: candidate.clone(),
+        }
+    }
+
+    fn add(&mut self, first: &Combination, next: &Combination, sigma: f64) -> usize {
+        let unknown = Unknown {
+            sigma,
+            first: interned(&mut self.first, first),
+            next: interned(&mut self.next, next),
+        };
+        self.unknowns.push(unknown);
+        self.unknowns.len() - 1
+    }
+}
+
+/// A combination by the places of its columns in a list, to which missing ones are added.
+fn interned(columns: &mut Vec<DesignColumn>, combination: &Combination) -> Vec<(usize, f64)> {
+    combination
+        .iter()
+        .map(|(column, factor)| {
+            let known = columns.iter().position(|other| other == column);
+            let place = known.unwrap_or_else(|| {
+                columns.push(column.clone());
+                columns.len() - 1
+            });
+            (place, *factor)
+        })
+        .collect()
+}

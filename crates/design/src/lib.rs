@@ -1,0 +1,81 @@
+//! Experiment design: attitude and duration of the next run of a platform.
+//!
+//! # What it is
+//!
+//! [`plan`] takes a fitted model, the causes that a diagnosis named in its record ([`NamedCause`]) and
+//! [`PlanOptions`], and returns a [`PlanResult`]: next runs with the standard deviations of the
+//! coefficients and the expected sizes of the confidence sets after them. [`compare`] evaluates the
+//! sets on a second record that has been made.
+//!
+//! # The equations
+//!
+//! Let x be all unknowns: coefficients, errors of the site, turn-on offsets of each run, and sizes of
+//! every member of the confidence sets. A run is linear in them through its design columns; with
+//! J₁ the information of the record, J₂(a, T) that of a run of duration T from attitude a along the
+//! trajectory that the fitted model predicts, both with the attitudes eliminated, and W the
+//! inverse of the prior covariance,
+//!
+//! ```text
+//! P(a, T) = (W + J₁ + J₂(a, T))⁻¹                                                (1)
+//! ```
+//!
+//! holds the predicted variances. The expected size of a set is that of the confidence set of
+//! [`gyrocal_hypothesis`] (its equation (6)) on both runs, averaged over draws of the next run from the
+//! prediction of each member, weighted by the likelihood of the member in the record:
+//!
+//! ```text
+//! E|S| = Σ_m w_m E_{y₂|m} |S(y₁, y₂)|                                            (2)
+//! ```
+//!
+//! Attitudes are searched on a grid and by steps from the best of it; equation (2), or the mean ratio
+//! of standard deviations, is what the search minimises (D-optimal and T-optimal designs are
+//! relatives: Atkinson, Donev, Tobias, *Optimum Experimental Designs*, 2007).
+//!
+//! # Assumptions
+//!
+//! Terms of specific force, of the magnetic field and of the accelerometers are the same in the next
+//! run. All other effects continue as the table of effects declares: a warm-up begins anew, a ramp and
+//! a step go on, a knock and an error of the first attitude belong to their run.
+//!
+//! # Features
+//!
+//! - `schema`: the JSON Schema of the results.
+//!
+//! # What it does not do
+//!
+//! It reads no files and plans runs of a static platform only.
+
+mod attitude;
+mod candidates;
+mod compare;
+mod design_column;
+mod effect_columns;
+mod error;
+mod evaluator;
+mod expected_sets;
+mod goal;
+mod joint_unknowns;
+mod named_cause;
+mod options;
+mod prose;
+mod result;
+mod run_information;
+mod search;
+mod set_comparison;
+mod sigma;
+
+pub use compare::{Compared, ComparedMember, compare};
+pub use error::DesignError;
+pub use goal::Goal;
+pub use named_cause::{NamedCause, noise_of};
+pub use options::PlanOptions;
+pub use prose::prose;
+#[cfg(feature = "schema")]
+pub use result::schema;
+pub use result::{
+    Aim, Forecast, Outlook, PlanResult, Proposal, Reached, SCHEMA_VERSION, SetForecast, SetMember,
+};
+pub use search::plan;
+
+/// Number of drift coefficients of the nominal model.
+const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;

@@ -1,0 +1,189 @@
+//! What was named in a record, as a plan needs it.
+
+use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
+use gyrocal::{EFFECTS, Effect};
+use gyrocal_calibration::{
+    CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, Run, rows,
+};
+use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension, recurs};
+
+use crate::error::DesignError;
+use gyrocal_diagnosis::missing_input;
+use gyrocal_diagnosis::result::{DiagnosisResult, Finding};
+
+/// A cause that was named, and what the record does not tell it from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedCause {
+    /// Its public id.
+    pub effect: String,
+    /// Its onset in s or time constant in h, if it has one; of a random walk its size.
+    pub shape: Option<f64>,
+    /// Ids of the rest of its set, with the differences of log-likelihoods.
+    pub rivals: Vec<(String, f64)>,
+}
+
+impl NamedCause {
+    /// The causes of a diagnosis that a run can be planned for.
+    #[must_use]
+    pub fn all(diagnosis: &DiagnosisResult) -> Vec<Self> {
+        let causes = diagnosis.causes();
+        let plannable = causes.filter(|finding| Self::is_cause(&finding.effect));
+        plannable.map(Self::of).collect()
+    }
+
+    /// A cause of a diagnosis.
+    #[must_use]
+    pub fn of(finding: &Finding) -> Self {
+        let row = EFFECTS.iter().find(|row| row.id == finding.effect);
+        // Of a random walk its size.
+        let wanted = row.and_then(|row| {
+            let first = row.parameters.first().filter(|_| is_walk(row));
+            row.shape().or(first)
+        });
+        let shape = wanted.and_then(|wanted| finding.parameter(wanted.name));
+        Self {
+            effect: finding.effect.clone(),
+            shape: shape.map(|parameter| parameter.estimate),
+            rivals: finding
+                .alternatives
+                .iter()
+                .map(|other| (other.effect.clone(), other.log_likelihood_deficit))
+                .collect(),
+        }
+    }
+
+    /// Whether a run can be planned for an effect: one with a signature.
+    #[must_use]
+    pub fn is_cause(effect: &str) -> bool {
+        let mut effects = EFFECTS.iter();
+        effects.any(|row| row.id == effect && (row.has_signature() || is_walk(row)))
+    }
+
+    pub(crate) fn row(&self) -> Result<&'static Effect, DesignError> {
+        row(&self.effect)
+    }
+
+    /// The model that has these causes, fitted to a record: what [`super::plan`] starts from where
+    /// there is no diagnosis at hand.
+    ///
+    /// # Errors
+    /// [`DesignError::NotPlannable`], and [`DesignError::Calibration`] if the model cannot be fitted.
+    pub fn fitted<'a>(
+        named: &[Self],
+        run: &Run<'a>,
+        noise: &NoiseModel,
+        options: &Options,
+    ) -> Result<FittedPlatform<'a>, DesignError> {
+        let nominal = FittedPlatform::nominal(run, options, noise)?;
+        let extension = extension(named, run, &nominal)?;
+        Ok(if extension == *FittedPlatform::extension(&nominal) {
+            nominal
+        } else {
+            nominal.refitted(&extension)?
+        })
+    }
+}
+
+/// Noise other than declared, where a diagnosis found it: that of the accelerometers and of the gyros.
+#[must_use]
+pub fn noise_of(diagnosis: &DiagnosisResult) -> NoiseModel {
+    let ratio = |enters: &dyn Fn(Enters) -> bool| {
+        let level = EffectKind::Noise(NoiseProperty::Level);
+        let effect = EFFECTS.iter().find(|e| e.kind == level && enters(e.enters));
+        let mut findings = diagnosis.findings.iter();
+        let found = findings.find(|f| effect.is_some_and(|effect| effect.id == f.effect));
+        found
+            .and_then(|finding| finding.parameters.first())
+            .map_or(1.0, |parameter| parameter.estimate)
+    };
+    NoiseModel {
+        accel_ratio: core::array::from_fn(|axis| {
+            ratio(&|enters| matches!(enters, Enters::Outputs([at]) if *at == axis))
+        }),
+        gyro_ratio: core::array::from_fn(|axis| {
+            ratio(&|enters| matches!(enters, Enters::Rates([at]) if *at == axis))
+        }),
+        weights: None,
+    }
+}
+
+/// The extension of the nominal model by these causes.
+pub(crate) fn extension(
+    named: &[NamedCause],
+    run: &Run<'_>,
+    nominal: &FittedPlatform<'_>,
+) -> Result<ModelExtension, DesignError> {
+    let mut effects = Vec::with_capacity(named.len());
+    for named in named {
+        let effect = named.row()?;
+        if let Some(why) = missing_input(effect, run.record, run.bench) {
+            return Err(DesignError::MissingInput {
+                effect: effect.id,
+                why,
+            });
+        }
+        effects.push(effect);
+    }
+    let rows = rows(run.record, nominal.covariates());
+    let set = HypothesisSet::new(&PLATFORM, &rows, &effects);
+    let mut extension = FittedPlatform::extension(nominal).clone();
+    for named in named {
+        let row = named.row()?;
+        let hypothesis = set
+            .index_of(&named.effect)
+            .ok_or_else(|| unknown(&named.effect))?;
+        let shape = match named.shape {
+            Some(size) if is_walk(row) => Some(size * size * set.onset_interval_h(&rows)),
+            shape => shape,
+        };
+        set.add_to_model(&PLATFORM, &rows, &mut extension, hypothesis, shape);
+    }
+    Ok(extension)
+}
+
+/// A row of the catalogue.
+pub(crate) fn row(effect: &str) -> Result<&'static Effect, DesignError> {
+    EFFECTS
+        .iter()
+        .find(|row| row.id == effect && (row.has_signature() || is_walk(row)))
+        .ok_or_else(|| unknown(effect))
+}
+
+pub(crate) fn is_walk(row: &Effect) -> bool {
+    row.kind == EffectKind::RandomWalk
+}
+
+fn unknown(effect: &str) -> DesignError {
+    DesignError::NotPlannable {
+        effect: effect.to_owned(),
+    }
+}
+
+/// Those that come again in a later run by themselves: all terms but what goes on from before.
+pub(crate) fn recurring(named: &[NamedCause]) -> Vec<NamedCause> {
+    named
+        .iter()
+        .filter(|named| {
+            EFFECTS
+                .iter()
+                .any(|row| row.id == named.effect && recurs(row))
+        })
+        .cloned()
+        .collect()
+}
+
+/// As [`NamedCause::fitted`], without what cannot be fitted to a run by itself.
+pub(crate) fn fitted_alone<'a>(
+    named: &[NamedCause],
+    run: &Run<'a>,
+    noise: &NoiseModel,
+    options: &Options,
+) -> Result<FittedPlatform<'a>, CalibrationError> {
+    let nominal = FittedPlatform::nominal(run, options, noise)?;
+    let named = recurring(named);
+    let extended = extension(&named, run, &nominal)
+        .ok()
+        .filter(|extension| *extension != *FittedPlatform::extension(&nominal))
+        .and_then(|extension| nominal.refitted(&extension).ok());
+    Ok(extended.unwrap_or(nominal))
+}

@@ -1,0 +1,324 @@
+//! The sentences and tables of a plan, made from its result alone.
+
+use crate::result::{Aim, Outlook, PlanResult, Proposal, SetForecast};
+use gyrocal_diagnosis::prose::{Block, Column, Table, counted};
+
+/// Probability above which two causes count as distinguished.
+const DISTINGUISHED: f64 = 0.95;
+
+/// Probability below which two causes count as not distinguished.
+const NOT_DISTINGUISHED: f64 = 0.5;
+
+/// The whole plan in reading order.
+#[must_use]
+pub fn prose(plan: &PlanResult) -> Vec<Block> {
+    let path = plan.manifest.inputs.first();
+    let mut blocks = vec![
+        Block::Paragraph(format!(
+            "{}: {} over {:.2} days",
+            path.map_or("record", |input| &input.path),
+            counted(plan.record.rows, "row"),
+            plan.record.duration_s / 86_400.0
+        )),
+        Block::Paragraph(question(plan.aim, &plan.now)),
+    ];
+    for (index, duration_s) in durations(plan).into_iter().enumerate() {
+        let of_it = |p: &&Proposal| p.duration_s == duration_s;
+        let Some(best) = plan.proposals.iter().find(of_it) else {
+            continue;
+        };
+        let sets = undecided(&best.outlook).map(set_forecast);
+        blocks.push(Block::List {
+            title: recommendation(best, index == 0),
+            entries: sets.chain([sigma_forecast(&best.outlook)]).collect(),
+        });
+        if let Some(going_on) = plan.going_on.iter().find(of_it) {
+            blocks.push(Block::Paragraph(continuation(&going_on.outlook)));
+        }
+    }
+    blocks.extend(goal(plan).map(Block::Paragraph));
+    blocks.extend(plan.inseparable.iter().map(|class| {
+        Block::Paragraph(format!(
+            "No run distinguishes {}: they are exact equivalents. `gyrocal diagnose` describes the \
+             experiment that would.",
+            class.join(" and ")
+        ))
+    }));
+    blocks.extend(tables(plan).into_iter().map(Block::Table));
+    blocks
+}
+
+/// Durations in the order in which they were asked for.
+fn durations(plan: &PlanResult) -> Vec<f64> {
+    let mut durations: Vec<f64> = plan.proposals.iter().map(|p| p.duration_s).collect();
+    durations.dedup();
+    durations
+}
+
+/// Sets of more than one member.
+fn undecided(outlook: &Outlook) -> impl Iterator<Item = &SetForecast> {
+    outlook.sets.iter().filter(|set| set.members.len() > 1)
+}
+
+fn question(aim: Aim, now: &Outlook) -> String {
+    let sets = undecided(now).map(|set| {
+        let others: Vec<&str> = set.members[1..].iter().map(|m| &*m.effect).collect();
+        format!("{} (alternatives {})", set.effect, others.join(", "))
+    });
+    let sets: Vec<String> = sets.collect();
+    let reported: Vec<&str> = now.sets.iter().map(|set| &*set.effect).collect();
+    let ranked = match aim {
+        Aim::Set => "Runs are ranked by the expected size of these sets, then by the sigmas.",
+        Aim::Sigmas => "Runs are ranked by the sigmas of the nine coefficients.",
+    };
+    if !sets.is_empty() {
+        format!(
+            "Not distinguished by this record: {}. {ranked}",
+            sets.join("; ")
+        )
+    } else if reported.is_empty() {
+        format!("The diagnosis of this record has no findings. {ranked}")
+    } else {
+        format!(
+            "Findings without alternatives: {}. {ranked}",
+            reported.join(", ")
+        )
+    }
+}
+
+fn recommendation(best: &Proposal, first: bool) -> String {
+    format!(
+        "{} {} from {}. Expected result of record and run together:",
+        if first {
+            "Recommended next run:"
+        } else {
+            "Alternatively"
+        },
+        hours(best.duration_s),
+        attitude(best)
+    )
+}
+
+fn set_forecast(set: &SetForecast) -> String {
+    let others = |test: &dyn Fn(f64) -> bool| -> Vec<String> {
+        set.members[1..]
+            .iter()
+            .filter(|member| test(member.told_apart))
+            .map(|member| format!("{} ({})", member.effect, percent(member.told_apart)))
+            .collect()
+    };
+    let lists = [
+        (others(&|p| p >= DISTINGUISHED), "distinguished from"),
+        (
+            others(&|p| (NOT_DISTINGUISHED..DISTINGUISHED).contains(&p)),
+            "possibly distinguished from",
+        ),
+        (others(&|p| p < NOT_DISTINGUISHED), "not distinguished from"),
+    ];
+    let mut words = format!(
+        "confidence set of {}: {:.2} of {} members stay on average, one alone with a probability \
+         of {}",
+        set.effect,
+        set.mean_size,
+        set.members.len(),
+        percent(set.one_left)
+    );
+    for (list, verb) in lists {
+        if !list.is_empty() {
+            words.push_str(&format!("; {verb} {}", list.join(", ")));
+        }
+    }
+    words
+}
+
+fn sigma_forecast(outlook: &Outlook) -> String {
+    format!(
+        "sigmas of the nine coefficients: {:.2} of the present ones (geometric mean)",
+        outlook.sigma_ratio
+    )
+}
+
+fn continuation(outlook: &Outlook) -> String {
+    let sets = undecided(outlook).map(|set| {
+        let members = set.members.len();
+        format!("{:.2} of {members} members stay, ", set.mean_size)
+    });
+    format!(
+        "The same duration in the present attitude: {}sigmas {:.2}.",
+        sets.collect::<String>(),
+        outlook.sigma_ratio
+    )
+}
+
+fn goal(plan: &PlanResult) -> Option<String> {
+    let goal = plan.goal.as_ref()?;
+    let wish = &goal.wish;
+    Some(match &goal.run {
+        _ if goal.already => format!("This record alone meets the goal: {wish}."),
+        Some(run) => format!(
+            "Shortest run that meets the goal ({wish}): {} from {}.",
+            hours(run.duration_s),
+            attitude(run)
+        ),
+        None => format!(
+            "No run of up to {} among those examined meets the goal: {wish}.",
+            hours(goal.longest_s)
+        ),
+    })
+}
+
+fn tables(plan: &PlanResult) -> Vec<Table> {
+    let mut tables = vec![runs(plan)];
+    let Some(best) = plan.proposals.first() else {
+        return tables;
+    };
+    let mut going_on = plan.going_on.iter();
+    let going_on = going_on.find(|run| run.duration_s == best.duration_s);
+    let later: Vec<(&str, &Outlook)> = going_on
+        .map(|run| ("present attitude", &run.outlook))
+        .into_iter()
+        .chain([("best run", &best.outlook)])
+        .collect();
+    tables.push(sigmas(&plan.now, &later, best.duration_s));
+    if undecided(&plan.now).next().is_some() {
+        tables.push(members(plan, &later));
+    }
+    tables
+}
+
+fn runs(plan: &PlanResult) -> Table {
+    let sets = undecided(&plan.now).map(|set| {
+        format!(
+            "mean size of set {} (now {})",
+            set.effect,
+            set.members.len()
+        )
+    });
+    let mut columns: Vec<Column> = ["duration", "x", "y", "z", "sigmas"]
+        .into_iter()
+        .map(Column::numbers)
+        .collect();
+    columns.extend(sets.map(|head| Column::numbers(&head)));
+    let row = |run: &Proposal| -> Vec<String> {
+        let angles = match run.angles_deg {
+            Some(angles) => angles.map(|angle| format!("{angle:.0}°")),
+            None => ["present".to_owned(), String::new(), String::new()],
+        };
+        let sizes = undecided(&run.outlook).map(|set| format!("{:.2}", set.mean_size));
+        core::iter::once(hours(run.duration_s))
+            .chain(angles)
+            .chain([format!("{:.3}", run.outlook.sigma_ratio)])
+            .chain(sizes)
+            .collect()
+    };
+    let rows = durations(plan).into_iter().flat_map(|duration_s| {
+        let all = plan.proposals.iter().chain(&plan.going_on);
+        all.filter(move |run| run.duration_s == duration_s)
+    });
+    Table {
+        title: "Runs for each duration, the best first:".to_owned(),
+        columns,
+        rows: rows.map(row).collect(),
+    }
+}
+
+fn sigmas(now: &Outlook, later: &[(&str, &Outlook)], duration_s: f64) -> Table {
+    let all = |outlook: &Outlook| -> Vec<String> {
+        let forecasts = outlook.coefficients.iter().chain(&outlook.sizes);
+        forecasts.map(|f| format!("{:.1e}", f.sigma)).collect()
+    };
+    let heads = core::iter::once("now").chain(later.iter().map(|(head, _)| *head));
+    let mut columns = vec![Column::words("")];
+    columns.extend(heads.map(Column::numbers));
+    columns.push(Column::words("unit"));
+    let outlooks = core::iter::once(now).chain(later.iter().map(|(_, outlook)| *outlook));
+    let values: Vec<Vec<String>> = outlooks.map(all).collect();
+    let forecasts = now.coefficients.iter().chain(&now.sizes).enumerate();
+    Table {
+        title: format!(
+            "Standard deviations now, and after {} more:",
+            hours(duration_s)
+        ),
+        columns,
+        rows: forecasts
+            .map(|(index, forecast)| {
+                let cells = values
+                    .iter()
+                    .map(|sigmas| sigmas.get(index).cloned().unwrap_or_default());
+                core::iter::once(forecast.name.to_string())
+                    .chain(cells)
+                    .chain([forecast.unit.to_string()])
+                    .collect()
+            })
+            .collect(),
+    }
+}
+
+fn members(plan: &PlanResult, later: &[(&str, &Outlook)]) -> Table {
+    let mut columns = vec![Column::words("reported"), Column::words("alternative")];
+    columns.extend(later.iter().map(|(head, _)| Column::numbers(head)));
+    let mut rows = Vec::new();
+    for (at, set) in plan.now.sets.iter().enumerate() {
+        for (index, member) in set.members.iter().enumerate().skip(1) {
+            let cells = later.iter().map(|(_, outlook)| {
+                let later = outlook.sets.get(at).and_then(|set| set.members.get(index));
+                later.map_or_else(String::new, |member| percent(member.told_apart))
+            });
+            let ids = [set.effect.to_string(), member.effect.to_string()];
+            rows.push(ids.into_iter().chain(cells).collect());
+        }
+    }
+    Table {
+        title:
+            "Probability that the reported cause and the alternative are distinguished, whichever \
+                of the two it is:"
+                .to_owned(),
+        columns,
+        rows,
+    }
+}
+
+/// Platform angles in words.
+fn attitude(run: &Proposal) -> String {
+    match run.angles_deg {
+        Some([x, y, z]) => format!("platform angles x {x:.0}°, y {y:.0}°, z {z:.0}°"),
+        None => "the present attitude".to_owned(),
+    }
+}
+
+/// A duration in hours.
+fn hours(duration_s: f64) -> String {
+    let hours = duration_s / 3600.0;
+    if hours >= 10.0 {
+        format!("{hours:.0} h")
+    } else {
+        format!("{hours:.1} h")
+    }
+}
+
+/// A probability in percent, never 100 %.
+fn percent(p: f64) -> String {
+    if p > 0.99 {
+        "over 99 %".to_owned()
+    } else {
+        format!("{:.0} %", 100.0 * p)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{hours, percent};
+
+    #[test]
+    fn no_probability_is_called_certain() {
+        assert_eq!(percent(1.0), "over 99 %");
+        assert_eq!(percent(0.954), "95 %");
+        assert_eq!(percent(0.0), "0 %");
+    }
+
+    #[test]
+    fn hours_have_the_digits_that_matter() {
+        assert_eq!(hours(259_200.0), "72 h");
+        assert_eq!(hours(5_400.0), "1.5 h");
+    }
+}

@@ -1,0 +1,159 @@
+//! The answer of a plan as plain data, which is also its JSON contract.
+
+use std::borrow::Cow;
+
+use gyrocal_record::Manifest;
+use serde::{Deserialize, Serialize};
+
+use gyrocal_diagnosis::result::RecordSummary;
+
+/// Version of the JSON contract of a plan.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// Public id of an effect or coefficient, or a unit.
+type Id = Cow<'static, str>;
+
+/// The answer of a plan. What does not apply is `None`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PlanResult {
+    /// Version of this contract.
+    pub schema_version: u32,
+    /// Program, inputs and command that made the result.
+    pub manifest: Manifest,
+    /// Size of the record so far.
+    pub record: RecordSummary,
+    /// Criterion that proposals are ranked by.
+    pub aim: Aim,
+    /// Forecast from the record so far.
+    pub now: Outlook,
+    /// Forecasts for continuing in the present attitude, one for each duration.
+    pub going_on: Vec<Proposal>,
+    /// Next runs, for each duration the best first.
+    pub proposals: Vec<Proposal>,
+    /// The run that reaches the wished goal; `None` if none was wished for.
+    pub goal: Option<Reached>,
+    /// Exact equivalents among the effects in question, which no run distinguishes; the reported
+    /// one first.
+    pub inseparable: Vec<Vec<Id>>,
+}
+
+/// Criterion that proposals are ranked by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Aim {
+    /// Expected size of the confidence sets, then the standard deviations.
+    Set,
+    /// The standard deviations of the nine coefficients: their geometric mean.
+    Sigmas,
+}
+
+/// A next run and its forecast.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Proposal {
+    /// Platform angles about x, then y, then z at its first row \[deg\]; `None` if the record
+    /// continues.
+    #[serde(rename = "initial_angles_deg")]
+    pub angles_deg: Option<[f64; 3]>,
+    /// Its duration \[s\].
+    pub duration_s: f64,
+    /// Forecast from record and run together.
+    pub outlook: Outlook,
+}
+
+/// Forecast of standard deviations and confidence sets.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Outlook {
+    /// Geometric mean over the nine coefficients of sigma over that of the record so far.
+    pub sigma_ratio: f64,
+    /// Standard deviations of the nine coefficients, with the reported effects in the model.
+    pub coefficients: Vec<Forecast>,
+    /// Standard deviations of the sizes of the reported effects.
+    pub sizes: Vec<Forecast>,
+    /// The confidence sets.
+    pub sets: Vec<SetForecast>,
+}
+
+/// A standard deviation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Forecast {
+    /// Id of a coefficient, or of an effect with the name of its parameter: `gyro_y.g_z size`.
+    pub name: Id,
+    /// The standard deviation, in `unit`.
+    pub sigma: f64,
+    /// The unit.
+    pub unit: Id,
+}
+
+/// Forecast of a confidence set.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SetForecast {
+    /// The effect that is reported now.
+    pub effect: Id,
+    /// Mean number of members that stay, exact equivalents counted as one.
+    pub mean_size: f64,
+    /// Probability that one stays.
+    pub one_left: f64,
+    /// All members, the reported one first.
+    pub members: Vec<SetMember>,
+}
+
+/// A member of a confidence set.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SetMember {
+    /// Id of the effect.
+    pub effect: Id,
+    /// Its exact equivalents.
+    pub equivalents: Vec<Id>,
+    /// Probability that it and the reported one do not both stay in the set, whichever of the two
+    /// is the cause; 1 of the reported one.
+    pub told_apart: f64,
+}
+
+/// The run that reaches a goal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Reached {
+    /// The goal in words.
+    pub wish: String,
+    /// Whether the record so far reaches it.
+    pub already: bool,
+    /// The shortest run that was found to reach it; `None` if none is needed or none does.
+    pub run: Option<Proposal>,
+    /// The longest run that was looked at \[s\].
+    pub longest_s: f64,
+}
+
+impl Outlook {
+    /// Members that are left on average beyond one for each set.
+    #[must_use]
+    pub fn surplus(&self) -> f64 {
+        self.sets.iter().map(|set| set.mean_size - 1.0).sum()
+    }
+}
+
+/// Geometric mean of ratios.
+pub(crate) fn ratio(after: &[Forecast], before: &[Forecast]) -> f64 {
+    let logarithms = after
+        .iter()
+        .zip(before)
+        .map(|(after, before)| (after.sigma / before.sigma).ln());
+    (logarithms.sum::<f64>() / before.len() as f64).exp()
+}
+
+/// JSON Schema (draft 2020-12) of a written [`PlanResult`].
+#[cfg(feature = "schema")]
+#[must_use]
+pub fn schema() -> schemars::Schema {
+    schemars::generate::SchemaSettings::draft2020_12()
+        .for_serialize()
+        .into_generator()
+        .into_root_schema_for::<PlanResult>()
+}

@@ -1,0 +1,312 @@
+//! The search for the next run.
+
+use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Run};
+use rayon::prelude::*;
+
+use crate::attitude::{apart_deg, beside, first};
+use crate::candidates::{candidates, duration_s, times};
+use crate::error::DesignError;
+use crate::evaluator::{Detail, Evaluation, Evaluator, interval_s};
+use crate::goal::reach;
+use crate::joint_unknowns::{Candidate, JointUnknowns};
+use crate::named_cause::NamedCause;
+use crate::options::PlanOptions;
+use crate::result::{Aim, Outlook, PlanResult, Proposal, Reached, SCHEMA_VERSION};
+use crate::run_information::RunInformation;
+use gyrocal_diagnosis::{manifest, record_summary};
+
+/// How finely attitudes are looked at while they are searched, and in the end.
+const COARSE: Detail = Detail {
+    rows: 160,
+    draws: 96,
+};
+pub(crate) const FINE: Detail = Detail {
+    rows: 720,
+    draws: 1024,
+};
+
+/// Attitudes that are followed to the best beside them, and how far apart they are.
+const FOLLOWED: usize = 5;
+const DISTINCT_DEG: f64 = 20.0;
+
+/// Steps to the attitudes beside one, deg; so often each at most.
+const STEPS_DEG: [f64; 3] = [12.0, 5.0, 2.0];
+const ROUNDS: usize = 3;
+
+/// A run has at least so many rows, as many as a filter has states.
+const LEAST_ROWS: f64 = 12.0;
+
+/// And lasts no longer than a year.
+const MOST_S: f64 = 366.0 * 86_400.0;
+
+/// A member of a set weighs as much as sigmas that are all smaller by this factor less: where a
+/// set is all but resolved, sigmas decide.
+const SIGMAS_IN_SETS: f64 = 0.2;
+
+/// Looks for the next run that says most, given a fit with what was named in its record.
+///
+/// # Errors
+/// [`DesignError`].
+pub fn plan(
+    fitted: &FittedPlatform<'_>,
+    run: &Run<'_>,
+    noise: &NoiseModel,
+    named: &[NamedCause],
+    options: &PlanOptions,
+) -> Result<PlanResult, DesignError> {
+    options.goal.check()?;
+    let planner = Planner::new(fitted, *run, noise, named, options)?;
+    let own = [duration_s(run.record)];
+    let durations_s = if options.durations_s.is_empty() {
+        &own[..]
+    } else {
+        &options.durations_s
+    };
+    let least_s = planner.least_s();
+    for found_s in durations_s {
+        if !(least_s..=MOST_S).contains(found_s) {
+            return Err(DesignError::Duration {
+                found_s: *found_s,
+                least_s,
+                most_s: MOST_S,
+            });
+        }
+    }
+    let mut now = None;
+    let (mut going_on, mut proposals) = (Vec::new(), Vec::new());
+    for duration_s in durations_s {
+        let (present, longer) = planner.with(*duration_s, FINE, |evaluator| {
+            Ok((evaluator.present(), evaluator.going_on()?))
+        })?;
+        now = now.or(present);
+        going_on.extend(longer.map(|outlook| Proposal {
+            angles_deg: None,
+            duration_s: *duration_s,
+            outlook,
+        }));
+        proposals.extend(planner.search(*duration_s)?);
+    }
+    let now = now.ok_or(CalibrationError::NotPositiveDefinite)?;
+    let reached = match proposals.first().and_then(|best| best.angles_deg) {
+        Some(_) if !options.goal.is_empty() && options.goal.is_met(&now) => Some(Reached {
+            wish: options.goal.in_words().unwrap_or_default(),
+            already: true,
+            run: None,
+            longest_s: 0.0,
+        }),
+        Some(angles_deg) if !options.goal.is_empty() => Some(reach(&planner, angles_deg)?),
+        _ => None,
+    };
+    let inseparable = planner
+        .sets
+        .iter()
+        .flatten()
+        .filter(|candidate| !candidate.equivalents.is_empty())
+        .map(|candidate| {
+            let others = candidate.equivalents.iter().copied();
+            let class = std::iter::once(candidate.row.id).chain(others);
+            class.map(Into::into).collect()
+        })
+        .collect();
+    Ok(PlanResult {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest(options.seed),
+        record: record_summary(run.record),
+        aim: planner.aim,
+        now,
+        going_on,
+        proposals,
+        goal: reached,
+        inseparable,
+    })
+}
+
+/// Everything but attitude and duration.
+pub(crate) struct Planner<'a, 'b> {
+    fitted: &'b FittedPlatform<'a>,
+    run: Run<'b>,
+    noise: &'b NoiseModel,
+    pub(crate) options: &'b PlanOptions,
+    sets: Vec<Vec<Candidate>>,
+    /// What the record says of the columns of a universe, which are the same for all durations.
+    said: RunInformation,
+    aim: Aim,
+}
+
+impl<'a, 'b> Planner<'a, 'b> {
+    fn new(
+        fitted: &'b FittedPlatform<'a>,
+        run: Run<'b>,
+        noise: &'b NoiseModel,
+        named: &[NamedCause],
+        options: &'b PlanOptions,
+    ) -> Result<Self, DesignError> {
+        let sets = candidates(fitted, &run, named)?;
+        let own = times(&run, duration_s(run.record));
+        let universe = JointUnknowns::new(fitted, &run, &sets, &own);
+        let said = RunInformation::of_record(fitted, run.record, &universe.first)?;
+        let aim = options
+            .aim
+            .unwrap_or(if sets.iter().any(|set| set.len() > 1) {
+                Aim::Set
+            } else {
+                Aim::Sigmas
+            });
+        Ok(Self {
+            fitted,
+            run,
+            noise,
+            options,
+            sets,
+            said,
+            aim,
+        })
+    }
+
+    /// The shortest run, s.
+    pub(crate) fn least_s(&self) -> f64 {
+        LEAST_ROWS * interval_s(self.run.record)
+    }
+
+    /// With everything but the attitude.
+    pub(crate) fn with<R>(
+        &self,
+        duration_s: f64,
+        detail: Detail,
+        ask: impl FnOnce(&Evaluator<'_>) -> Result<R, DesignError>,
+    ) -> Result<R, DesignError> {
+        let times = times(&self.run, duration_s);
+        let universe = JointUnknowns::new(self.fitted, &self.run, &self.sets, &times);
+        let evaluator = Evaluator::new(
+            &universe,
+            self.fitted,
+            self.run,
+            self.noise,
+            &self.said,
+            self.options.limits,
+            self.options.calibration,
+            (duration_s, detail, self.options.seed),
+        )
+        .ok_or(CalibrationError::NotPositiveDefinite)?;
+        ask(&evaluator)
+    }
+
+    /// The best runs of a duration, the best first.
+    pub(crate) fn search(&self, duration_s: f64) -> Result<Vec<Proposal>, DesignError> {
+        let ends = self.with(duration_s, COARSE, |evaluator| {
+            let tried = first(&self.options.limits);
+            let mut seen = self.look(evaluator, tried, duration_s)?;
+            sort(&mut seen);
+            let starts = distinct(seen, FOLLOWED);
+            let ends = starts
+                .into_par_iter()
+                .map(|start| self.follow(evaluator, start));
+            Ok(ends.collect::<Vec<_>>())
+        })?;
+        self.with(duration_s, FINE, |evaluator| {
+            let angles = ends.into_iter().map(|(angles_deg, _)| angles_deg).collect();
+            let mut best = self.look(evaluator, angles, duration_s)?;
+            sort(&mut best);
+            Ok(distinct(best, self.options.proposals)
+                .into_iter()
+                .map(|(angles_deg, (_, outlook))| Proposal {
+                    angles_deg: Some(angles_deg),
+                    duration_s,
+                    outlook,
+                })
+                .collect())
+        })
+    }
+
+    /// All attitudes that the limits allow, with what is sought to be small.
+    fn look(
+        &self,
+        evaluator: &Evaluator<'_>,
+        tried: Vec<[f64; 3]>,
+        duration_s: f64,
+    ) -> Result<Vec<Seen>, DesignError> {
+        let looked: Vec<_> = tried
+            .into_par_iter()
+            .map(|angles_deg| (angles_deg, evaluator.look(angles_deg)))
+            .collect();
+        let mut seen = Vec::new();
+        let (mut longest, mut failed) = ((0.0, [0.0; 3]), None);
+        for (angles_deg, looked) in looked {
+            match looked {
+                Ok(Evaluation::At(outlook)) => {
+                    seen.push((angles_deg, (self.cost(&outlook), outlook)))
+                }
+                Ok(Evaluation::Stopped(after_s)) if after_s > longest.0 => {
+                    longest = (after_s, angles_deg);
+                }
+                Ok(Evaluation::Stopped(_)) => {}
+                Err(error) => failed = Some(error),
+            }
+        }
+        match failed {
+            _ if !seen.is_empty() => Ok(seen),
+            Some(error) => Err(error.into()),
+            None => Err(DesignError::Limits {
+                wanted_h: duration_s / 3600.0,
+                longest_h: longest.0 / 3600.0,
+                angles_deg: longest.1,
+            }),
+        }
+    }
+
+    /// From one attitude to the best beside it, and on.
+    fn follow(&self, evaluator: &Evaluator<'_>, mut best: Seen) -> Seen {
+        for step_deg in STEPS_DEG {
+            for _ in 0..ROUNDS {
+                let beside = beside(best.0, step_deg);
+                let allowed = beside
+                    .into_iter()
+                    .filter(|angles| self.options.limits.hold(*angles));
+                let better = allowed
+                    .filter_map(|angles_deg| match evaluator.look(angles_deg) {
+                        Ok(Evaluation::At(outlook)) => {
+                            Some((angles_deg, (self.cost(&outlook), outlook)))
+                        }
+                        _ => None,
+                    })
+                    .min_by(|a: &Seen, b| a.1.0.total_cmp(&b.1.0));
+                match better {
+                    Some(better) if better.1.0 < best.1.0 => best = better,
+                    _ => break,
+                }
+            }
+        }
+        best
+    }
+
+    fn cost(&self, outlook: &Outlook) -> f64 {
+        match self.aim {
+            Aim::Set => outlook.surplus() + SIGMAS_IN_SETS * outlook.sigma_ratio,
+            Aim::Sigmas => outlook.sigma_ratio,
+        }
+    }
+}
+
+/// Angles, what is sought to be small, and all that was seen.
+type Seen = ([f64; 3], (f64, Outlook));
+
+fn sort(seen: &mut [Seen]) {
+    seen.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
+}
+
+/// The first ones that lie well apart.
+fn distinct(seen: Vec<Seen>, most: usize) -> Vec<Seen> {
+    let mut taken: Vec<Seen> = Vec::with_capacity(most);
+    for one in seen {
+        if taken.len() == most {
+            break;
+        }
+        if taken
+            .iter()
+            .all(|other| apart_deg(other.0, one.0) > DISTINCT_DEG)
+        {
+            taken.push(one);
+        }
+    }
+    taken
+}
