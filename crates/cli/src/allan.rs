@@ -5,11 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use comfy_table::Cell;
-use gyrocal_instruments::{InstrumentError, ResultFile, Unfit, read_columns};
-use gyrocal_record::{InputErrorKind, SourceText, write_json};
-use gyrocal_statistics::allan::{
-    AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
-};
+use gyrocal_instruments::{AllanColumn, AllanSettings, InstrumentError, ResultFile, allan_columns};
+use gyrocal_record::{SourceText, write_json};
 use serde_json::json;
 
 use crate::Failure;
@@ -46,22 +43,24 @@ pub(crate) struct AllanArguments {
     json: Option<PathBuf>,
 }
 
-/// One column's result.
-struct Column<'a> {
-    name: &'a str,
-    points: Vec<AllanPoint>,
-    noise: NoiseCoefficients,
-}
-
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
     outputs::check(&[&arguments.log], arguments.json.as_deref(), None)?;
-    let columns = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    let settings = AllanSettings {
+        rate_hz: arguments.rate_hz,
+        scale: arguments.scale,
+        confidence: arguments.confidence,
+    };
+    let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
+    let columns = SourceText::read(&arguments.log)
+        .map_err(InstrumentError::from)
+        .and_then(|source| allan_columns(&source, &names, &settings))
+        .map_err(|error| unusable(&arguments.log, error))?;
     if let Some(path) = &arguments.json {
         let result = json!({
             "unit": arguments.unit,
             "confidence": arguments.confidence,
-            "columns": columns.iter().map(document).collect::<Vec<_>>(),
+            "columns": columns,
         });
         write_json(
             path,
@@ -71,73 +70,7 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
     Ok(summary(arguments, &columns))
 }
 
-fn work(arguments: &AllanArguments) -> Result<Vec<Column<'_>>, InstrumentError> {
-    let source = SourceText::read(&arguments.log)?;
-    let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
-    let columns = read_columns(&source, &names)?.values;
-    let interval_s = 1.0 / arguments.rate_hz;
-    names
-        .into_iter()
-        .zip(columns)
-        .map(|(name, values)| {
-            if values.len() > 1 && values.windows(2).all(|pair| pair[0] == pair[1]) {
-                return Err(constant(&source, name));
-            }
-            let values: Vec<f64> = values.iter().map(|value| value * arguments.scale).collect();
-            if values.iter().any(|value| !value.is_finite()) {
-                return Err(overflow(name, arguments.scale));
-            }
-            let averaging = octaves(values.len().max(3));
-            let points = allan_deviation(&values, interval_s, &averaging, arguments.confidence)?;
-            let noise = noise_coefficients(&points);
-            Ok(Column {
-                name,
-                points,
-                noise,
-            })
-        })
-        .collect()
-}
-
-fn overflow(name: &str, scale: f64) -> InstrumentError {
-    InstrumentError::Unfit {
-        kind: Unfit::Setting,
-        found: format!("values of `{name}` that are too large when multiplied by {scale:e}"),
-        expected: "finite numbers".to_owned(),
-        advice: "give a smaller --scale".to_owned(),
-    }
-}
-
-fn constant(source: &SourceText, name: &str) -> InstrumentError {
-    let error = source.error(
-        InputErrorKind::Stuck,
-        0..0,
-        format!("a column `{name}` that never changes"),
-        "samples of a rate, which has noise",
-        "check the sensor and the logger",
-    );
-    error.into()
-}
-
-fn document(column: &Column<'_>) -> serde_json::Value {
-    let points: Vec<_> = column
-        .points
-        .iter()
-        .map(|point| {
-            json!({
-                "tau_s": point.tau_s,
-                "deviation": point.deviation,
-                "low": point.interval[0],
-                "high": point.interval[1],
-                "degrees_of_freedom": point.degrees_of_freedom,
-                "noise": point.noise.description(),
-            })
-        })
-        .collect();
-    json!({ "name": column.name, "points": points, "noise": column.noise })
-}
-
-fn summary(arguments: &AllanArguments, columns: &[Column<'_>]) -> String {
+fn summary(arguments: &AllanArguments, columns: &[AllanColumn]) -> String {
     let mut text = String::new();
     for column in columns {
         let mut table = table(["tau [s]", "deviation", "low", "high", "freedom", "noise"]);
@@ -145,10 +78,10 @@ fn summary(arguments: &AllanArguments, columns: &[Column<'_>]) -> String {
             table.add_row([
                 right(format!("{:.4}", point.tau_s)),
                 right(format!("{:.4e}", point.deviation)),
-                right(format!("{:.4e}", point.interval[0])),
-                right(format!("{:.4e}", point.interval[1])),
+                right(format!("{:.4e}", point.low)),
+                right(format!("{:.4e}", point.high)),
                 right(format!("{:.1}", point.degrees_of_freedom)),
-                Cell::new(point.noise.description()),
+                Cell::new(point.noise),
             ]);
         }
         let noise = &column.noise;

@@ -4,6 +4,7 @@ use gyrocal::Effect;
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal_calibration::{BIASES, FittedPlatform, Run, SiteQuantity};
 use gyrocal_hypothesis::Column;
+use gyrocal_record::{Bench, Prior};
 use nalgebra::{DMatrix, DVector};
 
 use crate::COEFFICIENTS;
@@ -97,6 +98,11 @@ pub(crate) struct JointUnknowns {
     pub(crate) cases: Vec<ConfidenceSet>,
 }
 
+/// A parameter by itself.
+fn both(index: usize) -> Combination {
+    vec![(DesignColumn::Parameter(index), 1.0)]
+}
+
 impl JointUnknowns {
     /// Of a fit to a record, with a set for each cause that was named.
     pub(crate) fn new(
@@ -115,7 +121,6 @@ impl JointUnknowns {
             common: Vec::new(),
             cases: Vec::new(),
         };
-        let both = |index: usize| vec![(DesignColumn::Parameter(index), 1.0)];
         let mut sigmas = fitted.prior_sigma();
         if differ {
             // The fit has the prior of one turn-on; this is that of their mean.
@@ -126,62 +131,79 @@ impl JointUnknowns {
         for (index, sigma) in sigmas.into_iter().take(COEFFICIENTS).enumerate() {
             all.add(&both(index), &both(index), sigma);
         }
+        all.add_site(run.bench);
+        if differ {
+            all.add_turn_ons(prior);
+        }
+        all.add_unmodelled(fitted);
+        all.add_sets(sets, times);
+        all
+    }
+
+    fn add_site(&mut self, bench: &Bench) {
         for (place, quantity) in SiteQuantity::ALL.into_iter().enumerate() {
             let sum = PARAMETERS
                 .iter()
                 .position(|element| element.id == quantity.id())
                 .map_or_else(Vec::new, both);
-            let sigma = quantity.declared_sigma(run.bench).unwrap_or(0.0);
-            all.site[place] = all.add(&sum, &sum, sigma);
+            let sigma = quantity.declared_sigma(bench).unwrap_or(0.0);
+            self.site[place] = self.add(&sum, &sum, sigma);
         }
-        if differ {
-            for next in [false, true] {
-                for (axis, bias) in BIASES.into_iter().enumerate() {
-                    // A gyro whose turn-ons are the same has next to nothing to add.
-                    let sigma = prior.turn_on_sigma_deg_per_h[axis].max(1e-9);
-                    let (own, none) = (both(bias), Combination::new());
-                    let place = if next {
-                        all.add(&none, &own, sigma)
-                    } else {
-                        all.add(&own, &none, sigma)
-                    };
-                    all.common.push(place);
-                }
+    }
+
+    /// The turn-on of each run beside the mean.
+    fn add_turn_ons(&mut self, prior: &Prior) {
+        for next in [false, true] {
+            for (axis, bias) in BIASES.into_iter().enumerate() {
+                // A gyro whose turn-ons are equal has next to nothing to add.
+                let sigma = prior.turn_on_sigma_deg_per_h[axis].max(1e-9);
+                let (own, none) = (both(bias), Combination::new());
+                let place = if next {
+                    self.add(&none, &own, sigma)
+                } else {
+                    self.add(&own, &none, sigma)
+                };
+                self.common.push(place);
             }
         }
-        // Lines, which have no name.
+    }
+
+    /// Unmodelled terms of the fit.
+    fn add_unmodelled(&mut self, fitted: &FittedPlatform<'_>) {
         for (index, column) in fitted.extension().columns.columns().iter().enumerate() {
             if matches!(column, Column::TimeProfile { .. }) {
                 let own = vec![(DesignColumn::Fitted(index), 1.0)];
-                let place = all.add(&own, &Combination::new(), f64::INFINITY);
-                all.common.push(place);
+                let place = self.add(&own, &Combination::new(), f64::INFINITY);
+                self.common.push(place);
             }
         }
+    }
+
+    fn add_sets(&mut self, sets: &[Vec<Candidate>], times: &Times) {
         let members: Vec<Vec<Member>> = sets
             .iter()
             .map(|set| {
                 set.iter()
-                    .map(|candidate| all.member(candidate, times))
+                    .map(|candidate| self.member(candidate, times))
                     .collect()
             })
             .collect();
         for (index, own) in members.iter().enumerate() {
             let mut nuisance: Vec<usize> = (0..COEFFICIENTS).collect();
-            let declared = |place: &usize| all.unknowns[*place].sigma > 0.0;
-            nuisance.extend(all.site.iter().filter(|place| declared(place)));
-            nuisance.extend(&all.common);
+            let declared = |place: &usize| self.unknowns[*place].sigma > 0.0;
+            nuisance.extend(self.site.iter().filter(|place| declared(place)));
+            nuisance.extend(&self.common);
             let others = members.iter().enumerate().filter(|(i, _)| *i != index);
             nuisance.extend(
                 others
                     .filter_map(|(_, members)| members.first())
                     .flat_map(|named| named.places.iter()),
             );
-            all.cases.push(ConfidenceSet {
+            self.cases.push(ConfidenceSet {
                 nuisance,
                 members: own.clone(),
             });
         }
-        all
     }
 
     /// Information on the unknowns, and their score, from what the record says.

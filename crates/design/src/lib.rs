@@ -57,11 +57,13 @@ mod goal;
 mod joint_unknowns;
 mod named_cause;
 mod options;
+mod plan;
+mod planner;
 mod prose;
 mod result;
 mod run_information;
-mod search;
 mod set_comparison;
+mod shortest_run;
 mod sigma;
 
 pub use compare::{Compared, ComparedMember, compare};
@@ -69,13 +71,13 @@ pub use error::DesignError;
 pub use goal::Goal;
 pub use named_cause::{NamedCause, noise_of};
 pub use options::PlanOptions;
+pub use plan::plan;
 pub use prose::prose;
 #[cfg(feature = "schema")]
 pub use result::schema;
 pub use result::{
     Aim, Forecast, Outlook, PlanResult, Proposal, Reached, SCHEMA_VERSION, SetForecast, SetMember,
 };
-pub use search::plan;
 
 /// Number of drift coefficients of the nominal model.
 const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;

@@ -115,14 +115,9 @@ pub fn diagnose<'a>(
     let (nominal, searched) = (found.nominal, found.searched);
     let outliers = unexplained_outliers(record, &audited.suspects, &searched, accel_noise_g);
     audit.add_outliers(outliers, bench.accel_noise_g);
-    let share = shares.gyro_noise;
-    let gyro_noise = gyro_noise_findings(
-        &found.estimate,
-        &found.noise_model,
-        &audit,
-        &searched.findings,
-        share,
-    );
+    let (estimate, noise_model) = (&found.estimate, &found.noise_model);
+    let causes = &searched.findings;
+    let gyro_noise = gyro_noise_findings(estimate, noise_model, &audit, causes, shares.gyro_noise);
 
     let whitened = whitened(&searched.fitted, record)?;
     let (time_s, alpha) = (&record.time_s, shares.residual_test);
@@ -130,7 +125,7 @@ pub fn diagnose<'a>(
     let allan = allan_test(time_s, &whitened, shares.allan_test).ok();
 
     let judged = judge(&nominal, &searched)?;
-    let gain = model_gain(&nominal, &searched, &judged, &run, &found.noise_model)?;
+    let gain = model_gain(&nominal, &searched, &judged, &run, noise_model)?;
     let filter = options
         .filter
         .map(|filter| filter_test(record, bench, filter));
@@ -146,7 +141,7 @@ pub fn diagnose<'a>(
         nominal: &nominal,
         power: powers(&nominal, record, &searched.ranking, searched.threshold)?,
         searched: &searched,
-        estimate: &found.estimate,
+        estimate,
         remainder,
         allan,
         judged: &judged,

@@ -76,6 +76,7 @@ mod gain;
 mod magnitude;
 mod magnitude_test;
 mod noise;
+mod plot_data;
 mod power;
 pub mod prose;
 mod request;
@@ -95,6 +96,7 @@ pub use noise::{
     AuditOptions, Cleaned, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, Outlier, Shares,
     audit_noise,
 };
+pub use plot_data::{ChannelCorrelation, ChannelSpectrum, ModelVersion, OpenLoopSimulation};
 pub use request::{missing_input, selection};
 pub use result::{DiagnosisResult, Verdict};
 pub use series::Innovations;

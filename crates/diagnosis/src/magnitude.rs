@@ -36,6 +36,19 @@ pub struct MagnitudeChannel {
     pub on_temperature: Option<BinnedMeans>,
 }
 
+impl MagnitudeChannel {
+    /// The least p-value of the mean and of all binned means, times their number (Bonferroni).
+    #[must_use]
+    pub fn least_p_value(&self) -> f64 {
+        let binned = self.on_component.iter().chain([&self.on_time]);
+        let binned = binned.chain(&self.on_temperature);
+        let (count, least) = binned.fold((1.0, self.mean_p_value), |(count, least), means| {
+            (count + 1.0, f64::min(least, means.p_value))
+        });
+        f64::min(count * least, 1.0)
+    }
+}
+
 /// The magnitude channel of a record with the declared noise of each accelerometer; `gravity_g` is
 /// 1 unless the bench file gives local and unit gravity.
 ///

@@ -7,6 +7,7 @@ mod diagnosis_ground;
 mod error;
 mod figure;
 mod gain;
+mod house;
 mod kernel;
 mod main_job;
 mod measured;
@@ -59,6 +60,8 @@ enum Topic {
     Naming,
     /// Gain of extended models: in cross-validation, in the coefficients, and on a second record.
     Gain,
+    /// Structure of the tree, equal results before and after, cost of a build.
+    House,
     /// Two recordings of real gyros: docs/measured-data.md.
     Measured,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
@@ -74,6 +77,7 @@ fn main() -> ExitCode {
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
+        Topic::House => house::figures(arguments.small),
         Topic::Measured => measured::figures(arguments.write),
         Topic::Paper => paper::figures(arguments.write),
     };

@@ -47,6 +47,7 @@
 //! clocks that jump, wrong units and left-handed axes are errors.
 
 mod accel_from_norm;
+mod allan_analysis;
 mod columns;
 pub mod description;
 mod error;
@@ -60,6 +61,7 @@ mod stops;
 pub mod strapdown;
 
 pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
+pub use allan_analysis::{AllanColumn, AllanColumnPoint, AllanSettings, allan_columns};
 pub use columns::{Columns, read_columns};
 pub use description::Description;
 pub use error::{InstrumentError, Unfit};

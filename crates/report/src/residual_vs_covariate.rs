@@ -94,6 +94,21 @@ impl Bin {
             })
             .collect()
     }
+
+    /// Share of the mean square of a residual that its means in bins hold.
+    #[must_use]
+    pub fn share_of_mean_square(covariate: &[f64], residual: &[f64], bins: usize) -> f64 {
+        let between: f64 = Self::of(covariate, residual, bins)
+            .iter()
+            .map(|bin| bin.samples as f64 * bin.mean * bin.mean)
+            .sum();
+        let pairs = covariate.iter().zip(residual);
+        let total: f64 = pairs
+            .filter(|(x, y)| x.is_finite() && y.is_finite())
+            .map(|(_, y)| y * y)
+            .sum();
+        if total > 0.0 { between / total } else { 0.0 }
+    }
 }
 
 impl Picture for ResidualVsCovariate {

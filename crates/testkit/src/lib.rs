@@ -32,6 +32,7 @@ pub mod extended_platform;
 mod files;
 #[cfg(feature = "noise")]
 pub mod noise_faults;
+mod own_terms;
 #[cfg(feature = "filters")]
 pub mod peer_filters;
 #[cfg(feature = "filters")]
@@ -43,4 +44,5 @@ mod tiny;
 pub use command::{Outcome, cargo, codegen, real_environments, run, system_python, tools_only};
 pub use copy::{WorkspaceCopy, workspace};
 pub use files::{edit, executable, fresh_directory, snapshot};
+pub use own_terms::{FoundParameter, FoundTerm, code_block, find_own_terms};
 pub use tiny::TinyDerivation;

@@ -7,7 +7,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use gyrocal_codegen::build::{Settings, Variant};
 use gyrocal_testkit::{
-    Outcome, WorkspaceCopy, cargo, fresh_directory, real_environments, run, snapshot, tools_only,
+    Outcome, WorkspaceCopy, cargo, code_block, find_own_terms, fresh_directory, real_environments,
+    run, snapshot, tools_only,
 };
 
 const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
@@ -267,9 +268,8 @@ fn main() {
 fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
     let (copy, _turn) = take_copy();
     let page = copy.root.join("docs/adding-a-term.md");
-    let page = std::fs::read_to_string(page).unwrap().replace("\r\n", "\n");
-    let (_, entry) = page.split_once("```python\n").unwrap();
-    let (entry, _) = entry.split_once("```").unwrap();
+    let page = std::fs::read_to_string(page).unwrap();
+    let entry = code_block(&page, "# Adding a term\n");
     copy.edit(
         "codegen/derive/catalogue.py",
         "\nEFFECTS = [\n",
@@ -349,6 +349,16 @@ fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
 
 /// Two builds with directories of their own (one of them for a named target) that need the
 /// same environment at the same time.
+#[test]
+fn terms_of_each_kind_are_found_with_their_shapes() {
+    let (copy, _turn) = take_copy();
+    let found = find_own_terms(&copy, |_| quick_cargo(&copy, &target("target"), "run"));
+    assert_eq!(found.len(), 4, "{found:?}");
+    for term in &found {
+        assert!(term.is_within(3.0), "{found:#?}");
+    }
+}
+
 #[test]
 fn two_cargo_processes_at_once() {
     let (copy, _turn) = take_copy();

@@ -147,14 +147,18 @@ fn invalid(id: &str, parameter: &Parameter, found: &str, expected: String) -> Er
     }
 }
 
+/// Effects that no record has, with advice.
+const NOT_OF_RECORDS: [(&str, &str); 1] = [(
+    "filter.discretisation",
+    "it belongs to a filter, not to a record; a record made by first-order steps is one of the Euler \
+     rule",
+)];
+
 fn unknown(id: &str) -> Error {
-    let advice = if id == "filter.discretisation" {
-        "it belongs to a filter, not to a record; a record made by first-order steps is one of \
-         the Euler rule"
-            .to_owned()
-    } else {
-        advice(id)
-    };
+    let mut elsewhere = NOT_OF_RECORDS.iter();
+    let advice = elsewhere
+        .find(|(known, _)| *known == id)
+        .map_or_else(|| advice(id), |(_, advice)| (*advice).to_owned());
     Error::UnknownEffect {
         id: id.to_owned(),
         advice,

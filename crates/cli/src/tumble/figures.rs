@@ -114,18 +114,15 @@ fn residuals(
         return None;
     };
     let gyros = [x, y, z];
-    let rms =
-        |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
-    let all = |residuals: [&Vec<f64>; 3]| rms(&residuals.map(|column| rms(column)));
     let before = gyros.map(|gyro| &gyro.nominal.residuals_deg_per_h);
     let after = gyros.map(|gyro| &gyro.extended.residuals_deg_per_h);
-    let miss = all(before);
+    let [miss, miss_extended] = report.residual_rms_deg_per_h();
     let found = !report.findings.is_empty();
     let title = if found {
         format!(
             "Residual at the static stops: {miss:.0} deg/h rms for the nominal drift law, {:.0} for \
              the extended one",
-            all(after)
+            miss_extended
         )
     } else {
         format!("Residual of the nominal drift law at the static stops: {miss:.0} deg/h rms")
@@ -138,14 +135,11 @@ fn residuals(
         ),
         time_s: prepared.positions.time_s.clone(),
         channels: (0..3)
-            .map(|axis| {
-                let sigmas = prepared.positions.sigma_deg_per_h.iter();
-                ResidualChannel {
-                    name: ["x", "y", "z"][axis].to_owned(),
-                    before: before[axis].clone(),
-                    after: found.then(|| after[axis].clone()),
-                    sigma: rms(&sigmas.map(|sigma| sigma[axis]).collect::<Vec<_>>()),
-                }
+            .map(|axis| ResidualChannel {
+                name: ["x", "y", "z"][axis].to_owned(),
+                before: before[axis].clone(),
+                after: found.then(|| after[axis].clone()),
+                sigma: prepared.positions.rms_sigma_deg_per_h(axis),
             })
             .collect(),
         before_label: "nominal law".to_owned(),

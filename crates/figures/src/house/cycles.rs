@@ -61,9 +61,7 @@ fn references(of: &Crate) -> References {
 
 /// Groups of children of `parent` that use each other.
 fn cycles(of: &Crate, references: &References, parent: &[String]) -> Vec<Cycle> {
-    let child = |path: &[String]| -> Option<String> {
-        path.strip_prefix(parent)?.first().cloned()
-    };
+    let child = |path: &[String]| -> Option<String> { path.strip_prefix(parent)?.first().cloned() };
     let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (from, to) in references {
         if let (Some(from), Some(to)) = (child(from), child(to))
@@ -88,9 +86,11 @@ fn cycles(of: &Crate, references: &References, parent: &[String]) -> Vec<Cycle> 
     let mut groups = BTreeSet::new();
     for (module, reaches) in &reached {
         if reaches.contains(*module) {
-            let with = reaches
-                .iter()
-                .filter(|other| reached.get(other).is_some_and(|back| back.contains(*module)));
+            let with = reaches.iter().filter(|other| {
+                reached
+                    .get(other)
+                    .is_some_and(|back| back.contains(*module))
+            });
             groups.insert(with.cloned().collect::<Vec<String>>());
         }
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use quote::ToTokens as _;
 use syn::visit::{self, Visit};
-use syn::{BinOp, Expr, ExprBinary, ExprLit, ExprMacro, ExprMethodCall, Lit, LitStr, PatLit};
+use syn::{BinOp, Expr, ExprBinary, ExprLit, ExprMacro, ExprMethodCall, Lit, LitStr, Pat};
 
 use super::source::{Crate, of_tests};
 
@@ -82,7 +82,8 @@ impl Words {
         let dotted = literal.contains('.') && literal.len() > 1;
         (dotted && self.of_ids.contains(literal))
             || (self.of_ids.contains(literal) && of_effect(&["effect", "effects", "id", "row"]))
-            || (self.of_kinds.contains(literal) && of_effect(&["kind", "enters", "needs", "needed"]))
+            || (self.of_kinds.contains(literal)
+                && of_effect(&["kind", "enters", "needs", "needed"]))
     }
 }
 
@@ -145,10 +146,7 @@ impl<'a> Visit<'a> for Comparisons<'_> {
 
     fn visit_expr_binary(&mut self, binary: &'a ExprBinary) {
         if matches!(binary.op, BinOp::Eq(_) | BinOp::Ne(_)) {
-            for (one, other) in [
-                (&binary.left, &binary.right),
-                (&binary.right, &binary.left),
-            ] {
+            for (one, other) in [(&binary.left, &binary.right), (&binary.right, &binary.left)] {
                 if let Some(literal) = text(one) {
                     self.judge(&other.to_token_stream().to_string(), literal);
                 }
@@ -170,31 +168,33 @@ impl<'a> Visit<'a> for Comparisons<'_> {
 
     fn visit_expr_match(&mut self, choice: &'a syn::ExprMatch) {
         self.visit_expr(&choice.expr);
-        self.subjects.push(choice.expr.to_token_stream().to_string());
+        self.subjects
+            .push(choice.expr.to_token_stream().to_string());
         for arm in &choice.arms {
             self.visit_pat(&arm.pat);
         }
         self.subjects.pop();
         for arm in &choice.arms {
-            if let Some((_, guard)) = &arm.guard {
-                self.visit_expr(guard);
-            }
             self.visit_expr(&arm.body);
         }
     }
 
     fn visit_expr_let(&mut self, choice: &'a syn::ExprLet) {
         self.visit_expr(&choice.expr);
-        self.subjects.push(choice.expr.to_token_stream().to_string());
+        self.subjects
+            .push(choice.expr.to_token_stream().to_string());
         self.visit_pat(&choice.pat);
         self.subjects.pop();
     }
 
-    fn visit_pat_lit(&mut self, pattern: &'a PatLit) {
-        if let Lit::Str(literal) = &pattern.lit {
+    fn visit_pat(&mut self, pattern: &'a Pat) {
+        if let Pat::Lit(literal) = pattern
+            && let Lit::Str(literal) = &literal.lit
+        {
             let subject = self.subjects.last().cloned().unwrap_or_default();
             self.judge(&subject, literal);
         }
+        visit::visit_pat(self, pattern);
     }
 
     fn visit_expr_macro(&mut self, call: &'a ExprMacro) {
@@ -202,7 +202,8 @@ impl<'a> Visit<'a> for Comparisons<'_> {
             && let Ok(matches) = call.mac.parse_body::<Matches>()
         {
             self.visit_expr(&matches.subject);
-            self.subjects.push(matches.subject.to_token_stream().to_string());
+            self.subjects
+                .push(matches.subject.to_token_stream().to_string());
             Comparisons {
                 words: self.words,
                 file: self.file,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use syn::{Attribute, Item, ItemMod, Meta};
 
-use crate::main_job::Error;
+use crate::error::Error;
 
 /// A crate of the workspace.
 pub(crate) struct Crate {
@@ -119,12 +119,16 @@ impl Reader<'_> {
     ) -> Result<(), Error> {
         let name = module.ident.to_string();
         let below = folder.join(&name);
-        let path = [path, &[name.clone()]].concat();
+        let path = [path, std::slice::from_ref(&name)].concat();
         if let Some((_, items)) = module.content {
             return self.items(file, &below, path, 0, items);
         }
         // Files in other places are generated ones.
-        if module.attrs.iter().any(|attribute| attribute.path().is_ident("path")) {
+        if module
+            .attrs
+            .iter()
+            .any(|attribute| attribute.path().is_ident("path"))
+        {
             return Ok(());
         }
         let beside = folder.join(format!("{name}.rs"));

@@ -1,6 +1,7 @@
 //! Rates and specific force at the stops, in physical units.
 
 use gyrocal::EARTH_RATE_RAD_PER_S;
+use gyrocal_statistics::root_mean_square;
 
 use crate::accel_from_norm::AccelCalibration;
 use crate::stop_means::StopMeans;
@@ -30,6 +31,12 @@ pub struct Instrument {
 }
 
 impl Positions {
+    /// Root mean square of the standard errors of the rates of one gyro, deg/h.
+    #[must_use]
+    pub fn rms_sigma_deg_per_h(&self, gyro: usize) -> f64 {
+        root_mean_square(self.sigma_deg_per_h.iter().map(|sigma| sigma[gyro]))
+    }
+
     /// Converts the means of stops to physical units.
     ///
     /// Gravity determines the attitude at a stop except for its heading. The vertical part of Earth

@@ -1,5 +1,6 @@
 //! Result of a multi-position test, as it is serialised.
 
+use gyrocal_statistics::root_mean_square;
 use serde::Serialize;
 
 use super::alternatives::Alternative;
@@ -21,6 +22,19 @@ pub struct MultiPositionReport {
     pub cross_validation: Option<CrossValidation>,
     /// Searches in data without effects.
     pub controls: NegativeControls,
+}
+
+impl MultiPositionReport {
+    /// Root mean square of the residuals of all gyros at all stops for the nominal and for the extended
+    /// laws, deg/h.
+    #[must_use]
+    pub fn residual_rms_deg_per_h(&self) -> [f64; 2] {
+        let rms = |law: fn(&GyroReport) -> &LawReport| {
+            let gyros = self.gyros.iter();
+            root_mean_square(gyros.map(|gyro| root_mean_square(&law(gyro).residuals_deg_per_h)))
+        };
+        [rms(|gyro| &gyro.nominal), rms(|gyro| &gyro.extended)]
+    }
 }
 
 /// Nominal and extended law of one gyro.

@@ -1,6 +1,5 @@
 //! Effects by test statistic, and the gain of the extended model.
 
-use gyrocal::generated::platform::DRIFT;
 use gyrocal_diagnosis::{prose, result};
 use gyrocal_report::{
     ComparedEstimate, ComparedQuantity, Comparison, CrossValidation, Omitted, PredictionError,
@@ -122,14 +121,15 @@ pub(super) fn gain(found: &DiagnosisRun<'_>, gain: &result::Gain) -> CrossValida
 
 /// The coefficients of the nominal and of the extended model.
 pub(super) fn coefficients(found: &DiagnosisRun<'_>) -> Option<Comparison> {
-    let (nominal, extended) = (&found.diagnosis.nominal, found.diagnosis.extended.as_ref()?);
+    let coefficients = found.diagnosis.result.coefficients.as_ref()?;
+    let extended = coefficients.extended.as_ref()?;
     let shifts = &found.diagnosis.result.gain.as_ref()?.coefficient_shift;
     let largest = shifts
         .iter()
         .max_by(|a, b| a.in_sigmas.abs().total_cmp(&b.in_sigmas.abs()))?;
-    let estimate = |fit: &gyrocal_calibration::FittedPlatform<'_>, index: usize| ComparedEstimate {
-        value: fit.values()[index],
-        sigma: fit.covariance()[(index, index)].sqrt(),
+    let compared = |one: &result::CoefficientEstimate| ComparedEstimate {
+        value: one.estimate,
+        sigma: one.sigma,
     };
     Some(Comparison {
         title: format!(
@@ -140,14 +140,15 @@ pub(super) fn coefficients(found: &DiagnosisRun<'_>) -> Option<Comparison> {
         ),
         subtitle: subtitle(found),
         estimators: vec!["nominal".to_owned(), "extended".to_owned()],
-        quantities: DRIFT
+        quantities: coefficients
+            .nominal
             .iter()
-            .enumerate()
-            .map(|(index, element)| ComparedQuantity {
-                name: element.id.to_owned(),
-                unit: element.unit.to_owned(),
+            .zip(extended)
+            .map(|(nominal, extended)| ComparedQuantity {
+                name: nominal.name.clone(),
+                unit: nominal.unit.clone(),
                 reference: None,
-                estimates: vec![estimate(nominal, index), estimate(extended, index)],
+                estimates: vec![compared(nominal), compared(extended)],
             })
             .collect(),
         columns: 3,

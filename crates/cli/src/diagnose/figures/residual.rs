@@ -1,16 +1,16 @@
 //! Open-loop residuals, one-step innovations and the specific-force magnitude.
 
 use gyrocal_calibration::CalibrationError;
-use gyrocal_diagnosis::{DiagnosisError, magnitude_channel};
+use gyrocal_diagnosis::{
+    ChannelCorrelation, ChannelSpectrum, DiagnosisError, ModelVersion, OpenLoopSimulation,
+    magnitude_channel,
+};
 use gyrocal_report::{
     Bin, Correlation, CorrelationChannel, CovariatePanel, MarkedFrequency, OpenLoop,
     OpenLoopChannel, Picture, PowerThreshold, ResidualChannel, ResidualVsCovariate, Residuals,
     Spectrum, SpectrumChannel,
 };
-use gyrocal_statistics::{
-    Autocorrelation, BinnedMeans, NORMAL_97_5, Periodogram, autocorrelation, periodogram,
-    rms_of_present,
-};
+use gyrocal_statistics::BinnedMeans;
 
 use super::{DiagnosisRun, causes, subtitle};
 
@@ -29,33 +29,24 @@ const SECONDS_PER_DAY: f64 = 86_400.0;
 
 /// Open-loop simulations of the models, from the first row on without measurement updates.
 pub(super) struct OpenLoopRuns {
-    nominal_g: Vec<[f64; 3]>,
-    extended_g: Option<Vec<[f64; 3]>>,
+    nominal: OpenLoopSimulation,
+    extended: Option<OpenLoopSimulation>,
 }
 
 impl OpenLoopRuns {
     pub(super) fn of(found: &DiagnosisRun<'_>) -> Result<Self, CalibrationError> {
-        let diagnosis = &found.diagnosis;
-        Ok(Self {
-            nominal_g: diagnosis.nominal.free_run_g()?,
-            extended_g: diagnosis
-                .extended
-                .as_ref()
-                .map(|extended| extended.free_run_g())
-                .transpose()?,
-        })
+        let (nominal, extended) = found.diagnosis.open_loop(found.record)?;
+        Ok(Self { nominal, extended })
     }
 
     /// Measured minus simulated specific force of both models.
     pub(super) fn residuals(&self, found: &DiagnosisRun<'_>) -> Residuals {
-        let before = differences(found, &self.nominal_g);
-        let after = self.extended_g.as_deref().map(|g| differences(found, g));
-        let miss = amount(rms(&before));
+        let miss = amount(self.nominal.rms_g);
         let noise = amount(found.bench.accel_noise_g);
-        let title = match (&after, causes(found)) {
+        let title = match (&self.extended, causes(found)) {
             (Some(after), Some(causes)) => format!(
                 "Open-loop residual: {miss} rms for the nominal model, {} with {causes}",
-                amount(rms(after))
+                amount(after.rms_g)
             ),
             _ => format!("Open-loop residual of the nominal model: {miss} rms, noise {noise}"),
         };
@@ -66,7 +57,7 @@ impl OpenLoopRuns {
                 subtitle(found)
             ),
             time_s: found.record.time_s.clone(),
-            channels: channels(before, after, found.bench.accel_noise_g),
+            channels: self.channels(found.bench.accel_noise_g),
             before_label: "nominal model".to_owned(),
             after_label: format!("with {}", causes(found).unwrap_or_default()),
             quantity: "residual".to_owned(),
@@ -76,9 +67,12 @@ impl OpenLoopRuns {
 
     /// Open-loop simulation of the nominal model and the record.
     pub(super) fn open_loop(&self, found: &DiagnosisRun<'_>) -> OpenLoop {
-        let miss = amount(rms(&differences(found, &self.nominal_g)));
+        let miss = amount(self.nominal.rms_g);
         let days = found.record.duration_s() / SECONDS_PER_DAY;
-        let (measured, simulated) = (columns(&found.record.accel_g), columns(&self.nominal_g));
+        let (measured, simulated) = (
+            columns(&found.record.accel_g),
+            columns(&self.nominal.simulated_g),
+        );
         let channels = AXES.iter().zip(measured.into_iter().zip(simulated));
         OpenLoop {
             title: format!(
@@ -99,15 +93,28 @@ impl OpenLoopRuns {
         }
     }
 
+    fn channels(&self, sigma: f64) -> Vec<ResidualChannel> {
+        let channel = |(axis, name): (usize, &&str)| ResidualChannel {
+            name: (*name).to_owned(),
+            before: self.nominal.residuals_g[axis].clone(),
+            after: self
+                .extended
+                .as_ref()
+                .map(|run| run.residuals_g[axis].clone()),
+            sigma,
+        };
+        AXES.iter().enumerate().map(channel).collect()
+    }
+
     /// Open-loop residuals against each component of specific force, and temperature.
     pub(super) fn against_force(&self, found: &DiagnosisRun<'_>) -> ResidualVsCovariate {
-        let residuals = differences(found, &self.nominal_g);
-        let forces = columns(&self.nominal_g);
+        let residuals = &self.nominal.residuals_g;
+        let forces = columns(&self.nominal.simulated_g);
         let mut panels = Vec::new();
         let mut steepest = (0.0, 0, String::new());
         for (axis, residual) in residuals.iter().enumerate() {
             let mut add = |name: String, unit: &str, abscissa: &[f64]| {
-                let share = explained(abscissa, residual);
+                let share = Bin::share_of_mean_square(abscissa, residual, BINS);
                 if share > steepest.0 {
                     steepest = (share, axis, name.clone());
                 }
@@ -147,65 +154,63 @@ impl OpenLoopRuns {
 /// Periodograms of the innovations of the nominal and of the extended model.
 pub(super) fn periodograms(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
     let probability = found.diagnosis.result.false_alarm_probability;
-    let time_s = &found.record.time_s;
-    let mut channels = Vec::new();
-    let mut frequency = Vec::new();
-    // Of each channel the power of its strongest line over the threshold, and its frequency.
-    let mut lines: Vec<(f64, f64)> = Vec::new();
-    for (label, innovations) in whitened(found) {
-        for (axis, series) in columns(innovations).iter().enumerate() {
-            let Periodogram {
-                frequency_hz,
-                power,
-                level,
-                line,
-            } = periodogram(time_s, series, probability)?;
-            lines.push((line.power / level, line.frequency_hz * SECONDS_PER_DAY));
-            frequency = frequency_hz.iter().map(|hz| hz * SECONDS_PER_DAY).collect();
-            channels.push(SpectrumChannel {
-                name: format!("{}, {label}", AXES[axis]),
-                power,
-                samples: series.iter().filter(|value| !value.is_nan()).count(),
-                threshold: Some(PowerThreshold {
-                    power: level,
-                    false_alarm_probability: probability,
-                }),
-            });
-        }
-    }
+    let spectra = found.diagnosis.spectra(found.record)?;
+    let name =
+        |spectrum: &ChannelSpectrum| format!("{}, {}", AXES[spectrum.axis], label(spectrum.model));
+    let per_day = |hz: f64| hz * SECONDS_PER_DAY;
     let mut marks = vec![MarkedFrequency {
         frequency: SIDEREAL_PER_DAY,
         label: "sidereal day".to_owned(),
     }];
-    let strongest = (0..lines.len())
-        .filter(|channel| lines[*channel].0 > 1.0)
-        .max_by(|a, b| lines[*a].0.total_cmp(&lines[*b].0));
+    let strongest = spectra
+        .iter()
+        .filter(|spectrum| spectrum.line_over_threshold > 1.0)
+        .max_by(|a, b| a.line_over_threshold.total_cmp(&b.line_over_threshold));
     let title = match strongest {
         None => "No spectral line of the innovations exceeds the detection threshold".to_owned(),
-        Some(channel) => {
-            let (beyond, per_day) = lines[channel];
-            let period = format!("{:.2} h", 24.0 / per_day);
+        Some(spectrum) => {
+            let frequency = per_day(spectrum.periodogram.line.frequency_hz);
+            let period = format!("{:.2} h", 24.0 / frequency);
             let mut title = format!(
-                "Strongest spectral line: period {period} ({}), {beyond:.1} times the threshold",
-                channels[channel].name
+                "Strongest spectral line: period {period} ({}), {:.1} times the threshold",
+                name(spectrum),
+                spectrum.line_over_threshold
             );
-            // Those of the extended model follow the first three.
-            if lines.len() > 3 && lines[3..].iter().all(|(beyond, _)| *beyond <= 1.0) {
+            let of_extended = spectra
+                .iter()
+                .filter(|spectrum| spectrum.model == ModelVersion::Extended);
+            let mut lines = of_extended
+                .map(|spectrum| spectrum.line_over_threshold)
+                .peekable();
+            if lines.peek().is_some() && lines.all(|line| line <= 1.0) {
                 title.push_str("; none in the extended model");
             }
             marks.push(MarkedFrequency {
-                frequency: per_day,
+                frequency,
                 label: period,
             });
             title
         }
     };
+    let frequency = spectra.first().map_or_else(Vec::new, |spectrum| {
+        let all = spectrum.periodogram.frequency_hz.iter();
+        all.map(|hz| per_day(*hz)).collect()
+    });
+    let channels = spectra.iter().map(|spectrum| SpectrumChannel {
+        name: name(spectrum),
+        power: spectrum.periodogram.power.clone(),
+        samples: spectrum.samples,
+        threshold: Some(PowerThreshold {
+            power: spectrum.periodogram.level,
+            false_alarm_probability: probability,
+        }),
+    });
     Ok(Box::new(Spectrum {
         title,
         subtitle: format!("one-step innovations; {}", subtitle(found)),
         frequency,
         frequency_unit: "cycles/day".to_owned(),
-        channels,
+        channels: channels.collect(),
         quantity: "power".to_owned(),
         unit: String::new(),
         marks,
@@ -216,56 +221,39 @@ pub(super) fn periodograms(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>,
 pub(super) fn autocorrelations(
     found: &DiagnosisRun<'_>,
 ) -> Result<Box<dyn Picture>, DiagnosisError> {
-    let mut channels = Vec::new();
-    let mut worst: Option<(f64, String)> = None;
-    let mut beyond = 0;
-    for (label, innovations) in whitened(found) {
-        let Autocorrelation {
-            correlation, sigma, ..
-        } = autocorrelation(
-            innovations,
-            LAGS,
-            found.diagnosis.result.false_alarm_probability,
-        )?;
-        for (axis, name) in AXES.iter().enumerate() {
-            let values: Vec<f64> = correlation.iter().map(|lag| lag[axis]).collect();
-            let band = sigma
-                .first()
-                .map_or(f64::NAN, |lag| NORMAL_97_5 * lag[axis]);
-            let name = format!("{name}, {label}");
-            beyond += values.iter().filter(|value| value.abs() > band).count();
-            let largest = values.iter().fold(0.0_f64, |most, value| {
-                if value.abs() > most.abs() {
-                    *value
-                } else {
-                    most
-                }
-            });
-            if worst
-                .as_ref()
-                .is_none_or(|(most, _)| largest.abs() > most.abs())
-            {
-                worst = Some((largest, name.clone()));
-            }
-            channels.push(CorrelationChannel {
-                name,
-                correlation: values,
-                band,
-                samples: innovations.iter().filter(|row| !row[axis].is_nan()).count(),
-            });
-        }
-    }
+    let channels = found.diagnosis.autocorrelations(LAGS)?;
+    let name =
+        |channel: &ChannelCorrelation| format!("{}, {}", AXES[channel.axis], label(channel.model));
+    let worst = channels
+        .iter()
+        .max_by(|a, b| a.largest.abs().total_cmp(&b.largest.abs()));
+    let worst = worst.map_or_else(String::new, |channel| {
+        format!(", the largest {:.3} ({})", channel.largest, name(channel))
+    });
+    let outside: usize = channels.iter().map(|channel| channel.outside).sum();
     let total = LAGS * channels.len();
-    let (largest, name) = worst.unwrap_or_default();
+    let drawn = channels.iter().map(|channel| CorrelationChannel {
+        name: name(channel),
+        correlation: channel.correlation.clone(),
+        band: channel.band,
+        samples: channel.samples,
+    });
     Ok(Box::new(Correlation {
         title: format!(
-            "{beyond} of {total} autocorrelations of the innovations outside the 95 % band, the \
-             largest {largest:.3} ({name})"
+            "{outside} of {total} autocorrelations of the innovations outside the 95 % band{worst}"
         ),
         subtitle: format!("one-step innovations; {}", subtitle(found)),
-        channels,
+        channels: drawn.collect(),
         confidence: 0.95,
     }))
+}
+
+/// Label of a model in the pictures.
+fn label(model: ModelVersion) -> &'static str {
+    match model {
+        ModelVersion::Nominal => "nominal model",
+        ModelVersion::Extended => "extended model",
+    }
 }
 
 /// Squared magnitude of specific force against its components and time: accelerometers only.
@@ -306,16 +294,7 @@ pub(super) fn norm(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>, Diagnos
     if let Some(means) = &norm.on_temperature {
         panels.push(panel("temperature".to_owned(), "°C", 1.0, means));
     }
-    let tests = norm
-        .on_component
-        .iter()
-        .chain([&norm.on_time])
-        .chain(&norm.on_temperature);
-    let least = tests
-        .map(|test| test.p_value)
-        .fold(norm.mean_p_value, f64::min);
-    let count = 1.0 + panels.len() as f64;
-    let title = if least * count < found.diagnosis.result.false_alarm_probability {
+    let title = if norm.least_p_value() < found.diagnosis.result.false_alarm_probability {
         "Specific-force magnitude test: not consistent with gravity, accelerometer error"
     } else {
         "Specific-force magnitude test: consistent with gravity"
@@ -334,70 +313,11 @@ pub(super) fn norm(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>, Diagnos
     }))
 }
 
-/// Innovations of the nominal model and, if there is one, of the extended model.
-fn whitened<'a>(found: &'a DiagnosisRun<'_>) -> Vec<(&'static str, &'a [[f64; 3]])> {
-    let diagnosis = &found.diagnosis;
-    let mut all = vec![("nominal model", diagnosis.innovations.normalised.as_slice())];
-    if diagnosis.extended.is_some() {
-        all.push(("extended model", diagnosis.whitened.as_slice()));
-    }
-    all
-}
-
-fn differences(found: &DiagnosisRun<'_>, simulated_g: &[[f64; 3]]) -> [Vec<f64>; 3] {
-    std::array::from_fn(|axis| {
-        found
-            .record
-            .accel_g
-            .iter()
-            .zip(simulated_g)
-            .map(|(measured, simulated)| measured[axis] - simulated[axis])
-            .collect()
-    })
-}
-
-/// Residuals of the three axes, before and after.
-fn channels(
-    before: [Vec<f64>; 3],
-    after: Option<[Vec<f64>; 3]>,
-    sigma: f64,
-) -> Vec<ResidualChannel> {
-    let after = after.map_or([None, None, None], |after| after.map(Some));
-    AXES.iter()
-        .zip(before.into_iter().zip(after))
-        .map(|(name, (before, after))| ResidualChannel {
-            name: (*name).to_owned(),
-            before,
-            after,
-            sigma,
-        })
-        .collect()
-}
-
 fn columns(rows: &[[f64; 3]]) -> [Vec<f64>; 3] {
     std::array::from_fn(|axis| rows.iter().map(|row| row[axis]).collect())
 }
 
-fn rms(columns: &[Vec<f64>; 3]) -> f64 {
-    rms_of_present(columns.iter().flatten()).0
-}
-
-/// Share of the mean square of a residual that the means of its bins hold.
-fn explained(abscissa: &[f64], residual: &[f64]) -> f64 {
-    let bins = Bin::of(abscissa, residual, BINS);
-    let within: f64 = bins
-        .iter()
-        .map(|bin| bin.samples as f64 * bin.mean * bin.mean)
-        .sum();
-    let pairs = abscissa.iter().zip(residual);
-    let whole: f64 = pairs
-        .filter(|(x, y)| x.is_finite() && y.is_finite())
-        .map(|(_, y)| y * y)
-        .sum();
-    if whole > 0.0 { within / whole } else { 0.0 }
-}
-
-/// A specific force in the unit that people read.
+/// A specific force in µg.
 fn amount(force_g: f64) -> String {
     format!("{:.0} µg", 1e6 * force_g)
 }

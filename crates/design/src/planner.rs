@@ -1,4 +1,6 @@
-//! The search for the next run.
+//! The search for the best attitude of a run.
+
+use std::borrow::Cow;
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Run};
 use rayon::prelude::*;
@@ -7,13 +9,11 @@ use crate::attitude::{apart_deg, beside, first};
 use crate::candidates::{candidates, duration_s, times};
 use crate::error::DesignError;
 use crate::evaluator::{Detail, Evaluation, Evaluator, interval_s};
-use crate::goal::reach;
 use crate::joint_unknowns::{Candidate, JointUnknowns};
 use crate::named_cause::NamedCause;
 use crate::options::PlanOptions;
-use crate::result::{Aim, Outlook, PlanResult, Proposal, Reached, SCHEMA_VERSION};
+use crate::result::{Aim, Outlook, Proposal};
 use crate::run_information::RunInformation;
-use gyrocal_diagnosis::{manifest, record_summary};
 
 /// How finely attitudes are looked at while they are searched, and in the end.
 const COARSE: Detail = Detail {
@@ -36,90 +36,9 @@ const ROUNDS: usize = 3;
 /// A run has at least so many rows, as many as a filter has states.
 const LEAST_ROWS: f64 = 12.0;
 
-/// And lasts no longer than a year.
-const MOST_S: f64 = 366.0 * 86_400.0;
-
 /// A member of a set weighs as much as sigmas that are all smaller by this factor less: where a
 /// set is all but resolved, sigmas decide.
 const SIGMAS_IN_SETS: f64 = 0.2;
-
-/// Looks for the next run that says most, given a fit with what was named in its record.
-///
-/// # Errors
-/// [`DesignError`].
-pub fn plan(
-    fitted: &FittedPlatform<'_>,
-    run: &Run<'_>,
-    noise: &NoiseModel,
-    named: &[NamedCause],
-    options: &PlanOptions,
-) -> Result<PlanResult, DesignError> {
-    options.goal.check()?;
-    let planner = Planner::new(fitted, *run, noise, named, options)?;
-    let own = [duration_s(run.record)];
-    let durations_s = if options.durations_s.is_empty() {
-        &own[..]
-    } else {
-        &options.durations_s
-    };
-    let least_s = planner.least_s();
-    for found_s in durations_s {
-        if !(least_s..=MOST_S).contains(found_s) {
-            return Err(DesignError::Duration {
-                found_s: *found_s,
-                least_s,
-                most_s: MOST_S,
-            });
-        }
-    }
-    let mut now = None;
-    let (mut going_on, mut proposals) = (Vec::new(), Vec::new());
-    for duration_s in durations_s {
-        let (present, longer) = planner.with(*duration_s, FINE, |evaluator| {
-            Ok((evaluator.present(), evaluator.going_on()?))
-        })?;
-        now = now.or(present);
-        going_on.extend(longer.map(|outlook| Proposal {
-            angles_deg: None,
-            duration_s: *duration_s,
-            outlook,
-        }));
-        proposals.extend(planner.search(*duration_s)?);
-    }
-    let now = now.ok_or(CalibrationError::NotPositiveDefinite)?;
-    let reached = match proposals.first().and_then(|best| best.angles_deg) {
-        Some(_) if !options.goal.is_empty() && options.goal.is_met(&now) => Some(Reached {
-            wish: options.goal.in_words().unwrap_or_default(),
-            already: true,
-            run: None,
-            longest_s: 0.0,
-        }),
-        Some(angles_deg) if !options.goal.is_empty() => Some(reach(&planner, angles_deg)?),
-        _ => None,
-    };
-    let inseparable = planner
-        .sets
-        .iter()
-        .flatten()
-        .filter(|candidate| !candidate.equivalents.is_empty())
-        .map(|candidate| {
-            let others = candidate.equivalents.iter().copied();
-            let class = std::iter::once(candidate.row.id).chain(others);
-            class.map(Into::into).collect()
-        })
-        .collect();
-    Ok(PlanResult {
-        schema_version: SCHEMA_VERSION,
-        manifest: manifest(options.seed),
-        record: record_summary(run.record),
-        aim: planner.aim,
-        now,
-        going_on,
-        proposals,
-        goal: reached,
-        inseparable,
-    })
-}
 
 /// Everything but attitude and duration.
 pub(crate) struct Planner<'a, 'b> {
@@ -130,11 +49,11 @@ pub(crate) struct Planner<'a, 'b> {
     sets: Vec<Vec<Candidate>>,
     /// What the record says of the columns of a universe, which are the same for all durations.
     said: RunInformation,
-    aim: Aim,
+    pub(crate) aim: Aim,
 }
 
 impl<'a, 'b> Planner<'a, 'b> {
-    fn new(
+    pub(crate) fn new(
         fitted: &'b FittedPlatform<'a>,
         run: Run<'b>,
         noise: &'b NoiseModel,
@@ -161,6 +80,19 @@ impl<'a, 'b> Planner<'a, 'b> {
             said,
             aim,
         })
+    }
+
+    /// Exact equivalents in the sets, the named one of each class first.
+    pub(crate) fn inseparable(&self) -> Vec<Vec<Cow<'static, str>>> {
+        let candidates = self.sets.iter().flatten();
+        let classes = candidates.filter(|candidate| !candidate.equivalents.is_empty());
+        classes
+            .map(|candidate| {
+                let others = candidate.equivalents.iter().copied();
+                let class = core::iter::once(candidate.row.id).chain(others);
+                class.map(Into::into).collect()
+            })
+            .collect()
     }
 
     /// The shortest run, s.

@@ -1,0 +1,83 @@
+//! The next run.
+
+use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Run};
+use gyrocal_diagnosis::{manifest, record_summary};
+
+use crate::candidates::duration_s;
+use crate::error::DesignError;
+use crate::named_cause::NamedCause;
+use crate::options::PlanOptions;
+use crate::planner::{FINE, Planner};
+use crate::result::{PlanResult, Proposal, Reached, SCHEMA_VERSION};
+use crate::shortest_run::reach;
+
+/// Longest run, s: a year.
+const MOST_S: f64 = 366.0 * 86_400.0;
+
+/// Searches for the next run with the smallest expected confidence sets or standard deviations, given
+/// a fit with the causes that were named in its record.
+///
+/// # Errors
+/// [`DesignError`].
+pub fn plan(
+    fitted: &FittedPlatform<'_>,
+    run: &Run<'_>,
+    noise: &NoiseModel,
+    named: &[NamedCause],
+    options: &PlanOptions,
+) -> Result<PlanResult, DesignError> {
+    options.goal.check()?;
+    let planner = Planner::new(fitted, *run, noise, named, options)?;
+    let own = [duration_s(run.record)];
+    let durations_s = if options.durations_s.is_empty() {
+        &own[..]
+    } else {
+        &options.durations_s
+    };
+    let least_s = planner.least_s();
+    for found_s in durations_s {
+        if !(least_s..=MOST_S).contains(found_s) {
+            return Err(DesignError::Duration {
+                found_s: *found_s,
+                least_s,
+                most_s: MOST_S,
+            });
+        }
+    }
+    let mut now = None;
+    let (mut going_on, mut proposals) = (Vec::new(), Vec::new());
+    for duration_s in durations_s {
+        let (present, longer) = planner.with(*duration_s, FINE, |evaluator| {
+            Ok((evaluator.present(), evaluator.going_on()?))
+        })?;
+        now = now.or(present);
+        going_on.extend(longer.map(|outlook| Proposal {
+            angles_deg: None,
+            duration_s: *duration_s,
+            outlook,
+        }));
+        proposals.extend(planner.search(*duration_s)?);
+    }
+    let now = now.ok_or(CalibrationError::NotPositiveDefinite)?;
+    let reached = match proposals.first().and_then(|best| best.angles_deg) {
+        Some(_) if !options.goal.is_empty() && options.goal.is_met(&now) => Some(Reached {
+            wish: options.goal.in_words().unwrap_or_default(),
+            already: true,
+            run: None,
+            longest_s: 0.0,
+        }),
+        Some(angles_deg) if !options.goal.is_empty() => Some(reach(&planner, angles_deg)?),
+        _ => None,
+    };
+    Ok(PlanResult {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest(options.seed),
+        record: record_summary(run.record),
+        aim: planner.aim,
+        now,
+        going_on,
+        proposals,
+        goal: reached,
+        inseparable: planner.inseparable(),
+    })
+}

@@ -1,0 +1,165 @@
+//! Series behind the pictures of a diagnosis: open-loop simulations, spectra and autocorrelations of
+//! the innovations.
+
+use gyrocal_calibration::{CalibrationError, FittedPlatform};
+use gyrocal_record::Record;
+use gyrocal_statistics::{NORMAL_97_5, Periodogram, autocorrelation, periodogram, rms_of_present};
+
+use crate::diagnose::Diagnosis;
+use crate::error::DiagnosisError;
+
+/// One of the two models of a diagnosis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelVersion {
+    /// The nominal model.
+    Nominal,
+    /// The extended model.
+    Extended,
+}
+
+/// A simulation from the first row on, without measurement updates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenLoopSimulation {
+    /// Specific force of the model at each row, g.
+    pub simulated_g: Vec<[f64; 3]>,
+    /// Measured minus simulated specific force of each axis, g.
+    pub residuals_g: [Vec<f64>; 3],
+    /// Root mean square of all residuals, g.
+    pub rms_g: f64,
+}
+
+impl OpenLoopSimulation {
+    fn new(fitted: &FittedPlatform<'_>, record: &Record) -> Result<Self, CalibrationError> {
+        let simulated_g = fitted.free_run_g()?;
+        let residuals_g: [Vec<f64>; 3] = core::array::from_fn(|axis| {
+            let rows = record.accel_g.iter().zip(&simulated_g);
+            rows.map(|(measured, simulated)| measured[axis] - simulated[axis])
+                .collect()
+        });
+        Ok(Self {
+            rms_g: rms_of_present(residuals_g.iter().flatten()).0,
+            simulated_g,
+            residuals_g,
+        })
+    }
+}
+
+/// Periodogram of the innovations of one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelSpectrum {
+    /// The model that the innovations are of.
+    pub model: ModelVersion,
+    /// 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// The periodogram with its largest line.
+    pub periodogram: Periodogram,
+    /// Power of the largest line over the detection threshold.
+    pub line_over_threshold: f64,
+    /// Number of innovations.
+    pub samples: usize,
+}
+
+/// Autocorrelation of the innovations of one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelCorrelation {
+    /// The model that the innovations are of.
+    pub model: ModelVersion,
+    /// 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// Correlation at each lag, from one row on.
+    pub correlation: Vec<f64>,
+    /// Half width of the 95 % band of white innovations.
+    pub band: f64,
+    /// Number of lags outside of the band.
+    pub outside: usize,
+    /// The correlation of the largest magnitude.
+    pub largest: f64,
+    /// Number of innovations.
+    pub samples: usize,
+}
+
+impl Diagnosis<'_> {
+    /// Open-loop simulations of the nominal and of the extended model.
+    ///
+    /// # Errors
+    /// As [`FittedPlatform::free_run_g`].
+    pub fn open_loop(
+        &self,
+        record: &Record,
+    ) -> Result<(OpenLoopSimulation, Option<OpenLoopSimulation>), CalibrationError> {
+        let extended = self.extended.as_ref();
+        let extended = extended.map(|fitted| OpenLoopSimulation::new(fitted, record));
+        Ok((
+            OpenLoopSimulation::new(&self.nominal, record)?,
+            extended.transpose()?,
+        ))
+    }
+
+    /// Periodograms of the innovations of all axes and models.
+    ///
+    /// # Errors
+    /// [`DiagnosisError::Statistics`] of a record that is too short.
+    pub fn spectra(&self, record: &Record) -> Result<Vec<ChannelSpectrum>, DiagnosisError> {
+        let mut spectra = Vec::new();
+        for (model, innovations) in self.models() {
+            for axis in 0..3 {
+                let series: Vec<f64> = innovations.iter().map(|row| row[axis]).collect();
+                let probability = self.result.false_alarm_probability;
+                let periodogram = periodogram(&record.time_s, &series, probability)?;
+                spectra.push(ChannelSpectrum {
+                    model,
+                    axis,
+                    line_over_threshold: periodogram.line.power / periodogram.level,
+                    periodogram,
+                    samples: series.iter().filter(|value| !value.is_nan()).count(),
+                });
+            }
+        }
+        Ok(spectra)
+    }
+
+    /// Autocorrelations of the innovations of all axes and models up to a lag.
+    ///
+    /// # Errors
+    /// [`DiagnosisError::Statistics`] of a record that is too short.
+    pub fn autocorrelations(&self, lags: usize) -> Result<Vec<ChannelCorrelation>, DiagnosisError> {
+        let mut channels = Vec::new();
+        for (model, innovations) in self.models() {
+            let probability = self.result.false_alarm_probability;
+            let found = autocorrelation(innovations, lags, probability)?;
+            for axis in 0..3 {
+                let correlation: Vec<f64> = found.correlation.iter().map(|lag| lag[axis]).collect();
+                let sigma = found.sigma.first().map_or(f64::NAN, |lag| lag[axis]);
+                let band = NORMAL_97_5 * sigma;
+                channels.push(ChannelCorrelation {
+                    model,
+                    axis,
+                    band,
+                    outside: correlation
+                        .iter()
+                        .filter(|value| value.abs() > band)
+                        .count(),
+                    largest: correlation.iter().fold(0.0_f64, |largest, value| {
+                        if value.abs() > largest.abs() {
+                            *value
+                        } else {
+                            largest
+                        }
+                    }),
+                    correlation,
+                    samples: innovations.iter().filter(|row| !row[axis].is_nan()).count(),
+                });
+            }
+        }
+        Ok(channels)
+    }
+
+    /// Innovations of the nominal model and, if there is one, of the extended model.
+    fn models(&self) -> Vec<(ModelVersion, &[[f64; 3]])> {
+        let nominal = self.innovations.normalised.as_slice();
+        let extended = self.extended.as_ref().map(|_| self.whitened.as_slice());
+        core::iter::once((ModelVersion::Nominal, nominal))
+            .chain(extended.map(|whitened| (ModelVersion::Extended, whitened)))
+            .collect()
+    }
+}

@@ -1,0 +1,117 @@
+//! Allan deviations of columns of a log.
+
+use gyrocal_record::{InputErrorKind, SourceText};
+use gyrocal_statistics::allan::{
+    AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
+};
+use serde::Serialize;
+
+use crate::columns::read_columns;
+use crate::error::{InstrumentError, Unfit};
+
+/// How the columns of a log are analysed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AllanSettings {
+    /// Samples per second \[Hz\].
+    pub rate_hz: f64,
+    /// Factor of the values.
+    pub scale: f64,
+    /// Confidence level of the intervals.
+    pub confidence: f64,
+}
+
+/// Allan deviations of one column.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AllanColumn {
+    /// Name of the column.
+    pub name: String,
+    /// Deviation at each averaging time.
+    pub points: Vec<AllanColumnPoint>,
+    /// Noise coefficients by the slopes of the curve.
+    pub noise: NoiseCoefficients,
+}
+
+/// Allan deviation at one averaging time.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AllanColumnPoint {
+    /// Averaging time \[s\].
+    pub tau_s: f64,
+    /// Overlapping Allan deviation, in the unit of the scaled values.
+    pub deviation: f64,
+    /// Lower end of its confidence interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Equivalent degrees of freedom.
+    pub degrees_of_freedom: f64,
+    /// Dominant noise type.
+    pub noise: &'static str,
+}
+
+impl From<&AllanPoint> for AllanColumnPoint {
+    fn from(point: &AllanPoint) -> Self {
+        let [low, high] = point.interval;
+        Self {
+            tau_s: point.tau_s,
+            deviation: point.deviation,
+            low,
+            high,
+            degrees_of_freedom: point.degrees_of_freedom,
+            noise: point.noise.description(),
+        }
+    }
+}
+
+/// Overlapping Allan deviations of columns of a log at octaves of the sampling interval.
+///
+/// # Errors
+/// Those of [`read_columns`]; [`InstrumentError`] for a column that never changes, and for values that
+/// `scale` makes infinite.
+pub fn allan_columns(
+    source: &SourceText,
+    names: &[&str],
+    settings: &AllanSettings,
+) -> Result<Vec<AllanColumn>, InstrumentError> {
+    let columns = read_columns(source, names)?.values;
+    let interval_s = 1.0 / settings.rate_hz;
+    names
+        .iter()
+        .zip(columns)
+        .map(|(name, values)| {
+            if values.len() > 1 && values.windows(2).all(|pair| pair[0] == pair[1]) {
+                return Err(constant(source, name));
+            }
+            let values: Vec<f64> = values.iter().map(|value| value * settings.scale).collect();
+            if values.iter().any(|value| !value.is_finite()) {
+                return Err(overflow(name, settings.scale));
+            }
+            let averaging = octaves(values.len().max(3));
+            let points = allan_deviation(&values, interval_s, &averaging, settings.confidence)?;
+            Ok(AllanColumn {
+                name: (*name).to_owned(),
+                noise: noise_coefficients(&points),
+                points: points.iter().map(AllanColumnPoint::from).collect(),
+            })
+        })
+        .collect()
+}
+
+fn overflow(name: &str, scale: f64) -> InstrumentError {
+    InstrumentError::Unfit {
+        kind: Unfit::Setting,
+        found: format!("values of `{name}` that are too large when multiplied by {scale:e}"),
+        expected: "finite numbers".to_owned(),
+        advice: "give a smaller --scale".to_owned(),
+    }
+}
+
+fn constant(source: &SourceText, name: &str) -> InstrumentError {
+    let error = source.error(
+        InputErrorKind::Stuck,
+        0..0,
+        format!("a column `{name}` that never changes"),
+        "samples of a rate, which has noise",
+        "check the sensor and the logger",
+    );
+    error.into()
+}

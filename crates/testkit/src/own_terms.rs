@@ -1,0 +1,182 @@
+//! The terms of docs/adding-a-term.md, one of each kind: added to a copy of the workspace, hidden in
+//! simulated records and searched for.
+
+use std::path::Path;
+
+use crate::command::{Outcome, run};
+use crate::copy::WorkspaceCopy;
+
+/// Hides one effect after the other in a record of three days, diagnoses each record and prints a
+/// line for each: id, whether it is the one finding, and for each parameter name, true value,
+/// estimate, standard deviation and the ends of the interval.
+const FINDER: &str = r#"
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_truth::{
+    Coefficients, InitialAttitude, Moment, Scenario, Temperature, Term, simulate_with,
+};
+
+type Add = fn(&Moment) -> [f64; 3];
+
+const HOUR_S: f64 = 3600.0;
+const DAY_S: f64 = 86_400.0;
+
+fn main() {
+    let cases: [(&str, bool, Add, &[(&str, f64)]); 4] = [
+        (
+            "gyro_x.g_xyz",
+            true,
+            |m| [0.2 * m.accel_g[0] * m.accel_g[1] * m.accel_g[2], 0.0, 0.0],
+            &[("size", 0.2)],
+        ),
+        (
+            "gyro_y.late_ramp",
+            true,
+            |m| [0.0, 0.01 * (m.time_s - 30.0 * HOUR_S).max(0.0) / DAY_S, 0.0],
+            &[("size", 0.01), ("onset_s", 30.0 * HOUR_S)],
+        ),
+        (
+            "accel_z.warmup",
+            false,
+            |m| [0.0, 0.0, 2e-4 * (-m.time_s / (4.0 * HOUR_S)).exp()],
+            &[("size", 2e-4), ("time_constant_h", 4.0)],
+        ),
+        (
+            "gyro_z.g_x_temperature",
+            true,
+            |m| [0.0, 0.0, 0.02 * m.accel_g[0] * m.temperature_k],
+            &[("size", 0.02)],
+        ),
+    ];
+    for (seed, (id, drift, add, truth)) in (5..).zip(cases) {
+        let term = if drift {
+            Term::Drift(Box::new(add))
+        } else {
+            Term::Output(Box::new(add))
+        };
+        let scenario = Scenario {
+            seed,
+            coefficients: Coefficients::PAPER_LIKE,
+            initial: InitialAttitude::Random,
+            duration_s: 3.0 * DAY_S,
+            interval_s: 120.0,
+            temperature: Some(Temperature::default()),
+            ..Scenario::default()
+        };
+        let simulation = simulate_with(&scenario, &[term]).unwrap();
+        let options = DiagnoseOptions::default();
+        let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap().result;
+        let only = found.findings.len() == 1 && found.findings[0].effect == id;
+        print!("{id} {only}");
+        for finding in found.findings.iter().filter(|finding| finding.effect == id) {
+            for (name, truth) in truth {
+                let parameter = finding.parameter(name).unwrap();
+                let sigma = parameter.sigma.unwrap_or(f64::NAN);
+                let [low, high] = match parameter.interval.as_deref() {
+                    Some([piece, ..]) => *piece,
+                    _ => [f64::NAN; 2],
+                };
+                print!(" {name} {truth:e} {:e} {sigma:e} {low:e} {high:e}", parameter.estimate);
+            }
+        }
+        println!();
+        let names: Vec<&str> = found.findings.iter().map(|f| f.effect.as_str()).collect();
+        eprintln!("{id}: found {names:?}");
+    }
+}
+"#;
+
+/// One parameter of a term, as hidden and as found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundParameter {
+    /// Its name.
+    pub name: String,
+    /// Value in the simulation.
+    pub truth: f64,
+    /// Estimate.
+    pub estimate: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
+
+impl FoundParameter {
+    /// Distance of the estimate from the truth in standard deviations.
+    pub fn distance(&self) -> f64 {
+        (self.estimate - self.truth).abs() / self.sigma
+    }
+}
+
+/// The diagnosis of a record with one hidden term.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundTerm {
+    /// Public id of the term.
+    pub id: String,
+    /// Whether it is the one finding.
+    pub only: bool,
+    /// Its parameters; empty if it was not found.
+    pub parameters: Vec<FoundParameter>,
+}
+
+impl FoundTerm {
+    /// Whether it is the one finding and every parameter is within so many standard deviations.
+    pub fn is_within(&self, sigmas: f64) -> bool {
+        let mut parameters = self.parameters.iter();
+        self.only
+            && !self.parameters.is_empty()
+            && parameters.all(|parameter| parameter.distance() < sigmas)
+    }
+}
+
+/// The code block of a page that follows a heading.
+pub fn code_block(page: &str, heading: &str) -> String {
+    let page = page.replace("\r\n", "\n");
+    let (_, section) = page.split_once(heading).unwrap();
+    let (_, entry) = section.split_once("```python\n").unwrap();
+    entry.split_once("```").unwrap().0.to_owned()
+}
+
+/// Adds the entries of the page to the catalogue of a copy, builds a program that searches for them
+/// with `cargo`, and returns what it finds.
+pub fn find_own_terms(
+    copy: &WorkspaceCopy,
+    cargo: impl FnOnce(&Path) -> std::process::Command,
+) -> Vec<FoundTerm> {
+    let page = std::fs::read_to_string(copy.root.join("docs/adding-a-term.md")).unwrap();
+    let entries = code_block(&page, "## One of each kind\n");
+    copy.edit(
+        "codegen/derive/catalogue.py",
+        "\nEFFECTS = [\n",
+        &format!("\nEFFECTS = [\n{entries}"),
+    );
+    copy.add_program(
+        "own-terms",
+        &[
+            // With its default features: those that derive.
+            ("gyrocal", "../.."),
+            ("gyrocal-diagnosis", "../diagnosis"),
+            ("gyrocal-truth", "../truth"),
+        ],
+        FINDER,
+    );
+    let mut command = cargo(&copy.root);
+    let Outcome { stdout, stderr, .. } = run(command.args(["--package", "own-terms"])).succeeded();
+    assert!(stderr.contains("is stale"), "{stderr}");
+    stdout.lines().map(found_term).collect()
+}
+
+fn found_term(line: &str) -> FoundTerm {
+    let words: Vec<&str> = line.split(' ').collect();
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    FoundTerm {
+        id: words[0].to_owned(),
+        only: words[1] == "true",
+        parameters: words[2..]
+            .chunks(6)
+            .map(|parameter| FoundParameter {
+                name: parameter[0].to_owned(),
+                truth: number(parameter[1]),
+                estimate: number(parameter[2]),
+                sigma: number(parameter[3]),
+            })
+            .collect(),
+    }
+}
