@@ -32,7 +32,7 @@ fn shapes(extension: &ModelExtension) -> [f64; SHAPES] {
     core::array::from_fn(|index| extension.shape(index))
 }
 
-/// What a bench declares uncertain of its site is free to take that up in every fit.
+/// Site quantities with a declared standard deviation: parameters of every fit.
 fn of_site(bench: &Bench) -> ModelExtension {
     ModelExtension {
         parameters: SiteQuantity::ALL
@@ -237,7 +237,7 @@ impl<'a> FittedPlatform<'a> {
         })
     }
 
-    /// What the model has beyond the nine coefficients.
+    /// The part of the model beyond the nine coefficients.
     #[must_use]
     pub fn extension(&self) -> &ModelExtension {
         &self.extension

@@ -1,4 +1,4 @@
-//! What the record so far says: who is suspected, and with which onset or time constant.
+//! Candidates: the members of the confidence sets with the onsets and time constants that fit best.
 
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{FittedPlatform, PLATFORM, Run, rows as rows_of};
@@ -14,10 +14,10 @@ use crate::named_cause::{NamedCause, is_walk, row};
 use crate::run_information::RunInformation;
 use crate::set_comparison::{Comparison, stays};
 
-/// A near twin that would have to be so many times its typical size is not worth a run.
+/// Size of a near twin over its typical size beyond which it is not plausible.
 const PLAUSIBLE: f64 = 10.0;
 
-/// When the record is, and a next run of some duration.
+/// Durations of the record and of a next run.
 pub(crate) fn times(run: &Run<'_>, next_s: f64) -> Times {
     let rows = rows_of(run.record, Vec::new());
     let set = HypothesisSet::new(&PLATFORM, &rows, &[]);
@@ -39,8 +39,8 @@ pub(crate) fn duration_s(record: &Record) -> f64 {
     }
 }
 
-/// The members of all named sets, each with what is best of it in the record. Near twins that the
-/// usual search leaves out are among them, if they explain as much by a size that may be.
+/// The members of all confidence sets, each with its best shape in the record. Near twins outside the
+/// default search are among them if they explain as much with a plausible size.
 pub(crate) fn candidates(
     fitted: &FittedPlatform<'_>,
     run: &Run<'_>,
@@ -51,20 +51,20 @@ pub(crate) fn candidates(
         drafts.push(draft(named, run)?);
     }
     let times = times(run, duration_s(run.record));
-    let universe = JointUnknowns::new(fitted, run, &drafts, &times);
-    let said = universe.of_first(&RunInformation::of_record(
+    let unknowns = JointUnknowns::new(fitted, run, &drafts, &times);
+    let information = unknowns.of_first(&RunInformation::of_record(
         fitted,
         run.record,
-        &universe.first,
+        &unknowns.first,
     )?);
     let mut sets = Vec::with_capacity(named.len());
-    for (case, named) in universe.cases.iter().zip(named) {
-        sets.push(settled(case, named, &universe, &said));
+    for (case, named) in unknowns.cases.iter().zip(named) {
+        sets.push(settled(case, named, &unknowns, &information));
     }
     Ok(sets)
 }
 
-/// All candidates: of effects with an onset or a time constant one for each that the search tries.
+/// All candidates: of an effect with an onset or a time constant one for each variant of the search.
 fn draft(named: &NamedCause, run: &Run<'_>) -> Result<Vec<Candidate>, DesignError> {
     let mut rows = Vec::with_capacity(named.rivals.len());
     for (id, _) in &named.rivals {
@@ -121,21 +121,21 @@ fn candidate(row: &'static Effect, shape: Option<f64>) -> Candidate {
     }
 }
 
-/// The best candidate of each, with what the diagnosis said of it.
+/// The best candidate of each effect, with the deficit of the diagnosis.
 fn settled(
     case: &ConfidenceSet,
     named: &NamedCause,
-    universe: &JointUnknowns,
-    said: &RunInformation,
+    unknowns: &JointUnknowns,
+    information: &RunInformation,
 ) -> Vec<Candidate> {
     let alone = |candidate: &Candidate| vec![candidate.clone()];
     let Some(own) = case.members.first() else {
         return Vec::new();
     };
-    let Some(comparison) = Comparison::new(case, &universe.unknowns, &said.information) else {
+    let Some(comparison) = Comparison::new(case, &unknowns.list, &information.information) else {
         return alone(&own.candidate);
     };
-    let projected: DVector<f64> = &comparison.projection * &said.score;
+    let projected: DVector<f64> = &comparison.projection * &information.score;
     let statistics = comparison.statistics(projected.as_slice());
     let Some(Some((best, variance))) = statistics.first().copied() else {
         return alone(&own.candidate);

@@ -11,7 +11,7 @@ use crate::run_information::RunInformation;
 use crate::set_comparison::{Comparison, deficits, stays};
 use crate::sigma::sigmas;
 
-/// What two records say together.
+/// Confidence sets and coefficients from two records together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// Standard deviations of the nine coefficients, with what was named in the model.
@@ -25,7 +25,7 @@ pub struct Compared {
 pub struct ComparedMember {
     /// Its id.
     pub effect: &'static str,
-    /// How much less likely it makes the records than the one that they name together.
+    /// Log-likelihood of the effect named by both records less its own, penalties subtracted.
     pub log_likelihood_deficit: f64,
     /// Whether it is in the set that is left.
     pub stays: bool,
@@ -49,31 +49,31 @@ pub fn compare(
 ) -> Result<Compared, DesignError> {
     let sets = candidates(fitted, first, named)?;
     let times = times(first, duration_s(second.record));
-    let universe = JointUnknowns::new(fitted, first, &sets, &times);
+    let unknowns = JointUnknowns::new(fitted, first, &sets, &times);
     // Values that the first record's noise has no trust in are no rows of the second.
     let noise = NoiseModel {
         weights: None,
         ..noise.clone()
     };
     let other = fitted_alone(named, second, &noise, options)?;
-    let mut information = universe.of_first(&RunInformation::of_record(
+    let mut information = unknowns.of_first(&RunInformation::of_record(
         fitted,
         first.record,
-        &universe.first,
+        &unknowns.first,
     )?);
-    let next = universe.of_next(&RunInformation::of_record(
+    let next = unknowns.of_next(&RunInformation::of_record(
         &other,
         second.record,
-        &universe.next,
+        &unknowns.next,
     )?);
     information.information += next.information;
     information.score += next.score;
     let (coefficients, _) =
-        sigmas(&universe, &information.information).ok_or(CalibrationError::NotPositiveDefinite)?;
-    let judged = universe
+        sigmas(&unknowns, &information.information).ok_or(CalibrationError::NotPositiveDefinite)?;
+    let judged = unknowns
         .cases
         .iter()
-        .map(|case| judged(case, &universe, &information));
+        .map(|case| judged(case, &unknowns, &information));
     Ok(Compared {
         coefficients,
         sets: judged
@@ -84,10 +84,10 @@ pub fn compare(
 
 fn judged(
     case: &ConfidenceSet,
-    universe: &JointUnknowns,
+    unknowns: &JointUnknowns,
     information: &RunInformation,
 ) -> Option<Vec<ComparedMember>> {
-    let comparison = Comparison::new(case, &universe.unknowns, &information.information)?;
+    let comparison = Comparison::new(case, &unknowns.list, &information.information)?;
     let projected = &comparison.projection * &information.score;
     let statistics = comparison.statistics(projected.as_slice());
     let (_, deficits) = deficits(&case.members, &statistics)?;

@@ -1,4 +1,4 @@
-//! One attitude and duration, looked at.
+//! Evaluation of one attitude and duration.
 
 use gyrocal::Discretisation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
@@ -18,21 +18,21 @@ use crate::result::{Forecast, Outlook, SetForecast, ratio};
 use crate::run_information::{RunInformation, predicted_information};
 use crate::sigma::sigmas;
 
-/// How finely a run is looked at.
+/// Resolution of an evaluation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Detail {
-    /// Most rows; fewer rows with as much information in all stand for more.
+    /// Largest number of rows; each then has the information of several samples.
     pub(crate) rows: usize,
     /// Draws of the next run for each member of a set.
     pub(crate) draws: usize,
 }
 
-/// What the platform turns in longer steps than this, 2.5°, is still integrated to 1e-9 rad.
+/// Longest step of the integration, s: a turn of 2.5° is integrated to 1e-9 rad.
 const LONGEST_STEP_S: f64 = 600.0;
 
-/// Everything but the attitude.
+/// Evaluates attitudes for one duration.
 pub(crate) struct Evaluator<'a> {
-    pub(crate) universe: &'a JointUnknowns,
+    pub(crate) unknowns: &'a JointUnknowns,
     pub(crate) run: Run<'a>,
     noise: &'a NoiseModel,
     limits: GimbalLimits,
@@ -51,38 +51,38 @@ pub(crate) struct Evaluator<'a> {
     detail: Detail,
 }
 
-/// What was seen of an attitude.
+/// Result for one attitude.
 pub(crate) enum Evaluation {
-    /// What record and run leave together.
+    /// Forecast from record and run together.
     At(Outlook),
-    /// The gimbals come to a limit after so long, s.
+    /// The gimbals reach a limit after this time, s.
     Stopped(f64),
 }
 
 impl<'a> Evaluator<'a> {
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn new(
-        universe: &'a JointUnknowns,
+        unknowns: &'a JointUnknowns,
         fitted: &FittedPlatform<'_>,
         run: Run<'a>,
         noise: &'a NoiseModel,
-        said: &RunInformation,
+        information: &RunInformation,
         limits: GimbalLimits,
         options: Options,
         (duration_s, detail, seed): (f64, Detail, u64),
     ) -> Option<Self> {
-        let now = universe.of_first(said);
-        let (before, _) = sigmas(universe, &now.information)?;
-        let posteriors = universe
+        let now = unknowns.of_first(information);
+        let (before, _) = sigmas(unknowns, &now.information)?;
+        let posteriors = unknowns
             .cases
             .iter()
-            .map(|case| Posteriors::new(case, &universe.unknowns, &now))
+            .map(|case| Posteriors::new(case, &unknowns.list, &now))
             .collect();
         let parameters = fitted.parameters();
         let shapes = fitted.extension().all_shapes(&PLATFORM);
         let offset = offset_after(duration_s_of(run.record));
         Some(Self {
-            universe,
+            unknowns,
             run,
             noise,
             limits,
@@ -93,7 +93,7 @@ impl<'a> Evaluator<'a> {
                 },
                 ..options
             },
-            next_parameters: next_parameters(universe, &parameters, &offset),
+            next_parameters: next_parameters(unknowns, &parameters, &offset),
             parameters,
             next_shapes: continued_shapes(&PLATFORM, &shapes, &offset),
             shapes,
@@ -101,17 +101,17 @@ impl<'a> Evaluator<'a> {
             now,
             before,
             posteriors,
-            deviates: Deviates::new(universe.unknowns.len(), detail.draws, seed),
+            deviates: Deviates::new(unknowns.list.len(), detail.draws, seed),
             duration_s,
             detail,
         })
     }
 
-    /// What the record so far leaves.
+    /// Forecast from the record alone.
     pub(crate) fn present(&self) -> Option<Outlook> {
-        let (coefficients, sizes) = sigmas(self.universe, &self.now.information)?;
+        let (coefficients, sizes) = sigmas(self.unknowns, &self.now.information)?;
         let sets = self
-            .universe
+            .unknowns
             .cases
             .iter()
             .filter_map(|case| {
@@ -131,7 +131,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// A run from platform angles.
-    pub(crate) fn look(&self, angles_deg: [f64; 3]) -> Result<Evaluation, CalibrationError> {
+    pub(crate) fn evaluate(&self, angles_deg: [f64; 3]) -> Result<Evaluation, CalibrationError> {
         let start = of_angles(angles_deg);
         let (mut record, noise_factor) = self.rows(self.duration_s);
         // Where the bench gives no attitude the first samples have to tell it.
@@ -155,16 +155,16 @@ impl<'a> Evaluator<'a> {
                 record.time_s[row.saturating_sub(1)] - record.time_s[0],
             ));
         }
-        let columns = &self.universe.next;
+        let columns = &self.unknowns.next;
         let information = predicted_information(&planned, columns, 0, points, &self.options)?;
-        let next = self.universe.of_next(&silent(information)).information;
+        let next = self.unknowns.of_next(&silent(information)).information;
         Ok(self
             .outlook(&next)
             .map_or(Evaluation::Stopped(0.0), Evaluation::At))
     }
 
-    /// The record gone on with for the duration of the next run.
-    pub(crate) fn going_on(&self) -> Result<Option<Outlook>, CalibrationError> {
+    /// Forecast for continuing the record for the duration of the next run.
+    pub(crate) fn continued(&self) -> Result<Option<Outlook>, CalibrationError> {
         let first_s = duration_s_of(self.run.record);
         let (mut record, noise_factor) = self.rows(first_s + self.duration_s);
         let given = self.run.bench.initial_angles_deg.is_some();
@@ -185,24 +185,24 @@ impl<'a> Evaluator<'a> {
         let points = planned.trajectory(&self.options)?;
         let from = record.time_s.partition_point(|t| *t <= first_s);
         // A fit's own columns, which are of the record's own rows, say nothing here.
-        let columns = &self.universe.first;
+        let columns = &self.unknowns.first;
         let information = predicted_information(&planned, columns, from, points, &self.options)?;
-        let next = self.universe.of_first(&silent(information)).information;
+        let next = self.unknowns.of_first(&silent(information)).information;
         Ok(self.outlook(&next))
     }
 
     fn outlook(&self, next: &DMatrix<f64>) -> Option<Outlook> {
         let total = &self.now.information + next;
-        let (coefficients, sizes) = sigmas(self.universe, &total)?;
+        let (coefficients, sizes) = sigmas(self.unknowns, &total)?;
         let sets: Option<Vec<SetForecast>> = self
-            .universe
+            .unknowns
             .cases
             .iter()
             .zip(&self.posteriors)
             .map(|(case, posteriors)| {
                 expected(
                     case,
-                    &self.universe.unknowns,
+                    &self.unknowns.list,
                     posteriors,
                     &self.now,
                     next,
@@ -291,12 +291,12 @@ impl<'a> Evaluator<'a> {
 
 /// Parameters at the start of the next run, each named effect as it continues there.
 fn next_parameters(
-    universe: &JointUnknowns,
+    unknowns: &JointUnknowns,
     parameters: &[f64],
     offset: &RecordOffset,
 ) -> Vec<f64> {
     let mut next = parameters.to_vec();
-    let named = universe.cases.iter();
+    let named = unknowns.cases.iter();
     for named in named.filter_map(|case| case.members.first()) {
         for parameter in named.candidate.row.model_parameters() {
             next[parameter] -= parameters[parameter];

@@ -1,4 +1,4 @@
-//! What is left of a set after a next run, on average.
+//! Expected size of a confidence set after a next run.
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::SeedableRng;
@@ -10,8 +10,7 @@ use crate::result::SetForecast;
 use crate::run_information::RunInformation;
 use crate::set_comparison::{Comparison, deficits, stays};
 
-/// What the record says of each member's sizes and of all that it is judged beside, if that member
-/// is the cause.
+/// Posterior of the sizes of each member and of its nuisance unknowns, if that member is the cause.
 pub(crate) struct Posteriors {
     of: Vec<Option<Posterior>>,
 }
@@ -21,11 +20,11 @@ struct Posterior {
     places: Vec<usize>,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
-    /// How likely the member is before the next run, beside the others.
+    /// Probability of the member before the next run.
     weight: f64,
 }
 
-/// Deviates that all attitudes are judged by.
+/// Normal deviates, common to all attitudes.
 pub(crate) struct Deviates(DMatrix<f64>);
 
 impl Deviates {
@@ -38,7 +37,11 @@ impl Deviates {
 }
 
 impl Posteriors {
-    pub(crate) fn new(case: &ConfidenceSet, unknowns: &[Unknown], said: &RunInformation) -> Self {
+    pub(crate) fn new(
+        case: &ConfidenceSet,
+        unknowns: &[Unknown],
+        information: &RunInformation,
+    ) -> Self {
         let of = case
             .members
             .iter()
@@ -55,10 +58,10 @@ impl Posteriors {
                     } else {
                         0.0
                     };
-                    said.information[(places[i], places[j])] + prior
+                    information.information[(places[i], places[j])] + prior
                 });
                 let cholesky = Cholesky::new(inner)?;
-                let score = DVector::from_fn(count, |i, _| said.score[places[i]]);
+                let score = DVector::from_fn(count, |i, _| information.score[places[i]]);
                 Some(Posterior {
                     mean: cholesky.solve(&score),
                     covariance: cholesky.inverse(),
@@ -125,7 +128,7 @@ pub(crate) fn expected(
     })
 }
 
-/// What becomes of a set if one member is the cause.
+/// The set after the next run if one member is the cause.
 struct Outcome {
     size: f64,
     one_left: f64,

@@ -8,7 +8,7 @@ use crate::result::Outlook;
 /// A set counts as resolved if one member is left with this probability.
 const RESOLVED: f64 = 0.95;
 
-/// What a run is to reach; nothing by default.
+/// Goal of a run; empty by default.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Goal {
     /// Coefficients by id, with the standard deviation that each is to have at most.

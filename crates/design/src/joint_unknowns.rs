@@ -1,4 +1,4 @@
-//! All unknowns of a record and the run after it, and which of them each question is about.
+//! All unknowns of a record and the run after it.
 
 use gyrocal::Effect;
 use gyrocal::generated::catalogue::PARAMETERS;
@@ -22,19 +22,18 @@ pub(crate) struct Unknown {
     next: Vec<(usize, f64)>,
 }
 
-/// A cause in question with the onset or time constant that is best in the record.
+/// A candidate cause with the onset or time constant that fits best in the record.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
     pub(crate) row: &'static Effect,
     pub(crate) shape: Option<f64>,
-    /// How much less likely it makes the record than the cause that is named does, as a
-    /// difference of log-likelihoods with searching allowed for.
+    /// Log-likelihood of the named cause less its own, search penalties subtracted.
     pub(crate) deficit: f64,
     /// Effects of its set that no run tells from it.
     pub(crate) equivalents: Vec<&'static str>,
     /// Variance of the increments, if it is a random walk.
     pub(crate) variance: f64,
-    /// What its statistic has to be lowered by.
+    /// Penalty subtracted from its statistic.
     pub(crate) handicap: f64,
 }
 
@@ -86,7 +85,7 @@ impl ConfidenceSet {
 /// All unknowns, and the columns that they are sums of.
 #[derive(Clone, Debug)]
 pub(crate) struct JointUnknowns {
-    pub(crate) unknowns: Vec<Unknown>,
+    pub(crate) list: Vec<Unknown>,
     /// Columns of the record.
     pub(crate) first: Vec<DesignColumn>,
     /// Columns of the next run.
@@ -114,7 +113,7 @@ impl JointUnknowns {
         let prior = &run.bench.prior;
         let differ = prior.turn_on_sigma_deg_per_h.iter().any(|s| *s > 0.0);
         let mut all = Self {
-            unknowns: Vec::new(),
+            list: Vec::new(),
             first: Vec::new(),
             next: Vec::new(),
             site: [0; 3],
@@ -190,7 +189,7 @@ impl JointUnknowns {
             .collect();
         for (index, own) in members.iter().enumerate() {
             let mut nuisance: Vec<usize> = (0..COEFFICIENTS).collect();
-            let declared = |place: &usize| self.unknowns[*place].sigma > 0.0;
+            let declared = |place: &usize| self.list[*place].sigma > 0.0;
             nuisance.extend(self.site.iter().filter(|place| declared(place)));
             nuisance.extend(&self.common);
             let others = members.iter().enumerate().filter(|(i, _)| *i != index);
@@ -221,13 +220,13 @@ impl JointUnknowns {
         run: &RunInformation,
         of: impl Fn(&'a Unknown) -> &'a Vec<(usize, f64)>,
     ) -> RunInformation {
-        let count = self.unknowns.len();
+        let count = self.list.len();
         let mut information = DMatrix::zeros(count, count);
         let mut score = DVector::zeros(count);
-        for (i, a) in self.unknowns.iter().enumerate() {
+        for (i, a) in self.list.iter().enumerate() {
             for (column, factor) in of(a) {
                 score[i] += factor * run.score[*column];
-                for (j, b) in self.unknowns.iter().enumerate() {
+                for (j, b) in self.list.iter().enumerate() {
                     for (other, times) in of(b) {
                         information[(i, j)] += factor * times * run.information[(*column, *other)];
                     }
@@ -259,8 +258,8 @@ impl JointUnknowns {
             first: interned(&mut self.first, first),
             next: interned(&mut self.next, next),
         };
-        self.unknowns.push(unknown);
-        self.unknowns.len() - 1
+        self.list.push(unknown);
+        self.list.len() - 1
     }
 }
 

@@ -1,4 +1,4 @@
-//! What was named in a record, as a plan needs it.
+//! Named causes of a record.
 
 use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
 use gyrocal::{EFFECTS, Effect};
@@ -11,7 +11,7 @@ use crate::error::DesignError;
 use gyrocal_diagnosis::missing_input;
 use gyrocal_diagnosis::result::{DiagnosisResult, Finding};
 
-/// A cause that was named, and what the record does not tell it from.
+/// A named cause with its confidence set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedCause {
     /// Its public id.
@@ -159,7 +159,7 @@ fn unknown(effect: &str) -> DesignError {
     }
 }
 
-/// Those that come again in a later run by themselves: all terms but what goes on from before.
+/// The causes that are present again in a later run by themselves.
 pub(crate) fn recurring(named: &[NamedCause]) -> Vec<NamedCause> {
     named
         .iter()

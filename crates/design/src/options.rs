@@ -4,22 +4,22 @@ use gyrocal_record::GimbalLimits;
 use crate::goal::Goal;
 use crate::result::Aim;
 
-/// How a next run is looked for.
+/// Settings of the search for the next run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanOptions {
     /// Durations of the run, s; none stands for that of the record.
     pub durations_s: Vec<f64>,
-    /// Where the gimbals may go, in the whole run.
+    /// Limits of the gimbals over the whole run.
     pub limits: GimbalLimits,
-    /// What proposals are ranked by; `None` is by sets if there is one with rivals.
+    /// Criterion of the ranking; `None`: by confidence sets if one has alternatives.
     pub aim: Option<Aim>,
-    /// What a run is to reach, if the duration that this takes is asked for.
+    /// Goal of which the shortest run is searched.
     pub goal: Goal,
     /// Proposals for each duration.
     pub proposals: usize,
     /// Seed of the draws.
     pub seed: u64,
-    /// How the model is integrated.
+    /// Integration of the model.
     pub calibration: Options,
 }
 

@@ -48,7 +48,7 @@ pub fn plan(
     let (mut going_on, mut proposals) = (Vec::new(), Vec::new());
     for duration_s in durations_s {
         let (present, longer) = planner.with(*duration_s, FINE, |evaluator| {
-            Ok((evaluator.present(), evaluator.going_on()?))
+            Ok((evaluator.present(), evaluator.continued()?))
         })?;
         now = now.or(present);
         going_on.extend(longer.map(|outlook| Proposal {

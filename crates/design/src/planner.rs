@@ -15,7 +15,7 @@ use crate::options::PlanOptions;
 use crate::result::{Aim, Outlook, Proposal};
 use crate::run_information::RunInformation;
 
-/// How finely attitudes are looked at while they are searched, and in the end.
+/// Resolution during the search, and of the result.
 const COARSE: Detail = Detail {
     rows: 160,
     draws: 96,
@@ -25,19 +25,19 @@ pub(crate) const FINE: Detail = Detail {
     draws: 1024,
 };
 
-/// Attitudes that are followed to the best beside them, and how far apart they are.
+/// Number of attitudes from which a local search starts, and their least distance.
 const FOLLOWED: usize = 5;
 const DISTINCT_DEG: f64 = 20.0;
 
-/// Steps to the attitudes beside one, deg; so often each at most.
+/// Steps of the local search, deg, and the most repetitions of each.
 const STEPS_DEG: [f64; 3] = [12.0, 5.0, 2.0];
 const ROUNDS: usize = 3;
 
-/// A run has at least so many rows, as many as a filter has states.
+/// Least number of rows of a run: the number of states of the filter.
 const LEAST_ROWS: f64 = 12.0;
 
-/// A member of a set weighs as much as sigmas that are all smaller by this factor less: where a
-/// set is all but resolved, sigmas decide.
+/// Weight of the mean ratio of standard deviations against the expected number of members: where a set
+/// is nearly resolved, standard deviations decide.
 const SIGMAS_IN_SETS: f64 = 0.2;
 
 /// Everything but attitude and duration.
@@ -47,8 +47,8 @@ pub(crate) struct Planner<'a, 'b> {
     noise: &'b NoiseModel,
     pub(crate) options: &'b PlanOptions,
     sets: Vec<Vec<Candidate>>,
-    /// What the record says of the columns of a universe, which are the same for all durations.
-    said: RunInformation,
+    /// Information of the record on the columns, which are the same for all durations.
+    information: RunInformation,
     pub(crate) aim: Aim,
 }
 
@@ -62,8 +62,8 @@ impl<'a, 'b> Planner<'a, 'b> {
     ) -> Result<Self, DesignError> {
         let sets = candidates(fitted, &run, named)?;
         let own = times(&run, duration_s(run.record));
-        let universe = JointUnknowns::new(fitted, &run, &sets, &own);
-        let said = RunInformation::of_record(fitted, run.record, &universe.first)?;
+        let unknowns = JointUnknowns::new(fitted, &run, &sets, &own);
+        let information = RunInformation::of_record(fitted, run.record, &unknowns.first)?;
         let aim = options
             .aim
             .unwrap_or(if sets.iter().any(|set| set.len() > 1) {
@@ -77,7 +77,7 @@ impl<'a, 'b> Planner<'a, 'b> {
             noise,
             options,
             sets,
-            said,
+            information,
             aim,
         })
     }
@@ -108,13 +108,13 @@ impl<'a, 'b> Planner<'a, 'b> {
         ask: impl FnOnce(&Evaluator<'_>) -> Result<R, DesignError>,
     ) -> Result<R, DesignError> {
         let times = times(&self.run, duration_s);
-        let universe = JointUnknowns::new(self.fitted, &self.run, &self.sets, &times);
+        let unknowns = JointUnknowns::new(self.fitted, &self.run, &self.sets, &times);
         let evaluator = Evaluator::new(
-            &universe,
+            &unknowns,
             self.fitted,
             self.run,
             self.noise,
-            &self.said,
+            &self.information,
             self.options.limits,
             self.options.calibration,
             (duration_s, detail, self.options.seed),
@@ -127,17 +127,17 @@ impl<'a, 'b> Planner<'a, 'b> {
     pub(crate) fn search(&self, duration_s: f64) -> Result<Vec<Proposal>, DesignError> {
         let ends = self.with(duration_s, COARSE, |evaluator| {
             let tried = first(&self.options.limits);
-            let mut seen = self.look(evaluator, tried, duration_s)?;
+            let mut seen = self.evaluate(evaluator, tried, duration_s)?;
             sort(&mut seen);
             let starts = distinct(seen, FOLLOWED);
             let ends = starts
                 .into_par_iter()
-                .map(|start| self.follow(evaluator, start));
+                .map(|start| self.local_search(evaluator, start));
             Ok(ends.collect::<Vec<_>>())
         })?;
         self.with(duration_s, FINE, |evaluator| {
             let angles = ends.into_iter().map(|(angles_deg, _)| angles_deg).collect();
-            let mut best = self.look(evaluator, angles, duration_s)?;
+            let mut best = self.evaluate(evaluator, angles, duration_s)?;
             sort(&mut best);
             Ok(distinct(best, self.options.proposals)
                 .into_iter()
@@ -150,8 +150,8 @@ impl<'a, 'b> Planner<'a, 'b> {
         })
     }
 
-    /// All attitudes that the limits allow, with what is sought to be small.
-    fn look(
+    /// All attitudes that the limits allow, with their costs.
+    fn evaluate(
         &self,
         evaluator: &Evaluator<'_>,
         tried: Vec<[f64; 3]>,
@@ -159,7 +159,7 @@ impl<'a, 'b> Planner<'a, 'b> {
     ) -> Result<Vec<Seen>, DesignError> {
         let looked: Vec<_> = tried
             .into_par_iter()
-            .map(|angles_deg| (angles_deg, evaluator.look(angles_deg)))
+            .map(|angles_deg| (angles_deg, evaluator.evaluate(angles_deg)))
             .collect();
         let mut seen = Vec::new();
         let (mut longest, mut failed) = ((0.0, [0.0; 3]), None);
@@ -186,8 +186,8 @@ impl<'a, 'b> Planner<'a, 'b> {
         }
     }
 
-    /// From one attitude to the best beside it, and on.
-    fn follow(&self, evaluator: &Evaluator<'_>, mut best: Seen) -> Seen {
+    /// Local search from one attitude.
+    fn local_search(&self, evaluator: &Evaluator<'_>, mut best: Seen) -> Seen {
         for step_deg in STEPS_DEG {
             for _ in 0..ROUNDS {
                 let beside = beside(best.0, step_deg);
@@ -195,7 +195,7 @@ impl<'a, 'b> Planner<'a, 'b> {
                     .into_iter()
                     .filter(|angles| self.options.limits.hold(*angles));
                 let better = allowed
-                    .filter_map(|angles_deg| match evaluator.look(angles_deg) {
+                    .filter_map(|angles_deg| match evaluator.evaluate(angles_deg) {
                         Ok(Evaluation::At(outlook)) => {
                             Some((angles_deg, (self.cost(&outlook), outlook)))
                         }
@@ -219,14 +219,14 @@ impl<'a, 'b> Planner<'a, 'b> {
     }
 }
 
-/// Angles, what is sought to be small, and all that was seen.
+/// Angles with cost and forecast.
 type Seen = ([f64; 3], (f64, Outlook));
 
 fn sort(seen: &mut [Seen]) {
     seen.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
 }
 
-/// The first ones that lie well apart.
+/// The first ones at the least distance from each other.
 fn distinct(seen: Vec<Seen>, most: usize) -> Vec<Seen> {
     let mut taken: Vec<Seen> = Vec::with_capacity(most);
     for one in seen {

@@ -1,4 +1,4 @@
-//! How the members of a set compare, and which of them stay.
+//! Comparison of the members of a confidence set.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -8,7 +8,7 @@ use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, NESTED_MODEL_CHI2, WalkScore};
 /// A signature of which less than this share is left cannot be seen.
 const VISIBLE: f64 = 1e-9;
 
-/// What turns scores into the statistics of the members.
+/// Map from scores to the statistics of the members.
 pub(crate) struct Comparison {
     /// From the scores of all unknowns to those of the members' own, with what the others take up
     /// projected out.

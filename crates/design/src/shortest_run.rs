@@ -58,7 +58,7 @@ fn shortest(
 ) -> Result<Option<Proposal>, DesignError> {
     let at = |duration_s: f64| {
         planner.with(duration_s, FINE, |evaluator| {
-            Ok(match evaluator.look(angles_deg)? {
+            Ok(match evaluator.evaluate(angles_deg)? {
                 Evaluation::At(outlook) if planner.options.goal.is_met(&outlook) => {
                     Some(Proposal {
                         angles_deg: Some(angles_deg),

@@ -11,21 +11,21 @@ use crate::result::Forecast;
 /// unknowns: as a joint calibration gives them, what is uncertain of the site considered. `None` if
 /// it does not determine them.
 pub(crate) fn sigmas(
-    universe: &JointUnknowns,
+    unknowns: &JointUnknowns,
     information: &DMatrix<f64>,
 ) -> Option<(Vec<Forecast>, Vec<Forecast>)> {
     let mut estimated: Vec<usize> = (0..COEFFICIENTS).collect();
-    let named: Vec<_> = universe
+    let named: Vec<_> = unknowns
         .cases
         .iter()
         .filter_map(|case| case.members.first())
         .collect();
     estimated.extend(named.iter().flat_map(|member| member.places.iter()));
-    estimated.extend(&universe.common);
+    estimated.extend(&unknowns.common);
     let count = estimated.len();
     let inner = DMatrix::from_fn(count, count, |i, j| {
         let prior = if i == j {
-            universe.unknowns[estimated[i]].sigma.powi(-2)
+            unknowns.list[estimated[i]].sigma.powi(-2)
         } else {
             0.0
         };
@@ -33,8 +33,8 @@ pub(crate) fn sigmas(
     });
     let cholesky = Cholesky::new(inner)?;
     let mut variance = cholesky.inverse().diagonal();
-    for site in universe.site {
-        let sigma = universe.unknowns[site].sigma;
+    for site in unknowns.site {
+        let sigma = unknowns.list[site].sigma;
         let cross = DVector::from_fn(count, |i, _| information[(estimated[i], site)]);
         let taken = cholesky.solve(&cross) * sigma;
         variance += taken.component_mul(&taken);

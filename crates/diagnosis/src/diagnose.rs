@@ -15,7 +15,6 @@ use gyrocal_statistics::allan_test;
 use crate::error::DiagnosisError;
 use crate::error_budget::{RESIDUAL_TESTS, shares};
 use crate::filter_test::{TestedFilter, filter_test};
-use crate::gain::{Judged, LaterPrediction, gain, judge};
 use crate::magnitude_test::magnitude_test;
 use crate::noise::{NoiseAudit, Outlier};
 use crate::power::powers;
@@ -24,6 +23,7 @@ use crate::residual_test::{residual_test, whitened};
 use crate::residuals::residuals;
 use crate::result::{DiagnosisResult, FalseAlarmShares, Gain};
 use crate::series::Innovations;
+use crate::validation::{CrossValidated, LaterPrediction, cross_validate, gain};
 use answer::Evidence;
 pub use answer::{manifest, record_summary};
 pub use later::predict_later;
@@ -31,7 +31,7 @@ use noise_audited_fit::noise_audited_fit;
 use noise_update::{gyro_noise_findings, search_with_noise};
 use untestable_rows::detect_outliers;
 
-/// How a record is diagnosed.
+/// Settings of a diagnosis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiagnoseOptions {
     /// Family-wise probability that a record of the nominal model with the declared noise shows any
@@ -43,7 +43,7 @@ pub struct DiagnoseOptions {
     pub filter: Option<TestedFilter>,
     /// Seed of the draws that thresholds come from.
     pub seed: u64,
-    /// How the model is integrated.
+    /// Integration of the model.
     pub calibration: Options,
 }
 
@@ -124,8 +124,8 @@ pub fn diagnose<'a>(
     let remainder = residual_test(time_s, &whitened, &searched.unmodelled, alpha);
     let allan = allan_test(time_s, &whitened, shares.allan_test).ok();
 
-    let judged = judge(&nominal, &searched)?;
-    let gain = model_gain(&nominal, &searched, &judged, &run, noise_model)?;
+    let validated = cross_validate(&nominal, &searched)?;
+    let gain = model_gain(&nominal, &searched, &validated, &run, noise_model)?;
     let filter = options
         .filter
         .map(|filter| filter_test(record, bench, filter));
@@ -144,7 +144,7 @@ pub fn diagnose<'a>(
         estimate,
         remainder,
         allan,
-        judged: &judged,
+        validated: &validated,
         gain,
         filter: filter.transpose()?,
     }
@@ -152,7 +152,7 @@ pub fn diagnose<'a>(
     Ok(Diagnosis {
         result,
         nominal,
-        extended: judged.extended,
+        extended: validated.extended,
         noise_model: found.noise_model,
         audit,
         innovations: audited.innovations,
@@ -188,17 +188,17 @@ fn unexplained_outliers(
 fn model_gain(
     nominal: &FittedPlatform<'_>,
     searched: &Searched<FittedPlatform<'_>>,
-    judged: &Judged<'_>,
+    validated: &CrossValidated<'_>,
     run: &Run<'_>,
     noise_model: &NoiseModel,
 ) -> Result<Option<Gain>, CalibrationError> {
-    let Some(scores) = judged.scores.filter(|_| !searched.findings.is_empty()) else {
+    let Some(scores) = validated.scores.filter(|_| !searched.findings.is_empty()) else {
         return Ok(None);
     };
-    let extended = judged.extended.as_ref().unwrap_or(&searched.fitted);
-    let causes = searched.findings.iter().zip(&judged.acceptances);
+    let extended = validated.extended.as_ref().unwrap_or(&searched.fitted);
+    let causes = searched.findings.iter().zip(&validated.decisions);
     let effects = causes
-        .filter(|(_, acceptance)| acceptance.accepted || judged.extended.is_none())
+        .filter(|(_, decision)| decision.accepted || validated.extended.is_none())
         .map(|(finding, _)| finding.effect.to_owned());
     gain(
         [nominal, extended],

@@ -18,7 +18,7 @@ const LEAST_RATIO: f64 = 1.5;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TestedFilter {
-    /// That of the paper: Euler angles as states, one Euler step a sample.
+    /// The filter of the paper: Euler angles as states, one Euler step per sample.
     Euler,
 }
 

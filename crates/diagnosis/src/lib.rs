@@ -72,7 +72,6 @@ mod distinguishability;
 mod error;
 pub mod error_budget;
 mod filter_test;
-mod gain;
 mod magnitude;
 mod magnitude_test;
 mod noise;
@@ -85,11 +84,11 @@ mod residuals;
 pub mod result;
 mod series;
 mod untested;
+mod validation;
 
 pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, manifest, predict_later, record_summary};
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};
-pub use gain::{AttitudeErrors, LaterPrediction};
 pub use magnitude::{MagnitudeChannel, magnitude_channel};
 pub use magnitude_test::{MagnitudeTest, magnitude_test};
 pub use noise::{
@@ -100,6 +99,7 @@ pub use plot_data::{ChannelCorrelation, ChannelSpectrum, ModelVersion, OpenLoopS
 pub use request::{missing_input, selection};
 pub use result::{DiagnosisResult, Verdict};
 pub use series::Innovations;
+pub use validation::{AttitudeErrors, LaterPrediction};
 
 /// Number of drift coefficients of the nominal model.
 const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;

@@ -195,7 +195,7 @@ impl ScoreBank {
     }
 }
 
-/// What the bank says of one candidate.
+/// Joint score test of some columns.
 #[derive(Clone, Debug)]
 pub struct JointScore {
     pub(crate) statistic: f64,

@@ -1,4 +1,4 @@
-//! How effects continue in a later record of the same plant.
+//! Continuation of effects in a later record of the same plant.
 //!
 //! Terms of states and regressors stay; a step leaves its channel changed; ageing goes on; an
 //! effect of one record ends with it. What a time-dependent term becomes follows from its function of

@@ -250,7 +250,7 @@ impl NullDistribution {
         }
     }
 
-    /// What the largest statistic exceeds with a probability. Beyond what draws can
+    /// Quantile of the maximum statistic: it is exceeded with a probability. Beyond what draws can
     /// tell, its tail falls like that of chi-square with one degree of freedom.
     pub(crate) fn threshold(&self, probability: f64) -> f64 {
         let count = self.max_statistics.len() as f64;
@@ -276,7 +276,7 @@ impl NullDistribution {
         (share * tail(value) / tail(at)).min(share)
     }
 
-    /// Where the tail begins that no draws tell, and the probability to be beyond.
+    /// Beginning of the tail beyond the draws, and the probability to be beyond it.
     fn join(&self) -> (f64, f64) {
         let largest = TAIL.min(self.max_statistics.len());
         let share = largest as f64 / self.max_statistics.len() as f64;

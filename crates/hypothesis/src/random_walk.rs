@@ -8,16 +8,16 @@ const POINTS: usize = 46;
 const RATIO: f64 = 1.584_893_192_461_113_5;
 const LEAST: f64 = 1e-3;
 
-/// What turns the scores of the steps into the statistic of a walk.
+/// Score test of a random walk from the scores of its steps (equation (7) of the crate).
 #[derive(Clone, Debug)]
 pub struct WalkScore {
     /// Eigenvectors of the steps' information, in columns.
     vectors: DMatrix<f64>,
     /// Variances, rising.
     variances: Vec<f64>,
-    /// What the square of the score along each eigenvector gains, for each variance (a row).
+    /// Gain per square of the score along each eigenvector, a row for each variance.
     gains: DMatrix<f64>,
-    /// What each variance costs: the logarithm of the determinant.
+    /// Cost of each variance: the logarithm of the determinant.
     costs: DVector<f64>,
 }
 
@@ -67,7 +67,7 @@ impl WalkScore {
             })
     }
 
-    /// What the best variance gains over none, of scores in rows.
+    /// Statistics of scores in rows.
     pub(crate) fn best_of_each(&self, scores: &DMatrix<f64>) -> Vec<f64> {
         let squares = (scores * &self.vectors).map(|along| along * along);
         let gained = squares * self.gains.transpose();

@@ -1,4 +1,4 @@
-//! How likely parts of a record are, whatever the unknowns.
+//! Marginal likelihood of parts of a record.
 
 use gyrocal::estimation::batch::Linearisation;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -7,7 +7,8 @@ use super::FittedPlatform;
 use crate::error::CalibrationError;
 use crate::solve::add_gram;
 
-/// How much wider than its estimate is large the prior of an unknown is that has none.
+/// Standard deviation of the prior of an unknown without a declared one, over the size of its
+/// estimate.
 const WIDE: f64 = 100.0;
 
 impl FittedPlatform<'_> {

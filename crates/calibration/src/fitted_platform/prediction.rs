@@ -1,4 +1,4 @@
-//! What is said of a record beforehand, and how its own estimates came about.
+//! Predictive density of a record, open-loop drift, and estimates against record length.
 
 use core::ops::Range;
 
@@ -14,7 +14,7 @@ use gyrocal_hypothesis::ExtraColumns;
 /// 1 deg/h in rad/s.
 const RAD_PER_S: f64 = core::f64::consts::PI / (180.0 * 3600.0);
 
-/// What is known of all parameters of [`Catalogue`] before a record.
+/// Mean and covariance of all parameters of [`Catalogue`] before a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
     /// The mean.
@@ -110,9 +110,9 @@ impl FittedPlatform<'_> {
             .map(|density| density * RAD_PER_S * RAD_PER_S)
     }
 
-    /// What the rows up to and with each of `rows`, in rising order, say of the coefficients:
-    /// the estimates of the fit as they came about, linearised about it. `None` where so few
-    /// rows leave something open that has no prior.
+    /// Estimates of the coefficients from the rows up to and including each of `rows`, in rising
+    /// order, linearised about this fit. `None` where so few rows do not determine an unknown
+    /// without a prior.
     ///
     /// # Errors
     /// [`CalibrationError::Pass`].

@@ -10,7 +10,6 @@ use gyrocal_statistics::{self as statistics, NoiseCourse};
 use super::{DiagnoseOptions, findings};
 use crate::distinguishability::indistinguishable;
 use crate::filter_test::Tested;
-use crate::gain::Judged;
 use crate::magnitude_test;
 use crate::noise::{NoiseAudit, NoiseFinding, gaps};
 use crate::power::{needs_caveat, undetectable};
@@ -21,6 +20,7 @@ use crate::result::{
     ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION, Verdict,
 };
 use crate::untested::{Tests, not_tested, untested};
+use crate::validation::CrossValidated;
 
 /// Outcomes of all tests of one diagnosis.
 pub(super) struct Evidence<'e, 'a> {
@@ -37,7 +37,7 @@ pub(super) struct Evidence<'e, 'a> {
     pub(super) estimate: &'e NoiseEstimate,
     pub(super) remainder: ResidualTest,
     pub(super) allan: Option<statistics::AllanTest>,
-    pub(super) judged: &'e Judged<'a>,
+    pub(super) validated: &'e CrossValidated<'a>,
     pub(super) gain: Option<Gain>,
     pub(super) filter: Option<Tested>,
 }
@@ -91,9 +91,9 @@ impl Evidence<'_, '_> {
     /// Noise, then causes, then the filter.
     fn findings(&self) -> Vec<Finding> {
         let noise = self.audit.findings.iter().chain(&self.gyro_noise);
-        let causes = self.searched.findings.iter().zip(&self.judged.acceptances);
+        let causes = self.searched.findings.iter().zip(&self.validated.decisions);
         let causes = causes
-            .map(|(finding, acceptance)| findings::of_cause(finding, acceptance, self.run.record));
+            .map(|(finding, decision)| findings::of_cause(finding, decision, self.run.record));
         let filter = self.filter.as_ref().and_then(|tested| tested.inconsistent);
         noise
             .map(findings::of_noise)
@@ -144,7 +144,7 @@ impl Evidence<'_, '_> {
             })
             .collect()
         };
-        let extended = self.judged.extended.as_ref();
+        let extended = self.validated.extended.as_ref();
         let covariance = extended.unwrap_or(self.nominal).covariance();
         let row = |i: usize| (0..DRIFT.len()).map(|j| covariance[(i, j)]).collect();
         Coefficients {

@@ -8,9 +8,9 @@ use gyrocal_statistics::NORMAL_97_5;
 
 use crate::error_budget::CONFIDENCE_SET_COVERAGE;
 use crate::filter_test::FILTER_EFFECT;
-use crate::gain::Acceptance;
 use crate::noise::NoiseFinding;
 use crate::result::{Alternative, Equivalent, Finding, FindingKind, Parameter};
+use crate::validation::KeepDecision;
 
 /// A finding of the noise audit or of the gyro noise.
 pub(super) fn of_noise(finding: &NoiseFinding) -> Finding {
@@ -35,7 +35,7 @@ pub(super) fn of_noise(finding: &NoiseFinding) -> Finding {
 /// A finding of the search, with its gain in cross-validation.
 pub(super) fn of_cause(
     finding: &hypothesis::Finding,
-    acceptance: &Acceptance,
+    decision: &KeepDecision,
     record: &Record,
 ) -> Finding {
     let alternatives: Vec<Alternative> = finding
@@ -59,8 +59,8 @@ pub(super) fn of_cause(
         rivals: alternatives.clone(),
         alternatives,
         equivalents: equivalents.collect(),
-        gain_nats: Some(acceptance.gain_nats),
-        accepted: Some(acceptance.accepted),
+        gain_nats: Some(decision.gain_nats),
+        accepted: Some(decision.accepted),
         ..bare(
             finding.effect,
             FindingKind::Cause,

@@ -7,9 +7,9 @@ use super::noise_audited_fit::noise_audited_fit;
 use super::{DiagnoseOptions, Diagnosis};
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
-use crate::gain::{LaterPrediction, predict};
 use crate::request;
 use crate::result::{Compensation, Validation};
+use crate::validation::{LaterPrediction, predict};
 
 impl Diagnosis<'_> {
     /// Predicts a later record of the same platform with the nominal and the extended model, and

@@ -34,7 +34,7 @@ pub enum Block {
         number: usize,
         /// Its title.
         title: String,
-        /// What belongs to it.
+        /// Its text.
         paragraphs: Vec<String>,
     },
     /// A list with a title.

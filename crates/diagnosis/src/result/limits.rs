@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Indistinguishable {
     /// Their ids, the reported one first.
     pub members: Vec<String>,
-    /// How they are related.
+    /// Their relation.
     pub relation: Relation,
     /// The relation in words.
     pub why: String,
@@ -20,7 +20,7 @@ pub struct Indistinguishable {
     pub would_separate: String,
 }
 
-/// How effects that a record does not distinguish are related.
+/// Relation of effects that a record does not distinguish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]

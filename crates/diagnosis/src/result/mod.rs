@@ -5,7 +5,7 @@
 //! one schema version keep their meaning; a version may gain keys. With the feature `schema` every
 //! type has its JSON Schema (feature `schema`); `docs/schema/diagnosis.schema.json` is the committed copy.
 //!
-//! What pictures need beyond it, series over the rows of a record, stays beside it in
+//! Series over the rows of a record, which pictures need in addition, are fields of
 //! [`crate::Diagnosis`].
 
 mod allan;

@@ -4,15 +4,15 @@ use gyrocal::trajectory::{Orientation, rotation_between};
 use gyrocal_calibration::{CalibrationError, Expectation, FittedPlatform, Run};
 use gyrocal_hypothesis::ModelExtension;
 
-use super::carried::{Carried, factor};
+use super::continued_parameters::{ContinuedParameters, factor};
 
-/// Drift is predicted over so long, s, or over the record if that is shorter.
+/// Horizon of the prediction, s; the length of the record if that is shorter.
 const HORIZON_S: f64 = 86_400.0;
 
-/// Points at which the prediction is looked at.
+/// Points of a prediction.
 const POINTS: usize = 24;
 
-/// Predictions begin at most at so many times of the record, and so far apart, s, at least.
+/// Largest number of starts of predictions, and their least distance, s.
 const MOST_STARTS: usize = 9;
 const BETWEEN_STARTS_S: f64 = 3.0 * 3600.0;
 
@@ -28,8 +28,8 @@ pub struct LaterPrediction {
     pub attitude: AttitudeErrors,
 }
 
-/// Attitude of a platform that is compensated by the coefficients of another record, against that
-/// which its own accelerometers tell: root mean squares of the angle between them, arc minutes,
+/// Attitude of a platform that is compensated by the coefficients of another record, against the attitude from
+/// its own accelerometers: root mean squares of the angle between them, arc minutes,
 /// over several starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttitudeErrors {
@@ -41,13 +41,13 @@ pub struct AttitudeErrors {
     pub nominal_arcmin: Vec<f64>,
     /// With those of the extended model.
     pub extended_arcmin: Vec<f64>,
-    /// What the covariances of the extended model and of the later record's own fit and the noise of
-    /// the gyros let one expect.
+    /// Expected error, from the covariances of the extended model and of the later record's own fit
+    /// and the noise of the gyros.
     pub expected_arcmin: Vec<f64>,
 }
 
 impl LaterPrediction {
-    /// What the extended model gains, nats.
+    /// Gain of the extended model in predictive log score, nats.
     #[must_use]
     pub fn gain_nats(&self) -> f64 {
         self.log_score_nats[1] - self.log_score_nats[0]
@@ -82,9 +82,10 @@ pub(crate) fn predict(
     fitted: &FittedPlatform<'_>,
     later: &Run<'_>,
 ) -> Result<LaterPrediction, CalibrationError> {
-    let carried = [nominal, extended].map(|fit| Carried::new(fit, first, later.record));
-    let own = own_fit(fitted, &carried[1])?;
-    let [of_nominal, of_extended] = &carried;
+    let continued_parameters =
+        [nominal, extended].map(|fit| ContinuedParameters::new(fit, first, later.record));
+    let own = own_fit(fitted, &continued_parameters[1])?;
+    let [of_nominal, of_extended] = &continued_parameters;
     let expected = [
         of_nominal.expectation(nominal)?,
         of_extended.expectation(extended)?,
@@ -101,14 +102,14 @@ pub(crate) fn predict(
 /// The later record's own fit, with all that the extended model says it may show.
 fn own_fit<'b>(
     fitted: &FittedPlatform<'b>,
-    carried: &Carried,
+    continued_parameters: &ContinuedParameters,
 ) -> Result<FittedPlatform<'b>, CalibrationError> {
     let mut extension = ModelExtension {
-        shapes: carried.shapes.clone(),
+        shapes: continued_parameters.shapes.clone(),
         ..fitted.extension().clone()
     };
     let plain = extension.clone();
-    for parameter in carried.parameters() {
+    for parameter in continued_parameters.parameters() {
         if !extension.parameters.iter().any(|(p, _)| *p == parameter) {
             extension.parameters.push((parameter, f64::INFINITY));
         }

@@ -1,38 +1,37 @@
-//! Which causes go into the extended model: those without which blocks of the record are
-//! predicted worse.
+//! Selection of the causes of the extended model by blocked cross-validation.
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use gyrocal_hypothesis::Searched;
 
-use super::score::{BLOCKS, block_log_scores};
+use super::block_scores::{BLOCKS, block_log_scores};
 
-/// What cross-validation says of a cause.
+/// Decision of the cross-validation on one cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Acceptance {
-    /// By how much blocks of the record are predicted better with the cause in the model than
-    /// without it, beside the other causes, nats.
+pub(crate) struct KeepDecision {
+    /// Predictive log score of the blocks with the cause less that without it, the other causes in
+    /// the model, nats.
     pub(crate) gain_nats: f64,
-    /// Whether the cause is in the extended model: whether that is more than nothing.
+    /// Whether the cause is in the extended model: whether the gain is positive.
     pub(crate) accepted: bool,
 }
 
-/// A model with all causes that gain, and what became of each.
-pub(crate) struct Judged<'a> {
+/// The extended model with the decision on each cause.
+pub(crate) struct CrossValidated<'a> {
     /// The extended model; `None` if no cause gains.
     pub(crate) extended: Option<FittedPlatform<'a>>,
     /// Log scores of the blocks with the nominal model, and with the extended one or, if no cause
     /// gains, with all causes; `None` without causes.
     pub(crate) scores: Option<[[f64; BLOCKS]; 2]>,
     /// In the order of the findings.
-    pub(crate) acceptances: Vec<Acceptance>,
+    pub(crate) decisions: Vec<KeepDecision>,
 }
 
-/// Takes causes without gain out of the model, the least useful first, with a full fit after
+/// Backward elimination: removes causes without gain, the least useful first, with a full fit after
 /// each.
-pub(crate) fn judge<'a>(
+pub(crate) fn cross_validate<'a>(
     nominal: &FittedPlatform<'a>,
     searched: &Searched<FittedPlatform<'a>>,
-) -> Result<Judged<'a>, CalibrationError> {
+) -> Result<CrossValidated<'a>, CalibrationError> {
     let count = searched.findings.len();
     let fit = |kept: &[bool]| {
         if kept.iter().all(|kept| *kept) {
@@ -41,52 +40,52 @@ pub(crate) fn judge<'a>(
         searched.fitted.refitted(&searched.extension_with(kept))
     };
     if count == 0 {
-        return Ok(Judged {
+        return Ok(CrossValidated {
             extended: None,
             scores: None,
-            acceptances: Vec::new(),
+            decisions: Vec::new(),
         });
     }
     let before = block_log_scores(nominal)?;
-    let mut told: Vec<(Vec<bool>, [f64; BLOCKS])> = Vec::new();
+    let mut scored: Vec<(Vec<bool>, [f64; BLOCKS])> = Vec::new();
     if searched.unmodelled.is_empty() {
-        told.push((vec![false; count], before));
+        scored.push((vec![false; count], before));
     }
-    let acceptances = sieve(count, |kept| {
-        let known = told.iter().find(|(other, _)| other == kept);
+    let decisions = backward_elimination(count, |kept| {
+        let known = scored.iter().find(|(other, _)| other == kept);
         let scores = match known {
             Some((_, scores)) => *scores,
-            // What cannot be fitted without a cause is held against the nominal model.
+            // A model that cannot be fitted has the score of the nominal one.
             None => match fit(kept) {
                 Ok(fit) => block_log_scores(&fit)?,
                 Err(_) => before,
             },
         };
         if known.is_none() {
-            told.push((kept.to_vec(), scores));
+            scored.push((kept.to_vec(), scores));
         }
         Ok::<f64, CalibrationError>(scores.iter().sum())
     })?;
-    let mut kept: Vec<bool> = acceptances.iter().map(|a| a.accepted).collect();
+    let mut kept: Vec<bool> = decisions.iter().map(|a| a.accepted).collect();
     let extended = if kept.contains(&true) {
         Some(fit(&kept)?)
     } else {
         kept.fill(true);
         None
     };
-    let told = told.into_iter().find(|(other, _)| *other == kept);
-    Ok(Judged {
+    let scored = scored.into_iter().find(|(other, _)| *other == kept);
+    Ok(CrossValidated {
         extended,
-        scores: told.map(|(_, after)| [before, after]),
-        acceptances,
+        scores: scored.map(|(_, after)| [before, after]),
+        decisions,
     })
 }
 
-/// Leaves out causes without which the score is as high, the least useful first.
-fn sieve<E>(
+/// Removes causes without which the score is as high, the least useful first.
+fn backward_elimination<E>(
     count: usize,
     mut score: impl FnMut(&[bool]) -> Result<f64, E>,
-) -> Result<Vec<Acceptance>, E> {
+) -> Result<Vec<KeepDecision>, E> {
     let mut kept = vec![true; count];
     let mut gains = vec![0.0; count];
     while kept.contains(&true) {
@@ -108,7 +107,7 @@ fn sieve<E>(
     Ok(gains
         .into_iter()
         .zip(kept)
-        .map(|(gain_nats, accepted)| Acceptance {
+        .map(|(gain_nats, accepted)| KeepDecision {
             gain_nats,
             accepted,
         })
@@ -119,16 +118,16 @@ fn sieve<E>(
 mod tests {
     use core::convert::Infallible;
 
-    use super::{Acceptance, sieve};
+    use super::{KeepDecision, backward_elimination};
 
-    fn sieved(count: usize, score: impl Fn(&[bool]) -> f64) -> Vec<(f64, bool)> {
-        let found = sieve(count, |kept| Ok::<f64, Infallible>(score(kept)));
-        let found: Vec<Acceptance> = found.unwrap_or_default();
+    fn eliminated(count: usize, score: impl Fn(&[bool]) -> f64) -> Vec<(f64, bool)> {
+        let found = backward_elimination(count, |kept| Ok::<f64, Infallible>(score(kept)));
+        let found: Vec<KeepDecision> = found.unwrap_or_default();
         found.iter().map(|a| (a.gain_nats, a.accepted)).collect()
     }
 
     #[test]
-    fn what_gains_nothing_is_left_out_and_told() {
+    fn a_cause_without_gain_is_removed_and_reported() {
         let worth = [5.0, -1.0, 0.0];
         let sum = |kept: &[bool]| -> f64 {
             kept.iter()
@@ -136,13 +135,16 @@ mod tests {
                 .map(|(kept, w)| if *kept { w } else { 0.0 })
                 .sum()
         };
-        assert_eq!(sieved(3, sum), [(5.0, true), (-1.0, false), (0.0, false)]);
-        assert_eq!(sieved(0, sum), []);
+        assert_eq!(
+            eliminated(3, sum),
+            [(5.0, true), (-1.0, false), (0.0, false)]
+        );
+        assert_eq!(eliminated(0, sum), []);
     }
 
     #[test]
-    fn of_two_that_do_the_same_one_stays() {
+    fn of_two_equal_causes_one_stays() {
         let either = |kept: &[bool]| f64::from(u8::from(kept.contains(&true)));
-        assert_eq!(sieved(2, either), [(0.0, false), (1.0, true)]);
+        assert_eq!(eliminated(2, either), [(0.0, false), (1.0, true)]);
     }
 }

@@ -1,20 +1,20 @@
 //! Gain of an extended model: cross-validation, open-loop simulation, change of the coefficients, and
 //! validation on a later record.
 
-mod accepted;
-mod carried;
-mod later;
-mod score;
+mod block_scores;
+mod continued_parameters;
+mod cross_validation;
+mod later_record;
 
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel};
 use gyrocal_record::Record;
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
-pub(crate) use accepted::{Acceptance, Judged, judge};
-pub(crate) use later::predict;
-pub use later::{AttitudeErrors, LaterPrediction};
-use score::BLOCKS;
+use block_scores::BLOCKS;
+pub(crate) use cross_validation::{CrossValidated, KeepDecision, cross_validate};
+pub(crate) use later_record::predict;
+pub use later_record::{AttitudeErrors, LaterPrediction};
 
 use crate::result::{CoefficientShift, FreeRun, Gain};
 

@@ -1,4 +1,4 @@
-//! What a fit to one record says of a later record of the same platform.
+//! Prediction of the parameters of a later record of the same platform from a fit to one record.
 
 use core::f64::consts::SQRT_2;
 
@@ -10,13 +10,13 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::COEFFICIENTS;
 
-/// How the parameters of a later record follow from the values of a fit.
+/// Linear map from the values of a fit to the parameters of a later record.
 ///
 /// Terms of specific force, temperature and site stay as they are. A warm-up begins anew with the
 /// record. A step and a random walk leave the drift where they brought it, ageing goes on. A knock
 /// and an error of the first attitude belong to their record. A wave of 24 h goes on if the clock
 /// of the records does.
-pub(crate) struct Carried {
+pub(crate) struct ContinuedParameters {
     /// A row for each parameter of the catalogue, a column for each value of the fit.
     map: DMatrix<f64>,
     /// Standard deviation that a new turn-on adds to each constant drift, deg/h.
@@ -25,7 +25,7 @@ pub(crate) struct Carried {
     pub(crate) shapes: Vec<f64>,
 }
 
-impl Carried {
+impl ContinuedParameters {
     /// From a fit to a record to a later record.
     pub(crate) fn new(fit: &FittedPlatform<'_>, first: &Run<'_>, later: &Record) -> Self {
         let extension = fit.extension();
@@ -60,7 +60,7 @@ impl Carried {
             .filter(|parameter| self.map.row(*parameter).iter().any(|share| *share != 0.0))
     }
 
-    /// What is known of them.
+    /// Mean and covariance of the parameters of the later record.
     ///
     /// # Errors
     /// [`CalibrationError::NotPositiveDefinite`].
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     /// Parameters of a later record that one of a first record becomes, with their factors.
-    fn carried(id: &str, offset: &RecordOffset) -> Vec<(&'static str, f64)> {
+    fn continued_as(id: &str, offset: &RecordOffset) -> Vec<(&'static str, f64)> {
         let index = PARAMETERS.iter().position(|p| p.id == id);
         let mut found = continued(&PLATFORM, index.unwrap_or(usize::MAX), offset);
         found.sort_by_key(|(index, _)| *index);
@@ -144,8 +144,8 @@ mod tests {
     }
 
     /// To rounding of the least squares that the factors come from.
-    fn assert_carried(id: &str, offset: &RecordOffset, expected: &[(&str, f64)]) {
-        let found = carried(id, offset);
+    fn assert_continued(id: &str, offset: &RecordOffset, expected: &[(&str, f64)]) {
+        let found = continued_as(id, offset);
         let same = found.len() == expected.len()
             && found.iter().zip(expected).all(|(found, expected)| {
                 found.0 == expected.0 && (found.1 - expected.1).abs() < 1e-12 * expected.1.abs()
@@ -167,13 +167,13 @@ mod tests {
         // Two days and six hours later, three kelvin warmer.
         let (first, later) = (record(100.0, 20.0), record(100.0 + 2.25 * 86_400.0, 23.0));
         let offset = offset_between(&first, &later);
-        assert_carried("gyro_y.step", &offset, &[("gyro_y.bias", 1.0)]);
-        assert_carried("gyro_x.g_y", &offset, &[("gyro_x.g_y", 1.0)]);
-        assert_carried("gyro_z.warmup", &offset, &[("gyro_z.warmup", 1.0)]);
+        assert_continued("gyro_y.step", &offset, &[("gyro_y.bias", 1.0)]);
+        assert_continued("gyro_x.g_y", &offset, &[("gyro_x.g_y", 1.0)]);
+        assert_continued("gyro_z.warmup", &offset, &[("gyro_z.warmup", 1.0)]);
         let ramp = [("gyro_x.bias", 2.25), ("gyro_x.ramp", 1.0)];
-        assert_carried("gyro_x.ramp", &offset, &ramp);
+        assert_continued("gyro_x.ramp", &offset, &ramp);
         let warmer = [("accel_x.bias", 3.0), ("accel_x.temperature", 1.0)];
-        assert_carried("accel_x.temperature", &offset, &warmer);
+        assert_continued("accel_x.temperature", &offset, &warmer);
     }
 
     #[test]
@@ -181,11 +181,11 @@ mod tests {
         let offset = offset_between(&record(0.0, 20.0), &record(2.25 * 86_400.0, 20.0));
         // A quarter of a day on: sin(x + 90°) = cos x, cos(x + 90°) = -sin x.
         let cosine = [("gyro_x.diurnal.cosine", 1.0)];
-        assert_carried("gyro_x.diurnal.sine", &offset, &cosine);
+        assert_continued("gyro_x.diurnal.sine", &offset, &cosine);
         let sine = [("gyro_x.diurnal.sine", -1.0)];
-        assert_carried("gyro_x.diurnal.cosine", &offset, &sine);
+        assert_continued("gyro_x.diurnal.cosine", &offset, &sine);
         // A clock that began again has lost its phase.
         let again = offset_between(&record(0.0, 20.0), &record(0.0, 20.0));
-        assert_carried("gyro_x.diurnal.sine", &again, &[]);
+        assert_continued("gyro_x.diurnal.sine", &again, &[]);
     }
 }
