@@ -7,7 +7,7 @@
 //!
 //! 1. *Noise audit* ([`audit_noise`]): quantisation, outliers, variance and correlation of the
 //!    accelerometer noise on time scales below an hour.
-//! 2. *Search* ([`cause`]): score tests of all effects of the catalogue, one family-wise error rate,
+//! 2. *Search* (`gyrocal_hypothesis`): score tests of all effects of the catalogue, one family-wise error rate,
 //!    one accepted effect after the other, each with a confidence set of alternatives and its exact
 //!    equivalents.
 //! 3. *Validation*: blocked cross-validation decides which effects are in the extended model;
@@ -15,7 +15,7 @@
 //! 4. *Residual test*: whiteness of the innovations, lines and curves outside the catalogue.
 //!
 //! The [`magnitude_test`] and the residuals of the nominal model are reported beside these and make
-//! no finding. [`plan`] designs the next run, [`error_budget`] lists all false-alarm shares and
+//! no finding. `gyrocal_design` designs the next run, [`error_budget`] lists all false-alarm shares and
 //! decision constants, and [`prose`] makes the sentences of an answer from the result alone.
 //!
 //! # The statistics in brief

@@ -12,7 +12,7 @@ mod source;
 use std::path::Path;
 
 use gyrocal::EFFECTS;
-use gyrocal_testkit::{WorkspaceCopy, cargo, find_own_terms, workspace};
+use gyrocal_testkit::{WorkspaceCopy, add_own_terms, cargo, find_own_terms, workspace};
 
 use crate::error::Error;
 use crate::figure::Figure;
@@ -125,6 +125,7 @@ fn long(crates: &[source::Crate]) -> [Figure; 2] {
 fn own_terms() -> Result<Figure, Error> {
     let scratch = tempfile::tempdir()?;
     let copy = WorkspaceCopy::make(&scratch.path().to_string_lossy(), "own-terms");
+    add_own_terms(&copy, "");
     let target = scratch.path().join("target");
     let found = find_own_terms(&copy, |root: &Path| {
         let mut command = cargo(root, &target);

@@ -44,5 +44,5 @@ mod tiny;
 pub use command::{Outcome, cargo, codegen, real_environments, run, system_python, tools_only};
 pub use copy::{WorkspaceCopy, workspace};
 pub use files::{edit, executable, fresh_directory, snapshot};
-pub use own_terms::{FoundParameter, FoundTerm, code_block, find_own_terms};
+pub use own_terms::{FoundParameter, FoundTerm, add_own_terms, code_block, find_own_terms};
 pub use tiny::TinyDerivation;

@@ -7,8 +7,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use gyrocal_codegen::build::{Settings, Variant};
 use gyrocal_testkit::{
-    Outcome, WorkspaceCopy, cargo, code_block, find_own_terms, fresh_directory, real_environments,
-    run, snapshot, tools_only,
+    Outcome, WorkspaceCopy, add_own_terms, cargo, code_block, find_own_terms, fresh_directory,
+    real_environments, run, snapshot, tools_only,
 };
 
 const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
@@ -265,16 +265,13 @@ fn main() {
 "#;
 
 #[test]
-fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
+fn terms_of_ones_own_are_entries_of_the_catalogue_and_a_build() {
     let (copy, _turn) = take_copy();
     let page = copy.root.join("docs/adding-a-term.md");
     let page = std::fs::read_to_string(page).unwrap();
     let entry = code_block(&page, "# Adding a term\n");
-    copy.edit(
-        "codegen/derive/catalogue.py",
-        "\nEFFECTS = [\n",
-        &format!("\nEFFECTS = [\n{entry}"),
-    );
+    // One build for the line and for the terms of each kind.
+    add_own_terms(&copy, &entry);
     copy.add_probe(LINE_PROBE);
     let mut command = quick_cargo(&copy, &target("target"), "run");
     command.args(["--package", "probe", "--features", "gyrocal/catalogue"]);
@@ -333,6 +330,13 @@ fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
     assert!(gain[0] > 100.0 && gain[2] < 0.5 * gain[1], "{found}");
     assert!(gain[2] < 3.0 * gain[3], "{found}");
 
+    // Terms of each kind, with their onsets and time constants.
+    let found = find_own_terms(&copy, |_| quick_cargo(&copy, &target("target"), "run"));
+    assert_eq!(found.len(), 4, "{found:?}");
+    for term in &found {
+        assert!(term.is_within(3.0), "{found:#?}");
+    }
+
     // A model of one's own can have it too.
     let file = copy.root.join("with_line.model.toml");
     let text = "schema_version = 1\neffects = [\"gyro_x.line\"]\n";
@@ -349,16 +353,6 @@ fn a_term_of_ones_own_is_an_entry_of_the_catalogue_and_a_build() {
 
 /// Two builds with directories of their own (one of them for a named target) that need the
 /// same environment at the same time.
-#[test]
-fn terms_of_each_kind_are_found_with_their_shapes() {
-    let (copy, _turn) = take_copy();
-    let found = find_own_terms(&copy, |_| quick_cargo(&copy, &target("target"), "run"));
-    assert_eq!(found.len(), 4, "{found:?}");
-    for term in &found {
-        assert!(term.is_within(3.0), "{found:#?}");
-    }
-}
-
 #[test]
 fn two_cargo_processes_at_once() {
     let (copy, _turn) = take_copy();
