@@ -15,6 +15,7 @@ mod naming;
 mod page;
 mod paper;
 mod resumable;
+mod truth;
 mod values;
 
 use std::path::PathBuf;
@@ -64,6 +65,8 @@ enum Topic {
     House,
     /// Two recordings of real gyros: docs/measured-data.md.
     Measured,
+    /// Truth of the diagnosis outside of the population that its constants were tuned on.
+    Truth,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
 }
@@ -79,6 +82,7 @@ fn main() -> ExitCode {
         Topic::Gain => gain::figures(arguments.small),
         Topic::House => house::figures(arguments.small),
         Topic::Measured => measured::figures(arguments.write),
+        Topic::Truth => truth::figures(arguments.small),
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {

@@ -51,15 +51,21 @@ impl GramProducts {
         Ok(Self::of(fitted, gram, nuisance, signatures))
     }
 
-    /// One pass with `further` columns only, beside the unknowns of the fit.
+    /// One pass with `further` columns as signatures; the unknowns of the fit and `free` columns,
+    /// which have no prior, are projected out.
     pub(crate) fn conditional<F: FittedModel>(
         fitted: &F,
+        free: &[Column],
         further: &[Column],
     ) -> Result<Self, F::Error> {
-        let gram = fitted.conditional_gram(further)?;
-        let own = fitted.values().len();
+        let all: Vec<Column> = free.iter().chain(further).cloned().collect();
+        let gram = fitted.conditional_gram(&all)?;
+        let own = fitted.values().len() + free.len();
         let (nuisance, signatures) = ((1..=own).collect(), (own + 1..gram.nrows()).collect());
-        Ok(Self::of(fitted, gram, nuisance, signatures))
+        let mut products = Self::of(fitted, gram, nuisance, signatures);
+        products.values.resize(own, 0.0);
+        products.prior_sigma.resize(own, f64::INFINITY);
+        Ok(products)
     }
 
     fn of<F: FittedModel>(
@@ -156,7 +162,7 @@ impl ScoreBank {
     /// # Errors
     /// Those of a pass over the record, and [`Singular`].
     pub fn conditional<F: FittedModel>(fitted: &F, further: &[Column]) -> Result<Self, F::Error> {
-        Ok(GramProducts::conditional(fitted, further)?.bank(&[])?)
+        Ok(GramProducts::conditional(fitted, &[], further)?.bank(&[])?)
     }
 
     /// Whether the fit leaves enough of a column to be seen.

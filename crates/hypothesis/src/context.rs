@@ -6,6 +6,7 @@ use crate::pattern::Unmodelled;
 use crate::plant::Plant;
 use crate::result::{Accepted, FittedStage};
 use crate::rows::Rows;
+use crate::shape::estimate_shapes;
 
 /// Error rates of a search.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,14 +54,16 @@ impl SearchContext<'_> {
         from.refitted(&extension(&self.base, context, accepted, unmodelled))
     }
 
-    /// The same with all its signatures.
+    /// The same with the shapes of all effects estimated, and with all its signatures.
     pub(crate) fn stage<F: FittedModel>(
         &self,
         from: &F,
-        accepted: &[Accepted],
+        accepted: &mut [Accepted],
         unmodelled: &[Unmodelled],
     ) -> Result<FittedStage<F>, F::Error> {
-        let fitted = self.fitted(from, accepted, unmodelled)?;
+        let refit = |from: &F, accepted: &[Accepted]| self.fitted(from, accepted, unmodelled);
+        let fitted = refit(from, accepted)?;
+        let fitted = estimate_shapes(self, fitted, accepted, refit)?;
         FittedStage::new(fitted, &self.set, &self.rows, accepted)
     }
 }

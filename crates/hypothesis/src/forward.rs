@@ -10,7 +10,6 @@ use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::pattern::Unmodelled;
-use crate::refine::refine_shape;
 use crate::result::Accepted;
 use crate::score::{Best, NESTED_MODEL_CHI2, Ranked, Scores};
 use crate::unmodelled;
@@ -72,15 +71,17 @@ pub(crate) fn forward<F: FittedModel>(
         let null = NullDistribution::draw(&state.stage.bank, &hypotheses, draws);
         let jumps = state.stage.fitted.state_jumps()?;
         let jump = best_jump(&jumps, &context.rows);
-        let scores = Scores::of(&state.stage.bank, &hypotheses, &null, jump);
+        let mut scores = Scores::of(&state.stage.bank, &hypotheses, &null, jump);
         let threshold = null.threshold(context.options.false_alarm_probability);
         first.get_or_insert_with(|| FirstRound {
             ranking: scores.ranking(&hypotheses),
             threshold,
         });
-        let best = scores
-            .named(&hypotheses)
-            .filter(|_| scores.largest() > threshold && state.accepted.len() < MOST_EFFECTS);
+        let significant = scores.largest() > threshold && state.accepted.len() < MOST_EFFECTS;
+        if significant {
+            scores.refine(&state.stage.fitted, context, &hypotheses, &[])?;
+        }
+        let best = scores.named(&hypotheses).filter(|_| significant);
         let is_walk = best.is_some_and(|best| hypotheses[best.hypothesis].walk.is_some());
         // An unmodelled term goes into the model if no effect is significant, or if it explains so
         // much more that a name would be false. A random walk would absorb any curve.
@@ -124,7 +125,7 @@ pub(crate) fn forward<F: FittedModel>(
                 walks = as_before;
                 let accepted = Accepted {
                     hypothesis: best.hypothesis,
-                    shape: refine_shape(&state.stage.fitted, context, &best)?,
+                    shape: best.shape(&hypotheses),
                     p_value: null.probability(scores.largest()),
                     searched: best.searched,
                     penalty: best.searched + null.penalties[best.hypothesis],
@@ -161,7 +162,7 @@ fn accept<F: FittedModel>(
 ) {
     let hypothesis = accepted.hypothesis;
     state.accepted.push(accepted);
-    match context.stage(&state.stage.fitted, &state.accepted, &state.unmodelled) {
+    match context.stage(&state.stage.fitted, &mut state.accepted, &state.unmodelled) {
         Ok(next) => state.stage = next,
         Err(_) => {
             state.accepted.pop();
@@ -178,7 +179,7 @@ fn accept_unmodelled<F: FittedModel>(
     other: Unmodelled,
 ) -> bool {
     state.unmodelled.push(other);
-    match context.stage(&state.stage.fitted, &state.accepted, &state.unmodelled) {
+    match context.stage(&state.stage.fitted, &mut state.accepted, &state.unmodelled) {
         Ok(next) => {
             state.stage = next;
             true

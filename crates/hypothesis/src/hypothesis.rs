@@ -7,7 +7,7 @@ use crate::column::Column;
 use crate::model::ModelExtension;
 use crate::plant::Plant;
 use crate::rows::Rows;
-use crate::signature::{Source, shape_derivative, signature};
+use crate::signature::{Source, signature};
 
 /// Onsets on the grid of the search: they are two and a half percent of the record apart, across
 /// which the statistic of a step falls by a few percent.
@@ -18,9 +18,6 @@ const TIME_CONSTANTS: usize = 10;
 
 /// The shortest of them, h.
 const SHORTEST_TIME_CONSTANT_H: f64 = 0.3;
-
-/// Share of a time constant over which a derivative is taken.
-const NEAR: f64 = 0.05;
 
 /// One variant of a hypothesis: its signature at one onset or time constant.
 #[derive(Clone, Debug, PartialEq)]
@@ -277,34 +274,6 @@ impl HypothesisSet {
         });
         extension.columns.extend(columns, f64::INFINITY);
     }
-}
-
-/// Columns of an effect with one size at an onset or a time constant: of the size, and of the shape
-/// to first order, the size being `size`. `None` for effects without a shape.
-pub(crate) fn with_shape(
-    plant: &Plant,
-    rows: &Rows,
-    effect: &Effect,
-    shape: f64,
-    size: f64,
-) -> Option<[Column; 2]> {
-    let own = effect.shape()?;
-    let sources = signature(plant, effect, Some(shape), rows)?;
-    let [Source::Column(column)] = sources.as_slice() else {
-        return None;
-    };
-    let between = match own.role {
-        Role::Onset(_) => {
-            // From one onset of the grid to the next: nearer ones are not distinguished.
-            let row = rows.rows_before(shape);
-            let half = rows.len() / (2 * ONSETS);
-            [row.saturating_sub(half), (row + half).min(rows.len() - 1)]
-                .map(|row| rows.since_first_s(row))
-        }
-        _ => [(1.0 - NEAR) * shape, (1.0 + NEAR) * shape],
-    };
-    let change = shape_derivative(plant, effect, size, between, rows)?;
-    Some([column.clone(), change])
 }
 
 /// From the shortest to half the record, in equal ratios.

@@ -84,11 +84,12 @@ mod pattern;
 mod plant;
 mod random_walk;
 mod reassess;
-mod refine;
 mod result;
 mod rows;
 mod score;
 mod search;
+mod shape;
+mod shape_interval;
 mod signature;
 mod unmodelled;
 

@@ -69,6 +69,12 @@ impl GaussianDraws {
         }
     }
 
+    /// Independent deviates: a column for each of `count` variables.
+    pub(crate) fn normal(&mut self, count: usize) -> DMatrix<f64> {
+        self.grow(count + 1);
+        DMatrix::from_column_slice(DRAWS, count, &self.values[DRAWS..(count + 1) * DRAWS])
+    }
+
     /// Deviates of the jump hypothesis, drawn independently.
     fn jump(&self) -> &[f64] {
         &self.values[..DRAWS]

@@ -4,8 +4,7 @@
 use crate::context::{MOST_EFFECTS, SearchContext, SearchState};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::refine::refine_shape;
-use crate::result::{Accepted, Finding, evaluate};
+use crate::result::{Accepted, Finding, add_intervals, evaluate};
 use crate::score::Best;
 
 /// Swaps names and removes insignificant effects until nothing changes; the conditional result of
@@ -25,7 +24,7 @@ pub(crate) fn reassess<F: FittedModel>(
             let SearchState {
                 stage, accepted, ..
             } = &*state;
-            let result = evaluate(stage, &context.set, &context.rows, accepted, index, draws)?;
+            let result = evaluate(stage, context, accepted, index, draws)?;
             findings.push(result.finding);
             if weakest.is_none_or(|(_, least)| result.tested < least) {
                 weakest = Some((index, result.tested));
@@ -52,10 +51,23 @@ pub(crate) fn reassess<F: FittedModel>(
                 if strength <= threshold && state.accepted.len() + state.unmodelled.len() > 1 =>
             {
                 state.accepted.remove(index);
-                let (accepted, unmodelled) = (&state.accepted, &state.unmodelled);
-                state.stage = context.stage(&state.stage.fitted, accepted, unmodelled)?;
+                let unmodelled = &state.unmodelled;
+                state.stage =
+                    context.stage(&state.stage.fitted, &mut state.accepted, unmodelled)?;
             }
-            _ => return Ok(findings),
+            _ => {
+                for (index, finding) in findings.iter_mut().enumerate() {
+                    add_intervals(
+                        &state.stage,
+                        context,
+                        &state.accepted,
+                        index,
+                        finding,
+                        draws,
+                    )?;
+                }
+                return Ok(findings);
+            }
         }
     }
 }
@@ -72,12 +84,12 @@ fn swap<F: FittedModel>(
     let without = context.fitted(&state.stage.fitted, &accepted, &state.unmodelled)?;
     let swapped = Accepted {
         hypothesis: other.hypothesis,
-        shape: refine_shape(&without, context, other)?,
+        shape: other.shape(&context.set.hypotheses),
         searched: other.searched,
         ..own
     };
     accepted.insert(index, swapped);
-    state.stage = context.stage(&without, &accepted, &state.unmodelled)?;
+    state.stage = context.stage(&without, &mut accepted, &state.unmodelled)?;
     state.accepted = accepted;
     Ok(())
 }

@@ -3,14 +3,17 @@
 use gyrocal_scalar::effect::{Effect, Enters};
 use nalgebra::DMatrix;
 
-use crate::bank::{GramProducts, JointScore, ScoreBank};
+use crate::bank::{GramProducts, ScoreBank};
 use crate::column::Column;
-use crate::hypothesis::{Hypothesis, HypothesisSet, Variant, with_shape};
+use crate::context::SearchContext;
+use crate::hypothesis::{Hypothesis, HypothesisSet, Variant};
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::rows::Rows;
 use crate::score::{Best, NESTED_MODEL_CHI2, Scores};
-use crate::signature::{Source, signature};
+use crate::shape::ShapeScale;
+use crate::shape_interval::shape_interval;
+use crate::signature::{Source, profiles, shape_derivative, signature};
 
 /// Deviance of the confidence set: hypotheses whose penalised statistics are within it of the named
 /// one belong to the set. Over simulated records with effects of five standard deviations the true
@@ -24,10 +27,12 @@ pub struct EffectEstimate {
     pub name: &'static str,
     /// The estimate.
     pub estimate: f64,
-    /// Its standard deviation: of a size with the shape unknown, of a shape to first order. `None`
-    /// for the size of a random walk and the onset of a jump.
+    /// Its standard deviation: of a size with the shape unknown. `None` for the size of a random walk,
+    /// the onset of a jump, and a shape whose likelihood is not symmetric.
     pub sigma: Option<f64>,
-    /// Unit of both.
+    /// 95 % interval of an onset or a time constant, in pieces where its likelihood is.
+    pub interval: Option<Vec<[f64; 2]>>,
+    /// Unit of all.
     pub unit: &'static str,
 }
 
@@ -87,8 +92,8 @@ struct EffectPlaces {
     values: Vec<usize>,
     /// In the bank: columns of a jump at its onset.
     jump: Option<Vec<usize>>,
-    /// In the bank: columns of size and shape.
-    shaped: Option<[usize; 2]>,
+    /// In the bank: columns at the estimated shape.
+    shaped: Option<Vec<usize>>,
 }
 
 impl<F: FittedModel> FittedStage<F> {
@@ -118,12 +123,12 @@ impl<F: FittedModel> FittedStage<F> {
                     Source::Parameter(_) => None,
                 }));
                 own.jump = Some((first..plant.parameters.len() + extra.len()).collect());
-            } else if let ([place], Some(shape)) = (own.values.as_slice(), accepted.shape) {
-                let size = fitted.values()[*place];
-                if let Some(columns) = with_shape(plant, rows, hypothesis.effect, shape, size) {
-                    extra.extend(columns);
-                    own.shaped = Some([first, first + 1]);
-                }
+            } else if let Some(columns) = accepted
+                .shape
+                .and_then(|shape| profiles(plant, hypothesis.effect, shape, rows))
+            {
+                own.shaped = Some((first..first + columns.len()).collect());
+                extra.extend(columns);
             }
             places.push(own);
         }
@@ -149,18 +154,19 @@ pub(crate) struct ConditionalResult {
 /// Evaluates one accepted effect, the others being in the model.
 pub(crate) fn evaluate<F: FittedModel>(
     stage: &FittedStage<F>,
-    set: &HypothesisSet,
-    rows: &Rows,
+    context: &SearchContext<'_>,
     accepted: &[Accepted],
     index: usize,
     draws: &mut GaussianDraws,
 ) -> Result<ConditionalResult, F::Error> {
+    let (set, rows) = (&context.set, &context.rows);
     let own = &accepted[index];
     let places = &stage.places[index];
     let bank = stage.products.bank(&places.values)?;
     let hypotheses = unmasked(set, accepted, index, places);
     let null = NullDistribution::draw(&bank, &hypotheses, draws);
-    let scores = Scores::of(&bank, &hypotheses, &null, None);
+    let mut scores = Scores::of(&bank, &hypotheses, &null, None);
+    scores.refine(&stage.fitted, context, &hypotheses, &places.values)?;
     let statistic = scores.best[own.hypothesis].map_or(0.0, |best| best.statistic);
     // The penalty of a jump is for the test of every step and not for its directions.
     let (penalised, tested) = if set.hypotheses[own.hypothesis].is_jump {
@@ -178,12 +184,10 @@ pub(crate) fn evaluate<F: FittedModel>(
         .filter(|(_, advantage)| *advantage > NESTED_MODEL_CHI2)
         .and_then(|(other, advantage)| Some((scores.best[other]?, advantage)));
     let effect = set.hypotheses[own.hypothesis].effect;
-    // The joint covariance of size and shape.
-    let shaped = places.shaped.and_then(|columns| bank.joint(&columns));
     Ok(ConditionalResult {
         finding: Finding {
             effect: effect.id,
-            parameters: parameters(stage, set, rows, own, places, shaped.as_ref()),
+            parameters: parameters(stage, set, rows, own, places),
             z: statistic.max(0.0).sqrt(),
             p_value: own.p_value,
             alternatives: alternatives(&scores, &hypotheses, own.hypothesis, penalised),
@@ -219,6 +223,14 @@ fn unmasked(
             columns: columns.clone(),
             shape: None,
         }];
+    }
+    if let Some(columns) = &places.shaped {
+        hypotheses[accepted[index].hypothesis]
+            .variants
+            .push(Variant {
+                columns: columns.clone(),
+                shape: accepted[index].shape,
+            });
     }
     hypotheses
 }
@@ -264,6 +276,7 @@ fn exact_equivalents<F: FittedModel>(
                 name: size.name,
                 estimate: joint.estimate[i],
                 sigma: Some(joint.covariance[(i, i)].sqrt()),
+                interval: None,
                 unit: size.unit,
             });
             Some((other.id, estimates.collect()))
@@ -272,7 +285,7 @@ fn exact_equivalents<F: FittedModel>(
 }
 
 /// Places of an effect among the values of a fit.
-fn value_places<F: FittedModel>(
+pub(crate) fn value_places<F: FittedModel>(
     fitted: &F,
     set: &HypothesisSet,
     hypothesis: &Hypothesis,
@@ -311,13 +324,73 @@ fn value_places<F: FittedModel>(
         .collect()
 }
 
+/// Adds the interval of its shape to a finding, and the standard deviations of its sizes with the shape
+/// unknown.
+pub(crate) fn add_intervals<F: FittedModel>(
+    stage: &FittedStage<F>,
+    context: &SearchContext<'_>,
+    accepted: &[Accepted],
+    index: usize,
+    finding: &mut Finding,
+    draws: &mut GaussianDraws,
+) -> Result<(), F::Error> {
+    let hypothesis = &context.set.hypotheses[accepted[index].hypothesis];
+    let Some(shape) = accepted[index].shape else {
+        return Ok(());
+    };
+    let others = accepted
+        .iter()
+        .enumerate()
+        .filter(|(other, _)| *other != index);
+    let free: Vec<Column> = others
+        .filter_map(|(other, accepted)| {
+            let place = stage.places[other].values.first()?;
+            let size = stage.fitted.values()[*place];
+            change_by_shape(context, accepted, size)
+        })
+        .collect();
+    let absent = &stage.places[index].values;
+    let fitted = &stage.fitted;
+    let found = shape_interval(fitted, context, (hypothesis, shape), (absent, &free), draws)?;
+    let Some(found) = found else { return Ok(()) };
+    let mut sigmas = found.size_sigmas.into_iter();
+    let described = finding
+        .parameters
+        .iter_mut()
+        .zip(hypothesis.effect.parameters);
+    for (estimate, parameter) in described {
+        if parameter.role.is_shape() {
+            estimate.sigma = found.sigma;
+            estimate.interval = Some(found.pieces.clone());
+        } else if let Some(sigma) = sigmas.next() {
+            estimate.sigma = Some(sigma / parameter.scale);
+        }
+    }
+    Ok(())
+}
+
+/// Derivative of the effect of another accepted hypothesis by its shape, over a hundredth of its scale.
+fn change_by_shape(context: &SearchContext<'_>, accepted: &Accepted, size: f64) -> Option<Column> {
+    let hypothesis = &context.set.hypotheses[accepted.hypothesis];
+    let scale = ShapeScale::of(hypothesis, &context.rows)?;
+    let place = scale.place(accepted.shape?);
+    let width = 0.005 * (scale.ends[1] - scale.ends[0]);
+    let between = [scale.shape(place - width), scale.shape(place + width)];
+    shape_derivative(
+        context.plant,
+        hypothesis.effect,
+        size,
+        between,
+        &context.rows,
+    )
+}
+
 fn parameters<F: FittedModel>(
     stage: &FittedStage<F>,
     set: &HypothesisSet,
     rows: &Rows,
     own: &Accepted,
     places: &EffectPlaces,
-    shaped: Option<&JointScore>,
 ) -> Vec<EffectEstimate> {
     let hypothesis = &set.hypotheses[own.hypothesis];
     if let (Some(_), Some(variance), Some(size)) = (
@@ -329,29 +402,26 @@ fn parameters<F: FittedModel>(
             name: size.name,
             estimate: (variance / set.onset_interval_h(rows)).sqrt(),
             sigma: None,
+            interval: None,
             unit: size.unit,
         }];
     }
     let (values, covariance): (&[f64], &DMatrix<f64>) =
         (stage.fitted.values(), stage.fitted.covariance());
-    let with_shape = |index: usize| {
-        let joint = shaped?;
-        Some(joint.covariance[(index, index)].sqrt())
-    };
     let all = hypothesis.effect.parameters.iter().enumerate();
     all.map(|(index, parameter)| {
         let (estimate, sigma) = match places.values.get(index) {
             Some(place) => (
                 values[*place] / parameter.scale,
-                with_shape(index)
-                    .or_else(|| Some(covariance[(*place, *place)].sqrt() / parameter.scale)),
+                Some(covariance[(*place, *place)].sqrt() / parameter.scale),
             ),
-            None => (own.shape.unwrap_or(f64::NAN), with_shape(index)),
+            None => (own.shape.unwrap_or(f64::NAN), None),
         };
         EffectEstimate {
             name: parameter.name,
             estimate,
             sigma,
+            interval: None,
             unit: parameter.unit,
         }
     })

@@ -1,14 +1,21 @@
 //! The statistics of all hypotheses, and the choice of the one that is named.
 
 use crate::bank::ScoreBank;
+use crate::context::SearchContext;
 use crate::hypothesis::Hypothesis;
 use crate::jump::BestJump;
+use crate::model::FittedModel;
 use crate::null_distribution::NullDistribution;
 use crate::random_walk::WalkScore;
+use crate::shape::best_shape;
 
 /// The 5 % point of chi-square with one degree of freedom: an effect replaces a nested one only if
 /// its statistic is larger by this.
 pub const NESTED_MODEL_CHI2: f64 = 3.84;
+
+/// Share of the largest statistic above which a hypothesis is refined: midway between two variants of
+/// a grid an effect has at least this share of its statistic.
+const NEAR_LARGEST: f64 = 0.8;
 
 /// One hypothesis in the first round of the search.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,10 +32,25 @@ pub(crate) struct Best {
     pub(crate) hypothesis: usize,
     pub(crate) variant: usize,
     pub(crate) statistic: f64,
-    /// Variance of the increments of a random walk; onset of a jump, s.
+    /// Variance of the increments of a random walk; onset of a jump, s; shape between those of the
+    /// variants, if it was refined.
     pub(crate) shape: f64,
+    /// Whether `shape` replaces that of the variant.
+    pub(crate) refined: bool,
     /// Penalty of a jump for the test of every step.
     pub(crate) searched: f64,
+}
+
+impl Best {
+    /// Onset or time constant of the variant, variance of a random walk, onset of a jump; `None` of a
+    /// hypothesis without any of them.
+    pub(crate) fn shape(&self, hypotheses: &[Hypothesis]) -> Option<f64> {
+        let own = &hypotheses[self.hypothesis];
+        if own.walk.is_some() || own.is_jump || self.refined {
+            return Some(self.shape);
+        }
+        own.variants.get(self.variant)?.shape
+    }
 }
 
 /// The best variant of every hypothesis, with the search penalties.
@@ -50,6 +72,37 @@ impl<'a> Scores<'a> {
             best: best.collect(),
             null,
         }
+    }
+
+    /// Replaces the best variants of hypotheses with a shape that are near the largest statistic by
+    /// the best shapes between the variants: those of the largest effects are far apart in likelihood.
+    /// `absent` are places of values of the fit that the bank was made without.
+    pub(crate) fn refine<F: FittedModel>(
+        &mut self,
+        fitted: &F,
+        context: &SearchContext<'_>,
+        hypotheses: &[Hypothesis],
+        absent: &[usize],
+    ) -> Result<(), F::Error> {
+        let statistics = self.best.iter().flatten().map(|best| best.statistic);
+        let least = NEAR_LARGEST * statistics.fold(0.0, f64::max);
+        for (best, hypothesis) in self.best.iter_mut().zip(hypotheses) {
+            let Some(best) = best else { continue };
+            let Some(shape) = best.shape(hypotheses).filter(|_| best.statistic > least) else {
+                continue;
+            };
+            if let Some(found) = best_shape(fitted, context, hypothesis, shape, absent)?
+                && found.statistic > best.statistic
+            {
+                *best = Best {
+                    statistic: found.statistic,
+                    shape: found.shape,
+                    refined: true,
+                    ..*best
+                };
+            }
+        }
+        Ok(())
     }
 
     /// The statistic for ranking: less the whole search penalty.
@@ -134,6 +187,7 @@ fn best_variant(
         variant: 0,
         statistic: 0.0,
         shape: 0.0,
+        refined: false,
         searched: 0.0,
     };
     if hypothesis.is_jump && hypothesis.variants.is_empty() {
@@ -222,6 +276,7 @@ mod tests {
                 variant: 0,
                 statistic,
                 shape: 0.0,
+                refined: false,
                 searched: 0.0,
             })
         });

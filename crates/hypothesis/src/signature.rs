@@ -102,6 +102,21 @@ pub fn shape_derivative(
     })
 }
 
+/// Columns of all sizes of an effect at a shape, as functions of time: also of a step, whose onset may
+/// lie within a step of the record. `None` of effects without such functions.
+pub(crate) fn profiles(
+    plant: &Plant,
+    effect: &Effect,
+    shape: f64,
+    rows: &Rows,
+) -> Option<Vec<Column>> {
+    let own = effect.shape()?;
+    effect
+        .sizes()
+        .map(|size| profile(plant, effect, size, (own, shape), rows))
+        .collect()
+}
+
 /// The function of time of a size at a shape, as a column.
 fn profile(
     plant: &Plant,

@@ -92,8 +92,7 @@ impl Evidence<'_, '_> {
     fn findings(&self) -> Vec<Finding> {
         let noise = self.audit.findings.iter().chain(&self.gyro_noise);
         let causes = self.searched.findings.iter().zip(&self.validated.decisions);
-        let causes = causes
-            .map(|(finding, decision)| findings::of_cause(finding, decision, self.run.record));
+        let causes = causes.map(|(finding, decision)| findings::of_cause(finding, decision));
         let filter = self.filter.as_ref().and_then(|tested| tested.inconsistent);
         noise
             .map(findings::of_noise)

@@ -1,10 +1,7 @@
 //! Findings of the tests as entries of the answer.
 
-use gyrocal::effect::Role;
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_hypothesis::{self as hypothesis, EffectEstimate};
-use gyrocal_record::Record;
-use gyrocal_statistics::NORMAL_97_5;
 
 use crate::error_budget::CONFIDENCE_SET_COVERAGE;
 use crate::filter_test::FILTER_EFFECT;
@@ -33,11 +30,7 @@ pub(super) fn of_noise(finding: &NoiseFinding) -> Finding {
 }
 
 /// A finding of the search, with its gain in cross-validation.
-pub(super) fn of_cause(
-    finding: &hypothesis::Finding,
-    decision: &KeepDecision,
-    record: &Record,
-) -> Finding {
+pub(super) fn of_cause(finding: &hypothesis::Finding, decision: &KeepDecision) -> Finding {
     let alternatives: Vec<Alternative> = finding
         .alternatives
         .iter()
@@ -51,10 +44,10 @@ pub(super) fn of_cause(
         .iter()
         .map(|(effect, found)| Equivalent {
             effect: (*effect).to_owned(),
-            parameters: parameters(effect, found, record),
+            parameters: parameters(found),
         });
     Finding {
-        parameters: parameters(finding.effect, &finding.parameters, record),
+        parameters: parameters(&finding.parameters),
         coverage: Some(CONFIDENCE_SET_COVERAGE),
         rivals: alternatives.clone(),
         alternatives,
@@ -97,32 +90,13 @@ fn row(effect: &str) -> Option<&'static Effect> {
     EFFECTS.iter().find(|row| row.id == effect)
 }
 
-fn parameters(effect: &str, found: &[EffectEstimate], record: &Record) -> Vec<Parameter> {
-    let shape = row(effect).and_then(Effect::shape);
-    let interval = |found: &EffectEstimate| {
-        let shape = shape.filter(|shape| shape.name == found.name)?;
-        Some(vec![interval(shape.role, found, record)?])
-    };
+fn parameters(found: &[EffectEstimate]) -> Vec<Parameter> {
     let parameter = |found: &EffectEstimate| Parameter {
         name: found.name.to_owned(),
         estimate: found.estimate,
         sigma: found.sigma,
-        interval: interval(found),
+        interval: found.interval.clone(),
         unit: found.unit.to_owned(),
     };
     found.iter().map(parameter).collect()
-}
-
-/// The 95 % interval of an onset or a time constant where its likelihood is quadratic, within the
-/// values that it can have.
-fn interval(role: Role, found: &EffectEstimate, record: &Record) -> Option<[f64; 2]> {
-    let most = match role {
-        Role::Onset(_) => record.duration_s(),
-        _ => f64::INFINITY,
-    };
-    let half = NORMAL_97_5 * found.sigma?;
-    Some([
-        (found.estimate - half).max(0.0),
-        (found.estimate + half).min(most),
-    ])
 }

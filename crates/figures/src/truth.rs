@@ -1,0 +1,11 @@
+//! Truth of the diagnosis outside of the population that its constants were tuned on.
+
+mod shapes;
+
+use crate::error::Error;
+use crate::figure::Figure;
+
+/// All figures of the topic.
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    shapes::figures(small)
+}

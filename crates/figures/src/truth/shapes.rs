@@ -1,0 +1,145 @@
+//! Warm-ups and steps of 5 to 500 σ: spurious causes, and intervals of onsets and time constants.
+
+use gyrocal::EFFECTS;
+use gyrocal::effect::EffectKind;
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_evaluation::{EvaluationError, draw_shape, inject, scenario};
+use gyrocal_statistics::Proportion;
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_truth::{Scenario, simulate};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::resumable;
+
+/// Seeds of the records, and their number in the small version.
+const SEEDS: [u64; 2] = [700_000, 1000];
+const SMALL: u64 = 40;
+
+/// Sizes, in standard deviations of the effect's own bound.
+const STRENGTHS: [f64; 2] = [5.0, 500.0];
+
+/// Purpose of the stream of draws.
+const PURPOSE: u64 = 41;
+
+/// Largest share of records with a spurious cause.
+const SPURIOUS: f64 = 0.02;
+
+/// Range of a coverage of 95 % in cells of a thousand records.
+const COVERAGE: [f64; 2] = [0.93, 0.97];
+
+/// Result for one record.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Shaped {
+    effect: String,
+    strength: f64,
+    /// Ids of all causes.
+    causes: Vec<String>,
+    /// Whether the interval holds the true shape; `None` if the effect is not the first cause.
+    covered: Option<bool>,
+    /// True shape.
+    shape: f64,
+    /// Its estimate.
+    estimate: Option<f64>,
+}
+
+pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let count = if small { SMALL } else { SEEDS[1] };
+    let seeds = SEEDS[0]..SEEDS[0] + count;
+    let outcome =
+        resumable::campaign("truth", "shapes", seeds.clone(), small)?.run(record, |_| ())?;
+    let records: Vec<&Shaped> = outcome.successes().map(|(_, record)| record).collect();
+    let seeds = format!("{seeds:?}");
+    let spurious = Proportion::of(records.iter().map(|record| record.causes.len() > 1));
+    let mut first = Figure::within(
+        "warm-ups and steps of 5 to 500 σ: share of records with a spurious extra cause",
+        [0.0, SPURIOUS],
+        spurious.share(),
+    );
+    if small {
+        // Forty records: the exact 99.9 % interval of the share holds a value within the target.
+        first.holds = Some(spurious.interval(0.999)[0] <= SPURIOUS);
+    }
+    let mut figures = vec![first.over(records.len(), seeds.as_str())];
+    for (name, kind) in [
+        ("onset", EffectKind::Step),
+        ("time constant", EffectKind::Exponential),
+    ] {
+        let own: Vec<bool> = records
+            .iter()
+            .filter(|record| kind_of(&record.effect) == Some(kind))
+            .filter_map(|record| record.covered)
+            .collect();
+        let covered = Proportion::of(own.iter().copied());
+        let mut figure = Figure::within(
+            &format!("the same: coverage of the 95 % interval of the {name}"),
+            COVERAGE,
+            covered.share(),
+        );
+        if own.len() < 1000 {
+            let [low, high] = covered.interval(0.999);
+            figure.holds = Some(low <= 0.95 && 0.95 <= high);
+        }
+        figures.push(figure.over(own.len(), seeds.as_str()));
+    }
+    let failed = outcome.failures().count();
+    figures.push(Figure::truth(
+        "the same: every record is diagnosed",
+        failed == 0,
+    ));
+    Ok(figures)
+}
+
+fn kind_of(id: &str) -> Option<EffectKind> {
+    let effect = EFFECTS.iter().find(|effect| effect.id == id)?;
+    Some(effect.kind)
+}
+
+fn record(seed: u64) -> Result<Shaped, EvaluationError> {
+    let mut random = Draw::new(seed, PURPOSE);
+    let plain = Scenario {
+        interval_s: 60.0,
+        ..scenario(seed)
+    };
+    let shaped: Vec<_> = EFFECTS
+        .iter()
+        .filter(|effect| matches!(effect.kind, EffectKind::Step | EffectKind::Exponential))
+        .collect();
+    let effect = *random.one_of(&shaped);
+    let shape = draw_shape(effect, &plain, &mut random);
+    let strength = random.log_uniform(STRENGTHS);
+    let injected = inject(&plain, &[(effect, shape)], strength, 1.0, &mut random)?;
+    let Some(injected) = injected.and_then(|injected| injected.into_iter().next()) else {
+        return Err(EvaluationError::NotInjectable { tried: 1, strength });
+    };
+    let simulation = simulate(&Scenario {
+        hidden: vec![injected.to_hidden()?],
+        ..plain
+    })?;
+    let found = diagnose(
+        &simulation.record,
+        &simulation.bench,
+        &DiagnoseOptions::default(),
+    )?
+    .result;
+    let truth = shape.unwrap_or(f64::NAN);
+    let first = found.causes().find(|finding| finding.effect == effect.id);
+    let own = first.and_then(|finding| finding.parameter(effect.shape()?.name));
+    let covered = own.and_then(|own| {
+        let pieces = own.interval.as_ref()?;
+        Some(
+            pieces
+                .iter()
+                .any(|[low, high]| (*low..=*high).contains(&truth)),
+        )
+    });
+    Ok(Shaped {
+        effect: effect.id.to_owned(),
+        strength,
+        causes: found.causes().map(|cause| cause.effect.clone()).collect(),
+        covered,
+        shape: truth,
+        estimate: own.map(|own| own.estimate),
+    })
+}

@@ -1,0 +1,244 @@
+//! Intervals of onsets and time constants from their profile likelihood.
+//!
+//! The interval holds the shapes whose statistic is less than c below the largest. For a quadratic
+//! likelihood c is 3.84, the 95 % point of χ²(1); an onset in a drift with white noise is a change
+//! point, whose likelihood is a random walk on both sides of it, and c is larger (Hinkley, Biometrika
+//! 57, 1, 1970). Both follow from the same draws: with the estimated effect in the data, the scores at
+//! all shapes are jointly normal, and c is the 95 % quantile of the largest statistic less that at
+//! the true shape.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use crate::column::Column;
+use crate::context::SearchContext;
+use crate::hypothesis::Hypothesis;
+use crate::model::FittedModel;
+use crate::null_distribution::GaussianDraws;
+use crate::shape::{ShapeProfile, ShapeScale};
+
+/// Coverage of the intervals.
+const COVERAGE: f64 = 0.95;
+
+/// Deviance beyond which no shape is looked at: its likelihood is below 1e-6.
+const FARTHEST: f64 = 30.0;
+
+/// Smallest distance of a shape from the estimate, over the whole scale.
+const NEAREST: f64 = 1e-6;
+
+/// Distances from the estimate, each twice the one before: the last is beyond the scale.
+const DISTANCES: i32 = 20;
+
+/// Points between the two shapes where the deviance is [`FARTHEST`].
+const POINTS: usize = 81;
+
+/// 95 % point of χ²(1), for effects with several sizes.
+const QUADRATIC: f64 = 3.84;
+
+/// Ratio of the two halves of an interval above which no standard deviation describes it.
+const SYMMETRIC: f64 = 1.5;
+
+/// Uncertainty of a shape and of the sizes with the shape unknown.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ShapeInterval {
+    /// The pieces of the interval, rising.
+    pub(crate) pieces: Vec<[f64; 2]>,
+    /// Standard deviation of the shape, where one piece is symmetric about the estimate.
+    pub(crate) sigma: Option<f64>,
+    /// Standard deviation of each size: over the shapes by their likelihood, in the unit of the
+    /// columns.
+    pub(crate) size_sigmas: Vec<f64>,
+}
+
+/// The interval of the shape of an effect in a fit; `absent` and `free` as of [`ShapeProfile::new`].
+pub(crate) fn shape_interval<F: FittedModel>(
+    fitted: &F,
+    context: &SearchContext<'_>,
+    (hypothesis, estimate): (&Hypothesis, f64),
+    (absent, free): (&[usize], &[Column]),
+    draws: &mut GaussianDraws,
+) -> Result<Option<ShapeInterval>, F::Error> {
+    let Some(scale) = ShapeScale::of(hypothesis, &context.rows) else {
+        return Ok(None);
+    };
+    let around = |places: Vec<f64>| {
+        let shapes = places.iter().map(|place| scale.shape(*place)).collect();
+        ShapeProfile::new(fitted, context, hypothesis, shapes, (absent, free))
+    };
+    let centre = scale.place(estimate);
+    let length = scale.ends[1] - scale.ends[0];
+    let distances: Vec<f64> = (0..=DISTANCES)
+        .map(|power| NEAREST * length * f64::from(power).exp2())
+        .collect();
+    let mut places = vec![centre];
+    places.extend(distances.iter().map(|distance| centre - distance));
+    places.extend(distances.iter().map(|distance| centre + distance));
+    let statistics = around(places)?.statistics();
+    let far = |side: usize| {
+        let own = &statistics[1 + side * distances.len()..][..distances.len()];
+        let beyond = own
+            .iter()
+            .position(|other| statistics[0] - other > FARTHEST);
+        beyond.map_or(length, |index| distances[index])
+    };
+    let (low, high) = (
+        (centre - far(0)).max(scale.ends[0]),
+        (centre + far(1)).min(scale.ends[1]),
+    );
+    let mut places: Vec<f64> = (0..POINTS)
+        .map(|index| low + (high - low) * index as f64 / (POINTS - 1) as f64)
+        .collect();
+    let at = places.partition_point(|place| *place < centre);
+    places.insert(at, centre);
+    Ok(interval(&around(places.clone())?, &places, &scale, draws))
+}
+
+fn interval(
+    profile: &ShapeProfile,
+    places: &[f64],
+    scale: &ShapeScale,
+    draws: &mut GaussianDraws,
+) -> Option<ShapeInterval> {
+    let statistics = profile.statistics();
+    let (best, largest) = statistics
+        .iter()
+        .copied()
+        .enumerate()
+        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let limit = deviance_limit(profile, best, draws).unwrap_or(QUADRATIC);
+    let deviance: Vec<f64> = statistics.iter().map(|other| largest - other).collect();
+    let pieces = pieces(places, &deviance, limit);
+    let sigma = match pieces.as_slice() {
+        [[low, high]] if *low > scale.ends[0] && *high < scale.ends[1] => {
+            let ends = [*low, places[best], *high].map(|place| scale.shape(place));
+            let halves = [ends[1] - ends[0], ends[2] - ends[1]];
+            let ratio = f64::max(halves[0] / halves[1], halves[1] / halves[0]);
+            // Of a quadratic likelihood the limit is the square of the deviate.
+            (ratio < SYMMETRIC).then(|| 0.5 * (ends[2] - ends[0]) / limit.sqrt())
+        }
+        _ => None,
+    };
+    Some(ShapeInterval {
+        pieces: pieces
+            .into_iter()
+            .map(|piece| piece.map(|place| scale.shape(place)))
+            .collect(),
+        sigma,
+        size_sigmas: size_sigmas(profile, &deviance),
+    })
+}
+
+/// The 95 % quantile of the largest statistic less that at the true shape, if that is the best one;
+/// `None` of an effect with several sizes.
+fn deviance_limit(profile: &ShapeProfile, best: usize, draws: &mut GaussianDraws) -> Option<f64> {
+    let columns: Option<Vec<usize>> = profile
+        .columns
+        .iter()
+        .map(|columns| match columns.as_slice() {
+            [column] => Some(*column),
+            _ => None,
+        })
+        .collect();
+    let columns = columns?;
+    let (information, score) = profile.bank.part(&columns);
+    let scale = information.diagonal().map(|own| own.sqrt().recip());
+    if !scale.iter().all(|scale| scale.is_finite()) {
+        return None;
+    }
+    let count = columns.len();
+    let correlation = DMatrix::from_fn(count, count, |i, j| {
+        information[(i, j)] * scale[i] * scale[j]
+    });
+    let strength = score[best] * scale[best];
+    let mean: DVector<f64> = correlation.column(best) * strength;
+    let eigen = SymmetricEigen::new(correlation);
+    let mut factor = eigen.eigenvectors;
+    for (mut vector, value) in factor.column_iter_mut().zip(eigen.eigenvalues.iter()) {
+        vector *= value.max(0.0).sqrt();
+    }
+    let scores = draws.normal(count) * factor.transpose();
+    let mut losses: Vec<f64> = scores
+        .row_iter()
+        .map(|row| {
+            let statistic = |index: usize| (row[index] + mean[index]).powi(2);
+            let largest = (0..count).map(statistic).fold(0.0, f64::max);
+            largest - statistic(best)
+        })
+        .collect();
+    losses.sort_unstable_by(f64::total_cmp);
+    let index = (COVERAGE * losses.len() as f64) as usize;
+    losses.get(index).copied()
+}
+
+/// Stretches of places whose deviance is below a limit, ends interpolated.
+fn pieces(places: &[f64], deviance: &[f64], limit: f64) -> Vec<[f64; 2]> {
+    let crossing = |inside: usize, outside: usize| {
+        let share = (limit - deviance[inside]) / (deviance[outside] - deviance[inside]);
+        places[inside] + share.clamp(0.0, 1.0) * (places[outside] - places[inside])
+    };
+    let mut pieces: Vec<[f64; 2]> = Vec::new();
+    let mut begin: Option<f64> = None;
+    for index in 0..places.len() {
+        let inside = deviance[index] <= limit;
+        match (begin, inside) {
+            (None, true) => {
+                begin = Some(if index == 0 {
+                    places[0]
+                } else {
+                    crossing(index, index - 1)
+                });
+            }
+            (Some(from), false) => {
+                pieces.push([from, crossing(index - 1, index)]);
+                begin = None;
+            }
+            _ => {}
+        }
+    }
+    if let (Some(from), Some(last)) = (begin, places.last()) {
+        pieces.push([from, *last]);
+    }
+    pieces
+}
+
+/// Standard deviations of the sizes: their variance at each shape and the scatter of their estimates,
+/// weighted by the likelihood of the shape.
+fn size_sigmas(profile: &ShapeProfile, deviance: &[f64]) -> Vec<f64> {
+    let mut total = 0.0;
+    let mut sums: Vec<[f64; 3]> = Vec::new();
+    for (columns, deviance) in profile.columns.iter().zip(deviance) {
+        let Some(joint) = profile.bank.joint(columns) else {
+            continue;
+        };
+        let weight = gyrocal_statistics::math::exp(-0.5 * deviance);
+        total += weight;
+        sums.resize(columns.len(), [0.0; 3]);
+        for (size, sum) in sums.iter_mut().enumerate() {
+            let estimate = joint.estimate[size];
+            sum[0] += weight * joint.covariance[(size, size)];
+            sum[1] += weight * estimate;
+            sum[2] += weight * estimate * estimate;
+        }
+    }
+    sums.into_iter()
+        .map(|[variance, first, second]| {
+            let mean = first / total;
+            (variance / total + (second / total - mean * mean).max(0.0)).sqrt()
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::pieces;
+
+    #[test]
+    fn a_likelihood_with_two_maxima_has_an_interval_in_two_pieces() {
+        let places = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+        let deviance = [8.0, 0.0, 8.0, 2.0, 2.0, 3.0];
+        assert_eq!(
+            pieces(&places, &deviance, 4.0),
+            [[0.5, 1.5], [2.0 + 4.0 / 6.0, 5.0]]
+        );
+        assert_eq!(pieces(&places, &deviance, 10.0), [[0.0, 5.0]]);
+    }
+}
