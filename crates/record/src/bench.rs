@@ -12,23 +12,23 @@ use crate::site::{Gravity, Site, SiteUncertainty};
 use crate::table::Table;
 use crate::white_noise::WhiteNoise;
 
-/// What is known of the bench before the record is looked at.
+/// Description of the bench: site, initial attitude, noise, and prior of the coefficients.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bench {
     /// Astronomic latitude, north positive.
     pub latitude_deg: f64,
     /// Local gravity and the accelerometers' unit, when they differ.
     pub gravity: Option<Gravity>,
-    /// How well latitude, Earth rate and gravity are known.
+    /// Standard deviations of latitude, Earth rate and gravity.
     pub uncertainty: SiteUncertainty,
     /// Earth's magnetic field along local east, north, up, if it is known.
     pub magnetic_field_gauss: Option<[f64; 3]>,
     /// Platform against local east, north, up at the first row: angles about x, then y, then z.
-    /// `None` if it is not known and the record has to tell.
+    /// `None` if they are unknown and to be estimated from the record.
     pub initial_angles_deg: Option<[f64; 3]>,
     /// Standard deviation of each of these angles; without meaning if they are not known.
     pub initial_angles_sigma_deg: [f64; 3],
-    /// How far the gimbals go.
+    /// Limits of the platform angles.
     pub gimbal_limits: GimbalLimits,
     /// Standard deviation of one sample of an accelerometer.
     pub accel_noise_g: f64,
@@ -47,8 +47,8 @@ pub struct Prior {
     pub g_sigma_deg_per_h_per_g: [f64; 3],
     /// Of the drifts proportional to its square.
     pub gg_sigma_deg_per_h_per_g2: [f64; 3],
-    /// Of the constant drift of one turn-on about the gyro's mean, which `bias_sigma_deg_per_h`
-    /// speaks of; 0 if it is the same each time.
+    /// Of the constant drift in one turn-on about its mean over turn-ons, to which
+    /// `bias_sigma_deg_per_h` applies; 0 if it is the same in every turn-on.
     pub turn_on_sigma_deg_per_h: [f64; 3],
 }
 
@@ -68,7 +68,7 @@ impl Bench {
     ///
     /// # Errors
     ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it.
     pub fn read(path: &Path) -> Result<Self, Error> {
         Self::from_document(&Document::read(path)?)
     }
@@ -77,7 +77,7 @@ impl Bench {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Input`] for a fault in it.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
         Self::from_document(&Document::new(text, name)?)
     }
@@ -200,7 +200,7 @@ impl Bench {
 /// Tables of a bench file.
 const KNOWN: [&str; 5] = ["site", "platform", "noise", "prior", GimbalLimits::TABLE];
 
-/// What [`Bench::initial_angles_sigma_deg`] says of angles that are not known.
+/// Value of [`Bench::initial_angles_sigma_deg`] for unknown angles.
 const UNKNOWN_ANGLES_SIGMA_DEG: [f64; 3] = [180.0; 3];
 
 const PRIOR_KEYS: [&str; 4] = [
@@ -215,7 +215,7 @@ impl Prior {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Input`] for a fault in it.
     pub fn from_root(root: &Table<'_>) -> Result<Self, Error> {
         let mut prior = Self::default();
         if let Some(table) = root.optional_table("prior", &PRIOR_KEYS)? {

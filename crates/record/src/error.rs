@@ -1,15 +1,15 @@
-//! The one error type, and the located error inside it.
+//! The error type of this crate, and the located error in it.
 
 use std::fmt;
 use std::path::PathBuf;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
 
-/// Whatever can go wrong with a file.
+/// Failure to read or write a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// Something in an input file is not what its format asks for.
+    /// Content of an input file violates its format.
     #[error(transparent)]
     Input(Box<InputError>),
     /// An input file cannot be read at all.
@@ -17,7 +17,7 @@ pub enum Error {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Message of the operating system.
         reason: std::io::Error,
     },
     /// An output file cannot be written; nothing was left behind.
@@ -25,7 +25,7 @@ pub enum Error {
     Unwritable {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Message of the operating system.
         reason: std::io::Error,
     },
     /// A value in memory cannot be written because no reader would accept it.
@@ -33,9 +33,9 @@ pub enum Error {
     InvalidValue {
         /// The file that was to be written.
         path: PathBuf,
-        /// What the value is.
+        /// The value, in words.
         found: String,
-        /// What it would have to be.
+        /// Expected values, in words.
         expected: String,
     },
     /// The name of a model file gives no name of a Rust module.
@@ -91,7 +91,7 @@ impl Diagnostic for Error {
     }
 }
 
-/// What kind of thing is wrong in an input file.
+/// Kind of a fault in an input file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InputErrorKind {
@@ -152,17 +152,17 @@ impl InputErrorKind {
 /// and the advice.
 #[derive(Debug, Clone)]
 pub struct InputError {
-    /// What kind of thing is wrong.
+    /// Kind of the fault.
     pub kind: InputErrorKind,
     /// Line of the place, from 1.
     pub line: usize,
     /// Column of the place in characters, from 1.
     pub column: usize,
-    /// What stands there.
+    /// Content found at the place, in words.
     pub found: String,
-    /// What should stand there.
+    /// Expected content, in words.
     pub expected: String,
-    /// What to do about it; empty if `expected` says it all.
+    /// Advice to the user; empty if `expected` suffices.
     pub advice: String,
     pub(crate) source: NamedSource<String>,
     pub(crate) span: SourceSpan,

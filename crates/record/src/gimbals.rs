@@ -1,4 +1,4 @@
-//! How far the gimbals of a bench go.
+//! Limits of the platform angles, set by the gimbals of a bench.
 
 use std::fmt::Write as _;
 
@@ -6,32 +6,33 @@ use crate::bound::Bound;
 use crate::error::{Error, InputErrorKind};
 use crate::table::Table;
 
-/// Limits of the platform angles: those about x, then y, then z, as `initial_angles_deg` has them.
+/// Limits of the platform angles about x, then y, then z, in the convention of
+/// `initial_angles_deg`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GimbalLimits {
-    /// Lower and upper end for each angle, deg; `None` where a gimbal turns all round.
+    /// Lower and upper limit of each angle, deg; `None` for a gimbal without stops.
     pub deg: [Option<[f64; 2]>; 3],
 }
 
 impl GimbalLimits {
-    /// The table of a bench file that gives them.
+    /// Name of the table in a bench file.
     pub const TABLE: &'static str = "gimbal_limits_deg";
 
-    /// Its keys.
+    /// Keys of the table.
     pub const KEYS: [&'static str; 3] = ["x", "y", "z"];
 
-    /// What one limit has to be.
+    /// Condition on the two limits of an angle, for messages.
     pub const EXPECTED: &'static str =
         "two angles from -360 to 360 deg, the lower end first, less than 360 deg apart";
 
-    /// Whether a gimbal with these ends makes sense.
+    /// Whether two limits of an angle are valid.
     #[must_use]
     pub fn is_sound([from, to]: [f64; 2]) -> bool {
         let angle = Bound::ANGLE_DEG;
         angle.holds(from) && angle.holds(to) && from <= to && to - from < 360.0
     }
 
-    /// Whether angles lie within the limits; whole turns do not matter.
+    /// Whether angles lie within the limits, whole turns added as needed.
     #[must_use]
     pub fn hold(&self, angles_deg: [f64; 3]) -> bool {
         // Angles at an end must not be lost to rounding.
@@ -48,7 +49,7 @@ impl GimbalLimits {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Input`] for a fault in it.
     pub fn from_root(root: &Table<'_>) -> Result<Self, Error> {
         let mut limits = Self::default();
         if let Some(table) = root.optional_table(Self::TABLE, &Self::KEYS)? {
@@ -63,7 +64,7 @@ impl GimbalLimits {
         Ok(limits)
     }
 
-    /// The table, or nothing if all gimbals turn all round.
+    /// The table as text; empty if no angle is limited.
     #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::new();

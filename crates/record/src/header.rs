@@ -1,4 +1,4 @@
-//! The header row of a record: which column is where.
+//! The header row of a record: the field of each column.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub(crate) const COLUMNS: [&str; 5] = [
     "temperature_c",
 ];
 
-/// Where each column stands.
+/// Index of the field of each column.
 #[derive(Debug)]
 pub(crate) struct Header {
     /// Number of fields of a row.

@@ -1,4 +1,4 @@
-//! Where a result comes from.
+//! Origin of a result.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 use crate::error::Error;
 
-/// Which program made a result, from which inputs, and how.
+/// Program, inputs and command line of a result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Manifest {

@@ -91,7 +91,7 @@ impl ModelFile {
     ///
     /// # Errors
     ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it, effects among them
+    /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it, also for effects
     /// that are not `known` or are no terms.
     pub fn read(path: &Path, known: &[KnownEffect<'_>]) -> Result<Self, Error> {
         Self::from_document(&Document::read(path)?, known)
@@ -101,7 +101,7 @@ impl ModelFile {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Input`] for a fault in it.
     pub fn parse(text: &str, name: &str, known: &[KnownEffect<'_>]) -> Result<Self, Error> {
         Self::from_document(&Document::new(text, name)?, known)
     }

@@ -7,40 +7,40 @@ use crate::manifest::Manifest;
 /// Version of the JSON results; it rises when a field changes its meaning or goes away.
 pub const SCHEMA_VERSION: u32 = 1;
 
-/// What `gyrocal calibrate` found.
+/// Result of `gyrocal calibrate`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CalibrationReport {
     /// [`SCHEMA_VERSION`] at the time of writing.
     pub schema_version: u32,
-    /// Where the result comes from.
+    /// Origin of the result.
     pub manifest: Manifest,
     /// The drift coefficients, in the order of `covariance`.
     pub coefficients: Vec<Coefficient>,
     /// Covariance of the coefficients, row by row, in products of their units.
     pub covariance: Vec<Vec<f64>>,
-    /// Mean over the rows of the normalised innovation squared (the number of components of a
-    /// row is expected, 3 without `nan`).
+    /// Mean normalised innovation squared (NIS) of the rows; its expectation is the number of
+    /// measured components of a row, 3 without `nan`.
     pub nis_mean: f64,
     /// The interval that holds `nis_mean` of a record that fits the model, lower end first.
     pub nis_band: [f64; 2],
-    /// What `nis_mean` says of the fit.
+    /// Verdict on the fit by `nis_mean`.
     pub verdict: FitVerdict,
     /// The verdict in a sentence.
     pub verdict_text: String,
-    /// Steps of the batch estimator; 1 of one pass of the filter.
+    /// Iterations of the batch estimator; 1 for one pass of the filter.
     pub iterations: usize,
     /// Rows that were used, of all records.
     pub rows: usize,
     /// Platform against local east, north, up at the last row of the last record: angles about
     /// x, y, z \[deg\].
     pub final_angles_deg: [f64; 3],
-    /// How the coefficients were estimated.
+    /// Method of estimation.
     pub method: CalibrationMethod,
-    /// Combinations of coefficients that the records do not determine; of the batch estimator.
+    /// Combinations of coefficients that the records do not determine; batch estimator only.
     pub undetermined: Vec<UndeterminedReport>,
-    /// What belongs to each record; of the batch estimator.
+    /// Results for each record; batch estimator only.
     pub runs: Vec<RunReport>,
-    /// What errors of the first record's site do; of the batch estimator.
+    /// Sensitivities to errors of the first record's site; batch estimator only.
     pub site: Vec<SiteReport>,
     /// Sigmas of the coefficients from the first record alone, if there are several.
     pub first_record_sigmas: Option<Vec<f64>>,
@@ -61,7 +61,7 @@ pub struct Coefficient {
     pub determined: bool,
 }
 
-/// What the innovations say of the fit.
+/// Size of the innovations against the declared noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -74,7 +74,7 @@ pub enum FitVerdict {
     TooSmall,
 }
 
-/// How coefficients were estimated.
+/// Method of estimation of the coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -98,7 +98,7 @@ pub struct UndeterminedReport {
     pub share_of_prior: f64,
 }
 
-/// What belongs to one record.
+/// Results for one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunReport {
     /// The record, as its path was given.
@@ -107,16 +107,16 @@ pub struct RunReport {
     pub bench: String,
     /// Rows, after averaging if there was any.
     pub rows: usize,
-    /// How its rows were averaged.
+    /// Averaging of its rows, if they were averaged.
     pub averaged: Option<AveragedReport>,
     /// Platform against local east, north, up at the first row: angles about x, y, z \[deg\].
     pub initial_angles_deg: [f64; 3],
     /// The same at the last row.
     pub final_angles_deg: [f64; 3],
-    /// What this turn-on adds to the constant drifts of gyros x, y, z \[deg/h\], if turn-ons may
-    /// differ.
+    /// Constant drifts of gyros x, y, z in this turn-on less their means over turn-ons \[deg/h\],
+    /// if turn-ons may differ.
     pub turn_on: Option<[TurnOn; 3]>,
-    /// How the azimuth was found, if the bench description does not give it.
+    /// Search for the azimuth, if the bench description does not give it.
     pub azimuth: Option<AzimuthReport>,
     /// Noise by maximum likelihood over the declared one.
     pub noise: Option<NoiseReport>,
@@ -124,20 +124,20 @@ pub struct RunReport {
     pub bounded_values: usize,
 }
 
-/// How the rows of a record were averaged.
+/// Averaging of the rows of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AveragedReport {
-    /// Length of the intervals.
+    /// Length of the averaging intervals.
     pub interval_s: f64,
-    /// Rows before.
+    /// Number of rows before averaging.
     pub rows_read: usize,
-    /// Means of too few values that were left out.
+    /// Number of components of means left out because they had too few values.
     pub left_out: usize,
-    /// Noise of a mean over that of one value.
+    /// Standard deviation of the noise of a mean over that of one value.
     pub noise_ratio: f64,
 }
 
-/// What a turn-on adds to the constant drift of a gyro.
+/// Constant drift of a gyro in one turn-on less its mean over turn-ons.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TurnOn {
     /// The estimate \[deg/h\].
@@ -146,10 +146,10 @@ pub struct TurnOn {
     pub sigma: f64,
 }
 
-/// How an unknown azimuth was found.
+/// Search for an unknown azimuth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AzimuthReport {
-    /// Azimuths that were tried.
+    /// Number of azimuths tried.
     pub starts: usize,
     /// Whether another azimuth is nearly as likely.
     pub ambiguous: bool,
@@ -157,12 +157,12 @@ pub struct AzimuthReport {
     pub other: Option<OtherAzimuth>,
 }
 
-/// An azimuth that was not taken.
+/// The best azimuth of those not chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OtherAzimuth {
-    /// Relative to the one that was taken.
+    /// Angle from the chosen azimuth to this one.
     pub relative_deg: f64,
-    /// How much less likely it is, as a difference of log-likelihoods.
+    /// Log-likelihood of the chosen azimuth less that of this one.
     pub log_likelihood_deficit: f64,
 }
 
@@ -186,29 +186,30 @@ pub struct NoiseRatioReport {
     pub interval: [f64; 2],
 }
 
-/// What an error of something known of the site does.
+/// Sensitivity of the coefficients to an error of a site quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SiteReport {
     /// `latitude`, `earth_rate` or `gravity`.
     pub quantity: String,
-    /// `deg`, or `1` of what is relative.
+    /// `deg`, or `1` for a relative quantity.
     pub unit: String,
     /// The standard deviation that the bench description declares; the sigmas include it.
     pub declared_sigma: Option<f64>,
-    /// The standard deviation that the records alone give it; `None` if they say nothing.
+    /// Standard deviation if it were estimated from the records alone; `None` if it is
+    /// unobservable.
     pub from_record_sigma: Option<f64>,
     /// Bias of each coefficient when the true quantity exceeds the assumed one by a unit.
     pub bias_per_unit: Vec<f64>,
 }
 
-/// What `gyrocal simulate` put into a record.
+/// Result of `gyrocal simulate`: the truth of a record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimulationReport {
     /// [`SCHEMA_VERSION`] at the time of writing.
     pub schema_version: u32,
-    /// Where the result comes from.
+    /// Origin of the result.
     pub manifest: Manifest,
-    /// The coefficients that the platform had.
+    /// Coefficients of the simulated platform.
     pub coefficients: Vec<TrueCoefficient>,
     /// Rows that were written.
     pub rows: usize,

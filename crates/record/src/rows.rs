@@ -9,26 +9,28 @@ use crate::header::Header;
 use crate::record::Record;
 use crate::source::{SourceText, quoted};
 
-/// The median norm of a record in units of gravity.
+/// Limits of the median norm of specific force in a record, g.
 const MEDIAN_NORM: std::ops::RangeInclusive<f64> = 0.9..=1.1;
-/// The norm of one row: outliers are the diagnosis' business, nonsense is not.
+/// Limits of the norm in one row, g; wide, as outliers are left to the diagnosis.
 const ROW_NORM: std::ops::RangeInclusive<f64> = 0.5..=1.5;
 
-/// A hundred years: longer records are mistakes in the unit of time, and take ages to integrate.
+/// Longest record, s: a hundred years. Longer ones are mistakes in the unit of time, and take long
+/// to integrate.
 const LONGEST_S: f64 = 3.16e9;
 
-/// Gravity sweeps round a platform once a day: rows that are a quarter of it apart do not follow.
+/// Longest median interval, s: a quarter of the day in which gravity rotates once in the platform.
 const LONGEST_INTERVAL_S: f64 = 21_600.0;
 
-/// Nothing is known of a platform over a month without a reading, and it takes long to foretell.
+/// Longest gap, s: little is known of the attitude after a month without a reading, and its
+/// prediction takes long.
 const LONGEST_GAP_S: f64 = 30.0 * 86_400.0;
 
-/// So many equal rows are no noise that was rounded away.
+/// Number of rows from which on readings that do not change are a fault, and not rounded noise.
 const STUCK_ROWS: usize = 100;
 
-/// A larger share of the readings of each axis is one value only if the readings are not those of
-/// a platform: gravity sweeps through the steps of the coarsest converter. How often successive
-/// readings are equal says less, since it grows with the rate of samples.
+/// Share of equal readings of each axis from which on they are not those of a platform, as gravity
+/// passes through the steps of the coarsest converter. The share of equal successive readings is no
+/// criterion, since it grows with the sampling rate.
 const STUCK_SHARE: f64 = 0.9;
 
 impl Record {
@@ -36,7 +38,7 @@ impl Record {
     ///
     /// # Errors
     ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it.
     pub fn read(path: &Path) -> Result<Self, Error> {
         Ok(read_with_places(&SourceText::read(path)?, 1)?.0)
     }
@@ -46,7 +48,7 @@ impl Record {
     ///
     /// # Errors
     ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it.
     pub fn read_at_least(path: &Path, rows: usize) -> Result<Self, Error> {
         let source = SourceText::read(path)?;
         let (record, places) = read_with_places(&source, rows)?;
@@ -59,7 +61,7 @@ impl Record {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Input`] for a fault in it.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
         Ok(read_with_places(&SourceText::new(text, name)?, 1)?.0)
     }
@@ -87,7 +89,7 @@ fn read_with_places(
     Ok((record, places))
 }
 
-/// A row in which all accelerometers say `nan` counts for nothing.
+/// Refuses a record with too few rows; those in which all accelerometers are `nan` do not count.
 fn refuse_too_few(
     record: &Record,
     source: &SourceText,
@@ -304,7 +306,7 @@ fn significant(value: f64) -> String {
     }
 }
 
-/// What unit a record is in whose norm at rest is this.
+/// Probable unit of a record with this norm at rest, with advice.
 fn suspicion(norm: f64) -> &'static str {
     let near = |expected: f64| (0.9..=1.1).contains(&(norm / expected));
     if near(9.806_65) {

@@ -14,8 +14,8 @@ pub fn nearest_names<'a>(typed: &str, known: &[&'a str], count: usize) -> Vec<&'
         .collect()
 }
 
-/// Those of the nearest names that are similar enough for a slip of the keyboard: at most a third
-/// of the letters are edited.
+/// Names among the nearest ones that are similar enough for a typing error: at most a third of the
+/// letters are edited.
 #[must_use]
 pub fn similar_names<'a>(typed: &str, known: &[&'a str], count: usize) -> Vec<&'a str> {
     let typed_letters = typed.chars().count();

@@ -1,4 +1,4 @@
-//! What is written is read again as it was; what is odd but allowed is read too.
+//! Round trips: files are read as they were written, unusual but valid ones too.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
