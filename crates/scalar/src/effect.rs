@@ -1,11 +1,10 @@
 //! Types that describe the effects of a catalogue and the channels that they enter.
 //!
-//! A derivation declares every effect once; the emitter writes the declarations as static tables
-//! of these types. All that a search, a forecast or an extension has to know of an effect
-//! is here, so that no code asks how its name is spelled.
+//! A derivation declares every effect once; the emitter writes the declarations as static tables of
+//! these types. They hold all that a search, a forecast or an extended model needs to know of an
+//! effect, so that no code depends on the spelling of an id.
 
-/// One effect: a named term or property that a model may have beside its nominal form, where all
-/// its parameters are zero.
+/// One effect: a named term or property of a model, absent where all its parameters are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effect {
     /// Public id, such as `gyro_x.g_y`.
@@ -19,9 +18,9 @@ pub struct Effect {
     pub reference: &'static str,
     /// The term in the symbols of the model; empty without a term.
     pub formula: &'static str,
-    /// How it acts over time.
+    /// Its dependence on time.
     pub kind: EffectKind,
-    /// Where it enters the model.
+    /// The part of the model that it enters.
     pub enters: Enters,
     /// Its parameters, sizes first.
     pub parameters: &'static [EffectParameter],
@@ -35,19 +34,20 @@ pub struct Effect {
     pub needs: &'static [Need],
     /// Exact equivalents: ids of effects that no record can distinguish from it.
     pub equivalents: &'static [&'static str],
-    /// Why they are equivalent, and what would separate them; empty without equivalents.
+    /// Reason of the equivalence, and an experiment that would distinguish the effects; empty
+    /// without equivalents.
     pub equivalence: Equivalence,
     /// Near twins: ids of effects that a short record can hardly distinguish from it.
     pub near_twins: &'static [&'static str],
     /// Nested effects: ids of simpler effects that it tends to at an end of its shape.
     pub nested: &'static [&'static str],
-    /// How it continues in a later record of the same plant.
+    /// Its course in a later record of the same plant.
     pub continuation: Continuation,
-    /// Experiments that change it otherwise than its rivals.
+    /// Experiments that distinguish it from its alternatives.
     pub separated_by: &'static [Experiment],
 }
 
-/// How an effect acts over time.
+/// Dependence of an effect on time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EffectKind {
     /// No explicit function of time.
@@ -89,7 +89,7 @@ pub enum NoiseProperty {
     Correlation,
 }
 
-/// Where an effect enters a model. Numbers are indices into the tables of channels.
+/// Part of a model that an effect enters. Numbers are indices into the tables of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Enters {
     /// Rates: rate channels of the model.
@@ -146,16 +146,16 @@ pub enum Need {
     Key(&'static str),
 }
 
-/// Why effects are equivalent, in sentences.
+/// Explanation of an equivalence of effects, in sentences.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Equivalence {
     /// The reason.
     pub reason: &'static str,
-    /// What would separate them.
+    /// An experiment that would distinguish the effects.
     pub experiment: &'static str,
 }
 
-/// How an effect continues in a later record of the same plant.
+/// Course of an effect in a later record of the same plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Continuation {
     /// It begins anew with every record, as a warm-up does.

@@ -4,7 +4,7 @@
 //! published with FreeBSD's msun (`e_exp.c`), error below 2^-59. What overflows, underflows or is
 //! no number goes to `libm`.
 
-/// Up to here neither 2^k nor the result leaves the normal numbers.
+/// Largest argument for which neither 2^k nor the result leaves the normal numbers.
 const LARGEST: f64 = 708.0;
 /// ln 2, its leading 32 bits: products with integers of eleven bits are exact.
 const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;

@@ -1,5 +1,6 @@
-//! `f32` and `f64` as [`Scalar`]: `libm` for everything but sine, cosine and exponential, so that bits
-//! are the same on every machine, with and without the standard library.
+//! `f32` and `f64` as [`Scalar`]. Sine, cosine and exponential are those of this crate, other
+//! elementary functions those of `libm`, so that bits are the same on every machine, with and
+//! without the standard library.
 
 use crate::{Real, Scalar, exp_f32, exp_f64, sin_cos_f32, sin_cos_f64};
 

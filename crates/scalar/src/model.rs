@@ -37,7 +37,7 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
     /// Number of constant parameters.
     fn parameters(&self) -> usize;
 
-    /// How many of the parameters, counted from the first, enter the output.
+    /// Number of leading parameters up to the last one that enters the output.
     fn output_parameters(&self) -> usize;
 
     /// For each noise input the parameter that enters the rates in exactly the same way, if
@@ -146,8 +146,8 @@ pub trait Model<T: Scalar, const M: usize, const Y: usize> {
     }
 }
 
-/// Inputs of a generated model by the names of their groups, for code that sets those that it
-/// knows, whatever a model takes beside them.
+/// Inputs of a generated model by the names of their groups, for code that sets the groups that it
+/// knows and no others.
 pub trait NamedInputs<T>: Copy {
     /// Inputs that are all of one value.
     #[must_use]
@@ -175,7 +175,7 @@ pub trait Recentre<T: Scalar, const M: usize, const Y: usize>: Model<T, M, Y> {
         None
     }
 
-    /// Whether element (`i`, `j`) of what [`Self::recentre`] returns can be other than that of a
+    /// Whether element (`i`, `j`) of the result of [`Self::recentre`] can differ from that of a
     /// unit matrix.
     #[inline(always)]
     fn maps(&self, i: usize, j: usize) -> bool {
