@@ -44,8 +44,8 @@ pub struct Header {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Path of the crate or module that has `Scalar`, `Model`, `NamedInputs`, `RatesJacobian`
-    /// and `Element`: `gyrocal_scalar` unless told otherwise.
+    /// Path of the crate or module that has `Scalar`, `Model`, `NamedInputs`, `RatesJacobian` and
+    /// `Element`; `gyrocal_scalar` by default.
     pub scalar_crate: String,
 }
 
@@ -71,8 +71,7 @@ pub fn emit_module(program: &Program, header: &Header) -> Result<String, Error> 
 /// Like [`emit_module`], with choices.
 ///
 /// # Errors
-/// Those of [`emit_module`], and if a field of `header` has several lines or `options`
-/// name no path.
+/// As [`emit_module`]; also if a field of `header` has several lines or `options` name no path.
 pub fn emit_module_with(
     program: &Program,
     header: &Header,
@@ -179,7 +178,7 @@ fn imports(program: &Program, options: &Options) -> Result<TokenStream, Error> {
     Ok(quote!(use #colon #tokens::{#names}; #(#modules)*))
 }
 
-/// Constant operands whose result is not finite were left unfolded; say where.
+/// Refuses constant operands whose result is not finite, which were left unfolded.
 fn check_finite(
     program: &Program,
     function: &Function,

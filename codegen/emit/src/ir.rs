@@ -32,9 +32,9 @@ pub enum Node {
     Constant(Constant),
     /// An element of an input of the function.
     Input {
-        /// Which input.
+        /// Index of the input.
         input: usize,
-        /// Which element.
+        /// Index of the element.
         element: usize,
     },
     /// A function of one node.
@@ -250,7 +250,7 @@ impl Expressions {
         live
     }
 
-    /// How often each node is an operand or an output; dead nodes count as users.
+    /// Number of uses of each node as operand or output; dead nodes count as users.
     #[must_use]
     pub fn uses(&self) -> Vec<usize> {
         let mut uses = vec![0; self.graph.len()];

@@ -1,4 +1,4 @@
-//! A checked program: what a derivation says, in types.
+//! A checked program: the content of a derivation, in types.
 //!
 //! Everything that [`Program::from_json`] returns is consistent: names are fit for Rust,
 //! instructions read only what was written, every output element is written once, and the
@@ -80,7 +80,7 @@ pub struct Function {
     pub doc: String,
     /// Source of the formula.
     pub source: String,
-    /// For which inputs it holds.
+    /// Inputs for which it holds.
     pub domain: String,
     /// The groups it takes: indices into [`Program::groups`].
     pub inputs: Vec<usize>,
@@ -121,16 +121,16 @@ pub enum Instruction {
     Input {
         /// Place to write.
         to: usize,
-        /// Which input of the function.
+        /// Index of the input of the function.
         input: usize,
-        /// Which element of it.
+        /// Index of the element of the input.
         element: usize,
     },
     /// Writes a structural nonzero of an output.
     Output {
-        /// Which output of the function.
+        /// Index of the output of the function.
         output: usize,
-        /// Which of its nonzeros.
+        /// Index of the nonzero of the output.
         nonzero: usize,
         /// Place to read.
         from: usize,
@@ -144,7 +144,7 @@ pub enum Instruction {
     },
     /// A function of one scalar.
     Unary {
-        /// Which.
+        /// The function.
         operation: UnaryOperation,
         /// Place to write.
         to: usize,
@@ -153,7 +153,7 @@ pub enum Instruction {
     },
     /// A function of two scalars.
     Binary {
-        /// Which.
+        /// The function.
         operation: BinaryOperation,
         /// Place to write.
         to: usize,
@@ -164,7 +164,7 @@ pub enum Instruction {
     },
 }
 
-/// A continuous model: which groups and functions play which part.
+/// A continuous model: the parts that groups and functions play in it.
 ///
 /// Groups and functions are indices into those of the program.
 #[derive(Clone, Debug, PartialEq)]

@@ -143,7 +143,8 @@ impl Case {
         .concat()
     }
 
-    /// The value of a function, or its Jacobian by a group, row-major in so many columns.
+    /// The value of a function, or its Jacobian by a group, row-major in the given number of
+    /// columns.
     fn dense(
         &self,
         function: usize,

@@ -1,4 +1,4 @@
-//! What is emitted for a small program, to the byte.
+//! The emitted module of a small program, byte by byte.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod common;

@@ -10,17 +10,17 @@ use super::fingerprint::{normalised, sha256};
 /// Last line of a committed Rust file, before the hash of the lines above.
 const SEAL: &str = "// sha256 of the lines above: ";
 
-/// A committed file that cannot be used, and why.
+/// A committed file that cannot be used, with the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Stale {
     /// The file.
     pub path: PathBuf,
-    /// Why it cannot be used.
+    /// Reason.
     pub reason: Reason,
 }
 
-/// Why a committed file cannot be used.
+/// Reason why a committed file cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reason {
@@ -55,7 +55,7 @@ impl fmt::Display for Stale {
     }
 }
 
-/// The text with a last line that tells whether it was edited since.
+/// The text with a last line by which later edits are detected.
 pub(super) fn sealed(text: &str) -> String {
     let newline = if text.ends_with('\n') { "" } else { "\n" };
     let text = format!("{text}{newline}");
@@ -79,7 +79,7 @@ pub(super) fn inspect(path: &Path, fingerprint: &str) -> Result<Option<Reason>, 
     Ok((!intact).then_some(Reason::Edited))
 }
 
-/// How the file at `path` differs from `expected`: nothing if it does not.
+/// First difference of the file at `path` from `expected`, if there is one.
 pub(super) fn compare(path: &Path, expected: &str) -> Result<Option<Reason>, Error> {
     let Some(text) = read(path)? else {
         return Ok(Some(Reason::Missing));

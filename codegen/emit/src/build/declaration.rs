@@ -14,7 +14,7 @@ pub const DECLARATION_FILE: &str = "derivation.toml";
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Declaration {
-    /// How headers and messages call the directory.
+    /// Name of the directory in headers and messages.
     pub(super) source: String,
     /// The command that rewrites the committed files.
     pub(super) write_command: String,

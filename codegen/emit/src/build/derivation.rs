@@ -28,7 +28,7 @@ pub struct Derivation {
 pub struct Written {
     /// The files that were written; the others were as they should be.
     pub paths: Vec<PathBuf>,
-    /// How long deriving took.
+    /// Durations of the stages.
     pub timings: Timings,
 }
 

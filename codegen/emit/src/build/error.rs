@@ -18,7 +18,7 @@ pub enum Error {
         reason: String,
     },
 
-    /// A build script asked for the derivation of a dependency that cargo does not tell of.
+    /// Cargo does not pass the derivation of a dependency to a build script that asks for it.
     #[error(
         "`{variable}` is not set: found no dependency that tells where its derivation is\n\
          To fix it, add the package with `links = \"{links}\"` to [dependencies] of this package \

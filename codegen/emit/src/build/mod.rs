@@ -1,5 +1,5 @@
-//! When code is generated: freshness of committed files, the private Python environment,
-//! and the running of a derivation.
+//! Freshness of committed files, the private Python environment, and the running of a
+//! derivation.
 //!
 //! A *derivation* is a directory with a Python script `main.py`, whose function
 //! `derive(output)` writes programs, and a declaration `derivation.toml`:
@@ -99,7 +99,7 @@
 //! | variable | meaning |
 //! |---|---|
 //! | `GYROCAL_PYTHON` | interpreter to use; otherwise the newest of `PATH`. One that has the pinned CasADi is used as it is, without an environment |
-//! | `GYROCAL_OFFLINE`, `CARGO_NET_OFFLINE` | `1` or `true`: never use the network. (Cargo does not tell build scripts of `--offline`) |
+//! | `GYROCAL_OFFLINE`, `CARGO_NET_OFFLINE` | `1` or `true`: never use the network. (Cargo does not pass `--offline` on to build scripts) |
 //! | `GYROCAL_CODEGEN_WRITE` | `1` or `true`: a build writes stale committed copies of variants anew |
 //! | `GYROCAL_CODEGEN_ENV_DIR` | directory of the environments, for example one that continuous integration caches |
 //!

@@ -12,8 +12,8 @@ use super::settings::{VARIABLES, WRITE_VARIABLE};
 pub struct Outcome {
     /// The committed files that could not be used; empty when all are fresh.
     pub stale: Vec<Stale>,
-    /// How long deriving took; nothing when it was not necessary, or when the same
-    /// inputs had been derived into the directory before.
+    /// Durations of the stages; `None` if nothing was derived, as the committed files are fresh or
+    /// the same inputs had been derived into the directory before.
     pub timings: Option<Timings>,
     write_command: String,
     inputs: Vec<PathBuf>,

@@ -25,7 +25,7 @@ pub struct Derived {
     pub modules: Vec<DerivedModule>,
     /// Texts of the files of evaluated numbers, in the order of the declaration.
     pub numbers: Vec<String>,
-    /// How long it took.
+    /// Durations of the stages.
     pub timings: Timings,
 }
 
@@ -41,7 +41,7 @@ pub struct DerivedModule {
     pub rust: String,
 }
 
-/// How long the stages of a derivation took.
+/// Durations of the stages of a derivation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Timings {

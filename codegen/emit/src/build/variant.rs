@@ -28,7 +28,7 @@ pub struct Variant {
     committed: Option<PathBuf>,
 }
 
-/// The file of a variant, as the derivation script is told of it.
+/// The file of a variant, as it is passed to the derivation script.
 #[derive(Debug, Clone)]
 pub(super) struct Request {
     pub(super) file: PathBuf,
@@ -36,13 +36,13 @@ pub(super) struct Request {
 }
 
 impl Variant {
-    /// For a build script: what `file` asks of the derivation of a dependency, which has
-    /// `links = "NAME"` in its manifest and whose build script prints
+    /// For a build script: the variant that `file` defines, of the derivation of a dependency. That
+    /// has `links = "NAME"` in its manifest, and its build script prints
     /// `cargo::metadata=derive=DIRECTORY`.
     ///
     /// # Errors
     ///
-    /// [`Error::NoDependency`] if cargo tells of no such dependency; as [`Self::open`].
+    /// [`Error::NoDependency`] if cargo passes on no such dependency; as [`Self::open`].
     pub fn of_dependency(links: &str, file: impl AsRef<Path>) -> Result<Self, Error> {
         let variable = format!("DEP_{}_DERIVE", links.to_uppercase().replace('-', "_"));
         let directory = std::env::var_os(&variable).ok_or_else(|| Error::NoDependency {

@@ -1,4 +1,4 @@
-//! How many operations emitted code does.
+//! Number of operations of emitted code.
 
 use crate::ir::{Binary, Expressions, Node, Unary};
 
@@ -14,7 +14,7 @@ pub(super) struct Count {
 }
 
 impl Count {
-    /// Of expressions without dead code, each node of which is computed once.
+    /// Counts expressions without dead code, each node of which is computed once.
     pub(super) fn of(expressions: &Expressions) -> Self {
         let mut count = Self::default();
         let graph = &expressions.graph;
@@ -37,7 +37,7 @@ impl Count {
         count
     }
 
-    /// All of them.
+    /// The sum of all kinds.
     pub(super) fn total(self) -> usize {
         self.additions
             + self.multiplications

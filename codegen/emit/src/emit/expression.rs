@@ -6,7 +6,7 @@ use quote::{ToTokens, quote};
 use super::items::ident;
 use crate::ir::{Binary, Expressions, Node, NodeId, Unary};
 
-/// How tightly an expression holds together.
+/// Precedence of an expression, from the loosest.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Sum,
@@ -54,7 +54,7 @@ impl<'a> Printer<'a> {
         self.at(id, Level::Atom)
     }
 
-    /// In parentheses if it does not hold together as tightly as needed.
+    /// The expression of a node, in parentheses if its precedence is below the needed one.
     fn at(&self, id: NodeId, needed: Level) -> TokenStream {
         parenthesised(self.printed(id), needed)
     }

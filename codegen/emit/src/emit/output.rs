@@ -1,4 +1,4 @@
-//! The outputs of a function: their types, their struct, where nonzeros stand.
+//! The outputs of a function: their types, their struct, the positions of nonzeros.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -8,7 +8,7 @@ use super::items::{Items, Namespace, ident, integer};
 use crate::Error;
 use crate::program::{Function, Output, pascal_case, screaming_case};
 
-/// How an output is kept.
+/// Memory layout of an output.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Layout {
     /// `[T; rows]`.

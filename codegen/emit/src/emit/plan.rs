@@ -1,4 +1,4 @@
-//! Which nodes of a function become variables, in which order and under which names.
+//! Choice of the nodes of a function that become variables, with their order and names.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -204,7 +204,7 @@ fn output_name(
         })
 }
 
-/// A name that says what simple nodes are.
+/// A name that describes the value of a simple node.
 fn value_name(printer: &Printer<'_>, locals: &mut Locals, node: Node) -> Option<String> {
     match node {
         Node::Constant(constant) => Some(locals.unique(match constant.value() {

@@ -1,4 +1,4 @@
-//! The model section: that its parts exist and fit together.
+//! The model section: existence of its parts, and their consistency.
 
 use super::context::Context;
 use super::names::is_pascal_case;
@@ -157,7 +157,8 @@ impl Checker<'_> {
         Ok(function)
     }
 
-    /// That the form at the origin gives what the full one does, of no moving states.
+    /// Checks that the form at the origin has the outputs of the full form and takes no moving
+    /// states.
     fn at_origin(&self, place: &str, function: ModelFunction) -> Result<(), Error> {
         let Some(index) = function.jacobian_at_origin else {
             return Ok(());
@@ -212,7 +213,8 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// `of` says of what the function may be; whether it may be of `moving` is not checked.
+    /// Checks that a function takes groups of the model only; `of` names them in the message. The
+    /// group `moving` is not checked.
     fn groups_fit(&self, place: &str, function: &Function, of: &str) -> Result<(), Error> {
         for index in &function.inputs {
             if *index != self.moving

@@ -1,5 +1,6 @@
-//! Operations by the names that stand in the file, and lists of instructions: that they are
-//! known, stay within bounds, read what was written, and write every nonzero once.
+//! Operations by their names in the file, and lists of instructions: checks that operations are
+//! known, places are within bounds and written before they are read, and every nonzero is written
+//! once.
 
 use std::collections::BTreeSet;
 

@@ -180,7 +180,7 @@ impl Rules {
         self.graph.constant_value(x) == Some(value)
     }
 
-    /// Whether the node is a negative, and of what.
+    /// Whether the node is a negative, and its value without the sign.
     fn sign(&mut self, x: NodeId) -> (bool, NodeId) {
         match self.graph.node(x) {
             Node::Unary(Unary::Negate, inner) => (true, inner),

@@ -1,4 +1,4 @@
-//! What the tests of the emitter share.
+//! Shared parts of the tests of the emitter.
 #![allow(dead_code, reason = "each test program uses a part")]
 
 use std::path::PathBuf;

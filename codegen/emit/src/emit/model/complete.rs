@@ -1,4 +1,4 @@
-//! That no derivative is missing: one that is not there counts as structurally zero.
+//! Completeness of the derivatives: a missing one would count as structurally zero.
 
 use super::Parts;
 use crate::Error;

@@ -172,8 +172,9 @@ impl<'a> Methods<'a> {
         }
     }
 
-    /// Which derivatives the forms at the origin have: of the rates by parameters and by moving
-    /// states, and of the output by moving states. Nothing where there are none.
+    /// Structural nonzeros of the derivatives at the origin: of the rates by parameters and by
+    /// moving states, and of the output by moving states. Empty for a function without a form at
+    /// the origin.
     fn nonzeros_at_origin(&self) -> TokenStream {
         let (of_rates, of_output) = (self.parts.model.rates, self.parts.model.output);
         let moving = Some(self.parts.moving().name.as_str());

@@ -1,4 +1,4 @@
-//! What the printing program of `emit_compiled.rs` calls.
+//! Functions called by the printing program of `emit_compiled.rs`.
 
 use gyrocal_scalar::{Model, RatesJacobian};
 
@@ -7,7 +7,7 @@ pub(crate) fn print(values: &[f64]) {
     println!("{}", values.join(" "));
 }
 
-/// What a model gives for rates, then for outputs, each with its Jacobians one after another.
+/// Rates of a model with their Jacobians, then outputs with theirs, one after another.
 pub(crate) type Results = Vec<Vec<f64>>;
 
 /// The buffers of a caller.
@@ -30,7 +30,7 @@ impl<const M: usize, const Y: usize> Buffers<M, Y> {
         }
     }
 
-    /// Calls the full form, or with no moving states that at the origin.
+    /// Calls the full form, or the form at the origin if there are no moving states.
     pub(crate) fn call<A: Model<f64, M, Y>>(
         &mut self,
         model: &A,
@@ -67,7 +67,7 @@ impl<const M: usize, const Y: usize> Buffers<M, Y> {
     }
 }
 
-/// Prints what a model gives with buffers of the right length, zeroed before.
+/// Prints the results of a model for buffers of the right length, zeroed before.
 pub(crate) fn model<A: Model<f64, M, Y>, const M: usize, const Y: usize>(
     model: &A,
     moving: &[f64; M],
