@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::columns::read_columns;
 use crate::error::{InstrumentError, Unfit};
 
-/// How the columns of a log are analysed.
+/// Settings of the analysis of columns of a log.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AllanSettings {
     /// Samples per second \[Hz\].
@@ -65,7 +65,7 @@ impl From<&AllanPoint> for AllanColumnPoint {
 /// Overlapping Allan deviations of columns of a log at octaves of the sampling interval.
 ///
 /// # Errors
-/// Those of [`read_columns`]; [`InstrumentError`] for a column that never changes, and for values that
+/// As [`read_columns`]; [`InstrumentError`] for a column that never changes, and for values that
 /// `scale` makes infinite.
 pub fn allan_columns(
     source: &SourceText,

@@ -31,7 +31,7 @@ const UNKNOWNS: usize = 9;
 /// Smaller turns are not used: they hardly determine a scale.
 const SMALLEST_TURN_RAD: f64 = 0.2;
 
-/// Fewer turns, with two numbers each, leave nearly no degrees of freedom beside nine unknowns.
+/// Fewer turns, with two numbers each, leave nearly no degrees of freedom for nine unknowns.
 const FEWEST_TURNS: usize = 8;
 
 struct Turn {

@@ -3,7 +3,8 @@
 use gyrocal_record::{Manifest, SCHEMA_VERSION};
 use serde::Serialize;
 
-/// A result with its manifest. The fields of the result stand beside those of this type.
+/// A result with its manifest. The fields of the result are at the same level as those of this
+/// type.
 #[derive(Debug, Clone, Serialize)]
 pub struct ResultFile<T> {
     /// [`SCHEMA_VERSION`] at the time of writing.

@@ -11,10 +11,10 @@
 //! omega_d = -R δω
 //! ```
 //!
-//! A body at rest on the Earth has one constant δω: its gyros see one specific force. One
-//! attitude determines three numbers, whatever its length. The generated model
-//! [`gyrocal::Strapdown`] is the drift law in these axes; it takes R at each row, which
-//! [`axes_csv`] writes beside the record.
+//! A body at rest on the Earth has one constant δω: its gyros see one specific force. One attitude
+//! determines three numbers for a record of any length. The generated model [`gyrocal::Strapdown`]
+//! is the drift law in these axes; it takes R at each row, for which [`axes_csv`] gives the text of
+//! a file.
 
 mod axes_file;
 mod bench;

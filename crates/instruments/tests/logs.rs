@@ -1,4 +1,4 @@
-//! Logs and their descriptions: columns, units, axes, clocks, and what is wrong with them.
+//! Logs and their descriptions: columns, units, axes, clocks, and their faults.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 

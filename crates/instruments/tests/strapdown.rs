@@ -215,7 +215,7 @@ fn disturbed_rows_are_missing_and_told() {
     assert_eq!(missing, [60, 61, 62, 63, 64]);
 }
 
-/// What happens to gyros and accelerometers of a sample.
+/// Change of the outputs of gyros and accelerometers of a sample.
 type Change<'a> = &'a dyn Fn(usize, &mut [f64; 3], &mut [f64; 3]);
 
 fn kind(log: &Log) -> Unfit {

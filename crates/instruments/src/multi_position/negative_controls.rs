@@ -15,14 +15,15 @@ pub struct NegativeControls {
     pub shuffles: usize,
     /// Number of these with a finding.
     pub shuffles_with_findings: usize,
-    /// Findings after the axes of the instrument are renamed x to y, y to z, z to x: the original
-    /// findings under their new names, if the search does not depend on names.
+    /// Findings after the axes of the instrument are renamed x to y, y to z, z to x; they are the
+    /// original findings under their new names if the search does not depend on names.
     pub renamed: Vec<String>,
     /// `true` if `renamed` are the original findings under their new names.
     pub renamed_as_expected: bool,
-    /// Findings after only the axes of the accelerometers are renamed so.
+    /// Findings after only the axes of the accelerometers are renamed in this way.
     pub forces_renamed: Vec<String>,
-    /// Those of them that are neither an original finding nor an along-axis term under its new name.
+    /// Names in `forces_renamed` that are neither an original finding nor an along-axis term under
+    /// its new name.
     pub forces_renamed_unexpected: Vec<String>,
 }
 

@@ -50,9 +50,9 @@ const LARGEST_SCALE_ERROR: f64 = 0.1;
 ///
 /// # Errors
 ///
-/// Those of [`accel_from_norm`] and [`gyro_from_turns`] where scales are estimated;
-/// [`Unfit::Norm`], [`Unfit::GyroScale`] and [`Unfit::Axes`] where given scales and axes
-/// contradict the stops and the turns between them.
+/// As [`accel_from_norm`] and [`gyro_from_turns`] where scales are estimated; [`Unfit::Norm`],
+/// [`Unfit::GyroScale`] and [`Unfit::Axes`] where given scales and axes contradict the stops and
+/// the turns between them.
 pub fn prepare(
     log: &Log,
     description: &Description,

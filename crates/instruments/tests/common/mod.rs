@@ -43,18 +43,18 @@ pub(crate) fn log(interval_s: f64, samples: &[(Vector3<f64>, Vector3<f64>)]) -> 
     }
 }
 
-/// What turns true rates and forces into a log.
+/// Errors of a unit, by which true rates and forces become a log.
 pub(crate) struct Unit {
     pub(crate) gyro_matrix: Matrix3<f64>,
     pub(crate) gyro_zero: Vector3<f64>,
-    /// Rate for each g, gyro by row.
+    /// Drift of the gyros per g \[rad/s/g\], a row for each gyro.
     pub(crate) g_sensitivity: Matrix3<f64>,
     pub(crate) gyro_noise: f64,
     pub(crate) accel_noise: f64,
 }
 
 impl Unit {
-    /// A MEMS unit: 0.3 deg/s of zero, noise as that of a Xsens.
+    /// A MEMS unit: bias of 0.3 deg/s, noise as that of an Xsens.
     pub(crate) fn mems() -> Self {
         Self {
             gyro_matrix: Matrix3::identity(),
