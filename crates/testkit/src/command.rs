@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use crate::copy::workspace;
 use crate::files::fresh_directory;
 
-/// What a command did.
+/// Outcome of a command.
 #[derive(Debug)]
 pub struct Outcome {
     /// It ended with exit code 0.
@@ -31,8 +31,8 @@ impl Outcome {
         self
     }
 
-    /// Panics with the output unless the command failed with a message that has every
-    /// one of `parts` and is no backtrace.
+    /// Panics with the output unless the command failed with a message that has every one of
+    /// `parts` and is no backtrace.
     #[track_caller]
     pub fn failed_with(self, parts: &[&str]) -> Self {
         assert!(!self.success, "succeeded\n{}\n{}", self.stdout, self.stderr);
@@ -173,7 +173,7 @@ fn target_directory() -> PathBuf {
     marked.last().expect("a target directory").to_owned()
 }
 
-/// What the caller's settings must not decide.
+/// Removes variables of the caller that would change the command.
 fn without_settings(command: &mut Command) {
     for name in [
         "GYROCAL_PYTHON",

@@ -20,8 +20,8 @@ pub struct WorkspaceCopy {
 }
 
 impl WorkspaceCopy {
-    /// Makes `NAME/workspace` below `scratch` equal to the workspace. Files that are equal
-    /// keep their times and others get new ones, so that cargo builds what it has to.
+    /// Makes `NAME/workspace` below `scratch` equal to the workspace. Files that are equal keep
+    /// their times and others get new ones, so that cargo rebuilds only what has changed.
     pub fn make(scratch: &str, name: &str) -> Self {
         let root = Path::new(scratch).join(name).join("workspace");
         synchronise(&workspace(), &root);

@@ -1,8 +1,9 @@
 //! Dense least squares over all rows of a short record: the reference of the batch estimator.
 //!
-//! The two share no code. Unknowns are the attitude at every row and the coefficients; residuals are
-//! those of the samples, of the gyro noise between rows, and of the priors. Attitudes are direction cosines, derivatives are differences of fourth order, and
-//! the normal equations are never formed.
+//! The two share no code. Unknowns are the attitude at every row and the coefficients; residuals
+//! are those of the samples, of the gyro noise between rows, and of the priors. Attitudes are
+//! direction cosines, derivatives are differences of fourth order, and the normal equations are
+//! never formed.
 
 use gyrocal_calibration::Run;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -33,7 +34,7 @@ pub struct DenseSolution {
 pub struct DenseProblem<'a> {
     run: Run<'a>,
     longest_step_s: f64,
-    /// As the bench declares.
+    /// Initial attitude that the bench declares.
     first: Matrix3<f64>,
     /// Root of the covariance of the rotation from there, in platform axes.
     first_root: Matrix3<f64>,
@@ -124,7 +125,7 @@ impl<'a> DenseProblem<'a> {
         (parts as usize, interval_s / parts)
     }
 
-    /// Attitude at the next row, with a noise in each part in deg/h, if there is some.
+    /// Attitude at the next row; `noise`, if given, is that of each part, deg/h.
     fn ahead(
         &self,
         row: usize,
@@ -160,8 +161,8 @@ impl<'a> DenseProblem<'a> {
         attitude
     }
 
-    /// Root of the covariance of what the noise adds over the step after a row. It is held over
-    /// each part, as white as the noise that is declared as held over a minute.
+    /// Root of the covariance of the rotation by the noise over the step after a row. The noise is
+    /// held over each part, as white as the declared noise, which is held over a minute.
     fn noise_root(
         &self,
         row: usize,

@@ -25,7 +25,7 @@ pub fn edit(path: impl AsRef<Path>, from: &str, to: &str) {
     fs::write(path, text.replace(from, to)).unwrap();
 }
 
-/// Every file below `directory` with its contents: what "nothing was written" is judged by.
+/// Every file below `directory` with its contents, to check that nothing was written.
 pub fn snapshot(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut pending = vec![directory.to_owned()];

@@ -13,7 +13,8 @@ pub enum Fault {
     None,
     /// Values rounded to multiples of this many standard deviations.
     Quantised(f64),
-    /// This fraction of the values is off by so many standard deviations, of either sign.
+    /// The first is the fraction of outliers, the second their size in standard deviations, of
+    /// either sign.
     Outliers(f64, f64),
     /// Correlation from one row to the next; the variance is as declared.
     Coloured(f64),

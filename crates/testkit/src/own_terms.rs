@@ -117,7 +117,8 @@ pub struct FoundTerm {
 }
 
 impl FoundTerm {
-    /// Whether it is the one finding and every parameter is within so many standard deviations.
+    /// Whether it is the one finding, with every parameter within this number of standard
+    /// deviations.
     pub fn is_within(&self, sigmas: f64) -> bool {
         let mut parameters = self.parameters.iter();
         self.only

@@ -1,4 +1,4 @@
-//! What is committed belongs to what it was generated from. None of this needs Python.
+//! Freshness of committed files, checked without Python.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::fs;

@@ -1,4 +1,4 @@
-//! Programs that files of other packages ask of a derivation.
+//! Variants: programs defined by files of other packages.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::fs;
@@ -9,7 +9,7 @@ use gyrocal_testkit::{TinyDerivation, edit, real_environments, workspace};
 
 const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
 
-/// What makes a tiny derivation serve others: the file holds a factor.
+/// Function of a tiny derivation that serves other packages; their file holds a factor.
 const DERIVE_FROM: &str = r#"
 
 def derive_from(file, name, output):
@@ -21,7 +21,7 @@ def derive_from(file, name, output):
     Program(name, "A program.", [function]).write(output / f"{name}.json")
 "#;
 
-/// A tiny derivation with a package beside it that asks it for something.
+/// A tiny derivation, and a package that has a variant of it.
 struct Package {
     tiny: TinyDerivation,
     settings: Settings,
@@ -59,7 +59,7 @@ impl Package {
         self.variant().committed(self.path("package/generated"))
     }
 
-    /// Nothing can be derived any more.
+    /// The same package without Python: nothing can be derived.
     fn without_python(mut self) -> Self {
         self.settings.python = Some("/no/such/python".into());
         self

@@ -70,7 +70,7 @@ fn build(copy: &WorkspaceCopy, target: &Path) -> Command {
     command
 }
 
-/// Rows of the probe, and what cargo said.
+/// Rows of the probe, and the output of cargo.
 fn probe(copy: &WorkspaceCopy) -> (Vec<Vec<f64>>, String) {
     let mut command = quick_cargo(copy, &target("target"), "run");
     let Outcome { stdout, stderr, .. } = run(command.args(["--package", "probe"])).succeeded();
@@ -200,8 +200,8 @@ fn an_edited_derivation_changes_the_compiled_dynamics() {
     );
 }
 
-/// Prints what the catalogue makes of the term of docs/adding-a-term.md: its row, and the
-/// derivatives of the drift of gyro x by its two parameters, over its period.
+/// Prints the term of docs/adding-a-term.md as it is in the catalogue: its row, and the derivatives
+/// of the drift of gyro x by its two parameters, over its period.
 const LINE_PROBE: &str = r#"
 use gyrocal::generated::catalogue::{CatalogueInputs, PARAMETERS, conditions_index};
 use gyrocal::scalar::{Model, NamedInputs, RatesJacobian};
@@ -229,8 +229,8 @@ fn main() {
 }
 "#;
 
-/// Hides that line in a record of two days and prints what a diagnosis finds: its verdict, each
-/// finding with its parameters and sigmas, and what is gained.
+/// Hides that line in a record of two days and prints the diagnosis: its verdict, each finding with
+/// its parameters and sigmas, and the gain.
 const LINE_FINDER: &str = r#"
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};

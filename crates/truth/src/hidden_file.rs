@@ -27,7 +27,7 @@ pub(crate) struct Located {
 ///
 /// # Errors
 ///
-/// [`FileError::Input`] for whatever is wrong in them.
+/// [`FileError::Input`] for a fault in them.
 pub(crate) fn read_hidden(source: &SourceText) -> Result<Vec<Located>, FileError> {
     const EXPECTED: &str = "tables `[[hidden]]`, one for each effect";
     let Ok(root) = DeTable::parse(source.text()) else {

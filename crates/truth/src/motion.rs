@@ -27,7 +27,7 @@ pub(crate) struct Motion<'a> {
 
 #[derive(Debug, Clone, Copy)]
 struct State {
-    /// The inertial frame is local east, north, up at time zero.
+    /// Platform against the inertial frame, which is local east, north, up at time zero.
     platform_c_inertial: Attitude,
     earth_angle: EarthAngle,
     moment: Moment,

@@ -1,7 +1,8 @@
 //! Scenario files.
 //!
-//! A scenario is a bench description with what a bench does not know: the coefficients of the
-//! gyros, the sampling and the seed. See `examples/data/three_days.scenario.toml`.
+//! A scenario is a bench description with quantities that a bench does not declare: the
+//! coefficients of the gyros, the sampling and the seed. See
+//! `examples/data/three_days.scenario.toml`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -41,7 +42,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it.
     pub fn read(path: &Path) -> Result<Self, Error> {
         Self::from_source(&SourceText::read(path)?)
     }
@@ -50,7 +51,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] for whatever is wrong in it.
+    /// [`Error::Input`] for a fault in it.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
         Self::from_source(&SourceText::new(text, name)?)
     }

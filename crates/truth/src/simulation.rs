@@ -70,7 +70,7 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, Error> {
     simulate_with(scenario, &[])
 }
 
-/// Simulates a scenario with terms of the caller's own beside its hidden effects.
+/// Simulates a scenario with terms of the caller in addition to its hidden effects.
 ///
 /// # Errors
 ///
@@ -79,8 +79,8 @@ pub fn simulate_with(scenario: &Scenario, terms: &[Term]) -> Result<Simulation, 
     simulate_watched(scenario, terms, |_| ())
 }
 
-/// The same; tells after each row of the regular grid, whose number is
-/// [`Scenario::grid_rows`], how many are done.
+/// As [`simulate_with`]; reports after each row of the regular grid how many of
+/// [`Scenario::grid_rows`] are done.
 ///
 /// # Errors
 ///

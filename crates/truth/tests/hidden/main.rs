@@ -16,7 +16,7 @@ use gyrocal_truth::{Attitude, Coefficients, Hidden, InitialAttitude, Scenario, T
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
 const LATITUDE_DEG: f64 = 39.1;
-/// North, a little east, down: what it is at middle latitudes.
+/// Field along east, north, up at middle latitudes.
 const FIELD_GAUSS: [f64; 3] = [-0.03, 0.28, -0.45];
 
 fn rad(deg_per_h: f64, hours: f64) -> f64 {

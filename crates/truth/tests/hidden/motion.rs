@@ -103,7 +103,7 @@ fn accel_z_g(times_s: &[f64]) -> Vec<f64> {
     ideal.into_iter().map(|accel_g| accel_g[2]).collect()
 }
 
-/// When it crosses zero, by halving.
+/// Times at which it crosses zero, by bisection.
 fn crossings_s() -> Vec<f64> {
     let minutes: Vec<f64> = (0..=1440).map(|minute| f64::from(minute) * 60.0).collect();
     let values = accel_z_g(&minutes);

@@ -26,7 +26,7 @@ fn an_unknown_effect_is_answered_with_the_nearest() {
     }
 }
 
-/// An id, parameters, and what is said of them.
+/// An id, parameters, and the expected text of the error.
 type Case<'a> = (&'a str, &'a [(&'a str, f64)], &'a str);
 
 #[test]

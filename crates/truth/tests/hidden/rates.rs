@@ -1,10 +1,10 @@
-//! The drift is what the definition of the effect says, and the platform turns at that rate.
+//! The drift equals the definition of the effect, and the platform rotates at that rate.
 
 use gyrocal_truth::{Coefficients, simulate};
 
 use crate::{DAY_S, FIELD_GAUSS, HOUR_S, inertial_turns_rad, quiet, with};
 
-/// What an effect's definition speaks of, at one row.
+/// Quantities that the definition of an effect depends on, at one row.
 struct Row {
     time_s: f64,
     accel_g: [f64; 3],
@@ -16,7 +16,7 @@ struct Row {
 
 type Case<'a> = (&'a str, &'a [(&'a str, f64)], usize, fn(&Row) -> f64);
 
-/// Effect, parameters, gyro, and what they add to its drift \[deg/h\].
+/// Effect, parameters, gyro, and the addition to its drift \[deg/h\].
 const CASES: [Case<'_>; 18] = [
     ("gyro_x.bias", &[("size", 0.05)], 0, |_| 0.05),
     ("gyro_y.g_y", &[("size", 0.05)], 1, |r| 0.05 * r.accel_g[1]),

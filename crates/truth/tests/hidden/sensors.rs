@@ -1,4 +1,4 @@
-//! What accelerometers add to the specific force, without noise.
+//! Errors of the accelerometers without noise.
 
 use gyrocal_truth::{Coefficients, simulate};
 
