@@ -61,7 +61,7 @@ pub enum Error {
     Unwritable {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         #[source]
         source: gyrocal_record::Error,
     },

@@ -16,7 +16,7 @@ pub trait Picture {
 ///
 /// # Errors
 ///
-/// Those of [`Picture::to_svg`], and [`Error::Unwritable`].
+/// As [`Picture::to_svg`], and [`Error::Unwritable`].
 pub fn write_svg(picture: &dyn Picture, path: &Path) -> Result<(), Error> {
     write(path, picture.to_svg()?.as_bytes())
 }

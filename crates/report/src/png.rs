@@ -52,7 +52,7 @@ pub fn to_png(svg: &str, width_px: u32) -> Result<Vec<u8>, Error> {
 ///
 /// # Errors
 ///
-/// Those of [`Picture::to_svg`] and [`to_png`], and [`Error::Unwritable`].
+/// As [`Picture::to_svg`] and [`to_png`], and [`Error::Unwritable`].
 pub fn write_png(picture: &dyn Picture, path: &Path, width_px: u32) -> Result<(), Error> {
     picture::write(path, &to_png(&picture.to_svg()?, width_px)?)
 }

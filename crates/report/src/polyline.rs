@@ -4,7 +4,7 @@ use gyrocal_statistics::median_interval_s;
 
 use crate::geometry::{Point, Rect};
 
-/// Intervals longer than so many times the usual one are gaps.
+/// Intervals longer than this multiple of the usual one are gaps.
 const GAP_FACTOR: f64 = 4.0;
 
 /// The longest interval, in units of the abscissa, that is not a gap.

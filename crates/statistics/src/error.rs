@@ -1,4 +1,4 @@
-/// Why a statistic could not be computed.
+/// Failure of the computation of a statistic.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StatisticsError {

@@ -83,8 +83,8 @@ fn no_hit_and_no_miss_have_closed_forms() {
     assert!(nothing.share().is_nan());
 }
 
-/// What makes the interval exact: for every true share, it holds the share with at least the
-/// stated probability. The probability is summed over all outcomes, not sampled.
+/// Exactness of the interval: for every true share, it holds the share with at least the stated
+/// probability. The probability is summed over all outcomes, not sampled.
 #[test]
 fn an_interval_covers_at_least_as_often_as_it_says() {
     let trials = 25;

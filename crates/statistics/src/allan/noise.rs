@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::math::{exp, ln};
 
-/// Fewer decimated points than these tell nothing of the noise.
+/// Least number of decimated points that determine the noise type.
 const FEWEST_POINTS: usize = 30;
 
 /// Noise of a rate by its power law, in the words of gyros; the exponent is that of the power
@@ -79,9 +79,9 @@ impl NoiseType {
     }
 }
 
-/// The lag 1 autocorrelation of the decimated angle tells the power law: W. J. Riley and
-/// C. A. Greenhall, "Power law noise identification using the lag 1 autocorrelation", 18th
-/// European Frequency and Time Forum, 2004. `None` if there are too few points.
+/// The power law by the lag 1 autocorrelation of the decimated angle: W. J. Riley and C. A.
+/// Greenhall, "Power law noise identification using the lag 1 autocorrelation", 18th European
+/// Frequency and Time Forum, 2004. `None` if there are too few points.
 pub(crate) fn identify(phase: &[f64], averaging: usize) -> Option<NoiseType> {
     const MOST_DIFFERENCES: i32 = 2;
     let mut values: Vec<f64> = phase.iter().step_by(averaging).copied().collect();
