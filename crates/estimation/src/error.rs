@@ -1,7 +1,7 @@
 use core::fmt;
 
-/// Why a filter could not go on. Where a variant does not say that nothing changed, the filter
-/// is unusable: start again from a known state.
+/// Failure of a filter. Unless its variant states that nothing has changed, the filter is unusable:
+/// start again from a known state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EstimationError {

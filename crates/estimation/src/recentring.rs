@@ -1,6 +1,6 @@
 use gyrocal_scalar::Real;
 
-/// When the chart of the moving states is moved to the estimate.
+/// Times at which the chart of the moving states is moved to the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Recentring<T> {

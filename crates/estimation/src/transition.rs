@@ -193,8 +193,8 @@ where
     }
 }
 
-/// A Runge-Kutta scheme on one step, differentiated from its end: what a change of the rates at
-/// a stage does to the state at the end of the step.
+/// A Runge-Kutta scheme on one step, differentiated from its end: derivatives of the state at the
+/// end of the step by the rates at each stage.
 struct Adjoint<T, const M: usize, const ORDER: usize> {
     /// Derivative of the step with respect to the state that it starts from.
     moving: [[T; M]; M],

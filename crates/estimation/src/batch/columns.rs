@@ -1,4 +1,4 @@
-//! Sensitivity columns beside those of the model's own parameters.
+//! Sensitivity columns in addition to those of the model's own parameters.
 
 /// Columns besides the parameters of the model: jumps of the moving states, parameters that enter
 /// in proportion to one of the model's, or anything else that is linear in its amplitude.
@@ -8,7 +8,7 @@ pub trait Columns<const M: usize, const Y: usize> {
     /// Number of columns.
     fn count(&self) -> usize;
 
-    /// The amplitude that the linearisation point has, column by column.
+    /// The amplitude of a column at the linearisation point.
     fn amplitude(&self, column: usize) -> f64 {
         let _ = column;
         0.0

@@ -29,7 +29,7 @@ impl Gram {
         }
     }
 
-    /// Number of columns beside the residual.
+    /// Number of columns without the residual.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.matrix.nrows() - 1

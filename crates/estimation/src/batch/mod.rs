@@ -34,7 +34,7 @@ pub use linearisation::{Linearisation, Reduced, Smoothed, Whitened};
 pub use noise::NoiseScore;
 pub use tape::Tape;
 
-/// The rows of a record, and what the model's inputs are over and at them.
+/// The rows of a record, and the model's inputs over and at them.
 pub trait Series<I, const Y: usize> {
     /// Number of rows.
     fn rows(&self) -> usize;

@@ -61,7 +61,8 @@ impl<const M: usize> Tape<M> {
         self.columns.extend_from_slice(columns);
     }
 
-    /// The step after a row, how far the next point is from where it goes, and its columns.
+    /// The step after a row, the difference from the predicted point to the next one, and the
+    /// parameter columns.
     pub(crate) fn step(&self, row: usize) -> (Step<M>, [f64; M], &[f64]) {
         let mut shares = [[[0.0; M]; M]; M];
         let size = M * Self::TRIANGLE;

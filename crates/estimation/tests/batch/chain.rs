@@ -175,7 +175,7 @@ impl Chain {
             .collect()
     }
 
-    /// Makes the residuals at these points what they are told to be.
+    /// Makes the residuals at these points equal to the given ones.
     pub(crate) fn set_residuals(&mut self, points: &[[f64; 2]], residuals: &DVector<f64>) {
         for ((row, output), residual) in self.present().into_iter().zip(residuals.iter()) {
             let predicted: [f64; 2] = Pendulum.output(&points[row], &PRIOR, &());
@@ -183,7 +183,7 @@ impl Chain {
         }
     }
 
-    /// Covariance of what noise adds over the step after a row, by differences.
+    /// Covariance that noise adds over the step after a row, by differences.
     pub(crate) fn step_noise(
         &self,
         row: usize,
@@ -280,9 +280,9 @@ impl Estimated for Disturbances {
     }
 }
 
-/// What Gauss-Newton steps end at.
+/// Result of Gauss-Newton steps.
 pub(crate) struct Found {
-    /// Those of the model, then the further columns' amplitudes.
+    /// Parameters of the model, then amplitudes of the further columns.
     pub(crate) parameters: Vec<f64>,
     pub(crate) covariance: DMatrix<f64>,
     pub(crate) points: Vec<[f64; 2]>,

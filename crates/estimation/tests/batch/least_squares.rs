@@ -58,8 +58,8 @@ impl<'a> LeastSquares<'a> {
             .collect()
     }
 
-    /// Residuals over the roots of their covariances: priors, outputs, and what noise must have
-    /// done between the rows.
+    /// Residuals over the roots of their covariances: priors, outputs, and the noise between the
+    /// rows.
     fn residuals(&self, unknowns: &DVector<f64>, noise: &[Matrix2<f64>]) -> DVector<f64> {
         let parameters = self.parameters(unknowns);
         let points = self.points(unknowns);
