@@ -1,4 +1,4 @@
-//! `gyrocal diagnose`: a record and its bench description in, what the model gets wrong out.
+//! `gyrocal diagnose`: deviations of a record from the model, and their causes.
 
 mod failed;
 mod figures;
@@ -83,7 +83,7 @@ struct DiagnosisRun<'a> {
     diagnosis: Diagnosis<'a>,
 }
 
-/// Runs the command; returns what is to be said on stdout.
+/// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     let inputs: Vec<&Path> = [&arguments.record, &arguments.bench]
         .into_iter()

@@ -19,7 +19,7 @@ pub(super) struct Measurement {
     pub(super) averaged: Option<Averaging>,
 }
 
-/// How the rows of a record were averaged.
+/// Averaging of the rows of a record.
 #[derive(Clone, Copy)]
 pub(super) struct Averaging {
     pub(super) report: AveragedReport,

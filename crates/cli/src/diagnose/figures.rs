@@ -16,7 +16,7 @@ use super::DiagnosisRun;
 use crate::Failure;
 use crate::pictures::{self, Named};
 
-/// Writes all pictures, to be committed with the other outputs; returns what is to be said.
+/// Writes all pictures, to be committed with the other outputs; returns the text for stdout.
 pub(super) fn stage(
     found: &DiagnosisRun<'_>,
     folder: &Path,

@@ -198,7 +198,7 @@ fn final_angles_are_those_of_the_simulated_platform() {
     }
 }
 
-/// What the words say, whatever the lines.
+/// The output without line breaks.
 fn unwrapped(said: &str) -> String {
     said.split_whitespace().collect::<Vec<_>>().join(" ")
 }

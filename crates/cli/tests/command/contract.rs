@@ -14,7 +14,7 @@ const WRITE: &str = "GYROCAL_WRITE_SCHEMAS";
 const DIAGNOSIS: &str = "docs/schema/diagnosis.schema.json";
 const PLAN: &str = "docs/schema/plan.schema.json";
 
-/// That a result that a command wrote conforms to a committed schema.
+/// Checks that a result of a command conforms to a committed schema.
 #[track_caller]
 fn assert_conforms(folder: &Folder, name: &str, schema: &str) {
     let schema = fs::read_to_string(repository(schema)).unwrap();
@@ -28,13 +28,13 @@ fn assert_conforms(folder: &Folder, name: &str, schema: &str) {
     assert!(errors.is_empty(), "{name}: {}", errors.join("\n"));
 }
 
-/// That a diagnosis conforms to its schema.
+/// Checks that a diagnosis conforms to its schema.
 #[track_caller]
 pub(crate) fn assert_diagnosis(folder: &Folder, name: &str) {
     assert_conforms(folder, name, DIAGNOSIS);
 }
 
-/// That a plan conforms to its schema.
+/// Checks that a plan conforms to its schema.
 #[track_caller]
 pub(crate) fn assert_plan(folder: &Folder, name: &str) {
     assert_conforms(folder, name, PLAN);

@@ -156,7 +156,8 @@ pub(super) struct Second {
     pub(super) gain_nats: Option<f64>,
     /// Angle after a day, arc minutes: nominal, extended, expected of the extended.
     pub(super) after_a_day_arcmin: Option<[f64; 3]>,
-    /// The same of a model that is given the injected effect, its onset or time constant included.
+    /// The same with a model that is given the injected effect, onset or time constant included, in
+    /// place of the extended one.
     pub(super) told_arcmin: [f64; 3],
 }
 

@@ -24,7 +24,7 @@ struct Before {
     diagnoses: Vec<DiagnosisBefore>,
 }
 
-/// What an earlier build found in one record.
+/// Diagnosis of one record by an earlier build.
 #[derive(Deserialize)]
 struct DiagnosisBefore {
     record: String,

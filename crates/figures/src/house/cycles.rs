@@ -29,8 +29,8 @@ pub(crate) fn inside(of: &Crate) -> Vec<Cycle> {
         .collect()
 }
 
-/// Which module uses which, by their full paths. A module also uses what encloses it, if it takes
-/// from there what that itself defines.
+/// Pairs of modules, by their full paths, of which the first uses the second. A module also uses
+/// the module around it if it takes from there an item that is defined there.
 type References = BTreeSet<(Vec<String>, Vec<String>)>;
 
 fn references(of: &Crate) -> References {
@@ -105,7 +105,8 @@ fn cycles(of: &Crate, references: &References, parent: &[String]) -> Vec<Cycle> 
         .collect()
 }
 
-/// The module that defines what a path of names from the root leads to, re-exports followed.
+/// The module that defines the item at the end of a path of names from the root, re-exports
+/// followed.
 fn resolve(
     modules: &BTreeMap<&[String], &Module>,
     path: Vec<String>,

@@ -27,7 +27,7 @@ const METHODS: [&str; 14] = [
     "trim_start_matches",
 ];
 
-/// A comparison with a string literal that speaks of effects.
+/// A comparison of an effect's id or kind with a string literal.
 pub(crate) struct Place {
     pub(crate) file: PathBuf,
     pub(crate) line: usize,
@@ -38,12 +38,12 @@ pub(crate) struct Place {
 pub(crate) struct Words {
     /// Ids, their parts before and after the dot, with the dot and without.
     of_ids: BTreeSet<String>,
-    /// What a kind may be called.
+    /// Names of kinds.
     of_kinds: BTreeSet<String>,
 }
 
 impl Words {
-    /// Of ids and kinds.
+    /// The words of ids and kinds.
     pub(crate) fn new<'a>(
         ids: impl Iterator<Item = &'a str>,
         kinds: impl Iterator<Item = String>,
@@ -72,7 +72,7 @@ impl Words {
         }
     }
 
-    /// Whether a comparison of `subject` with `literal` asks what an effect is.
+    /// Whether a comparison of `subject` with `literal` depends on an effect's id or kind.
     fn ask(&self, subject: &str, literal: &str) -> bool {
         let of_effect = |names: &[&str]| {
             subject
@@ -107,7 +107,7 @@ pub(crate) fn places(of: &Crate, words: &Words) -> Vec<Place> {
 struct Comparisons<'a> {
     words: &'a Words,
     file: &'a std::path::Path,
-    /// What the patterns around are compared with.
+    /// Expressions that the enclosing patterns are compared with.
     subjects: Vec<String>,
     found: &'a mut Vec<Place>,
 }

@@ -23,7 +23,7 @@ pub(crate) struct Module {
     pub(crate) file: PathBuf,
     /// Lines of the file; zero for a module written inside another.
     pub(crate) lines: usize,
-    /// What is in it, without modules and tests.
+    /// Its items, without modules and tests.
     pub(crate) items: Vec<Item>,
 }
 

@@ -1,4 +1,4 @@
-//! A later record, predicted with what was found in the first.
+//! Prediction of a later record with the model of the first.
 
 use super::{BENCH, RECORD, folder, report};
 
