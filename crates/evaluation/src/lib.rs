@@ -24,7 +24,7 @@
 //! d² = δᵀ J δ with the sizes δ and the information J of the record on them, the nine coefficients,
 //! the initial attitude and all other injected effects projected out, white noise of the gyros
 //! included. [`inject`] draws sizes of a given strength. [`Signature`] and [`ProjectedScores`], which
-//! it needs for J, are written apart from the search of `gyrocal-diagnosis`: an error there would
+//! it needs for J, are written apart from the search of `gyrocal-hypothesis`: an error there would
 //! otherwise scale the effects that are to reveal it, and cancel.
 //!
 //! # Example
