@@ -1,5 +1,6 @@
 //! Truth of the diagnosis outside of the population that its constants were tuned on.
 
+mod noise;
 mod shapes;
 
 use crate::error::Error;
@@ -7,5 +8,7 @@ use crate::figure::Figure;
 
 /// All figures of the topic.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    shapes::figures(small)
+    let mut figures = shapes::figures(small)?;
+    figures.extend(noise::figures(small)?);
+    Ok(figures)
 }
