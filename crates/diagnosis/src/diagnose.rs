@@ -19,7 +19,7 @@ use crate::magnitude_test::magnitude_test;
 use crate::noise::{NoiseAudit, Outlier};
 use crate::power::powers;
 use crate::request;
-use crate::residual_test::{residual_test, whitened};
+use crate::residual_test::{decorrelated, residual_test, whitened};
 use crate::residuals::residuals;
 use crate::result::{DiagnosisResult, FalseAlarmShares, Gain};
 use crate::series::Innovations;
@@ -121,8 +121,9 @@ pub fn diagnose<'a>(
 
     let whitened = whitened(&searched.fitted, record)?;
     let (time_s, alpha) = (&record.time_s, shares.residual_test);
-    let remainder = residual_test(time_s, &whitened, &searched.unmodelled, alpha);
-    let allan = allan_test(time_s, &whitened, shares.allan_test).ok();
+    let tested = decorrelated(&whitened, audit.cleaned.correlation);
+    let remainder = residual_test(time_s, &tested, &searched.unmodelled, alpha);
+    let allan = allan_test(time_s, &tested, shares.allan_test).ok();
 
     let validated = cross_validate(&nominal, &searched)?;
     let gain = model_gain(&nominal, &searched, &validated, &run, noise_model)?;
@@ -166,6 +167,7 @@ fn search_options(options: &DiagnoseOptions, shares: &FalseAlarmShares) -> Searc
         false_alarm_probability: shares.search,
         unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
         seed: options.seed,
+        rate_degrees: Vec::new(),
     }
 }
 

@@ -33,6 +33,20 @@ pub(crate) fn whitened(
     Ok(whitened)
 }
 
+/// Innovations without the correlation ρ of the accelerometer noise that the audit found, which is a
+/// finding of its own: (eₜ − ρ eₜ₋₁)/√(1 − ρ²). `NaN` where one of the two is missing.
+pub(crate) fn decorrelated(whitened: &[[f64; 3]], correlation: f64) -> Vec<[f64; 3]> {
+    if correlation == 0.0 {
+        return whitened.to_vec();
+    }
+    let scale = (1.0 - correlation * correlation).sqrt().recip();
+    let missing = core::iter::once([f64::NAN; 3]);
+    let differences = whitened.windows(2).map(|pair| {
+        core::array::from_fn(|axis| scale * (pair[1][axis] - correlation * pair[0][axis]))
+    });
+    missing.chain(differences).collect()
+}
+
 /// Tests whitened innovations; `unmodelled` holds the terms that the search found beside the catalogue,
 /// and `alpha` is the probability of a false alarm of all residual tests.
 pub(crate) fn residual_test(
