@@ -1,0 +1,147 @@
+//! Blocks of rows that repeat earlier rows.
+
+use std::collections::HashMap;
+
+use gyrocal_statistics::upper_median;
+
+use crate::finding::SetupFinding;
+use crate::kind::SetupKind;
+use crate::samples::{Complete, Samples};
+use crate::text::{row, rows};
+use crate::vector::angle;
+
+/// So many equal rows in a row at one distance are a copy.
+const LEAST_ROWS: usize = 5;
+
+/// A copy begins with a leap back: so many times the usual way between two rows.
+const LEAPS: f64 = 3.0;
+
+/// Of noise that was added to a copy: so many rows agree with earlier ones within so many sigmas.
+const LEAST_NOISY_ROWS: usize = 8;
+const NOISY_SIGMAS: f64 = 12.0;
+
+/// A block of complete rows that repeats earlier ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Copied {
+    /// Place of its first row among the complete rows.
+    pub(crate) from: usize,
+    /// How far back the original is, in complete rows.
+    pub(crate) lag: usize,
+    /// Number of its rows.
+    pub(crate) len: usize,
+}
+
+/// Copies of blocks of rows, exact or with noise added.
+pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
+    let complete = samples.complete();
+    let leap = least_leap(samples, &complete);
+    let copies: Vec<Copied> = exact(&complete)
+        .into_iter()
+        .filter(|copy| leaps(&complete, copy.from, leap))
+        .collect();
+    let copies = if copies.is_empty() {
+        noisy(samples, &complete, leap)
+    } else {
+        copies
+    };
+    let Some(longest) = copies.iter().max_by_key(|copy| copy.len) else {
+        return Vec::new();
+    };
+    let [first, original] = [longest.from, longest.from - longest.lag].map(|at| complete[at].row);
+    let last = complete[longest.from + longest.len - 1].row;
+    let count: usize = copies.iter().map(|copy| copy.len).sum();
+    let description = format!(
+        "Rows {} to {} are a copy of the rows from row {} on. They are left out; look for a part \
+         that was written twice.",
+        row(first),
+        row(last),
+        row(original),
+    );
+    let evidence = format!(
+        "{} in {} copied blocks; gravity leaps back at the beginning of each",
+        rows(count),
+        copies.len()
+    );
+    let range = copies.iter().fold(first..last + 1, |range, copy| {
+        let end = complete[copy.from + copy.len - 1].row + 1;
+        range.start.min(complete[copy.from].row)..range.end.max(end)
+    });
+    for copy in &copies {
+        for sample in &complete[copy.from..copy.from + copy.len] {
+            samples.accel_g[sample.row] = [f64::NAN; 3];
+        }
+    }
+    samples.look_again();
+    vec![SetupFinding::new(SetupKind::Duplicated, description, evidence).at(range)]
+}
+
+/// The least angle between two rows that is no usual way, rad.
+fn least_leap(samples: &Samples<'_>, complete: &[Complete]) -> f64 {
+    let mut ways: Vec<f64> = complete
+        .windows(2)
+        .map(|pair| angle(pair[0].up, pair[1].up))
+        .collect();
+    let usual = upper_median(&mut ways).unwrap_or(0.0);
+    LEAPS * usual + NOISY_SIGMAS * samples.sigma_g() / samples.rest_g
+}
+
+/// Whether gravity leaps on the way to a row.
+fn leaps(complete: &[Complete], at: usize, least: f64) -> bool {
+    at > 0 && angle(complete[at - 1].up, complete[at].up) > least
+}
+
+/// Blocks that equal earlier ones in every bit.
+fn exact(complete: &[Complete]) -> Vec<Copied> {
+    let key = |at: usize| complete[at].force_g.map(f64::to_bits);
+    let mut seen: HashMap<[u64; 3], usize> = HashMap::with_capacity(complete.len());
+    let mut copies: Vec<Copied> = Vec::new();
+    let mut open: Option<Copied> = None;
+    for at in 0..complete.len() {
+        let follows = open.filter(|copy| key(at - copy.lag) == key(at));
+        open = match follows {
+            Some(copy) => Some(Copied { len: copy.len + 1, ..copy }),
+            None => {
+                copies.extend(open.filter(|copy| copy.len >= LEAST_ROWS));
+                seen.get(&key(at)).map(|earlier| Copied {
+                    from: at,
+                    lag: at - earlier,
+                    len: 1,
+                })
+            }
+        };
+        seen.insert(key(at), at);
+    }
+    copies.extend(open.filter(|copy| copy.len >= LEAST_ROWS));
+    copies
+}
+
+/// Blocks that begin with a leap to where the platform was, within noise.
+fn noisy(samples: &Samples<'_>, complete: &[Complete], leap: f64) -> Vec<Copied> {
+    /// Leaps that are looked at: a record with more has other faults, and the cost stays linear.
+    const MOST_LEAPS: usize = 20;
+    let tolerance = NOISY_SIGMAS * samples.sigma_g();
+    let equal = |a: usize, b: usize| {
+        let pairs = complete[a].force_g.into_iter().zip(complete[b].force_g);
+        pairs.into_iter().all(|(a, b)| (a - b).abs() <= tolerance)
+    };
+    let leaps = (1..complete.len()).filter(|at| leaps(complete, *at, leap));
+    let mut copies: Vec<Copied> = Vec::new();
+    for at in leaps.take(MOST_LEAPS) {
+        let inside = |copy: &Copied| at < copy.from + copy.len;
+        if copies.last().is_some_and(inside) {
+            continue;
+        }
+        let best = (0..at).filter(|earlier| equal(*earlier, at)).map(|earlier| {
+            let lag = at - earlier;
+            let len = (at..complete.len())
+                .take_while(|now| now - lag < at && equal(now - lag, *now))
+                .count();
+            Copied { from: at, lag, len }
+        });
+        copies.extend(
+            best.max_by_key(|copy| copy.len)
+                .filter(|copy| copy.len >= LEAST_NOISY_ROWS),
+        );
+    }
+    copies
+}
