@@ -55,37 +55,39 @@ impl End {
     }
 }
 
-/// Values at an extreme, while the magnitude shows that the force was beyond.
+/// Values at an extreme, while the magnitude shows that the force was beyond. The axis that explains
+/// most rows comes first: its rows are short at the extremes of the others as well.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
-    let ends: Vec<End> = (0..3)
-        .flat_map(|axis| [1.0, -1.0].map(|sign| (axis, sign)))
-        .filter_map(|(axis, sign)| End::of(samples, axis, sign))
-        .collect();
     let mut findings = Vec::new();
-    for axis in 0..3 {
-        let limits: Vec<&End> = ends
-            .iter()
-            .filter(|end| end.axis == axis && is_clipped(samples, end, &ends))
+    for _ in 0..3 {
+        let ends: Vec<End> = (0..3)
+            .flat_map(|axis| [1.0, -1.0].map(|sign| (axis, sign)))
+            .filter_map(|(axis, sign)| End::of(samples, axis, sign))
             .collect();
-        if limits.is_empty() {
-            continue;
-        }
+        let clipped = ends.iter().filter_map(|end| {
+            let rows = clipped_rows(samples, end, &ends)?;
+            Some((end, rows))
+        });
+        let mut clipped: Vec<(&End, usize)> = clipped.collect();
+        clipped.sort_by_key(|(_, rows)| core::cmp::Reverse(*rows));
+        let Some(axis) = clipped.first().map(|(end, _)| end.axis) else {
+            break;
+        };
+        let limits: Vec<&End> = clipped
+            .iter()
+            .map(|(end, _)| *end)
+            .filter(|end| end.axis == axis)
+            .collect();
         let at: Vec<usize> = (0..samples.accel_g.len())
             .filter(|row| limits.iter().any(|end| end.is_in_band(samples, *row)))
             .collect();
-        findings.push((finding(samples, &limits, &at), axis, at));
-    }
-    let mut told = Vec::new();
-    for (finding, axis, at) in findings {
+        findings.push(finding(samples, &limits, &at));
         for row in at {
             samples.accel_g[row][axis] = f64::NAN;
         }
-        told.push(finding);
-    }
-    if !told.is_empty() {
         samples.look_again();
     }
-    told
+    findings
 }
 
 fn finding(samples: &Samples<'_>, limits: &[&End], at: &[usize]) -> SetupFinding {
@@ -113,7 +115,8 @@ fn finding(samples: &Samples<'_>, limits: &[&End], at: &[usize]) -> SetupFinding
     }
 }
 
-fn is_clipped(samples: &Samples<'_>, end: &End, ends: &[End]) -> bool {
+/// Number of rows whose magnitude an end makes too small; `None` if it is no limit.
+fn clipped_rows(samples: &Samples<'_>, end: &End, ends: &[End]) -> Option<usize> {
     let tolerance = samples.square_tolerance_g2();
     let others = |row: usize| {
         ends.iter()
@@ -141,9 +144,10 @@ fn is_clipped(samples: &Samples<'_>, end: &End, ends: &[End]) -> bool {
     } else {
         LEAST_ROWS
     };
-    short >= least
+    let is_limit = short >= least
         && short as f64 >= LEAST_SHORT * within as f64
         && long as f64 <= MOST_ELSEWHERE * within as f64
         && beside > 0
-        && short_beside as f64 <= MOST_ELSEWHERE * beside as f64
+        && short_beside as f64 <= MOST_ELSEWHERE * beside as f64;
+    is_limit.then_some(short)
 }

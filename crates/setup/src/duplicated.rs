@@ -6,6 +6,7 @@ use gyrocal_statistics::upper_median;
 
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
+use crate::jump::LEAST_BEFORE_S;
 use crate::samples::{Complete, Samples};
 use crate::text::{row, rows};
 use crate::vector::angle;
@@ -66,13 +67,30 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         let end = complete[copy.from + copy.len - 1].row + 1;
         range.start.min(complete[copy.from].row)..range.end.max(end)
     });
+    let inserted = copies.iter().find(|copy| is_inserted(&complete, copy, leap));
+    let mut finding = SetupFinding::new(SetupKind::Duplicated, description, evidence).at(range);
+    if let Some(copy) = inserted {
+        let sample = complete[copy.from];
+        finding.description += " The rows after them go on where the copy began, so their times \
+                                are wrong: they are left out too.";
+        if sample.time_s - complete[0].time_s < LEAST_BEFORE_S {
+            finding = finding.stopping();
+        }
+        samples.end = sample.row;
+    }
     for copy in &copies {
         for sample in &complete[copy.from..copy.from + copy.len] {
             samples.accel_g[sample.row] = [f64::NAN; 3];
         }
     }
     samples.look_again();
-    vec![SetupFinding::new(SetupKind::Duplicated, description, evidence).at(range)]
+    vec![finding]
+}
+
+/// Whether gravity goes on after a copy from where it was before it, as if no time had passed.
+fn is_inserted(complete: &[Complete], copy: &Copied, leap: f64) -> bool {
+    let after = complete.get(copy.from + copy.len);
+    after.is_some_and(|after| angle(complete[copy.from - 1].up, after.up) <= leap)
 }
 
 /// The least angle between two rows that is no usual way, rad.

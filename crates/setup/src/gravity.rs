@@ -7,6 +7,7 @@ use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::{Complete, Samples};
 use crate::text::number;
+use crate::unit;
 use crate::vector::norm;
 
 /// Relative error of gravity that is left to the fine diagnosis: accelerometers are no better.
@@ -18,6 +19,9 @@ const STANDARD_ERRORS: f64 = 12.0;
 /// What varies with the attitude may be at most this share of what does not: biases and gains of
 /// single accelerometers are left to the fine diagnosis.
 const MOST_VARYING: f64 = 0.2;
+
+/// An error of the magnitude that is neither gravity's nor left to the diagnosis.
+const NO_GRAVITY: f64 = 0.1;
 
 /// Standard gravity, which a record may have been divided by in place of the local one.
 const STANDARD_M_PER_S2: f64 = 9.806_65;
@@ -39,9 +43,13 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         .map(|sample| norm(sample.force_g) / samples.rest_g - 1.0)
         .collect();
     let middle = upper_median(&mut off.clone()).unwrap_or(0.0);
+    let is_uniform = !varies(&complete, &off, middle);
+    if middle.abs() > NO_GRAVITY && !is_uniform {
+        return vec![unit::finding(1.0 + middle, None)];
+    }
     let error = standard_error(samples, &complete, &off, middle);
     let limit = LEAST_ERROR.max(STANDARD_ERRORS * error);
-    if middle.abs() <= limit || varies(&complete, &off, middle) {
+    if middle.abs() <= limit || !is_uniform {
         return Vec::new();
     }
     let finding = finding(samples, middle, error);

@@ -28,7 +28,7 @@ const FASTEST_RAD_PER_S: f64 = 20.0 / 3600.0 * core::f64::consts::PI / 180.0;
 const ON_THE_WAY_RAD: f64 = 0.02;
 
 /// Least time before a jump that is worth a calibration.
-const LEAST_BEFORE_S: f64 = 6.0 * 3600.0;
+pub(crate) const LEAST_BEFORE_S: f64 = 6.0 * 3600.0;
 
 /// A jump between two complete rows.
 struct Jump {

@@ -13,8 +13,8 @@ use crate::vector::{angle, unit};
 const SOUND_SPEED: core::ops::RangeInclusive<f64> = 1.0 / 12.0..=12.0;
 
 /// The gyros may move gravity as fast as a slow turn of the Earth near a pole: below this speed
-/// nothing is said, rad/s (4 deg/h).
-const LEAST_EARTH_SPEED_RAD_PER_S: f64 = 4.0 / 3600.0 * core::f64::consts::PI / 180.0;
+/// nothing is said, rad/s (2.5 deg/h, latitudes beyond 80 degrees).
+const LEAST_EARTH_SPEED_RAD_PER_S: f64 = 2.5 / 3600.0 * core::f64::consts::PI / 180.0;
 
 /// Gravity of a platform that stands still against the Earth stays within this angle ...
 const STILL_RAD: f64 = 0.05;

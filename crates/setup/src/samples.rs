@@ -19,8 +19,6 @@ pub(crate) struct Samples<'a> {
     pub(crate) square_g2: f64,
     /// Number of rows in use: those before a jump.
     pub(crate) end: usize,
-    /// Whether a value was changed and not only taken out.
-    pub(crate) is_rescaled: bool,
 }
 
 /// One row with all three components.
@@ -54,7 +52,6 @@ impl<'a> Samples<'a> {
             noise: [ColumnNoise::default(); 3],
             square_g2: 1.0,
             end: rows,
-            is_rescaled: false,
         };
         samples.look_again();
         samples

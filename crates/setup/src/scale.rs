@@ -16,6 +16,9 @@ const BETTER: f64 = 10.0;
 /// One axis alone is told if it is nearly as good as all three.
 const AS_GOOD: f64 = 2.0;
 
+/// Three gains fit almost anything: all of them must be near one.
+const PLAUSIBLE: core::ops::RangeInclusive<f64> = 0.7..=1.4;
+
 /// Standard deviation of a squared gain about one, for gains that the record does not show.
 const PRIOR_SIGMA: f64 = 3.0;
 
@@ -63,7 +66,6 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         for row in &mut samples.accel_g {
             *row = [0, 1, 2].map(|axis| row[axis] / found.gains[axis]);
         }
-        samples.is_rescaled = true;
         samples.look_again();
     }
     findings
@@ -103,7 +105,8 @@ fn three_axes(samples: &Samples<'_>) -> Option<Gains> {
     let [x, y, z] = all.gains;
     let common = (x + y + z) / 3.0;
     let differ = all.gains.iter().any(|gain| (gain / common - 1.0).abs() > LEAST_ERROR);
-    (differ && explains(samples, &complete, &all)).then_some(all)
+    let plausible = all.gains.iter().all(|gain| PLAUSIBLE.contains(gain));
+    (differ && plausible && explains(samples, &complete, &all)).then_some(all)
 }
 
 fn explains(samples: &Samples<'_>, complete: &[Complete], gains: &Gains) -> bool {

@@ -30,12 +30,6 @@ impl SignedAxes {
         negated: [false; 3],
     };
 
-    /// One axis negated, the simplest mirrored axes.
-    pub(crate) const Z_NEGATED: Self = Self {
-        columns: [0, 1, 2],
-        negated: [false, false, true],
-    };
-
     /// All 48.
     pub fn all() -> impl Iterator<Item = Self> {
         ORDERS.into_iter().flat_map(|columns| {

@@ -27,6 +27,9 @@ const UNITS: [(f64, &str); 7] = [
     (100.0, "percent of g: divide by 100"),
 ];
 
+/// Without gravity a magnitude is noise; no unit in use is so large.
+const REMOVED: f64 = 0.1;
+
 /// Rows between this share and its complement have the same magnitude if only the unit is wrong.
 const TAIL: f64 = 0.1;
 
@@ -45,17 +48,23 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         return Vec::new();
     }
     let spread = quantile(&ratios, 1.0 - TAIL) - quantile(&ratios, TAIL);
-    // The gain of one axis changes the magnitude with the attitude; it has a test of its own.
-    if spread > NEAR * median && scale::one_axis(samples).is_some() {
-        return Vec::new();
-    }
     let known = UNITS
         .iter()
         .filter(|(size, _)| (median / size - 1.0).abs() < NEAR)
         .min_by(|a, b| (median / a.0 - 1.0).abs().total_cmp(&(median / b.0 - 1.0).abs()));
+    // What changes the magnitude with the attitude has tests of its own.
+    if spread > NEAR * median && (known.is_none() || scale::one_axis(samples).is_some()) && median > REMOVED
+    {
+        return Vec::new();
+    }
+    vec![finding(median, known.map(|(_, unit)| *unit))]
+}
+
+/// A magnitude that is no other unit and that no test explains.
+pub(crate) fn finding(median: f64, known: Option<&str>) -> SetupFinding {
     let guess = match known {
-        Some((_, unit)) => format!("It seems to be in {unit}."),
-        None if median < 0.1 => "Gravity seems to have been removed: a platform at rest reads 1 g \
+        Some(unit) => format!("It seems to be in {unit}."),
+        None if median < REMOVED => "Gravity seems to have been removed: a platform at rest reads 1 g \
                                  along the vertical."
             .to_owned(),
         None => "Check the gains of the accelerometers and that the columns are theirs.".to_owned(),
@@ -65,5 +74,5 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         "the median magnitude is {} times that at rest",
         number(median)
     );
-    vec![SetupFinding::new(SetupKind::Unit, description, evidence).stopping()]
+    SetupFinding::new(SetupKind::Unit, description, evidence).stopping()
 }

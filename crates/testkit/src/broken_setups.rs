@@ -5,10 +5,13 @@
 
 mod description;
 mod rows;
+mod sound;
 
 use gyrocal_record::{Bench, Record};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Population, Simulation, simulate};
+
+pub use sound::{large_effects, varied_record, varied_scenario};
 
 /// A record, its bench description, and draws of what is spoilt.
 pub struct Broken {
