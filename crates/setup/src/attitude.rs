@@ -50,7 +50,7 @@ impl SetUp {
         let expected = times(self.platform_c_enu, north);
         let sign = self.axes.determinant();
         let to_deg_per_h = |rate: f64| sign * rate.to_degrees() * 3600.0;
-        let found = self.axes.apply(turn.first.rate_rad_per_s).map(to_deg_per_h);
+        let found = self.axes.apply(turn.first.first_rad_per_s).map(to_deg_per_h);
         norm(minus(across(found, up), expected))
     }
 

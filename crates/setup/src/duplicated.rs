@@ -35,13 +35,13 @@ pub(crate) struct Copied {
 /// Copies of blocks of rows, exact or with noise added.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let complete = samples.complete();
-    let leap = least_leap(samples, &complete);
+    let leap = Leap::of(samples, &complete);
     let copies: Vec<Copied> = exact(&complete)
         .into_iter()
-        .filter(|copy| leaps(&complete, copy.from, leap))
+        .filter(|copy| leap.is_at(&complete, copy.from))
         .collect();
     let copies = if copies.is_empty() {
-        noisy(samples, &complete, leap)
+        noisy(samples, &complete, &leap)
     } else {
         copies
     };
@@ -67,7 +67,7 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         let end = complete[copy.from + copy.len - 1].row + 1;
         range.start.min(complete[copy.from].row)..range.end.max(end)
     });
-    let inserted = copies.iter().find(|copy| is_inserted(&complete, copy, leap));
+    let inserted = copies.iter().find(|copy| is_inserted(&complete, copy, &leap));
     let mut finding = SetupFinding::new(SetupKind::Duplicated, description, evidence).at(range);
     if let Some(copy) = inserted {
         let sample = complete[copy.from];
@@ -88,24 +88,63 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
 }
 
 /// Whether gravity goes on after a copy from where it was before it, as if no time had passed.
-fn is_inserted(complete: &[Complete], copy: &Copied, leap: f64) -> bool {
+fn is_inserted(complete: &[Complete], copy: &Copied, leap: &Leap) -> bool {
     let after = complete.get(copy.from + copy.len);
-    after.is_some_and(|after| angle(complete[copy.from - 1].up, after.up) <= leap)
+    let before = complete[copy.from - 1];
+    let usual_s = complete[copy.from].time_s - before.time_s;
+    after.is_some_and(|after| {
+        // As near as if one row had passed.
+        let soon = Complete {
+            time_s: before.time_s + usual_s,
+            ..*after
+        };
+        !leap.is_between(&before, &soon)
+    })
 }
 
-/// The least angle between two rows that is no usual way, rad.
-fn least_leap(samples: &Samples<'_>, complete: &[Complete]) -> f64 {
-    let mut ways: Vec<f64> = complete
-        .windows(2)
-        .map(|pair| angle(pair[0].up, pair[1].up))
-        .collect();
-    let usual = upper_median(&mut ways).unwrap_or(0.0);
-    LEAPS * usual + NOISY_SIGMAS * samples.sigma_g() / samples.rest_g
+/// What is no usual way between two rows.
+struct Leap {
+    /// Usual speed of the vertical, rad/s.
+    speed_rad_per_s: f64,
+    noise_rad: f64,
 }
 
-/// Whether gravity leaps on the way to a row.
-fn leaps(complete: &[Complete], at: usize, least: f64) -> bool {
-    at > 0 && angle(complete[at - 1].up, complete[at].up) > least
+impl Leap {
+    fn of(samples: &Samples<'_>, complete: &[Complete]) -> Self {
+        let mut speeds: Vec<f64> = complete
+            .windows(2)
+            .map(|pair| angle(pair[0].up, pair[1].up) / (pair[1].time_s - pair[0].time_s))
+            .collect();
+        Self {
+            speed_rad_per_s: upper_median(&mut speeds).unwrap_or(0.0),
+            noise_rad: NOISY_SIGMAS * samples.sigma_g() / samples.rest_g,
+        }
+    }
+
+    /// Whether gravity leaps between two rows: by far more than it goes in the time between them.
+    fn is_between(&self, from: &Complete, to: &Complete) -> bool {
+        let usual = self.speed_rad_per_s * (to.time_s - from.time_s);
+        angle(from.up, to.up) > LEAPS * usual + self.noise_rad
+    }
+
+    /// Whether gravity leaps on the way to a row and stays there: a wild row is no leap.
+    fn is_at(&self, complete: &[Complete], at: usize) -> bool {
+        /// Rows on either side that must lie beyond it.
+        const ABOUT: usize = 2;
+        (0..=ABOUT).all(|about| {
+            let before = at.checked_sub(1 + about).map(|before| &complete[before]);
+            match (before, complete.get(at + about)) {
+                (Some(before), Some(after)) => {
+                    let way = 2 * about + 1;
+                    let usual = self.speed_rad_per_s * (after.time_s - before.time_s);
+                    let allowed = usual * (LEAPS + way as f64 - 1.0) / way as f64;
+                    angle(before.up, after.up) > allowed + self.noise_rad
+                }
+                (None, _) => false,
+                (_, None) => about > 0,
+            }
+        })
+    }
 }
 
 /// Blocks that equal earlier ones in every bit.
@@ -134,7 +173,7 @@ fn exact(complete: &[Complete]) -> Vec<Copied> {
 }
 
 /// Blocks that begin with a leap to where the platform was, within noise.
-fn noisy(samples: &Samples<'_>, complete: &[Complete], leap: f64) -> Vec<Copied> {
+fn noisy(samples: &Samples<'_>, complete: &[Complete], leap: &Leap) -> Vec<Copied> {
     /// Leaps that are looked at: a record with more has other faults, and the cost stays linear.
     const MOST_LEAPS: usize = 20;
     let tolerance = NOISY_SIGMAS * samples.sigma_g();
@@ -142,7 +181,7 @@ fn noisy(samples: &Samples<'_>, complete: &[Complete], leap: f64) -> Vec<Copied>
         let pairs = complete[a].force_g.into_iter().zip(complete[b].force_g);
         pairs.into_iter().all(|(a, b)| (a - b).abs() <= tolerance)
     };
-    let leaps = (1..complete.len()).filter(|at| leaps(complete, *at, leap));
+    let leaps = (1..complete.len()).filter(|at| leap.is_at(complete, *at));
     let mut copies: Vec<Copied> = Vec::new();
     for at in leaps.take(MOST_LEAPS) {
         let inside = |copy: &Copied| at < copy.from + copy.len;

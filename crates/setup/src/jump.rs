@@ -4,7 +4,8 @@ use gyrocal_statistics::upper_median;
 
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
-use crate::rate::{WINDOW_S, rate};
+use crate::prior::horizontal_sigma_deg_per_h;
+use crate::rate::{WINDOW_S, rate, rates};
 use crate::samples::{Complete, Samples};
 use crate::text::{number, row, rows};
 use crate::vector::{Vector, angle, median, minus, norm, plus, turned, unit};
@@ -18,11 +19,23 @@ const SIDE: usize = 5;
 /// Rows that are farther apart have a gap between them, across which the platform drifts ...
 const GAP_S: f64 = 600.0;
 
-/// ... by at most this much more than before it, rad/s (3 deg/h, three sigmas of the usual prior).
-const DRIFT_RAD_PER_S: f64 = 3.0 / 3600.0 * core::f64::consts::PI / 180.0;
+/// ... otherwise than before it by at most so many standard deviations of the prior's drift.
+const DRIFT_SIGMAS: f64 = 3.0;
 
-/// Fastest turn of gravity, rad/s: the Earth's and the largest drift of a prior of 1 deg/h.
-const FASTEST_RAD_PER_S: f64 = 20.0 / 3600.0 * core::f64::consts::PI / 180.0;
+/// By how many usual changes between windows the rate may change across a gap, and by how much at
+/// least.
+const CHANGES: f64 = 2.0;
+const LEAST_CHANGE_DEG_PER_H: f64 = 1.5;
+const LEAST_CHANGES: usize = 3;
+
+/// Share of the way of gravity on one side by which a straight line may miss it.
+const CURVATURE: f64 = 0.1;
+
+/// Fewest rows on either side: one of three may be wild.
+const LEAST_SIDE: usize = 3;
+
+/// A rate is known from so many hours: gravity turns by 30 degrees in them.
+const LEAST_KNOWN_S: f64 = 2.0 * 3600.0;
 
 /// A jump along the way of gravity within this angle could be lost rows.
 const ON_THE_WAY_RAD: f64 = 0.02;
@@ -46,8 +59,8 @@ struct Jump {
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let complete = samples.complete();
     let mut jumps: Vec<Jump> = Vec::new();
-    for at in SIDE.min(complete.len())..complete.len().saturating_sub(SIDE - 1) {
-        let Some(jump) = jump_at(&complete, at) else {
+    for at in LEAST_SIDE..complete.len().saturating_sub(LEAST_SIDE - 1) {
+        let Some(jump) = jump_at(samples, &complete, at) else {
             continue;
         };
         // Medians see one jump from several rows; the right one is the largest.
@@ -96,8 +109,7 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
 }
 
 /// How far the vertical on both sides of the way to a row is from a smooth way.
-fn jump_at(complete: &[Complete], at: usize) -> Option<Jump> {
-    let (before, after) = (&complete[at - SIDE..at], &complete[at..at + SIDE]);
+fn jump_at(samples: &Samples<'_>, complete: &[Complete], at: usize) -> Option<Jump> {
     let (last, next) = (complete[at - 1], complete[at]);
     let gap_s = next.time_s - last.time_s;
     // What is no jump between two rows is none of the medians.
@@ -105,52 +117,123 @@ fn jump_at(complete: &[Complete], at: usize) -> Option<Jump> {
     if step < 0.5 * LEAST_RAD && gap_s < GAP_S {
         return None;
     }
-    let slopes: Vec<Vector> = [before, after]
-        .iter()
-        .flat_map(|side| side.windows(2))
-        .map(|pair| {
-            let interval_s = pair[1].time_s - pair[0].time_s;
-            minus(pair[1].up, pair[0].up).map(|change| change / interval_s)
-        })
-        .collect();
-    let slope = median(&slopes)?;
-    let middle_s = 0.5 * (last.time_s + next.time_s);
-    let value = |side: &[Complete], at_s: f64| {
-        let moved: Vec<Vector> = side
-            .iter()
-            .map(|sample| plus(sample.up, at_s - sample.time_s, slope))
-            .collect();
-        median(&moved)
-    };
-    if gap_s < GAP_S.max(2.0 * usual_interval_s(before, after)) {
-        let (expected, found) = (value(before, middle_s)?, value(after, middle_s)?);
+    let sides = Sides::of(complete, at)?;
+    if gap_s < sides.gap_s {
+        let middle_s = 0.5 * (last.time_s + next.time_s);
+        let expected = sides.before(middle_s)?;
+        let found = sides.after(middle_s)?;
         let size_rad = norm(minus(found, expected));
-        return (size_rad > LEAST_RAD).then(|| Jump {
+        let way_rad = norm(sides.slope) * (sides.after[0].time_s - sides.before[0].time_s);
+        return (size_rad > LEAST_RAD + CURVATURE * way_rad).then(|| Jump {
             at,
             size_rad,
             expected: unit(expected),
             found: unit(found),
-            rate_rad_per_s: (step > LEAST_RAD).then(|| rate_before(complete, at)).flatten(),
+            rate_rad_per_s: rate_before(complete, at),
         });
     }
-    let rate_rad_per_s = rate_before(complete, at);
-    let from = value(before, last.time_s)?;
-    let found = unit(value(after, next.time_s)?);
-    let (expected, allowed) = match rate_rad_per_s {
-        Some(rate) => (
-            turned(unit(from), rate.map(|component| component * gap_s)),
-            LEAST_RAD + DRIFT_RAD_PER_S * gap_s,
-        ),
-        None => (unit(from), LEAST_RAD + FASTEST_RAD_PER_S * gap_s),
-    };
-    let size_rad = angle(expected, found);
+    across_gap(samples, complete, at, &sides)
+}
+
+/// A jump across a gap: gravity turns on at the rate before it, or at the rate after it, whichever
+/// comes nearer.
+fn across_gap(
+    samples: &Samples<'_>,
+    complete: &[Complete],
+    at: usize,
+    sides: &Sides<'_>,
+) -> Option<Jump> {
+    let (last_s, next_s) = (complete[at - 1].time_s, complete[at].time_s);
+    let gap_s = next_s - last_s;
+    let (from, found) = (unit(sides.before(last_s)?), unit(sides.after(next_s)?));
+    let before = rate_before(complete, at)?;
+    let moved = |rate: Vector| turned(from, rate.map(|component| component * gap_s));
+    let expected = moved(before);
+    let miss = |rate: Vector| angle(moved(rate), found);
+    let size_rad = rate_after(complete, at).map_or(miss(before), |after| {
+        miss(before).min(miss(after))
+    });
+    let allowed = LEAST_RAD + change_rad_per_s(samples, complete) * gap_s;
     (size_rad > allowed).then_some(Jump {
         at,
         size_rad,
         expected,
         found,
-        rate_rad_per_s,
+        rate_rad_per_s: Some(before),
     })
+}
+
+/// By how much the rate of gravity may change across a gap, rad/s: as it changes between windows, or
+/// as the prior lets it where there are too few.
+fn change_rad_per_s(samples: &Samples<'_>, complete: &[Complete]) -> f64 {
+    let found = rates(complete, WINDOW_S);
+    let changes = found
+        .windows(2)
+        .map(|pair| norm(minus(pair[1].rate_rad_per_s, pair[0].rate_rad_per_s)));
+    let mut changes: Vec<f64> = changes.collect();
+    let least = LEAST_CHANGE_DEG_PER_H.to_radians() / 3600.0;
+    if changes.len() < LEAST_CHANGES {
+        let sigma = horizontal_sigma_deg_per_h(samples.bench).to_radians() / 3600.0;
+        return DRIFT_SIGMAS * sigma;
+    }
+    let usual = upper_median(&mut changes).unwrap_or(0.0);
+    (CHANGES * usual).max(least)
+}
+
+/// Rows on both sides of a place, without gaps in them.
+struct Sides<'a> {
+    before: &'a [Complete],
+    after: &'a [Complete],
+    /// Median rate of change of the vertical over both, per second.
+    slope: Vector,
+    /// Rows that are farther apart have a gap between them.
+    gap_s: f64,
+}
+
+impl<'a> Sides<'a> {
+    fn of(complete: &'a [Complete], at: usize) -> Option<Self> {
+        let before = &complete[at.saturating_sub(SIDE)..at];
+        let after = &complete[at..complete.len().min(at + SIDE)];
+        let gap_s = GAP_S.max(2.0 * usual_interval_s(before, after));
+        let is_gap = |pair: &[Complete]| pair[1].time_s - pair[0].time_s > gap_s;
+        let start = before.windows(2).rposition(is_gap).map_or(0, |gap| gap + 1);
+        let end = after.windows(2).position(is_gap).map_or(after.len(), |gap| gap + 1);
+        let (before, after) = (&before[start..], &after[..end]);
+        let slopes: Vec<Vector> = [before, after]
+            .iter()
+            .flat_map(|side| side.windows(2))
+            .map(|pair| {
+                let interval_s = pair[1].time_s - pair[0].time_s;
+                minus(pair[1].up, pair[0].up).map(|change| change / interval_s)
+            })
+            .collect();
+        let enough = before.len() >= LEAST_SIDE && after.len() >= LEAST_SIDE;
+        let slope = median(&slopes).filter(|_| enough)?;
+        Some(Self {
+            before,
+            after,
+            slope,
+            gap_s,
+        })
+    }
+
+    /// The vertical at a time, from the rows before.
+    fn before(&self, at_s: f64) -> Option<Vector> {
+        self.from(self.before, at_s)
+    }
+
+    /// The same from the rows after.
+    fn after(&self, at_s: f64) -> Option<Vector> {
+        self.from(self.after, at_s)
+    }
+
+    fn from(&self, side: &[Complete], at_s: f64) -> Option<Vector> {
+        let moved: Vec<Vector> = side
+            .iter()
+            .map(|sample| plus(sample.up, at_s - sample.time_s, self.slope))
+            .collect();
+        median(&moved)
+    }
 }
 
 fn usual_interval_s(before: &[Complete], after: &[Complete]) -> f64 {
@@ -164,7 +247,20 @@ fn usual_interval_s(before: &[Complete], after: &[Complete]) -> f64 {
 fn rate_before(complete: &[Complete], at: usize) -> Option<Vector> {
     let last_s = complete[at - 1].time_s;
     let first = complete[..at].partition_point(|sample| sample.time_s < last_s - WINDOW_S);
-    rate(&complete[first..at]).map(|found| found.rate_rad_per_s)
+    known_rate(&complete[first..at])
+}
+
+/// The rate of gravity over the rows from a row on.
+fn rate_after(complete: &[Complete], at: usize) -> Option<Vector> {
+    let first_s = complete[at].time_s;
+    let end = complete.partition_point(|sample| sample.time_s <= first_s + WINDOW_S);
+    known_rate(&complete[at..end])
+}
+
+fn known_rate(rows: &[Complete]) -> Option<Vector> {
+    let span_s = rows.last()?.time_s - rows.first()?.time_s;
+    let found = rate(rows).filter(|_| span_s >= LEAST_KNOWN_S)?;
+    Some(found.rate_rad_per_s)
 }
 
 /// Time whose turn of gravity equals the jump, if there is one; negative if gravity went back.

@@ -95,6 +95,7 @@ impl Turn {
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let complete = samples.complete();
     let turn = Turn::of(samples, &complete);
+    if let (Some(t), Ok(_)) = (&turn, std::env::var("DBG")) { let l=samples.bench.latitude_deg.to_radians(); eprintln!("DBG {:.2} {:.2} lat {:.1} span {:.1}", t.vertical_misfit(1.0,l)/t.vertical_tolerance_deg_per_h*5.0, (t.horizontal_deg_per_h - EARTH_DEG_PER_H*l.cos()).abs()/t.horizontal_tolerance_deg_per_h*6.0, samples.bench.latitude_deg, (complete.last().map(|s|s.time_s).unwrap_or(0.0)-complete[0].time_s)/3600.0); }
     if let Some(clock) = turn.as_ref().and_then(clock) {
         return vec![clock];
     }
