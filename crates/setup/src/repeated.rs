@@ -8,7 +8,7 @@ use crate::text::{row, rows, span};
 use crate::vector::{minus, norm};
 
 /// The platform moved if gravity turned by so many steps of the converter during the repetition.
-const STEPS: f64 = 6.0;
+const STEPS: f64 = 8.0;
 
 /// Fewest equal rows at the beginning or the end of a record, where only one side shows motion.
 const LEAST_ROWS_AT_END: usize = 10;

@@ -1,7 +1,7 @@
 //! The turn of gravity against latitude and declared attitude.
 
 use gyrocal::EARTH_RATE_RAD_PER_S;
-use gyrocal_statistics::median;
+use gyrocal_statistics::mean;
 
 use crate::attitude;
 use crate::finding::{Correction, SetupFinding};
@@ -16,8 +16,11 @@ use crate::text::number;
 pub(crate) const EARTH_DEG_PER_H: f64 = 3600.0 * EARTH_RATE_RAD_PER_S * 180.0 / core::f64::consts::PI;
 
 /// A component of the rate is wrong beyond so many standard deviations of the prior's drift.
-const VERTICAL_SIGMAS: f64 = 5.0;
-const HORIZONTAL_SIGMAS: f64 = 6.0;
+const VERTICAL_SIGMAS: f64 = 4.6;
+const HORIZONTAL_SIGMAS: f64 = 4.0;
+
+/// By how much a standard deviation of the drift, over the horizontal rate of the Earth, widens these.
+const FAST_DRIFT: f64 = 1.5;
 
 /// The size of the whole rate is that of the Earth within this factor, or the clock is wrong.
 const SOUND_CLOCK: core::ops::RangeInclusive<f64> = 0.6..=1.6;
@@ -27,9 +30,9 @@ const DAY_S: f64 = 86_400.0;
 
 /// What the rows say of the turn of gravity; rates in deg/h.
 pub(crate) struct Turn {
-    /// Along the vertical, median over all windows.
+    /// Along the vertical, trimmed mean over all windows.
     pub(crate) vertical_deg_per_h: f64,
-    /// Across the vertical, median over all windows.
+    /// Across the vertical, trimmed mean over all windows.
     pub(crate) horizontal_deg_per_h: f64,
     /// By how much these may be off.
     pub(crate) vertical_tolerance_deg_per_h: f64,
@@ -45,18 +48,23 @@ impl Turn {
         let first = *found.first()?;
         let deg_per_h = |of: fn(&Rate) -> f64| {
             let all: Vec<f64> = found.iter().map(of).collect();
-            median(&all).to_degrees() * 3600.0
+            trimmed_mean(all).to_degrees() * 3600.0
         };
         let span_s = complete.last()?.time_s - complete.first()?.time_s;
         let shortness = (DAY_S / span_s).max(1.0).sqrt();
         let sigma = vertical_sigma_deg_per_h(samples.bench, complete);
+        let horizontal_sigma = horizontal_sigma_deg_per_h(samples.bench);
+        let cosine = samples.bench.latitude_deg.to_radians().cos();
+        // A platform that drifts fast beside the turn of gravity changes the rate within a window.
+        let inexact = 1.0_f64.hypot(FAST_DRIFT * horizontal_sigma / (EARTH_DEG_PER_H * cosine));
         Some(Self {
             vertical_deg_per_h: deg_per_h(|rate| rate.vertical_rad_per_s),
             horizontal_deg_per_h: deg_per_h(|rate| rate.horizontal_rad_per_s),
-            vertical_tolerance_deg_per_h: VERTICAL_SIGMAS * sigma * shortness,
+            vertical_tolerance_deg_per_h: VERTICAL_SIGMAS * sigma * shortness * inexact,
             horizontal_tolerance_deg_per_h: HORIZONTAL_SIGMAS
-                * horizontal_sigma_deg_per_h(samples.bench)
-                * shortness,
+                * horizontal_sigma
+                * shortness
+                * inexact,
             first,
         })
     }
@@ -91,11 +99,18 @@ impl Turn {
     }
 }
 
+/// Mean without the smallest and the largest fifth: the drift about the vertical averages out over a
+/// day, and a window in which gravity hardly moved is far off.
+fn trimmed_mean(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let cut = values.len() / 5;
+    mean(&values[cut..values.len() - cut])
+}
+
 /// A turn of gravity that the declared latitude, axes and attitude do not explain.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let complete = samples.complete();
     let turn = Turn::of(samples, &complete);
-    if let (Some(t), Ok(_)) = (&turn, std::env::var("DBG")) { let l=samples.bench.latitude_deg.to_radians(); eprintln!("DBG {:.2} {:.2} lat {:.1} span {:.1}", t.vertical_misfit(1.0,l)/t.vertical_tolerance_deg_per_h*5.0, (t.horizontal_deg_per_h - EARTH_DEG_PER_H*l.cos()).abs()/t.horizontal_tolerance_deg_per_h*6.0, samples.bench.latitude_deg, (complete.last().map(|s|s.time_s).unwrap_or(0.0)-complete[0].time_s)/3600.0); }
     if let Some(clock) = turn.as_ref().and_then(clock) {
         return vec![clock];
     }

@@ -35,18 +35,21 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     findings
 }
 
-/// Whether the squared magnitude varies within a run by more than the tolerance and is wrong.
+/// Whether the squared magnitude varies within a run by more than the tolerance and is wrong, without
+/// the row that is farthest off: another accelerometer may have an outlier there.
 fn moves(samples: &Samples<'_>, run: &[usize], tolerance: f64) -> bool {
-    let squares = run.iter().map(|row| samples.square(*row));
-    let complete = squares.filter(|square| !square.is_nan());
-    let (least, most) = complete.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| {
-        (least.min(x), most.max(x))
-    });
-    let off = f64::max(
-        (least - samples.square_g2).abs(),
-        (most - samples.square_g2).abs(),
-    );
-    most - least > tolerance && off > tolerance
+    let squares = run.iter().map(|row| samples.square(*row) - samples.square_g2);
+    let mut off: Vec<f64> = squares.filter(|off| !off.is_nan()).collect();
+    let farthest = (0..off.len()).max_by(|a, b| off[*a].abs().total_cmp(&off[*b].abs()));
+    if let Some(farthest) = farthest {
+        off.swap_remove(farthest);
+    }
+    let (least, most) = off
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| {
+            (least.min(*x), most.max(*x))
+        });
+    most - least > tolerance && f64::max(least.abs(), most.abs()) > tolerance
 }
 
 /// Runs of equal values of a column; rows without a value do not end one.
