@@ -15,6 +15,7 @@ mod naming;
 mod page;
 mod paper;
 mod resumable;
+mod truth;
 mod values;
 
 use std::path::PathBuf;
@@ -64,6 +65,8 @@ enum Topic {
     House,
     /// Two recordings of real gyros: docs/measured-data.md.
     Measured,
+    /// What the diagnosis says that is not so: records of the independent simulator.
+    Truth,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
 }
@@ -78,6 +81,7 @@ fn main() -> ExitCode {
         Topic::Naming => naming::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
         Topic::House => house::figures(arguments.small),
+        Topic::Truth => truth::figures(arguments.small),
         Topic::Measured => measured::figures(arguments.write),
         Topic::Paper => paper::figures(arguments.write),
     };

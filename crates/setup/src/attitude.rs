@@ -50,7 +50,10 @@ impl SetUp {
         let expected = times(self.platform_c_enu, north);
         let sign = self.axes.determinant();
         let to_deg_per_h = |rate: f64| sign * rate.to_degrees() * 3600.0;
-        let found = self.axes.apply(turn.first.first_rad_per_s).map(to_deg_per_h);
+        let found = self
+            .axes
+            .apply(turn.first.first_rad_per_s)
+            .map(to_deg_per_h);
         norm(minus(across(found, up), expected))
     }
 
@@ -61,8 +64,7 @@ impl SetUp {
                     * self.latitude_rad.cos()
                     * (tolerance_deg - LEAST_TOLERANCE_DEG).to_radians();
                 turn.fits_vertical(self.axes.determinant(), self.latitude_rad)
-                    && self.horizontal_misfit(turn)
-                        <= turn.horizontal_tolerance_deg_per_h + slack
+                    && self.horizontal_misfit(turn) <= turn.horizontal_tolerance_deg_per_h + slack
             })
     }
 }
@@ -109,7 +111,10 @@ pub(crate) fn find(
         },
     );
     let found = if tilt_deg > tolerance_deg {
-        format!("The first row is {} deg off the declared attitude", number(tilt_deg))
+        format!(
+            "The first row is {} deg off the declared attitude",
+            number(tilt_deg)
+        )
     } else {
         "Gravity does not turn as it does at this latitude from the declared attitude".to_owned()
     };
@@ -135,14 +140,15 @@ fn unknown(found: String, evidence: String) -> SetupFinding {
 fn told(best: &SetUp, others: &[&SetUp], found: String, evidence: String) -> SetupFinding {
     let description = format!("{found}; it fits with: {}.", best.words);
     let mut finding = SetupFinding::new(best.kind, description, evidence).stopping();
-    finding.correction = matches!(best.kind, SetupKind::Axes | SetupKind::Latitude).then(|| {
-        Correction {
+    finding.correction =
+        matches!(best.kind, SetupKind::Axes | SetupKind::Latitude).then(|| Correction {
             axes: best.axes,
             latitude_deg: best.latitude_rad.to_degrees(),
-        }
-    });
+        });
     // Two mistakes at once are told only if one does not explain it.
-    let simple = others.iter().filter(|other| other.mistakes <= best.mistakes);
+    let simple = others
+        .iter()
+        .filter(|other| other.mistakes <= best.mistakes);
     for other in simple.take(MOST_TOLD) {
         finding = finding.or(other.kind, other.words.clone());
     }
@@ -150,11 +156,7 @@ fn told(best: &SetUp, others: &[&SetUp], found: String, evidence: String) -> Set
 }
 
 /// The vertical at the first row: the median of the first rows, turned back to it.
-fn first_up(
-    samples: &Samples<'_>,
-    complete: &[Complete],
-    turn: Option<&Turn>,
-) -> Option<Vector> {
+fn first_up(samples: &Samples<'_>, complete: &[Complete], turn: Option<&Turn>) -> Option<Vector> {
     let first_s = *samples.time_s.first()?;
     let rate = turn.map_or([0.0; 3], |turn| turn.first.rate_rad_per_s);
     let near: Vec<Vector> = complete

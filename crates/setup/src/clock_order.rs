@@ -23,8 +23,7 @@ pub(crate) fn find(record: &Record) -> Vec<SetupFinding> {
             lengths[0],
             lengths[1]
         );
-        findings
-            .push(SetupFinding::new(SetupKind::Missing, description, evidence).stopping());
+        findings.push(SetupFinding::new(SetupKind::Missing, description, evidence).stopping());
     }
     let is_wrong = |at: usize| {
         let [before_s, time_s] = [record.time_s[at - 1], record.time_s[at]];
@@ -32,7 +31,11 @@ pub(crate) fn find(record: &Record) -> Vec<SetupFinding> {
         !(time_s > before_s && time_s.is_finite())
     };
     let mut wrong: Vec<usize> = (1..record.len()).filter(|at| is_wrong(*at)).collect();
-    if record.time_s.first().is_some_and(|first| !first.is_finite()) {
+    if record
+        .time_s
+        .first()
+        .is_some_and(|first| !first.is_finite())
+    {
         wrong.insert(0, 0);
     }
     if let (Some(first), Some(last)) = (wrong.first(), wrong.last()) {
@@ -41,7 +44,9 @@ pub(crate) fn find(record: &Record) -> Vec<SetupFinding> {
              repeat.",
             row(*first)
         );
-        let before_s = first.checked_sub(1).map_or(f64::NAN, |at| record.time_s[at]);
+        let before_s = first
+            .checked_sub(1)
+            .map_or(f64::NAN, |at| record.time_s[at]);
         let evidence = format!(
             "{} out of order, the first at {} s after {} s",
             rows(wrong.len()),

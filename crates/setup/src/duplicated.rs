@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use gyrocal_statistics::upper_median;
 
 use crate::finding::SetupFinding;
-use crate::kind::SetupKind;
 use crate::jump::LEAST_BEFORE_S;
+use crate::kind::SetupKind;
 use crate::samples::{Complete, Samples};
 use crate::text::{row, rows};
 use crate::vector::angle;
@@ -67,7 +67,9 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         let end = complete[copy.from + copy.len - 1].row + 1;
         range.start.min(complete[copy.from].row)..range.end.max(end)
     });
-    let inserted = copies.iter().find(|copy| is_inserted(&complete, copy, &leap));
+    let inserted = copies
+        .iter()
+        .find(|copy| is_inserted(&complete, copy, &leap));
     let mut finding = SetupFinding::new(SetupKind::Duplicated, description, evidence).at(range);
     if let Some(copy) = inserted {
         let sample = complete[copy.from];
@@ -156,7 +158,10 @@ fn exact(complete: &[Complete]) -> Vec<Copied> {
     for at in 0..complete.len() {
         let follows = open.filter(|copy| key(at - copy.lag) == key(at));
         open = match follows {
-            Some(copy) => Some(Copied { len: copy.len + 1, ..copy }),
+            Some(copy) => Some(Copied {
+                len: copy.len + 1,
+                ..copy
+            }),
             None => {
                 copies.extend(open.filter(|copy| copy.len >= LEAST_ROWS));
                 seen.get(&key(at)).map(|earlier| Copied {
@@ -188,13 +193,15 @@ fn noisy(samples: &Samples<'_>, complete: &[Complete], leap: &Leap) -> Vec<Copie
         if copies.last().is_some_and(inside) {
             continue;
         }
-        let best = (0..at).filter(|earlier| equal(*earlier, at)).map(|earlier| {
-            let lag = at - earlier;
-            let len = (at..complete.len())
-                .take_while(|now| now - lag < at && equal(now - lag, *now))
-                .count();
-            Copied { from: at, lag, len }
-        });
+        let best = (0..at)
+            .filter(|earlier| equal(*earlier, at))
+            .map(|earlier| {
+                let lag = at - earlier;
+                let len = (at..complete.len())
+                    .take_while(|now| now - lag < at && equal(now - lag, *now))
+                    .count();
+                Copied { from: at, lag, len }
+            });
         copies.extend(
             best.max_by_key(|copy| copy.len)
                 .filter(|copy| copy.len >= LEAST_NOISY_ROWS),

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{Bench, Record, SetupProblem};
 
 use crate::kind::SetupKind;
 use crate::signed_axes::SignedAxes;
@@ -67,6 +67,19 @@ impl SetupFinding {
         }
         self.equivalents.push(text.into());
         self
+    }
+
+    /// The finding as results tell it.
+    #[must_use]
+    pub fn problem(&self) -> SetupProblem {
+        SetupProblem {
+            kind: self.kind.as_str().to_owned(),
+            description: self.description.clone(),
+            evidence: self.evidence.clone(),
+            rows: self.rows.clone().map(|rows| [rows.start + 1, rows.end]),
+            stops: self.stops,
+            equivalents: self.equivalents.clone(),
+        }
     }
 
     /// Whether the finding is of a kind, or cannot be told from it.

@@ -93,7 +93,10 @@ fn varies(complete: &[Complete], off: &[f64], middle: f64) -> bool {
     };
     let fitted = &matrix * solved;
     let mean = fitted.mean();
-    let variance = fitted.iter().map(|value| (value - mean).powi(2)).sum::<f64>()
+    let variance = fitted
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>()
         / fitted.len() as f64;
     variance.sqrt() > MOST_VARYING * middle.abs()
 }

@@ -93,8 +93,8 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         number(after.time_s),
         rows(before.row + 1),
     );
-    let mut finding = SetupFinding::new(SetupKind::Jump, description, evidence)
-        .at(after.row..samples.end);
+    let mut finding =
+        SetupFinding::new(SetupKind::Jump, description, evidence).at(after.row..samples.end);
     if let Some(lost_s) = lost_time_s(first) {
         let what = if lost_s > 0.0 { "lost" } else { "repeated" };
         let minutes = number(lost_s.abs() / 60.0);
@@ -105,7 +105,11 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     }
     let is_short = complete[first.at - 1].time_s - complete[0].time_s < LEAST_BEFORE_S;
     samples.end = after.row;
-    vec![if is_short { finding.stopping() } else { finding }]
+    vec![if is_short {
+        finding.stopping()
+    } else {
+        finding
+    }]
 }
 
 /// How far the vertical on both sides of the way to a row is from a smooth way.
@@ -150,9 +154,8 @@ fn across_gap(
     let moved = |rate: Vector| turned(from, rate.map(|component| component * gap_s));
     let expected = moved(before);
     let miss = |rate: Vector| angle(moved(rate), found);
-    let size_rad = rate_after(complete, at).map_or(miss(before), |after| {
-        miss(before).min(miss(after))
-    });
+    let size_rad =
+        rate_after(complete, at).map_or(miss(before), |after| miss(before).min(miss(after)));
     let allowed = LEAST_RAD + change_rad_per_s(samples, complete) * gap_s;
     (size_rad > allowed).then_some(Jump {
         at,
@@ -197,7 +200,10 @@ impl<'a> Sides<'a> {
         let gap_s = GAP_S.max(2.0 * usual_interval_s(before, after));
         let is_gap = |pair: &[Complete]| pair[1].time_s - pair[0].time_s > gap_s;
         let start = before.windows(2).rposition(is_gap).map_or(0, |gap| gap + 1);
-        let end = after.windows(2).position(is_gap).map_or(after.len(), |gap| gap + 1);
+        let end = after
+            .windows(2)
+            .position(is_gap)
+            .map_or(after.len(), |gap| gap + 1);
         let (before, after) = (&before[start..], &after[..end]);
         let slopes: Vec<Vector> = [before, after]
             .iter()

@@ -31,7 +31,11 @@ const FOURTH_DIFFERENCE_VARIANCE: f64 = 70.0;
 /// Noise of a column at some times. Of gravity, which turns by ω between rows, a fourth difference
 /// leaves ω⁴: 4e-10 at a row a minute, 4e-6 at a row in ten.
 pub(crate) fn column_noise(time_s: &[f64], column: &[f64], declared_g: f64) -> ColumnNoise {
-    let declared_g = if declared_g.is_finite() { declared_g.max(0.0) } else { 0.0 };
+    let declared_g = if declared_g.is_finite() {
+        declared_g.max(0.0)
+    } else {
+        0.0
+    };
     let mut fourth: Vec<f64> = column
         .windows(5)
         .zip(time_s.windows(5))

@@ -56,9 +56,9 @@ pub(crate) fn rate(rows: &[Complete]) -> Option<Rate> {
     let mut right = SVector::<f64, 6>::zeros();
     for part in &parts {
         // w × i is a matrix of i times w.
-        let [of_rate, of_change] = part.integrals.map(|i| {
-            Matrix3::new(0.0, i[2], -i[1], -i[2], 0.0, i[0], i[1], -i[0], 0.0)
-        });
+        let [of_rate, of_change] = part
+            .integrals
+            .map(|i| Matrix3::new(0.0, i[2], -i[1], -i[2], 0.0, i[0], i[1], -i[0], 0.0));
         let mut row = SMatrix::<f64, 3, 6>::zeros();
         row.fixed_columns_mut::<3>(0).copy_from(&of_rate);
         row.fixed_columns_mut::<3>(3).copy_from(&of_change);
@@ -77,9 +77,7 @@ pub(crate) fn rate(rows: &[Complete]) -> Option<Rate> {
     let solved = matrix.cholesky()?.solve(&right);
     let at = |share: f64| [0, 1, 2].map(|i| solved[i] + share * solved[3 + i]);
     let vertical = |row: &Complete| dot(row.up, at((row.time_s - middle_s) / half_s));
-    let size = |row: &Complete| {
-        norm(across(at((row.time_s - middle_s) / half_s), row.up))
-    };
+    let size = |row: &Complete| norm(across(at((row.time_s - middle_s) / half_s), row.up));
     let count = rows.len() as f64;
     Some(Rate {
         rate_rad_per_s: at(0.0),

@@ -7,13 +7,14 @@ use crate::attitude;
 use crate::finding::{Correction, SetupFinding};
 use crate::kind::SetupKind;
 use crate::prior::{horizontal_sigma_deg_per_h, vertical_sigma_deg_per_h};
-use crate::rate::{WINDOW_S, Rate, rates};
+use crate::rate::{Rate, WINDOW_S, rates};
 use crate::samples::{Complete, Samples};
 use crate::signed_axes::SignedAxes;
 use crate::text::number;
 
 /// Rate of the Earth, deg/h.
-pub(crate) const EARTH_DEG_PER_H: f64 = 3600.0 * EARTH_RATE_RAD_PER_S * 180.0 / core::f64::consts::PI;
+pub(crate) const EARTH_DEG_PER_H: f64 =
+    3600.0 * EARTH_RATE_RAD_PER_S * 180.0 / core::f64::consts::PI;
 
 /// A component of the rate is wrong beyond so many standard deviations of the prior's drift.
 const VERTICAL_SIGMAS: f64 = 4.6;
@@ -127,7 +128,9 @@ fn clock(turn: &Turn) -> Option<SetupFinding> {
     let size = turn.vertical_deg_per_h.hypot(turn.horizontal_deg_per_h);
     let ratio = size / EARTH_DEG_PER_H;
     let off = (size - EARTH_DEG_PER_H).abs();
-    let tolerance = turn.vertical_tolerance_deg_per_h.max(turn.horizontal_tolerance_deg_per_h);
+    let tolerance = turn
+        .vertical_tolerance_deg_per_h
+        .max(turn.horizontal_tolerance_deg_per_h);
     if SOUND_CLOCK.contains(&ratio) || off < tolerance {
         return None;
     }

@@ -94,7 +94,9 @@ pub(crate) fn one_axis(samples: &Samples<'_>) -> Option<Gains> {
     let best = fitted.min_by(|a, b| a.residual_g2.total_cmp(&b.residual_g2))?;
     let all = joint(samples, &complete);
     let is_enough = all.is_none_or(|all| best.residual_g2 <= AS_GOOD * all.residual_g2);
-    explains(samples, &complete, &best).then_some(best).filter(|_| is_enough)
+    explains(samples, &complete, &best)
+        .then_some(best)
+        .filter(|_| is_enough)
 }
 
 /// The gains of all axes, if they explain the magnitudes.
@@ -104,15 +106,22 @@ fn three_axes(samples: &Samples<'_>) -> Option<Gains> {
     // A gain that all have in common is gravity's.
     let [x, y, z] = all.gains;
     let common = (x + y + z) / 3.0;
-    let differ = all.gains.iter().any(|gain| (gain / common - 1.0).abs() > LEAST_ERROR);
+    let differ = all
+        .gains
+        .iter()
+        .any(|gain| (gain / common - 1.0).abs() > LEAST_ERROR);
     let plausible = all.gains.iter().all(|gain| PLAUSIBLE.contains(gain));
     (differ && plausible && explains(samples, &complete, &all)).then_some(all)
 }
 
 fn explains(samples: &Samples<'_>, complete: &[Complete], gains: &Gains) -> bool {
-    let off = gains.gains.iter().any(|gain| (gain - 1.0).abs() > LEAST_ERROR);
+    let off = gains
+        .gains
+        .iter()
+        .any(|gain| (gain - 1.0).abs() > LEAST_ERROR);
     let common = common_gain(samples, complete);
-    let before = residual(samples, complete, [1.0; 3]).min(residual(samples, complete, [common; 3]));
+    let before =
+        residual(samples, complete, [1.0; 3]).min(residual(samples, complete, [common; 3]));
     off && complete.len() >= LEAST_ROWS && BETTER * gains.residual_g2 < before
 }
 
@@ -154,7 +163,10 @@ fn fit(
     let mut gains = [1.0; 3];
     for _ in 0..3 {
         let squares = solve(&weights)?;
-        if !squares.iter().all(|square| *square > 0.0 && square.is_finite()) {
+        if !squares
+            .iter()
+            .all(|square| *square > 0.0 && square.is_finite())
+        {
             return None;
         }
         gains = squares.map(|square| square.sqrt().recip());

@@ -38,7 +38,9 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
 /// Whether the squared magnitude varies within a run by more than the tolerance and is wrong, without
 /// the row that is farthest off: another accelerometer may have an outlier there.
 fn moves(samples: &Samples<'_>, run: &[usize], tolerance: f64) -> bool {
-    let squares = run.iter().map(|row| samples.square(*row) - samples.square_g2);
+    let squares = run
+        .iter()
+        .map(|row| samples.square(*row) - samples.square_g2);
     let mut off: Vec<f64> = squares.filter(|off| !off.is_nan()).collect();
     let farthest = (0..off.len()).max_by(|a, b| off[*a].abs().total_cmp(&off[*b].abs()));
     if let Some(farthest) = farthest {

@@ -51,9 +51,15 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let known = UNITS
         .iter()
         .filter(|(size, _)| (median / size - 1.0).abs() < NEAR)
-        .min_by(|a, b| (median / a.0 - 1.0).abs().total_cmp(&(median / b.0 - 1.0).abs()));
+        .min_by(|a, b| {
+            (median / a.0 - 1.0)
+                .abs()
+                .total_cmp(&(median / b.0 - 1.0).abs())
+        });
     // What changes the magnitude with the attitude has tests of its own.
-    if spread > NEAR * median && (known.is_none() || scale::one_axis(samples).is_some()) && median > REMOVED
+    if spread > NEAR * median
+        && (known.is_none() || scale::one_axis(samples).is_some())
+        && median > REMOVED
     {
         return Vec::new();
     }
@@ -64,9 +70,11 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
 pub(crate) fn finding(median: f64, known: Option<&str>) -> SetupFinding {
     let guess = match known {
         Some(unit) => format!("It seems to be in {unit}."),
-        None if median < REMOVED => "Gravity seems to have been removed: a platform at rest reads 1 g \
+        None if median < REMOVED => {
+            "Gravity seems to have been removed: a platform at rest reads 1 g \
                                  along the vertical."
-            .to_owned(),
+                .to_owned()
+        }
         None => "Check the gains of the accelerometers and that the columns are theirs.".to_owned(),
     };
     let description = format!("Specific force is not in units of gravity. {guess}");

@@ -58,7 +58,11 @@ pub(crate) fn turned(a: Vector, rotation: Vector) -> Vector {
     let axis = unit(rotation);
     let (sine, cosine) = angle.sin_cos();
     let along = (1.0 - cosine) * dot(axis, a);
-    plus(plus(a.map(|x| x * cosine), sine, cross(axis, a)), along, axis)
+    plus(
+        plus(a.map(|x| x * cosine), sine, cross(axis, a)),
+        along,
+        axis,
+    )
 }
 
 /// Median of each component; `None` of nothing.

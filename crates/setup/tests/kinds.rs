@@ -52,13 +52,33 @@ fn broken(first: &str, second: &str, seed: u64) -> Broken {
 fn two_errors_at_once_are_told_both_or_the_one_that_stops() {
     // What can be mended, in the order of the tests.
     for (first, second, kinds) in [
-        ("0 in one column", "a jump of the attitude", ["missing-coded", "jump"]),
+        (
+            "0 in one column",
+            "a jump of the attitude",
+            ["missing-coded", "jump"],
+        ),
         ("stuck for hours", "a common scale", ["stuck", "gravity"]),
-        ("the logger hangs", "the gain of one axis", ["repeated", "scale"]),
-        ("the gain of one axis", "a jump of the attitude", ["scale", "jump"]),
-        ("-999 in all columns", "latitude negated", ["missing-coded", "latitude"]),
+        (
+            "the logger hangs",
+            "the gain of one axis",
+            ["repeated", "scale"],
+        ),
+        (
+            "a jump of the attitude",
+            "the gain of one axis",
+            ["scale", "jump"],
+        ),
+        (
+            "-999 in all columns",
+            "latitude negated",
+            ["missing-coded", "latitude"],
+        ),
         ("clipped", "angles left at zero", ["clipped", "attitude"]),
-        ("a block over later rows", "standard g at another site", ["duplicated", "gravity"]),
+        (
+            "a block over later rows",
+            "standard g at another site",
+            ["duplicated", "gravity"],
+        ),
     ] {
         for seed in [2_170_000, 2_170_002, 2_170_004] {
             let broken = broken(first, second, seed);
@@ -66,7 +86,11 @@ fn two_errors_at_once_are_told_both_or_the_one_that_stops() {
             let told: Vec<&str> = check.findings.iter().map(|f| f.kind.as_str()).collect();
             // An error that stops hides what would come after it.
             let stopped = check.usable.is_none();
-            let expected = if stopped && told.len() == 1 { &kinds[..1] } else { &kinds[..] };
+            let expected = if stopped && told.len() == 1 {
+                &kinds[..1]
+            } else {
+                &kinds[..]
+            };
             assert_eq!(told, expected, "{first} and {second}, seed {seed}");
         }
     }
@@ -81,7 +105,11 @@ fn what_is_mended_is_left_out_and_the_rest_stays() {
     let usable = usable.unwrap_or_else(|| panic!("a usable record"));
     let pairs = usable.accel_g.iter().zip(&broken.record.accel_g);
     for (left, given) in pairs.flat_map(|(a, b)| a.iter().zip(b)) {
-        assert!(if *given == 0.0 { left.is_nan() } else { left == given });
+        assert!(if *given == 0.0 {
+            left.is_nan()
+        } else {
+            left == given
+        });
     }
     let broken = breakage("a jump of the attitude").map(|b| b.record(2_175_000));
     let broken = broken.unwrap_or_else(|| panic!("a breakage"));

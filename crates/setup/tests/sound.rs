@@ -38,10 +38,22 @@ fn no_record_makes_it_panic() {
         temperature_c: None,
     };
     for rows in [0, 1, 2, 3, 5, 11, 12, 13, 30, 100, 1000] {
-        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, 0.577, 1e300, 5e-324] {
+        for value in [
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            0.0,
+            -0.0,
+            0.577,
+            1e300,
+            5e-324,
+        ] {
             for latitude_deg in [0.0, 45.0, -90.0, f64::NAN, f64::INFINITY] {
                 let mut record = constant(value, rows);
-                let bench = Bench { latitude_deg, ..bench() };
+                let bench = Bench {
+                    latitude_deg,
+                    ..bench()
+                };
                 let _ = check_setup(&record, &bench);
                 record.time_s.reverse();
                 let _ = check_setup(&record, &bench);
@@ -61,7 +73,9 @@ fn no_record_makes_it_panic() {
 #[test]
 fn pieces_of_a_record_are_judged_without_panic_and_without_alarm() {
     let simulation = sound(2_000_900);
-    for rows in [0, 1, 5, 11, 12, 13, 20, 36, 60, 120, 200, 361, 500, 721, 1000, 1441] {
+    for rows in [
+        0, 1, 5, 11, 12, 13, 20, 36, 60, 120, 200, 361, 500, 721, 1000, 1441,
+    ] {
         let record = Record {
             time_s: simulation.record.time_s[..rows].to_vec(),
             accel_g: simulation.record.accel_g[..rows].to_vec(),

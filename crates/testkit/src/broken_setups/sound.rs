@@ -43,7 +43,9 @@ pub fn varied_scenario(seed: u64) -> Scenario {
         let lsb_g = scenario.accel_noise_g * random.log_uniform([1.0, 30.0]);
         for axis in ["x", "y", "z"] {
             let id = format!("accel_{axis}.quantisation");
-            scenario.hidden.push(Hidden::new(&id, &[("lsb", lsb_g)]).unwrap());
+            scenario
+                .hidden
+                .push(Hidden::new(&id, &[("lsb", lsb_g)]).unwrap());
         }
     }
     scenario
@@ -70,8 +72,14 @@ pub fn large_effects(scenario: &Scenario, random: &mut Draw) -> Vec<Hidden> {
     let accel = |name: &str| format!("accel_{}.{name}", ["x", "y", "z"][(onset_s as usize) % 3]);
     let size = random.sign() * random.log_uniform([0.1, 1.0]);
     let effects = [
-        (gyro("step"), vec![("size", 0.3 * size), ("onset_s", onset_s)]),
-        (gyro("warmup"), vec![("size", size), ("time_constant_h", 6.0)]),
+        (
+            gyro("step"),
+            vec![("size", 0.3 * size), ("onset_s", onset_s)],
+        ),
+        (
+            gyro("warmup"),
+            vec![("size", size), ("time_constant_h", 6.0)],
+        ),
         (gyro("ramp"), vec![("size", 0.3 * size)]),
         (gyro("diurnal"), vec![("sine", 0.2 * size), ("cosine", 0.1)]),
         (gyro("random_walk"), vec![("size", 2e-3)]),
@@ -81,9 +89,18 @@ pub fn large_effects(scenario: &Scenario, random: &mut Draw) -> Vec<Hidden> {
         (accel("scale"), vec![("size", 1e-4 * size)]),
         (accel("ramp"), vec![("size", 3e-5 * size)]),
         (accel("noise"), vec![("ratio", 10.0)]),
-        ("accel_xy.nonorthogonality".to_owned(), vec![("size", 1e-4 * size)]),
-        ("accel.outliers".to_owned(), vec![("fraction", 0.02), ("size", 100.0)]),
-        ("accel.coloured_noise".to_owned(), vec![("correlation", 0.5)]),
+        (
+            "accel_xy.nonorthogonality".to_owned(),
+            vec![("size", 1e-4 * size)],
+        ),
+        (
+            "accel.outliers".to_owned(),
+            vec![("fraction", 0.02), ("size", 100.0)],
+        ),
+        (
+            "accel.coloured_noise".to_owned(),
+            vec![("correlation", 0.5)],
+        ),
         ("site.latitude".to_owned(), vec![("size", 0.1 * size)]),
         ("clock.rate".to_owned(), vec![("size", 2.7e-3)]),
         (
