@@ -4,6 +4,7 @@ use crate::coded::STOPPING_SHARE;
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::Samples;
+use crate::scale;
 use crate::text::{AXES, number, row, rows, span};
 
 /// Width of the band below an extreme, in sigmas: noise that was added after the limit, and steps.
@@ -59,6 +60,10 @@ impl End {
 /// most rows comes first: its rows are short at the extremes of the others as well.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let mut findings = Vec::new();
+    // A wrong gain makes magnitudes small wherever another axis is at its extreme.
+    if scale::one_axis(samples).is_some() {
+        return findings;
+    }
     for _ in 0..3 {
         let ends: Vec<End> = (0..3)
             .flat_map(|axis| [1.0, -1.0].map(|sign| (axis, sign)))

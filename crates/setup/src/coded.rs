@@ -82,24 +82,23 @@ fn finding(samples: &Samples<'_>, code: f64, axes: &[usize], at: &[usize]) -> Se
 
 /// Values of a column that may be codes, the most frequent first.
 fn codes(samples: &Samples<'_>, axis: usize) -> Vec<f64> {
-    let mut values: Vec<f64> = samples
-        .accel_g
-        .iter()
-        .map(|row| row[axis])
-        .filter(|value| !value.is_nan())
-        .collect();
-    values.sort_by(f64::total_cmp);
     let mut squares: Vec<f64> = (0..samples.accel_g.len())
         .map(|row| samples.square(row))
         .filter(|square| !square.is_nan())
         .collect();
     let median = gyrocal_statistics::upper_median(&mut squares).unwrap_or(1.0);
     let wild = WILD * median.sqrt();
+    let mut values: Vec<f64> = samples
+        .accel_g
+        .iter()
+        .map(|row| row[axis])
+        .filter(|value| *value == 0.0 || value.abs() > wild)
+        .collect();
+    values.sort_by(f64::total_cmp);
     values
         .chunk_by(|a, b| a == b)
         .filter(|equal| equal.len() >= LEAST_ROWS)
         .map(|equal| equal[0])
-        .filter(|value| *value == 0.0 || value.abs() > wild)
         .collect()
 }
 

@@ -117,8 +117,11 @@ impl<'a> Samples<'a> {
     fn common_square(&self) -> f64 {
         /// Accelerometers and sites differ by less.
         const NEAR: f64 = 0.1;
+        /// Rows that are enough for it; the cost of the sort does not grow beyond them.
+        const ROWS: usize = 5000;
         let declared = self.rest_g * self.rest_g;
         let mut squares: Vec<f64> = (0..self.accel_g.len())
+            .step_by(self.accel_g.len().div_ceil(ROWS).max(1))
             .map(|row| self.square(row))
             .filter(|square| !square.is_nan())
             .collect();

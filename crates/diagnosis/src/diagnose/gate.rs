@@ -11,7 +11,7 @@ use crate::result::{DiagnosisResult, ResidualTest, ResidualVerdict, SCHEMA_VERSI
 
 /// Rows that a record is thinned to before it is fitted as given and as corrected: enough to tell a
 /// mean NIS of 3 from one of 4, and fitted in a tenth of a second.
-const FITTED_ROWS: usize = 720;
+const FITTED_ROWS: usize = 288;
 
 /// The problems of a check; of those that a correction of axes or latitude removes, the mean NIS of
 /// both is in the evidence.

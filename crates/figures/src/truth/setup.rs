@@ -219,12 +219,12 @@ fn time() -> Result<Vec<Figure>, Error> {
     }
     let name = |what: &str| format!("time of the gate at {rows} rows, {what}");
     Ok(vec![
-        Figure::at_most(&name("without a refit"), 0.1, once, "s").over(TIMED_RUNS, ""),
+        Figure::at_most(&name("without a refit"), 100.0, 1e3 * once, "ms").over(TIMED_RUNS, ""),
         Figure::at_most(
             &name("with a refit as given and corrected"),
-            0.5,
-            slowest,
-            "s",
+            500.0,
+            1e3 * slowest,
+            "ms",
         )
         .over(2 * TIMED_RUNS, ""),
         Figure::truth("the latitude's sign stops the diagnosis", is_told),
