@@ -5,11 +5,11 @@ use crate::kind::SetupKind;
 use crate::samples::Samples;
 use crate::text::{accelerometers, capitalised, rows};
 
-/// An accelerometer that has a value in a smaller share of the rows is missing: with two, the sign
-/// of the third component is not known in most rows.
+/// An accelerometer that has a value in a smaller share of the rows is missing.
 const LEAST_SHARE: f64 = 0.05;
 
-/// Columns that are empty or nearly so.
+/// Columns that are empty or nearly so. Two accelerometers of a platform whose attitude is declared
+/// are enough for a calibration; otherwise nothing tells the sign of the third component.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let measured = samples.measured_rows();
     let counts = [0, 1, 2].map(|axis| {
@@ -29,5 +29,7 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     );
     let least = empty.iter().map(|axis| counts[*axis]).min().unwrap_or(0);
     let evidence = format!("values in {least} of {}", rows(measured));
-    vec![SetupFinding::new(SetupKind::Missing, description, evidence).stopping()]
+    let finding = SetupFinding::new(SetupKind::Missing, description, evidence);
+    let is_enough = empty.len() == 1 && samples.bench.initial_angles_deg.is_some();
+    vec![if is_enough { finding } else { finding.stopping() }]
 }
