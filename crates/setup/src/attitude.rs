@@ -3,10 +3,10 @@
 use crate::convention::{Matrix, conventions, platform_c_enu, times};
 use crate::finding::{Correction, SetupFinding};
 use crate::kind::SetupKind;
-use crate::rotation::{EARTH_DEG_PER_H, Turn, in_degrees};
 use crate::samples::{Complete, Samples};
 use crate::signed_axes::SignedAxes;
 use crate::text::number;
+use crate::turn::{EARTH_DEG_PER_H, Turn, in_degrees};
 use crate::vector::{Vector, across, angle, dot, median, minus, norm, turned};
 
 /// The first vertical is that of a set-up within this angle ...

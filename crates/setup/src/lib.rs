@@ -63,6 +63,7 @@ mod scale;
 mod signed_axes;
 mod stuck;
 mod text;
+mod turn;
 mod unit;
 mod vector;
 

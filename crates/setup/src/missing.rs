@@ -31,5 +31,9 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let evidence = format!("values in {least} of {}", rows(measured));
     let finding = SetupFinding::new(SetupKind::Missing, description, evidence);
     let is_enough = empty.len() == 1 && samples.bench.initial_angles_deg.is_some();
-    vec![if is_enough { finding } else { finding.stopping() }]
+    vec![if is_enough {
+        finding
+    } else {
+        finding.stopping()
+    }]
 }

@@ -339,6 +339,9 @@ fn one_pass_needs_an_attitude() {
         .collect();
     folder.put("r.csv", blank.join("\n"));
     let errors = folder.fail(&JSON);
-    assert_says(&errors, "the set-up is wrong: Accelerometer z has no values.");
+    assert_says(
+        &errors,
+        "the set-up is wrong: Accelerometer z has no values.",
+    );
     assert_says(&errors, "values in 0 of 40 rows");
 }
