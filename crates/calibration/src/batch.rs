@@ -169,7 +169,9 @@ where
             start.points,
             layout.parameter_unknowns(index),
         );
-        run_problem.rows.gyro_axes = task.gyro_axes.map(|axes| &axes[index]);
+        run_problem.rows.gyro_axes = task
+            .gyro_axes
+            .map(|axes| std::borrow::Cow::Borrowed(&axes[index]));
         // The weights of other outliers are found from the first solution.
         if options.outlier_bound.is_some() {
             for row in guess.gross_errors {

@@ -237,6 +237,43 @@ impl<'a> FittedPlatform<'a> {
         })
     }
 
+    /// The same with copies of what it borrows.
+    #[must_use]
+    pub fn into_owned(self) -> FittedPlatform<'static> {
+        let problem = self.problem;
+        let runs = problem.runs.into_iter().map(|run| RunProblem {
+            rows: run.rows.into_owned(),
+            chart: run.chart,
+            noise_density: run.noise_density,
+            prior: run.prior,
+            prior_covariance: run.prior_covariance,
+            points: run.points,
+            parameter_unknowns: run.parameter_unknowns,
+            further: run.further,
+            amplitudes: run.amplitudes,
+        });
+        FittedPlatform {
+            problem: Problem {
+                model: &Anchored(Catalogue),
+                integration: problem.integration,
+                longest_step_s: problem.longest_step_s,
+                unknowns: problem.unknowns,
+                runs: runs.collect(),
+                values: problem.values,
+            },
+            solution: self.solution,
+            uncertainty: self.uncertainty,
+            extension: self.extension,
+        }
+    }
+
+    /// Mean over the rows of the normalised innovation squared; the number of components of a row is
+    /// expected, 3 if none is missing.
+    #[must_use]
+    pub fn nis_mean(&self) -> f64 {
+        self.solution.cost / self.solution.rows.max(1) as f64
+    }
+
     /// The part of the model beyond the nine coefficients.
     #[must_use]
     pub fn extension(&self) -> &ModelExtension {

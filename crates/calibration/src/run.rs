@@ -1,5 +1,7 @@
 //! A run, and its rows as the batch estimator reads them.
 
+use std::borrow::Cow;
+
 use gyrocal::estimation::batch::Series;
 use gyrocal::generated::catalogue::{CatalogueInputs, conditions_index};
 use gyrocal::generated::strapdown::StrapdownInputs;
@@ -52,7 +54,7 @@ pub struct Run<'a> {
 /// The first rows of a record with the noise variance and weight of each value.
 #[derive(Clone, Debug)]
 pub(crate) struct WeightedRows<'a> {
-    record: &'a Record,
+    record: Cow<'a, Record>,
     /// Number of rows used, from the first.
     rows: usize,
     /// Variance of a value of weight 1, g².
@@ -62,14 +64,14 @@ pub(crate) struct WeightedRows<'a> {
     /// Weight of each value if not all are 1: a value of weight 0 is left out.
     pub(crate) weights: Option<Vec<[f64; 3]>>,
     /// Axes of the gyros, if not those of the platform.
-    pub(crate) gyro_axes: Option<&'a GyroAxes>,
+    pub(crate) gyro_axes: Option<Cow<'a, GyroAxes>>,
 }
 
 impl<'a> WeightedRows<'a> {
     /// The first `rows` rows with weight 1 and the noise `noise_g` of each accelerometer.
     pub(crate) fn new(record: &'a Record, rows: usize, noise_g: [f64; 3]) -> Self {
         Self {
-            record,
+            record: Cow::Borrowed(record),
             rows,
             variance_g2: noise_g.map(|sigma| sigma * sigma),
             mean_temperature_c: record.temperature_c.as_ref().map_or(0.0, |temperature| {
@@ -77,6 +79,18 @@ impl<'a> WeightedRows<'a> {
             }),
             weights: None,
             gyro_axes: None,
+        }
+    }
+
+    /// The same with a copy of the record.
+    pub(crate) fn into_owned(self) -> WeightedRows<'static> {
+        WeightedRows {
+            record: Cow::Owned(self.record.into_owned()),
+            rows: self.rows,
+            variance_g2: self.variance_g2,
+            mean_temperature_c: self.mean_temperature_c,
+            weights: self.weights,
+            gyro_axes: self.gyro_axes.map(|axes| Cow::Owned(axes.into_owned())),
         }
     }
 
@@ -151,7 +165,7 @@ impl<I: Conditions> Series<Chart<f64, I>, 3> for WeightedRows<'_> {
         inputs
             .inputs_mut()
             .set_conditions(middle_s - first_s, to_s - from_s, temperature_k);
-        if let Some(axes) = self.gyro_axes {
+        if let Some(axes) = &self.gyro_axes {
             let platform_c_gyros = axes.between(row, share);
             inputs.inputs_mut().set_gyro_axes(&platform_c_gyros);
         }

@@ -13,7 +13,7 @@ use gyrocal::Platform;
 use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
-use gyrocal_record::{CalibrationMethod, write_json};
+use gyrocal_record::{CalibrationMethod, SetupProblem, write_json};
 
 use crate::Failure;
 use crate::numbers::positive;
@@ -156,7 +156,14 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
         .map(PathBuf::as_path)
         .collect();
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    let measurements = inputs::read(&arguments.records, &arguments.benches, arguments.average)?;
+    // The platform of strapdown gyros is computed: it has no set-up.
+    let is_platform = arguments.gyro_axes.is_empty();
+    let measurements = inputs::read(
+        &arguments.records,
+        &arguments.benches,
+        arguments.average,
+        is_platform,
+    )?;
     let rows = measurements.iter().map(|m| m.record.len()).sum();
     tracing::info!(records = measurements.len(), rows, "read");
     let options = arguments.options();
@@ -192,6 +199,13 @@ struct CalibrationRun {
 }
 
 impl CalibrationRun {
+    /// Gross errors of the set-ups that were mended.
+    fn setup(&self) -> impl Iterator<Item = &SetupProblem> {
+        self.measurements
+            .iter()
+            .flat_map(|measurement| &measurement.setup)
+    }
+
     fn has_several_records(&self) -> bool {
         self.measurements.len() > 1
     }

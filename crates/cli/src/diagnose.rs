@@ -10,9 +10,10 @@ use gyrocal::Platform;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, FILTER_EFFECT, TestedFilter, Verdict, diagnose, prose,
+    DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, TestedFilter,
+    Verdict, diagnose, prose,
 };
-use gyrocal_record::{Bench, Outputs, Record};
+use gyrocal_record::{Bench, Outputs, Record, write_json};
 
 use crate::layout::layout;
 use crate::numbers::probability;
@@ -68,6 +69,9 @@ pub(crate) struct DiagnoseArguments {
     exit_code: bool,
 }
 
+/// Exit code of a wrong set-up.
+const EXIT_SETUP: u8 = 5;
+
 /// A filter that can be tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Filter {
@@ -78,7 +82,6 @@ enum Filter {
 /// A diagnosis with its inputs.
 struct DiagnosisRun<'a> {
     path: &'a Path,
-    record: &'a Record,
     bench: &'a Bench,
     diagnosis: Diagnosis<'a>,
 }
@@ -134,7 +137,14 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
     let progress = Progress::waiting("diagnosing", record.len());
-    let mut diagnosis = diagnose(&record, &bench, &options).map_err(failed)?;
+    let mut diagnosis = match diagnose(&record, &bench, &options) {
+        Err(DiagnosisError::Setup { mut result }) => {
+            drop(progress);
+            result.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
+            return stopped(arguments, &result);
+        }
+        found => found.map_err(failed)?,
+    };
     diagnosis.result.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
     if let Some((path, later, later_bench)) = &later {
         let failed = |source| NotDiagnosed::new(path, later_bench, source);
@@ -150,11 +160,23 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         arguments,
         &DiagnosisRun {
             path: &arguments.record,
-            record: &record,
             bench: &bench,
             diagnosis,
         },
     )
+}
+
+/// The answer of a record whose set-up is wrong: no pictures, as nothing was fitted.
+fn stopped(arguments: &DiagnoseArguments, result: &DiagnosisResult) -> Result<Answer, Failure> {
+    let mut text = layout(&prose::diagnosis(result));
+    if let Some(path) = &arguments.json {
+        write_json(path, result)?;
+        text.push_str(&format!("\n{}: the result for programs\n", path.display()));
+    }
+    Ok(Answer {
+        text,
+        exit_code: if arguments.exit_code { EXIT_SETUP } else { 0 },
+    })
 }
 
 /// Writes all outputs, and lays out the words.
@@ -175,7 +197,7 @@ fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answe
         exit_code: match (arguments.exit_code, result.verdict) {
             (true, Verdict::EffectsFound) => 3,
             (true, Verdict::Unexplained) => 4,
-            (true, Verdict::Setup) => 5,
+            (true, Verdict::Setup) => EXIT_SETUP,
             _ => 0,
         },
     })

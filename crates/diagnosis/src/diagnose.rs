@@ -2,14 +2,18 @@
 
 mod answer;
 mod findings;
+mod gate;
 mod later;
 mod noise_audited_fit;
 mod noise_update;
 mod untestable_rows;
 
+use std::borrow::Cow;
+
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run};
 use gyrocal_hypothesis::{SearchOptions, Searched};
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{Bench, Record, SetupProblem};
+use gyrocal_setup::check_setup;
 use gyrocal_statistics::allan_test;
 
 use crate::error::DiagnosisError;
@@ -63,6 +67,8 @@ impl Default for DiagnoseOptions {
 pub struct Diagnosis<'a> {
     /// The answer.
     pub result: DiagnosisResult,
+    /// The record that was diagnosed: without what gross errors of the set-up spoilt.
+    pub record: Cow<'a, Record>,
     /// The nominal model at its best fit.
     pub nominal: FittedPlatform<'a>,
     /// The model with all accepted causes, if there are any.
@@ -79,16 +85,56 @@ pub struct Diagnosis<'a> {
     pub later: Option<LaterPrediction>,
 }
 
-/// Diagnoses a record: noise audit, search, residual test, gain, answer.
+impl Diagnosis<'_> {
+    /// The same with copies of what it borrows.
+    fn into_owned(self) -> Diagnosis<'static> {
+        Diagnosis {
+            result: self.result,
+            record: Cow::Owned(self.record.into_owned()),
+            nominal: self.nominal.into_owned(),
+            extended: self.extended.map(FittedPlatform::into_owned),
+            noise_model: self.noise_model,
+            audit: self.audit,
+            innovations: self.innovations,
+            whitened: self.whitened,
+            later: self.later,
+        }
+    }
+}
+
+/// Diagnoses a record: set-up, noise audit, search, residual test, gain, answer. What gross errors
+/// of the set-up spoilt is left out, and told in the answer.
 ///
 /// # Errors
-/// [`DiagnosisError`].
+/// [`DiagnosisError::Setup`] with the answer if a gross error of the set-up leaves nothing sound;
+/// other [`DiagnosisError`]s.
 pub fn diagnose<'a>(
     record: &'a Record,
     bench: &'a Bench,
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
     request::check(&options.also, record, bench)?;
+    let check = check_setup(record, bench);
+    if check.findings.is_empty() {
+        return diagnose_sound(record, bench, options, Vec::new());
+    }
+    let setup = gate::problems(&check, &Run { record, bench }, &options.calibration);
+    let Some(usable) = check.usable else {
+        let result = Box::new(gate::stopped(record, options, setup));
+        return Err(DiagnosisError::Setup { result });
+    };
+    request::check(&options.also, &usable, bench)?;
+    let found = diagnose_sound(&usable, bench, options, setup)?;
+    Ok(found.into_owned())
+}
+
+/// Diagnoses a record without gross errors; `setup` are those that it had.
+fn diagnose_sound<'a>(
+    record: &'a Record,
+    bench: &'a Bench,
+    options: &DiagnoseOptions,
+    setup: Vec<SetupProblem>,
+) -> Result<Diagnosis<'a>, DiagnosisError> {
     let run = Run { record, bench };
     let shares = shares(options.false_alarm_probability);
 
@@ -135,6 +181,7 @@ pub fn diagnose<'a>(
         run: &run,
         options,
         shares,
+        setup,
         magnitude,
         residuals: residuals(&nominal, &audited.innovations, record, alpha)?,
         audit: &audit,
@@ -152,6 +199,7 @@ pub fn diagnose<'a>(
     .answer();
     Ok(Diagnosis {
         result,
+        record: Cow::Borrowed(record),
         nominal,
         extended: validated.extended,
         noise_model: found.noise_model,

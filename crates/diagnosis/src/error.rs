@@ -1,6 +1,8 @@
 use gyrocal_calibration::CalibrationError;
 use gyrocal_statistics::StatisticsError;
 
+use crate::result::DiagnosisResult;
+
 /// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -8,6 +10,12 @@ pub enum DiagnosisError {
     /// A model could not be fitted, or a record not be passed over.
     #[error(transparent)]
     Calibration(#[from] CalibrationError),
+    /// A gross error of the set-up leaves nothing sound to diagnose.
+    #[error("the set-up is wrong: {}", problems(.result))]
+    Setup {
+        /// The answer: its verdict is `setup`, and nothing was fitted.
+        result: Box<DiagnosisResult>,
+    },
     /// Two series that belong together differ in length.
     #[error("{found} rows of {what}, expected {expected}, as many as the record has")]
     UnequalLengths {
@@ -63,4 +71,10 @@ pub enum DiagnosisError {
         /// The missing input.
         why: String,
     },
+}
+
+/// The problems of the set-up, in words.
+fn problems(result: &DiagnosisResult) -> String {
+    let texts: Vec<String> = result.setup.iter().map(|problem| problem.text()).collect();
+    texts.join(" ")
 }

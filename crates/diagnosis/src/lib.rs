@@ -5,6 +5,8 @@
 //! [`diagnose`] takes a record and its bench description, and returns a [`Diagnosis`]: the answer
 //! ([`DiagnosisResult`], plain data that is also the JSON contract) with the fits behind it.
 //!
+//! 0. *Set-up* ([`gyrocal_setup`]): gross errors of record and bench description, before any fit. What
+//!    can be mended is left out; one that leaves nothing sound ends the diagnosis.
 //! 1. *Noise audit* ([`audit_noise`]): quantisation, outliers, variance and correlation of the
 //!    accelerometer noise on time scales below an hour.
 //! 2. *Search* (`gyrocal_hypothesis`): score tests of all effects of the catalogue, one family-wise error rate,

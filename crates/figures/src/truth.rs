@@ -1,6 +1,7 @@
 //! Truth of the diagnosis outside of the population that its constants were tuned on.
 
 mod noise;
+mod setup;
 mod shapes;
 
 use crate::error::Error;
@@ -8,7 +9,8 @@ use crate::figure::Figure;
 
 /// All figures of the topic.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let mut figures = shapes::figures(small)?;
+    let mut figures = setup::figures(small)?;
+    figures.extend(shapes::figures(small)?);
     figures.extend(noise::figures(small)?);
     Ok(figures)
 }

@@ -67,6 +67,7 @@ mod output;
 mod record;
 mod report;
 mod rows;
+mod setup;
 mod site;
 mod source;
 mod suggest;
@@ -88,6 +89,7 @@ pub use report::{
     NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport,
     SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
 };
+pub use setup::SetupProblem;
 pub use site::{Gravity, Site, SiteUncertainty};
 pub use source::SourceText;
 pub use suggest::{any_of, nearest_names, similar_names};

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::Manifest;
+use crate::setup::SetupProblem;
 
 /// Version of the JSON results; it rises when a field changes its meaning or goes away.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -14,6 +15,10 @@ pub struct CalibrationReport {
     pub schema_version: u32,
     /// Origin of the result.
     pub manifest: Manifest,
+    /// Gross errors of the set-ups that were mended; one that leaves nothing sound ends the
+    /// calibration.
+    #[serde(default)]
+    pub setup: Vec<SetupProblem>,
     /// The drift coefficients, in the order of `covariance`.
     pub coefficients: Vec<Coefficient>,
     /// Covariance of the coefficients, row by row, in products of their units.

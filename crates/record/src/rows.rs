@@ -40,18 +40,20 @@ impl Record {
     ///
     /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Ok(read_with_places(&SourceText::read(path)?, 1)?.0)
+        Ok(read_with_places(&SourceText::read(path)?, 1, Codes::Refused)?.0)
     }
 
     /// Reads a record of a platform that something is to be estimated from: with at least some
     /// number of rows, as many as a filter has states, not too far apart, and not all the same.
+    /// Numbers that stand for missing values, the same in three rows or more, are read as they
+    /// stand: the check of the set-up leaves them out.
     ///
     /// # Errors
     ///
     /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it.
     pub fn read_at_least(path: &Path, rows: usize) -> Result<Self, Error> {
         let source = SourceText::read(path)?;
-        let (record, places) = read_with_places(&source, rows)?;
+        let (record, places) = read_with_places(&source, rows, Codes::Read)?;
         check_intervals(&record, &source, &places)?;
         check_stuck(&record, &source, &places)?;
         Ok(record)
@@ -63,13 +65,14 @@ impl Record {
     ///
     /// [`Error::Input`] for a fault in it.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
-        Ok(read_with_places(&SourceText::new(text, name)?, 1)?.0)
+        Ok(read_with_places(&SourceText::new(text, name)?, 1, Codes::Refused)?.0)
     }
 }
 
 fn read_with_places(
     source: &SourceText,
     least: usize,
+    codes: Codes,
 ) -> Result<(Record, Vec<Range<usize>>), Error> {
     let mut lines = Lines::of(source);
     let first = lines.next_line()?.unwrap_or_default();
@@ -85,7 +88,7 @@ fn read_with_places(
     }
     let last = places.last().unwrap_or(&first.span);
     refuse_too_few(&record, source, last, least)?;
-    check_norms(&record, source, &places)?;
+    check_norms(&record, source, &places, codes)?;
     Ok((record, places))
 }
 
@@ -249,7 +252,41 @@ fn is_stuck(record: &Record, axis: usize) -> bool {
     equal.max().unwrap_or(0) as f64 >= STUCK_SHARE * values.len() as f64
 }
 
-fn check_norms(record: &Record, source: &SourceText, places: &[Range<usize>]) -> Result<(), Error> {
+/// What is done with numbers that stand for missing values.
+#[derive(Clone, Copy)]
+enum Codes {
+    /// They are refused as nonsense.
+    Refused,
+    /// They are read.
+    Read,
+}
+
+/// Rows of implausible norm with a component, zero or implausible by itself, that has the same value
+/// in three such rows or more; rising.
+fn coded_rows(record: &Record, norms: &[(usize, f64)]) -> Vec<usize> {
+    const LEAST_ROWS: usize = 3;
+    let odd = || norms.iter().filter(|(_, norm)| !ROW_NORM.contains(norm));
+    let mut rows = Vec::new();
+    for axis in 0..3 {
+        let value = |row: usize| record.accel_g[row][axis];
+        let coded = odd().map(|(row, _)| *row);
+        let mut coded: Vec<usize> = coded
+            .filter(|row| value(*row) == 0.0 || value(*row).abs() > *ROW_NORM.end())
+            .collect();
+        coded.sort_by(|a, b| value(*a).total_cmp(&value(*b)));
+        let equal = coded.chunk_by(|a, b| value(*a) == value(*b));
+        rows.extend(equal.filter(|equal| equal.len() >= LEAST_ROWS).flatten());
+    }
+    rows.sort_unstable();
+    rows
+}
+
+fn check_norms(
+    record: &Record,
+    source: &SourceText,
+    places: &[Range<usize>],
+    codes: Codes,
+) -> Result<(), Error> {
     let norms: Vec<(usize, f64)> = record
         .accel_g
         .iter()
@@ -271,7 +308,14 @@ fn check_norms(record: &Record, source: &SourceText, places: &[Range<usize>]) ->
         let found = "a record in which the median norm of specific force is";
         (MEDIAN_NORM, found, suspicion(median))
     };
-    let Some((row, norm)) = norms.iter().find(|(_, norm)| !allowed.contains(norm)) else {
+    let is_code = match codes {
+        Codes::Read if MEDIAN_NORM.contains(&median) => coded_rows(record, &norms),
+        _ => Vec::new(),
+    };
+    let wrong = |(row, norm): &&(usize, f64)| {
+        !allowed.contains(norm) && is_code.binary_search(row).is_err()
+    };
+    let Some((row, norm)) = norms.iter().find(wrong) else {
         return Ok(());
     };
     let shown = if MEDIAN_NORM.contains(&median) {

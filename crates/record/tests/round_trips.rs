@@ -170,6 +170,7 @@ fn report() -> CalibrationReport {
             seed: 0,
             command: "gyrocal calibrate".to_owned(),
         },
+        setup: Vec::new(),
         coefficients: vec![Coefficient {
             name: "gyro_x.bias".to_owned(),
             estimate: 0.1 + 0.2,

@@ -7,6 +7,7 @@
 //! - `calibration`: dense least squares for short records, and signatures by finite differences of the
 //!   independent simulation.
 //! - `noise`: records with faulty noise.
+//! - `setups`: records with gross errors of the set-up.
 //! - `extended`: the controller of `examples/extended` against the catalogue.
 //!
 //! Each module has more than one user among tests, benches and `cargo figures`; support of a single test
@@ -19,6 +20,8 @@
     clippy::must_use_candidate
 )]
 
+#[cfg(feature = "setups")]
+pub mod broken_setups;
 mod command;
 mod copy;
 #[cfg(feature = "calibration")]

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use gyrocal::Platform;
 use gyrocal_calibration::{GyroAxes, Run, attitude_walk_share, average_record, shared_rows};
 use gyrocal_instruments::strapdown::read_axes;
-use gyrocal_record::{AveragedReport, Bench, Record, SourceText};
+use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, SourceText};
+use gyrocal_setup::{SetupFinding, check_setup};
 use miette::miette;
 
 use crate::Failure;
@@ -17,6 +18,8 @@ pub(super) struct Measurement {
     pub(super) record: Record,
     pub(super) bench: Bench,
     pub(super) averaged: Option<Averaging>,
+    /// Gross errors of the set-up that were mended.
+    pub(super) setup: Vec<SetupProblem>,
 }
 
 /// Averaging of the rows of a record.
@@ -38,12 +41,13 @@ impl Measurement {
     }
 }
 
-/// Reads records and benches (one for all records or one for each), averages if requested, and refuses
-/// inputs that cannot belong together.
+/// Reads records and benches (one for all records or one for each), leaves out what gross errors of
+/// the set-ups spoilt, averages if requested, and refuses inputs that cannot belong together.
 pub(super) fn read(
     records: &[PathBuf],
     benches: &[PathBuf],
     average_s: Option<f64>,
+    is_platform: bool,
 ) -> Result<Vec<Measurement>, Failure> {
     refuse_twins(records)?;
     let read: Vec<Bench> = benches
@@ -60,11 +64,17 @@ pub(super) fn read(
             record: Record::read_at_least(path, Platform::STATES)?,
             bench: read[bench].clone(),
             averaged: None,
+            setup: Vec::new(),
         });
     }
     for (index, one) in measurements.iter().enumerate() {
         for other in &measurements[index + 1..] {
             refuse_shared_rows(one, other)?;
+        }
+    }
+    if is_platform {
+        for measurement in &mut measurements {
+            mend(measurement, records.len() > 1)?;
         }
     }
     if let Some(interval_s) = average_s {
@@ -148,6 +158,31 @@ fn refuse_shared_rows(one: &Measurement, other: &Measurement) -> Result<(), Fail
         shared.first + 1,
         other.record.time_s[shared.first],
     )))
+}
+
+/// Leaves out what gross errors of the set-up spoilt; refuses a record of which nothing sound is left.
+fn mend(measurement: &mut Measurement, is_one_of_several: bool) -> Result<(), Failure> {
+    let check = check_setup(&measurement.record, &measurement.bench);
+    if check.findings.is_empty() {
+        return Ok(());
+    }
+    let path = measurement.path.display();
+    measurement.setup = check.findings.iter().map(SetupFinding::problem).collect();
+    let Some(usable) = check.usable else {
+        let texts = measurement.setup.iter().map(SetupProblem::text);
+        return Err(Failure::Work(miette!(
+            help = "mend the record or its bench file: docs/setup-checks.md lists what is checked",
+            "{path}: the set-up is wrong: {}",
+            texts.collect::<Vec<_>>().join(" "),
+        )));
+    };
+    if is_one_of_several {
+        for problem in &mut measurement.setup {
+            problem.description = format!("{path}: {}", problem.description);
+        }
+    }
+    measurement.record = usable;
+    Ok(())
 }
 
 fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Failure> {

@@ -29,6 +29,7 @@ pub(super) fn report(
     Ok(CalibrationReport {
         schema_version: SCHEMA_VERSION,
         manifest: manifest(MODEL_HASH, 0, inputs)?,
+        setup: found.setup().cloned().collect(),
         coefficients: calibration
             .coefficients()
             .into_iter()

@@ -23,6 +23,12 @@ pub(super) fn summary(found: &CalibrationRun) -> String {
         text.push_str(&paragraph(&record_line(measurement)));
     }
     text.push('\n');
+    for problem in found.setup() {
+        text.push_str(&paragraph(&format!(
+            "Error of the set-up: {}",
+            problem.text()
+        )));
+    }
     text.push_str(&paragraph(&calibration.fit.consistency_text()));
     text.push_str(&observability(found));
     for (measurement, run) in found.measurements.iter().zip(&calibration.runs) {

@@ -35,6 +35,9 @@ impl NotDiagnosed {
 
         match &self.source {
             Why::UnknownEffect { .. } => "docs/diagnosis.md lists the effects",
+            Why::Setup { .. } => {
+                "mend the record or its bench file: docs/setup-checks.md lists what is checked"
+            }
             Why::Unavailable { .. } => "leave it out of --effects, or supply what is missing",
             Why::Calibration(Fit::TooShort { .. })
             | Why::TooShort { .. }

@@ -328,7 +328,7 @@ fn one_pass_needs_an_attitude() {
         assert_says(&errors, "the bench file gives no initial angles");
         assert_says(&errors, "help: leave out --streaming or --paper");
     }
-    // The batch estimator levels the platform by an early row that is whole.
+    // Without angles the platform is levelled by all three accelerometers.
     let blank: Vec<String> = record(40)
         .lines()
         .enumerate()
@@ -339,9 +339,9 @@ fn one_pass_needs_an_attitude() {
         .collect();
     folder.put("r.csv", blank.join("\n"));
     let errors = folder.fail(&JSON);
-    assert_says(&errors, "so the platform cannot be levelled");
     assert_says(
         &errors,
-        "help: give initial_angles_deg and initial_angles_sigma_deg",
+        "the set-up is wrong: Accelerometer z has no values.",
     );
+    assert_says(&errors, "values in 0 of 40 rows");
 }

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod sealed;
+mod setup;
 mod validation;
 
 use std::fs;

@@ -4,7 +4,7 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{FittedPlatform, NoiseEstimate, NoiseRatio, Run};
 use gyrocal_hypothesis::Searched;
-use gyrocal_record::{Manifest, NoiseRatioReport, NoiseReport, Record};
+use gyrocal_record::{Manifest, NoiseRatioReport, NoiseReport, Record, SetupProblem};
 use gyrocal_statistics::{self as statistics, NoiseCourse};
 
 use super::{DiagnoseOptions, findings};
@@ -27,6 +27,7 @@ pub(super) struct Evidence<'e, 'a> {
     pub(super) run: &'e Run<'a>,
     pub(super) options: &'e DiagnoseOptions,
     pub(super) shares: FalseAlarmShares,
+    pub(super) setup: Vec<SetupProblem>,
     pub(super) magnitude: Option<magnitude_test::MagnitudeTest>,
     pub(super) residuals: Residuals,
     pub(super) audit: &'e NoiseAudit,
@@ -63,7 +64,6 @@ impl Evidence<'_, '_> {
             verdict,
             false_alarm_probability: self.options.false_alarm_probability,
             false_alarm_shares: self.shares,
-            setup: Vec::new(),
             norm: self.magnitude.as_ref().map(magnitude),
             cannot_tell: self.indistinguishable(&findings),
             findings,
@@ -81,6 +81,7 @@ impl Evidence<'_, '_> {
             allan: self.allan.as_ref().map(allan),
             not_searched: self.not_tested(),
             power: self.power,
+            setup: self.setup,
             residuals: Some(self.residuals),
             gain: self.gain,
             remainder: self.remainder,

@@ -1,10 +1,12 @@
 //! Validation of a diagnosis on a later record of the same platform.
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Run};
+use gyrocal_record::SetupProblem;
+use gyrocal_setup::check_setup;
 
 use super::answer::record_summary;
 use super::noise_audited_fit::noise_audited_fit;
-use super::{DiagnoseOptions, Diagnosis};
+use super::{DiagnoseOptions, Diagnosis, gate};
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
 use crate::request;
@@ -14,7 +16,8 @@ use crate::validation::{LaterPrediction, predict};
 impl Diagnosis<'_> {
     /// Predicts a later record of the same platform with the nominal and the extended model, and
     /// adds that to the answer; `first` is the record of the diagnosis. Without an extended model
-    /// there is nothing to compare, and the answer says only that the record was given.
+    /// there is nothing to compare, and the answer says only that the record was given. What gross
+    /// errors of the set-up spoilt in it is left out, and told in the answer.
     ///
     /// # Errors
     /// [`DiagnosisError`], of the later record.
@@ -25,6 +28,22 @@ impl Diagnosis<'_> {
         options: &DiagnoseOptions,
     ) -> Result<(), DiagnosisError> {
         self.result.later_record = Some(record_summary(later.record));
+        let check = check_setup(later.record, later.bench);
+        let setup = gate::problems(&check, later, &options.calibration);
+        let Some(usable) = check.usable else {
+            let result = Box::new(gate::stopped(later.record, options, setup));
+            return Err(DiagnosisError::Setup { result });
+        };
+        self.result.setup.extend(setup.into_iter().map(of_later));
+        let later = &Run {
+            record: &usable,
+            bench: later.bench,
+        };
+        let diagnosed = self.record.clone();
+        let first = &Run {
+            record: &diagnosed,
+            bench: first.bench,
+        };
         let Some(extended) = &self.extended else {
             return Ok(());
         };
@@ -59,6 +78,14 @@ pub fn predict_later(
     let alpha = shares(options.false_alarm_probability).noise_audit;
     let fitted = noise_audited_fit(later, &assumed, alpha, &options.calibration)?.nominal;
     Ok(predict(nominal, extended, first, &fitted, later)?)
+}
+
+/// A problem of the later record, told as such.
+fn of_later(problem: SetupProblem) -> SetupProblem {
+    SetupProblem {
+        description: format!("In the later record: {}", problem.description),
+        ..problem
+    }
 }
 
 fn validation(prediction: &LaterPrediction) -> Validation {

@@ -14,7 +14,7 @@ mod verdict;
 
 use serde::Serialize;
 
-use crate::result::DiagnosisResult;
+use crate::result::{DiagnosisResult, Verdict};
 
 pub use findings::{likelihood, parameter_values};
 pub use format::counted;
@@ -97,6 +97,9 @@ pub fn diagnosis(result: &DiagnosisResult) -> Vec<Block> {
         Block::Paragraph(verdict::verdict(result)),
     ];
     blocks.extend(verdict::setup(result));
+    if result.verdict == Verdict::Setup {
+        return blocks;
+    }
     blocks.push(Block::Paragraph(tests::magnitude(result)));
     blocks.extend(findings::entries(result));
     blocks.extend(tests::filter(result).map(Block::Paragraph));

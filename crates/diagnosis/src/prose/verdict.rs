@@ -4,7 +4,9 @@ use super::Block;
 use gyrocal_statistics::format::{p_value, percent};
 
 use super::format::counted;
-use crate::result::{DiagnosisResult, FindingKind, NotTestedReason, ResidualVerdict, Verdict};
+use crate::result::{
+    DiagnosisResult, FindingKind, NotTestedReason, ResidualVerdict, SetupProblem, Verdict,
+};
 
 /// The record and its size.
 pub(super) fn record(result: &DiagnosisResult) -> String {
@@ -92,10 +94,6 @@ fn low_power(result: &DiagnosisResult) -> String {
 pub(super) fn setup(result: &DiagnosisResult) -> Option<Block> {
     (!result.setup.is_empty()).then(|| Block::List {
         title: "Errors of the set-up:".to_owned(),
-        entries: result
-            .setup
-            .iter()
-            .map(|problem| format!("{} ({})", problem.description, problem.evidence))
-            .collect(),
+        entries: result.setup.iter().map(SetupProblem::text).collect(),
     })
 }

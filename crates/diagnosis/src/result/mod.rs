@@ -21,8 +21,8 @@ mod residual_test;
 mod residuals;
 #[cfg(feature = "schema")]
 mod schema;
-mod setup;
 
+pub use gyrocal_record::SetupProblem;
 use gyrocal_record::{Manifest, NoiseReport};
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,6 @@ pub use residual_test::{
 pub use residuals::{Against, Autocorrelation, Line, Nis, Residuals};
 #[cfg(feature = "schema")]
 pub use schema::schema;
-pub use setup::SetupProblem;
 
 /// Version of the JSON contract of a diagnosis; it rises when a key changes its meaning or goes
 /// away.

@@ -17,7 +17,7 @@ pub(super) fn convergence(
     let Some(extended) = &diagnosis.extended else {
         return Ok(None);
     };
-    let all = found.record.len();
+    let all = found.diagnosis.record.len();
     let mut rows: Vec<usize> = (1..=POINTS)
         .map(|point| point * (all - 1) / POINTS)
         .collect();
@@ -33,7 +33,10 @@ pub(super) fn convergence(
             "estimates from the record up to each time; {}",
             subtitle(found)
         ),
-        time_s: rows.iter().map(|row| found.record.time_s[*row]).collect(),
+        time_s: rows
+            .iter()
+            .map(|row| found.diagnosis.record.time_s[*row])
+            .collect(),
         parameters: DRIFT
             .iter()
             .enumerate()

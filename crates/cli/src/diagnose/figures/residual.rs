@@ -35,7 +35,7 @@ pub(super) struct OpenLoopRuns {
 
 impl OpenLoopRuns {
     pub(super) fn of(found: &DiagnosisRun<'_>) -> Result<Self, CalibrationError> {
-        let (nominal, extended) = found.diagnosis.open_loop(found.record)?;
+        let (nominal, extended) = found.diagnosis.open_loop(&found.diagnosis.record)?;
         Ok(Self { nominal, extended })
     }
 
@@ -56,7 +56,7 @@ impl OpenLoopRuns {
                 "measured minus simulated specific force, no measurement updates; {}",
                 subtitle(found)
             ),
-            time_s: found.record.time_s.clone(),
+            time_s: found.diagnosis.record.time_s.clone(),
             channels: self.channels(found.bench.accel_noise_g),
             before_label: "nominal model".to_owned(),
             after_label: format!("with {}", causes(found).unwrap_or_default()),
@@ -68,9 +68,9 @@ impl OpenLoopRuns {
     /// Open-loop simulation of the nominal model and the record.
     pub(super) fn open_loop(&self, found: &DiagnosisRun<'_>) -> OpenLoop {
         let miss = amount(self.nominal.rms_g);
-        let days = found.record.duration_s() / SECONDS_PER_DAY;
+        let days = found.diagnosis.record.duration_s() / SECONDS_PER_DAY;
         let (measured, simulated) = (
-            columns(&found.record.accel_g),
+            columns(&found.diagnosis.record.accel_g),
             columns(&self.nominal.simulated_g),
         );
         let channels = AXES.iter().zip(measured.into_iter().zip(simulated));
@@ -79,7 +79,7 @@ impl OpenLoopRuns {
                 "Open-loop simulation of the nominal model over {days:.1} days: residual {miss} rms"
             ),
             subtitle: subtitle(found),
-            time_s: found.record.time_s.clone(),
+            time_s: found.diagnosis.record.time_s.clone(),
             channels: channels
                 .map(|(name, (measured, simulated))| OpenLoopChannel {
                     name: (*name).to_owned(),
@@ -128,7 +128,7 @@ impl OpenLoopRuns {
             for (other, force) in forces.iter().enumerate() {
                 add(format!("specific force {}", AXES[other]), "g", force);
             }
-            if let Some(temperature) = &found.record.temperature_c {
+            if let Some(temperature) = &found.diagnosis.record.temperature_c {
                 add("temperature".to_owned(), "°C", temperature);
             }
         }
@@ -154,7 +154,7 @@ impl OpenLoopRuns {
 /// Periodograms of the innovations of the nominal and of the extended model.
 pub(super) fn periodograms(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
     let probability = found.diagnosis.result.false_alarm_probability;
-    let spectra = found.diagnosis.spectra(found.record)?;
+    let spectra = found.diagnosis.spectra(&found.diagnosis.record)?;
     let name =
         |spectrum: &ChannelSpectrum| format!("{}, {}", AXES[spectrum.axis], label(spectrum.model));
     let per_day = |hz: f64| hz * SECONDS_PER_DAY;
@@ -260,10 +260,16 @@ fn label(model: ModelVersion) -> &'static str {
 pub(super) fn norm(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>, DiagnosisError> {
     let noise_g = [found.bench.accel_noise_g; 3];
     let gravity_g = found.bench.specific_force_at_rest();
-    let norm = magnitude_channel(found.record, &noise_g, gravity_g, BINS)?;
+    let norm = magnitude_channel(&found.diagnosis.record, &noise_g, gravity_g, BINS)?;
     let panel = |covariate: String, unit: &str, scale: f64, means: &BinnedMeans| {
         let first = if unit == "days" {
-            found.record.time_s.first().copied().unwrap_or(0.0)
+            found
+                .diagnosis
+                .record
+                .time_s
+                .first()
+                .copied()
+                .unwrap_or(0.0)
         } else {
             0.0
         };

@@ -164,7 +164,9 @@ fn a_record_without_an_axis_is_diagnosed_and_drawn_as_far_as_it_goes() {
     assert!(said.replace('\n', " ").contains("all three axes"), "{said}");
     assert!(folder.path("figures/residuals.svg").exists(), "{said}");
     assert!(!folder.path("figures/autocorrelation.svg").exists());
-    super::report(&folder, "o.json");
+    let report = super::report(&folder, "o.json");
+    assert_eq!(report.setup.len(), 1);
+    assert_eq!(report.setup[0].kind, "missing");
 }
 
 #[test]

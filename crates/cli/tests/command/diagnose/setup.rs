@@ -1,0 +1,114 @@
+//! Gross errors of the set-up: told, mended or refused.
+
+use gyrocal_diagnosis::{DiagnosisResult, Verdict};
+
+use super::{BENCH, RECORD, folder, report};
+use crate::folder::Folder;
+
+const DIAGNOSE: [&str; 6] = ["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"];
+
+/// Changes fields of the rows of the record, counted from 1.
+fn spoil(folder: &Folder, change: impl Fn(usize, &mut Vec<String>)) {
+    let text = folder.text(RECORD);
+    let mut lines = text.lines();
+    let header = lines.next().unwrap_or_default().to_owned();
+    let rows = lines.enumerate().map(|(index, line)| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        change(index + 1, &mut fields);
+        fields.join(",")
+    });
+    let text: Vec<String> = core::iter::once(header).chain(rows).collect();
+    folder.put(RECORD, text.join("\n") + "\n");
+}
+
+fn negate_latitude(folder: &Folder) {
+    let text = folder.text(BENCH);
+    let text = text.replace("latitude_deg = ", "latitude_deg = -");
+    folder.put(BENCH, text);
+}
+
+fn stopped(folder: &Folder) -> (String, DiagnosisResult) {
+    let said = folder.succeed(&DIAGNOSE);
+    let report = report(folder, "o.json");
+    assert_eq!(report.verdict, Verdict::Setup);
+    assert!(report.coefficients.is_none() && report.findings.is_empty());
+    assert!(report.setup.iter().any(|problem| problem.stops));
+    // The later exit code is asked for.
+    let asked = [&DIAGNOSE[..4], &["--exit-code"]].concat();
+    assert_eq!(folder.run(&asked).status.code(), Some(5));
+    (said, report)
+}
+
+#[test]
+fn a_wrong_latitude_stops_both_commands() {
+    let folder = folder();
+    negate_latitude(&folder);
+    let (said, report) = stopped(&folder);
+    assert!(
+        said.contains("Error of the set-up: the record was not diagnosed."),
+        "{said}"
+    );
+    assert_eq!(report.setup[0].kind, "latitude");
+    assert!(
+        report.setup[0].evidence.contains("mean NIS"),
+        "{:?}",
+        report.setup
+    );
+    let folder = super::folder();
+    negate_latitude(&folder);
+    let errors = folder.fail(&["calibrate", RECORD, "--bench", BENCH, "--json", "c.json"]);
+    assert!(errors.contains("the set-up is wrong"), "{errors}");
+    assert!(errors.contains("help: "), "{errors}");
+}
+
+#[test]
+fn missing_values_that_are_written_as_numbers_are_left_out_and_told() {
+    for code in ["0", "-999"] {
+        let folder = folder();
+        spoil(&folder, |row, fields| {
+            if row % 50 == 7 {
+                fields[3] = code.to_owned();
+            }
+        });
+        folder.succeed(&DIAGNOSE);
+        let report = report(&folder, "o.json");
+        assert_eq!(report.verdict, Verdict::EffectsFound);
+        assert_eq!(report.setup.len(), 1);
+        assert_eq!(report.setup[0].kind, "missing-coded");
+        assert_eq!(report.setup[0].rows.map(|rows| rows[0]), Some(7));
+        assert!(!report.setup[0].stops);
+        // The fault is still found.
+        assert_eq!(report.findings[0].effect, "gyro_y.g_z");
+        let said = folder.succeed(&["calibrate", RECORD, "--bench", BENCH, "--json", "c.json"]);
+        assert!(
+            said.contains("Error of the set-up: Missing values of accelerometer z"),
+            "{said}"
+        );
+        assert!(folder.text("c.json").contains("missing-coded"));
+    }
+}
+
+#[test]
+fn two_errors_at_once_are_both_told_with_their_rows() {
+    let folder = folder();
+    negate_latitude(&folder);
+    spoil(&folder, |row, fields| {
+        if (2000..2100).contains(&row) {
+            fields[1] = "0.25".to_owned();
+        }
+    });
+    let (said, report) = stopped(&folder);
+    let kinds: Vec<&str> = report.setup.iter().map(|p| p.kind.as_str()).collect();
+    assert_eq!(kinds, ["stuck", "latitude"], "{said}");
+    assert_eq!(report.setup[0].rows, Some([2000, 2099]));
+}
+
+#[test]
+fn a_record_too_short_for_the_check_is_told_as_too_short() {
+    let folder = folder();
+    let text = folder.text(RECORD);
+    let lines: Vec<&str> = text.lines().take(12).collect();
+    folder.put(RECORD, lines.join("\n") + "\n");
+    let errors = folder.fail(&DIAGNOSE);
+    assert!(errors.contains("expected at least 12 rows"), "{errors}");
+}

@@ -1,0 +1,238 @@
+//! Gross errors of the set-up: told right, false alarms, cost.
+
+use std::time::Instant;
+
+use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, diagnose};
+use gyrocal_evaluation::{Outcome, inject_any};
+use gyrocal_setup::check_setup;
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::{Proportion, median};
+use gyrocal_testkit::broken_setups::{
+    BREAKAGES, Breakage, leave_angles_out, varied_record, varied_scenario,
+};
+use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::resumable;
+
+/// First seed of the broken records, and records of each kind; of the small version.
+const BROKEN: u64 = 3_000_000;
+const OF_EACH: u64 = 20;
+const SMALL_OF_EACH: u64 = 3;
+
+/// First seed and number of the sound records; of the small version.
+const SOUND: u64 = 3_100_000;
+const SOUND_RECORDS: u64 = 1_000;
+const SMALL_SOUND_RECORDS: u64 = 60;
+
+/// Strength of the effects in every other sound record, in sigmas of their own bound.
+const STRENGTHS: [f64; 2] = [5.0, 100.0];
+
+/// Timed runs, of which the median counts.
+const TIMED_RUNS: usize = 9;
+
+/// Rows of the timed records: three days of minutes, and ten times as many.
+const DAYS: f64 = 3.0;
+const MORE: f64 = 10.0;
+
+pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let mut figures = broken(small)?;
+    figures.extend(sound(small)?);
+    figures.extend(time()?);
+    Ok(figures)
+}
+
+/// What was told of one broken record.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Told {
+    breakage: String,
+    findings: Vec<String>,
+    is_right: bool,
+}
+
+fn tell(breakage: &Breakage, seed: u64) -> Told {
+    let broken = breakage.record(seed);
+    let found = check_setup(&broken.record, &broken.bench).findings;
+    let is_named = |kind: &str| breakage.kinds.contains(&kind);
+    let is_right = !found.is_empty()
+        && found.iter().all(|finding| {
+            let others = finding.equivalent_kinds.iter();
+            is_named(finding.kind.as_str())
+                || others.into_iter().any(|kind| is_named(kind.as_str()))
+        });
+    Told {
+        breakage: breakage.name.to_owned(),
+        findings: found.iter().map(|f| f.kind.as_str().to_owned()).collect(),
+        is_right,
+    }
+}
+
+fn broken(small: bool) -> Result<Vec<Figure>, Error> {
+    let each = if small { SMALL_OF_EACH } else { OF_EACH };
+    let seeds = BROKEN..BROKEN + each * BREAKAGES.len() as u64;
+    let campaign = resumable::campaign("truth", "gross errors", seeds.clone(), small)?;
+    let job = |seed: u64| {
+        let breakage = &BREAKAGES[((seed - BROKEN) / each) as usize];
+        Ok::<_, Error>(tell(breakage, seed))
+    };
+    let outcome: Outcome<Told> = campaign.run(job, |_| ())?;
+    let all: Vec<&Told> = outcome.successes().map(|(_, told)| told).collect();
+    let right = Proportion::of(all.iter().map(|told| told.is_right));
+    let mut worst = (each, "none");
+    for breakage in BREAKAGES {
+        let of_it = all.iter().filter(|told| told.breakage == breakage.name);
+        let hits = of_it.filter(|told| told.is_right).count() as u64;
+        if hits < worst.0 {
+            worst = (hits, breakage.name);
+        }
+    }
+    let name = format!(
+        "gross errors, {} kinds, {each} records each:",
+        BREAKAGES.len()
+    );
+    let seeds = format!("{seeds:?}");
+    let mut over_all = Figure::within(
+        &format!("{name} right kind or class, over all"),
+        [0.98, f64::INFINITY],
+        right.share(),
+    );
+    if small {
+        over_all.holds = Some(right.upper_bound(0.999) >= 0.98);
+    }
+    let least = if small { 1 } else { 17 };
+    let mut worst_kind = Figure::note(
+        &format!("{name} worst kind"),
+        format!("{} of {each} ({})", worst.0, worst.1),
+    );
+    worst_kind.target = format!(">= {least} of {each}");
+    worst_kind.holds = Some(worst.0 >= least);
+    Ok(vec![
+        over_all.over(all.len(), seeds.clone()),
+        worst_kind.over(all.len(), seeds),
+    ])
+}
+
+/// A sound record of a seed; every other one has an effect.
+fn sound_record(seed: u64) -> Result<Simulation, Error> {
+    let mut scenario = varied_scenario(seed);
+    if seed % 2 == 1 {
+        let mut random = Draw::new(seed, 4);
+        let strength = random.log_uniform(STRENGTHS);
+        // The strength is that in rows of a minute: the gyros' noise, which bounds it, is the same.
+        let slow = Scenario {
+            interval_s: scenario.interval_s.max(60.0),
+            hidden: Vec::new(),
+            ..scenario.clone()
+        };
+        let (with, _) = inject_any(slow, strength, &mut random)?;
+        scenario.hidden.extend(with.hidden);
+    }
+    Ok(varied_record(seed, &scenario))
+}
+
+fn sound(small: bool) -> Result<Vec<Figure>, Error> {
+    let records = if small {
+        SMALL_SOUND_RECORDS
+    } else {
+        SOUND_RECORDS
+    };
+    let seeds = SOUND..SOUND + records;
+    let campaign = resumable::campaign("truth", "sound", seeds.clone(), small)?;
+    let job = |seed: u64| {
+        let simulation = sound_record(seed)?;
+        let found = check_setup(&simulation.record, &simulation.bench).findings;
+        Ok::<_, Error>(
+            found
+                .iter()
+                .map(|finding| finding.kind.as_str().to_owned())
+                .collect::<Vec<_>>(),
+        )
+    };
+    let outcome: Outcome<Vec<String>> = campaign.run(job, |_| ())?;
+    let alarms = Proportion::of(outcome.successes().map(|(_, kinds)| !kinds.is_empty()));
+    let mut figure = Figure::within(
+        &format!("false alarms of the gate: {records} sound records"),
+        [f64::NEG_INFINITY, 0.005],
+        alarms.share(),
+    );
+    if small {
+        figure.holds = Some(alarms.lower_bound(0.999) <= 0.005);
+    }
+    let failed = outcome.failures().count();
+    let mut figures = vec![figure.over(alarms.trials as usize, format!("{seeds:?}"))];
+    if failed > 0 {
+        figures.push(Figure::note(
+            "false alarms of the gate: records in which no effect reaches the strength",
+            failed.to_string(),
+        ));
+    }
+    Ok(figures)
+}
+
+fn simulated(days: f64) -> Result<Simulation, Error> {
+    Ok(simulate(&Scenario {
+        seed: SOUND,
+        latitude_deg: 48.2,
+        initial: InitialAttitude::Random,
+        // The last row begins the next day.
+        duration_s: days * 86_400.0 - 60.0,
+        ..Scenario::default()
+    })?)
+}
+
+/// Median time of a job, s.
+fn timed(mut job: impl FnMut()) -> f64 {
+    let times: Vec<f64> = (0..TIMED_RUNS)
+        .map(|_| {
+            let start = Instant::now();
+            job();
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    median(&times)
+}
+
+fn time() -> Result<Vec<Figure>, Error> {
+    let of_gate = |simulation: &Simulation| {
+        timed(|| {
+            std::hint::black_box(check_setup(&simulation.record, &simulation.bench));
+        })
+    };
+    let first = simulated(DAYS)?;
+    let rows = first.record.len();
+    let (once, more) = (of_gate(&first), of_gate(&simulated(MORE * DAYS)?));
+    let mut reversed = first;
+    reversed.bench.latitude_deg *= -1.0;
+    let mut slowest = 0.0_f64;
+    let mut is_told = true;
+    for angles in [true, false] {
+        if !angles {
+            leave_angles_out(&mut reversed.bench);
+        }
+        slowest = slowest.max(timed(|| {
+            let options = DiagnoseOptions::default();
+            let found = diagnose(&reversed.record, &reversed.bench, &options);
+            is_told &= matches!(found, Err(DiagnosisError::Setup { .. }));
+        }));
+    }
+    let name = |what: &str| format!("time of the gate at {rows} rows, {what}");
+    Ok(vec![
+        Figure::at_most(&name("without a refit"), 100.0, 1e3 * once, "ms").over(TIMED_RUNS, ""),
+        Figure::at_most(
+            &name("with a refit as given and corrected"),
+            500.0,
+            1e3 * slowest,
+            "ms",
+        )
+        .over(2 * TIMED_RUNS, ""),
+        Figure::truth("the latitude's sign stops the diagnosis", is_told),
+        Figure::within(
+            &format!("time of the gate at {MORE} times the rows over {MORE} times the time"),
+            [0.0, 1.5],
+            more / once / MORE,
+        )
+        .over(TIMED_RUNS, ""),
+    ])
+}

@@ -1,0 +1,39 @@
+//! Gross errors of a set-up, as results tell them.
+
+use serde::{Deserialize, Serialize};
+
+/// A gross error of the set-up: a wrong description or a wrong use of the instrument, which is no
+/// effect of the catalogue.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SetupProblem {
+    /// Its kind: `clock`, `missing`, `missing-coded`, `unit`, `stuck`, `clipped`, `repeated`,
+    /// `duplicated`, `scale`, `jump`, `still`, `handedness`, `axes`, `angles`, `latitude`,
+    /// `attitude` or `gravity`.
+    pub kind: String,
+    /// The problem in words, with what to do.
+    pub description: String,
+    /// The numbers that show it.
+    pub evidence: String,
+    /// First and last row that it concerns, counted from 1; `None` if it concerns all.
+    #[serde(default)]
+    pub rows: Option<[usize; 2]>,
+    /// Whether nothing sound is left, so that nothing was estimated.
+    #[serde(default)]
+    pub stops: bool,
+    /// Other errors that the record cannot tell from it.
+    #[serde(default)]
+    pub equivalents: Vec<String>,
+}
+
+impl SetupProblem {
+    /// The problem with its equivalents and its evidence, as one paragraph.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let equivalents = match &self.equivalents[..] {
+            [] => String::new(),
+            some => format!(" The record cannot tell it from: {}.", some.join("; ")),
+        };
+        format!("{}{equivalents} ({})", self.description, self.evidence)
+    }
+}

@@ -1,0 +1,108 @@
+//! Sound records of all sorts do not set the check off, and no record makes it panic.
+
+use gyrocal_record::{Bench, Record};
+use gyrocal_setup::{SetupKind, check_setup};
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_testkit::broken_setups::{large_effects, sound, varied_record, varied_scenario};
+
+const FIRST_SEED: u64 = 2_000_000;
+const RECORDS: u64 = 300;
+
+#[test]
+fn sound_records_are_left_alone() {
+    let alarms: Vec<u64> = (FIRST_SEED..FIRST_SEED + RECORDS)
+        .filter(|seed| {
+            let mut scenario = varied_scenario(*seed);
+            if seed % 2 == 1 {
+                let effects = large_effects(&scenario, &mut Draw::new(*seed, 4));
+                scenario.hidden.extend(effects);
+            }
+            let simulation = varied_record(*seed, &scenario);
+            let check = check_setup(&simulation.record, &simulation.bench);
+            !check.findings.is_empty() || check.usable.as_ref() != Some(&simulation.record)
+        })
+        .collect();
+    // One in 200 is allowed: with 300 records six have a probability below 0.5 % of that.
+    assert!(alarms.len() < 6, "{alarms:?}");
+}
+
+fn bench() -> Bench {
+    sound(1).bench
+}
+
+#[test]
+fn no_record_makes_it_panic() {
+    let constant = |value: f64, rows: usize| Record {
+        time_s: (0..rows).map(|row| 60.0 * row as f64).collect(),
+        accel_g: vec![[value; 3]; rows],
+        temperature_c: None,
+    };
+    for rows in [0, 1, 2, 3, 5, 11, 12, 13, 30, 100, 1000] {
+        for value in [
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            0.0,
+            -0.0,
+            0.577,
+            1e300,
+            5e-324,
+        ] {
+            for latitude_deg in [0.0, 45.0, -90.0, f64::NAN, f64::INFINITY] {
+                let mut record = constant(value, rows);
+                let bench = Bench {
+                    latitude_deg,
+                    ..bench()
+                };
+                let _ = check_setup(&record, &bench);
+                record.time_s.reverse();
+                let _ = check_setup(&record, &bench);
+            }
+        }
+    }
+    // Columns of other lengths.
+    let mut record = constant(0.577, 100);
+    record.accel_g.truncate(50);
+    let check = check_setup(&record, &bench());
+    assert_eq!(check.findings[0].kind, SetupKind::Missing);
+    let mut record = constant(0.577, 100);
+    record.temperature_c = Some(vec![20.0; 3]);
+    assert!(check_setup(&record, &bench()).usable.is_none());
+}
+
+#[test]
+fn pieces_of_a_record_are_judged_without_panic_and_without_alarm() {
+    let simulation = sound(2_000_900);
+    for rows in [
+        0, 1, 5, 11, 12, 13, 20, 36, 60, 120, 200, 361, 500, 721, 1000, 1441,
+    ] {
+        let record = Record {
+            time_s: simulation.record.time_s[..rows].to_vec(),
+            accel_g: simulation.record.accel_g[..rows].to_vec(),
+            temperature_c: None,
+        };
+        let check = check_setup(&record, &simulation.bench);
+        assert!(check.findings.is_empty(), "{rows}: {:?}", check.findings);
+    }
+}
+
+#[test]
+fn random_damage_makes_no_panic() {
+    let simulation = sound(2_000_901);
+    let mut random = Draw::new(2_000_901, 9);
+    let odd = [f64::NAN, f64::INFINITY, 0.0, 1e308, -1e308, 1e-308, -999.0];
+    for _ in 0..60 {
+        let mut record = simulation.record.clone();
+        let rows = 1 + (random.uniform() * 400.0) as usize;
+        record.time_s.truncate(rows);
+        record.accel_g.truncate(rows);
+        for _ in 0..(random.uniform() * 300.0) as usize {
+            let at = (random.uniform() * rows as f64) as usize;
+            record.accel_g[at][(random.uniform() * 3.0) as usize] = *random.one_of(&odd);
+            if random.uniform() < 0.02 {
+                record.time_s[at] = *random.one_of(&odd);
+            }
+        }
+        let _ = check_setup(&record, &simulation.bench);
+    }
+}
