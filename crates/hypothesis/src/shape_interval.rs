@@ -177,8 +177,8 @@ fn pieces(places: &[f64], deviance: &[f64], limit: f64) -> Vec<[f64; 2]> {
     };
     let mut pieces: Vec<[f64; 2]> = Vec::new();
     let mut begin: Option<f64> = None;
-    for index in 0..places.len() {
-        let inside = deviance[index] <= limit;
+    for (index, deviance) in deviance.iter().enumerate() {
+        let inside = *deviance <= limit;
         match (begin, inside) {
             (None, true) => {
                 begin = Some(if index == 0 {
