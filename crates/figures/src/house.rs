@@ -27,9 +27,13 @@ const MOST_LONG: usize = 5;
 /// Standard deviations within which the parameters of a term of one's own are found.
 const OWN_TERM_SIGMAS: f64 = 3.0;
 
-/// All figures of the topic; the small ones without builds.
-pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+/// All figures of the topic; the small ones without builds. `write` renews the results that later builds
+/// are compared with.
+pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
     let root = workspace();
+    if write {
+        before::write(&root)?;
+    }
     let crates = source::crates(&root)?;
     let kinds = EFFECTS.iter().map(|effect| format!("{:?}", effect.kind));
     let words = literals::Words::new(EFFECTS.iter().map(|effect| effect.id), kinds);

@@ -41,7 +41,7 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
-    /// instruction counts; measured: docs/measured-data.md; paper: docs/paper.md and its
+    /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper: docs/paper.md and its
     /// pictures).
     #[arg(long)]
     write: bool,
@@ -80,7 +80,7 @@ fn main() -> ExitCode {
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
-        Topic::House => house::figures(arguments.small),
+        Topic::House => house::figures(arguments.small, arguments.write),
         Topic::Measured => measured::figures(arguments.write),
         Topic::Truth => truth::figures(arguments.small),
         Topic::Paper => paper::figures(arguments.write),

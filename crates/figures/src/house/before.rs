@@ -1,12 +1,13 @@
 //! Diagnoses and calibrations of records against those of an earlier build.
 
 use std::path::Path;
+use std::process::Command;
 
 use gyrocal_calibration::{Options, calibrate};
 use gyrocal_diagnosis::result::{DiagnosisResult, Finding};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_record::{Bench, Record};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::figure::Figure;
@@ -17,7 +18,7 @@ const RESULTS: &str = "tests/data/before/diagnoses.json";
 /// Largest difference of a number, in its standard deviations.
 const LARGEST: f64 = 1e-6;
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 struct Before {
     /// The commit of the earlier build.
     commit: String,
@@ -25,7 +26,7 @@ struct Before {
 }
 
 /// Diagnosis of one record by an earlier build.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 struct DiagnosisBefore {
     record: String,
     bench: String,
@@ -34,7 +35,7 @@ struct DiagnosisBefore {
     coefficients: Vec<ParameterBefore>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 struct FindingBefore {
     effect: String,
     z: f64,
@@ -43,14 +44,14 @@ struct FindingBefore {
     gain_nats: Option<f64>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 struct ParameterBefore {
     name: String,
     estimate: f64,
     sigma: Option<f64>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 struct AlternativeBefore {
     effect: String,
     log_likelihood_deficit: f64,
@@ -102,6 +103,71 @@ pub(crate) fn figures(root: &Path) -> Result<[Figure; 2], Error> {
     numbers.measured = format!("{largest:.1e} σ");
     let seeds = "the records of examples and sealed cases";
     Ok([names.over(count, seeds), numbers.over(count, seeds)])
+}
+
+/// Renews the results by this build, after a change of a method.
+pub(crate) fn write(root: &Path) -> Result<(), Error> {
+    let path = root.join(RESULTS);
+    let before: Before = serde_json::from_str(&std::fs::read_to_string(&path)?)?;
+    let mut diagnoses = Vec::with_capacity(before.diagnoses.len());
+    for one in before.diagnoses {
+        let record = Record::read(&root.join(&one.record))?;
+        let bench = Bench::read(&root.join(&one.bench))?;
+        let now = diagnose(&record, &bench, &DiagnoseOptions::default())?.result;
+        let calibration = calibrate(&record, &bench, &Options::default(), |_| ())?;
+        let verdict = serde_json::to_value(now.verdict)?;
+        diagnoses.push(DiagnosisBefore {
+            verdict: verdict.as_str().unwrap_or_default().to_owned(),
+            findings: now.findings.iter().map(FindingBefore::of).collect(),
+            coefficients: calibration
+                .coefficients()
+                .iter()
+                .map(|coefficient| ParameterBefore {
+                    name: coefficient.id.to_owned(),
+                    estimate: coefficient.estimate,
+                    sigma: Some(coefficient.sigma),
+                })
+                .collect(),
+            ..one
+        });
+    }
+    let head = Command::new("git")
+        .arg("-C")
+        .arg(root)
+        .args(["rev-parse", "--short", "HEAD"])
+        .output()?;
+    let renewed = Before {
+        commit: String::from_utf8_lossy(&head.stdout).trim().to_owned(),
+        diagnoses,
+    };
+    Ok(gyrocal_record::write_json(&path, &renewed)?)
+}
+
+impl FindingBefore {
+    fn of(finding: &Finding) -> Self {
+        Self {
+            effect: finding.effect.clone(),
+            z: finding.z,
+            parameters: finding
+                .parameters
+                .iter()
+                .map(|parameter| ParameterBefore {
+                    name: parameter.name.clone(),
+                    estimate: parameter.estimate,
+                    sigma: parameter.sigma,
+                })
+                .collect(),
+            alternatives: finding
+                .alternatives
+                .iter()
+                .map(|other| AlternativeBefore {
+                    effect: other.effect.clone(),
+                    log_likelihood_deficit: other.log_likelihood_deficit,
+                })
+                .collect(),
+            gain_nats: finding.gain_nats,
+        }
+    }
 }
 
 fn same_names(before: &DiagnosisBefore, now: &DiagnosisResult) -> bool {
