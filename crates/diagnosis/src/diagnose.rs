@@ -215,7 +215,6 @@ fn search_options(options: &DiagnoseOptions, shares: &FalseAlarmShares) -> Searc
         false_alarm_probability: shares.search,
         unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
         seed: options.seed,
-        rate_degrees: Vec::new(),
     }
 }
 

@@ -17,9 +17,6 @@ pub struct SearchOptions {
     pub unmodelled_probability: f64,
     /// Seed of the draws of the null distribution.
     pub seed: u64,
-    /// Effective degrees of freedom of the noise of each rate, where it was estimated by the nominal
-    /// model from the same record; empty where it is known.
-    pub rate_degrees: Vec<f64>,
 }
 
 impl Default for SearchOptions {
@@ -28,7 +25,6 @@ impl Default for SearchOptions {
             false_alarm_probability: 0.01,
             unmodelled_probability: 0.001,
             seed: 0,
-            rate_degrees: Vec::new(),
         }
     }
 }

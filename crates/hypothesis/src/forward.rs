@@ -72,9 +72,6 @@ pub(crate) fn forward<F: FittedModel>(
         let jumps = state.stage.fitted.state_jumps()?;
         let jump = best_jump(&jumps, &context.rows);
         let mut scores = Scores::of(&state.stage.bank, &hypotheses, &null, jump);
-        if state.accepted.is_empty() {
-            scores.profile_noise(&hypotheses, &context.options.rate_degrees);
-        }
         let threshold = null.threshold(context.options.false_alarm_probability);
         first.get_or_insert_with(|| FirstRound {
             ranking: scores.ranking(&hypotheses),

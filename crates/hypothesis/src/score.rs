@@ -1,7 +1,5 @@
 //! The statistics of all hypotheses, and the choice of the one that is named.
 
-use gyrocal_statistics::math::ln_1p;
-
 use crate::bank::ScoreBank;
 use crate::context::SearchContext;
 use crate::hypothesis::Hypothesis;
@@ -59,8 +57,6 @@ impl Best {
 pub(crate) struct Scores<'a> {
     pub(crate) best: Vec<Option<Best>>,
     null: &'a NullDistribution,
-    /// Effective degrees of freedom of the noise that each was tested with; infinite if it is known.
-    degrees: Vec<f64>,
 }
 
 impl<'a> Scores<'a> {
@@ -75,25 +71,7 @@ impl<'a> Scores<'a> {
         Self {
             best: best.collect(),
             null,
-            degrees: vec![f64::INFINITY; hypotheses.len()],
         }
-    }
-
-    /// Takes the statistics as tested with noise that the nominal model estimated from the same record,
-    /// with these effective degrees of freedom for each rate.
-    pub(crate) fn profile_noise(&mut self, hypotheses: &[Hypothesis], rate_degrees: &[f64]) {
-        for (degrees, hypothesis) in self.degrees.iter_mut().zip(hypotheses) {
-            let rate = hypothesis.effect.rate();
-            let own = rate.and_then(|rate| rate_degrees.get(rate));
-            *degrees = own.copied().unwrap_or(f64::INFINITY);
-        }
-    }
-
-    /// Likelihood-ratio statistic of a hypothesis, its noise estimated with and without it.
-    fn likelihood_ratio(&self, hypothesis: usize) -> f64 {
-        self.best[hypothesis].map_or(f64::NEG_INFINITY, |best| {
-            likelihood_ratio(best.statistic, self.degrees[hypothesis])
-        })
     }
 
     /// Replaces the best variants of hypotheses with a shape that are near the largest statistic by
@@ -129,12 +107,16 @@ impl<'a> Scores<'a> {
 
     /// The statistic for ranking: less the whole search penalty.
     pub(crate) fn penalised(&self, hypothesis: usize) -> f64 {
-        self.likelihood_ratio(hypothesis) - self.null.penalties[hypothesis]
+        self.best[hypothesis].map_or(f64::NEG_INFINITY, |best| {
+            best.statistic - self.null.penalties[hypothesis]
+        })
     }
 
     /// The statistic for detection: less the detection penalty.
     pub(crate) fn tested(&self, hypothesis: usize) -> f64 {
-        self.likelihood_ratio(hypothesis) - self.null.detection_penalties[hypothesis]
+        self.best[hypothesis].map_or(f64::NEG_INFINITY, |best| {
+            best.statistic - self.null.detection_penalties[hypothesis]
+        })
     }
 
     /// The maximum statistic.
@@ -172,10 +154,7 @@ impl<'a> Scores<'a> {
             .max_by(|a, b| a.statistic.total_cmp(&b.statistic));
         let richer = self.best[best]?;
         match simpler {
-            Some(simpler)
-                if self.likelihood_ratio(best) - self.likelihood_ratio(simpler.hypothesis)
-                    < NESTED_MODEL_CHI2 =>
-            {
+            Some(simpler) if richer.statistic - simpler.statistic < NESTED_MODEL_CHI2 => {
                 Some(simpler)
             }
             _ => Some(richer),
@@ -195,26 +174,6 @@ impl<'a> Scores<'a> {
         ranking.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
         ranking
     }
-}
-
-/// Share of the degrees of freedom beyond which the likelihood ratio goes on linearly: the noise is then
-/// next to nothing but the effect.
-const LARGEST_SHARE: f64 = 0.9;
-
-/// The value of χ²(1) that is as rare as the score statistic T of an effect, if the variance of its
-/// noise was estimated with ν degrees of freedom in the model without the effect. An effect raises
-/// that estimate, so that T stays below ν; T (ν − 1)/(ν − T) is the square of Student's t with
-/// ν' = ν − 1, whose normal deviate is (8ν' + 1)/(8ν' + 3) √(ν' ln(1 + t²/ν')) (Wallace, Ann. Math.
-/// Statist. 30, 1124, 1959).
-fn likelihood_ratio(statistic: f64, degrees: f64) -> f64 {
-    let share = statistic / degrees;
-    if !degrees.is_finite() || share <= 0.0 {
-        return statistic;
-    }
-    let own = (degrees - 1.0).max(1.0);
-    let factor = own * ((8.0 * own + 1.0) / (8.0 * own + 3.0)).powi(2);
-    let at = share.min(LARGEST_SHARE);
-    factor * ((share - at) / (1.0 - LARGEST_SHARE) - ln_1p(-at))
 }
 
 fn best_variant(
@@ -324,7 +283,6 @@ mod tests {
         let scores = Scores {
             best: best.collect(),
             null: &null,
-            degrees: vec![f64::INFINITY; hypotheses.len()],
         };
         Some(hypotheses[scores.named(&hypotheses)?.hypothesis].id())
     }

@@ -7,13 +7,14 @@ use gyrocal_hypothesis::{Finding, FittedModel, SearchOptions, Searched, Selectio
 use gyrocal_statistics::{NORMAL_97_5, two_sided_p};
 
 use crate::error::DiagnosisError;
-use crate::error_budget::{GYRO_NOISE_PRIOR_SIGMA, INSTRUMENTS};
+use crate::error_budget::{INSTRUMENTS, NOISE_UPDATE_Z};
 use crate::noise::{Estimate, NoiseAudit, NoiseFinding};
 
-/// Change of the logarithm of a noise, in its standard deviations, beyond which a search is made again.
-const CHANGED: f64 = 0.5;
+/// Logarithms of noise that differ by less count as equal: a tenth of what three days determine.
+const SAME_NOISE: f64 = 0.02;
 
-/// Most searches: noise that a cause had raised falls when the cause is in the model.
+/// Most rounds of noise and search: noise that a cause had raised falls when the cause is in the
+/// model.
 const MOST_ROUNDS: usize = 3;
 
 /// A search with the noise that it assumed.
@@ -28,8 +29,8 @@ pub(super) struct NoiseUpdate<'a> {
     pub(super) estimate: NoiseEstimate,
 }
 
-/// Searches with the noise of the gyros that the nominal fit gives, and again with that of the fit with
-/// all causes if it differs.
+/// Searches, and searches again with the noise of the gyros that the first search leaves, until it
+/// changes no more.
 pub(super) fn search_with_noise<'a>(
     mut nominal: FittedPlatform<'a>,
     mut noise_model: NoiseModel,
@@ -37,41 +38,39 @@ pub(super) fn search_with_noise<'a>(
     selection: &Selection,
     options: &SearchOptions,
 ) -> Result<NoiseUpdate<'a>, DiagnosisError> {
-    let mut believed = GyroNoise::new(&nominal.noise()?, &noise_model);
-    let mut round = 0;
-    loop {
+    let search = |nominal: &FittedPlatform<'a>| {
+        let rows = rows(run.record, nominal.covariates());
+        search(nominal.clone(), rows, selection, options)
+    };
+    let mut searched = search(&nominal)?;
+    let mut estimate = searched.fitted.noise()?;
+    for _ in 1..MOST_ROUNDS {
+        let gyro_ratio = gyro_ratio(&estimate, &noise_model);
+        let changed = gyro_ratio
+            .iter()
+            .zip(noise_model.gyro_ratio)
+            .any(|(new, old)| (new / old).ln().abs() > SAME_NOISE);
+        if !changed {
+            break;
+        }
         let updated = NoiseModel {
-            gyro_ratio: believed.ratio(),
+            gyro_ratio,
             ..noise_model.clone()
         };
-        // A mismatch that is no noise cannot always be fitted as noise: the last noise then stands.
-        if let Ok(refitted) = nominal.with_noise(run.bench, &updated) {
-            (nominal, noise_model) = (refitted, updated);
-        }
-        let rows = rows(run.record, nominal.covariates());
-        let options = SearchOptions {
-            // Later noise is that of a model with the causes.
-            rate_degrees: if round == 0 {
-                believed.degrees.to_vec()
-            } else {
-                Vec::new()
-            },
-            ..options.clone()
+        // A mismatch that is no noise cannot always be fitted as noise: the search stands as it is.
+        let Ok(refitted) = nominal.with_noise(run.bench, &updated) else {
+            break;
         };
-        let searched = search(nominal.clone(), rows, selection, &options)?;
-        let estimate = searched.fitted.noise()?;
-        let next = GyroNoise::new(&estimate, &noise_model);
-        round += 1;
-        if round == MOST_ROUNDS || !next.differs(&noise_model) {
-            return Ok(NoiseUpdate {
-                nominal,
-                noise_model,
-                searched,
-                estimate,
-            });
-        }
-        believed = next;
+        (nominal, noise_model) = (refitted, updated);
+        searched = search(&nominal)?;
+        estimate = searched.fitted.noise()?;
     }
+    Ok(NoiseUpdate {
+        nominal,
+        noise_model,
+        searched,
+        estimate,
+    })
 }
 
 /// Logarithm of a ratio and its standard deviation.
@@ -80,49 +79,18 @@ fn logarithm(ratio: &NoiseRatio) -> (f64, f64) {
     (ratio.ratio.ln(), (high / low).ln() / (2.0 * NORMAL_97_5))
 }
 
-/// Logarithm of the noise of each gyro over the declared one, given the record and the prior.
-struct GyroNoise {
-    mean: [f64; 3],
-    sigma: [f64; 3],
-    /// Effective degrees of freedom of the estimated variance.
-    degrees: [f64; 3],
-}
-
-impl GyroNoise {
-    /// From the maximum-likelihood estimate over the `assumed` noise.
-    fn new(estimate: &NoiseEstimate, assumed: &NoiseModel) -> Self {
-        let mut noise = Self {
-            mean: [0.0; 3],
-            sigma: [0.0; 3],
-            degrees: [f64::INFINITY; 3],
-        };
-        for axis in 0..3 {
-            let (value, sigma) = logarithm(&estimate.gyro[axis]);
-            let total = value + assumed.gyro_ratio[axis].ln();
-            let weight =
-                GYRO_NOISE_PRIOR_SIGMA.powi(2) / (GYRO_NOISE_PRIOR_SIGMA.powi(2) + sigma.powi(2));
-            // An unobservable noise has an infinite interval: the prior stands.
-            if weight > 0.0 {
-                noise.mean[axis] = weight * total;
-                // The variance of ln χ²(ν)/2 is 1/(2ν).
-                noise.degrees[axis] = 0.5 / (sigma * sigma) / weight;
-            }
-            noise.sigma[axis] = GYRO_NOISE_PRIOR_SIGMA * (1.0 - weight).sqrt();
+/// Gyro noise over the declared one that a search should assume; the estimate is over the noise
+/// assumed before.
+fn gyro_ratio(estimate: &NoiseEstimate, assumed: &NoiseModel) -> [f64; 3] {
+    core::array::from_fn(|axis| {
+        let (value, sigma) = logarithm(&estimate.gyro[axis]);
+        let total = value + assumed.gyro_ratio[axis].ln();
+        if total.abs() > NOISE_UPDATE_Z * sigma {
+            total.exp()
+        } else {
+            1.0
         }
-        noise
-    }
-
-    fn ratio(&self) -> [f64; 3] {
-        self.mean.map(f64::exp)
-    }
-
-    /// Whether it differs from the assumed noise.
-    fn differs(&self, assumed: &NoiseModel) -> bool {
-        (0..3).any(|axis| {
-            let change = self.mean[axis] - assumed.gyro_ratio[axis].ln();
-            change.abs() > CHANGED * self.sigma[axis]
-        })
-    }
+    })
 }
 
 /// Gyro noise that differs from the declared one, `alpha` being the false-alarm probability of all
