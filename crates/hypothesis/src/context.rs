@@ -1,12 +1,11 @@
-//! Options, data and state of a search.
+//! Options and data of a search.
 
+use crate::accepted::Accepted;
 use crate::hypothesis::HypothesisSet;
 use crate::model::{FittedModel, ModelExtension};
 use crate::pattern::Unmodelled;
 use crate::plant::Plant;
-use crate::result::{Accepted, FittedStage};
 use crate::rows::Rows;
-use crate::shape::estimate_shapes;
 
 /// Error rates of a search.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,43 +51,6 @@ impl SearchContext<'_> {
     ) -> Result<F, F::Error> {
         let context = (self.plant, &self.set, &self.rows);
         from.refitted(&extension(&self.base, context, accepted, unmodelled))
-    }
-
-    /// The same with the shapes of all effects estimated, and with all its signatures.
-    pub(crate) fn stage<F: FittedModel>(
-        &self,
-        from: &F,
-        accepted: &mut [Accepted],
-        unmodelled: &[Unmodelled],
-    ) -> Result<FittedStage<F>, F::Error> {
-        let refit = |from: &F, accepted: &[Accepted]| self.fitted(from, accepted, unmodelled);
-        let fitted = refit(from, accepted)?;
-        let fitted = estimate_shapes(self, fitted, accepted, refit)?;
-        FittedStage::new(fitted, &self.set, &self.rows, accepted)
-    }
-}
-
-/// Current model and accepted effects.
-#[derive(Clone)]
-pub(crate) struct SearchState<F> {
-    pub(crate) stage: FittedStage<F>,
-    pub(crate) accepted: Vec<Accepted>,
-    /// Hypotheses that cannot be fitted beside the accepted ones.
-    pub(crate) inseparable: Vec<usize>,
-    pub(crate) unmodelled: Vec<Unmodelled>,
-    /// Whether unmodelled terms are still looked for.
-    pub(crate) seeks_unmodelled: bool,
-}
-
-impl<F> SearchState<F> {
-    pub(crate) fn new(stage: FittedStage<F>) -> Self {
-        Self {
-            stage,
-            accepted: Vec::new(),
-            inseparable: Vec::new(),
-            unmodelled: Vec::new(),
-            seeks_unmodelled: true,
-        }
     }
 }
 

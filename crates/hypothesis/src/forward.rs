@@ -4,14 +4,15 @@ use core::mem;
 
 use gyrocal_statistics::math::ln;
 
-use crate::context::{MOST_EFFECTS, SearchContext, SearchState};
+use crate::accepted::Accepted;
+use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::hypothesis::Hypothesis;
 use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::pattern::Unmodelled;
-use crate::result::Accepted;
 use crate::score::{Best, NESTED_MODEL_CHI2, Ranked, Scores};
+use crate::state::{SearchState, stage};
 use crate::unmodelled;
 
 /// Result of the first detection test.
@@ -162,7 +163,12 @@ fn accept<F: FittedModel>(
 ) {
     let hypothesis = accepted.hypothesis;
     state.accepted.push(accepted);
-    match context.stage(&state.stage.fitted, &mut state.accepted, &state.unmodelled) {
+    match stage(
+        context,
+        &state.stage.fitted,
+        &mut state.accepted,
+        &state.unmodelled,
+    ) {
         Ok(next) => state.stage = next,
         Err(_) => {
             state.accepted.pop();
@@ -179,7 +185,12 @@ fn accept_unmodelled<F: FittedModel>(
     other: Unmodelled,
 ) -> bool {
     state.unmodelled.push(other);
-    match context.stage(&state.stage.fitted, &mut state.accepted, &state.unmodelled) {
+    match stage(
+        context,
+        &state.stage.fitted,
+        &mut state.accepted,
+        &state.unmodelled,
+    ) {
         Ok(next) => {
             state.stage = next;
             true

@@ -67,6 +67,7 @@
 //!
 //! It knows no gyro, no file and no filter: a plant is data ([`Plant`]), a fit is a trait.
 
+mod accepted;
 mod bank;
 mod column;
 mod context;
@@ -91,6 +92,7 @@ mod search;
 mod shape;
 mod shape_interval;
 mod signature;
+mod state;
 mod unmodelled;
 
 pub use bank::{JointScore, ScoreBank};

@@ -1,11 +1,13 @@
 //! Reassessment after the forward selection: an effect found early may have another name, or none,
 //! given those found later.
 
-use crate::context::{MOST_EFFECTS, SearchContext, SearchState};
+use crate::accepted::Accepted;
+use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::result::{Accepted, Finding, add_intervals, evaluate};
+use crate::result::{Finding, add_intervals, evaluate};
 use crate::score::Best;
+use crate::state::{SearchState, stage};
 
 /// Swaps names and removes insignificant effects until nothing changes; the conditional result of
 /// each effect that remains.
@@ -52,8 +54,12 @@ pub(crate) fn reassess<F: FittedModel>(
             {
                 state.accepted.remove(index);
                 let unmodelled = &state.unmodelled;
-                state.stage =
-                    context.stage(&state.stage.fitted, &mut state.accepted, unmodelled)?;
+                state.stage = stage(
+                    context,
+                    &state.stage.fitted,
+                    &mut state.accepted,
+                    unmodelled,
+                )?;
             }
             _ => {
                 for (index, finding) in findings.iter_mut().enumerate() {
@@ -89,7 +95,7 @@ fn swap<F: FittedModel>(
         ..own
     };
     accepted.insert(index, swapped);
-    state.stage = context.stage(&without, &mut accepted, &state.unmodelled)?;
+    state.stage = stage(context, &without, &mut accepted, &state.unmodelled)?;
     state.accepted = accepted;
     Ok(())
 }

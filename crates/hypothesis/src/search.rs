@@ -2,7 +2,8 @@
 
 use gyrocal_scalar::effect::Effect;
 
-use crate::context::{SearchContext, SearchOptions, SearchState, extension};
+use crate::accepted::Accepted;
+use crate::context::{SearchContext, SearchOptions, extension};
 use crate::forward::{FirstRound, forward};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
@@ -10,9 +11,10 @@ use crate::null_distribution::GaussianDraws;
 use crate::pattern::Unmodelled;
 use crate::plant::Plant;
 use crate::reassess::reassess;
-use crate::result::{Accepted, Finding, FittedStage};
+use crate::result::{Finding, FittedStage};
 use crate::rows::Rows;
 use crate::score::Ranked;
+use crate::state::SearchState;
 
 /// Result of a search.
 pub struct Searched<F> {

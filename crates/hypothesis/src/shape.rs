@@ -9,12 +9,12 @@
 use gyrocal_scalar::effect::Role;
 use gyrocal_statistics::math::{exp, ln};
 
+use crate::accepted::{Accepted, value_places};
 use crate::bank::{GramProducts, ScoreBank};
 use crate::column::Column;
 use crate::context::SearchContext;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
-use crate::result::{Accepted, value_places};
 use crate::rows::Rows;
 use crate::signature::profiles;
 

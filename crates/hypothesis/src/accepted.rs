@@ -1,0 +1,59 @@
+//! Effects in the model, and the places of their sizes.
+
+use gyrocal_scalar::effect::Enters;
+
+use crate::column::Column;
+use crate::hypothesis::{Hypothesis, HypothesisSet};
+use crate::model::FittedModel;
+
+/// An effect in the model.
+#[derive(Clone, Debug)]
+pub(crate) struct Accepted {
+    pub(crate) hypothesis: usize,
+    pub(crate) shape: Option<f64>,
+    pub(crate) p_value: f64,
+    /// Penalty of a jump for the test of every step.
+    pub(crate) searched: f64,
+    /// The whole search penalty.
+    pub(crate) penalty: f64,
+}
+
+/// Places of an effect among the values of a fit.
+pub(crate) fn value_places<F: FittedModel>(
+    fitted: &F,
+    set: &HypothesisSet,
+    hypothesis: &Hypothesis,
+) -> Vec<usize> {
+    let plant = fitted.plant();
+    let extension = fitted.extension();
+    let first = plant.nominal_parameters;
+    let own_columns = |is_own: &dyn Fn(&Column) -> bool| {
+        let base = first + extension.parameters.len();
+        let columns = extension.columns.columns().iter().enumerate();
+        columns
+            .filter(|(_, column)| is_own(column))
+            .map(|(index, _)| base + index)
+            .collect()
+    };
+    if let Some(steps) = &hypothesis.walk {
+        let base = plant.parameters.len();
+        let own: Vec<&Column> = steps.iter().map(|c| &set.extra[c - base]).collect();
+        return own_columns(&|column| own.contains(&column));
+    }
+    if matches!(hypothesis.effect.enters, Enters::States(_)) {
+        return own_columns(&|column| match column {
+            Column::InitialState { .. } => !hypothesis.is_jump,
+            Column::StateJump { .. } => hypothesis.is_jump,
+            _ => false,
+        });
+    }
+    let states: Vec<usize> = hypothesis.effect.model_parameters().collect();
+    extension
+        .parameters
+        .iter()
+        .enumerate()
+        // Nuisance parameters of the bench have a prior and are no effects.
+        .filter(|(_, (parameter, sigma))| states.contains(parameter) && sigma.is_infinite())
+        .map(|(index, _)| first + index)
+        .collect()
+}

@@ -1,0 +1,46 @@
+//! State of a search: the model with its accepted effects.
+
+use crate::accepted::Accepted;
+use crate::context::SearchContext;
+use crate::model::FittedModel;
+use crate::pattern::Unmodelled;
+use crate::result::FittedStage;
+use crate::shape::estimate_shapes;
+
+/// Current model and accepted effects.
+#[derive(Clone)]
+pub(crate) struct SearchState<F> {
+    pub(crate) stage: FittedStage<F>,
+    pub(crate) accepted: Vec<Accepted>,
+    /// Hypotheses that cannot be fitted beside the accepted ones.
+    pub(crate) inseparable: Vec<usize>,
+    pub(crate) unmodelled: Vec<Unmodelled>,
+    /// Whether unmodelled terms are still looked for.
+    pub(crate) seeks_unmodelled: bool,
+}
+
+impl<F> SearchState<F> {
+    pub(crate) fn new(stage: FittedStage<F>) -> Self {
+        Self {
+            stage,
+            accepted: Vec::new(),
+            inseparable: Vec::new(),
+            unmodelled: Vec::new(),
+            seeks_unmodelled: true,
+        }
+    }
+}
+
+/// The model with these effects, fitted from another one, with the shapes of all effects estimated and
+/// with all its signatures.
+pub(crate) fn stage<F: FittedModel>(
+    context: &SearchContext<'_>,
+    from: &F,
+    accepted: &mut [Accepted],
+    unmodelled: &[Unmodelled],
+) -> Result<FittedStage<F>, F::Error> {
+    let refit = |from: &F, accepted: &[Accepted]| context.fitted(from, accepted, unmodelled);
+    let fitted = refit(from, accepted)?;
+    let fitted = estimate_shapes(context, fitted, accepted, refit)?;
+    FittedStage::new(fitted, &context.set, &context.rows, accepted)
+}
