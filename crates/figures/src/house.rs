@@ -10,6 +10,7 @@ mod sizes;
 mod source;
 
 use std::path::Path;
+use std::process::Command;
 
 use gyrocal::EFFECTS;
 use gyrocal_testkit::{WorkspaceCopy, add_own_terms, cargo, find_own_terms, workspace};
@@ -75,6 +76,21 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
         figures.extend(builds::figures(&root)?);
     }
     Ok(figures)
+}
+
+/// The commit of a workspace, as far as `git` tells it; `-dirty` if files differ from it.
+pub(crate) fn commit(root: &Path) -> String {
+    let described = Command::new("git")
+        .arg("-C")
+        .arg(root)
+        .args(["describe", "--always", "--dirty", "--exclude=*"])
+        .output();
+    match described {
+        Ok(output) if output.status.success() => {
+            String::from_utf8_lossy(&output.stdout).trim().to_owned()
+        }
+        _ => "unknown".to_owned(),
+    }
 }
 
 /// A figure that counts places, all of which are listed.

@@ -129,11 +129,12 @@ fn write_page(
         .map_or("an unnamed processor", |name| {
             name.trim_start_matches([' ', '\t', ':'])
         });
+    let commit = house::commit(&gyrocal_testkit::workspace());
     let page = format!(
-        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{small}` on {processor}. Times and \
-         ratios of times are those of that machine, and instruction counts those of its compiler. \
-         All else differs by rounding at most: where the target fuses multiplication and \
-         addition, last bits differ.\n\n{table}\n"
+        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{small}` of commit {commit} on \
+         {processor}. Times and ratios of times are those of that machine, and instruction counts \
+         those of its compiler. All else differs by rounding at most: where the target fuses \
+         multiplication and addition, last bits differ.\n\n{table}\n"
     );
     gyrocal_record::write_whole(path, page.as_bytes())
 }

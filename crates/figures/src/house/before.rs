@@ -1,7 +1,6 @@
 //! Diagnoses and calibrations of records against those of an earlier build.
 
 use std::path::Path;
-use std::process::Command;
 
 use gyrocal_calibration::{Options, calibrate};
 use gyrocal_diagnosis::result::{DiagnosisResult, Finding};
@@ -131,13 +130,8 @@ pub(crate) fn write(root: &Path) -> Result<(), Error> {
             ..one
         });
     }
-    let head = Command::new("git")
-        .arg("-C")
-        .arg(root)
-        .args(["rev-parse", "--short", "HEAD"])
-        .output()?;
     let renewed = Before {
-        commit: String::from_utf8_lossy(&head.stdout).trim().to_owned(),
+        commit: super::commit(root),
         diagnoses,
     };
     Ok(gyrocal_record::write_json(&path, &renewed)?)
