@@ -1,6 +1,6 @@
 //! Signatures: the columns of the linearised model that an effect adds.
 //!
-//! The diagnosis constructs signatures of its own. This construction shares no code with it, so that
+//! The diagnosis constructs signatures of its own. This construction shares no code with it but the type of a column, so that
 //! an error in either shows as a failure to find an injected effect.
 
 use gyrocal::Effect;

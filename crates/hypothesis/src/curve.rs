@@ -14,7 +14,7 @@ use crate::pattern::{ChannelIndex, Pattern, Unmodelled};
 use crate::plant::Plant;
 use crate::rows::{Covariate, Rows};
 
-/// Knots of a function, from the least to the largest specific force that the record visits.
+/// Knots of a function, from the least to the largest value of the covariate in the record.
 const KNOTS: usize = 10;
 
 /// Combinations of functions of which a fit leaves less than this share of the best seen one are not
