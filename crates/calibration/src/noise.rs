@@ -87,7 +87,7 @@ pub(crate) fn estimate(
         // its logarithm finite and has no weight where the noise is observable.
         let prior = 1e-2;
         let mut information = DMatrix::from_row_slice(6, 6, &found.information);
-        let mut gradient = DVector::from_vec(found.gradient);
+        let mut gradient = DVector::from_vec(found.gradient());
         for i in 0..6 {
             information[(i, i)] += prior;
             gradient[i] -= prior * logarithm[i];

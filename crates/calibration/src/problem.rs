@@ -4,7 +4,7 @@
 //! In every run each parameter of the model is a sum of unknowns ([`RunProblem::parameter_unknowns`]):
 //! a constant drift is that of the mean turn-on plus the offset of the run's own.
 
-use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series};
+use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series, Walks};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Chart, Integration};
 
@@ -197,6 +197,7 @@ where
             active,
             further,
             tape: None,
+            walks: Walks::default(),
         })
     }
 

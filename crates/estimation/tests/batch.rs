@@ -19,6 +19,8 @@ mod invalid_arguments;
 mod least_squares;
 #[path = "batch/noise.rs"]
 mod noise;
+#[path = "batch/walks.rs"]
+mod walks;
 
 use chain::{Chain, Disturbances, VARIANCE, solve};
 use density::Density;
@@ -97,7 +99,7 @@ fn the_likelihood_is_that_of_the_joint_gaussian() {
         .unwrap();
     let count = residuals.len() as f64;
     let expected = -0.5 * (square + log_determinant + count * core::f64::consts::TAU.ln());
-    assert!((score.log_likelihood - expected).abs() < 1e-6);
+    assert!((score.log_likelihood() - expected).abs() < 1e-6);
 }
 
 #[test]

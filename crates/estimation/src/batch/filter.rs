@@ -6,36 +6,39 @@ use alloc::vec::Vec;
 use gyrocal_scalar::Scalar;
 
 use super::step::{add, map_columns, sandwich};
+use super::walk::{Joint, WalkStep};
 use crate::error::EstimationError;
 
-/// Mean, sensitivities and covariance of the deviation of the moving states from the
-/// linearisation trajectory. Column 0 is the mean.
+/// Mean, sensitivities and covariance of the deviation of the moving states, and of parameters that
+/// walk, from the linearisation trajectory. Column 0 is the mean.
 pub(crate) struct Conditional<const M: usize> {
-    /// One row of 1 + count numbers for each moving state.
+    /// One row of 1 + count numbers for each moving state, then for each walk.
     pub(crate) columns: Vec<f64>,
     pub(crate) stride: usize,
-    pub(crate) covariance: [[f64; M]; M],
+    pub(crate) covariance: Joint<M>,
     /// The whitened row of the last output: residual, then columns.
     pub(crate) whitened: Vec<f64>,
+    /// Covariance of the moving states with the last output before its update, and of the walks.
+    pub(crate) cross: [f64; M],
+    pub(crate) walk_cross: Vec<f64>,
 }
 
 impl<const M: usize> Conditional<M> {
-    pub(crate) fn new(columns: usize, covariance: [[f64; M]; M]) -> Self {
+    pub(crate) fn new(columns: usize, covariance: [[f64; M]; M], walks: usize) -> Self {
         let stride = columns + 1;
         Self {
-            columns: vec![0.0; M * stride],
+            columns: vec![0.0; (M + walks) * stride],
             stride,
-            covariance,
+            covariance: Joint::new(covariance, walks),
             whitened: vec![0.0; stride],
+            cross: [0.0; M],
+            walk_cross: vec![0.0; walks],
         }
     }
 
-    pub(crate) fn mean(&self) -> [f64; M] {
-        let mut mean = [0.0; M];
-        for (i, value) in mean.iter_mut().enumerate() {
-            *value = self.columns[i * self.stride];
-        }
-        mean
+    /// Mean of moving states and walks.
+    pub(crate) fn whole_mean(&self) -> Vec<f64> {
+        self.columns.iter().step_by(self.stride).copied().collect()
     }
 
     /// Row `i` of the columns.
@@ -45,10 +48,18 @@ impl<const M: usize> Conditional<M> {
 
     /// Multiplies by the transition and adds its noise; what drives the columns is added by the
     /// caller.
-    pub(crate) fn predict(&mut self, transition: &[[f64; M]; M], noise: &[[f64; M]; M]) {
-        map_columns(transition, &mut self.columns, self.stride);
-        self.covariance = sandwich(transition, &self.covariance);
-        add(&mut self.covariance, noise);
+    pub(crate) fn predict(
+        &mut self,
+        transition: &[[f64; M]; M],
+        noise: &[[f64; M]; M],
+        steps: &[WalkStep<M>],
+    ) {
+        predict_columns(transition, steps, &mut self.columns, self.stride);
+        self.covariance.predict(transition, steps);
+        add(&mut self.covariance.moving, noise);
+        for (walk, step) in steps.iter().enumerate() {
+            self.covariance.add_walk(walk, step);
+        }
     }
 
     /// Takes one output. `whitened` holds the residual at the linearisation point and minus the
@@ -59,12 +70,8 @@ impl<const M: usize> Conditional<M> {
         jacobian: &[f64; M],
         variance: f64,
     ) -> Result<f64, EstimationError> {
-        let mut cross = [0.0; M];
-        for i in 0..M {
-            for j in 0..M {
-                cross[i] += self.covariance[i][j] * jacobian[j];
-            }
-        }
+        let cross = self.covariance.with_output(jacobian, &mut self.walk_cross);
+        self.cross = cross;
         let mut total = variance;
         for i in 0..M {
             total += jacobian[i] * cross[i];
@@ -86,15 +93,43 @@ impl<const M: usize> Conditional<M> {
         for innovation in &mut self.whitened {
             *innovation *= reciprocal;
         }
-        for i in 0..M {
-            let gain = cross[i] * reciprocal;
-            let row = &mut self.columns[i * stride..(i + 1) * stride];
+        let all = cross.iter().chain(&self.walk_cross);
+        for (row, cross) in self.columns.chunks_exact_mut(stride).zip(all) {
+            let gain = cross * reciprocal;
             for (value, innovation) in row.iter_mut().zip(&self.whitened) {
                 *value += gain * innovation;
             }
         }
-        self.covariance = reduced(&self.covariance, &cross, jacobian, variance, total);
+        let joint = &mut self.covariance;
+        joint.moving = reduced(&joint.moving, &cross, jacobian, variance, total);
+        let count = self.walk_cross.len();
+        for (w, walk) in self.walk_cross.iter().enumerate() {
+            for i in 0..M {
+                joint.cross[w][i] -= cross[i] * (walk / total);
+            }
+            for (v, other) in self.walk_cross.iter().enumerate() {
+                joint.walks[w * count + v] -= walk * other / total;
+            }
+        }
         Ok(deviation)
+    }
+}
+
+/// Multiplies columns, a row for each moving state and then for each walk, by a transition.
+pub(crate) fn predict_columns<const M: usize>(
+    transition: &[[f64; M]; M],
+    steps: &[WalkStep<M>],
+    columns: &mut [f64],
+    stride: usize,
+) {
+    map_columns(transition, columns, stride);
+    let (moving, walks) = columns.split_at_mut(M * stride);
+    for (step, walk) in steps.iter().zip(walks.chunks_exact(stride)) {
+        for (row, effect) in moving.chunks_exact_mut(stride).zip(step.effect) {
+            for (value, change) in row.iter_mut().zip(walk) {
+                *value += effect * change;
+            }
+        }
     }
 }
 
@@ -168,19 +203,6 @@ pub(crate) fn forward<const M: usize>(lower: &[[f64; M]; M], vector: &[f64; M]) 
         let mut sum = vector[i];
         for l in 0..i {
             sum -= lower[i][l] * solution[l];
-        }
-        solution[i] = sum / lower[i][i];
-    }
-    solution
-}
-
-/// L⁻ᵀ v.
-pub(crate) fn backward<const M: usize>(lower: &[[f64; M]; M], vector: &[f64; M]) -> [f64; M] {
-    let mut solution = [0.0; M];
-    for i in (0..M).rev() {
-        let mut sum = vector[i];
-        for l in i + 1..M {
-            sum -= lower[l][i] * solution[l];
         }
         solution[i] = sum / lower[i][i];
     }

@@ -4,7 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::linearisation::{Linearisation, Whitened};
-use super::step::sandwich;
+use super::walk::{WalkStep, transposed};
 use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 
@@ -25,12 +25,82 @@ pub struct JumpScore<const M: usize> {
 struct Seen<const M: usize> {
     /// Jacobian over the standard deviation of the innovation.
     jacobian: [f64; M],
-    /// Gain times that deviation.
-    gain: [f64; M],
     row: usize,
     output: usize,
     /// Reciprocal of that deviation.
     reciprocal: f64,
+}
+
+/// Score and information of a change of the moving states and walks, going backward.
+struct Adjoint {
+    /// Moving states and walks.
+    size: usize,
+    /// A change's score, then its products with each column.
+    columns: Vec<f64>,
+    /// By rows.
+    information: Vec<f64>,
+}
+
+impl Adjoint {
+    fn new(size: usize, columns: usize) -> Self {
+        Self {
+            size,
+            columns: vec![0.0; size * columns],
+            information: vec![0.0; size * size],
+        }
+    }
+
+    /// Goes back over an output. Later innovations see what its update leaves, (I - g h)ᵀ; `gain` is
+    /// that of moving states and walks times the deviation of the innovation.
+    fn update<const M: usize>(&mut self, jacobian: &[f64; M], gain: &[f64], innovations: &[f64]) {
+        let size = self.size;
+        let along = |vector: &[f64]| -> f64 { vector.iter().zip(gain).map(|(a, b)| a * b).sum() };
+        for (sum, value) in self.columns.chunks_exact_mut(size).zip(innovations) {
+            let left = value - along(sum);
+            for (sum, jacobian) in sum.iter_mut().zip(jacobian) {
+                *sum += jacobian * left;
+            }
+        }
+        for row in self.information.chunks_exact_mut(size) {
+            let left = along(row);
+            for (value, jacobian) in row.iter_mut().zip(jacobian) {
+                *value -= left * jacobian;
+            }
+        }
+        for column in 0..size {
+            let mut left = 0.0;
+            for (row, gain) in gain.iter().enumerate() {
+                left += gain * self.information[row * size + column];
+            }
+            for (row, jacobian) in jacobian.iter().enumerate() {
+                self.information[row * size + column] -= left * jacobian;
+            }
+        }
+        for (i, one) in jacobian.iter().enumerate() {
+            for (j, other) in jacobian.iter().enumerate() {
+                self.information[i * size + j] += one * other;
+            }
+        }
+    }
+
+    /// Goes back over a step.
+    fn predict<const M: usize>(&mut self, transition: &[[f64; M]; M], steps: &[WalkStep<M>]) {
+        let size = self.size;
+        for sum in self.columns.chunks_exact_mut(size) {
+            transposed(transition, steps, sum);
+        }
+        for row in self.information.chunks_exact_mut(size) {
+            transposed(transition, steps, row);
+        }
+        for i in 0..size {
+            for j in 0..i {
+                self.information.swap(i * size + j, j * size + i);
+            }
+        }
+        for row in self.information.chunks_exact_mut(size) {
+            transposed(transition, steps, row);
+        }
+    }
 }
 
 impl<D, S, C, const M: usize, const Y: usize> Linearisation<'_, D, S, C, M, Y>
@@ -50,23 +120,31 @@ where
     ) -> Result<(), EstimationError> {
         let rows = self.points.len();
         let count = 1 + self.active.len() + self.further.count();
+        let size = M + self.walks.walks.len();
         let mut seen: Vec<Seen<M>> = Vec::with_capacity(rows * Y);
+        let mut gains: Vec<f64> = Vec::with_capacity(rows * Y * size);
         let mut innovations: Vec<f64> = Vec::with_capacity(rows * Y * count);
         let mut transitions = Vec::with_capacity(rows);
+        let mut walks: Vec<WalkStep<M>> = Vec::with_capacity(rows * (size - M));
         self.forward(
-            &mut |whitened: &Whitened<'_>, jacobian, cross| {
+            &mut |whitened: &Whitened<'_>, jacobian, cross, walk_cross| {
                 let reciprocal = 1.0 / whitened.deviation;
                 seen.push(Seen {
                     jacobian: jacobian.map(|element| element * reciprocal),
-                    gain: cross.map(|element| element * reciprocal),
                     row: whitened.row,
                     output: whitened.output,
                     reciprocal,
                 });
+                let all = cross.iter().chain(walk_cross);
+                gains.extend(all.map(|element| element * reciprocal));
                 innovations.extend_from_slice(whitened.columns);
             },
-            &mut |transition| transitions.push(*transition),
+            &mut |transition, steps| {
+                transitions.push(*transition);
+                walks.extend_from_slice(steps);
+            },
         )?;
+        let mut adjoint = Adjoint::new(size, count);
         let mut score = JumpScore {
             columns: vec![[0.0; M]; count],
             information: [[0.0; M]; M],
@@ -76,44 +154,21 @@ where
             score.readings.fill(0.0);
             while let Some(output) = seen.pop_if(|seen| seen.row == row) {
                 let columns = &innovations[seen.len() * count..][..count];
-                // Later innovations see what this update leaves: (I - g h)ᵀ.
-                let mut left = [[0.0; M]; M];
-                for i in 0..M {
-                    for j in 0..M {
-                        left[i][j] =
-                            f64::from(u8::from(i == j)) - output.jacobian[i] * output.gain[j];
-                    }
-                }
-                score.information = sandwich(&left, &score.information);
-                for i in 0..M {
-                    for j in 0..M {
-                        score.information[i][j] += output.jacobian[i] * output.jacobian[j];
-                    }
-                }
-                let along: f64 = (0..M).map(|j| output.gain[j] * score.columns[0][j]).sum();
+                let gain = &gains[seen.len() * size..][..size];
+                let along: f64 = gain.iter().zip(&adjoint.columns).map(|(a, b)| a * b).sum();
                 score.readings[output.output] = (columns[0] - along) * output.reciprocal;
-                for (sum, value) in score.columns.iter_mut().zip(columns) {
-                    let along: f64 = (0..M).map(|j| output.gain[j] * sum[j]).sum();
-                    for i in 0..M {
-                        sum[i] += output.jacobian[i] * (value - along);
-                    }
-                }
+                adjoint.update(&output.jacobian, gain, columns);
+            }
+            let all = adjoint.columns.chunks_exact(size);
+            for (target, sum) in score.columns.iter_mut().zip(all) {
+                target.copy_from_slice(&sum[..M]);
+            }
+            for i in 0..M {
+                score.information[i].copy_from_slice(&adjoint.information[i * size..][..M]);
             }
             watch(row, &score);
-            let transition = &transitions[row - 1];
-            let mut transposed = [[0.0; M]; M];
-            for i in 0..M {
-                for j in 0..M {
-                    transposed[i][j] = transition[j][i];
-                }
-            }
-            score.information = sandwich(&transposed, &score.information);
-            for sum in &mut score.columns {
-                let before = *sum;
-                for i in 0..M {
-                    sum[i] = (0..M).map(|j| transposed[i][j] * before[j]).sum();
-                }
-            }
+            let steps = &walks[(row - 1) * (size - M)..row * (size - M)];
+            adjoint.predict(&transitions[row - 1], steps);
         }
         Ok(())
     }

@@ -4,13 +4,13 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use gyrocal_scalar::Scalar;
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::filter::{backward, cholesky, forward};
 use super::gram::Gram;
 use super::noise::{NoiseFilter, NoiseScore};
 use super::pass::{NOT_DRIVEN, Pass};
 use super::tape::Tape;
+use super::walk::{Joint, WalkStep, Walks};
 use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 use crate::transition::Integration;
@@ -44,6 +44,8 @@ where
     pub active: &'a [usize],
     /// Further columns, after those of the parameters.
     pub further: &'a C,
+    /// Active parameters that walk at random about their values.
+    pub walks: Walks<'a>,
     /// Steps kept by an earlier pass about the same trajectory with the same active parameters.
     pub tape: Option<&'a Tape<M>>,
 }
@@ -63,7 +65,8 @@ pub struct Reduced<const M: usize> {
     /// Twice the cost of the trajectory itself: squares of output residuals, of the noise between
     /// points, and of the first point's distance from its prior, each over its covariance.
     pub trajectory_cost: f64,
-    /// Deviation of the last point, then its derivatives by columns: M rows of 1 + columns.
+    /// Deviation of the last point and then of the walks there, each with its derivatives by columns:
+    /// rows of 1 + columns.
     pub last: Vec<f64>,
     /// Covariance of the last point given the parameters.
     pub last_covariance: [[f64; M]; M],
@@ -87,10 +90,12 @@ pub struct Whitened<'a> {
 pub struct Smoothed<const M: usize> {
     /// Correction of every point of the trajectory.
     pub corrections: Vec<[f64; M]>,
+    /// Correction of the change of every walk at every row, by rows.
+    pub walks: Vec<f64>,
 }
 
-/// Sees an output, its Jacobian and its covariance with the moving states.
-type OutputWatch<'a, const M: usize> = dyn FnMut(&Whitened<'_>, &[f64; M], [f64; M]) + 'a;
+/// Sees an output, its Jacobian and its covariance with moving states and walks.
+type OutputWatch<'a, const M: usize> = dyn FnMut(&Whitened<'_>, &[f64; M], &[f64; M], &[f64]) + 'a;
 
 impl<D, S, C, const M: usize, const Y: usize> Clone for Linearisation<'_, D, S, C, M, Y>
 where
@@ -176,7 +181,7 @@ where
         }
         reduced.gram = gram.finish();
         reduced.last = pass.filter.columns;
-        reduced.last_covariance = pass.filter.covariance;
+        reduced.last_covariance = pass.filter.covariance.moving;
         Ok(reduced)
     }
 
@@ -185,29 +190,25 @@ where
     pub(crate) fn forward(
         &self,
         output: &mut OutputWatch<'_, M>,
-        step: &mut dyn FnMut(&[[f64; M]; M]),
+        step: &mut dyn FnMut(&[[f64; M]; M], &[WalkStep<M>]),
     ) -> Result<(), EstimationError> {
         let count = self.active.len() + self.further.count();
         let mut pass = Pass::new(self, count, None)?;
         for row in 0..self.points.len() {
             pass.observe(row, &mut |whitened, taken| {
-                let mut cross = [0.0; M];
-                for i in 0..M {
-                    for j in 0..M {
-                        cross[i] += taken.covariance[i][j] * taken.jacobian[j];
-                    }
-                }
-                output(whitened, &taken.jacobian, cross);
+                output(whitened, &taken.jacobian, &taken.cross, taken.walk_cross);
             })?;
             if row + 1 < self.points.len() {
-                step(&pass.advance(row)?.step.moving);
+                let advanced = pass.advance(row)?;
+                step(&advanced.step.moving, &pass.walk_steps);
             }
         }
         Ok(())
     }
 
     /// Open-loop simulation: the trajectory of the model from the first point, without measurements
-    /// and without noise; further columns enter with their amplitudes.
+    /// and without noise; further columns enter with their amplitudes. Parameters that walk stay as
+    /// they are at the first row.
     ///
     /// # Errors
     /// As [`Self::reduce`].
@@ -233,11 +234,15 @@ where
         let mut points = Vec::with_capacity(rows.len());
         let mut point = self.points[rows.start];
         points.push(point);
+        let mut parameters = self.parameters.to_vec();
+        for (index, walk) in self.walks.walks.iter().enumerate() {
+            parameters[walk.parameter] += self.walks.change(rows.start, index);
+        }
         let further = self.further.count();
         for row in rows.start..rows.end - 1 {
             let (_, predicted) = pass
                 .stepper
-                .advance(self.series, row, &point, self.parameters)?;
+                .advance(self.series, row, &point, &parameters)?;
             let mut turn = [0.0; M];
             let jump = pass.drive(row);
             for i in 0..M {
@@ -254,32 +259,53 @@ where
         Ok(points)
     }
 
-    /// Gradient and information of the likelihood with respect to the noise, the trajectory and all
-    /// columns held fixed. `factors` multiply the declared variances: first those of the outputs,
-    /// then those of the noise inputs.
+    /// Likelihood of the noise with its derivatives, all columns held fixed. `factors` multiply the
+    /// declared variances: first those of the outputs, then those of the noise inputs, then those of
+    /// the walks.
     ///
     /// # Errors
     /// As [`Self::reduce`], and [`EstimationError::InvalidArgument`] if there is not one factor
-    /// for each output and each noise input.
+    /// for each output, noise input and walk.
     pub fn noise_score(&self, factors: &[f64]) -> Result<NoiseScore, EstimationError> {
-        if factors.len() != M + Y {
+        let none = vec![0.0; self.active.len() + self.further.count()];
+        self.noise_pass(factors, 0, Some(&none))
+    }
+
+    /// The same with the columns free, for a likelihood that they are to be eliminated from.
+    ///
+    /// # Errors
+    /// As [`Self::noise_score`].
+    pub fn noise_score_of_columns(&self, factors: &[f64]) -> Result<NoiseScore, EstimationError> {
+        self.noise_pass(factors, self.active.len() + self.further.count(), None)
+    }
+
+    fn noise_pass(
+        &self,
+        factors: &[f64],
+        count: usize,
+        change: Option<&[f64]>,
+    ) -> Result<NoiseScore, EstimationError> {
+        let walks = self.walks.walks.len();
+        if factors.len() != M + Y + walks {
             return Err(EstimationError::InvalidArgument {
-                expected: "one factor for each output and each noise input",
+                expected: "one factor for each output, each noise input and each walk",
             });
         }
-        let (outputs, inputs) = factors.split_at(Y);
-        let none = vec![0.0; self.active.len() + self.further.count()];
-        let mut pass = Pass::new(self, 0, Some(&none))?;
+        let (outputs, rest) = factors.split_at(Y);
+        let (inputs, own) = rest.split_at(M);
+        let mut pass = Pass::new(self, count, change)?;
         pass.factors.copy_from_slice(outputs);
         pass.input_factors.copy_from_slice(inputs);
-        let mut filter = NoiseFilter::<M>::new(Y);
+        pass.walk_factors.copy_from_slice(own);
+        let mut filter = NoiseFilter::<M>::new(Y, count, walks);
         for row in 0..self.points.len() {
             pass.observe(row, &mut |whitened, taken| filter.take(whitened, taken))?;
             if row + 1 < self.points.len() {
-                filter.predict(&pass.advance(row)?.step);
+                let step = pass.advance(row)?.step;
+                filter.predict(&step, &pass.walk_steps);
             }
         }
-        Ok(filter.score)
+        Ok(filter.finish())
     }
 
     /// The correction of every point when the columns change by `change`.
@@ -288,54 +314,61 @@ where
     /// As [`Self::reduce`].
     pub fn smooth(&self, change: &[f64]) -> Result<Smoothed<M>, EstimationError> {
         let rows = self.points.len();
+        let size = M + self.walks.walks.len();
         let mut pass = Pass::new(self, 0, Some(change))?;
-        let mut corrections = vec![[0.0; M]; rows];
-        let mut gains = vec![[[0.0; M]; M]; rows.saturating_sub(1)];
+        let mut corrections: Vec<DVector<f64>> = Vec::with_capacity(rows);
+        let mut gains: Vec<DMatrix<f64>> = Vec::with_capacity(rows.saturating_sub(1));
         for row in 0..rows {
             pass.observe(row, &mut |_, _| ())?;
-            corrections[row] = pass.filter.mean();
+            corrections.push(DVector::from_vec(pass.filter.whole_mean()));
             if row + 1 < rows {
-                let filtered = pass.filter.covariance;
+                let filtered = pass.filter.covariance.clone();
                 let step = pass.advance(row)?.step;
-                let gain = smoother_gain(&filtered, &step.moving, &pass.filter.covariance)
+                let steps = &pass.walk_steps;
+                let transition = whole_transition(&step.moving, steps);
+                let gain = smoother_gain(&filtered, &transition, &pass.filter.covariance)
                     .ok_or(NOT_DRIVEN)?;
-                let predicted = pass.filter.mean();
-                for i in 0..M {
-                    for j in 0..M {
-                        corrections[row][i] -= gain[i][j] * predicted[j];
-                    }
-                }
-                gains[row] = gain;
+                let predicted = DVector::from_vec(pass.filter.whole_mean());
+                corrections[row].gemv(-1.0, &gain, &predicted, 1.0);
+                gains.push(gain);
             }
         }
         for row in (0..rows.saturating_sub(1)).rev() {
-            let next = corrections[row + 1];
-            for i in 0..M {
-                for j in 0..M {
-                    corrections[row][i] += gains[row][i][j] * next[j];
-                }
-            }
+            let (before, after) = corrections.split_at_mut(row + 1);
+            before[row].gemv(1.0, &gains[row], &after[0], 1.0);
         }
-        Ok(Smoothed { corrections })
+        Ok(Smoothed {
+            corrections: corrections
+                .iter()
+                .map(|all| core::array::from_fn(|i| all[i]))
+                .collect(),
+            walks: corrections
+                .iter()
+                .flat_map(|all| (M..size).map(|i| all[i]))
+                .collect(),
+        })
     }
+}
+
+/// Transition of moving states and walks.
+fn whole_transition<const M: usize>(moving: &[[f64; M]; M], steps: &[WalkStep<M>]) -> DMatrix<f64> {
+    let size = M + steps.len();
+    DMatrix::from_fn(size, size, |i, j| match (i < M, j.checked_sub(M)) {
+        (true, None) => moving[i][j],
+        (true, Some(walk)) => steps[walk].effect[i],
+        (false, _) => f64::from(u8::from(i == j)),
+    })
 }
 
 /// P⁺ Φᵀ (P⁻)⁻¹.
 fn smoother_gain<const M: usize>(
-    filtered: &[[f64; M]; M],
-    transition: &[[f64; M]; M],
-    predicted: &[[f64; M]; M],
-) -> Option<[[f64; M]; M]> {
-    let lower = cholesky(predicted)?;
-    let mut gain = [[0.0; M]; M];
-    for i in 0..M {
-        let mut cross = [0.0; M];
-        for (j, value) in cross.iter_mut().enumerate() {
-            for l in 0..M {
-                *value += filtered[i][l] * transition[j][l];
-            }
-        }
-        gain[i] = backward(&lower, &forward(&lower, &cross));
-    }
-    Some(gain)
+    filtered: &Joint<M>,
+    transition: &DMatrix<f64>,
+    predicted: &Joint<M>,
+) -> Option<DMatrix<f64>> {
+    let size = transition.nrows();
+    let whole = |joint: &Joint<M>| DMatrix::from_fn(size, size, |i, j| joint.whole(i, j));
+    // The transpose of the gain: both covariances are symmetric.
+    let gain = Cholesky::new(whole(predicted))?.solve(&(transition * whole(filtered)));
+    Some(gain.transpose())
 }

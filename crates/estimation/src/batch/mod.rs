@@ -14,6 +14,10 @@
 //! the iterated Kalman smoother (Bell, SIAM J. Optim. 4(3), 1994), the Gauss-Newton method on
 //! all points and parameters.
 //!
+//! A parameter may walk at random along the record ([`Walk`]): it is then one more state of that
+//! filter, which moves the others as its sensitivity column says, and its variance is a noise like
+//! the others ([`Linearisation::noise_score`]).
+//!
 //! Memory grows with the moving states only: a point, a correction and one M × M gain a row.
 
 mod columns;
@@ -25,6 +29,7 @@ mod noise;
 mod pass;
 mod step;
 mod tape;
+mod walk;
 
 pub use crate::manifold::{Corrected, Manifold};
 pub use columns::{Columns, NoColumns};
@@ -33,6 +38,7 @@ pub use jumps::JumpScore;
 pub use linearisation::{Linearisation, Reduced, Smoothed, Whitened};
 pub use noise::NoiseScore;
 pub use tape::Tape;
+pub use walk::{Walk, Walks};
 
 /// The rows of a record, and the model's inputs over and at them.
 pub trait Series<I, const Y: usize> {

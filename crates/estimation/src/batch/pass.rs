@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use super::filter::{Conditional, cholesky, forward};
 use super::linearisation::{Linearisation, Whitened};
 use super::step::{Step, Stepper, map_columns, sandwich};
+use super::walk::{GIVEN_CHANGE, MEAN_INTEGRAL, WalkStep};
 use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 
@@ -19,15 +20,16 @@ fn squared<const M: usize>(matrix: &[[f64; M]; M], vector: &[f64; M]) -> Option<
     Some(forward(&lower, vector).iter().map(|x| x * x).sum())
 }
 
-/// Quantities of an update that the filter does not keep.
-pub(crate) struct Taken<const M: usize> {
+/// Quantities of an update.
+pub(crate) struct Taken<'a, const M: usize> {
     /// Square of the residual at the linearisation point over the output's noise variance.
     pub(super) cost: f64,
     pub(crate) jacobian: [f64; M],
     /// Variance of the output's noise.
     pub(crate) variance: f64,
-    /// Covariance of the moving states before the update.
-    pub(crate) covariance: [[f64; M]; M],
+    /// Covariance of the moving states with the output before the update, and of the walks.
+    pub(crate) cross: [f64; M],
+    pub(crate) walk_cross: &'a [f64],
 }
 
 /// A step to the next row.
@@ -54,6 +56,14 @@ where
     pub(super) factors: [f64; Y],
     /// Factors of the densities of the noise inputs.
     pub(super) input_factors: [f64; M],
+    /// Factors of the densities of the walks.
+    pub(super) walk_factors: Vec<f64>,
+    /// The walks over the last step.
+    pub(super) walk_steps: Vec<WalkStep<M>>,
+    /// Place of the parameter of each walk among the active ones.
+    walk_places: Vec<usize>,
+    /// All parameters, those that walk with their change at the row.
+    parameters: Vec<f64>,
     /// Active parameter columns of the last step, M rows of them.
     pub(super) own: Vec<f64>,
     /// Change of the columns; all are then folded into column 0.
@@ -88,13 +98,30 @@ where
                 expected: "one point a row, all parameters of the model, and one change a column",
             });
         }
+        let walks = of.walks.walks;
+        let place = |parameter: usize| of.active.iter().position(|active| *active == parameter);
+        let walk_places: Vec<usize> = walks
+            .iter()
+            .filter_map(|walk| place(walk.parameter))
+            .collect();
+        let changes = of.walks.changes.len();
+        if walk_places.len() < walks.len()
+            || walks
+                .iter()
+                .any(|walk| !(walk.density > 0.0 && walk.density.is_finite()))
+            || !(changes == 0 || changes == walks.len() * of.points.len())
+        {
+            return Err(EstimationError::InvalidArgument {
+                expected: "walks of active parameters with a positive density and one change a row",
+            });
+        }
         let mut mean = of.model.difference(&of.points[0], &of.prior);
         // The prior is of a correction of its own mean; here it counts as one of the first point.
         let covariance = match of.model.corrected(&mean.map(|component| -component)) {
             Some(corrected) => sandwich(&corrected.correction, &of.prior_covariance),
             None => of.prior_covariance,
         };
-        let mut filter = Conditional::new(count, covariance);
+        let mut filter = Conditional::new(count, covariance, walks.len());
         for column in 0..further {
             let amplitude = of.further.amplitude(column);
             let start = of.further.start(column);
@@ -125,6 +152,10 @@ where
             prior_cost,
             factors: [1.0; Y],
             input_factors: [1.0; M],
+            walk_factors: vec![1.0; walks.len()],
+            walk_steps: Vec::with_capacity(walks.len()),
+            walk_places,
+            parameters: of.parameters.to_vec(),
             own: vec![0.0; M * of.active.len()],
             change,
             d_parameters: vec![0.0; Y * of.model.output_parameters()],
@@ -138,7 +169,7 @@ where
     pub(super) fn observe(
         &mut self,
         row: usize,
-        used: &mut dyn FnMut(&Whitened<'_>, &Taken<M>),
+        used: &mut dyn FnMut(&Whitened<'_>, &Taken<'_, M>),
     ) -> Result<(), EstimationError> {
         let of = self.of;
         let measured = of.series.measured(row);
@@ -164,14 +195,20 @@ where
             for (column, direct) in self.direct.iter().enumerate() {
                 residual -= direct * of.further.amplitude(column);
             }
+            self.set_direct_derivatives(output, residual);
+            if self.walk_is_seen(output) {
+                return Err(EstimationError::InvalidArgument {
+                    expected: "walks of parameters that no output depends on",
+                });
+            }
+            let deviation = self.filter.update(&d_moving[output], variance[output])?;
             let taken = Taken {
                 cost: residual * residual / variance[output],
                 jacobian: d_moving[output],
                 variance: variance[output],
-                covariance: self.filter.covariance,
+                cross: self.filter.cross,
+                walk_cross: &self.filter.walk_cross,
             };
-            self.set_direct_derivatives(output, residual);
-            let deviation = self.filter.update(&d_moving[output], variance[output])?;
             let seen = Whitened {
                 row,
                 output,
@@ -235,6 +272,14 @@ where
         }
     }
 
+    /// Whether an output depends directly on a parameter that walks.
+    fn walk_is_seen(&self, output: usize) -> bool {
+        let q = self.of.model.output_parameters();
+        let direct = &self.d_parameters[output * q..(output + 1) * q];
+        let mut walks = self.of.walks.walks.iter();
+        walks.any(|walk| direct.get(walk.parameter).is_some_and(|own| *own != 0.0))
+    }
+
     /// Change of the moving states by a unit of each further column over the step just made.
     pub(super) fn drive(&mut self, row: usize) -> &[f64] {
         let further = self.of.further.count();
@@ -271,9 +316,13 @@ where
             }
             return Ok((step, jump));
         }
+        for (index, walk) in of.walks.walks.iter().enumerate() {
+            self.parameters[walk.parameter] =
+                of.parameters[walk.parameter] + of.walks.change(row, index);
+        }
         let (mut step, predicted) =
             self.stepper
-                .advance(of.series, row, &of.points[row], of.parameters)?;
+                .advance(of.series, row, &of.points[row], &self.parameters)?;
         let jump = of.model.difference(&predicted, &of.points[row + 1]);
         let p = of.parameters.len();
         if let Some(corrected) = of.model.corrected(&jump) {
@@ -301,7 +350,8 @@ where
             }
         }
         let noise = step.noise();
-        self.filter.predict(&step.moving, &noise);
+        self.set_walk_steps(row);
+        self.filter.predict(&step.moving, &noise, &self.walk_steps);
         let (active, further) = (of.active.len(), of.further.count());
         self.drive(row);
         for i in 0..M {
@@ -332,7 +382,50 @@ where
         Ok(Advanced {
             step,
             jump: predicted_jump,
-            cost: squared(&noise, &jump).ok_or(NOT_DRIVEN)?,
+            cost: self.step_cost(row, noise, jump).ok_or(NOT_DRIVEN)?,
         })
+    }
+
+    /// Sets [`Self::walk_steps`] to those of the step just made after `row`.
+    fn set_walk_steps(&mut self, row: usize) {
+        self.walk_steps.clear();
+        let of = self.of;
+        if of.walks.walks.is_empty() {
+            return;
+        }
+        let duration_s = of.series.time_s(row + 1) - of.series.time_s(row);
+        let active = of.active.len();
+        for (index, walk) in of.walks.walks.iter().enumerate() {
+            let place = self.walk_places[index];
+            self.walk_steps.push(WalkStep {
+                effect: core::array::from_fn(|i| self.own[i * active + place]),
+                variance: walk.density * self.walk_factors[index] * duration_s,
+            });
+        }
+    }
+
+    /// The cost of the noise of a step: of the changes of walks, and of the jump given these. Takes
+    /// the changes of walks from the mean.
+    fn step_cost(
+        &mut self,
+        row: usize,
+        mut noise: [[f64; M]; M],
+        mut jump: [f64; M],
+    ) -> Option<f64> {
+        let mut cost = 0.0;
+        for index in 0..self.walk_steps.len() {
+            let walks = &self.of.walks;
+            let change = walks.change(row + 1, index) - walks.change(row, index);
+            self.filter.row_mut(M + index)[0] -= change;
+            let WalkStep { effect, variance } = self.walk_steps[index];
+            cost += change * change / variance;
+            for i in 0..M {
+                jump[i] -= MEAN_INTEGRAL * effect[i] * change;
+                for j in 0..M {
+                    noise[i][j] += GIVEN_CHANGE * variance * (effect[i] * effect[j]);
+                }
+            }
+        }
+        Some(cost + squared(&noise, &jump)?)
     }
 }

@@ -1,7 +1,7 @@
 //! A short record of a pendulum with gaps, and Gauss-Newton steps on it.
 
 use chacha20::ChaCha12Rng;
-use gyrocal_estimation::batch::{Columns, Linearisation, Series};
+use gyrocal_estimation::batch::{Columns, Linearisation, Series, Walks};
 use gyrocal_estimation::{Integration, Manifold};
 use gyrocal_scalar::Model;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Vector2};
@@ -222,6 +222,7 @@ impl Chain {
             prior_covariance: PRIOR_COVARIANCE,
             points,
             tape: None,
+            walks: Walks::default(),
             parameters,
             active,
             further,

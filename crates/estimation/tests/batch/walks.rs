@@ -1,0 +1,330 @@
+//! Parameters that walk, against the joint Gaussian density of outputs and walks.
+
+use gyrocal_estimation::EstimationError;
+use gyrocal_estimation::batch::{Columns, Linearisation, NoColumns, Walk, Walks};
+use gyrocal_scalar::Model;
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::chain::{Chain, PRIOR, VARIANCE};
+use crate::common::Pendulum;
+use crate::density::Density;
+
+const WALKS: [Walk; 2] = [
+    Walk {
+        parameter: 2,
+        density: 0.8,
+    },
+    Walk {
+        parameter: 3,
+        density: 0.05,
+    },
+];
+const ACTIVE: [usize; 2] = [2, 3];
+
+/// Derivatives of all present outputs by the change of each parameter over each step.
+fn by_each_step(chain: &Chain, walk: usize) -> DMatrix<f64> {
+    let steps = chain.times_s.len() - 1;
+    let present = chain.present();
+    let outputs = |changed: usize, change: f64| {
+        let mut points = vec![chain.trajectory()[0]];
+        for row in 0..steps {
+            let mut parameters = PRIOR;
+            if row == changed {
+                parameters[WALKS[walk].parameter] += change;
+            }
+            let torques = vec![0.0; chain.parts(row).0];
+            points.push(chain.over(row, points[row], &parameters, &torques));
+        }
+        DVector::from_iterator(
+            present.len(),
+            present.iter().map(|(row, output)| {
+                let predicted: [f64; 2] = Pendulum.output(&points[*row], &PRIOR, &());
+                predicted[*output]
+            }),
+        )
+    };
+    let columns: Vec<DVector<f64>> = (0..steps)
+        .map(|step| (outputs(step, 1e-4) - outputs(step, -1e-4)) / 2e-4)
+        .collect();
+    DMatrix::from_columns(&columns)
+}
+
+/// Covariance of the outputs with the change of each walk at each row (a row for each row and walk),
+/// and of the outputs by the walks alone.
+fn of_walks(chain: &Chain, factors: [f64; 2]) -> (DMatrix<f64>, DMatrix<f64>) {
+    let rows = chain.times_s.len();
+    let present = chain.present().len();
+    let mut cross = DMatrix::zeros(2 * rows, present);
+    let mut own = DMatrix::zeros(present, present);
+    for walk in 0..2 {
+        let each = by_each_step(chain, walk);
+        for step in 0..rows - 1 {
+            let duration_s = chain.times_s[step + 1] - chain.times_s[step];
+            let variance = WALKS[walk].density * factors[walk] * duration_s;
+            // The mean over a step of a walk that ends at u is u / 2 with a variance of a twelfth.
+            let mut change = 0.5 * each.column(step);
+            for later in step + 1..rows - 1 {
+                change += each.column(later);
+            }
+            own += variance * (&change * change.transpose());
+            own += variance / 12.0 * (each.column(step) * each.column(step).transpose());
+            for row in step + 1..rows {
+                let mut target = cross.row_mut(2 * row + walk);
+                target += variance * change.transpose();
+            }
+        }
+    }
+    (cross, own)
+}
+
+struct Dense {
+    residuals: DVector<f64>,
+    covariance: DMatrix<f64>,
+    cross: DMatrix<f64>,
+}
+
+fn dense(chain: &Chain, factors: [f64; 2]) -> Dense {
+    let (residuals, without) = Density { chain }.outputs_given_parameters();
+    let (cross, own) = of_walks(chain, factors);
+    Dense {
+        residuals,
+        covariance: without + own,
+        cross,
+    }
+}
+
+fn walking<'a, C: Columns<2, 2>>(
+    chain: &'a Chain,
+    points: &'a [[f64; 2]],
+    further: &'a C,
+) -> Linearisation<'a, Pendulum, Chain, C, 2, 2> {
+    Linearisation {
+        walks: Walks {
+            walks: &WALKS,
+            changes: &[],
+        },
+        ..chain.linearised(points, &PRIOR, &ACTIVE, further)
+    }
+}
+
+#[test]
+fn the_likelihood_with_walks_is_that_of_the_joint_gaussian() {
+    let chain = Chain::measured(3);
+    let points = chain.trajectory();
+    let pass = walking(&chain, &points, &NoColumns);
+    let factors = [1.0, 1.0, 1.0, 1.0, 1.7, 0.4];
+    let score = pass.noise_score(&factors).unwrap();
+    let dense = dense(&chain, [1.7, 0.4]);
+    let cholesky = Cholesky::new(dense.covariance).unwrap();
+    let squares = cholesky.solve(&dense.residuals).dot(&dense.residuals);
+    let determinant = 2.0 * cholesky.l().diagonal().map(f64::ln).sum();
+    let constant = score.values as f64 * core::f64::consts::TAU.ln();
+    let expected = -0.5 * (squares + determinant + constant);
+    // The effect of a walk is linearised: derivatives by differences of second order.
+    assert!(
+        (score.log_likelihood() - expected).abs() < 1e-4,
+        "{} {expected}",
+        score.log_likelihood()
+    );
+    // Without walks it is another likelihood.
+    let without = Linearisation {
+        walks: Walks::default(),
+        ..pass
+    };
+    let other = without.noise_score(&factors[..4]).unwrap();
+    assert!((other.log_likelihood() - expected).abs() > 1.0);
+}
+
+#[test]
+fn the_gradient_by_walks_and_columns_is_that_of_the_sums() {
+    let chain = Chain::measured(4);
+    let points = chain.trajectory();
+    let pass = walking(&chain, &points, &NoColumns);
+    let at = [1.3, 0.6, 2.0, 1.0, 1.7, 0.4];
+    let score = |factors: &[f64]| pass.noise_score_of_columns(factors).unwrap();
+    let found = score(&at);
+    assert_eq!(found.gram.nrows(), 3);
+    for k in 0..6 {
+        let moved = |logarithm: f64| {
+            let mut factors = at;
+            factors[k] *= f64::exp(logarithm);
+            score(&factors)
+        };
+        let step = 1e-3;
+        let difference = |f: &dyn Fn(f64) -> f64| {
+            (8.0 * (f(step) - f(-step)) - f(2.0 * step) + f(-2.0 * step)) / (12.0 * step)
+        };
+        // Rounding of sums of some thousands over the step.
+        let same = |found: f64, expected: f64| {
+            assert!(
+                (found - expected).abs() < 1e-7 * (1.0 + expected.abs()),
+                "{k}: {found} {expected}"
+            );
+        };
+        same(
+            found.d_log_variance[k],
+            difference(&|logarithm| moved(logarithm).log_variance),
+        );
+        for i in 0..3 {
+            for j in 0..3 {
+                same(
+                    found.d_gram[k][(i, j)],
+                    difference(&|logarithm| moved(logarithm).gram[(i, j)]),
+                );
+            }
+        }
+    }
+    let reduced = pass.reduce(|_| ()).unwrap();
+    let declared = score(&[1.0; 6]);
+    // The same sums in another order.
+    assert!((reduced.gram - declared.gram).abs().max() < 1e-8);
+    assert!((reduced.log_variance - declared.log_variance).abs() < 1e-10);
+}
+
+#[test]
+fn smoothed_walks_are_the_conditional_mean() {
+    let chain = Chain::measured(5);
+    let points = chain.trajectory();
+    let pass = walking(&chain, &points, &NoColumns);
+    let smoothed = pass.smooth(&[0.0; 2]).unwrap();
+    let dense = dense(&chain, [1.0; 2]);
+    let weights = Cholesky::new(dense.covariance)
+        .unwrap()
+        .solve(&dense.residuals);
+    let expected = &dense.cross * weights;
+    let largest = expected.abs().max();
+    assert!(largest > 0.01, "{largest}");
+    for (found, expected) in smoothed.walks.iter().zip(expected.iter()) {
+        // As the likelihood.
+        assert!((found - expected).abs() < 1e-5, "{found} {expected}");
+    }
+}
+
+/// The cost of a smoothed trajectory with its walks is the least, which the innovations give too.
+#[test]
+fn the_smoothed_trajectory_has_the_least_cost() {
+    let chain = Chain::measured(6);
+    let mut points = chain.trajectory();
+    let mut changes = vec![0.0; 2 * points.len()];
+    fn walks(changes: &[f64]) -> Walks<'_> {
+        Walks {
+            walks: &WALKS,
+            changes,
+        }
+    }
+    for _ in 0..8 {
+        let pass = Linearisation {
+            walks: walks(&changes),
+            ..chain.linearised(&points, &PRIOR, &ACTIVE, &NoColumns)
+        };
+        let smoothed = pass.smooth(&[0.0; 2]).unwrap();
+        for (point, correction) in points.iter_mut().zip(&smoothed.corrections) {
+            point[0] += correction[0];
+            point[1] += correction[1];
+        }
+        for (change, correction) in changes.iter_mut().zip(&smoothed.walks) {
+            *change += correction;
+        }
+    }
+    let pass = Linearisation {
+        walks: walks(&changes),
+        ..chain.linearised(&points, &PRIOR, &ACTIVE, &NoColumns)
+    };
+    let reduced = pass.reduce(|_| ()).unwrap();
+    // Rounding: about the optimum both are the same sum of squares.
+    assert!((reduced.trajectory_cost / reduced.gram[(0, 0)] - 1.0).abs() < 1e-9);
+    // On the tape too.
+    let (kept, tape) = pass.reduce_and_keep(|_| ()).unwrap();
+    let on_tape = Linearisation {
+        tape: Some(&tape),
+        ..pass
+    };
+    assert_eq!(on_tape.reduce(|_| ()).unwrap(), kept);
+}
+
+/// A sudden change of the state after a row.
+struct Knock(usize, usize);
+
+impl Columns<2, 2> for Knock {
+    fn count(&self) -> usize {
+        1
+    }
+
+    fn drive(&self, row: usize, _: &[f64], _: usize, drive: [&mut [f64]; 2]) {
+        if row == self.0 {
+            drive[self.1][0] = 1.0;
+        }
+    }
+}
+
+#[test]
+fn scores_of_jumps_beside_walks_are_those_of_columns() {
+    let chain = Chain::measured(7);
+    let points = chain.trajectory();
+    let mut jumps = Vec::new();
+    walking(&chain, &points, &NoColumns)
+        .jumps(|row, score| jumps.push((row, score.clone())))
+        .unwrap();
+    for (row, score) in &jumps {
+        for state in 0..2 {
+            let knock = Knock(row - 1, state);
+            let gram = walking(&chain, &points, &knock)
+                .reduce(|_| ())
+                .unwrap()
+                .gram;
+            let same = |found: f64, expected: f64| {
+                // Columns are derivatives of the innovations; those of a jump have the other sign.
+                // Rounding of sums of some thousands.
+                let scale = 1.0 + expected.abs() + gram[(3, 3)];
+                assert!(
+                    (found - expected).abs() < 1e-9 * scale,
+                    "{found} {expected}"
+                );
+            };
+            same(score.columns[0][state], -gram[(0, 3)]);
+            same(score.columns[1][state], -gram[(1, 3)]);
+            same(score.columns[2][state], -gram[(2, 3)]);
+            same(score.information[state][state], gram[(3, 3)]);
+        }
+    }
+    assert!(jumps.len() == chain.times_s.len() - 1 && VARIANCE[0] > 0.0);
+}
+
+#[test]
+fn walks_that_cannot_be_are_refused() {
+    let chain = Chain::measured(8);
+    let points = chain.trajectory();
+    let refused = |walk: Walk, active: &[usize], changes: &[f64]| {
+        let pass = Linearisation {
+            walks: Walks {
+                walks: &[walk],
+                changes,
+            },
+            ..chain.linearised(&points, &PRIOR, active, &NoColumns)
+        };
+        assert!(matches!(
+            pass.reduce(|_| ()),
+            Err(EstimationError::InvalidArgument { .. })
+        ));
+    };
+    let good = WALKS[0];
+    // Not active; without a variance; not one change a row; seen by an output.
+    refused(good, &[3], &[]);
+    refused(
+        Walk {
+            density: 0.0,
+            ..good
+        },
+        &ACTIVE,
+        &[],
+    );
+    refused(good, &ACTIVE, &[0.0; 3]);
+    refused(
+        Walk {
+            parameter: 0,
+            ..good
+        },
+        &[0, 2],
+        &[],
+    );
+}
