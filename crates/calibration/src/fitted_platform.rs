@@ -4,7 +4,9 @@ mod evidence;
 mod hypothesis;
 mod passes;
 mod prediction;
+mod rate_noise;
 
+use gyrocal::estimation::batch::Walk;
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Chart, Discretisation};
@@ -17,6 +19,7 @@ use crate::error::CalibrationError;
 use crate::initial_guess::initial_guess;
 use crate::layout::SiteQuantity;
 use crate::options::Options;
+use crate::platform::PLATFORM;
 use crate::problem::{Problem, RunProblem, Unknown};
 use crate::run::{Run, WeightedRows};
 use crate::settings::filter_settings;
@@ -24,6 +27,10 @@ use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
 
 pub use prediction::{Estimates, Expectation};
+pub use rate_noise::GYRO_NOISE_PRIOR_SIGMA;
+
+/// Seconds in an hour.
+const S_PER_H: f64 = 3600.0;
 
 const SHAPES: usize = catalogue::SHAPES.len();
 
@@ -55,6 +62,8 @@ pub struct NoiseModel {
     pub accel_ratio: [f64; 3],
     /// Standard deviation of the gyros' white noise over the declared one.
     pub gyro_ratio: [f64; 3],
+    /// Random walk of the gyros' constant drift, deg/h/√h; zero for none.
+    pub gyro_walk_deg_per_h_per_sqrt_h: [f64; 3],
     /// Weight of each value, if some are not trusted: 0 leaves a value out.
     pub weights: Option<Vec<[f64; 3]>>,
 }
@@ -65,9 +74,22 @@ impl Default for NoiseModel {
         Self {
             accel_ratio: [1.0; 3],
             gyro_ratio: [1.0; 3],
+            gyro_walk_deg_per_h_per_sqrt_h: [0.0; 3],
             weights: None,
         }
     }
+}
+
+/// The random walks of the gyros that have one, from their size.
+fn walks(deg_per_h_per_sqrt_h: &[f64; 3]) -> Vec<Walk> {
+    let rates = PLATFORM.rates.iter().zip(deg_per_h_per_sqrt_h);
+    rates
+        .filter(|(_, size)| **size > 0.0)
+        .map(|(rate, size)| Walk {
+            parameter: rate.constant,
+            density: size * size / S_PER_H,
+        })
+        .collect()
 }
 
 /// An extended model at its best fit to a record.
@@ -77,6 +99,7 @@ pub struct FittedPlatform<'a> {
     solution: Solution,
     uncertainty: Uncertainty,
     extension: ModelExtension,
+    noise: NoiseModel,
 }
 
 impl<'a> FittedPlatform<'a> {
@@ -115,6 +138,8 @@ impl<'a> FittedPlatform<'a> {
                 parameter_unknowns: Vec::new(),
                 further: ExtraColumns::default(),
                 amplitudes: Vec::new(),
+                walks: walks(&noise.gyro_walk_deg_per_h_per_sqrt_h),
+                walk_changes: Vec::new(),
             };
             let problem = Problem {
                 model: &Anchored(Catalogue),
@@ -130,7 +155,7 @@ impl<'a> FittedPlatform<'a> {
                 runs: vec![leg],
                 values,
             };
-            Self::solved(problem, extension)
+            Self::solved(problem, extension, noise.clone())
         };
         fit(false).or_else(|_| fit(true))
     }
@@ -141,13 +166,14 @@ impl<'a> FittedPlatform<'a> {
     /// [`CalibrationError::NotConverged`], [`CalibrationError::NoDescent`],
     /// [`CalibrationError::NotPositiveDefinite`], [`CalibrationError::Pass`].
     pub fn refitted(&self, extension: &ModelExtension) -> Result<Self, CalibrationError> {
-        self.refitted_with(extension, |_| ())
+        self.refitted_with(extension, |_| (), self.noise.clone())
     }
 
     fn refitted_with(
         &self,
         extension: &ModelExtension,
         change: impl FnOnce(&mut RunProblem<'a, CatalogueInputs<f64>>),
+        noise: NoiseModel,
     ) -> Result<Self, CalibrationError> {
         let before = self.parameters();
         let leg = &self.problem.runs[0];
@@ -185,11 +211,13 @@ impl<'a> FittedPlatform<'a> {
                 parameter_unknowns: Vec::new(),
                 further: ExtraColumns::default(),
                 amplitudes: Vec::new(),
+                walks: leg.walks.clone(),
+                walk_changes: leg.walk_changes.clone(),
             }],
             values,
         };
         change(&mut problem.runs[0]);
-        Self::solved(problem, extension.clone())
+        Self::solved(problem, extension.clone(), noise)
     }
 
     /// The same extension fitted with another noise.
@@ -198,17 +226,20 @@ impl<'a> FittedPlatform<'a> {
     /// As [`Self::refitted`].
     pub fn with_noise(&self, bench: &Bench, noise: &NoiseModel) -> Result<Self, CalibrationError> {
         let density = filter_settings(bench, Discretisation::default()).drift_noise_density();
-        self.refitted_with(&self.extension, |leg| {
+        let change = |leg: &mut RunProblem<'a, CatalogueInputs<f64>>| {
             leg.rows
                 .set_noise(noise.accel_ratio.map(|ratio| ratio * bench.accel_noise_g));
             leg.rows.weights.clone_from(&noise.weights);
             leg.noise_density = noise.gyro_ratio.map(|ratio| ratio * ratio * density);
-        })
+            leg.set_walks(walks(&noise.gyro_walk_deg_per_h_per_sqrt_h));
+        };
+        self.refitted_with(&self.extension, change, noise.clone())
     }
 
     fn solved(
         mut problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
         extension: ModelExtension,
+        noise: NoiseModel,
     ) -> Result<Self, CalibrationError> {
         let mut sums = vec![Vec::new(); Catalogue::PARAMETERS];
         for (parameter, sum) in sums.iter_mut().enumerate().take(PARAMETERS) {
@@ -234,6 +265,7 @@ impl<'a> FittedPlatform<'a> {
             solution,
             uncertainty,
             extension,
+            noise,
         })
     }
 
@@ -251,6 +283,8 @@ impl<'a> FittedPlatform<'a> {
             parameter_unknowns: run.parameter_unknowns,
             further: run.further,
             amplitudes: run.amplitudes,
+            walks: run.walks,
+            walk_changes: run.walk_changes,
         });
         FittedPlatform {
             problem: Problem {
@@ -264,6 +298,7 @@ impl<'a> FittedPlatform<'a> {
             solution: self.solution,
             uncertainty: self.uncertainty,
             extension: self.extension,
+            noise: self.noise,
         }
     }
 

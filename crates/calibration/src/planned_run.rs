@@ -144,6 +144,8 @@ impl PlannedRun<'_> {
                 parameter_unknowns: Vec::new(),
                 further: ExtraColumns::default(),
                 amplitudes: Vec::new(),
+                walks: Vec::new(),
+                walk_changes: Vec::new(),
             }],
         })
     }

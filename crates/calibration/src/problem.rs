@@ -4,7 +4,7 @@
 //! In every run each parameter of the model is a sum of unknowns ([`RunProblem::parameter_unknowns`]):
 //! a constant drift is that of the mean turn-on plus the offset of the run's own.
 
-use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series, Walks};
+use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series, Walk, Walks};
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Chart, Integration};
 
@@ -65,9 +65,33 @@ pub(crate) struct RunProblem<'a, I> {
     pub(crate) further: ExtraColumns,
     /// The unknown that is the amplitude of each of them.
     pub(crate) amplitudes: Vec<usize>,
+    /// Parameters that walk at random about their values.
+    pub(crate) walks: Vec<Walk>,
+    /// Present change of each walk at each row, by rows; empty if none has changed yet.
+    pub(crate) walk_changes: Vec<f64>,
 }
 
 impl<I> RunProblem<'_, I> {
+    /// Replaces the walks; those of the same parameters go on from where they are.
+    pub(crate) fn set_walks(&mut self, walks: Vec<Walk>) {
+        let before: Vec<Option<usize>> = walks
+            .iter()
+            .map(|walk| {
+                let mut old = self.walks.iter();
+                old.position(|old| old.parameter == walk.parameter)
+            })
+            .collect();
+        let stride = self.walks.len();
+        let rows = self.walk_changes.len() / stride.max(1);
+        self.walk_changes = (0..rows)
+            .flat_map(|row| {
+                let of_row = &self.walk_changes[row * stride..(row + 1) * stride];
+                before.iter().map(|place| place.map_or(0.0, |place| of_row[place]))
+            })
+            .collect();
+        self.walks = walks;
+    }
+
     /// For each column of a pass the unknowns whose sum its amplitude is: active parameters first,
     /// then further columns.
     pub(crate) fn column_unknowns(&self) -> Vec<&[usize]> {
@@ -197,7 +221,10 @@ where
             active,
             further,
             tape: None,
-            walks: Walks::default(),
+            walks: Walks {
+                walks: &run.walks,
+                changes: &run.walk_changes,
+            },
         })
     }
 

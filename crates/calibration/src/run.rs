@@ -105,6 +105,15 @@ impl<'a> WeightedRows<'a> {
     }
 
     /// Gives the values of some rows weight 0.
+    /// Time from the first row to the last, s.
+    pub(crate) fn duration_s(&self) -> f64 {
+        let times = &self.record.time_s[..self.rows];
+        match times {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        }
+    }
+
     pub(crate) fn exclude(&mut self, rows: core::ops::Range<usize>) {
         let count = self.rows;
         let weights = self.weights.get_or_insert_with(|| vec![[1.0; 3]; count]);

@@ -40,6 +40,8 @@ pub(crate) fn run_problem<'a, I: ChartInputs<f64>>(
         parameter_unknowns,
         further: ExtraColumns::default(),
         amplitudes: Vec::new(),
+        walks: Vec::new(),
+        walk_changes: Vec::new(),
     }
 }
 

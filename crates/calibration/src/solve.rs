@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use gyrocal::Chart;
-use gyrocal::estimation::batch::{Linearisation, Manifold, Tape};
+use gyrocal::estimation::batch::{Linearisation, Manifold, Smoothed, Tape};
 use gyrocal::trajectory::{Orientation, turned};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -69,8 +69,8 @@ struct Linearised {
 struct Step {
     /// Change of every unknown.
     values: DVector<f64>,
-    /// Correction of the attitude at every row of every record, rad.
-    corrections: Vec<Vec<[f64; 3]>>,
+    /// Correction of the attitude, rad, and of the walks at every row of every record.
+    corrections: Vec<Smoothed<3>>,
     /// Length (6), in standard deviations of the whole problem.
     length: f64,
 }
@@ -92,7 +92,11 @@ where
             let last = step.length < LAST_STEP.max(LAST_SHARE * cost.sqrt());
             // Long records: the steps of one point at a time.
             point.tapes.clear();
-            let before: Vec<_> = self.runs.iter().map(|run| run.points.clone()).collect();
+            let before: Vec<_> = self
+                .runs
+                .iter()
+                .map(|run| (run.points.clone(), run.walk_changes.clone()))
+                .collect();
             let values = self.values.clone();
             let mut share = 1.0;
             let mut halvings = 0;
@@ -200,7 +204,6 @@ where
                     let tape = point.tapes[index].as_deref();
                     Linearisation { tape, ..*pass }.smooth(&change)
                 })
-                .map(|smoothed| smoothed.corrections)
                 .map_err(|error| CalibrationError::pass(index, error))
             })
             .collect::<Result<_, _>>()?;
@@ -212,7 +215,13 @@ where
     }
 
     /// Applies a share of a step to the trajectories and values before it.
-    fn apply(&mut self, step: &Step, share: f64, before: &[Vec<Orientation>], values: &[f64]) {
+    fn apply(
+        &mut self,
+        step: &Step,
+        share: f64,
+        before: &[(Vec<Orientation>, Vec<f64>)],
+        values: &[f64],
+    ) {
         for (value, (before, change)) in self
             .values
             .iter_mut()
@@ -224,15 +233,23 @@ where
             let amplitudes = run.amplitudes.iter().map(|unknown| self.values[*unknown]);
             run.further.set_amplitudes(amplitudes);
         }
-        for (run, (before, corrections)) in self
+        for (run, ((points, walks), smoothed)) in self
             .runs
             .iter_mut()
             .zip(before.iter().zip(&step.corrections))
         {
-            for (point, (before, correction)) in
-                run.points.iter_mut().zip(before.iter().zip(corrections))
+            for (point, (before, correction)) in run
+                .points
+                .iter_mut()
+                .zip(points.iter().zip(&smoothed.corrections))
             {
                 *point = turned(before, &correction.map(|angle| share * angle));
+            }
+            run.walk_changes.resize(smoothed.walks.len(), 0.0);
+            for (index, (change, correction)) in
+                run.walk_changes.iter_mut().zip(&smoothed.walks).enumerate()
+            {
+                *change = walks.get(index).unwrap_or(&0.0) + share * correction;
             }
         }
     }

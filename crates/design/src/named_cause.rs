@@ -74,7 +74,7 @@ impl NamedCause {
         noise: &NoiseModel,
         options: &Options,
     ) -> Result<FittedPlatform<'a>, DesignError> {
-        let nominal = FittedPlatform::nominal(run, options, noise)?;
+        let nominal = FittedPlatform::nominal(run, options, &with_walks(noise, named)?)?;
         let extension = extension(named, run, &nominal)?;
         Ok(if extension == *FittedPlatform::extension(&nominal) {
             nominal
@@ -103,8 +103,21 @@ pub fn noise_of(diagnosis: &DiagnosisResult) -> NoiseModel {
         gyro_ratio: core::array::from_fn(|axis| {
             ratio(&|enters| matches!(enters, Enters::Rates([at]) if *at == axis))
         }),
+        gyro_walk_deg_per_h_per_sqrt_h: [0.0; 3],
         weights: None,
     }
+}
+
+/// The noise with the random walks among some causes.
+fn with_walks(noise: &NoiseModel, named: &[NamedCause]) -> Result<NoiseModel, DesignError> {
+    let mut noise = noise.clone();
+    for named in named {
+        let row = named.row()?;
+        if let (true, Some(rate), Some(size)) = (is_walk(row), row.rate(), named.shape) {
+            noise.gyro_walk_deg_per_h_per_sqrt_h[rate] = size;
+        }
+    }
+    Ok(noise)
 }
 
 /// The extension of the nominal model by these causes.
@@ -122,21 +135,22 @@ pub(crate) fn extension(
                 why,
             });
         }
-        effects.push(effect);
+        // A random walk is noise.
+        if !is_walk(effect) {
+            effects.push(effect);
+        }
     }
     let rows = rows(run.record, nominal.covariates());
     let set = HypothesisSet::new(&PLATFORM, &rows, &effects);
     let mut extension = FittedPlatform::extension(nominal).clone();
     for named in named {
-        let row = named.row()?;
+        if is_walk(named.row()?) {
+            continue;
+        }
         let hypothesis = set
             .index_of(&named.effect)
             .ok_or_else(|| unknown(&named.effect))?;
-        let shape = match named.shape {
-            Some(size) if is_walk(row) => Some(size * size * set.onset_interval_h(&rows)),
-            shape => shape,
-        };
-        set.add_to_model(&PLATFORM, &rows, &mut extension, hypothesis, shape);
+        set.add_to_model(&PLATFORM, &rows, &mut extension, hypothesis, named.shape);
     }
     Ok(extension)
 }

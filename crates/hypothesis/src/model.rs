@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::column::{Column, ExtraColumns};
 use crate::error::Singular;
 use crate::plant::Plant;
+use crate::rate_noise::{RateNoise, RateNoiseFit};
 use crate::rows::Covariate;
 
 /// Value of an onset or a time constant that nothing sets.
@@ -100,6 +101,27 @@ pub trait FittedModel: Clone {
     /// # Errors
     /// Those of the fit.
     fn refitted(&self, extension: &ModelExtension) -> Result<Self, Self::Error>;
+
+    /// Noise that the fit believes the rates to have.
+    fn rate_noise(&self) -> RateNoise;
+
+    /// Noise of the rates at the largest restricted likelihood, linearised about this fit, with random
+    /// walks of the rates `walking`; `absent` are places among [`Self::values`] of what the model shall
+    /// not have.
+    ///
+    /// # Errors
+    /// Those of a pass over the record.
+    fn fit_rate_noise(
+        &self,
+        walking: &[usize],
+        absent: &[usize],
+    ) -> Result<RateNoiseFit, Self::Error>;
+
+    /// Fits the same extension with other noise of the rates.
+    ///
+    /// # Errors
+    /// Those of the fit.
+    fn with_rate_noise(&self, noise: &RateNoise) -> Result<Self, Self::Error>;
 
     /// Gram matrix with all parameters of the plant as columns, then the extension's further
     /// columns, then `further`.

@@ -1,7 +1,8 @@
 //! Score tests of the catalogue's effects in a fitted platform.
 
 use gyrocal_hypothesis::{
-    Column, Covariate, FittedModel, ModelExtension, Plant, Singular, StateJump,
+    Column, Covariate, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Singular,
+    StateJump,
 };
 use nalgebra::DMatrix;
 
@@ -48,6 +49,22 @@ impl FittedModel for FittedPlatform<'_> {
 
     fn refitted(&self, extension: &ModelExtension) -> Result<Self, CalibrationError> {
         FittedPlatform::refitted(self, extension)
+    }
+
+    fn rate_noise(&self) -> RateNoise {
+        FittedPlatform::rate_noise(self)
+    }
+
+    fn fit_rate_noise(
+        &self,
+        walking: &[usize],
+        absent: &[usize],
+    ) -> Result<RateNoiseFit, CalibrationError> {
+        FittedPlatform::fit_rate_noise(self, walking, absent)
+    }
+
+    fn with_rate_noise(&self, noise: &RateNoise) -> Result<Self, CalibrationError> {
+        FittedPlatform::with_rate_noise(self, noise)
     }
 
     fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, CalibrationError> {

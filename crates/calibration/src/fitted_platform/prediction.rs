@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use gyrocal::Catalogue;
+use gyrocal::estimation::batch::{Linearisation, Walks};
 use gyrocal::trajectory::Orientation;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -44,7 +45,9 @@ impl FittedPlatform<'_> {
         let here = self.parameters();
         let active: Vec<usize> = (0..Catalogue::PARAMETERS)
             .filter(|index| {
+                let mut walks = self.problem.runs[0].walks.iter();
                 expected.factor.row(*index).iter().any(|x| *x != 0.0)
+                    || walks.any(|walk| walk.parameter == *index)
                     || expected.mean[*index] != here[*index]
             })
             .collect();
@@ -97,7 +100,8 @@ impl FittedPlatform<'_> {
         let none: [usize; 0] = [];
         self.problem
             .with_active(0, parameters, &none, &ExtraColumns::default(), |pass| {
-                pass.free_run_over(rows)
+                let walks = Walks::default();
+                Linearisation { walks, ..*pass }.free_run_over(rows)
             })
             .map_err(|error| CalibrationError::pass(0, error))
     }

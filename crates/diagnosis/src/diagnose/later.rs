@@ -73,6 +73,7 @@ pub fn predict_later(
     request::check(&[], later.record, later.bench)?;
     let assumed = NoiseModel {
         gyro_ratio: assumed.gyro_ratio,
+        gyro_walk_deg_per_h_per_sqrt_h: assumed.gyro_walk_deg_per_h_per_sqrt_h,
         ..NoiseModel::default()
     };
     let alpha = shares(options.false_alarm_probability).noise_audit;

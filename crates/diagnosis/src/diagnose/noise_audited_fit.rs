@@ -56,6 +56,7 @@ pub(super) fn noise_audited_fit<'a>(
     )?;
     noise_model = NoiseModel {
         gyro_ratio: before.gyro_ratio,
+        gyro_walk_deg_per_h_per_sqrt_h: before.gyro_walk_deg_per_h_per_sqrt_h,
         ..noise_from_audit(&audit, record)
     };
     let noise_g = noise_model
@@ -119,6 +120,7 @@ fn noise_from_audit(audit: &NoiseAudit, record: &Record) -> NoiseModel {
     NoiseModel {
         accel_ratio: cleaned.slow_ratio,
         gyro_ratio: [1.0; 3],
+        gyro_walk_deg_per_h_per_sqrt_h: [0.0; 3],
         weights: dropped.then(|| {
             cleaned
                 .keep

@@ -51,6 +51,8 @@ impl NoiseScore {
 pub(crate) struct NoiseFilter<const M: usize> {
     outputs: usize,
     stride: usize,
+    /// The first noise that derivatives are by.
+    first: usize,
     each: Vec<Derivative<M>>,
     score: NoiseScore,
     /// Derivative of the whitened row, before it is whitened.
@@ -70,13 +72,15 @@ struct Derivative<const M: usize> {
 }
 
 impl<const M: usize> NoiseFilter<M> {
-    pub(crate) fn new(outputs: usize, columns: usize, walks: usize) -> Self {
+    pub(crate) fn new(outputs: usize, columns: usize, walks: usize, first: usize) -> Self {
         let count = outputs + M + walks;
         let stride = columns + 1;
+        let first = first.min(count);
         Self {
             outputs,
             stride,
-            each: (0..count)
+            first,
+            each: (first..count)
                 .map(|_| Derivative {
                     columns: vec![0.0; (M + walks) * stride],
                     covariance: Joint::new([[0.0; M]; M], walks),
@@ -98,7 +102,7 @@ impl<const M: usize> NoiseFilter<M> {
     }
 
     pub(crate) fn predict(&mut self, step: &Step<M>, walks: &[WalkStep<M>]) {
-        for (k, own) in self.each.iter_mut().enumerate() {
+        for (k, own) in (self.first..).zip(&mut self.each) {
             predict_columns(&step.moving, walks, &mut own.columns, self.stride);
             own.covariance.predict(&step.moving, walks);
             let Some(input) = k.checked_sub(self.outputs) else {
@@ -124,7 +128,7 @@ impl<const M: usize> NoiseFilter<M> {
             }
         }
         let direct = whitened.output;
-        for (k, own) in self.each.iter_mut().enumerate() {
+        for (k, own) in (self.first..).zip(&mut self.each) {
             let variance = if k == direct { taken.variance } else { 0.0 };
             own.take(
                 whitened,
@@ -145,10 +149,10 @@ impl<const M: usize> NoiseFilter<M> {
                 }
             }
         }
-        let count = self.each.len();
-        for k in 0..count {
-            for l in 0..=k {
-                let (one, other) = (&self.each[k], &self.each[l]);
+        let count = self.first + self.each.len();
+        for k in self.first..count {
+            for l in self.first..=k {
+                let (one, other) = (&self.each[k - self.first], &self.each[l - self.first]);
                 let information =
                     0.5 * one.variance * other.variance + one.innovation * other.innovation / total;
                 score.information[k * count + l] += information;

@@ -141,7 +141,7 @@ fn the_gradient_by_walks_and_columns_is_that_of_the_sums() {
     let points = chain.trajectory();
     let pass = walking(&chain, &points, &NoColumns);
     let at = [1.3, 0.6, 2.0, 1.0, 1.7, 0.4];
-    let score = |factors: &[f64]| pass.noise_score_of_columns(factors).unwrap();
+    let score = |factors: &[f64]| pass.noise_score_of_columns(factors, 0).unwrap();
     let found = score(&at);
     assert_eq!(found.gram.nrows(), 3);
     for k in 0..6 {
@@ -174,6 +174,9 @@ fn the_gradient_by_walks_and_columns_is_that_of_the_sums() {
             }
         }
     }
+    let some = pass.noise_score_of_columns(&at, 4).unwrap();
+    assert_eq!(some.d_gram[4..], found.d_gram[4..]);
+    assert_eq!(some.information[28..30], found.information[28..30]);
     let reduced = pass.reduce(|_| ()).unwrap();
     let declared = score(&[1.0; 6]);
     // The same sums in another order.
