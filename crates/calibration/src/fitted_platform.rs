@@ -309,6 +309,12 @@ impl<'a> FittedPlatform<'a> {
         self.solution.cost / self.solution.rows.max(1) as f64
     }
 
+    /// The noise that the fit believes.
+    #[must_use]
+    pub fn noise_model(&self) -> &NoiseModel {
+        &self.noise
+    }
+
     /// The part of the model beyond the nine coefficients.
     #[must_use]
     pub fn extension(&self) -> &ModelExtension {

@@ -136,7 +136,9 @@ pub use coefficients::BIASES;
 pub use cramer_rao::cramer_rao_bound;
 pub use error::CalibrationError;
 pub use fit::{Consistency, FitStatistics};
-pub use fitted_platform::{Estimates, Expectation, FittedPlatform, NoiseModel};
+pub use fitted_platform::{
+    Estimates, Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel,
+};
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;
 pub use layout::SiteQuantity;

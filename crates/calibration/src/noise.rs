@@ -86,8 +86,10 @@ pub(crate) fn estimate(
         // A noise far below the others is unobservable: a prior of e^10 about the declared one keeps
         // its logarithm finite and has no weight where the noise is observable.
         let prior = 1e-2;
-        let mut information = DMatrix::from_row_slice(6, 6, &found.information);
-        let mut gradient = DVector::from_vec(found.gradient());
+        // Random walks come last and are held.
+        let stride = found.d_log_variance.len();
+        let mut information = DMatrix::from_fn(6, 6, |i, j| found.information[i * stride + j]);
+        let mut gradient = DVector::from_iterator(6, found.gradient().into_iter().take(6));
         for i in 0..6 {
             information[(i, i)] += prior;
             gradient[i] -= prior * logarithm[i];

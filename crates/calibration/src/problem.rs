@@ -86,7 +86,9 @@ impl<I> RunProblem<'_, I> {
         self.walk_changes = (0..rows)
             .flat_map(|row| {
                 let of_row = &self.walk_changes[row * stride..(row + 1) * stride];
-                before.iter().map(|place| place.map_or(0.0, |place| of_row[place]))
+                before
+                    .iter()
+                    .map(|place| place.map_or(0.0, |place| of_row[place]))
             })
             .collect();
         self.walks = walks;

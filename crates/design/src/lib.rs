@@ -65,6 +65,7 @@ mod run_information;
 mod set_comparison;
 mod shortest_run;
 mod sigma;
+mod walk_score;
 
 pub use compare::{Compared, ComparedMember, compare};
 pub use error::DesignError;

@@ -3,7 +3,9 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::joint_unknowns::{ConfidenceSet, Member, Unknown};
-use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, NESTED_MODEL_CHI2, WalkScore};
+use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, NESTED_MODEL_CHI2};
+
+use crate::walk_score::WalkScore;
 
 /// A signature of which less than this share is left cannot be seen.
 const VISIBLE: f64 = 1e-9;

@@ -3,15 +3,15 @@
 mod answer;
 mod findings;
 mod gate;
+mod gyro_noise;
 mod later;
 mod noise_audited_fit;
-mod noise_update;
 mod untestable_rows;
 
 use std::borrow::Cow;
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run};
-use gyrocal_hypothesis::{SearchOptions, Searched};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run, rows};
+use gyrocal_hypothesis::{FittedModel, SearchOptions, Searched};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::check_setup;
 use gyrocal_statistics::allan_test;
@@ -30,9 +30,9 @@ use crate::series::Innovations;
 use crate::validation::{CrossValidated, LaterPrediction, cross_validate, gain};
 use answer::Evidence;
 pub use answer::{manifest, record_summary};
+use gyro_noise::{gyro_noise_findings, over_declared};
 pub use later::predict_later;
 use noise_audited_fit::noise_audited_fit;
-use noise_update::{gyro_noise_findings, search_with_noise};
 use untestable_rows::detect_outliers;
 
 /// Settings of a diagnosis.
@@ -151,19 +151,14 @@ fn diagnose_sound<'a>(
     let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
     let selection = request::selection(record, bench, &also);
     let search = search_options(options, &shares);
-    let found = search_with_noise(
-        audited.nominal,
-        audited.noise_model,
-        &run,
-        &selection,
-        &search,
-    )?;
-    let (nominal, searched) = (found.nominal, found.searched);
+    let rows = rows(record, audited.nominal.covariates());
+    let searched = gyrocal_hypothesis::search(audited.nominal, rows, &selection, &search)?;
+    let nominal = searched.nominal.clone();
+    let noise_model = searched.fitted.noise_model().clone();
+    let estimate = over_declared(&searched.fitted)?;
     let outliers = unexplained_outliers(record, &audited.suspects, &searched, accel_noise_g);
     audit.add_outliers(outliers, bench.accel_noise_g);
-    let (estimate, noise_model) = (&found.estimate, &found.noise_model);
-    let causes = &searched.findings;
-    let gyro_noise = gyro_noise_findings(estimate, noise_model, &audit, causes, shares.gyro_noise);
+    let gyro_noise = gyro_noise_findings(&estimate, &audit, shares.gyro_noise);
 
     let whitened = whitened(&searched.fitted, record)?;
     let (time_s, alpha) = (&record.time_s, shares.residual_test);
@@ -172,7 +167,7 @@ fn diagnose_sound<'a>(
     let allan = allan_test(time_s, &tested, shares.allan_test).ok();
 
     let validated = cross_validate(&nominal, &searched)?;
-    let gain = model_gain(&nominal, &searched, &validated, &run, noise_model)?;
+    let gain = model_gain(&nominal, &searched, &validated, &run, &noise_model)?;
     let filter = options
         .filter
         .map(|filter| filter_test(record, bench, filter));
@@ -189,7 +184,7 @@ fn diagnose_sound<'a>(
         nominal: &nominal,
         power: powers(&nominal, record, &searched.ranking, searched.threshold)?,
         searched: &searched,
-        estimate,
+        estimate: &estimate,
         remainder,
         allan,
         validated: &validated,
@@ -202,7 +197,7 @@ fn diagnose_sound<'a>(
         record: Cow::Borrowed(record),
         nominal,
         extended: validated.extended,
-        noise_model: found.noise_model,
+        noise_model,
         audit,
         innovations: audited.innovations,
         whitened,
@@ -213,6 +208,7 @@ fn diagnose_sound<'a>(
 fn search_options(options: &DiagnoseOptions, shares: &FalseAlarmShares) -> SearchOptions {
     SearchOptions {
         false_alarm_probability: shares.search,
+        walk_probability: shares.random_walk,
         unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
         seed: options.seed,
     }

@@ -6,7 +6,11 @@
 //! to one at most. [`TABLE`] lists all of them, and all constants that decide what is reported, as
 //! `docs/method.md` prints them.
 
-use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, DETECTION_PENALTY_FRACTION, NESTED_MODEL_CHI2};
+use gyrocal_calibration::GYRO_NOISE_PRIOR_SIGMA;
+use gyrocal_hypothesis::{
+    BESIDE_WALKS, CONFIDENCE_SET_DEVIANCE, DETECTION_PENALTY_FRACTION, NESTED_MODEL_CHI2,
+    WALK_SET_DEVIANCE,
+};
 
 use crate::result::FalseAlarmShares;
 
@@ -17,7 +21,10 @@ pub const NOISE_AUDIT_SHARE: f64 = 0.12;
 pub const GYRO_NOISE_SHARE: f64 = 0.03;
 
 /// Share of α for the search over the catalogue.
-pub const SEARCH_SHARE: f64 = 0.7;
+pub const SEARCH_SHARE: f64 = 0.6;
+
+/// Share of α for random walks of the gyros.
+pub const RANDOM_WALK_SHARE: f64 = 0.1;
 
 /// Share of α for the test of the residuals.
 pub const RESIDUAL_TEST_SHARE: f64 = 0.1;
@@ -43,10 +50,6 @@ pub const FILTER_TEST_ALPHA: f64 = 1e-6;
 /// Deviation in sigmas beyond which a value that the noise audit cannot test is an outlier: of a
 /// million such values of sound records not one is.
 pub const UNTESTABLE_OUTLIER_Z: f64 = 7.0;
-
-/// Gyro noise estimated this many sigmas from the declared level replaces it in the search, to avoid
-/// spurious causes. It is reported only if it still differs with the causes in the model.
-pub const NOISE_UPDATE_Z: f64 = 3.0;
 
 /// Part of α that no test spends: drawn thresholds and asymptotic p-values are each a little off.
 const RESERVE: f64 = 0.05;
@@ -79,7 +82,7 @@ pub struct Line {
 }
 
 /// The whole budget.
-pub const TABLE: [Line; 13] = [
+pub const TABLE: [Line; 16] = [
     Line {
         test: "noise audit",
         value: NOISE_AUDIT_SHARE,
@@ -129,10 +132,28 @@ pub const TABLE: [Line; 13] = [
         origin: Origin::Theory("normal tail: 3e-12 per value"),
     },
     Line {
-        test: "noise update",
-        value: NOISE_UPDATE_Z,
-        meaning: "sigmas from the declared gyro noise beyond which the search uses the estimate",
-        origin: Origin::Choice("spends nothing: gyro noise is tested again at the end"),
+        test: "random walks",
+        value: RANDOM_WALK_SHARE,
+        meaning: "share of α for the likelihood ratio of walks of all gyros",
+        origin: Origin::Theory("mixture of chi-square (Self, Liang 1987)"),
+    },
+    Line {
+        test: "white noise of the gyros",
+        value: GYRO_NOISE_PRIOR_SIGMA,
+        meaning: "standard deviation of the logarithm over the declared noise before the record",
+        origin: Origin::Choice("spends nothing: effects are tested with the noise estimated"),
+    },
+    Line {
+        test: "walks or effects",
+        value: WALK_SET_DEVIANCE,
+        meaning: "twice the log-likelihood by which effects must be better than walks to stand alone",
+        origin: Origin::Calibrated("`cargo figures truth`, random walks"),
+    },
+    Line {
+        test: "effects beside walks",
+        value: BESIDE_WALKS,
+        meaning: "twice the log-likelihood above the threshold that an effect must gain beside walks",
+        origin: Origin::Calibrated("`cargo figures truth`, random walks"),
     },
     Line {
         test: "detection",
@@ -167,6 +188,7 @@ pub fn shares(false_alarm_probability: f64) -> FalseAlarmShares {
         noise_audit: NOISE_AUDIT_SHARE * false_alarm_probability,
         gyro_noise: GYRO_NOISE_SHARE * false_alarm_probability,
         search: SEARCH_SHARE * false_alarm_probability,
+        random_walk: RANDOM_WALK_SHARE * false_alarm_probability,
         residual_test: RESIDUAL_TEST_SHARE * false_alarm_probability,
         magnitude_test: REPORTED_TEST_SHARE * false_alarm_probability,
         allan_test: REPORTED_TEST_SHARE * false_alarm_probability,
@@ -200,7 +222,11 @@ mod tests {
 
     #[test]
     fn the_shares_are_not_overspent() {
-        let spent = NOISE_AUDIT_SHARE + GYRO_NOISE_SHARE + SEARCH_SHARE + RESIDUAL_TEST_SHARE;
+        let spent = NOISE_AUDIT_SHARE
+            + GYRO_NOISE_SHARE
+            + SEARCH_SHARE
+            + RANDOM_WALK_SHARE
+            + RESIDUAL_TEST_SHARE;
         // Sums of decimal fractions.
         assert!((1.0 - spent - RESERVE).abs() < 1e-12, "{spent}");
     }

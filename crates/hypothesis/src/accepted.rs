@@ -3,7 +3,7 @@
 use gyrocal_scalar::effect::Enters;
 
 use crate::column::Column;
-use crate::hypothesis::{Hypothesis, HypothesisSet};
+use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 
 /// An effect in the model.
@@ -19,11 +19,7 @@ pub(crate) struct Accepted {
 }
 
 /// Places of an effect among the values of a fit.
-pub(crate) fn value_places<F: FittedModel>(
-    fitted: &F,
-    set: &HypothesisSet,
-    hypothesis: &Hypothesis,
-) -> Vec<usize> {
+pub(crate) fn value_places<F: FittedModel>(fitted: &F, hypothesis: &Hypothesis) -> Vec<usize> {
     let plant = fitted.plant();
     let extension = fitted.extension();
     let first = plant.nominal_parameters;
@@ -35,11 +31,6 @@ pub(crate) fn value_places<F: FittedModel>(
             .map(|(index, _)| base + index)
             .collect()
     };
-    if let Some(steps) = &hypothesis.walk {
-        let base = plant.parameters.len();
-        let own: Vec<&Column> = steps.iter().map(|c| &set.extra[c - base]).collect();
-        return own_columns(&|column| own.contains(&column));
-    }
     if matches!(hypothesis.effect.enters, Enters::States(_)) {
         return own_columns(&|column| match column {
             Column::InitialState { .. } => !hypothesis.is_jump,

@@ -1,5 +1,7 @@
 //! Options and data of a search.
 
+use gyrocal_scalar::effect::Effect;
+
 use crate::accepted::Accepted;
 use crate::hypothesis::HypothesisSet;
 use crate::model::{FittedModel, ModelExtension};
@@ -10,8 +12,10 @@ use crate::rows::Rows;
 /// Error rates of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchOptions {
-    /// Family-wise probability of a false alarm of all hypotheses together.
+    /// Family-wise probability of a false alarm of all deterministic hypotheses together.
     pub false_alarm_probability: f64,
+    /// Probability of a false alarm of the test of random walks, all rates together.
+    pub walk_probability: f64,
     /// Probability of a false alarm of the tests for unmodelled terms.
     pub unmodelled_probability: f64,
     /// Seed of the draws of the null distribution.
@@ -22,6 +26,7 @@ impl Default for SearchOptions {
     fn default() -> Self {
         Self {
             false_alarm_probability: 0.01,
+            walk_probability: 0.001,
             unmodelled_probability: 0.001,
             seed: 0,
         }
@@ -35,6 +40,8 @@ pub(crate) const MOST_EFFECTS: usize = 6;
 pub(crate) struct SearchContext<'t> {
     pub(crate) plant: &'static Plant,
     pub(crate) set: HypothesisSet,
+    /// Effects that may be random walks.
+    pub(crate) walks: Vec<&'static Effect>,
     /// The extension of the nominal model.
     pub(crate) base: ModelExtension,
     pub(crate) rows: Rows,

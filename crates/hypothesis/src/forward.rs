@@ -1,7 +1,5 @@
 //! Forward selection: one effect after the other, with a full fit after each.
 
-use core::mem;
-
 use gyrocal_statistics::math::ln;
 
 use crate::accepted::Accepted;
@@ -11,12 +9,13 @@ use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::pattern::Unmodelled;
+use crate::rate_noise::degrees_of_freedom;
 use crate::score::{Best, NESTED_MODEL_CHI2, Ranked, Scores};
 use crate::state::{SearchState, stage};
 use crate::unmodelled;
 
 /// Result of the first detection test.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct FirstRound {
     /// All hypotheses, largest statistic first.
     pub(crate) ranking: Vec<Ranked>,
@@ -24,80 +23,58 @@ pub(crate) struct FirstRound {
     pub(crate) threshold: f64,
 }
 
-/// Stage of the random-walk hypothesis: a walk can mimic several effects together, so those are
-/// tried first.
-enum RandomWalkStage<F> {
-    /// No walk was named yet.
-    Deferred,
-    /// A walk would have been named; several effects are tried in its place.
-    TryingAlternatives(Box<DeferredWalk<F>>),
-    /// A walk may be named.
-    Allowed,
-}
+/// Share of the threshold above which an effect is fitted beside a random walk, which takes up most
+/// of a slow effect until both are fitted together.
+const WORTH_FITTING: f64 = 0.5;
 
-/// State of a search at which a random walk would have been named.
-struct DeferredWalk<F> {
-    /// Penalised statistic of the walk.
-    score: f64,
-    threshold: f64,
-    state: SearchState<F>,
-}
-
-impl<F: FittedModel> DeferredWalk<F> {
-    /// Twice the log-likelihood that the effects found in its place gain, less their search penalties
-    /// and, for each but the first, the detection threshold. `None` if there are not several, as one
-    /// alone has been compared with the walk before, or not without an unmodelled term.
-    fn alternatives_score(&self, state: &SearchState<F>) -> Option<f64> {
-        let found = &state.accepted[self.state.accepted.len()..];
-        if found.len() < 2 || state.unmodelled.len() > self.state.unmodelled.len() {
-            return None;
-        }
-        let penalties: f64 = found.iter().map(|accepted| accepted.penalty).sum();
-        let more = (found.len() - 1) as f64 * self.threshold;
-        let gained = self.state.stage.fitted.cost() - state.stage.fitted.cost();
-        Some(gained - penalties - more)
-    }
-}
-
-/// Adds effects until none is significant.
+/// Adds effects until none is significant. Beside random walks an effect must gain `beside_walks` more
+/// than the threshold, with the walks estimated with and without it.
 pub(crate) fn forward<F: FittedModel>(
     context: &SearchContext<'_>,
     mut state: SearchState<F>,
+    beside_walks: Option<f64>,
     draws: &mut GaussianDraws,
 ) -> Result<(SearchState<F>, FirstRound), F::Error> {
     let mut first: Option<FirstRound> = None;
-    let mut walks = RandomWalkStage::Deferred;
     loop {
-        let hypotheses = open_hypotheses(context, &state, &walks);
+        let hypotheses = open_hypotheses(context, &state);
         let null = NullDistribution::draw(&state.stage.bank, &hypotheses, draws);
         let jumps = state.stage.fitted.state_jumps()?;
         let jump = best_jump(&jumps, &context.rows);
         let mut scores = Scores::of(&state.stage.bank, &hypotheses, &null, jump);
+        if beside_walks.is_none() {
+            scores =
+                scores.with_estimated_noise(&hypotheses, &degrees_of_freedom(&state.stage.noise));
+        }
         let threshold = null.threshold(context.options.false_alarm_probability);
         first.get_or_insert_with(|| FirstRound {
             ranking: scores.ranking(&hypotheses),
             threshold,
         });
-        let significant = scores.largest() > threshold && state.accepted.len() < MOST_EFFECTS;
+        let least = if beside_walks.is_some() {
+            WORTH_FITTING * threshold
+        } else {
+            threshold
+        };
+        let significant = scores.largest() > least && state.accepted.len() < MOST_EFFECTS;
         if significant {
             scores.refine(&state.stage.fitted, context, &hypotheses, &[])?;
         }
         let best = scores.named(&hypotheses).filter(|_| significant);
-        let is_walk = best.is_some_and(|best| hypotheses[best.hypothesis].walk.is_some());
         // An unmodelled term goes into the model if no effect is significant, or if it explains so
-        // much more that a name would be false. A random walk would absorb any curve.
+        // much more that a name would be false.
+        let limit =
+            ln(context.options.unmodelled_probability) - 0.5 * beside_walks.unwrap_or_default();
         let stands = |other: &Unmodelled| {
             let explains_more = |best: Best| {
                 // Several effects together look like a line at a natural period.
                 !other.has_natural_period(context.plant, &context.rows)
                     && other.equivalent() > scores.penalised(best.hypothesis) + NESTED_MODEL_CHI2
             };
-            other.ln_probability < ln(context.options.unmodelled_probability)
-                && best.is_none_or(explains_more)
+            other.ln_probability < limit && best.is_none_or(explains_more)
         };
         // A polynomial or one jump absorbs most of what bends or switches with a covariate.
-        let curves = is_walk
-            || !state.accepted.is_empty()
+        let curves = !state.accepted.is_empty()
             || best.is_none_or(|best| hypotheses[best.hypothesis].is_jump);
         if state.seeks_unmodelled
             && state.unmodelled.len() < MOST_EFFECTS
@@ -107,32 +84,34 @@ pub(crate) fn forward<F: FittedModel>(
         {
             continue;
         }
-        match (best, mem::replace(&mut walks, RandomWalkStage::Allowed)) {
-            (None, RandomWalkStage::TryingAlternatives(deferred)) => {
-                let alternatives = deferred.alternatives_score(&state);
-                if alternatives.is_none_or(|score| score < deferred.score) {
-                    state = deferred.state;
-                }
-            }
-            (None, _) => return Ok((state, first.unwrap_or_default())),
-            (Some(best), RandomWalkStage::Deferred) if is_walk => {
-                walks = RandomWalkStage::TryingAlternatives(Box::new(DeferredWalk {
-                    score: scores.penalised(best.hypothesis) - NESTED_MODEL_CHI2,
-                    threshold,
-                    state: state.clone(),
-                }));
-            }
-            (Some(best), as_before) => {
-                walks = as_before;
-                let accepted = Accepted {
-                    hypothesis: best.hypothesis,
-                    shape: best.shape(&hypotheses),
-                    p_value: null.probability(scores.largest()),
-                    searched: best.searched,
-                    penalty: best.searched + null.penalties[best.hypothesis],
-                };
-                accept(context, &mut state, accepted);
-            }
+        let Some(best) = best else {
+            return Ok((state, first.unwrap_or_default()));
+        };
+        let mut accepted = Accepted {
+            hypothesis: best.hypothesis,
+            shape: best.shape(&hypotheses),
+            p_value: null.probability(scores.largest()),
+            searched: best.searched,
+            penalty: best.searched + null.penalties[best.hypothesis],
+        };
+        let Some(margin) = beside_walks else {
+            accept(context, &mut state, accepted);
+            continue;
+        };
+        let before = state.clone();
+        let own = before.accepted.len();
+        accepted.p_value = 1.0;
+        let penalty = accepted.penalty;
+        accept(context, &mut state, accepted);
+        if state.accepted.len() == own {
+            continue;
+        }
+        let gained = 2.0 * (state.stage.noise.log_likelihood - before.stage.noise.log_likelihood);
+        if gained - (threshold + penalty) <= margin {
+            return Ok((before, first.unwrap_or_default()));
+        }
+        if let Some(own) = state.accepted.last_mut() {
+            own.p_value = null.probability(gained - null.detection_penalties[own.hypothesis]);
         }
     }
 }
@@ -141,15 +120,12 @@ pub(crate) fn forward<F: FittedModel>(
 fn open_hypotheses<F: FittedModel>(
     context: &SearchContext<'_>,
     state: &SearchState<F>,
-    walks: &RandomWalkStage<F>,
 ) -> Vec<Hypothesis> {
     let accepted = state.accepted.iter().map(|accepted| accepted.hypothesis);
     let taken: Vec<usize> = accepted.chain(state.inseparable.iter().copied()).collect();
-    let without_walks = matches!(walks, RandomWalkStage::TryingAlternatives(_));
     let all = context.set.hypotheses.iter().enumerate();
     all.map(|(index, hypothesis)| {
-        let taken = taken.contains(&index) || context.set.is_equivalent(index, &taken);
-        hypothesis.masked(taken || without_walks && hypothesis.walk.is_some())
+        hypothesis.masked(taken.contains(&index) || context.set.is_equivalent(index, &taken))
     })
     .collect()
 }

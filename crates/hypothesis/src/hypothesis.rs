@@ -42,8 +42,6 @@ pub struct Hypothesis {
     /// The effect.
     pub(crate) effect: &'static Effect,
     pub(crate) variants: Vec<Variant>,
-    /// Of a random walk, the columns of the steps that it is made of.
-    pub(crate) walk: Option<Vec<usize>>,
     /// Whether it is a jump of states, which is tested in every step by itself.
     pub(crate) is_jump: bool,
 }
@@ -57,7 +55,6 @@ impl Hypothesis {
         Self {
             effect: self.effect,
             variants: Vec::new(),
-            walk: None,
             is_jump: false,
         }
     }
@@ -105,8 +102,6 @@ pub struct HypothesisSet {
     pub(crate) hypotheses: Vec<Hypothesis>,
     /// Columns beside the parameters of the model; in the bank they follow these.
     pub(crate) extra: Vec<Column>,
-    /// For each rate channel the columns of its steps, in the order of their onsets.
-    pub(crate) steps: Vec<Vec<usize>>,
     /// Rows of these onsets.
     pub(crate) onset_rows: Vec<usize>,
 }
@@ -124,23 +119,13 @@ impl HypothesisSet {
         let mut set = Self {
             hypotheses: Vec::new(),
             extra: Vec::new(),
-            steps: vec![Vec::new(); plant.rates.len()],
             onset_rows,
         };
-        let is_walk = |effect: &&&'static Effect| effect.kind == EffectKind::RandomWalk;
-        for effect in effects.iter().filter(|effect| !is_walk(effect)) {
-            set.add(plant, rows, effect);
-        }
-        // Last, as it can mimic every slow cause.
-        for effect in effects.iter().filter(is_walk) {
-            let Some(rate) = effect.rate() else { continue };
-            set.ensure_steps(plant, rate);
-            set.hypotheses.push(Hypothesis {
-                effect,
-                variants: Vec::new(),
-                walk: Some(set.steps[rate].clone()),
-                is_jump: false,
-            });
+        for effect in effects {
+            // A random walk is noise and has no signature.
+            if effect.kind != EffectKind::RandomWalk {
+                set.add(plant, rows, effect);
+            }
         }
         set
     }
@@ -188,44 +173,11 @@ impl HypothesisSet {
                 shape,
             });
         }
-        if effect.kind == EffectKind::Step
-            && let Some(rate) = effect.rate()
-        {
-            let columns = variants.iter().flat_map(|variant| variant.columns.iter());
-            self.steps[rate] = columns.copied().collect();
-        }
         self.hypotheses.push(Hypothesis {
             effect,
             variants,
-            walk: None,
             is_jump,
         });
-    }
-
-    /// Steps of a rate channel at every onset, for a walk, where no step is tested by itself.
-    fn ensure_steps(&mut self, plant: &Plant, rate: usize) {
-        if !self.steps[rate].is_empty() {
-            return;
-        }
-        for row in &self.onset_rows {
-            self.extra.push(Column::Step {
-                parameter: plant.rates[rate].constant,
-                row: *row,
-            });
-            self.steps[rate].push(plant.parameters.len() + self.extra.len() - 1);
-        }
-    }
-
-    /// Mean time between the onsets that a random walk is made of, h.
-    #[must_use]
-    pub fn onset_interval_h(&self, rows: &Rows) -> f64 {
-        match self.onset_rows.as_slice() {
-            [first, .., last] => {
-                (rows.time_s[*last] - rows.time_s[*first])
-                    / (3600.0 * (self.onset_rows.len() - 1) as f64)
-            }
-            _ => 1.0,
-        }
     }
 
     /// Whether a hypothesis is an exact equivalent of one of some others.
@@ -241,8 +193,7 @@ impl HypothesisSet {
         self.hypotheses.iter().position(|one| one.id() == effect)
     }
 
-    /// Adds a hypothesis to a model: at an onset or with a time constant, or, for a random walk, with
-    /// the variance of its increments from onset to onset.
+    /// Adds a hypothesis to a model, at an onset or with a time constant if it has one.
     pub fn add_to_model(
         &self,
         plant: &Plant,
@@ -252,12 +203,6 @@ impl HypothesisSet {
         shape: Option<f64>,
     ) {
         let own = &self.hypotheses[hypothesis];
-        if let (Some(steps), Some(variance)) = (&own.walk, shape) {
-            let base = plant.parameters.len();
-            let columns = steps.iter().map(|column| self.extra[column - base].clone());
-            extension.columns.extend(columns, variance.sqrt());
-            return;
-        }
         if own.effect.has_term() {
             for parameter in own.effect.model_parameters() {
                 extension.parameters.push((parameter, f64::INFINITY));

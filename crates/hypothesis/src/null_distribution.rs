@@ -9,7 +9,6 @@ use nalgebra::{Cholesky, DMatrix, DMatrixView};
 
 use crate::bank::ScoreBank;
 use crate::hypothesis::Hypothesis;
-use crate::random_walk::WalkScore;
 
 /// Draws from the joint distribution: the 1 % point of the largest statistic then rests on 40.
 const DRAWS: usize = 4096;
@@ -100,30 +99,20 @@ impl GaussianDraws {
 }
 
 /// Draws of the scores of all signatures.
-struct DrawnScores<'a> {
-    bank: &'a ScoreBank,
+struct DrawnScores {
     /// Columns of the bank, rising.
     columns: Vec<usize>,
-    /// Root of the inverse of the information of each.
-    scale: Vec<f64>,
     correlation: DMatrix<f64>,
     /// A row for each draw, a column for each signature.
     scores: DMatrix<f64>,
 }
 
-impl<'a> DrawnScores<'a> {
+impl DrawnScores {
     /// `None` if the correlation is not positive definite.
-    fn new(
-        bank: &'a ScoreBank,
-        hypotheses: &[Hypothesis],
-        draws: &mut GaussianDraws,
-    ) -> Option<Self> {
+    fn new(bank: &ScoreBank, hypotheses: &[Hypothesis], draws: &mut GaussianDraws) -> Option<Self> {
         let mut columns: Vec<usize> = hypotheses
             .iter()
-            .flat_map(|hypothesis| {
-                let variants = hypothesis.variants.iter().flat_map(|v| v.columns.iter());
-                variants.chain(hypothesis.walk.iter().flatten())
-            })
+            .flat_map(|hypothesis| hypothesis.variants.iter().flat_map(|v| v.columns.iter()))
             .copied()
             .filter(|column| bank.visible(*column))
             .collect();
@@ -143,9 +132,7 @@ impl<'a> DrawnScores<'a> {
         let cholesky = Cholesky::new(correlation.clone())?;
         Some(Self {
             scores: draws.scores(&cholesky.l()),
-            bank,
             columns,
-            scale,
             correlation,
         })
     }
@@ -159,16 +146,6 @@ impl<'a> DrawnScores<'a> {
     /// The statistic of a hypothesis in each draw: that of its best variant.
     fn statistics(&self, hypothesis: &Hypothesis) -> Vec<f64> {
         let mut reached = vec![f64::NEG_INFINITY; DRAWS];
-        if let Some(steps) = &hypothesis.walk
-            && let Some(places) = self.places(steps)
-        {
-            let walk = WalkScore::new(self.bank.part(steps).0);
-            let mut own = self.scores.select_columns(&places);
-            for (mut column, place) in own.column_iter_mut().zip(&places) {
-                column /= self.scale[*place];
-            }
-            reached = walk.best_of_each(&own);
-        }
         let mut statistic = vec![0.0; DRAWS];
         for variant in &hypothesis.variants {
             let Some(places) = self.places(&variant.columns) else {

@@ -1,5 +1,11 @@
 //! Noise of the rates: white noise and random walks, estimated from the record.
 
+use gyrocal_statistics::math::ln;
+
+/// Change of the logarithm of a noise below which it is the same: a tenth of what three days
+/// determine.
+const SAME: f64 = 0.02;
+
 /// Noise of the rates of a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RateNoise {
@@ -18,6 +24,14 @@ impl RateNoise {
             .filter(|(_, size)| **size > 0.0)
             .map(|(rate, _)| rate)
             .collect()
+    }
+
+    /// Whether any of it differs so much that results would change.
+    pub(crate) fn differs(&self, other: &Self) -> bool {
+        let own = self.white.iter().chain(&self.walk);
+        let others = other.white.iter().chain(&other.walk);
+        own.zip(others)
+            .any(|(own, other)| own != other && ln(own / other).abs() >= SAME)
     }
 
     /// The same without random walks.
@@ -42,4 +56,11 @@ pub struct RateNoiseFit {
     pub white_sigma: Vec<f64>,
     /// Standard deviation of the logarithm of each random walk; infinite for none.
     pub walk_sigma: Vec<f64>,
+}
+
+/// Effective degrees of freedom that the white noise of each rate was estimated with: the variance of
+/// the logarithm of χ²(ν)/2 is 1/(2 ν).
+pub(crate) fn degrees_of_freedom(fit: &RateNoiseFit) -> Vec<f64> {
+    let sigmas = fit.white_sigma.iter();
+    sigmas.map(|sigma| 0.5 / (sigma * sigma)).collect()
 }

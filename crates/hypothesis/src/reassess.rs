@@ -8,6 +8,7 @@ use crate::null_distribution::GaussianDraws;
 use crate::result::{Finding, add_intervals, evaluate};
 use crate::score::Best;
 use crate::state::{SearchState, stage};
+use crate::walks::Walks;
 
 /// Swaps names and removes insignificant effects until nothing changes; the conditional result of
 /// each effect that remains.
@@ -15,6 +16,7 @@ pub(crate) fn reassess<F: FittedModel>(
     context: &SearchContext<'_>,
     state: &mut SearchState<F>,
     threshold: f64,
+    walks: &Walks,
     draws: &mut GaussianDraws,
 ) -> Result<Vec<Finding>, F::Error> {
     let mut swaps = 0;
@@ -71,6 +73,10 @@ pub(crate) fn reassess<F: FittedModel>(
                         finding,
                         draws,
                     )?;
+                    let hypothesis = state.accepted[index].hypothesis;
+                    if !walks.beside.contains(&hypothesis) {
+                        finding.alternatives.extend(walks.rivals.iter().cloned());
+                    }
                 }
                 return Ok(findings);
             }

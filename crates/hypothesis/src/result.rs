@@ -10,6 +10,7 @@ use crate::context::SearchContext;
 use crate::hypothesis::{Hypothesis, HypothesisSet, Variant};
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
+use crate::rate_noise::RateNoiseFit;
 use crate::rows::Rows;
 use crate::score::{Best, NESTED_MODEL_CHI2, Scores};
 use crate::shape::ShapeScale;
@@ -67,6 +68,8 @@ pub struct Finding {
 #[derive(Clone)]
 pub(crate) struct FittedStage<F> {
     pub(crate) fitted: F,
+    /// Noise of the rates, estimated with the model.
+    pub(crate) noise: RateNoiseFit,
     /// With all unknowns of the model projected out.
     pub(crate) bank: ScoreBank,
     products: GramProducts,
@@ -89,6 +92,7 @@ impl<F: FittedModel> FittedStage<F> {
     /// Of a model that was fitted with `accepted`.
     pub(crate) fn new(
         fitted: F,
+        noise: RateNoiseFit,
         set: &HypothesisSet,
         rows: &Rows,
         accepted: &[Accepted],
@@ -100,7 +104,7 @@ impl<F: FittedModel> FittedStage<F> {
             let hypothesis = &set.hypotheses[accepted.hypothesis];
             let first = plant.parameters.len() + extra.len();
             let mut own = EffectPlaces {
-                values: value_places(&fitted, set, hypothesis),
+                values: value_places(&fitted, hypothesis),
                 jump: None,
                 shaped: None,
             };
@@ -125,6 +129,7 @@ impl<F: FittedModel> FittedStage<F> {
         Ok(Self {
             bank: products.bank(&[])?,
             fitted,
+            noise,
             products,
             places,
         })
@@ -148,7 +153,7 @@ pub(crate) fn evaluate<F: FittedModel>(
     index: usize,
     draws: &mut GaussianDraws,
 ) -> Result<ConditionalResult, F::Error> {
-    let (set, rows) = (&context.set, &context.rows);
+    let set = &context.set;
     let own = &accepted[index];
     let places = &stage.places[index];
     let bank = stage.products.bank(&places.values)?;
@@ -176,7 +181,7 @@ pub(crate) fn evaluate<F: FittedModel>(
     Ok(ConditionalResult {
         finding: Finding {
             effect: effect.id,
-            parameters: parameters(stage, set, rows, own, places),
+            parameters: parameters(stage, set, own, places),
             z: statistic.max(0.0).sqrt(),
             p_value: own.p_value,
             alternatives: alternatives(&scores, &hypotheses, own.hypothesis, penalised),
@@ -337,24 +342,10 @@ fn change_by_shape(context: &SearchContext<'_>, accepted: &Accepted, size: f64) 
 fn parameters<F: FittedModel>(
     stage: &FittedStage<F>,
     set: &HypothesisSet,
-    rows: &Rows,
     own: &Accepted,
     places: &EffectPlaces,
 ) -> Vec<EffectEstimate> {
     let hypothesis = &set.hypotheses[own.hypothesis];
-    if let (Some(_), Some(variance), Some(size)) = (
-        &hypothesis.walk,
-        own.shape,
-        hypothesis.effect.parameters.first(),
-    ) {
-        return vec![EffectEstimate {
-            name: size.name,
-            estimate: (variance / set.onset_interval_h(rows)).sqrt(),
-            sigma: None,
-            interval: None,
-            unit: size.unit,
-        }];
-    }
     let (values, covariance): (&[f64], &DMatrix<f64>) =
         (stage.fitted.values(), stage.fitted.covariance());
     let all = hypothesis.effect.parameters.iter().enumerate();

@@ -1,12 +1,13 @@
 //! The statistics of all hypotheses, and the choice of the one that is named.
 
+use gyrocal_statistics::math::ln_1p;
+
 use crate::bank::ScoreBank;
 use crate::context::SearchContext;
 use crate::hypothesis::Hypothesis;
 use crate::jump::BestJump;
 use crate::model::FittedModel;
 use crate::null_distribution::NullDistribution;
-use crate::random_walk::WalkScore;
 use crate::shape::best_shape;
 
 /// The 5 % point of chi-square with one degree of freedom: an effect replaces a nested one only if
@@ -32,8 +33,7 @@ pub(crate) struct Best {
     pub(crate) hypothesis: usize,
     pub(crate) variant: usize,
     pub(crate) statistic: f64,
-    /// Variance of the increments of a random walk; onset of a jump, s; shape between those of the
-    /// variants, if it was refined.
+    /// Onset of a jump, s; shape between those of the variants, if it was refined.
     pub(crate) shape: f64,
     /// Whether `shape` replaces that of the variant.
     pub(crate) refined: bool,
@@ -42,11 +42,11 @@ pub(crate) struct Best {
 }
 
 impl Best {
-    /// Onset or time constant of the variant, variance of a random walk, onset of a jump; `None` of a
-    /// hypothesis without any of them.
+    /// Onset or time constant of the variant, onset of a jump; `None` of a hypothesis without any of
+    /// them.
     pub(crate) fn shape(&self, hypotheses: &[Hypothesis]) -> Option<f64> {
         let own = &hypotheses[self.hypothesis];
-        if own.walk.is_some() || own.is_jump || self.refined {
+        if own.is_jump || self.refined {
             return Some(self.shape);
         }
         own.variants.get(self.variant)?.shape
@@ -57,6 +57,8 @@ impl Best {
 pub(crate) struct Scores<'a> {
     pub(crate) best: Vec<Option<Best>>,
     null: &'a NullDistribution,
+    /// Effective degrees of freedom of the noise that each was tested with; infinite if it is known.
+    degrees: Vec<f64>,
 }
 
 impl<'a> Scores<'a> {
@@ -71,7 +73,30 @@ impl<'a> Scores<'a> {
         Self {
             best: best.collect(),
             null,
+            degrees: vec![f64::INFINITY; hypotheses.len()],
         }
+    }
+
+    /// Takes the statistics as tested with noise that the model estimated from the same record, with
+    /// these effective degrees of freedom for each rate.
+    pub(crate) fn with_estimated_noise(
+        mut self,
+        hypotheses: &[Hypothesis],
+        rate_degrees: &[f64],
+    ) -> Self {
+        for (degrees, hypothesis) in self.degrees.iter_mut().zip(hypotheses) {
+            let rate = hypothesis.effect.rate();
+            let own = rate.and_then(|rate| rate_degrees.get(rate));
+            *degrees = own.copied().unwrap_or(f64::INFINITY);
+        }
+        self
+    }
+
+    /// Likelihood-ratio statistic of a hypothesis, its noise estimated with and without it.
+    fn likelihood_ratio(&self, hypothesis: usize) -> f64 {
+        self.best[hypothesis].map_or(f64::NEG_INFINITY, |best| {
+            likelihood_ratio(best.statistic, self.degrees[hypothesis])
+        })
     }
 
     /// Replaces the best variants of hypotheses with a shape that are near the largest statistic by
@@ -107,16 +132,12 @@ impl<'a> Scores<'a> {
 
     /// The statistic for ranking: less the whole search penalty.
     pub(crate) fn penalised(&self, hypothesis: usize) -> f64 {
-        self.best[hypothesis].map_or(f64::NEG_INFINITY, |best| {
-            best.statistic - self.null.penalties[hypothesis]
-        })
+        self.likelihood_ratio(hypothesis) - self.null.penalties[hypothesis]
     }
 
     /// The statistic for detection: less the detection penalty.
     pub(crate) fn tested(&self, hypothesis: usize) -> f64 {
-        self.best[hypothesis].map_or(f64::NEG_INFINITY, |best| {
-            best.statistic - self.null.detection_penalties[hypothesis]
-        })
+        self.likelihood_ratio(hypothesis) - self.null.detection_penalties[hypothesis]
     }
 
     /// The maximum statistic.
@@ -126,21 +147,12 @@ impl<'a> Scores<'a> {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The penalised statistic, with random walks behind effects that follow a law.
-    fn preferred(&self, hypotheses: &[Hypothesis], index: usize) -> f64 {
-        let is_walk = hypotheses[index].walk.is_some();
-        self.penalised(index) - if is_walk { NESTED_MODEL_CHI2 } else { 0.0 }
-    }
-
     /// The hypothesis to name: the best, or an effect nested in it if it is not significantly better;
     /// of exact equivalents the first in the table.
     pub(crate) fn named(&self, hypotheses: &[Hypothesis]) -> Option<Best> {
         let best = (0..hypotheses.len())
             .filter(|index| self.best[*index].is_some())
-            .max_by(|a, b| {
-                self.preferred(hypotheses, *a)
-                    .total_cmp(&self.preferred(hypotheses, *b))
-            })?;
+            .max_by(|a, b| self.penalised(*a).total_cmp(&self.penalised(*b)))?;
         let equivalents = hypotheses[best].effect.equivalents;
         let best = (0..best)
             .find(|other| {
@@ -154,7 +166,10 @@ impl<'a> Scores<'a> {
             .max_by(|a, b| a.statistic.total_cmp(&b.statistic));
         let richer = self.best[best]?;
         match simpler {
-            Some(simpler) if richer.statistic - simpler.statistic < NESTED_MODEL_CHI2 => {
+            Some(simpler)
+                if self.likelihood_ratio(best) - self.likelihood_ratio(simpler.hypothesis)
+                    < NESTED_MODEL_CHI2 =>
+            {
                 Some(simpler)
             }
             _ => Some(richer),
@@ -176,6 +191,26 @@ impl<'a> Scores<'a> {
     }
 }
 
+/// Share of the degrees of freedom beyond which the likelihood ratio goes on linearly: the noise is then
+/// next to nothing but the effect.
+const LARGEST_SHARE: f64 = 0.9;
+
+/// The value of χ²(1) that is as rare as the score statistic T of an effect, if the variance of its
+/// noise was estimated with ν degrees of freedom in the model without the effect. An effect raises
+/// that estimate, so that T stays below ν; T (ν − 1)/(ν − T) is the square of Student's t with
+/// ν' = ν − 1, whose normal deviate is (8ν' + 1)/(8ν' + 3) √(ν' ln(1 + t²/ν')) (Wallace, Ann. Math.
+/// Statist. 30, 1124, 1959).
+fn likelihood_ratio(statistic: f64, degrees: f64) -> f64 {
+    let share = statistic / degrees;
+    if !degrees.is_finite() || share <= 0.0 {
+        return statistic;
+    }
+    let own = (degrees - 1.0).max(1.0);
+    let factor = own * ((8.0 * own + 1.0) / (8.0 * own + 3.0)).powi(2);
+    let at = share.min(LARGEST_SHARE);
+    factor * ((share - at) / (1.0 - LARGEST_SHARE) - ln_1p(-at))
+}
+
 fn best_variant(
     bank: &ScoreBank,
     index: usize,
@@ -195,15 +230,6 @@ fn best_variant(
             statistic: jump.equivalent,
             shape: jump.onset_s,
             searched: jump.statistic - jump.equivalent,
-            ..plain
-        });
-    }
-    if let Some(steps) = &hypothesis.walk {
-        let (information, score) = bank.part(steps);
-        let (statistic, variance) = WalkScore::new(information).best(&score);
-        return Some(Best {
-            statistic,
-            shape: variance,
             ..plain
         });
     }
@@ -264,7 +290,6 @@ mod tests {
             .map(|effect| Hypothesis {
                 effect,
                 variants: Vec::new(),
-                walk: None,
                 is_jump: false,
             })
             .collect();
@@ -283,6 +308,7 @@ mod tests {
         let scores = Scores {
             best: best.collect(),
             null: &null,
+            degrees: vec![f64::INFINITY; hypotheses.len()],
         };
         Some(hypotheses[scores.named(&hypotheses)?.hypothesis].id())
     }

@@ -1,6 +1,6 @@
 //! The search and its result.
 
-use gyrocal_scalar::effect::Effect;
+use gyrocal_scalar::effect::{Effect, EffectKind};
 
 use crate::accepted::Accepted;
 use crate::context::{SearchContext, SearchOptions, extension};
@@ -10,17 +10,23 @@ use crate::model::{FittedModel, ModelExtension};
 use crate::null_distribution::GaussianDraws;
 use crate::pattern::Unmodelled;
 use crate::plant::Plant;
+use crate::rate_noise::RateNoiseFit;
 use crate::reassess::reassess;
-use crate::result::{Finding, FittedStage};
+use crate::result::Finding;
 use crate::rows::Rows;
 use crate::score::Ranked;
-use crate::state::SearchState;
+use crate::state::{SearchState, settled};
+use crate::walks::{Compared, compare};
 
 /// Result of a search.
 pub struct Searched<F> {
     /// The model with all that was found, at its best fit.
     pub fitted: F,
-    /// Detected effects, in the order of detection.
+    /// The nominal model, fitted with the noise that it leaves.
+    pub nominal: F,
+    /// Noise of the rates, estimated with all that was found.
+    pub noise: RateNoiseFit,
+    /// Detected effects, in the order of detection, then random walks.
     pub findings: Vec<Finding>,
     /// Detected terms that no effect of the catalogue explains; they are in the model.
     pub unmodelled: Vec<Unmodelled>,
@@ -38,7 +44,8 @@ pub struct Searched<F> {
 }
 
 impl<F> Searched<F> {
-    /// The extension with all unmodelled terms and those findings that are `kept`.
+    /// The extension with all unmodelled terms and those findings that are `kept`; random walks are
+    /// noise and no part of it.
     #[must_use]
     pub fn extension_with(&self, kept: &[bool]) -> ModelExtension {
         let accepted = self.accepted.iter().zip(kept);
@@ -63,6 +70,12 @@ pub fn search<F: FittedModel>(
 ) -> Result<Searched<F>, F::Error> {
     let plant = nominal.plant();
     let context = SearchContext {
+        walks: selection
+            .effects
+            .iter()
+            .copied()
+            .filter(|effect| effect.kind == EffectKind::RandomWalk)
+            .collect(),
         set: HypothesisSet::new(plant, &rows, &selection.effects),
         plant,
         base: nominal.extension().clone(),
@@ -70,12 +83,26 @@ pub fn search<F: FittedModel>(
         options,
     };
     let mut draws = GaussianDraws::new(options.seed);
-    let stage = FittedStage::new(nominal, &context.set, &context.rows, &[])?;
-    let state = SearchState::new(stage);
-    let (mut state, FirstRound { ranking, threshold }) = forward(&context, state, &mut draws)?;
-    let findings = reassess(&context, &mut state, threshold, &mut draws)?;
+    let nominal = settled(&context, nominal, &[])?;
+    let state = SearchState::new(nominal.clone());
+    let (state, first) = forward(&context, state, None, &mut draws)?;
+    let Compared {
+        mut state,
+        mut walks,
+        ranking: ranked_walks,
+    } = compare(&context, &nominal, state, &first, &mut draws)?;
+    let FirstRound {
+        mut ranking,
+        threshold,
+    } = first;
+    ranking.extend(ranked_walks);
+    ranking.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
+    let mut findings = reassess(&context, &mut state, threshold, &walks, &mut draws)?;
+    findings.append(&mut walks.named);
     Ok(Searched {
         fitted: state.stage.fitted,
+        nominal: nominal.fitted,
+        noise: state.stage.noise,
         findings,
         unmodelled: state.unmodelled,
         ranking,

@@ -60,7 +60,7 @@ pub(crate) struct ShapeScale {
 impl ShapeScale {
     /// The scale of an effect in a record; `None` of an effect without a shape.
     pub(crate) fn of(hypothesis: &Hypothesis, rows: &Rows) -> Option<Self> {
-        if hypothesis.is_jump || hypothesis.walk.is_some() {
+        if hypothesis.is_jump {
             return None;
         }
         let is_onset = matches!(hypothesis.effect.shape()?.role, Role::Onset(_));
@@ -215,7 +215,7 @@ pub(crate) fn estimate_shapes<F: FittedModel>(
             if ShapeScale::of(hypothesis, &context.rows).is_none() {
                 continue;
             }
-            let absent = value_places(&fitted, &context.set, hypothesis);
+            let absent = value_places(&fitted, hypothesis);
             let Some(best) = best_shape(&fitted, context, hypothesis, now, &absent)? else {
                 continue;
             };

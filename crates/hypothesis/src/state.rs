@@ -31,8 +31,8 @@ impl<F> SearchState<F> {
     }
 }
 
-/// The model with these effects, fitted from another one, with the shapes of all effects estimated and
-/// with all its signatures.
+/// The model with these effects, fitted from another one, with the shapes of all effects and the noise
+/// of the rates estimated and with all its signatures.
 pub(crate) fn stage<F: FittedModel>(
     context: &SearchContext<'_>,
     from: &F,
@@ -42,5 +42,22 @@ pub(crate) fn stage<F: FittedModel>(
     let refit = |from: &F, accepted: &[Accepted]| context.fitted(from, accepted, unmodelled);
     let fitted = refit(from, accepted)?;
     let fitted = estimate_shapes(context, fitted, accepted, refit)?;
-    FittedStage::new(fitted, &context.set, &context.rows, accepted)
+    settled(context, fitted, accepted)
+}
+
+/// A fit with the noise of its rates that the record tells.
+pub(crate) fn settled<F: FittedModel>(
+    context: &SearchContext<'_>,
+    fitted: F,
+    accepted: &[Accepted],
+) -> Result<FittedStage<F>, F::Error> {
+    let believed = fitted.rate_noise();
+    let noise = fitted.fit_rate_noise(&believed.walking(), &[])?;
+    let fitted = if noise.noise.differs(&believed) {
+        // A mismatch that is no noise cannot always be fitted as noise: the last noise then stands.
+        fitted.with_rate_noise(&noise.noise).unwrap_or(fitted)
+    } else {
+        fitted
+    };
+    FittedStage::new(fitted, noise, &context.set, &context.rows, accepted)
 }

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use gyrocal_hypothesis::{
-    Column, Covariate, Finding, FittedModel, ModelExtension, Plant, Rows, SearchOptions, Singular,
-    StateJump, WeightInputs, search, select,
+    Column, Covariate, Finding, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Rows,
+    SearchOptions, Singular, StateJump, WeightInputs, search, select,
 };
 use gyrocal_scalar::Element;
 use gyrocal_scalar::effect::{
@@ -355,6 +355,27 @@ impl FittedModel for FittedDuffing {
         );
         values.resize(values.len() + extension.columns.columns().len(), 0.0);
         Ok(Self::fit(&self.measured, extension, values)?)
+    }
+
+    fn rate_noise(&self) -> RateNoise {
+        RateNoise {
+            white: vec![1.0],
+            walk: vec![0.0],
+        }
+    }
+
+    // No noise drives the oscillator.
+    fn fit_rate_noise(&self, _: &[usize], _: &[usize]) -> Result<RateNoiseFit, NotObservable> {
+        Ok(RateNoiseFit {
+            noise: self.rate_noise(),
+            log_likelihood: -0.5 * self.cost(),
+            white_sigma: vec![0.0],
+            walk_sigma: vec![f64::INFINITY],
+        })
+    }
+
+    fn with_rate_noise(&self, _: &RateNoise) -> Result<Self, NotObservable> {
+        Ok(self.clone())
     }
 
     fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, NotObservable> {

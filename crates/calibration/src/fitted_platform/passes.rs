@@ -137,7 +137,11 @@ impl FittedPlatform<'_> {
             .with_run(0, &parameters, |pass| {
                 let tape = self.solution.tapes[0].as_deref();
                 let pass = Linearisation { tape, ..*pass };
-                noise::estimate(|factors| pass.noise_score(factors))
+                noise::estimate(|factors| {
+                    let mut factors = factors.to_vec();
+                    factors.resize(factors.len() + pass.walks.walks.len(), 1.0);
+                    pass.noise_score(&factors)
+                })
             })
             .map_err(|error: EstimationError| CalibrationError::pass(0, error))
     }

@@ -96,13 +96,18 @@ impl FittedPlatform<'_> {
         let mut walks = Vec::new();
         let mut free = Vec::new();
         for (rate, channel) in PLATFORM.rates.iter().enumerate() {
-            let before = leg.walks.iter().find(|one| one.parameter == channel.constant);
+            let before = leg
+                .walks
+                .iter()
+                .find(|one| one.parameter == channel.constant);
             let wanted = walking.contains(&rate);
             if wanted {
                 free.push(walks.len());
             }
             if wanted || before.is_some() {
-                let density = before.filter(|_| wanted).map_or(NO_WALK * unit, |one| one.density);
+                let density = before
+                    .filter(|_| wanted)
+                    .map_or(NO_WALK * unit, |one| one.density);
                 walks.push(Walk {
                     parameter: channel.constant,
                     density,
@@ -131,8 +136,9 @@ impl FittedPlatform<'_> {
             model.gyro_ratio[axis] = noise.white[axis];
             model.gyro_walk_deg_per_h_per_sqrt_h[axis] = noise.walk[axis];
         }
-        let change: [f64; AXES] =
-            core::array::from_fn(|axis| (model.gyro_ratio[axis] / self.noise.gyro_ratio[axis]).powi(2));
+        let change: [f64; AXES] = core::array::from_fn(|axis| {
+            (model.gyro_ratio[axis] / self.noise.gyro_ratio[axis]).powi(2)
+        });
         let sizes = model.gyro_walk_deg_per_h_per_sqrt_h;
         self.refitted_with(
             &self.extension,
@@ -228,7 +234,10 @@ impl Likelihood<'_, '_> {
             let walk = self.walks[*place];
             let density = walk.density * logarithms[AXES + index].exp();
             let rates = PLATFORM.rates.iter();
-            for (rate, _) in rates.enumerate().filter(|(_, r)| r.constant == walk.parameter) {
+            for (rate, _) in rates
+                .enumerate()
+                .filter(|(_, r)| r.constant == walk.parameter)
+            {
                 fit.noise.walk[rate] = (density * S_PER_H).sqrt();
                 fit.walk_sigma[rate] = sigma[AXES + index];
             }
@@ -302,7 +311,10 @@ impl Likelihood<'_, '_> {
             let gram = self.gram(&score.d_gram[*unknown]);
             let squares = (&gram * &solution).dot(&solution);
             let count = inverse.nrows();
-            let determinant = gram.view((1, 1), (count, count)).component_mul(&inverse).sum();
+            let determinant = gram
+                .view((1, 1), (count, count))
+                .component_mul(&inverse)
+                .sum();
             gradient[index] = -0.5 * (score.d_log_variance[*unknown] + squares + determinant);
             if index < AXES {
                 let off = logarithms[index] + 2.0 * believed[index].ln();
@@ -359,7 +371,9 @@ impl Likelihood<'_, '_> {
         }
         let own = inner.view((0, 0), (integrated, integrated)).into_owned();
         let not_definite = || CalibrationError::NotPositiveDefinite;
-        let change = Cholesky::new(inner).ok_or_else(not_definite)?.solve(&gradient);
+        let change = Cholesky::new(inner)
+            .ok_or_else(not_definite)?
+            .solve(&gradient);
         for (place, change) in present.iter().zip(change.iter()) {
             solution[place + 1] = *change;
         }

@@ -162,6 +162,9 @@ pub struct FalseAlarmShares {
     pub gyro_noise: f64,
     /// Search over the effects of the catalogue.
     pub search: f64,
+    /// Random walks of the gyros.
+    #[serde(default)]
+    pub random_walk: f64,
     /// Test of the residuals, and search for terms that the catalogue does not hold.
     pub residual_test: f64,
     /// Magnitude test of specific force, which makes no finding and is not part of the sum.

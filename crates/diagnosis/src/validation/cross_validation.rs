@@ -1,9 +1,11 @@
 //! Selection of the causes of the extended model by blocked cross-validation.
 
+use gyrocal::EFFECTS;
+use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use gyrocal_hypothesis::Searched;
 
-use super::block_scores::{BLOCKS, block_log_scores};
+use super::block_scores::{BLOCKS, block_log_scores, forward_log_scores};
 
 /// Decision of the cross-validation on one cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,37 +29,52 @@ pub(crate) struct CrossValidated<'a> {
 }
 
 /// Backward elimination: removes causes without gain, the least useful first, with a full fit after
-/// each.
+/// each. Random walks are noise and stay; the gain is then that of forward prediction, and an effect
+/// whose set has a walk stays too.
 pub(crate) fn cross_validate<'a>(
     nominal: &FittedPlatform<'a>,
     searched: &Searched<FittedPlatform<'a>>,
 ) -> Result<CrossValidated<'a>, CalibrationError> {
-    let count = searched.findings.len();
-    let fit = |kept: &[bool]| {
-        if kept.iter().all(|kept| *kept) {
-            return Ok(searched.fitted.clone());
-        }
-        searched.fitted.refitted(&searched.extension_with(kept))
-    };
-    if count == 0 {
+    let findings = &searched.findings;
+    let count = findings
+        .iter()
+        .filter(|found| !is_walk(found.effect))
+        .count();
+    let walks = findings.len() - count;
+    if findings.is_empty() {
         return Ok(CrossValidated {
             extended: None,
             scores: None,
             decisions: Vec::new(),
         });
     }
-    let before = block_log_scores(nominal)?;
+    let fit = |kept: &[bool]| {
+        if kept.iter().all(|kept| *kept) {
+            return Ok(searched.fitted.clone());
+        }
+        searched.fitted.refitted(&searched.extension_with(kept))
+    };
+    let log_scores = if walks > 0 {
+        forward_log_scores
+    } else {
+        block_log_scores
+    };
+    let before = log_scores(nominal)?;
     let mut scored: Vec<(Vec<bool>, [f64; BLOCKS])> = Vec::new();
-    if searched.unmodelled.is_empty() {
+    if searched.unmodelled.is_empty() && walks == 0 {
         scored.push((vec![false; count], before));
     }
-    let decisions = backward_elimination(count, |kept| {
+    let stays: Vec<bool> = findings[..count]
+        .iter()
+        .map(|found| found.alternatives.iter().any(|other| is_walk(other.effect)))
+        .collect();
+    let mut decisions = backward_elimination(&stays, |kept| {
         let known = scored.iter().find(|(other, _)| other == kept);
         let scores = match known {
             Some((_, scores)) => *scores,
             // A model that cannot be fitted has the score of the nominal one.
             None => match fit(kept) {
-                Ok(fit) => block_log_scores(&fit)?,
+                Ok(fit) => log_scores(&fit)?,
                 Err(_) => before,
             },
         };
@@ -67,25 +84,51 @@ pub(crate) fn cross_validate<'a>(
         Ok::<f64, CalibrationError>(scores.iter().sum())
     })?;
     let mut kept: Vec<bool> = decisions.iter().map(|a| a.accepted).collect();
-    let extended = if kept.contains(&true) {
+    let extended = if walks > 0 || kept.contains(&true) {
         Some(fit(&kept)?)
     } else {
         kept.fill(true);
         None
     };
-    let scored = scored.into_iter().find(|(other, _)| *other == kept);
+    let after = match scored.into_iter().find(|(other, _)| *other == kept) {
+        Some((_, after)) => Some(after),
+        None => extended.as_ref().map(log_scores).transpose()?,
+    };
+    if let Some(extended) = extended.as_ref().filter(|_| walks > 0) {
+        let gain_nats = gain_of_walks(extended)?;
+        let decision = KeepDecision {
+            gain_nats,
+            accepted: true,
+        };
+        decisions.resize(findings.len(), decision);
+    }
     Ok(CrossValidated {
         extended,
-        scores: scored.map(|(_, after)| [before, after]),
+        scores: after.map(|after| [before, after]),
         decisions,
     })
 }
 
-/// Removes causes without which the score is as high, the least useful first.
+fn is_walk(effect: &str) -> bool {
+    let mut effects = EFFECTS.iter();
+    effects.any(|row| row.id == effect && row.kind == EffectKind::RandomWalk)
+}
+
+/// Gain in forward prediction of all walks of a model over the best noise without them.
+fn gain_of_walks(fit: &FittedPlatform<'_>) -> Result<f64, CalibrationError> {
+    let white = fit.fit_rate_noise(&[], &[])?.noise;
+    let without = fit.with_rate_noise(&white)?;
+    let with: f64 = forward_log_scores(fit)?.iter().sum();
+    let without: f64 = forward_log_scores(&without)?.iter().sum();
+    Ok(with - without)
+}
+
+/// Removes causes without which the score is as high, the least useful first; not those that `stay`.
 fn backward_elimination<E>(
-    count: usize,
+    stays: &[bool],
     mut score: impl FnMut(&[bool]) -> Result<f64, E>,
 ) -> Result<Vec<KeepDecision>, E> {
+    let count = stays.len();
     let mut kept = vec![true; count];
     let mut gains = vec![0.0; count];
     while kept.contains(&true) {
@@ -95,6 +138,9 @@ fn backward_elimination<E>(
             let mut others = kept.clone();
             others[index] = false;
             gains[index] = with_all - score(&others)?;
+            if stays[index] {
+                continue;
+            }
             if least.is_none_or(|least| gains[index] < gains[least]) {
                 least = Some(index);
             }
@@ -121,7 +167,9 @@ mod tests {
     use super::{KeepDecision, backward_elimination};
 
     fn eliminated(count: usize, score: impl Fn(&[bool]) -> f64) -> Vec<(f64, bool)> {
-        let found = backward_elimination(count, |kept| Ok::<f64, Infallible>(score(kept)));
+        let found = backward_elimination(&vec![false; count], |kept| {
+            Ok::<f64, Infallible>(score(kept))
+        });
         let found: Vec<KeepDecision> = found.unwrap_or_default();
         found.iter().map(|a| (a.gain_nats, a.accepted)).collect()
     }

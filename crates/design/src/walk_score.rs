@@ -1,4 +1,4 @@
-//! The score test of a random walk: steps at every onset with one common variance.
+//! The score test of a random walk in a planned run: steps at every onset with one common variance.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -8,9 +8,10 @@ const POINTS: usize = 46;
 const RATIO: f64 = 1.584_893_192_461_113_5;
 const LEAST: f64 = 1e-3;
 
-/// Score test of a random walk from the scores of its steps (equation (7) of the crate).
+/// Score test of a random walk from the scores of its steps z along the eigenvectors of their
+/// information λ: max_v Σ [v z² / (1 + v λ) − ln(1 + v λ)].
 #[derive(Clone, Debug)]
-pub struct WalkScore {
+pub(crate) struct WalkScore {
     /// Eigenvectors of the steps' information, in columns.
     vectors: DMatrix<f64>,
     /// Variances, rising.
@@ -23,8 +24,7 @@ pub struct WalkScore {
 
 impl WalkScore {
     /// From the steps' information.
-    #[must_use]
-    pub fn new(information: DMatrix<f64>) -> Self {
+    pub(crate) fn new(information: DMatrix<f64>) -> Self {
         let eigen = SymmetricEigen::new(information);
         let values = eigen.eigenvalues.map(|value| value.max(0.0));
         let typical = values.max();
@@ -51,8 +51,7 @@ impl WalkScore {
 
     /// Twice the logarithm of the likelihood that the best variance gains over none, and that
     /// variance, from the scores of the steps.
-    #[must_use]
-    pub fn best(&self, score: &DVector<f64>) -> (f64, f64) {
+    pub(crate) fn best(&self, score: &DVector<f64>) -> (f64, f64) {
         let squares = self.vectors.tr_mul(score).map(|along| along * along);
         let gained = &self.gains * squares - &self.costs;
         gained
@@ -65,18 +64,5 @@ impl WalkScore {
                     best
                 }
             })
-    }
-
-    /// Statistics of scores in rows.
-    pub(crate) fn best_of_each(&self, scores: &DMatrix<f64>) -> Vec<f64> {
-        let squares = (scores * &self.vectors).map(|along| along * along);
-        let gained = squares * self.gains.transpose();
-        let mut best = vec![0.0; scores.nrows()];
-        for (gained, cost) in gained.column_iter().zip(self.costs.iter()) {
-            for (best, gain) in best.iter_mut().zip(&gained) {
-                *best = f64::max(*best, gain - cost);
-            }
-        }
-        best
     }
 }

@@ -1,0 +1,313 @@
+//! Random walks of the rates against deterministic effects.
+//!
+//! Both are slow, and either can stand for the other. Neither is tested first: the model with the best
+//! deterministic effects and the model with walks are both fitted, each with its own noise, and their
+//! likelihoods are compared.
+
+use gyrocal_scalar::effect::{Effect, EffectKind};
+use gyrocal_statistics::chi_square_tail;
+
+use crate::accepted::Accepted;
+use crate::context::SearchContext;
+use crate::forward::{FirstRound, forward};
+use crate::model::FittedModel;
+use crate::null_distribution::GaussianDraws;
+use crate::rate_noise::RateNoiseFit;
+use crate::result::{Alternative, EffectEstimate, Finding, FittedStage};
+use crate::score::Ranked;
+use crate::state::{SearchState, settled};
+
+/// Twice the log-likelihood that deterministic effects must be better by, penalties subtracted, to stand
+/// without walks in their set.
+pub const WALK_SET_DEVIANCE: f64 = 12.0;
+
+/// The same for an effect that is added beside walks, which absorb most of what is not named; and the
+/// advantage of walks in the order of a set.
+pub const BESIDE_WALKS: f64 = 6.0;
+
+/// Twice the log-likelihood that a walk of one rate gains, the others being there, from which on it is
+/// named: the 5 % point of a variance that may be zero, ½ χ²(1).
+const NAMED_WALK: f64 = 2.71;
+
+/// 95 % deviate of a normal distribution, two-sided.
+const NORMAL_95: f64 = 1.96;
+
+/// What a search says of walks.
+#[derive(Clone, Default)]
+pub(crate) struct Walks {
+    /// Walks in the model, as findings.
+    pub(crate) named: Vec<Finding>,
+    /// Walks that stand in the set of every effect of the model but for `beside`.
+    pub(crate) rivals: Vec<Alternative>,
+    /// Hypotheses that stand beside walks too.
+    pub(crate) beside: Vec<usize>,
+}
+
+/// Result of the comparison.
+pub(crate) struct Compared<F> {
+    pub(crate) state: SearchState<F>,
+    pub(crate) walks: Walks,
+    /// The walks in the first round.
+    pub(crate) ranking: Vec<Ranked>,
+}
+
+/// The walks that a search may name.
+struct Candidates {
+    effects: Vec<&'static Effect>,
+    rates: Vec<usize>,
+}
+
+/// Compares the best deterministic effects with walks.
+pub(crate) fn compare<F: FittedModel>(
+    context: &SearchContext<'_>,
+    nominal: &FittedStage<F>,
+    state: SearchState<F>,
+    first: &FirstRound,
+    draws: &mut GaussianDraws,
+) -> Result<Compared<F>, F::Error> {
+    let effects: Vec<&'static Effect> = context
+        .walks
+        .iter()
+        .copied()
+        .filter(|effect| effect.kind == EffectKind::RandomWalk && effect.rate().is_some())
+        .collect();
+    let rates: Vec<usize> = effects.iter().filter_map(|effect| effect.rate()).collect();
+    let candidates = Candidates { effects, rates };
+    if candidates.rates.is_empty() {
+        return Ok(Compared {
+            state,
+            walks: Walks::default(),
+            ranking: Vec::new(),
+        });
+    }
+    let of_nothing = nominal.noise.log_likelihood;
+    let walk = nominal.fitted.fit_rate_noise(&candidates.rates, &[])?;
+    let gained = 2.0 * (walk.log_likelihood - of_nothing);
+    let p_value = tail(gained, candidates.rates.len());
+    let is_significant =
+        |gained: f64| tail(gained, candidates.rates.len()) < context.options.walk_probability;
+    let ranking = candidates.effects.iter().map(|effect| Ranked {
+        effect: effect.id,
+        statistic: gained.max(0.0),
+    });
+    let ranking: Vec<Ranked> = ranking.collect();
+    let has_effects = !(state.accepted.is_empty() && state.unmodelled.is_empty());
+    if !has_effects && !is_significant(gained) {
+        return Ok(Compared {
+            state,
+            walks: Walks::default(),
+            ranking,
+        });
+    }
+    let beside = if has_effects {
+        let fitted = &state.stage.fitted;
+        Some(fitted.fit_rate_noise(&candidates.rates, &[])?)
+    } else {
+        None
+    };
+    let of_effects = state.stage.noise.log_likelihood;
+    let is_beside = beside
+        .as_ref()
+        .is_some_and(|beside| is_significant(2.0 * (beside.log_likelihood - of_effects)));
+    let advantage =
+        2.0 * (of_effects - walk.log_likelihood) - penalties(&state, first.threshold, 0.0, 1);
+    if has_effects && advantage > WALK_SET_DEVIANCE && !is_beside {
+        return Ok(Compared {
+            state,
+            walks: Walks::default(),
+            ranking,
+        });
+    }
+    let walking = nominal.fitted.with_rate_noise(&walk.noise)?;
+    let stage = settled(context, walking, &[])?;
+    let (walking, _) = forward(context, SearchState::new(stage), Some(BESIDE_WALKS), draws)?;
+    let advantage = 2.0 * (of_effects - walking.stage.noise.log_likelihood)
+        - penalties(&state, first.threshold, 0.0, 1)
+        + penalties(&walking, first.threshold, BESIDE_WALKS, 0);
+    if !has_effects || advantage <= WALK_SET_DEVIANCE {
+        let sets = has_effects && advantage > 0.0;
+        if sets && advantage > BESIDE_WALKS {
+            let deficit = 0.5 * (advantage - BESIDE_WALKS);
+            let walks = rivals(&candidates, &walking, deficit);
+            return Ok(Compared {
+                state,
+                walks,
+                ranking,
+            });
+        }
+        let mut named = named(&candidates, &walking, p_value)?;
+        if sets {
+            let deficit = 0.5 * (BESIDE_WALKS - advantage);
+            for finding in &mut named {
+                finding.alternatives = alone(context, &state, &walking, deficit);
+            }
+        }
+        return Ok(Compared {
+            state: walking,
+            walks: Walks {
+                named,
+                ..Walks::default()
+            },
+            ranking,
+        });
+    }
+    let Some(beside) = beside.filter(|_| is_beside) else {
+        return Ok(Compared {
+            state,
+            walks: Walks::default(),
+            ranking,
+        });
+    };
+    let p_value = tail(
+        2.0 * (beside.log_likelihood - of_effects),
+        candidates.rates.len(),
+    );
+    let mut state = state;
+    let fitted = state.stage.fitted.with_rate_noise(&beside.noise)?;
+    state.stage = settled(context, fitted, &state.accepted)?;
+    let named = named(&candidates, &state, p_value)?;
+    Ok(Compared {
+        state,
+        walks: Walks {
+            named,
+            ..Walks::default()
+        },
+        ranking,
+    })
+}
+
+/// Penalties of the effects of a state for having been searched for, but for the first `free`.
+fn penalties<F>(state: &SearchState<F>, threshold: f64, margin: f64, free: usize) -> f64 {
+    let effects = state.accepted.iter().map(|accepted| accepted.penalty);
+    let unmodelled = state.unmodelled.iter();
+    let unmodelled = unmodelled.map(|found| found.statistic - found.equivalent());
+    let each = effects.chain(unmodelled).skip(free);
+    each.map(|penalty| threshold + penalty + margin).sum()
+}
+
+/// Probability that walks of so many rates gain as much where there are none: each variance is zero
+/// with a probability of one half (Self, Liang, J. Amer. Statist. Assoc. 82, 605, 1987).
+fn tail(gained: f64, rates: usize) -> f64 {
+    if gained <= 0.0 {
+        return 1.0;
+    }
+    let mut weight = 0.5_f64.powi(rates as i32);
+    let mut sum = 0.0;
+    for degrees in 1..=rates {
+        weight *= (rates + 1 - degrees) as f64 / degrees as f64;
+        sum += weight * chi_square_tail(gained, degrees as f64).unwrap_or(0.0);
+    }
+    sum
+}
+
+/// Effects of one state that the other lacks.
+fn lacking<'s, F>(state: &'s SearchState<F>, other: &SearchState<F>) -> Vec<&'s Accepted> {
+    let missing = |own: &Accepted| {
+        let mut others = other.accepted.iter();
+        !others.any(|other| other.hypothesis == own.hypothesis)
+    };
+    let all = state.accepted.iter();
+    all.filter(|own| missing(own)).collect()
+}
+
+/// The walks as rivals of the effects that the model with walks lacks.
+fn rivals<F: FittedModel>(
+    candidates: &Candidates,
+    walking: &SearchState<F>,
+    deficit: f64,
+) -> Walks {
+    let walks: Vec<Alternative> = candidates
+        .effects
+        .iter()
+        .map(|effect| Alternative {
+            effect: effect.id,
+            log_likelihood_deficit: deficit,
+        })
+        .collect();
+    Walks {
+        named: Vec::new(),
+        rivals: walks,
+        beside: walking.accepted.iter().map(|own| own.hypothesis).collect(),
+    }
+}
+
+/// Effects that stand in the set of the walks.
+fn alone<F>(
+    context: &SearchContext<'_>,
+    state: &SearchState<F>,
+    walking: &SearchState<F>,
+    deficit: f64,
+) -> Vec<Alternative> {
+    lacking(state, walking)
+        .into_iter()
+        .map(|own| Alternative {
+            effect: context.set.hypotheses[own.hypothesis].id(),
+            log_likelihood_deficit: deficit,
+        })
+        .collect()
+}
+
+/// The walks of a model that are named: each that the likelihood needs, the largest at least.
+fn named<F: FittedModel>(
+    candidates: &Candidates,
+    state: &SearchState<F>,
+    p_value: f64,
+) -> Result<Vec<Finding>, F::Error> {
+    let noise = &state.stage.noise;
+    let mut gains = Vec::with_capacity(candidates.rates.len());
+    for rate in &candidates.rates {
+        let others: Vec<usize> = candidates
+            .rates
+            .iter()
+            .copied()
+            .filter(|other| other != rate)
+            .collect();
+        let without = state.stage.fitted.fit_rate_noise(&others, &[])?;
+        gains.push(2.0 * (noise.log_likelihood - without.log_likelihood));
+    }
+    let largest = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let all = candidates.effects.iter().zip(&candidates.rates).zip(gains);
+    Ok(all
+        .filter(|(_, gain)| *gain >= NAMED_WALK.min(largest))
+        .map(|((effect, rate), gain)| walk_finding(effect, *rate, noise, (gain, p_value)))
+        .collect())
+}
+
+fn walk_finding(
+    effect: &'static Effect,
+    rate: usize,
+    noise: &RateNoiseFit,
+    (gain, p_value): (f64, f64),
+) -> Finding {
+    let (size, sigma) = (noise.noise.walk[rate], noise.walk_sigma[rate]);
+    let factor = gyrocal_statistics::math::exp(NORMAL_95 * sigma);
+    let parameters = effect.parameters.first().map(|parameter| EffectEstimate {
+        name: parameter.name,
+        estimate: size,
+        sigma: None,
+        interval: Some(vec![[size / factor, size * factor]]),
+        unit: parameter.unit,
+    });
+    Finding {
+        effect: effect.id,
+        parameters: parameters.into_iter().collect(),
+        z: gain.max(0.0).sqrt(),
+        p_value,
+        alternatives: Vec::new(),
+        exact_equivalents: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tail;
+
+    #[test]
+    fn the_tail_of_walks_is_that_of_the_mixture() {
+        // χ²(1) at 2.706 is 0.1, halved; three walks at 8.7: 3/8 of 0.003 18, 3/8 of 0.012 9, 1/8 of
+        // 0.033 6, by tables of χ².
+        assert!((tail(2.705_543, 1) - 0.05).abs() < 1e-6);
+        assert!((tail(8.7, 3) - 0.010_23).abs() < 2e-4, "{}", tail(8.7, 3));
+        assert!((tail(0.0, 3) - 1.0).abs() < 1e-15);
+    }
+}
