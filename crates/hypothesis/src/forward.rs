@@ -23,26 +23,42 @@ pub(crate) struct FirstRound {
     pub(crate) threshold: f64,
 }
 
-/// Share of the threshold above which an effect is fitted beside a random walk, which takes up most
-/// of a slow effect until both are fitted together.
-const WORTH_FITTING: f64 = 0.5;
+/// Shares of the threshold above which an effect is fitted: its score test has the noise of the model
+/// without it, which an effect raises. Beside random walks more so: they take up most of a slow effect
+/// until both are fitted together.
+const WORTH_FITTING: f64 = 0.7;
+const WORTH_FITTING_BESIDE_WALKS: f64 = 0.5;
 
-/// Adds effects until none is significant. Beside random walks an effect must gain `beside_walks` more
-/// than the threshold, with the walks estimated with and without it.
+/// Model that effects are added to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Beside {
+    /// White noise. Effects are given up where walks, with this log-likelihood and no effect, are so much
+    /// better that the effects would lose even if every further one gained as the last has.
+    WhiteNoise { walks: Option<f64> },
+    /// Random walks: an effect must gain so much more than the threshold, with the walks estimated with
+    /// and without it.
+    Walks { margin: f64 },
+}
+
+/// Adds effects until none is significant.
 pub(crate) fn forward<F: FittedModel>(
     context: &SearchContext<'_>,
     mut state: SearchState<F>,
-    beside_walks: Option<f64>,
+    beside: Beside,
     draws: &mut GaussianDraws,
 ) -> Result<(SearchState<F>, FirstRound), F::Error> {
     let mut first: Option<FirstRound> = None;
+    let margin = match beside {
+        Beside::WhiteNoise { .. } => None,
+        Beside::Walks { margin } => Some(margin),
+    };
     loop {
         let hypotheses = open_hypotheses(context, &state);
         let null = NullDistribution::draw(&state.stage.bank, &hypotheses, draws);
         let jumps = state.stage.fitted.state_jumps()?;
         let jump = best_jump(&jumps, &context.rows);
         let mut scores = Scores::of(&state.stage.bank, &hypotheses, &null, jump);
-        if beside_walks.is_none() {
+        if margin.is_none() {
             scores =
                 scores.with_estimated_noise(&hypotheses, &degrees_of_freedom(&state.stage.noise));
         }
@@ -51,12 +67,13 @@ pub(crate) fn forward<F: FittedModel>(
             ranking: scores.ranking(&hypotheses),
             threshold,
         });
-        let least = if beside_walks.is_some() {
-            WORTH_FITTING * threshold
+        let share = if margin.is_some() {
+            WORTH_FITTING_BESIDE_WALKS
         } else {
-            threshold
+            WORTH_FITTING
         };
-        let significant = scores.largest() > least && state.accepted.len() < MOST_EFFECTS;
+        let significant =
+            scores.largest() > share * threshold && state.accepted.len() < MOST_EFFECTS;
         if significant {
             scores.refine(&state.stage.fitted, context, &hypotheses, &[])?;
         }
@@ -64,7 +81,7 @@ pub(crate) fn forward<F: FittedModel>(
         // An unmodelled term goes into the model if no effect is significant, or if it explains so
         // much more that a name would be false.
         let limit =
-            ln(context.options.unmodelled_probability) - 0.5 * beside_walks.unwrap_or_default();
+            ln(context.options.unmodelled_probability) - 0.5 * margin.unwrap_or_default();
         let stands = |other: &Unmodelled| {
             let explains_more = |best: Best| {
                 // Several effects together look like a line at a natural period.
@@ -87,31 +104,39 @@ pub(crate) fn forward<F: FittedModel>(
         let Some(best) = best else {
             return Ok((state, first.unwrap_or_default()));
         };
-        let mut accepted = Accepted {
+        let accepted = Accepted {
             hypothesis: best.hypothesis,
             shape: best.shape(&hypotheses),
             p_value: null.probability(scores.largest()),
             searched: best.searched,
             penalty: best.searched + null.penalties[best.hypothesis],
         };
-        let Some(margin) = beside_walks else {
-            accept(context, &mut state, accepted);
-            continue;
-        };
         let before = state.clone();
-        let own = before.accepted.len();
-        accepted.p_value = 1.0;
         let penalty = accepted.penalty;
         accept(context, &mut state, accepted);
-        if state.accepted.len() == own {
+        if state.accepted.len() == before.accepted.len() {
             continue;
         }
         let gained = 2.0 * (state.stage.noise.log_likelihood - before.stage.noise.log_likelihood);
-        if gained - (threshold + penalty) <= margin {
+        // The test: the likelihood ratio, the noise estimated with and without the effect.
+        let tested = gained - best.searched - null.detection_penalties[best.hypothesis];
+        let is_detected = match margin {
+            Some(margin) => gained - penalty > threshold + margin,
+            None => tested > threshold,
+        };
+        if !is_detected {
             return Ok((before, first.unwrap_or_default()));
         }
         if let Some(own) = state.accepted.last_mut() {
-            own.p_value = null.probability(gained - null.detection_penalties[own.hypothesis]);
+            own.p_value = null.probability(tested);
+        }
+        if let Beside::WhiteNoise { walks: Some(walks) } = beside {
+            let advantage = 2.0 * (state.stage.noise.log_likelihood - walks)
+                - state.penalties(threshold, 0.0, 1);
+            let further = (MOST_EFFECTS - state.accepted.len()) as f64;
+            if advantage + further * (gained - threshold - penalty) < 0.0 {
+                return Ok((state, first.unwrap_or_default()));
+            }
         }
     }
 }

@@ -86,8 +86,10 @@ impl<'a> Scores<'a> {
     ) -> Self {
         for (degrees, hypothesis) in self.degrees.iter_mut().zip(hypotheses) {
             let rate = hypothesis.effect.rate();
-            let own = rate.and_then(|rate| rate_degrees.get(rate));
-            *degrees = own.copied().unwrap_or(f64::INFINITY);
+            let own = rate.and_then(|rate| rate_degrees.get(rate).copied());
+            *degrees = own
+                .filter(|own| *own >= LEAST_DEGREES)
+                .unwrap_or(f64::INFINITY);
         }
         self
     }
@@ -190,6 +192,10 @@ impl<'a> Scores<'a> {
         ranking
     }
 }
+
+/// Degrees of freedom below which the noise of a rate is so uncertain because another noise hides it:
+/// the statistic then does not rest on it.
+const LEAST_DEGREES: f64 = 20.0;
 
 /// Share of the degrees of freedom beyond which the likelihood ratio goes on linearly: the noise is then
 /// next to nothing but the effect.

@@ -4,7 +4,7 @@ use gyrocal_scalar::effect::{Effect, EffectKind};
 
 use crate::accepted::Accepted;
 use crate::context::{SearchContext, SearchOptions, extension};
-use crate::forward::{FirstRound, forward};
+use crate::forward::{Beside, FirstRound, forward};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
 use crate::null_distribution::GaussianDraws;
@@ -16,7 +16,7 @@ use crate::result::Finding;
 use crate::rows::Rows;
 use crate::score::Ranked;
 use crate::state::{SearchState, settled};
-use crate::walks::{Compared, compare};
+use crate::walks::{Candidates, Compared, compare};
 
 /// Result of a search.
 pub struct Searched<F> {
@@ -85,12 +85,18 @@ pub fn search<F: FittedModel>(
     let mut draws = GaussianDraws::new(options.seed);
     let nominal = settled(&context, nominal, &[])?;
     let state = SearchState::new(nominal.clone());
-    let (state, first) = forward(&context, state, None, &mut draws)?;
+    let candidates = Candidates::new(&context, &nominal)?;
+    let walks = candidates.as_ref().map(Candidates::log_likelihood);
+    let (state, first) = forward(&context, state, Beside::WhiteNoise { walks }, &mut draws)?;
+    let compared = match &candidates {
+        Some(candidates) => compare(&context, candidates, &nominal, state, &first, &mut draws)?,
+        None => Compared::without_walks(state),
+    };
     let Compared {
         mut state,
         mut walks,
         ranking: ranked_walks,
-    } = compare(&context, &nominal, state, &first, &mut draws)?;
+    } = compared;
     let FirstRound {
         mut ranking,
         threshold,

@@ -29,6 +29,16 @@ impl<F> SearchState<F> {
             seeks_unmodelled: true,
         }
     }
+
+    /// Penalties of all effects and unmodelled terms for having been searched for, but for the first
+    /// `free`: the threshold, the search penalty and a margin for each.
+    pub(crate) fn penalties(&self, threshold: f64, margin: f64, free: usize) -> f64 {
+        let effects = self.accepted.iter().map(|accepted| accepted.penalty);
+        let unmodelled = self.unmodelled.iter();
+        let unmodelled = unmodelled.map(|found| found.statistic - found.equivalent());
+        let each = effects.chain(unmodelled).skip(free);
+        each.map(|penalty| threshold + penalty + margin).sum()
+    }
 }
 
 /// The model with these effects, fitted from another one, with the shapes of all effects and the noise

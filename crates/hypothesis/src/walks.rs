@@ -4,12 +4,12 @@
 //! deterministic effects and the model with walks are both fitted, each with its own noise, and their
 //! likelihoods are compared.
 
-use gyrocal_scalar::effect::{Effect, EffectKind};
+use gyrocal_scalar::effect::Effect;
 use gyrocal_statistics::chi_square_tail;
 
 use crate::accepted::Accepted;
 use crate::context::SearchContext;
-use crate::forward::{FirstRound, forward};
+use crate::forward::{Beside, FirstRound, forward};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::rate_noise::RateNoiseFit;
@@ -51,37 +51,62 @@ pub(crate) struct Compared<F> {
     pub(crate) ranking: Vec<Ranked>,
 }
 
-/// The walks that a search may name.
-struct Candidates {
+impl<F> Compared<F> {
+    /// Of a search without walks.
+    pub(crate) fn without_walks(state: SearchState<F>) -> Self {
+        Self {
+            state,
+            walks: Walks::default(),
+            ranking: Vec::new(),
+        }
+    }
+}
+
+/// The walks that a search may name, with the nominal model that has all of them.
+pub(crate) struct Candidates {
     effects: Vec<&'static Effect>,
     rates: Vec<usize>,
+    /// Noise of the nominal model with all walks.
+    fit: RateNoiseFit,
+}
+
+impl Candidates {
+    /// `None` if the search has no walk.
+    pub(crate) fn new<F: FittedModel>(
+        context: &SearchContext<'_>,
+        nominal: &FittedStage<F>,
+    ) -> Result<Option<Self>, F::Error> {
+        let walks = context.walks.iter();
+        let pairs = walks.filter_map(|effect| Some((*effect, effect.rate()?)));
+        let (effects, rates): (Vec<&'static Effect>, Vec<usize>) = pairs.unzip();
+        if rates.is_empty() {
+            return Ok(None);
+        }
+        let fit = nominal.fitted.fit_rate_noise(&rates, &[])?;
+        Ok(Some(Self {
+            effects,
+            rates,
+            fit,
+        }))
+    }
+
+    /// Log-likelihood of the nominal model with all walks.
+    pub(crate) fn log_likelihood(&self) -> f64 {
+        self.fit.log_likelihood
+    }
 }
 
 /// Compares the best deterministic effects with walks.
 pub(crate) fn compare<F: FittedModel>(
     context: &SearchContext<'_>,
+    candidates: &Candidates,
     nominal: &FittedStage<F>,
     state: SearchState<F>,
     first: &FirstRound,
     draws: &mut GaussianDraws,
 ) -> Result<Compared<F>, F::Error> {
-    let effects: Vec<&'static Effect> = context
-        .walks
-        .iter()
-        .copied()
-        .filter(|effect| effect.kind == EffectKind::RandomWalk && effect.rate().is_some())
-        .collect();
-    let rates: Vec<usize> = effects.iter().filter_map(|effect| effect.rate()).collect();
-    let candidates = Candidates { effects, rates };
-    if candidates.rates.is_empty() {
-        return Ok(Compared {
-            state,
-            walks: Walks::default(),
-            ranking: Vec::new(),
-        });
-    }
     let of_nothing = nominal.noise.log_likelihood;
-    let walk = nominal.fitted.fit_rate_noise(&candidates.rates, &[])?;
+    let walk = &candidates.fit;
     let gained = 2.0 * (walk.log_likelihood - of_nothing);
     let p_value = tail(gained, candidates.rates.len());
     let is_significant =
@@ -110,7 +135,7 @@ pub(crate) fn compare<F: FittedModel>(
         .as_ref()
         .is_some_and(|beside| is_significant(2.0 * (beside.log_likelihood - of_effects)));
     let advantage =
-        2.0 * (of_effects - walk.log_likelihood) - penalties(&state, first.threshold, 0.0, 1);
+        2.0 * (of_effects - walk.log_likelihood) - state.penalties(first.threshold, 0.0, 1);
     if has_effects && advantage > WALK_SET_DEVIANCE && !is_beside {
         return Ok(Compared {
             state,
@@ -120,22 +145,25 @@ pub(crate) fn compare<F: FittedModel>(
     }
     let walking = nominal.fitted.with_rate_noise(&walk.noise)?;
     let stage = settled(context, walking, &[])?;
-    let (walking, _) = forward(context, SearchState::new(stage), Some(BESIDE_WALKS), draws)?;
+    let beside_walks = Beside::Walks {
+        margin: BESIDE_WALKS,
+    };
+    let (walking, _) = forward(context, SearchState::new(stage), beside_walks, draws)?;
     let advantage = 2.0 * (of_effects - walking.stage.noise.log_likelihood)
-        - penalties(&state, first.threshold, 0.0, 1)
-        + penalties(&walking, first.threshold, BESIDE_WALKS, 0);
+        - state.penalties(first.threshold, 0.0, 1)
+        + walking.penalties(first.threshold, BESIDE_WALKS, 0);
     if !has_effects || advantage <= WALK_SET_DEVIANCE {
         let sets = has_effects && advantage > 0.0;
         if sets && advantage > BESIDE_WALKS {
             let deficit = 0.5 * (advantage - BESIDE_WALKS);
-            let walks = rivals(&candidates, &walking, deficit);
+            let walks = rivals(candidates, &walking, deficit);
             return Ok(Compared {
                 state,
                 walks,
                 ranking,
             });
         }
-        let mut named = named(&candidates, &walking, p_value)?;
+        let mut named = named(candidates, &walking, p_value)?;
         if sets {
             let deficit = 0.5 * (BESIDE_WALKS - advantage);
             for finding in &mut named {
@@ -165,7 +193,7 @@ pub(crate) fn compare<F: FittedModel>(
     let mut state = state;
     let fitted = state.stage.fitted.with_rate_noise(&beside.noise)?;
     state.stage = settled(context, fitted, &state.accepted)?;
-    let named = named(&candidates, &state, p_value)?;
+    let named = named(candidates, &state, p_value)?;
     Ok(Compared {
         state,
         walks: Walks {
@@ -174,15 +202,6 @@ pub(crate) fn compare<F: FittedModel>(
         },
         ranking,
     })
-}
-
-/// Penalties of the effects of a state for having been searched for, but for the first `free`.
-fn penalties<F>(state: &SearchState<F>, threshold: f64, margin: f64, free: usize) -> f64 {
-    let effects = state.accepted.iter().map(|accepted| accepted.penalty);
-    let unmodelled = state.unmodelled.iter();
-    let unmodelled = unmodelled.map(|found| found.statistic - found.equivalent());
-    let each = effects.chain(unmodelled).skip(free);
-    each.map(|penalty| threshold + penalty + margin).sum()
 }
 
 /// Probability that walks of so many rates gain as much where there are none: each variance is zero
