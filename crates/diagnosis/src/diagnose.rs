@@ -158,7 +158,12 @@ fn diagnose_sound<'a>(
     let estimate = over_declared(&searched.fitted)?;
     let outliers = unexplained_outliers(record, &audited.suspects, &searched, accel_noise_g);
     audit.add_outliers(outliers, bench.accel_noise_g);
-    let gyro_noise = gyro_noise_findings(&estimate, &audit, shares.gyro_noise);
+    let gyro_noise = gyro_noise_findings(
+        &searched.fitted,
+        &searched.noise,
+        &audit,
+        shares.gyro_noise,
+    )?;
 
     let whitened = whitened(&searched.fitted, record)?;
     let (time_s, alpha) = (&record.time_s, shares.residual_test);

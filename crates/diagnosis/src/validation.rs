@@ -44,21 +44,38 @@ pub(crate) fn gain(
             after: rms(record, noise, &extended.free_run_g()?),
             noise: accel_noise_g * (squares.sum::<f64>() / 3.0).sqrt(),
         },
-        coefficient_shift: (0..DRIFT.len())
-            .map(|index| shift([nominal, extended], index))
-            .collect(),
+        coefficient_shift: shifts(nominal, extended)?,
         validation: None,
     })
 }
 
+/// Changes of the coefficients. The nominal model is fitted with the white noise of the extended one:
+/// noise that an effect had raised says nothing of the shift.
+fn shifts(
+    nominal: &FittedPlatform<'_>,
+    extended: &FittedPlatform<'_>,
+) -> Result<Vec<CoefficientShift>, CalibrationError> {
+    let has_walks = !extended.rate_noise().walking().is_empty();
+    let same_noise = extended.refitted(nominal.extension())?;
+    let from = if has_walks { nominal } else { &same_noise };
+    let covariances = [same_noise.covariance(), extended.covariance()];
+    Ok((0..DRIFT.len())
+        .map(|index| {
+            let shift = extended.values()[index] - from.values()[index];
+            let [before, after] = covariances.map(|all| all[(index, index)]);
+            // Beside walks the nominal estimate is no efficient one, and errs by itself.
+            let variance = if has_walks { after } else { after - before };
+            coefficient_shift(index, shift, variance, before)
+        })
+        .collect())
+}
+
 /// Change of a coefficient with its standard deviation: extended = nominal + shift, the two
 /// independent (Hausman, Econometrica 46, 1251, 1978).
-fn shift([nominal, extended]: [&FittedPlatform<'_>; 2], index: usize) -> CoefficientShift {
+fn coefficient_shift(index: usize, shift: f64, variance: f64, before: f64) -> CoefficientShift {
     let element = &DRIFT[index];
-    let shift = extended.values()[index] - nominal.values()[index];
-    let [before, after] = [nominal, extended].map(|fit| fit.covariance()[(index, index)]);
     // An extension that does not touch a coefficient changes its variance by rounding only.
-    let sigma = (after - before).max(0.0).sqrt();
+    let sigma = variance.max(0.0).sqrt();
     let interval = [-1.0, 1.0].map(|side| shift + side * NORMAL_97_5 * sigma);
     CoefficientShift {
         coefficient: element.id.to_owned(),

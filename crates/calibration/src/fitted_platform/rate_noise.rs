@@ -60,6 +60,8 @@ struct Likelihood<'p, 'a> {
     free: Vec<usize>,
     /// Places of unknowns of the fit that are left out.
     absent: &'p [usize],
+    /// Gyros whose white noise is held at the declared one.
+    held: &'p [usize],
     parameters: Vec<f64>,
 }
 
@@ -90,6 +92,24 @@ impl FittedPlatform<'_> {
         walking: &[usize],
         absent: &[usize],
     ) -> Result<RateNoiseFit, CalibrationError> {
+        self.fit_rate_noise_with(walking, absent, &[])
+    }
+
+    /// The same with the noise of this fit's walks, and the white noise of some gyros `held` at the
+    /// declared one.
+    ///
+    /// # Errors
+    /// As [`Self::fit_rate_noise`].
+    pub fn fit_rate_noise_held(&self, held: &[usize]) -> Result<RateNoiseFit, CalibrationError> {
+        self.fit_rate_noise_with(&self.rate_noise().walking(), &[], held)
+    }
+
+    fn fit_rate_noise_with(
+        &self,
+        walking: &[usize],
+        absent: &[usize],
+        held: &[usize],
+    ) -> Result<RateNoiseFit, CalibrationError> {
         let leg = &self.problem.runs[0];
         let duration_s = leg.rows.duration_s();
         let unit = leg.noise_density.iter().sum::<f64>() / AXES as f64 / (duration_s * duration_s);
@@ -119,6 +139,7 @@ impl FittedPlatform<'_> {
             walks,
             free,
             absent,
+            held,
             parameters: self.parameters(),
         };
         likelihood.start(unit)?;
@@ -184,6 +205,9 @@ impl Likelihood<'_, '_> {
     /// Fisher's scoring from the noise of the fit.
     fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
         let mut logarithms = DVector::zeros(AXES + self.free.len());
+        for axis in self.held {
+            logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
+        }
         let mut at = self.at(&logarithms)?;
         for _ in 0..MAX_STEPS {
             let cholesky = Cholesky::new(at.information.clone())
@@ -323,6 +347,12 @@ impl Likelihood<'_, '_> {
             } else {
                 information[(index, index)] += DAMPING;
             }
+        }
+        for axis in self.held {
+            information.row_mut(*axis).fill(0.0);
+            information.column_mut(*axis).fill(0.0);
+            information[(*axis, *axis)] = 1.0;
+            gradient[*axis] = 0.0;
         }
         Ok(At {
             value,

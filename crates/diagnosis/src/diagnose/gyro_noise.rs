@@ -3,7 +3,8 @@
 use gyrocal::EFFECTS;
 use gyrocal::effect::{EffectKind, NoiseProperty};
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseEstimate, NoiseRatio};
-use gyrocal_statistics::{NORMAL_97_5, two_sided_p};
+use gyrocal_hypothesis::RateNoiseFit;
+use gyrocal_statistics::two_sided_p;
 
 use crate::error_budget::INSTRUMENTS;
 use crate::noise::{Estimate, NoiseAudit, NoiseFinding};
@@ -24,43 +25,49 @@ pub(super) fn over_declared(fit: &FittedPlatform<'_>) -> Result<NoiseEstimate, C
     })
 }
 
-/// Logarithm of a ratio and its standard deviation.
-fn logarithm(ratio: &NoiseRatio) -> (f64, f64) {
-    let [low, high] = ratio.interval;
-    (ratio.ratio.ln(), (high / low).ln() / (2.0 * NORMAL_97_5))
-}
+/// Logarithm of a noise over the declared one, in standard deviations, from which on it is tested.
+const WORTH_TESTING: f64 = 2.0;
 
-/// Gyro noise that differs from the declared one, `alpha` being the false-alarm probability of all
-/// three gyros; the `estimate` is over the declared noise. Nothing is reported if the noise of the
-/// accelerometers is correlated: the likelihood attributes the slow part of that to the gyros.
+/// Gyro noise that differs from the declared one by a likelihood-ratio test, `alpha` being the
+/// false-alarm probability of all three gyros; `noise` is that of the fit. Nothing is reported if the
+/// noise of the accelerometers is correlated: the likelihood attributes the slow part of that to the
+/// gyros.
 pub(super) fn gyro_noise_findings(
-    estimate: &NoiseEstimate,
+    fit: &FittedPlatform<'_>,
+    noise: &RateNoiseFit,
     audit: &NoiseAudit,
     alpha: f64,
-) -> Vec<NoiseFinding> {
+) -> Result<Vec<NoiseFinding>, CalibrationError> {
+    let mut findings = Vec::new();
     if audit.cleaned.correlation != 0.0 {
-        return Vec::new();
+        return Ok(findings);
     }
     let levels = EFFECTS
         .iter()
         .filter(|effect| effect.kind == EffectKind::Noise(NoiseProperty::Level))
         .filter_map(|effect| Some((effect, effect.rate()?)));
-    levels
-        .filter_map(|(effect, axis)| {
-            let (value, sigma) = logarithm(&estimate.gyro[axis]);
-            let z = value / sigma;
-            let p_value = (INSTRUMENTS * two_sided_p(z)).min(1.0);
-            (p_value < alpha).then(|| NoiseFinding {
+    for (effect, axis) in levels {
+        let (ratio, sigma) = (noise.noise.white[axis], noise.white_sigma[axis]);
+        if ratio.ln().abs() < WORTH_TESTING * sigma {
+            continue;
+        }
+        let declared = fit.fit_rate_noise_held(&[axis])?;
+        let gained = 2.0 * (noise.log_likelihood - declared.log_likelihood);
+        let z = gained.max(0.0).sqrt().copysign(ratio - 1.0);
+        let p_value = (INSTRUMENTS * two_sided_p(z)).min(1.0);
+        if p_value < alpha {
+            findings.push(NoiseFinding {
                 effect: effect.id,
                 parameters: vec![Estimate {
                     name: "ratio",
-                    estimate: value.exp(),
-                    sigma: value.exp() * sigma,
+                    estimate: ratio,
+                    sigma: ratio * sigma,
                     unit: "1",
                 }],
                 z,
                 p_value,
-            })
-        })
-        .collect()
+            });
+        }
+    }
+    Ok(findings)
 }
