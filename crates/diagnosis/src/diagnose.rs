@@ -1,6 +1,7 @@
 //! The whole diagnosis of one record: [`diagnose`] and its steps.
 
 mod answer;
+mod coefficients;
 mod findings;
 mod gate;
 mod gyro_noise;
@@ -158,12 +159,8 @@ fn diagnose_sound<'a>(
     let estimate = over_declared(&searched.fitted)?;
     let outliers = unexplained_outliers(record, &audited.suspects, &searched, accel_noise_g);
     audit.add_outliers(outliers, bench.accel_noise_g);
-    let gyro_noise = gyro_noise_findings(
-        &searched.fitted,
-        &searched.noise,
-        &audit,
-        shares.gyro_noise,
-    )?;
+    let gyro_noise =
+        gyro_noise_findings(&searched.fitted, &searched.noise, &audit, shares.gyro_noise)?;
 
     let whitened = whitened(&searched.fitted, record)?;
     let (time_s, alpha) = (&record.time_s, shares.residual_test);

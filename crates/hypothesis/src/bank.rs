@@ -21,6 +21,27 @@ pub struct ScoreBank {
     pub(crate) raw: DVector<f64>,
 }
 
+/// The nominal parameters, estimated with a member of a confidence set in the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NominalEstimate {
+    /// The estimates.
+    pub values: Vec<f64>,
+    /// Covariance of their errors.
+    pub covariance: DMatrix<f64>,
+}
+
+impl NominalEstimate {
+    /// Those of a fit.
+    pub(crate) fn of<F: FittedModel>(fitted: &F) -> Self {
+        let count = fitted.plant().nominal_parameters;
+        let covariance = fitted.covariance().view((0, 0), (count, count));
+        Self {
+            values: fitted.values()[..count].to_vec(),
+            covariance: covariance.into_owned(),
+        }
+    }
+}
+
 /// Sums of products of residual and columns over a record, for a fitted model.
 #[derive(Clone, Debug)]
 pub(crate) struct GramProducts {
@@ -81,6 +102,43 @@ impl GramProducts {
             values: fitted.values().to_vec(),
             prior_sigma: fitted.prior_sigma(),
         }
+    }
+
+    /// Estimates of the first `count` values of the fit with the signatures `columns` of the bank in the
+    /// model in place of the values at the places `without`; `None` if they cannot be told apart.
+    pub(crate) fn estimates(
+        &self,
+        without: &[usize],
+        columns: &[usize],
+        count: usize,
+    ) -> Option<NominalEstimate> {
+        let gram = &self.gram;
+        let kept: Vec<usize> = (0..self.nuisance.len())
+            .filter(|index| !without.contains(index))
+            .collect();
+        let own = kept.iter().map(|index| self.nuisance[*index]);
+        let all: Vec<usize> = own
+            .chain(columns.iter().map(|column| self.signatures[*column]))
+            .collect();
+        let mut information = DMatrix::from_fn(all.len(), all.len(), |i, j| gram[(all[i], all[j])]);
+        let mut gradient = DVector::from_fn(all.len(), |i, _| {
+            let dropped = without
+                .iter()
+                .map(|index| gram[(self.nuisance[*index], all[i])] * self.values[*index]);
+            dropped.sum::<f64>() - gram[(0, all[i])]
+        });
+        for (place, index) in kept.iter().enumerate() {
+            let weight = self.prior_sigma[*index].powi(-2);
+            information[(place, place)] += weight;
+            gradient[place] -= weight * self.values[*index];
+        }
+        let cholesky = Cholesky::new(information)?;
+        let change = cholesky.solve(&gradient);
+        let covariance = cholesky.inverse();
+        Some(NominalEstimate {
+            values: (0..count).map(|i| self.values[i] + change[i]).collect(),
+            covariance: covariance.view((0, 0), (count, count)).into_owned(),
+        })
     }
 
     /// With what the fit takes up of each signature projected out, but for the values at the places

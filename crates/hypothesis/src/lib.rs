@@ -53,15 +53,31 @@
 //! ```
 //!
 //! given the other effects. [`CONFIDENCE_SET_DEVIANCE`] is calibrated by simulation. An effect gives way
-//! to one that is nested in it unless it is better by the 5 % point of χ²(1), [`NESTED_MODEL_CHI2`]. A
-//! random walk is a common variance v of steps at all onsets, with the restricted likelihood of
-//! their scores as its statistic,
+//! to one that is nested in it unless it is better by the 5 % point of χ²(1), [`NESTED_MODEL_CHI2`].
+//!
+//! # Noise and random walks
+//!
+//! White noise of the rates and random walks of their constants belong to the null hypothesis. With
+//! θ₀ the nominal parameters, V the covariance of the record by noise ν and walks w, and S a set of
+//! effects with sizes β, the restricted log-likelihood is (Patterson, Thompson 1971)
 //!
 //! ```text
-//! l = max_v Σ_i [ v z_i² / (1 + v λ_i) − ln(1 + v λ_i) ]                         (7)
+//! l(ν, w, S) = −½ [ln |V| + ln |J_θ₀θ₀ + W| + min over θ₀, β of |e|²] + ln p(ν)    (7)
 //! ```
 //!
-//! λ_i and z_i being the eigenvalues of their information and the scores along its eigenvectors.
+//! An effect is detected if 2 [l(ν̂₁, 0, S + h) − l(ν̂₀, 0, S)] − c q exceeds the threshold: the score
+//! test, whose noise is that of the model without the effect, only chooses what is fitted. Walks are
+//! tested by 2 [l(ν̂, ŵ, ∅) − l(ν̂, 0, ∅)], a mixture of χ² under the null hypothesis. Where effects are
+//! detected, the best effects without walks and walks with what effects stand beside them are both
+//! fitted, and compared by D, the difference of 2 l less threshold + q of every effect but one
+//! ([`WALK_SET_DEVIANCE`], [`BESIDE_WALKS`]):
+//!
+//! | D | result |
+//! |---|---|
+//! | above 12 | the effects |
+//! | 6 to 12 | the effects, walks in their set |
+//! | 0 to 6 | walks, the effects in their set |
+//! | below 0 | walks |
 //!
 //! The onset or time constant s of an accepted effect is estimated with all sizes: l(s) of (3), the
 //! sizes of the effect taken out of the fit, is its profile likelihood. Its 95 % interval is
@@ -107,7 +123,7 @@ mod state;
 mod unmodelled;
 mod walks;
 
-pub use bank::{JointScore, ScoreBank};
+pub use bank::{JointScore, NominalEstimate, ScoreBank};
 pub use column::{Column, ExtraColumns};
 pub use context::SearchOptions;
 pub use continuation::{Phase, RecordOffset, continued, continued_shapes, recurs};

@@ -4,7 +4,7 @@ use gyrocal_scalar::effect::Effect;
 use nalgebra::DMatrix;
 
 use crate::accepted::{Accepted, value_places};
-use crate::bank::{GramProducts, ScoreBank};
+use crate::bank::{GramProducts, NominalEstimate, ScoreBank};
 use crate::column::Column;
 use crate::context::SearchContext;
 use crate::hypothesis::{Hypothesis, HypothesisSet, Variant};
@@ -45,6 +45,8 @@ pub struct Alternative {
     pub effect: &'static str,
     /// Log-likelihood of the named effect less its own, search penalties subtracted.
     pub log_likelihood_deficit: f64,
+    /// The nominal parameters with it in the place of the named effect; `None` of a jump of states.
+    pub nominal: Option<NominalEstimate>,
 }
 
 /// A detected effect.
@@ -184,7 +186,15 @@ pub(crate) fn evaluate<F: FittedModel>(
             parameters: parameters(stage, set, own, places),
             z: statistic.max(0.0).sqrt(),
             p_value: own.p_value,
-            alternatives: alternatives(&scores, &hypotheses, own.hypothesis, penalised),
+            alternatives: alternatives(
+                &scores,
+                &hypotheses,
+                (own.hypothesis, penalised),
+                |columns| {
+                    let count = context.plant.nominal_parameters;
+                    stage.products.estimates(&places.values, columns, count)
+                },
+            ),
             exact_equivalents: exact_equivalents(&stage.fitted, effect, &bank),
         },
         tested,
@@ -232,8 +242,8 @@ fn unmasked(
 fn alternatives(
     scores: &Scores<'_>,
     hypotheses: &[Hypothesis],
-    named: usize,
-    penalised: f64,
+    (named, penalised): (usize, f64),
+    estimates: impl Fn(&[usize]) -> Option<NominalEstimate>,
 ) -> Vec<Alternative> {
     let equivalents = hypotheses[named].effect.equivalents;
     let mut alternatives: Vec<Alternative> = (0..hypotheses.len())
@@ -242,17 +252,24 @@ fn alternatives(
                 && scores.best[*other].is_some()
                 && !equivalents.contains(&hypotheses[*other].id())
         })
+        .filter(|other| penalised - scores.penalised(*other) < CONFIDENCE_SET_DEVIANCE)
         .map(|other| Alternative {
             effect: hypotheses[other].id(),
             log_likelihood_deficit: 0.5 * (penalised - scores.penalised(other)),
+            nominal: variant(&scores.best[other], &hypotheses[other]).and_then(&estimates),
         })
-        .filter(|other| other.log_likelihood_deficit < 0.5 * CONFIDENCE_SET_DEVIANCE)
         .collect();
     alternatives.sort_by(|a, b| {
         a.log_likelihood_deficit
             .total_cmp(&b.log_likelihood_deficit)
     });
     alternatives
+}
+
+/// Columns of the best variant of a hypothesis.
+fn variant<'h>(best: &Option<Best>, hypothesis: &'h Hypothesis) -> Option<&'h [usize]> {
+    let variant = hypothesis.variants.get(best.as_ref()?.variant)?;
+    Some(&variant.columns)
 }
 
 fn exact_equivalents<F: FittedModel>(

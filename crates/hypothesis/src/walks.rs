@@ -7,7 +7,7 @@
 use gyrocal_scalar::effect::Effect;
 use gyrocal_statistics::chi_square_tail;
 
-use crate::accepted::Accepted;
+use crate::bank::NominalEstimate;
 use crate::context::SearchContext;
 use crate::forward::{Beside, FirstRound, forward};
 use crate::model::FittedModel;
@@ -94,6 +94,22 @@ impl Candidates {
     pub(crate) fn log_likelihood(&self) -> f64 {
         self.fit.log_likelihood
     }
+
+    /// Probability that walks gain as much where there are none.
+    fn p_value(&self, gained: f64) -> f64 {
+        tail(gained, self.rates.len())
+    }
+
+    /// All walks have the statistic of the test, which is one for them together.
+    fn ranking(&self, gained: f64) -> Vec<Ranked> {
+        let effects = self.effects.iter();
+        effects
+            .map(|effect| Ranked {
+                effect: effect.id,
+                statistic: gained.max(0.0),
+            })
+            .collect()
+    }
 }
 
 /// Compares the best deterministic effects with walks.
@@ -105,95 +121,99 @@ pub(crate) fn compare<F: FittedModel>(
     first: &FirstRound,
     draws: &mut GaussianDraws,
 ) -> Result<Compared<F>, F::Error> {
-    let of_nothing = nominal.noise.log_likelihood;
-    let walk = &candidates.fit;
-    let gained = 2.0 * (walk.log_likelihood - of_nothing);
-    let p_value = tail(gained, candidates.rates.len());
-    let is_significant =
-        |gained: f64| tail(gained, candidates.rates.len()) < context.options.walk_probability;
-    let ranking = candidates.effects.iter().map(|effect| Ranked {
-        effect: effect.id,
-        statistic: gained.max(0.0),
-    });
-    let ranking: Vec<Ranked> = ranking.collect();
-    let has_effects = !(state.accepted.is_empty() && state.unmodelled.is_empty());
-    if !has_effects && !is_significant(gained) {
-        return Ok(Compared {
-            state,
-            walks: Walks::default(),
-            ranking,
-        });
-    }
-    let beside = if has_effects {
-        let fitted = &state.stage.fitted;
-        Some(fitted.fit_rate_noise(&candidates.rates, &[])?)
-    } else {
-        None
+    let probability = context.options.walk_probability;
+    let gained = 2.0 * (candidates.fit.log_likelihood - nominal.noise.log_likelihood);
+    let ranking = candidates.ranking(gained);
+    let only = |state| Compared {
+        ranking: ranking.clone(),
+        ..Compared::without_walks(state)
     };
-    let of_effects = state.stage.noise.log_likelihood;
-    let is_beside = beside
-        .as_ref()
-        .is_some_and(|beside| is_significant(2.0 * (beside.log_likelihood - of_effects)));
-    let advantage =
-        2.0 * (of_effects - walk.log_likelihood) - state.penalties(first.threshold, 0.0, 1);
-    if has_effects && advantage > WALK_SET_DEVIANCE && !is_beside {
+    let p_value = candidates.p_value(gained);
+    let has_effects = !(state.accepted.is_empty() && state.unmodelled.is_empty());
+    if !has_effects {
+        if p_value >= probability {
+            return Ok(only(state));
+        }
+        let walking = walking(context, candidates, nominal, draws)?;
+        return with_walks(candidates, walking, (p_value, Vec::new()), ranking);
+    }
+    let own = state.stage.noise.log_likelihood;
+    let beside = state.stage.fitted.fit_rate_noise(&candidates.rates, &[])?;
+    let p_beside = candidates.p_value(2.0 * (beside.log_likelihood - own));
+    let penalties = state.penalties(first.threshold, 0.0, 1);
+    let alone = 2.0 * (own - candidates.fit.log_likelihood) - penalties;
+    if alone > WALK_SET_DEVIANCE && p_beside >= probability {
+        return Ok(only(state));
+    }
+    let walking = walking(context, candidates, nominal, draws)?;
+    let advantage = 2.0 * (own - walking.stage.noise.log_likelihood) - penalties
+        + walking.penalties(first.threshold, BESIDE_WALKS, 0);
+    if advantage > WALK_SET_DEVIANCE {
+        if p_beside >= probability {
+            return Ok(only(state));
+        }
+        let mut state = state;
+        let fitted = state.stage.fitted.with_rate_noise(&beside.noise)?;
+        state.stage = settled(context, fitted, &state.accepted)?;
+        return with_walks(candidates, state, (p_beside, Vec::new()), ranking);
+    }
+    if advantage > BESIDE_WALKS {
+        let deficit = 0.5 * (advantage - BESIDE_WALKS);
         return Ok(Compared {
+            walks: Walks {
+                named: Vec::new(),
+                rivals: alternatives(
+                    candidates.effects.iter().map(|effect| effect.id),
+                    deficit,
+                    &walking.stage.fitted,
+                ),
+                beside: walking.accepted.iter().map(|own| own.hypothesis).collect(),
+            },
             state,
-            walks: Walks::default(),
             ranking,
         });
     }
-    let walking = nominal.fitted.with_rate_noise(&walk.noise)?;
-    let stage = settled(context, walking, &[])?;
-    let beside_walks = Beside::Walks {
+    let rivals = if advantage > 0.0 {
+        let lacking = state.accepted.iter().map(|own| own.hypothesis);
+        let lacking = lacking.filter(|own| {
+            let mut others = walking.accepted.iter();
+            !others.any(|other| other.hypothesis == *own)
+        });
+        let ids = lacking.map(|own| context.set.hypotheses[own].id());
+        let deficit = 0.5 * (BESIDE_WALKS - advantage);
+        alternatives(ids, deficit, &state.stage.fitted)
+    } else {
+        Vec::new()
+    };
+    with_walks(candidates, walking, (p_value, rivals), ranking)
+}
+
+/// The nominal model with walks, and the effects that stand beside them.
+fn walking<F: FittedModel>(
+    context: &SearchContext<'_>,
+    candidates: &Candidates,
+    nominal: &FittedStage<F>,
+    draws: &mut GaussianDraws,
+) -> Result<SearchState<F>, F::Error> {
+    let fitted = nominal.fitted.with_rate_noise(&candidates.fit.noise)?;
+    let state = SearchState::new(settled(context, fitted, &[])?);
+    let beside = Beside::Walks {
         margin: BESIDE_WALKS,
     };
-    let (walking, _) = forward(context, SearchState::new(stage), beside_walks, draws)?;
-    let advantage = 2.0 * (of_effects - walking.stage.noise.log_likelihood)
-        - state.penalties(first.threshold, 0.0, 1)
-        + walking.penalties(first.threshold, BESIDE_WALKS, 0);
-    if !has_effects || advantage <= WALK_SET_DEVIANCE {
-        let sets = has_effects && advantage > 0.0;
-        if sets && advantage > BESIDE_WALKS {
-            let deficit = 0.5 * (advantage - BESIDE_WALKS);
-            let walks = rivals(candidates, &walking, deficit);
-            return Ok(Compared {
-                state,
-                walks,
-                ranking,
-            });
-        }
-        let mut named = named(candidates, &walking, p_value)?;
-        if sets {
-            let deficit = 0.5 * (BESIDE_WALKS - advantage);
-            for finding in &mut named {
-                finding.alternatives = alone(context, &state, &walking, deficit);
-            }
-        }
-        return Ok(Compared {
-            state: walking,
-            walks: Walks {
-                named,
-                ..Walks::default()
-            },
-            ranking,
-        });
+    Ok(forward(context, state, beside, draws)?.0)
+}
+
+/// The result that a model with walks is chosen, with the rivals of all of them.
+fn with_walks<F: FittedModel>(
+    candidates: &Candidates,
+    state: SearchState<F>,
+    (p_value, rivals): (f64, Vec<Alternative>),
+    ranking: Vec<Ranked>,
+) -> Result<Compared<F>, F::Error> {
+    let mut named = named(candidates, &state, p_value)?;
+    for finding in &mut named {
+        finding.alternatives.clone_from(&rivals);
     }
-    let Some(beside) = beside.filter(|_| is_beside) else {
-        return Ok(Compared {
-            state,
-            walks: Walks::default(),
-            ranking,
-        });
-    };
-    let p_value = tail(
-        2.0 * (beside.log_likelihood - of_effects),
-        candidates.rates.len(),
-    );
-    let mut state = state;
-    let fitted = state.stage.fitted.with_rate_noise(&beside.noise)?;
-    state.stage = settled(context, fitted, &state.accepted)?;
-    let named = named(candidates, &state, p_value)?;
     Ok(Compared {
         state,
         walks: Walks {
@@ -202,6 +222,21 @@ pub(crate) fn compare<F: FittedModel>(
         },
         ranking,
     })
+}
+
+/// Members of a set that are one model together.
+fn alternatives<F: FittedModel>(
+    ids: impl Iterator<Item = &'static str>,
+    deficit: f64,
+    fitted: &F,
+) -> Vec<Alternative> {
+    let nominal = NominalEstimate::of(fitted);
+    ids.map(|effect| Alternative {
+        effect,
+        log_likelihood_deficit: deficit,
+        nominal: Some(nominal.clone()),
+    })
+    .collect()
 }
 
 /// Probability that walks of so many rates gain as much where there are none: each variance is zero
@@ -217,53 +252,6 @@ fn tail(gained: f64, rates: usize) -> f64 {
         sum += weight * chi_square_tail(gained, degrees as f64).unwrap_or(0.0);
     }
     sum
-}
-
-/// Effects of one state that the other lacks.
-fn lacking<'s, F>(state: &'s SearchState<F>, other: &SearchState<F>) -> Vec<&'s Accepted> {
-    let missing = |own: &Accepted| {
-        let mut others = other.accepted.iter();
-        !others.any(|other| other.hypothesis == own.hypothesis)
-    };
-    let all = state.accepted.iter();
-    all.filter(|own| missing(own)).collect()
-}
-
-/// The walks as rivals of the effects that the model with walks lacks.
-fn rivals<F: FittedModel>(
-    candidates: &Candidates,
-    walking: &SearchState<F>,
-    deficit: f64,
-) -> Walks {
-    let walks: Vec<Alternative> = candidates
-        .effects
-        .iter()
-        .map(|effect| Alternative {
-            effect: effect.id,
-            log_likelihood_deficit: deficit,
-        })
-        .collect();
-    Walks {
-        named: Vec::new(),
-        rivals: walks,
-        beside: walking.accepted.iter().map(|own| own.hypothesis).collect(),
-    }
-}
-
-/// Effects that stand in the set of the walks.
-fn alone<F>(
-    context: &SearchContext<'_>,
-    state: &SearchState<F>,
-    walking: &SearchState<F>,
-    deficit: f64,
-) -> Vec<Alternative> {
-    lacking(state, walking)
-        .into_iter()
-        .map(|own| Alternative {
-            effect: context.set.hypotheses[own.hypothesis].id(),
-            log_likelihood_deficit: deficit,
-        })
-        .collect()
 }
 
 /// The walks of a model that are named: each that the likelihood needs, the largest at least.

@@ -1,12 +1,12 @@
 //! The answer, assembled from the outcomes of all tests.
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{FittedPlatform, NoiseEstimate, NoiseRatio, Run};
 use gyrocal_hypothesis::Searched;
 use gyrocal_record::{Manifest, NoiseRatioReport, NoiseReport, Record, SetupProblem};
 use gyrocal_statistics::{self as statistics, NoiseCourse};
 
+use super::coefficients::coefficients;
 use super::{DiagnoseOptions, findings};
 use crate::distinguishability::indistinguishable;
 use crate::filter_test::Tested;
@@ -14,10 +14,9 @@ use crate::magnitude_test;
 use crate::noise::{NoiseAudit, NoiseFinding, gaps};
 use crate::power::{needs_caveat, undetectable};
 use crate::result::{
-    AllanCourse, AllanPoint, AllanTest, CoefficientEstimate, Coefficients, DiagnosisResult,
-    Estimated, FalseAlarmShares, Finding, Gain, Indistinguishable, MagnitudeTest,
-    NoiseAuditSummary, NotTested, NotTestedReason, Power, RankedEffect, RecordSummary,
-    ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION, Verdict,
+    AllanCourse, AllanPoint, AllanTest, DiagnosisResult, Estimated, FalseAlarmShares, Finding,
+    Gain, Indistinguishable, MagnitudeTest, NoiseAuditSummary, NotTested, NotTestedReason, Power,
+    RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION, Verdict,
 };
 use crate::untested::{Tests, not_tested, untested};
 use crate::validation::CrossValidated;
@@ -67,7 +66,11 @@ impl Evidence<'_, '_> {
             norm: self.magnitude.as_ref().map(magnitude),
             cannot_tell: self.indistinguishable(&findings),
             findings,
-            coefficients: Some(self.coefficients()),
+            coefficients: Some(coefficients(
+                self.nominal,
+                &self.searched.findings,
+                self.validated,
+            )),
             ranking: ranking
                 .iter()
                 .map(|ranked| RankedEffect {
@@ -131,27 +134,6 @@ impl Evidence<'_, '_> {
             filter: self.filter.is_some(),
         }));
         all
-    }
-
-    fn coefficients(&self) -> Coefficients {
-        let estimates = |fit: &FittedPlatform<'_>| {
-            let all = DRIFT.iter().enumerate();
-            all.map(|(index, element)| CoefficientEstimate {
-                name: element.id.to_owned(),
-                estimate: fit.values()[index],
-                sigma: fit.covariance()[(index, index)].sqrt(),
-                unit: element.unit.to_owned(),
-            })
-            .collect()
-        };
-        let extended = self.validated.extended.as_ref();
-        let covariance = extended.unwrap_or(self.nominal).covariance();
-        let row = |i: usize| (0..DRIFT.len()).map(|j| covariance[(i, j)]).collect();
-        Coefficients {
-            nominal: estimates(self.nominal),
-            extended: extended.map(estimates),
-            covariance: (0..DRIFT.len()).map(row).collect(),
-        }
     }
 }
 

@@ -1,12 +1,12 @@
 //! The tables of an answer.
 
 use gyrocal_record::NoiseRatioReport;
-use gyrocal_statistics::format::p_cell;
+use gyrocal_statistics::format::{self, p_cell};
 
 use super::findings::{likelihood, value};
-use super::format::short;
+use super::format::{short, with_sigma};
 use super::{AXES, Block, Column, Table};
-use crate::result::{DiagnosisResult, Finding, Gain, Residuals};
+use crate::result::{CoefficientEstimate, Coefficients, DiagnosisResult, Finding, Gain, Residuals};
 
 /// Rows of the ranking that are shown.
 const TOP: usize = 12;
@@ -18,6 +18,7 @@ const UNDETERMINED: f64 = 100.0;
 pub(super) fn all(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
     let tables = [
         findings(result),
+        result.coefficients.as_ref().and_then(coefficients),
         result
             .residuals
             .as_ref()
@@ -67,6 +68,40 @@ fn findings(result: &DiagnosisResult) -> Option<Table> {
         title: "Findings:".to_owned(),
         columns,
         rows,
+    })
+}
+
+/// The coefficients of the extended model; `None` if no effect was accepted.
+fn coefficients(shown: &Coefficients) -> Option<Table> {
+    let over_set = shown.over_set.as_ref()?;
+    let extended = shown.extended.as_ref()?;
+    let of = |one: &CoefficientEstimate| with_sigma(one.estimate, one.sigma);
+    let all = shown.nominal.iter().zip(extended).zip(over_set);
+    let rows = all.map(|((nominal, extended), over_set)| {
+        // Digits as those of the sigma.
+        let [low, high] = over_set
+            .interval
+            .map(|end| format::estimate(end, over_set.sigma)[0].clone());
+        vec![
+            nominal.name.clone(),
+            of(nominal),
+            of(extended),
+            format!("{low} to {high}"),
+            nominal.unit.clone(),
+        ]
+    });
+    Some(Table {
+        title: "Drift coefficients; the 95 % interval is over all members of the confidence sets, \
+                weighted by their likelihoods:"
+            .to_owned(),
+        columns: vec![
+            Column::words("coefficient"),
+            Column::numbers("nominal model"),
+            Column::numbers("extended model"),
+            Column::numbers("95 % interval"),
+            Column::words("unit"),
+        ],
+        rows: rows.collect(),
     })
 }
 

@@ -10,8 +10,45 @@ pub struct Coefficients {
     pub nominal: Vec<CoefficientEstimate>,
     /// Estimates of the extended model, in the same order; `None` if no effect was accepted.
     pub extended: Option<Vec<CoefficientEstimate>>,
+    /// The same over all members of the confidence sets, each with the weight of its penalised
+    /// likelihood; `None` if no effect was accepted.
+    #[serde(default)]
+    pub over_set: Option<Vec<CoefficientInterval>>,
+    /// The members of the confidence sets, the likeliest first; empty if there is only one.
+    #[serde(default)]
+    pub members: Vec<SetMember>,
     /// Covariance of the extended estimates, row by row, in products of their units; of the nominal
     /// ones if no effect was accepted.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+/// One drift coefficient over all members of the confidence sets.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CoefficientInterval {
+    /// Its id.
+    pub name: String,
+    /// Mean of the mixture of the members' normal distributions, in `unit`.
+    pub estimate: f64,
+    /// Standard deviation of the mixture, in `unit`.
+    pub sigma: f64,
+    /// Its 2.5 % and 97.5 % quantiles, in `unit`.
+    pub interval: [f64; 2],
+    /// The unit.
+    pub unit: String,
+}
+
+/// A model with one member of each confidence set.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SetMember {
+    /// Its effects; random walks that are one model are joined by `+`.
+    pub effects: Vec<String>,
+    /// Its share of the likelihood of all members, penalised for their searches.
+    pub weight: f64,
+    /// The coefficients estimated with it, in the order of the nominal ones.
+    pub coefficients: Vec<CoefficientEstimate>,
+    /// Their covariance, row by row, in products of their units.
     pub covariance: Vec<Vec<f64>>,
 }
 

@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 
 pub use allan::{AllanCourse, AllanPoint, AllanTest};
 pub use audit::{Estimated, Gaps, NoiseAuditSummary, RecordSummary};
-pub use coefficients::{CoefficientEstimate, Coefficients};
+pub use coefficients::{CoefficientEstimate, CoefficientInterval, Coefficients, SetMember};
 pub use filter::FilterTest;
 pub use finding::{Alternative, Equivalent, Finding, FindingKind, Parameter};
 pub use gain::{CoefficientShift, Compensation, FreeRun, Gain, Validation};

@@ -63,7 +63,7 @@ const ROWS: [Row; 5] = [
         name: "random walk on one gyro: a deterministic cause named without a walk of its gyro",
         first_seed: 710_000,
         records: 1000,
-        small: 0,
+        small: 4,
         limit: 0.03,
     },
     Row {
@@ -81,7 +81,7 @@ const ROWS: [Row; 5] = [
         name: "random walks on three gyros: the same",
         first_seed: 730_000,
         records: 1000,
-        small: 0,
+        small: 6,
         limit: 0.03,
     },
     Row {
@@ -90,7 +90,7 @@ const ROWS: [Row; 5] = [
         name: "flicker on three gyros: a physical cause named without a noise process in its set",
         first_seed: 740_000,
         records: 1000,
-        small: 0,
+        small: 4,
         limit: 0.02,
     },
     Row {
