@@ -26,7 +26,7 @@ use crate::settings::filter_settings;
 use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
 
-pub use prediction::{Estimates, Expectation};
+pub use prediction::{Estimates, Expectation, WalkEnd};
 pub use rate_noise::GYRO_NOISE_PRIOR_SIGMA;
 
 /// Seconds in an hour.

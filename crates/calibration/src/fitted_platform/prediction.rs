@@ -12,6 +12,9 @@ use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use gyrocal_hypothesis::ExtraColumns;
 
+/// Axes of the platform.
+const AXES: usize = 3;
+
 /// 1 deg/h in rad/s.
 const RAD_PER_S: f64 = core::f64::consts::PI / (180.0 * 3600.0);
 
@@ -23,6 +26,21 @@ pub struct Expectation {
     /// A factor L of the covariance L Lᵀ, with a row for each parameter; those with nothing in
     /// their row are known.
     pub factor: DMatrix<f64>,
+}
+
+/// A constant drift that walks, at the end of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WalkEnd {
+    /// Index of the parameter of [`Catalogue`].
+    pub parameter: usize,
+    /// Its change since the first row.
+    pub change: f64,
+    /// Derivatives of the change by the values of the fit.
+    pub by_values: Vec<f64>,
+    /// Standard deviation of the change with the values known.
+    pub sigma: f64,
+    /// Variance that it gains in a second.
+    pub density: f64,
 }
 
 /// Estimates from the first rows of a record.
@@ -85,6 +103,43 @@ impl FittedPlatform<'_> {
                 + determinant
                 + reduced.log_variance
                 + reduced.values as f64 * core::f64::consts::TAU.ln()))
+    }
+
+    /// The constant drifts that walk, at the end of the record.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn walk_ends(&self) -> Result<Vec<WalkEnd>, CalibrationError> {
+        let leg = &self.problem.runs[0];
+        let count = leg.walks.len();
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let parameters = self.parameters();
+        let reduced = self
+            .problem
+            .with_run(0, &parameters, |pass| pass.reduce(|_| ()))
+            .map_err(|error| CalibrationError::pass(0, error))?;
+        let columns = leg.column_unknowns();
+        let stride = columns.len() + 1;
+        let changes = leg.walk_changes.len().saturating_sub(count);
+        let ends = leg.walks.iter().enumerate().map(|(index, walk)| {
+            let row = &reduced.last[(AXES + index) * stride..][..stride];
+            let mut by_values = vec![0.0; self.problem.unknowns.len()];
+            for (unknowns, derivative) in columns.iter().zip(&row[1..]) {
+                for unknown in *unknowns {
+                    by_values[*unknown] += derivative;
+                }
+            }
+            WalkEnd {
+                parameter: walk.parameter,
+                change: leg.walk_changes.get(changes + index).unwrap_or(&0.0) + row[0],
+                by_values,
+                sigma: reduced.last_walks[index * count + index].max(0.0).sqrt(),
+                density: walk.density,
+            }
+        });
+        Ok(ends.collect())
     }
 
     /// Attitudes at the rows of a range if the platform starts from the smoothed one at the first

@@ -72,7 +72,7 @@ fn the_hidden_fault_is_named_with_its_size() {
     // sixteen thousand.
     assert!((size.estimate - 0.0012).abs() < 4.0 * sigma, "{size:?}");
     assert!(
-        said.contains("\nModel mismatch detected: 2 effects (family-wise p = 3e-59;"),
+        said.contains("\nModel mismatch detected: 2 effects (family-wise p = 1e-30;"),
         "{said}"
     );
     assert!(

@@ -3,7 +3,9 @@
 use core::f64::consts::SQRT_2;
 
 use gyrocal::generated::catalogue::PARAMETERS;
-use gyrocal_calibration::{BIASES, CalibrationError, Expectation, FittedPlatform, PLATFORM, Run};
+use gyrocal_calibration::{
+    BIASES, CalibrationError, Expectation, FittedPlatform, PLATFORM, Run, WalkEnd,
+};
 use gyrocal_hypothesis::{Column, Phase, RecordOffset, continued, continued_shapes};
 use gyrocal_record::Record;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -19,6 +21,8 @@ use crate::COEFFICIENTS;
 pub(crate) struct ContinuedParameters {
     /// A row for each parameter of the catalogue, a column for each value of the fit.
     map: DMatrix<f64>,
+    /// Constant drifts that walk, with the time until the later record, s.
+    walks: Vec<(WalkEnd, f64)>,
     /// Standard deviation that a new turn-on adds to each constant drift, deg/h.
     turn_on: [f64; 3],
     /// Onsets and time constants as the later record has them.
@@ -27,7 +31,14 @@ pub(crate) struct ContinuedParameters {
 
 impl ContinuedParameters {
     /// From a fit to a record to a later record.
-    pub(crate) fn new(fit: &FittedPlatform<'_>, first: &Run<'_>, later: &Record) -> Self {
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub(crate) fn new(
+        fit: &FittedPlatform<'_>,
+        first: &Run<'_>,
+        later: &Record,
+    ) -> Result<Self, CalibrationError> {
         let extension = fit.extension();
         let further = extension.columns.columns();
         let values = COEFFICIENTS + extension.parameters.len() + further.len();
@@ -47,11 +58,20 @@ impl ContinuedParameters {
                 map[(*parameter, base + offset)] = 1.0;
             }
         }
-        Self {
+        let until_s = offset.elapsed_s - first.record.duration_s();
+        let walks = fit.walk_ends()?.into_iter();
+        let walks: Vec<(WalkEnd, f64)> = walks.map(|end| (end, until_s.max(0.0))).collect();
+        for (end, _) in &walks {
+            for (value, derivative) in end.by_values.iter().enumerate() {
+                map[(end.parameter, value)] += derivative;
+            }
+        }
+        Ok(Self {
             map,
+            walks,
             turn_on: first.bench.prior.turn_on_sigma_deg_per_h,
             shapes: continued_shapes(&PLATFORM, &extension.all_shapes(&PLATFORM), &offset),
-        }
+        })
     }
 
     /// Parameters of the catalogue, beyond the nine, that the later record may show.
@@ -72,13 +92,22 @@ impl ContinuedParameters {
         let cholesky =
             Cholesky::new(fit.covariance().clone()).ok_or(CalibrationError::NotPositiveDefinite)?;
         let known = &self.map * cholesky.l();
-        let mut factor = known.clone().insert_columns(known.ncols(), 3, 0.0);
+        let walks = self.walks.len();
+        let mut factor = known.clone().insert_columns(known.ncols(), 3 + walks, 0.0);
+        let mut mean = &self.map * &values;
+        for (place, (end, until_s)) in self.walks.iter().enumerate() {
+            let variance = end.sigma.powi(2) + end.density * until_s;
+            factor[(end.parameter, known.ncols() + 3 + place)] = variance.sqrt();
+            // The derivatives are of differences from the fit.
+            let by_values = DVector::from_column_slice(&end.by_values);
+            mean[end.parameter] += end.change - by_values.dot(&values);
+        }
         for (axis, bias) in BIASES.into_iter().enumerate() {
             // One turn-on from the mean to this record, one from it to the other.
             factor[(bias, known.ncols() + axis)] = SQRT_2 * self.turn_on[axis];
         }
         Ok(Expectation {
-            mean: (&self.map * values).iter().copied().collect(),
+            mean: mean.iter().copied().collect(),
             factor,
         })
     }

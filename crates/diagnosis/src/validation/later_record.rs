@@ -82,10 +82,9 @@ pub(crate) fn predict(
     fitted: &FittedPlatform<'_>,
     later: &Run<'_>,
 ) -> Result<LaterPrediction, CalibrationError> {
-    let continued_parameters =
-        [nominal, extended].map(|fit| ContinuedParameters::new(fit, first, later.record));
-    let own = own_fit(fitted, &continued_parameters[1])?;
-    let [of_nominal, of_extended] = &continued_parameters;
+    let continued = |fit| ContinuedParameters::new(fit, first, later.record);
+    let (of_nominal, of_extended) = (continued(nominal)?, continued(extended)?);
+    let own = own_fit(fitted, &of_extended)?;
     let expected = [
         of_nominal.expectation(nominal)?,
         of_extended.expectation(extended)?,

@@ -70,6 +70,8 @@ pub struct Reduced<const M: usize> {
     pub last: Vec<f64>,
     /// Covariance of the last point given the parameters.
     pub last_covariance: [[f64; M]; M],
+    /// Covariance of the walks at the last row given the parameters, by rows.
+    pub last_walks: Vec<f64>,
 }
 
 /// One output of one row, whitened.
@@ -160,6 +162,7 @@ where
             trajectory_cost: pass.prior_cost,
             last: Vec::new(),
             last_covariance: [[0.0; M]; M],
+            last_walks: Vec::new(),
         };
         for row in 0..self.points.len() {
             let before = reduced.values;
@@ -182,6 +185,7 @@ where
         reduced.gram = gram.finish();
         reduced.last = pass.filter.columns;
         reduced.last_covariance = pass.filter.covariance.moving;
+        reduced.last_walks = pass.filter.covariance.walks;
         Ok(reduced)
     }
 

@@ -1,0 +1,108 @@
+//! White noise and random walks of the gyros, estimated from simulated records.
+#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_hypothesis::ModelExtension;
+use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
+
+/// Two days with a random walk on gyro x, white noise of gyro y twice the declared one, and no other
+/// drift.
+fn simulation() -> Simulation {
+    let hidden = |id: &str, name: &str, value: f64| Hidden::new(id, &[(name, value)]).unwrap();
+    simulate(&Scenario {
+        seed: 11,
+        coefficients: Coefficients::NONE,
+        initial: InitialAttitude::Random,
+        duration_s: 2.0 * 86_400.0,
+        interval_s: 60.0,
+        hidden: vec![
+            hidden("gyro_x.random_walk", "size", 5e-4),
+            hidden("gyro_y.noise", "ratio", 2.0),
+        ],
+        ..Scenario::default()
+    })
+    .unwrap()
+}
+
+#[test]
+fn noise_of_the_gyros_is_estimated_with_their_walks() {
+    let simulation = simulation();
+    let run = Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    };
+    let nominal =
+        FittedPlatform::nominal(&run, &Options::default(), &NoiseModel::default()).unwrap();
+    let white = nominal.fit_rate_noise(&[], &[]).unwrap();
+    let walk = nominal.fit_rate_noise(&[0, 1, 2], &[]).unwrap();
+    // Far beyond the 1e-4 point of a variance that may be zero.
+    assert!(walk.log_likelihood - white.log_likelihood > 20.0, "{white:?} {walk:?}");
+    let off = |found: f64, truth: f64, sigma: f64| (found / truth).ln() / sigma;
+    // Three standard deviations of the logarithms.
+    assert!(off(walk.noise.walk[0], 5e-4, walk.walk_sigma[0]).abs() < 3.0, "{walk:?}");
+    assert!(off(walk.noise.white[1], 2.0, walk.white_sigma[1]).abs() < 3.0, "{walk:?}");
+    // The walk is no part of a fit that has it left out: nothing else has changed.
+    let fitted = nominal.with_rate_noise(&walk.noise).unwrap();
+    let again = fitted.fit_rate_noise(&[0, 1, 2], &[]).unwrap();
+    let without = fitted.fit_rate_noise(&[], &[]).unwrap();
+    // Other points of linearisation, and steps that end at a gain of 0.005.
+    assert!((again.log_likelihood - walk.log_likelihood).abs() < 0.5, "{again:?} {walk:?}");
+    assert!((without.log_likelihood - white.log_likelihood).abs() < 0.5, "{without:?} {white:?}");
+
+    // With the walk the coefficients are within their standard deviations, of which the largest of
+    // nine exceeds 4 in one of two thousand; without it they are not.
+    let worst = |fit: &FittedPlatform<'_>| {
+        let covariance = fit.covariance();
+        let all = (0..9).map(|i| (fit.values()[i] / covariance[(i, i)].sqrt()).abs());
+        all.fold(0.0, f64::max)
+    };
+    assert!(worst(&fitted) < 4.0, "{}", worst(&fitted));
+    assert!(worst(&nominal) > 5.0, "{}", worst(&nominal));
+
+    // The drift at the end of the record is the walk.
+    let ends = fitted.walk_ends().unwrap();
+    let truth = simulation.truth.drift_deg_per_h.last().unwrap();
+    for end in &ends {
+        let axis = end.parameter / 3;
+        let bias = fitted.values()[end.parameter];
+        let covariance = fitted.covariance();
+        // The change follows from the values; both together have this variance.
+        let mut derivative = end.by_values.clone();
+        derivative[end.parameter] += 1.0;
+        let mut variance = end.sigma.powi(2);
+        for (i, a) in derivative.iter().enumerate() {
+            for (j, b) in derivative.iter().enumerate() {
+                variance += a * covariance[(i, j)] * b;
+            }
+        }
+        let off = (bias + end.change - truth[axis]) / variance.sqrt();
+        assert!(off.abs() < 4.0, "{axis}: {off} {end:?}");
+    }
+}
+
+#[test]
+fn an_effect_that_is_left_out_leaves_the_likelihood_of_the_nominal_model() {
+    let simulation = simulation();
+    let run = Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    };
+    let nominal =
+        FittedPlatform::nominal(&run, &Options::default(), &NoiseModel::default()).unwrap();
+    let place = nominal.values().len();
+    let parameter = gyrocal::generated::catalogue::PARAMETERS
+        .iter()
+        .position(|element| element.id == "gyro_y.g_z")
+        .unwrap();
+    let extension = ModelExtension {
+        parameters: vec![(parameter, f64::INFINITY)],
+        ..ModelExtension::default()
+    };
+    let extended = nominal.refitted(&extension).unwrap();
+    let before = nominal.fit_rate_noise(&[], &[]).unwrap();
+    let with = extended.fit_rate_noise(&[], &[]).unwrap();
+    let without = extended.fit_rate_noise(&[], &[place]).unwrap();
+    assert!(with.log_likelihood > before.log_likelihood);
+    // Other points of linearisation.
+    assert!((without.log_likelihood - before.log_likelihood).abs() < 0.1, "{without:?} {before:?}");
+}
