@@ -17,6 +17,10 @@ use crate::set_comparison::{Comparison, stays};
 /// Size of a near twin over its typical size beyond which it is not plausible.
 const PLAUSIBLE: f64 = 10.0;
 
+/// Onsets of the search for each step of a random walk: eight in a record and as many in the next run. A
+/// plan asks whether a walk or an effect is likelier, not how large a walk is.
+const WALK_ONSETS: usize = 5;
+
 /// Durations of the record and of a next run.
 pub(crate) fn times(run: &Run<'_>, next_s: f64) -> Times {
     let rows = rows_of(run.record, Vec::new());
@@ -27,6 +31,8 @@ pub(crate) fn times(run: &Run<'_>, next_s: f64) -> Times {
         onsets_s: set
             .onset_rows()
             .iter()
+            .skip(WALK_ONSETS / 2)
+            .step_by(WALK_ONSETS)
             .map(|row| rows.since_first_s(*row))
             .collect(),
     }
