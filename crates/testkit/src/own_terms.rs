@@ -6,8 +6,8 @@ use std::path::Path;
 use crate::command::{Outcome, run};
 use crate::copy::WorkspaceCopy;
 
-/// Hides one effect after the other in a record of three days, diagnoses each record and prints a
-/// line for each: id, whether it is the one finding, and for each parameter name, true value,
+/// Hides each effect in a record of three days of its own, diagnoses the records side by side and
+/// prints a line for each: id, whether it is the one finding, and for each parameter name, true value,
 /// estimate, standard deviation and the ends of the interval.
 const FINDER: &str = r#"
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
@@ -20,8 +20,11 @@ type Add = fn(&Moment) -> [f64; 3];
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
 
+/// Id, whether it adds to a drift or to an output, the addition and the true parameters.
+type Case = (&'static str, bool, Add, &'static [(&'static str, f64)]);
+
 fn main() {
-    let cases: [(&str, bool, Add, &[(&str, f64)]); 4] = [
+    let cases: [Case; 4] = [
         (
             "gyro_x.g_xyz",
             true,
@@ -47,41 +50,51 @@ fn main() {
             &[("size", 0.02)],
         ),
     ];
-    for (seed, (id, drift, add, truth)) in (5..).zip(cases) {
-        let term = if drift {
-            Term::Drift(Box::new(add))
-        } else {
-            Term::Output(Box::new(add))
-        };
-        let scenario = Scenario {
-            seed,
-            coefficients: Coefficients::PAPER_LIKE,
-            initial: InitialAttitude::Random,
-            duration_s: 3.0 * DAY_S,
-            interval_s: 120.0,
-            temperature: Some(Temperature::default()),
-            ..Scenario::default()
-        };
-        let simulation = simulate_with(&scenario, &[term]).unwrap();
-        let options = DiagnoseOptions::default();
-        let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap().result;
-        let only = found.findings.len() == 1 && found.findings[0].effect == id;
-        print!("{id} {only}");
-        for finding in found.findings.iter().filter(|finding| finding.effect == id) {
-            for (name, truth) in truth {
-                let parameter = finding.parameter(name).unwrap();
-                let sigma = parameter.sigma.unwrap_or(f64::NAN);
-                let [low, high] = match parameter.interval.as_deref() {
-                    Some([piece, ..]) => *piece,
-                    _ => [f64::NAN; 2],
-                };
-                print!(" {name} {truth:e} {:e} {sigma:e} {low:e} {high:e}", parameter.estimate);
-            }
+    std::thread::scope(|scope| {
+        let searches = (5..).zip(cases).map(|(seed, case)| scope.spawn(move || search(seed, case)));
+        for search in searches.collect::<Vec<_>>() {
+            println!("{}", search.join().unwrap());
         }
-        println!();
-        let names: Vec<&str> = found.findings.iter().map(|f| f.effect.as_str()).collect();
-        eprintln!("{id}: found {names:?}");
+    });
+}
+
+/// The line of one record.
+fn search(seed: u64, (id, drift, add, truth): Case) -> String {
+    let term = if drift {
+        Term::Drift(Box::new(add))
+    } else {
+        Term::Output(Box::new(add))
+    };
+    let scenario = Scenario {
+        seed,
+        coefficients: Coefficients::PAPER_LIKE,
+        initial: InitialAttitude::Random,
+        duration_s: 3.0 * DAY_S,
+        interval_s: 120.0,
+        temperature: Some(Temperature::default()),
+        ..Scenario::default()
+    };
+    let simulation = simulate_with(&scenario, &[term]).unwrap();
+    let options = DiagnoseOptions::default();
+    let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap().result;
+    let only = found.findings.len() == 1 && found.findings[0].effect == id;
+    let mut line = format!("{id} {only}");
+    for finding in found.findings.iter().filter(|finding| finding.effect == id) {
+        for (name, truth) in truth {
+            let parameter = finding.parameter(name).unwrap();
+            let sigma = parameter.sigma.unwrap_or(f64::NAN);
+            let [low, high] = match parameter.interval.as_deref() {
+                Some([piece, ..]) => *piece,
+                _ => [f64::NAN; 2],
+            };
+            let estimate = parameter.estimate;
+            let words = format!(" {name} {truth:e} {estimate:e} {sigma:e} {low:e} {high:e}");
+            line.push_str(&words);
+        }
     }
+    let names: Vec<&str> = found.findings.iter().map(|f| f.effect.as_str()).collect();
+    eprintln!("{id}: found {names:?}");
+    line
 }
 "#;
 
