@@ -55,7 +55,8 @@ fn tiny(x: f64) -> (f64, f64) {
     let w = z * z;
     let sine = (-1.0 / 6.0 + z * (1.0 / 120.0)) + w * (-1.0 / 5040.0);
     let cosine = (0.5 - z * (1.0 / 24.0)) + w * (1.0 / 720.0 - z * (1.0 / 40320.0));
-    (x + (z * x) * sine, 1.0 - z * cosine)
+    // The sum drops the sign of -0; on this interval the sine has that of its angle.
+    ((x + (z * x) * sine).copysign(x), 1.0 - z * cosine)
 }
 
 #[inline(always)]
@@ -105,5 +106,6 @@ mod tests {
         assert!(sin_cos_f64(f64::NAN).0.is_nan());
         assert!(sin_cos_f64(f64::INFINITY).1.is_nan());
         assert_eq!(sin_cos_f64(0.0), (0.0, 1.0));
+        assert!(sin_cos_f64(-0.0).0.is_sign_negative() && sin_cos_f64(0.0).0.is_sign_positive());
     }
 }
