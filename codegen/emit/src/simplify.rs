@@ -129,6 +129,7 @@ fn rebuild(
             Node::Constant(_) | Node::Input { .. } => node,
             Node::Unary(unary, x) => Node::Unary(unary, map[x.index()]),
             Node::Binary(binary, x, y) => Node::Binary(binary, map[x.index()], map[y.index()]),
+            Node::Call(call) => Node::Call(call.map(|id| map[id.index()])),
         };
         map[old.index()] = add(old, node, &map);
     }
