@@ -29,6 +29,20 @@ mod exact {
     pub(super) use libm::{ceil, ceilf, floor, floorf, sqrt, sqrtf};
 }
 
+/// Functions of `libm` with NaN outside of their domain.
+mod domain {
+    /// That of `libm` gives numbers below -1.
+    #[inline]
+    pub(super) fn acosh(x: f64) -> f64 {
+        if x < 1.0 { f64::NAN } else { libm::acosh(x) }
+    }
+
+    #[inline]
+    pub(super) fn acoshf(x: f32) -> f32 {
+        if x < 1.0 { f32::NAN } else { libm::acoshf(x) }
+    }
+}
+
 macro_rules! impl_float {
     ($float:ident, $sin_cos:path, $($method:ident => $function:path),* ;
      $($binary:ident => $of_two:path),*) => {
@@ -120,7 +134,7 @@ macro_rules! impl_float {
 impl_float!(f64, sin_cos_f64,
     tan => libm::tan, asin => libm::asin, acos => libm::acos, atan => libm::atan,
     sinh => libm::sinh, cosh => libm::cosh, tanh => libm::tanh,
-    asinh => libm::asinh, acosh => libm::acosh, atanh => libm::atanh,
+    asinh => libm::asinh, acosh => domain::acosh, atanh => libm::atanh,
     exp => exp_f64, exp_m1 => libm::expm1, ln => libm::log, ln_1p => libm::log1p,
     erf => libm::erf, erf_inv => erf_inv_f64,
     sqrt => exact::sqrt, floor => exact::floor, ceil => exact::ceil;
@@ -129,7 +143,7 @@ impl_float!(f64, sin_cos_f64,
 impl_float!(f32, sin_cos_f32,
     tan => libm::tanf, asin => libm::asinf, acos => libm::acosf, atan => libm::atanf,
     sinh => libm::sinhf, cosh => libm::coshf, tanh => libm::tanhf,
-    asinh => libm::asinhf, acosh => libm::acoshf, atanh => libm::atanhf,
+    asinh => libm::asinhf, acosh => domain::acoshf, atanh => libm::atanhf,
     exp => exp_f32, exp_m1 => libm::expm1f, ln => libm::logf, ln_1p => libm::log1pf,
     erf => libm::erff, erf_inv => erf_inv_f32,
     sqrt => exact::sqrtf, floor => exact::floorf, ceil => exact::ceilf;
