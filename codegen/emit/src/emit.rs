@@ -5,6 +5,7 @@
 
 mod count;
 mod doc;
+mod explain;
 mod expression;
 mod function;
 mod group;
@@ -20,6 +21,8 @@ use std::collections::BTreeSet;
 
 use proc_macro2::TokenStream;
 use quote::quote;
+
+pub use explain::explain;
 
 use crate::program::{Function, SCHEMA_VERSION};
 use crate::{Error, Program, ir, simplify};

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 use gyrocal_codegen::build::{DECLARATION_FILE, Derivation, Error, Variant};
+use gyrocal_codegen::{Program, explain};
 
 /// Writes or checks the files that a derivation generates.
 #[derive(Parser)]
@@ -38,6 +39,15 @@ enum Action {
     Write,
     /// Derive everything and compare with the committed files; exit code 1 if any differs.
     Check,
+    /// Explain a function of a program file: operations before and after simplification, critical
+    /// path, shared subexpressions, structure of the outputs.
+    Explain {
+        /// Name of the function.
+        function: String,
+        /// The program, as the exporter writes it.
+        #[arg(long, value_name = "FILE")]
+        program: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -51,6 +61,10 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
+    if let Action::Explain { function, program } = &arguments.action {
+        print!("{}", explained(function, program)?);
+        return Ok(());
+    }
     let directory = find(&arguments.derivation);
     let variant = match (&arguments.file, &arguments.committed) {
         (Some(file), Some(committed)) => {
@@ -58,7 +72,8 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         }
         _ => None,
     };
-    let timings = match arguments.action {
+    let timings = match &arguments.action {
+        Action::Explain { .. } => return Ok(()),
         Action::Write => {
             let written = match &variant {
                 Some(variant) => variant.write()?,
@@ -98,6 +113,17 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         line("emission", timings.emission);
     }
     Ok(())
+}
+
+/// The account of a function of a program file.
+fn explained(function: &str, program: &Path) -> Result<String, Error> {
+    let text = std::fs::read_to_string(program).map_err(|source| Error::Io {
+        action: "read",
+        path: program.to_owned(),
+        source,
+    })?;
+    let program = Program::from_json(&text, &program.display().to_string())?;
+    Ok(explain(&program, function)?)
 }
 
 /// The directory as given, or below one of the directories above this one.

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::Command;
 
 use gyrocal_codegen::ir::{Expressions, lower};
-use gyrocal_codegen::{Program, emit_module};
+use gyrocal_codegen::{Options, Program, emit_module, emit_module_with};
 use gyrocal_oracle::rounding::{ROUNDOFF_F32, ROUNDOFF_F64, RunningError};
 
 const DATA: &str = "tests/data/operations";
@@ -58,10 +58,12 @@ fn hexadecimal(text: &str) -> f64 {
     sign * integer as f64 * 2.0_f64.powi(shift / 2) * 2.0_f64.powi(shift - shift / 2)
 }
 
-/// What compiled functions print: outputs in `f64`, then in `f32`.
+/// What compiled functions print: outputs in `f64`, then in `f32`, then in `f64` of the module with
+/// fused multiply-adds.
 struct Printed {
     double: Vec<f64>,
     single: Vec<f64>,
+    fused: Vec<f64>,
 }
 
 /// The functions that the program `calls` names.
@@ -96,7 +98,12 @@ fn compiled(cases: &[(&Program, &[Values])]) -> Vec<Vec<Printed>> {
     let mut input = String::new();
     for (program, values) in cases {
         let name = &program.name;
-        library += &format!("pub mod {name};\n");
+        library += &format!("pub mod {name};\npub mod {name}_fused;\n");
+        let mut options = Options::default();
+        options.fused_multiply_add = true;
+        let fused = emit_module_with(program, &common::header(), &options).unwrap();
+        assert!(fused.contains(".mul_add(") || name == "operations");
+        write(&format!("src/{name}_fused.rs"), &fused);
         write(
             &format!("src/{name}.rs"),
             &emit_module(program, &common::header()).unwrap(),
@@ -104,7 +111,10 @@ fn compiled(cases: &[(&Program, &[Values])]) -> Vec<Vec<Printed>> {
         for function in &program.functions {
             let function = &function.name;
             let path = format!("operations::{name}::{function}");
-            main += &format!("\"{function}\" => show(&{path}(double(&x)), &{path}(single(&x))),\n");
+            let fused = format!("operations::{name}_fused::{function}");
+            main += &format!(
+                "\"{function}\" => show(&{path}(double(&x)), &{path}(single(&x)), &{fused}(double(&x))),\n"
+            );
         }
         for line in *values {
             let bits = line.inputs.iter().map(|x| x.to_bits().to_string());
@@ -117,8 +127,8 @@ fn compiled(cases: &[(&Program, &[Values])]) -> Vec<Vec<Printed>> {
         fn single<const N: usize>(x: &[f64]) -> &'static [f32; N] {\n    \
         let x: Vec<f32> = x.iter().map(|&x| x as f32).collect();\n    \
         Box::leak(Box::new(x.try_into().unwrap()))\n}\n\
-        fn show(double: &[f64], single: &[f32]) {\n    \
-        let all = double.iter().copied().chain(single.iter().map(|&x| f64::from(x)));\n    \
+        fn show(double: &[f64], single: &[f32], fused: &[f64]) {\n    \
+        let all = double.iter().copied().chain(single.iter().map(|&x| f64::from(x)))\n        .chain(fused.iter().copied());\n    \
         let words: Vec<String> = all.map(|x| x.to_bits().to_string()).collect();\n    \
         println!(\"{}\", words.join(\" \"));\n}\n";
     write("src/lib.rs", &library);
@@ -140,8 +150,13 @@ fn compiled(cases: &[(&Program, &[Values])]) -> Vec<Vec<Printed>> {
         let mut double: Vec<f64> = words
             .map(|word| f64::from_bits(word.parse().unwrap()))
             .collect();
-        let single = double.split_off(count);
-        Printed { double, single }
+        let mut single = double.split_off(count);
+        let fused = single.split_off(count);
+        Printed {
+            double,
+            single,
+            fused,
+        }
     };
     let results = cases.iter();
     results
@@ -260,6 +275,15 @@ fn check_graphs(program: &Program, values: &[Values], printed: &[Printed]) {
         let bounds = evaluated::output(expressions, &evaluated::nodes(expressions, &inputs));
         let shares = evaluated::shares_denominators(expressions);
         let jumps = evaluated::jumps(expressions);
+        // Without such an instruction both forms are one.
+        if !cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
+            let pairs = printed.double.iter().zip(&printed.fused);
+            assert!(
+                pairs.into_iter().all(|(x, y)| ulps(*x, *y) == 0),
+                "{}",
+                line.function
+            );
+        }
         for (index, found) in printed.double.iter().enumerate() {
             all += 1;
             if by_zero[index] {

@@ -80,8 +80,7 @@ pub(crate) fn forward<F: FittedModel>(
         let best = scores.named(&hypotheses).filter(|_| significant);
         // An unmodelled term goes into the model if no effect is significant, or if it explains so
         // much more that a name would be false.
-        let limit =
-            ln(context.options.unmodelled_probability) - 0.5 * margin.unwrap_or_default();
+        let limit = ln(context.options.unmodelled_probability) - 0.5 * margin.unwrap_or_default();
         let stands = |other: &Unmodelled| {
             let explains_more = |best: Best| {
                 // Several effects together look like a line at a natural period.

@@ -25,6 +25,7 @@ const EMITTER: &[(&str, &str)] = embedded![
     "src/emit.rs",
     "src/emit/count.rs",
     "src/emit/doc.rs",
+    "src/emit/explain.rs",
     "src/emit/expression.rs",
     "src/emit/function.rs",
     "src/emit/group.rs",

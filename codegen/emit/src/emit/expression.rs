@@ -216,7 +216,7 @@ fn parenthesised((tokens, level): Printed, needed: Level) -> TokenStream {
     }
 }
 
-fn unary_method(function: Unary) -> &'static str {
+pub(super) fn unary_method(function: Unary) -> &'static str {
     match function {
         Unary::Negate => "neg",
         Unary::Reciprocal => "recip",
@@ -246,7 +246,7 @@ fn unary_method(function: Unary) -> &'static str {
     }
 }
 
-fn binary_method(function: Binary) -> &'static str {
+pub(super) fn binary_method(function: Binary) -> &'static str {
     match function {
         Binary::Add => "add",
         Binary::Sub => "sub",
