@@ -43,16 +43,15 @@ class Plant:
                        [f"{name}_dot" for name in self.states.names])
         output = Output("output", self.output, self.output_unit, "readings of the sensors",
                         list(self.output_names))
-        snake = rust_name(self.name)
-        return Program(snake, self.doc, [
-            *self._pair("rates", "Rates of the states.", rates, self.noise),
-            *self._pair("output", "Readings of the sensors.", output, None),
+        return Program(rust_name(self.name), self.doc, [
+            *self._pair("dynamics", "Rates of the states.", rates, self.noise),
+            *self._pair("readings", "Readings of the sensors.", output, None),
             *self.more,
         ], {
             "name": self.name, "doc": self.doc, "moving": self.states,
             "parameters": self.parameters, "noise": self.noise, "inputs": list(self.inputs),
-            "rates": {"value": "rates", "jacobian": "rates_jacobian"},
-            "output": {"value": "output", "jacobian": "output_jacobian"},
+            "rates": {"value": "dynamics", "jacobian": "dynamics_jacobian"},
+            "output": {"value": "readings", "jacobian": "readings_jacobian"},
         })
 
     def _pair(self, name: str, doc: str, value: Output, noise: Group | None) -> list[Function]:

@@ -13,9 +13,9 @@ use gyrocal_codegen::{Program, explain};
 #[command(version)]
 struct Arguments {
     /// Directory that holds derivation.toml; a relative one is looked for here and in
-    /// the directories above.
+    /// the directories above. May be given several times.
     #[arg(long, value_name = "DIRECTORY", default_value = ".")]
-    derivation: PathBuf,
+    derivation: Vec<PathBuf>,
 
     /// Not the derivation's own programs but the one that this file asks of it.
     #[arg(long, value_name = "FILE", requires = "committed")]
@@ -65,11 +65,20 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         print!("{}", explained(function, program)?);
         return Ok(());
     }
-    let directory = find(&arguments.derivation);
+    // A variant is of one derivation, the first; its file asks for it.
+    let count = if arguments.file.is_some() {
+        1
+    } else {
+        arguments.derivation.len()
+    };
+    arguments.derivation[..count]
+        .iter()
+        .try_for_each(|directory| write_or_check(arguments, &find(directory)))
+}
+
+fn write_or_check(arguments: &Arguments, directory: &Path) -> Result<(), Error> {
     let variant = match (&arguments.file, &arguments.committed) {
-        (Some(file), Some(committed)) => {
-            Some(Variant::open(&directory, file)?.committed(committed))
-        }
+        (Some(file), Some(committed)) => Some(Variant::open(directory, file)?.committed(committed)),
         _ => None,
     };
     let timings = match &arguments.action {
@@ -77,7 +86,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         Action::Write => {
             let written = match &variant {
                 Some(variant) => variant.write()?,
-                None => Derivation::open(&directory)?.write()?,
+                None => Derivation::open(directory)?.write()?,
             };
             let here = std::env::current_dir().unwrap_or_default();
             for path in &written.paths {
@@ -94,7 +103,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         Action::Check => {
             let timings = match &variant {
                 Some(variant) => variant.check()?,
-                None => Derivation::open(&directory)?.check()?,
+                None => Derivation::open(directory)?.check()?,
             };
             println!("every file is what the derivation gives");
             timings
