@@ -72,6 +72,7 @@ def program(name: str, model: str, doc: str, effects: list[Effect],
             "name": model,
             "doc": f"{doc} Three angles move, all else is constant.",
             "moving": theta.name,
+            "flat": False,  # Anchored moves the chart of the angles
             "parameters": parameters.name,
             "noise": drift_noise.name,
             "inputs": [group.name for group in candidates if group.name in used],

@@ -95,6 +95,7 @@ def program() -> Program:
             "name": "Platform",
             "doc": "The nominal platform: three angles move, nine drift coefficients are constant.",
             "moving": layout.theta.name,
+            "flat": False,  # Anchored moves the chart of the angles
             "parameters": layout.drift.name,
             "noise": layout.drift_noise.name,
             "inputs": [layout.omega_0.name, layout.f_0.name],

@@ -5,6 +5,7 @@
 
 mod count;
 mod doc;
+mod explain;
 mod expression;
 mod function;
 mod group;
@@ -21,13 +22,15 @@ use std::collections::BTreeSet;
 use proc_macro2::TokenStream;
 use quote::quote;
 
+pub use explain::explain;
+
 use crate::program::{Function, SCHEMA_VERSION};
 use crate::{Error, Program, ir, simplify};
-use items::Items;
+use items::{Items, Namespace};
 
 /// Version of the form of emitted code; it grows when the same program gives items of
 /// other names or types.
-pub const EMISSION_VERSION: u32 = 1;
+pub const EMISSION_VERSION: u32 = 2;
 
 /// Data of the first lines of an emitted file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,15 +47,19 @@ pub struct Header {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Path of the crate or module that has `Scalar`, `Model`, `NamedInputs`, `RatesJacobian` and
-    /// `Element`; `gyrocal_scalar` by default.
+    /// Path of the crate or module that has `Scalar`, `Model`, `NamedInputs`, `RatesJacobian`,
+    /// `Recentre` and `Element`; `gyrocal_scalar` by default.
     pub scalar_crate: String,
+    /// Products that are added become `Scalar::mul_add`, which targets with such an instruction
+    /// round once. Off by default: results then have the same bits on every machine.
+    pub fused_multiply_add: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
         Self {
             scalar_crate: "gyrocal_scalar".to_owned(),
+            fused_multiply_add: false,
         }
     }
 }
@@ -80,6 +87,10 @@ pub fn emit_module_with(
     let mut text = header_text(program, header)?;
     let mut items = Items::new(&program.origin);
     let mut tokens = Vec::new();
+    for external in &program.externals {
+        let place = format!("external function `{}`", external.name);
+        items.claim(Namespace::Value, &external.name, &place)?;
+    }
     for group in &program.groups {
         tokens.extend(group::emit(group, &mut items)?);
     }
@@ -87,7 +98,14 @@ pub fn emit_module_with(
     for function in &program.functions {
         let expressions = simplify(&ir::lower(function));
         check_finite(program, function, &expressions)?;
-        tokens.extend(function::emit(program, function, &expressions, &mut items)?);
+        let fused = options.fused_multiply_add;
+        tokens.extend(function::emit(
+            program,
+            function,
+            &expressions,
+            fused,
+            &mut items,
+        )?);
         lowered.push(expressions);
     }
     if let Some(model) = &program.model {
@@ -159,10 +177,14 @@ fn imports(program: &Program, options: &Options) -> Result<TokenStream, Error> {
     let colon = (!is_rooted).then(|| quote!(::));
     let scalar = (!program.functions.is_empty()).then(|| quote!(, Scalar));
     let names = match &program.model {
-        Some(model) if model.inputs.is_empty() => quote!(Element, Model, RatesJacobian #scalar),
-        Some(_) => quote!(Element, Model, NamedInputs, RatesJacobian #scalar),
+        Some(model) => {
+            let inputs = (!model.inputs.is_empty()).then(|| quote!(, NamedInputs));
+            let recentre = model.flat.then(|| quote!(, Recentre));
+            quote!(Element, Model #inputs, RatesJacobian #recentre #scalar)
+        }
         None => quote!(Element #scalar),
     };
+    let externals = externals(program);
     let declared: BTreeSet<&str> = program
         .tables
         .iter()
@@ -175,7 +197,17 @@ fn imports(program: &Program, options: &Options) -> Result<TokenStream, Error> {
         let (module, types) = (items::ident(module), types.into_iter().map(items::ident));
         quote!(use #colon #tokens::#module::{#(#types),*};)
     });
-    Ok(quote!(use #colon #tokens::{#names}; #(#modules)*))
+    Ok(quote!(use #colon #tokens::{#names}; #(#modules)* #externals))
+}
+
+/// Imports of the functions of the surrounding Rust.
+fn externals(program: &Program) -> TokenStream {
+    let paths = program.externals.iter().filter_map(|external| {
+        // The path was parsed with the program.
+        let path = external.path.parse::<TokenStream>().ok()?;
+        Some(quote!(use #path;))
+    });
+    quote!(#(#paths)*)
 }
 
 /// Refuses constant operands whose result is not finite, which were left unfolded.

@@ -13,6 +13,8 @@ pub use lower::lower;
 
 use std::collections::HashMap;
 
+use crate::program::MOST_ARGUMENTS;
+
 /// A node of a [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(u32);
@@ -41,6 +43,54 @@ pub enum Node {
     Unary(Unary, NodeId),
     /// A function of two nodes.
     Binary(Binary, NodeId, NodeId),
+    /// A function of the surrounding Rust.
+    Call(Call),
+}
+
+/// A call of a function of the surrounding Rust.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Call {
+    /// Index of the function among those of the program.
+    external: u32,
+    count: u32,
+    arguments: [NodeId; MOST_ARGUMENTS],
+}
+
+impl Call {
+    /// A call of the external function with this index.
+    ///
+    /// # Panics
+    /// If there are more arguments than [`MOST_ARGUMENTS`].
+    #[must_use]
+    pub fn new(external: usize, arguments: &[NodeId]) -> Self {
+        let mut all = [NodeId(0); MOST_ARGUMENTS];
+        all[..arguments.len()].copy_from_slice(arguments);
+        Self {
+            external: external as u32,
+            count: arguments.len() as u32,
+            arguments: all,
+        }
+    }
+
+    /// Index of the function among those of the program.
+    #[must_use]
+    pub fn external(&self) -> usize {
+        self.external as usize
+    }
+
+    /// Its arguments.
+    #[must_use]
+    pub fn arguments(&self) -> &[NodeId] {
+        &self.arguments[..self.count as usize]
+    }
+
+    /// The same call of other arguments.
+    pub(crate) fn map(mut self, argument: impl Fn(NodeId) -> NodeId) -> Self {
+        for id in &mut self.arguments[..self.count as usize] {
+            *id = argument(*id);
+        }
+        self
+    }
 }
 
 /// A finite number, equal when its bits are.
@@ -73,6 +123,15 @@ pub enum Unary {
     Sinh,
     Cosh,
     Tanh,
+    Asinh,
+    Acosh,
+    Atanh,
+    Expm1,
+    Log1p,
+    Erf,
+    ErfInv,
+    Floor,
+    Ceil,
     Abs,
     Sign,
 }
@@ -87,6 +146,10 @@ pub enum Binary {
     Div,
     Power,
     Atan2,
+    Fmod,
+    Remainder,
+    Hypot,
+    CopySign,
     Min,
     Max,
     Less,
@@ -101,7 +164,7 @@ impl Binary {
     pub fn is_commutative(self) -> bool {
         matches!(
             self,
-            Self::Add | Self::Mul | Self::Min | Self::Max | Self::Equal
+            Self::Add | Self::Mul | Self::Min | Self::Max | Self::Equal | Self::Hypot
         )
     }
 }
@@ -214,12 +277,23 @@ impl Node {
     /// The nodes it is computed from.
     #[must_use]
     pub fn operands(self) -> impl DoubleEndedIterator<Item = NodeId> {
-        let (first, second) = match self {
-            Self::Constant(_) | Self::Input { .. } => (None, None),
-            Self::Unary(_, operand) => (Some(operand), None),
-            Self::Binary(_, left, right) => (Some(left), Some(right)),
+        let mut operands = [NodeId(0); MOST_ARGUMENTS];
+        let count = match self {
+            Self::Constant(_) | Self::Input { .. } => 0,
+            Self::Unary(_, operand) => {
+                operands[0] = operand;
+                1
+            }
+            Self::Binary(_, left, right) => {
+                operands[..2].copy_from_slice(&[left, right]);
+                2
+            }
+            Self::Call(call) => {
+                operands = call.arguments;
+                call.count as usize
+            }
         };
-        first.into_iter().chain(second)
+        operands.into_iter().take(count)
     }
 }
 

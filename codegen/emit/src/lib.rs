@@ -44,8 +44,8 @@
 //!
 //! # What it does not do
 //!
-//! It has no loops, branches or interpolation tables, and it neither reorders sums and products nor
-//! uses fused multiply-add. It is independent of the kind of model.
+//! It has no loops, branches or interpolation tables, and it does not reorder sums and products. It
+//! uses fused multiply-add on request only. It is independent of the kind of model.
 
 pub mod build;
 mod emit;
@@ -54,7 +54,7 @@ pub mod ir;
 pub mod program;
 mod simplify;
 
-pub use emit::{EMISSION_VERSION, Header, Options, emit_module, emit_module_with};
+pub use emit::{EMISSION_VERSION, Header, Options, emit_module, emit_module_with, explain};
 pub use error::Error;
 pub use program::{Program, SCHEMA_VERSION};
 pub use simplify::simplify;

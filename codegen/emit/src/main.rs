@@ -6,15 +6,16 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 use gyrocal_codegen::build::{DECLARATION_FILE, Derivation, Error, Variant};
+use gyrocal_codegen::{Program, explain};
 
 /// Writes or checks the files that a derivation generates.
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
     /// Directory that holds derivation.toml; a relative one is looked for here and in
-    /// the directories above.
+    /// the directories above. May be given several times.
     #[arg(long, value_name = "DIRECTORY", default_value = ".")]
-    derivation: PathBuf,
+    derivation: Vec<PathBuf>,
 
     /// Not the derivation's own programs but the one that this file asks of it.
     #[arg(long, value_name = "FILE", requires = "committed")]
@@ -38,6 +39,15 @@ enum Action {
     Write,
     /// Derive everything and compare with the committed files; exit code 1 if any differs.
     Check,
+    /// Explain a function of a program file: operations before and after simplification, critical
+    /// path, shared subexpressions, structure of the outputs.
+    Explain {
+        /// Name of the function.
+        function: String,
+        /// The program, as the exporter writes it.
+        #[arg(long, value_name = "FILE")]
+        program: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -51,18 +61,32 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
-    let directory = find(&arguments.derivation);
+    if let Action::Explain { function, program } = &arguments.action {
+        print!("{}", explained(function, program)?);
+        return Ok(());
+    }
+    // A variant is of one derivation, the first; its file asks for it.
+    let count = if arguments.file.is_some() {
+        1
+    } else {
+        arguments.derivation.len()
+    };
+    arguments.derivation[..count]
+        .iter()
+        .try_for_each(|directory| write_or_check(arguments, &find(directory)))
+}
+
+fn write_or_check(arguments: &Arguments, directory: &Path) -> Result<(), Error> {
     let variant = match (&arguments.file, &arguments.committed) {
-        (Some(file), Some(committed)) => {
-            Some(Variant::open(&directory, file)?.committed(committed))
-        }
+        (Some(file), Some(committed)) => Some(Variant::open(directory, file)?.committed(committed)),
         _ => None,
     };
-    let timings = match arguments.action {
+    let timings = match &arguments.action {
+        Action::Explain { .. } => return Ok(()),
         Action::Write => {
             let written = match &variant {
                 Some(variant) => variant.write()?,
-                None => Derivation::open(&directory)?.write()?,
+                None => Derivation::open(directory)?.write()?,
             };
             let here = std::env::current_dir().unwrap_or_default();
             for path in &written.paths {
@@ -79,7 +103,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         Action::Check => {
             let timings = match &variant {
                 Some(variant) => variant.check()?,
-                None => Derivation::open(&directory)?.check()?,
+                None => Derivation::open(directory)?.check()?,
             };
             println!("every file is what the derivation gives");
             timings
@@ -98,6 +122,17 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         line("emission", timings.emission);
     }
     Ok(())
+}
+
+/// The account of a function of a program file.
+fn explained(function: &str, program: &Path) -> Result<String, Error> {
+    let text = std::fs::read_to_string(program).map_err(|source| Error::Io {
+        action: "read",
+        path: program.to_owned(),
+        source,
+    })?;
+    let program = Program::from_json(&text, &program.display().to_string())?;
+    Ok(explain(&program, function)?)
 }
 
 /// The directory as given, or below one of the directories above this one.

@@ -6,21 +6,32 @@
 
 mod check;
 mod context;
+mod external;
+mod instructions;
 mod model;
 mod names;
 mod operation;
 mod schema;
 mod table;
 
+pub use external::{External, MOST_ARGUMENTS};
 pub use names::is_snake_case;
 pub(crate) use names::{pascal_case, screaming_case};
 pub use operation::{BinaryOperation, UnaryOperation};
 pub use table::{Field, Kind, Table, Value};
 
+use std::collections::BTreeMap;
+
 use crate::Error;
 
 /// Version of the program files that this crate reads.
 pub const SCHEMA_VERSION: u32 = 1;
+
+/// Most instructions of a function: what they become is more than a compiler takes.
+pub const MOST_INSTRUCTIONS: usize = 1_000_000;
+
+/// Most elements of an output, zeros included: rows by columns.
+pub const LARGEST_OUTPUT: usize = 1 << 24;
 
 /// Functions, the groups of scalars they take, and maybe a model made of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +53,8 @@ pub struct Program {
     pub model: Option<Model>,
     /// Facts for the code that uses the program.
     pub tables: Vec<Table>,
+    /// Functions of the surrounding Rust that instructions call.
+    pub externals: Vec<External>,
 }
 
 /// A named vector of scalar inputs.
@@ -162,6 +175,17 @@ pub enum Instruction {
         /// Second argument.
         right: usize,
     },
+    /// A function of the surrounding Rust.
+    Call {
+        /// Index of the function among [`Program::externals`].
+        external: usize,
+        /// Place to write.
+        to: usize,
+        /// Its arguments, as many as it has, then zeros.
+        operands: [usize; MOST_ARGUMENTS],
+        /// Number of its arguments.
+        count: usize,
+    },
 }
 
 /// A continuous model: the parts that groups and functions play in it.
@@ -186,6 +210,9 @@ pub struct Model {
     pub rates: ModelFunction,
     /// Outputs of sensors.
     pub output: ModelFunction,
+    /// The state space is flat: corrections are added to the moving states. Otherwise they are
+    /// coordinates in a chart, whose movement hand-written code defines.
+    pub flat: bool,
 }
 
 /// A value and, by another function, the value with its Jacobians.
@@ -227,5 +254,11 @@ impl Output {
         self.nonzeros
             .iter()
             .position(|&place| place == (row, column))
+    }
+
+    /// Indices of the nonzeros by row and column.
+    #[must_use]
+    pub(crate) fn places(&self) -> BTreeMap<(usize, usize), usize> {
+        self.nonzeros.iter().copied().zip(0..).collect()
     }
 }

@@ -22,10 +22,30 @@ const SIGN_DEPTH: usize = 16;
 /// differ in sign only are one node, and are then put where they cost nothing.
 #[must_use]
 pub fn simplify(expressions: &Expressions) -> Expressions {
-    let simplified = rewrite(expressions, &BTreeSet::new());
-    let shared = shared_denominators(&simplified);
-    let simplified = rewrite(&simplified, &shared);
-    without_dead_code(&with_signs_settled(&without_dead_code(&simplified)))
+    let [.., (_, last)] = stages(expressions);
+    last
+}
+
+/// The function after each step of the simplification, with the name of the step; the last is
+/// what [`simplify`] gives.
+pub(crate) fn stages(expressions: &Expressions) -> [(&'static str, Expressions); 4] {
+    let derived = without_dead_code(expressions);
+    let by_rules = rewrite(expressions, &BTreeSet::new());
+    let shared = shared_denominators(&by_rules);
+    let with_reciprocals = without_dead_code(&rewrite(&by_rules, &shared));
+    let settled = without_dead_code(&with_signs_settled(&with_reciprocals));
+    [
+        ("as derived, equal subexpressions joined", derived),
+        (
+            "folded, identities, negations pulled out",
+            without_dead_code(&by_rules),
+        ),
+        (
+            "reciprocals of common denominators shared",
+            with_reciprocals,
+        ),
+        ("negations put where they cost nothing", settled),
+    ]
 }
 
 /// Adds every live node again, by the rules; `shared` are denominators of the source.
@@ -129,6 +149,7 @@ fn rebuild(
             Node::Constant(_) | Node::Input { .. } => node,
             Node::Unary(unary, x) => Node::Unary(unary, map[x.index()]),
             Node::Binary(binary, x, y) => Node::Binary(binary, map[x.index()], map[y.index()]),
+            Node::Call(call) => Node::Call(call.map(|id| map[id.index()])),
         };
         map[old.index()] = add(old, node, &map);
     }

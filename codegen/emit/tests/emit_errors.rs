@@ -69,8 +69,8 @@ fn not_a_program() {
 fn faulty_instructions() {
     let cases = [
         (
-            r#"["erf",0,0]"#,
-            "instruction 0: found the operation `erf`, expected one of abs, acos, ... tanh, \
+            r#"["printme",0,0]"#,
+            "instruction 0: found the operation `printme`, expected one of abs, acos, ... tanh, \
              twice; write the expression with these",
         ),
         (
@@ -123,7 +123,28 @@ fn faulty_instructions() {
         ),
         (
             r#"["const",0,1e999]"#,
-            "not a program: number out of range at line",
+            "function `f`, instruction 0: found the constant \"1e999\", expected a finite number",
+        ),
+        (
+            r#"["input",0,0,0],["const",1,NaN]"#,
+            "test.json: function `f`, instruction 1: found the constant \"NaN\", expected a finite \
+             number; look for a division by zero",
+        ),
+        (
+            r#"["const",0,-Infinity]"#,
+            "function `f`, instruction 0: found the constant \"-Infinity\", expected a finite",
+        ),
+        (
+            r#"["call",0,"lift",0]"#,
+            "instruction 0: found a call of \"lift\", expected the name of an external function",
+        ),
+        (
+            r#"["input",0,18446744073709551615,0]"#,
+            "instruction 0: found input 18446744073709551615, expected below 1",
+        ),
+        (
+            r#"["add",0,0,1],["add",1,0,0],["output",0,0,1]"#,
+            "instruction 0: found a use of work element 0, which is not set yet",
         ),
         (
             r#"["const",0,0],["inv",0,0],["output",0,0,0]"#,
@@ -134,7 +155,7 @@ fn faulty_instructions() {
     for (instructions, expected) in cases {
         assert_message(&refused(&one_function(2, 1, instructions)), expected);
     }
-    let unknown = refused(&one_function(1, 1, r#"["erf",0,0]"#));
+    let unknown = refused(&one_function(1, 1, r#"["printme",0,0]"#));
     assert!(matches!(unknown, Error::Operation { .. }));
     let infinite = refused(&one_function(
         1,
@@ -375,4 +396,87 @@ fn a_missing_jacobian_of_a_dependence() {
         "model, rates: found no `swing_dot_d_rod` in `swing_rates_jacobian`, although \
          `swing_rates` depends on `rod`, expected the output `swing_dot_d_rod`; add that Jacobian",
     );
+}
+
+/// Sizes that no program has are refused before anything of that size is made.
+#[test]
+fn absurd_sizes() {
+    let text = one_function(1, 1, r#"["input",0,0,0],["output",0,0,0]"#);
+    for size in ["18446744073709551615", "1000000000000000000", "1000001"] {
+        assert_message(
+            &refused(&text.replace(r#""work_size":16"#, &format!(r#""work_size":{size}"#))),
+            &format!(
+                "test.json: function `f`: found a work vector of {size} scalars, expected at most \
+                 1000000"
+            ),
+        );
+        let rows = text.replace(r#""rows":1"#, &format!(r#""rows":{size}"#));
+        let message = format!(
+            "test.json: function `f`, output `y0`: found {size} rows and 1000000000000 columns, \
+             expected at most 16777216 elements"
+        );
+        let both = rows.replace(r#""columns":1"#, r#""columns":1000000000000"#);
+        assert_message(&refused(&both), &message);
+    }
+    let negative = text.replace(r#""work_size":16"#, r#""work_size":-1"#);
+    assert_message(
+        &refused(&negative),
+        "test.json: not a program: invalid value: integer `-1`",
+    );
+}
+
+/// More instructions than a compiler takes.
+#[test]
+fn too_many_instructions() {
+    let many = vec![r#"["input",0,0,0]"#; gyrocal_codegen::program::MOST_INSTRUCTIONS].join(",");
+    let text = one_function(1, 1, &format!(r#"{many},["output",0,0,0]"#));
+    assert_message(
+        &refused(&text),
+        "test.json: function `f`: found 1000001 instructions, expected at most 1000000, what a \
+         compiler can take; split the function",
+    );
+}
+
+#[test]
+fn external_functions_that_cannot_be_called() {
+    let with = |external: &str| {
+        let text = one_function(
+            1,
+            1,
+            r#"["input",0,0,0],["call",1,"lift",0],["output",0,0,1]"#,
+        );
+        text.replace(
+            r#""model":null"#,
+            &format!(r#""model":null,"externals":[{external}]"#),
+        )
+    };
+    let cases = [
+        (
+            r#"{"name":"lift","path":"crate::drag","doc":"","arguments":1}"#,
+            "external function `lift`: found the path `crate::drag`, expected a path that ends in \
+             its name, such as `crate::lift`",
+        ),
+        (
+            r#"{"name":"lift","path":"crate::lift","doc":"","arguments":5}"#,
+            "external function `lift`: found 5 arguments, expected 1 to 4",
+        ),
+        (
+            r#"{"name":"lift","path":"crate::lift","doc":"","arguments":2}"#,
+            "function `f`, instruction 1: found 1 arguments of `lift`, expected 2",
+        ),
+        (
+            r#"{"name":"Lift","path":"crate::Lift","doc":"","arguments":1}"#,
+            "external functions: found the name `Lift`, expected lower-case words",
+        ),
+        (
+            r#"{"name":"x_index","path":"crate::x_index","doc":"","arguments":1},
+               {"name":"f","path":"crate::f","doc":"","arguments":1},
+               {"name":"lift","path":"crate::lift","doc":"","arguments":1}"#,
+            "function `f`: found the name `f`, expected a name of a Rust item that external \
+             function `f` does not take",
+        ),
+    ];
+    for (external, expected) in cases {
+        assert_message(&refused(&with(external)), expected);
+    }
 }

@@ -6,9 +6,9 @@ mod against_crates;
 mod instructions;
 mod scaling;
 mod speed;
-mod timing;
 
 use gyrocal::Integration;
+use gyrocal_testkit::timing;
 
 use crate::error::Error;
 use crate::figure::Figure;
@@ -21,11 +21,14 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
         return instructions::renewed();
     }
     let rounds = if small { 101 } else { 501 };
-    let mut figures = vec![Figure::note(
-        "target features of this build",
-        timing::target_features(),
-    )];
+    let mut figures = vec![
+        Figure::note("processor", timing::processor()),
+        Figure::note("target features of this build", timing::target_features()),
+    ];
     let mut timed = speed::figures(rounds)?;
+    if !small {
+        timed.extend(speed::of_other_builds(rounds)?);
+    }
     timed.extend(against_crates::figures(rounds)?);
     timed.extend(scaling::figures(rounds)?);
     if small {

@@ -122,13 +122,7 @@ fn write_page(
     let topic = arguments.topic.to_possible_value();
     let topic = topic.as_ref().map_or("", |value| value.get_name());
     let small = if arguments.small { " --small" } else { "" };
-    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let processor = processor
-        .lines()
-        .find_map(|line| line.strip_prefix("model name"))
-        .map_or("an unnamed processor", |name| {
-            name.trim_start_matches([' ', '\t', ':'])
-        });
+    let processor = gyrocal_testkit::timing::processor();
     let commit = house::commit(&gyrocal_testkit::workspace());
     let page = format!(
         "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{small}` of commit {commit} on \

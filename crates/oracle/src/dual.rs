@@ -6,6 +6,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use gyrocal_scalar::Scalar;
 use num_dual::{Derivative, DualNum, DualSVec64};
 
+use crate::error_function;
+
 /// A number with its derivatives with respect to `N` variables.
 #[derive(Clone, Copy, Debug)]
 pub struct Dual<const N: usize>(DualSVec64<N>);
@@ -100,6 +102,13 @@ macro_rules! by_num_dual {
     )*};
 }
 
+impl<const N: usize> Dual<N> {
+    /// A function of this number, by its value and slope.
+    fn chained(self, value: f64, slope: f64) -> Self {
+        Self(DualSVec64::new(value, self.0.eps * slope))
+    }
+}
+
 impl<const N: usize> Scalar for Dual<N> {
     fn from_f64(value: f64) -> Self {
         Self::constant(value)
@@ -108,7 +117,42 @@ impl<const N: usize> Scalar for Dual<N> {
         let (sine, cosine) = self.0.sin_cos();
         (Self(sine), Self(cosine))
     }
-    by_num_dual!(tan asin acos atan sinh cosh tanh exp ln sqrt);
+    by_num_dual!(tan asin acos atan sinh cosh tanh asinh acosh atanh exp exp_m1 ln ln_1p sqrt);
+
+    fn erf(self) -> Self {
+        let x = self.0.re;
+        self.chained(error_function::erf(x), error_function::slope(x))
+    }
+    fn erf_inv(self) -> Self {
+        let y = error_function::erf_inv(self.0.re);
+        self.chained(y, 1.0 / error_function::slope(y))
+    }
+    fn floor(self) -> Self {
+        Self::constant(self.0.re.floor())
+    }
+    fn ceil(self) -> Self {
+        Self::constant(self.0.re.ceil())
+    }
+    fn fmod(self, divisor: Self) -> Self {
+        // Both are self less a multiple of the divisor that is constant nearby.
+        self - divisor * Self::constant((self.0.re / divisor.0.re).trunc())
+    }
+    fn remainder(self, divisor: Self) -> Self {
+        self - divisor * Self::constant((self.0.re / divisor.0.re).round_ties_even())
+    }
+    fn hypot(self, other: Self) -> Self {
+        let value = self.0.re.hypot(other.0.re);
+        let eps: Derivative<f64, _, _> =
+            self.0.eps * (self.0.re / value) + other.0.eps * (other.0.re / value);
+        Self(DualSVec64::new(value, eps))
+    }
+    fn copysign(self, sign: Self) -> Self {
+        if self.0.re.is_sign_negative() == sign.0.re.is_sign_negative() {
+            self
+        } else {
+            -self
+        }
+    }
 
     fn atan2(self, x: Self) -> Self {
         // Not num-dual's, which goes through the ratio and has no derivative at x = 0.
@@ -169,7 +213,29 @@ mod tests {
     fn derivatives_of_every_function_are_those_of_the_textbook() {
         let x: f64 = 0.6;
         let root = (1.0 - x * x).sqrt();
-        let cases: [(&str, Function, f64); 19] = [
+        let h = x.hypot(2.0);
+        let cases: [(&str, Function, f64); 32] = [
+            ("asinh", Scalar::asinh, 1.0 / (1.0 + x * x).sqrt()),
+            (
+                "acosh(x + 1)",
+                |x| (x + c(1.0)).acosh(),
+                1.0 / (x * (x + 2.0)).sqrt(),
+            ),
+            ("atanh", Scalar::atanh, 1.0 / (1.0 - x * x)),
+            ("exp_m1", Scalar::exp_m1, x.exp()),
+            ("ln_1p", Scalar::ln_1p, 1.0 / (1.0 + x)),
+            (
+                "erf",
+                Scalar::erf,
+                core::f64::consts::FRAC_2_SQRT_PI * (-x * x).exp(),
+            ),
+            ("erf_inv(erf)", |x| x.erf().erf_inv(), 1.0),
+            ("hypot(x, 2)", |x| x.hypot(c(2.0)), x / h),
+            ("hypot(2, x)", |x| c(2.0).hypot(x), x / h),
+            ("fmod(x, 0.25)", |x| x.fmod(c(0.25)), 1.0),
+            ("fmod(2, x)", |x| c(2.0).fmod(x), -3.0),
+            ("remainder(2, x)", |x| c(2.0).remainder(x), -3.0),
+            ("copysign(x, -1)", |x| x.copysign(c(-1.0)), -1.0),
             ("sin", |x| x.sin_cos().0, x.cos()),
             ("cos", |x| x.sin_cos().1, -x.sin()),
             ("tan", Scalar::tan, 1.0 / x.cos().powi(2)),
@@ -221,6 +287,8 @@ mod tests {
             x.less(c(1.0)),
             x.less_or_equal(c(0.5)),
             x.equal(c(0.5)),
+            x.ceil(),
+            x.floor() + c(1.0),
         ] {
             assert_eq!((number.value(), number.derivative(0)), (1.0, 0.0));
         }

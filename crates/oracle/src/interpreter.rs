@@ -4,6 +4,7 @@
 //! so that errors of the emitter and of the project's own sine and cosine become visible.
 
 use crate::OracleError;
+use crate::error_function;
 use crate::program::{Binary, Function, Instruction, Unary};
 
 impl Function {
@@ -68,6 +69,15 @@ fn unary(operation: Unary, x: f64) -> f64 {
         Unary::Sinh => x.sinh(),
         Unary::Cosh => x.cosh(),
         Unary::Tanh => x.tanh(),
+        Unary::Asinh => x.asinh(),
+        Unary::Acosh => x.acosh(),
+        Unary::Atanh => x.atanh(),
+        Unary::Erf => error_function::erf(x),
+        Unary::Erfinv => error_function::erf_inv(x),
+        Unary::Floor => x.floor(),
+        Unary::Ceil => x.ceil(),
+        Unary::Log1p => x.ln_1p(),
+        Unary::Expm1 => x.exp_m1(),
         Unary::Abs => x.abs(),
         // CasADi: sign(0) is 0 and sign(NaN) is NaN, unlike `f64::signum`.
         Unary::Sign if x.is_nan() => x,
@@ -85,6 +95,10 @@ fn binary(operation: Binary, x: f64, y: f64) -> f64 {
         Binary::Div => x / y,
         Binary::Pow => x.powf(y),
         Binary::Atan2 => x.atan2(y),
+        Binary::Fmod => x % y,
+        Binary::Remainder => remainder(x, y),
+        Binary::Hypot => x.hypot(y),
+        Binary::Copysign => x.copysign(y),
         Binary::Min => x.min(y),
         Binary::Max => x.max(y),
         Binary::Lt => truth(x < y),
@@ -103,6 +117,49 @@ fn binary(operation: Binary, x: f64, y: f64) -> f64 {
     }
 }
 
+/// What x / y, rounded to the nearest integer and half to even, leaves: exact.
+fn remainder(x: f64, y: f64) -> f64 {
+    if x.abs() < 0.5 * y.abs() {
+        return x;
+    }
+    // Room for 2 |y|; nothing here is so small that the scale would round it.
+    let scale = if y.abs() > f64::MAX / 4.0 { 0.25 } else { 1.0 };
+    let (size, step) = (x.abs() * scale, y.abs() * scale);
+    // An even number of steps away from x. Differences of numbers within a factor of two are exact.
+    let mut rest = size % (2.0 * step);
+    if rest + rest > step {
+        rest -= step;
+        if rest + rest >= step {
+            rest -= step;
+        }
+    }
+    rest / scale * 1.0_f64.copysign(x)
+}
+
 fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::remainder;
+
+    #[test]
+    fn remainders_are_those_of_the_standard() {
+        let cases = [
+            (5.0, 3.0, -1.0),
+            (-5.0, 3.0, 1.0),
+            (2.5, 1.0, 0.5),
+            (3.5, 1.0, -0.5),
+            (1e300, 7.0, 1.0),
+            (f64::MAX, 0.75 * f64::MAX, f64::MAX - 0.75 * f64::MAX),
+            (1e-310, f64::MAX, 1e-310),
+            (1.0, f64::INFINITY, 1.0),
+        ];
+        for (x, y, expected) in cases {
+            assert_eq!(remainder(x, y), expected, "{x:e}, {y:e}");
+        }
+        assert!(remainder(1.0, 0.0).is_nan() && remainder(f64::INFINITY, 1.0).is_nan());
+        assert!(remainder(-3.0, 3.0).is_sign_negative());
+    }
 }

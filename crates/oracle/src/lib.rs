@@ -43,6 +43,7 @@ pub mod compare;
 pub mod difference;
 pub mod dual;
 mod error;
+mod error_function;
 pub mod interpreter;
 pub mod nonzeros;
 pub mod points;

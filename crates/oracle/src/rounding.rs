@@ -10,6 +10,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use gyrocal_scalar::Scalar;
 
+use crate::error_function;
+
 /// Unit roundoff of `f64`: the largest relative error of one correctly rounded operation.
 pub const ROUNDOFF_F64: f64 = f64::EPSILON / 2.0;
 /// Unit roundoff of `f32`.
@@ -167,6 +169,70 @@ impl Scalar for RunningError {
         let value = self.value.tanh();
         self.function(value, 1.0 - value * value)
     }
+    fn asinh(self) -> Self {
+        self.function(
+            self.value.asinh(),
+            1.0 / (1.0 + self.value * self.value).sqrt(),
+        )
+    }
+    fn acosh(self) -> Self {
+        self.function(
+            self.value.acosh(),
+            1.0 / (self.value * self.value - 1.0).sqrt(),
+        )
+    }
+    fn atanh(self) -> Self {
+        self.function(self.value.atanh(), 1.0 / (1.0 - self.value * self.value))
+    }
+    fn exp_m1(self) -> Self {
+        self.function(self.value.exp_m1(), self.value.exp())
+    }
+    fn ln_1p(self) -> Self {
+        self.function(self.value.ln_1p(), 1.0 / (1.0 + self.value))
+    }
+    fn erf(self) -> Self {
+        let slope = error_function::slope(self.value);
+        self.function(error_function::erf(self.value), slope)
+    }
+    fn erf_inv(self) -> Self {
+        let value = error_function::erf_inv(self.value);
+        self.function(value, 1.0 / error_function::slope(value))
+    }
+    fn floor(self) -> Self {
+        Self::exact(self.value.floor())
+    }
+    fn ceil(self) -> Self {
+        Self::exact(self.value.ceil())
+    }
+    fn fmod(self, divisor: Self) -> Self {
+        let times = (self.value / divisor.value).trunc();
+        let inherited = self.bound + inherited(times, divisor.bound);
+        Self {
+            value: self.value % divisor.value,
+            bound: inherited,
+        }
+    }
+    fn remainder(self, divisor: Self) -> Self {
+        let times = (self.value / divisor.value).round_ties_even();
+        let inherited = self.bound + inherited(times, divisor.bound);
+        Self {
+            value: Scalar::remainder(self.value, divisor.value),
+            bound: inherited,
+        }
+    }
+    fn hypot(self, other: Self) -> Self {
+        let value = self.value.hypot(other.value);
+        let bound = inherited(other.value / value, other.bound);
+        let mut result = self.function(value, self.value / value);
+        result.bound += bound;
+        result
+    }
+    fn copysign(self, sign: Self) -> Self {
+        Self {
+            value: self.value.copysign(sign.value),
+            ..self
+        }
+    }
     fn exp(self) -> Self {
         let value = self.value.exp();
         self.function(value, value)
@@ -229,14 +295,20 @@ mod tests {
     use super::*;
 
     /// Every operation of the trait, strung together without running into a singularity.
-    fn everything<T: Scalar>(x: T, y: T) -> [T; 4] {
+    fn everything<T: Scalar>(x: T, y: T) -> [T; 6] {
         let c = T::from_f64;
         let (sine, cosine) = (x * y).sin_cos();
         let first = (sine / (cosine + c(1.5))).tan() + x.atan2(y) - x.tanh() * y.sinh();
         let second = (x.cosh() + y.abs()).ln() * (sine * c(0.3)).asin() + (cosine * c(0.3)).acos();
         let third = (x.exp() + c(0.1)).sqrt().powf(y * c(0.7)) - (-y).atan().mul_add(x, y);
         let fourth = (x - y).less(c(0.0)).if_else_zero(first) + x.min(y) * y.max(c(0.2)) * x.sign();
-        [first, second, third, fourth]
+        let fifth = (x * y).asinh()
+            + (x.hypot(y) + c(1.5)).acosh() * (sine * c(0.4)).atanh()
+            + (x * c(0.1)).exp_m1() / y.ln_1p();
+        let sixth = (x * c(0.3)).erf().copysign(cosine)
+            + (sine * c(0.9)).erf_inv()
+            + (x * y).floor() * y.ceil();
+        [first, second, third, fourth, fifth, sixth]
     }
 
     #[test]

@@ -72,6 +72,8 @@ impl<T: Scalar, const N: usize> Scalar for Lanes<T, N> {
             self.0[lane].mul_add(factor.0[lane], addend.0[lane])
         }))
     }
-    lanewise!(tan asin acos atan sinh cosh tanh exp ln sqrt abs sign;
-              atan2 powf min max less less_or_equal equal if_else_zero);
+    lanewise!(tan asin acos atan sinh cosh tanh asinh acosh atanh exp exp_m1 ln ln_1p sqrt
+              erf erf_inv floor ceil abs sign;
+              atan2 powf fmod remainder hypot copysign min max less less_or_equal equal
+              if_else_zero);
 }

@@ -14,6 +14,7 @@
 extern crate std;
 
 pub mod effect;
+mod error_function;
 mod exponential;
 mod float;
 mod lanes;
@@ -21,6 +22,7 @@ mod model;
 mod scalar;
 mod trigonometry;
 
+pub use error_function::{erf_inv_f32, erf_inv_f64};
 pub use exponential::{exp_f32, exp_f64};
 pub use lanes::Lanes;
 pub use model::{Element, Model, NamedInputs, RatesJacobian, Recentre};

@@ -54,6 +54,46 @@ pub trait Scalar:
     /// `self` to a power that is not a small integer.
     #[must_use]
     fn powf(self, exponent: Self) -> Self;
+    /// Inverse hyperbolic sine.
+    #[must_use]
+    fn asinh(self) -> Self;
+    /// Inverse hyperbolic cosine.
+    #[must_use]
+    fn acosh(self) -> Self;
+    /// Inverse hyperbolic tangent.
+    #[must_use]
+    fn atanh(self) -> Self;
+    /// Natural exponential less one, without loss of digits near zero.
+    #[must_use]
+    fn exp_m1(self) -> Self;
+    /// Natural logarithm of one plus `self`, without loss of digits near zero.
+    #[must_use]
+    fn ln_1p(self) -> Self;
+    /// Error function.
+    #[must_use]
+    fn erf(self) -> Self;
+    /// Inverse of the error function.
+    #[must_use]
+    fn erf_inv(self) -> Self;
+    /// Largest integer that is not above `self`.
+    #[must_use]
+    fn floor(self) -> Self;
+    /// Smallest integer that is not below `self`.
+    #[must_use]
+    fn ceil(self) -> Self;
+    /// What the division by `divisor`, rounded to an integer towards zero, leaves; it has the sign
+    /// of `self`. Exact.
+    #[must_use]
+    fn fmod(self, divisor: Self) -> Self;
+    /// What the division by `divisor`, rounded to the nearest integer (half to even), leaves. Exact.
+    #[must_use]
+    fn remainder(self, divisor: Self) -> Self;
+    /// Root of the sum of the squares, without overflow in between.
+    #[must_use]
+    fn hypot(self, other: Self) -> Self;
+    /// `self` with the sign of `sign`.
+    #[must_use]
+    fn copysign(self, sign: Self) -> Self;
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;

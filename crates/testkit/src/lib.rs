@@ -1,9 +1,9 @@
 //! Shared support of tests, benches and figures; not part of the library.
 //!
-//! - Without features: copies of the workspace, small derivations, and cargo and Python as a user
-//!   would have them, for tests of the build.
-//! - `filters`: a platform with any number of states, rounding errors against 400-bit references, and
-//!   Kalman filters of other packages.
+//! - Without features: copies of the workspace, small derivations, cargo and Python as a user would
+//!   have them, for tests of the build, and interleaved timing.
+//! - `filters`: a platform with any number of states, rounding errors against 400-bit references,
+//!   Kalman filters of other packages, and times of a step.
 //! - `calibration`: dense least squares for short records, and signatures by finite differences of the
 //!   independent simulation.
 //! - `noise`: records with faulty noise.
@@ -42,6 +42,9 @@ pub mod peer_filters;
 pub mod rounding_errors;
 #[cfg(feature = "calibration")]
 pub mod signature_differences;
+#[cfg(feature = "filters")]
+pub mod step_times;
+pub mod timing;
 mod tiny;
 
 pub use command::{Outcome, cargo, codegen, real_environments, run, system_python, tools_only};

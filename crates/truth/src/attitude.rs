@@ -1,6 +1,6 @@
 //! Attitude as a unit quaternion, and its three angles.
 
-use libm::{atan2, cos, hypot, sin, sqrt};
+use libm::{atan2, cos, hypot, sin};
 
 /// The attitude of frame `t` against frame `s`: it resolves vectors of `s` in `t`.
 ///
@@ -137,7 +137,7 @@ impl Attitude {
     /// Its length, 1 but for rounding.
     #[must_use]
     pub fn length(self) -> f64 {
-        sqrt(self.w * self.w + dot(self.vector, self.vector))
+        (self.w * self.w + dot(self.vector, self.vector)).sqrt()
     }
 
     /// Rate of change of the four numbers when `t` turns at a rate given in its own axes.
@@ -185,7 +185,7 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 pub(crate) fn norm(a: [f64; 3]) -> f64 {
-    sqrt(dot(a, a))
+    dot(a, a).sqrt()
 }
 
 #[cfg(test)]

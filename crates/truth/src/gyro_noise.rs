@@ -1,7 +1,5 @@
 //! Noise of the drift.
 
-use libm::sqrt;
-
 use crate::effect::Effect;
 use crate::random::{Purpose, Stream};
 use crate::scenario::Scenario;
@@ -66,13 +64,13 @@ impl Walk {
     /// Advances by an interval and returns the mean over it. Mean and end have the joint distribution
     /// of a Brownian motion: half of the increment, and an independent part of variance Δt/12.
     fn next_deg_per_h(&mut self, interval_s: f64) -> [f64; 3] {
-        let root_h = sqrt(interval_s / 3600.0);
+        let root_h = (interval_s / 3600.0).sqrt();
         let (increments, bridges) = (self.steps.three_normals(), self.steps.three_normals());
         core::array::from_fn(|gyro| {
             let sigma = self.size_deg_per_h_per_sqrt_h[gyro] * root_h;
             let before = self.now_deg_per_h[gyro];
             self.now_deg_per_h[gyro] += sigma * increments[gyro];
-            before + sigma * (0.5 * increments[gyro] + bridges[gyro] / sqrt(12.0))
+            before + sigma * (0.5 * increments[gyro] + bridges[gyro] / 12.0_f64.sqrt())
         })
     }
 }

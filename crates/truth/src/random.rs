@@ -2,7 +2,7 @@
 
 use chacha20::ChaCha12Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
-use libm::{log, sincos, sqrt};
+use libm::{log, sincos};
 
 use crate::attitude::Attitude;
 
@@ -86,7 +86,7 @@ impl Stream {
         if let Some(second) = self.second.take() {
             return second;
         }
-        let radius = sqrt(-2.0 * log(self.uniform()));
+        let radius = (-2.0 * log(self.uniform())).sqrt();
         let angle = core::f64::consts::TAU * self.uniform();
         let (sine, cosine) = sincos(angle);
         self.second = Some(radius * sine);

@@ -1,7 +1,7 @@
 //! From exact samples to a record: noise, gaps and missing components.
 
 use gyrocal_record::Record;
-use libm::{rint, sqrt};
+use libm::rint;
 
 use crate::effect::Effect;
 use crate::random::{Purpose, Stream};
@@ -129,7 +129,7 @@ impl AccelNoise {
         let noise = match self.last {
             // First-order correlation, of the same variance in every sample.
             Some(last) if self.correlation != 0.0 => {
-                let share = sqrt(1.0 - self.correlation * self.correlation);
+                let share = (1.0 - self.correlation * self.correlation).sqrt();
                 [0, 1, 2].map(|axis| self.correlation * last[axis] + share * fresh[axis])
             }
             _ => fresh,

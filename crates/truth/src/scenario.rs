@@ -138,7 +138,7 @@ impl Scenario {
     /// Standard deviation of the gyro noise as it is held over one interval.
     #[must_use]
     pub fn held_gyro_noise_deg_per_h(&self) -> f64 {
-        self.gyro_noise_deg_per_h * libm::sqrt(60.0 / self.interval_s)
+        self.gyro_noise_deg_per_h * (60.0 / self.interval_s).sqrt()
     }
 
     /// Rows of the regular grid, those in gaps included.

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use libm::{cos, pow, sqrt};
+use libm::{cos, pow};
 
 use crate::random::{Purpose, Stream};
 
@@ -51,14 +51,14 @@ impl Temperature {
             let period_s = PERIODS_S[0] * pow(PERIODS_S[1] / PERIODS_S[0], place);
             Wave {
                 // As in a random walk, power rises in proportion to the period.
-                amplitude_k: sqrt(period_s),
+                amplitude_k: period_s.sqrt(),
                 period_s,
                 phase_rad: stream.between(0.0, TAU),
             }
         });
         let power: f64 = wander.iter().map(|wave| 0.5 * wave.period_s).sum();
         for wave in &mut wander {
-            wave.amplitude_k *= self.wander_k / sqrt(power);
+            wave.amplitude_k *= self.wander_k / power.sqrt();
         }
         times_s
             .map(|time_s| {

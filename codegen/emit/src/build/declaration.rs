@@ -26,6 +26,9 @@ pub(super) struct Declaration {
     /// Files of evaluated numbers.
     #[serde(default)]
     pub(super) numbers: Vec<NumbersDeclaration>,
+    /// Products that are added become fused multiply-adds where the target has them.
+    #[serde(default)]
+    pub(super) fused_multiply_add: bool,
     /// Settings for variants of other packages.
     #[serde(default)]
     pub(super) variants: VariantsDeclaration,

@@ -125,13 +125,17 @@ fn header(derivation: &Derivation) -> Header {
 }
 
 fn options(derivation: &Derivation) -> Options {
-    let declared = &derivation.declaration.variants.scalar_crate;
-    match (&derivation.request, declared) {
-        (Some(_), Some(path)) => Options {
-            scalar_crate: path.clone(),
-        },
-        _ => Options::default(),
+    let declaration = &derivation.declaration;
+    let mut options = Options {
+        fused_multiply_add: declaration.fused_multiply_add,
+        ..Options::default()
+    };
+    if derivation.request.is_some()
+        && let Some(path) = &declaration.variants.scalar_crate
+    {
+        options.scalar_crate = path.clone();
     }
+    options
 }
 
 /// Runs `run.py` and returns the directory that holds what the derivation wrote.

@@ -13,7 +13,11 @@ macro_rules! embedded {
 }
 
 /// The exporter, written out where it is run.
-const EXPORTER: &[(&str, &str)] = embedded!["exporter/casadi_program.py", "exporter/run.py"];
+const EXPORTER: &[(&str, &str)] = embedded![
+    "exporter/casadi_program.py",
+    "exporter/plant.py",
+    "exporter/run.py"
+];
 
 /// The emitter: every source file of the crate outside `src/build` and `src/main.rs`,
 /// which decide when code is generated and not what it looks like.
@@ -21,6 +25,7 @@ const EMITTER: &[(&str, &str)] = embedded![
     "src/emit.rs",
     "src/emit/count.rs",
     "src/emit/doc.rs",
+    "src/emit/explain.rs",
     "src/emit/expression.rs",
     "src/emit/function.rs",
     "src/emit/group.rs",
@@ -42,10 +47,14 @@ const EMITTER: &[(&str, &str)] = embedded![
     "src/program.rs",
     "src/program/check.rs",
     "src/program/context.rs",
+    "src/program/external.rs",
+    "src/program/instructions.rs",
     "src/program/model.rs",
     "src/program/names.rs",
     "src/program/operation.rs",
     "src/program/schema.rs",
+    "src/program/schema/instruction.rs",
+    "src/program/schema/numbers.rs",
     "src/program/table.rs",
     "src/simplify.rs",
     "src/simplify/rules.rs",

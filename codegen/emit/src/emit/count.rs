@@ -31,7 +31,7 @@ impl Count {
                 Node::Binary(Binary::Add | Binary::Sub, ..) => count.additions += 1,
                 Node::Binary(Binary::Mul, ..) => count.multiplications += 1,
                 Node::Binary(Binary::Div, ..) => count.divisions += 1,
-                Node::Unary(..) | Node::Binary(..) => count.others += 1,
+                Node::Unary(..) | Node::Binary(..) | Node::Call(_) => count.others += 1,
             }
         }
         count

@@ -5,6 +5,7 @@ use quote::{ToTokens, quote};
 
 use super::items::ident;
 use crate::ir::{Binary, Expressions, Node, NodeId, Unary};
+use crate::program::External;
 
 /// Precedence of an expression, from the loosest.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,15 +20,29 @@ type Printed = (TokenStream, Level);
 
 /// Prints nodes of one function in terms of the variables named so far.
 pub(super) struct Printer<'a> {
+    externals: &'a [External],
     expressions: &'a Expressions,
     names: Vec<Option<String>>,
+    /// The constant 1, if the function has it.
+    one: Option<NodeId>,
+    /// Products that are added become fused multiply-adds.
+    fused: bool,
 }
 
 impl<'a> Printer<'a> {
-    pub(super) fn new(expressions: &'a Expressions) -> Self {
+    pub(super) fn new(
+        externals: &'a [External],
+        expressions: &'a Expressions,
+        fused: bool,
+    ) -> Self {
+        let mut constants = expressions.graph.iter();
+        let one = constants.find(|(id, _)| expressions.graph.constant_value(*id) == Some(1.0));
         Self {
+            externals,
             expressions,
             names: vec![None; expressions.graph.len()],
+            one: one.map(|(id, _)| id),
+            fused,
         }
     }
 
@@ -81,12 +96,52 @@ impl<'a> Printer<'a> {
                 let method = ident(unary_method(function));
                 (quote!(#receiver.#method()), Level::Atom)
             }
-            Node::Binary(function, x, y) => self.binary(function, x, y),
+            Node::Binary(function, x, y) => self
+                .fused(function, x, y)
+                .unwrap_or_else(|| self.binary(function, x, y)),
+            Node::Call(call) => {
+                let function = ident(&self.externals[call.external()].name);
+                let arguments = call.arguments().iter().map(|&id| self.print(id));
+                (quote!(#function(#(#arguments),*)), Level::Atom)
+            }
         }
+    }
+
+    /// A sum or difference of which one side is a product that has no name: `a.mul_add(b, c)`.
+    fn fused(&self, function: Binary, x: NodeId, y: NodeId) -> Option<Printed> {
+        if !self.fused || !matches!(function, Binary::Add | Binary::Sub) {
+            return None;
+        }
+        let product = |id: NodeId| match self.expressions.graph.node(id) {
+            Node::Binary(Binary::Mul, a, b) if !self.is_named(id) => Some((a, b)),
+            _ => None,
+        };
+        let tokens = if let Some((a, b)) = product(y) {
+            let (a, b, addend) = (self.at(a, Level::Atom), self.print(b), self.print(x));
+            match function {
+                Binary::Add => quote!(#a.mul_add(#b, #addend)),
+                _ => quote!((-#a).mul_add(#b, #addend)),
+            }
+        } else {
+            let (a, b) = product(x)?;
+            let (a, b) = (self.at(a, Level::Atom), self.print(b));
+            match function {
+                Binary::Add => {
+                    let addend = self.print(y);
+                    quote!(#a.mul_add(#b, #addend))
+                }
+                _ => {
+                    let addend = self.at(y, Level::Negation);
+                    quote!(#a.mul_add(#b, -#addend))
+                }
+            }
+        };
+        Some((tokens, Level::Atom))
     }
 
     fn negation(&self, x: NodeId) -> Printed {
         if self.name_of(x).is_none()
+            && !self.fused
             && let Node::Binary(Binary::Add, left, right) = self.expressions.graph.node(x)
         {
             // -(a + b) is -a - b, to the bit.
@@ -138,13 +193,7 @@ impl<'a> Printer<'a> {
 
     /// The number one, by the name that it may have.
     fn one(&self) -> TokenStream {
-        let one = self
-            .expressions
-            .graph
-            .iter()
-            .find(|(id, _)| self.expressions.graph.constant_value(*id) == Some(1.0))
-            .and_then(|(id, _)| self.name_of(id));
-        match one {
+        match self.one.and_then(|id| self.name_of(id)) {
             Some(name) => ident(name).into_token_stream(),
             None => constant_tokens(1.0),
         }
@@ -167,7 +216,7 @@ fn parenthesised((tokens, level): Printed, needed: Level) -> TokenStream {
     }
 }
 
-fn unary_method(function: Unary) -> &'static str {
+pub(super) fn unary_method(function: Unary) -> &'static str {
     match function {
         Unary::Negate => "neg",
         Unary::Reciprocal => "recip",
@@ -183,12 +232,21 @@ fn unary_method(function: Unary) -> &'static str {
         Unary::Sinh => "sinh",
         Unary::Cosh => "cosh",
         Unary::Tanh => "tanh",
+        Unary::Asinh => "asinh",
+        Unary::Acosh => "acosh",
+        Unary::Atanh => "atanh",
+        Unary::Expm1 => "exp_m1",
+        Unary::Log1p => "ln_1p",
+        Unary::Erf => "erf",
+        Unary::ErfInv => "erf_inv",
+        Unary::Floor => "floor",
+        Unary::Ceil => "ceil",
         Unary::Abs => "abs",
         Unary::Sign => "sign",
     }
 }
 
-fn binary_method(function: Binary) -> &'static str {
+pub(super) fn binary_method(function: Binary) -> &'static str {
     match function {
         Binary::Add => "add",
         Binary::Sub => "sub",
@@ -196,6 +254,10 @@ fn binary_method(function: Binary) -> &'static str {
         Binary::Div => "div",
         Binary::Power => "powf",
         Binary::Atan2 => "atan2",
+        Binary::Fmod => "fmod",
+        Binary::Remainder => "remainder",
+        Binary::Hypot => "hypot",
+        Binary::CopySign => "copysign",
         Binary::Min => "min",
         Binary::Max => "max",
         Binary::Less => "less",

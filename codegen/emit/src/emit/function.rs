@@ -19,39 +19,98 @@ const ALWAYS_INLINED_OPERATIONS: usize = 64;
 /// Arguments that clippy takes without a word.
 const FEW_ARGUMENTS: usize = 7;
 
+/// Results of more scalars than these are written through a reference by the function that computes
+/// them: compilers copy larger ones through memory when a result is assigned to a place that exists
+/// already, which can take as long as the function.
+const FEW_SCALARS: usize = 16;
+
 pub(super) fn emit(
     program: &Program,
     function: &Function,
     expressions: &Expressions,
+    fused: bool,
     items: &mut Items<'_>,
 ) -> Result<Vec<TokenStream>, Error> {
     let mut result = output::structure(function, items)?;
     let place = format!("function `{}`", function.name);
     let name = items.claim(Namespace::Value, &function.name, &place)?;
     let count = Count::of(expressions);
-    let doc = documentation(program, function, count).tokens();
+    let doc = documentation(program, function, count);
     let inline = if count.total() <= ALWAYS_INLINED_OPERATIONS {
         quote!(#[inline(always)])
     } else {
         quote!(#[inline])
     };
     let allowances = allowances(function, expressions);
-    let arguments = program.inputs_of(function).map(|group| {
-        let (argument, length) = (ident(&group.name), integer(group.elements.len()));
-        quote!(#argument: &[T; #length])
-    });
+    let arguments: Vec<TokenStream> = program
+        .inputs_of(function)
+        .map(|group| {
+            let (argument, length) = (ident(&group.name), integer(group.elements.len()));
+            quote!(#argument: &[T; #length])
+        })
+        .collect();
     let return_type = output::return_type(function);
-    let body = plan::body(program, function, expressions);
-    let statements = body.statements;
-    let value = output::return_value(function, &body.outputs);
+    let body = plan::body(program, function, expressions, fused);
+    let statements = &body.statements;
+    if output::scalars(function) <= FEW_SCALARS {
+        let value = output::return_value(function, &body.outputs);
+        let doc = doc.tokens();
+        result.push(quote! {
+            #doc
+            #inline
+            #[must_use]
+            #allowances
+            pub fn #name<T: Scalar>(#(#arguments),*) -> #return_type {
+                #(#statements)*
+                #value
+            }
+        });
+        return Ok(result);
+    }
+    let into_name = format!("{}_into", function.name);
+    let into = items.claim(Namespace::Value, &into_name, &place)?;
+    let out = &body.out;
+    let assignments = output::assignments(function, out, &body.outputs);
+    let names: Vec<_> = program
+        .inputs_of(function)
+        .map(|group| ident(&group.name))
+        .collect();
+    let zeros = output::zeros(function);
+    let mut doc = doc;
+    doc.paragraph("# Results");
+    doc.lines_of(&format!(
+        "Returned by value. To write them to a place that exists already, call [`{into_name}`]: \
+         assigning them copies them through memory."
+    ));
+    let doc = doc.tokens();
+    let into_doc = Doc::of(&format!(
+        "[`{}`], written to `{out}`: every element is, at every call.",
+        function.name
+    ))
+    .tokens();
+    let few = function.inputs.len() == FEW_ARGUMENTS;
+    let into_allowance = few.then(too_many_arguments);
+    // A result of an element at least is there, so every statement has a scalar of type `T`.
     result.push(quote! {
         #doc
-        #inline
+        #[inline(always)]
         #[must_use]
         #allowances
         pub fn #name<T: Scalar>(#(#arguments),*) -> #return_type {
+            let zero = T::from_f64(0e0);
+            let mut #out = #zeros;
+            #into(#(#names,)* &mut #out);
+            #out
+        }
+    });
+    result.push(quote! {
+        #into_doc
+        #inline
+        #allowances
+        #into_allowance
+        pub fn #into<T: Scalar>(#(#arguments,)* #out: &mut #return_type) {
             #(#statements)*
-            #value
+            #assignments
         }
     });
     Ok(result)
@@ -118,11 +177,13 @@ fn allowances(function: &Function, expressions: &Expressions) -> TokenStream {
             reason = "constants are those of the derivation, to the last digit"
         )])
     });
-    let arguments = (function.inputs.len() > FEW_ARGUMENTS).then(|| {
-        quote!(#[allow(
-            clippy::too_many_arguments,
-            reason = "one argument for each group of the derivation"
-        )])
-    });
+    let arguments = (function.inputs.len() > FEW_ARGUMENTS).then(too_many_arguments);
     quote!(#constants #arguments)
+}
+
+fn too_many_arguments() -> TokenStream {
+    quote!(#[allow(
+        clippy::too_many_arguments,
+        reason = "one argument for each group of the derivation"
+    )])
 }

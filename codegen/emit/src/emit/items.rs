@@ -7,13 +7,14 @@ use proc_macro2::{Ident, Literal, Span};
 use crate::Error;
 
 /// Names that emitted code uses and no item may take.
-const USED_TYPES: &[&str] = &[
+pub(super) const USED_TYPES: &[&str] = &[
     "T",
     "Scalar",
     "Model",
     "NamedInputs",
     "Element",
     "RatesJacobian",
+    "Recentre",
     "Self",
     "Clone",
     "Copy",

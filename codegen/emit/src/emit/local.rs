@@ -1,6 +1,6 @@
 //! Names of the local variables of one function.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::Program;
 use crate::program::{Function, Output};
@@ -8,6 +8,8 @@ use crate::program::{Function, Output};
 /// Gives each variable a name that nothing else in the function has.
 pub(super) struct Locals {
     taken: BTreeSet<String>,
+    /// For each name that was taken more than once the number that it was given last.
+    numbers: BTreeMap<String, usize>,
     temporaries: usize,
 }
 
@@ -20,7 +22,13 @@ impl Locals {
         let groups: Vec<_> = program.inputs_of(function).collect();
         let all = || groups.iter().flat_map(|group| &group.elements);
         let mut locals = Self {
-            taken: groups.iter().map(|group| group.name.clone()).collect(),
+            taken: groups
+                .iter()
+                .map(|group| &group.name)
+                .chain(program.externals.iter().map(|external| &external.name))
+                .cloned()
+                .collect(),
+            numbers: BTreeMap::new(),
             temporaries: 0,
         };
         let elements = groups
@@ -32,7 +40,8 @@ impl Locals {
                     .map(|element| {
                         let name = &element.name;
                         let is_shared = all().filter(|other| other.name == *name).count() > 1;
-                        let is_argument = groups.iter().any(|group| group.name == *name);
+                        let is_argument = groups.iter().any(|group| group.name == *name)
+                            || program.externals.iter().any(|other| other.name == *name);
                         // `let [dt] = *dt;` shadows an argument that is not needed again.
                         if !is_shared && (!is_argument || group.name == *name) {
                             locals.taken.insert(name.clone());
@@ -56,10 +65,12 @@ impl Locals {
         if let Some(name) = self.exactly(name) {
             return name;
         }
-        let mut number = 2;
+        // Names are never given back, so lower numbers stay taken.
+        let mut number = self.numbers.get(name).map_or(2, |last| last + 1);
         loop {
-            if let Some(name) = self.exactly(&format!("{name}_{number}")) {
-                return name;
+            if let Some(unique) = self.exactly(&format!("{name}_{number}")) {
+                self.numbers.insert(name.to_owned(), number);
+                return unique;
             }
             number += 1;
         }

@@ -101,6 +101,9 @@ pub(super) fn emit(
     result.extend(inputs(&parts, items)?);
     result.extend(state(&parts, items)?);
     result.push(Methods::new(&parts).implementation());
+    if model.flat {
+        result.push(flat(&parts));
+    }
     Ok(result)
 }
 
@@ -135,6 +138,15 @@ fn constants(parts: &Parts<'_>) -> TokenStream {
             pub const OUTPUTS: usize = #outputs;
         }
     }
+}
+
+/// Corrections are added to the states: the defaults of the trait.
+fn flat(parts: &Parts<'_>) -> TokenStream {
+    let name = ident(&parts.model.name);
+    let moving = parts.moving().elements.len();
+    let outputs = parts.function(parts.model.output.value).outputs[0].rows;
+    let [moving, outputs] = [moving, outputs].map(integer);
+    quote!(impl<T: Scalar> Recentre<T, #moving, #outputs> for #name {})
 }
 
 fn inputs(parts: &Parts<'_>, items: &mut Items<'_>) -> Result<Vec<TokenStream>, Error> {

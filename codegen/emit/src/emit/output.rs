@@ -60,6 +60,52 @@ pub(super) fn return_value(function: &Function, nonzeros: &[Vec<TokenStream>]) -
     quote!(#structure { #(#fields: #values),* })
 }
 
+/// Number of scalars that a function returns.
+pub(super) fn scalars(function: &Function) -> usize {
+    let outputs = function.outputs.iter();
+    outputs.map(|output| output.nonzeros.len()).sum()
+}
+
+/// Statements that write the results to the place `out`, from the nonzeros of each output.
+pub(super) fn assignments(
+    function: &Function,
+    out: &Ident,
+    nonzeros: &[Vec<TokenStream>],
+) -> TokenStream {
+    if is_returned_directly(function) {
+        let value = array_value(&function.outputs[0], &nonzeros[0]);
+        return quote!(*#out = #value;);
+    }
+    let outputs = function.outputs.iter().zip(nonzeros);
+    let statements = outputs.map(|(output, tokens)| {
+        let (field, value) = (ident(&output.name), array_value(output, tokens));
+        quote!(#out.#field = #value;)
+    });
+    quote!(#(#statements)*)
+}
+
+/// The results of a function, all zero.
+pub(super) fn zeros(function: &Function) -> TokenStream {
+    let zero = |output: &Output| {
+        let [rows, columns, count] = [output.rows, output.columns, output.nonzeros.len()];
+        let [rows, columns, count] = [rows, columns, count].map(integer);
+        match Layout::of(output) {
+            Layout::Vector => quote!([zero; #rows]),
+            Layout::Matrix => quote!([[zero; #columns]; #rows]),
+            Layout::Sparse => quote!([zero; #count]),
+        }
+    };
+    if is_returned_directly(function) {
+        return zero(&function.outputs[0]);
+    }
+    let structure = structure_name(function);
+    let fields = function.outputs.iter().map(|output| {
+        let (field, value) = (ident(&output.name), zero(output));
+        quote!(#field: #value)
+    });
+    quote!(#structure { #(#fields),* })
+}
+
 /// The struct of a function with several outputs or a sparse one.
 pub(super) fn structure(
     function: &Function,
@@ -155,17 +201,18 @@ fn array_type(output: &Output) -> TokenStream {
 fn array_value(output: &Output, nonzeros: &[TokenStream]) -> TokenStream {
     match Layout::of(output) {
         Layout::Sparse => quote!([#(#nonzeros),*]),
+        // Sorted by row, then column.
         Layout::Vector => {
-            let rows = (0..output.rows)
-                .filter_map(|row| output.nonzero_at(row, 0))
+            let rows = output
+                .places()
+                .into_values()
                 .map(|nonzero| &nonzeros[nonzero]);
             quote!([#(#rows),*])
         }
         Layout::Matrix => {
-            let rows = (0..output.rows).map(|row| {
-                let entries = (0..output.columns)
-                    .filter_map(move |column| output.nonzero_at(row, column))
-                    .map(|nonzero| &nonzeros[nonzero]);
+            let places: Vec<usize> = output.places().into_values().collect();
+            let rows = places.chunks(output.columns).map(|row| {
+                let entries = row.iter().map(|&nonzero| &nonzeros[nonzero]);
                 quote!([#(#entries),*])
             });
             quote!([#(#rows),*])

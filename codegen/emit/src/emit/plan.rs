@@ -1,6 +1,8 @@
 //! Choice of the nodes of a function that become variables, with their order and names.
 
-use proc_macro2::TokenStream;
+use std::collections::HashMap;
+
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::expression::Printer;
@@ -18,16 +20,24 @@ const OUTPUT_OPERATIONS: usize = 4;
 
 /// Statements of a function, and the expressions of its outputs' nonzeros.
 pub(super) struct Body {
+    /// A name that no statement uses, for the place of the results.
+    pub(super) out: Ident,
     pub(super) statements: Vec<TokenStream>,
     pub(super) outputs: Vec<Vec<TokenStream>>,
 }
 
 /// Plans and prints a function; `expressions` are without dead code.
-pub(super) fn body(program: &Program, function: &Function, expressions: &Expressions) -> Body {
+pub(super) fn body(
+    program: &Program,
+    function: &Function,
+    expressions: &Expressions,
+    fused: bool,
+) -> Body {
     let (mut locals, elements) = Locals::new(program, function);
+    let outputs = output_places(expressions);
     let is_variable = variables(function, expressions);
     let mut statements = arguments(program, function, expressions, &elements);
-    let mut printer = Printer::new(expressions);
+    let mut printer = Printer::new(&program.externals, expressions, fused);
     for (id, node) in expressions.graph.iter() {
         if let Node::Input { input, element } = node {
             printer.name(id, elements[input][element].clone());
@@ -43,7 +53,7 @@ pub(super) fn body(program: &Program, function: &Function, expressions: &Express
             continue;
         }
         let value = printer.print(id);
-        let name = output_name(function, expressions, &mut locals, id)
+        let name = output_name(function, expressions, &outputs, &mut locals, id)
             .or_else(|| value_name(&printer, &mut locals, node))
             .unwrap_or_else(|| locals.temporary());
         let variable = ident(&name);
@@ -56,6 +66,7 @@ pub(super) fn body(program: &Program, function: &Function, expressions: &Express
         .map(|output| output.iter().map(|&id| printer.print(id)).collect())
         .collect();
     Body {
+        out: ident(&locals.unique("out")),
         statements,
         outputs,
     }
@@ -82,7 +93,7 @@ fn variables(function: &Function, expressions: &Expressions) -> Vec<bool> {
                 is_variable[id.index()] = true;
                 continue;
             }
-            Node::Unary(..) | Node::Binary(..) => {}
+            Node::Unary(..) | Node::Binary(..) | Node::Call(_) => {}
         }
         loop {
             let inside: usize = node
@@ -184,24 +195,33 @@ fn sine_and_cosine(
     quote!(let (#sine, #cosine) = #argument.sin_cos();)
 }
 
+/// For each node the outputs that have it, with its first nonzero in each.
+fn output_places(expressions: &Expressions) -> HashMap<NodeId, Vec<(usize, usize)>> {
+    let mut places: HashMap<NodeId, Vec<(usize, usize)>> = HashMap::new();
+    for (output, nodes) in expressions.outputs.iter().enumerate() {
+        for (nonzero, &id) in nodes.iter().enumerate() {
+            let of_node = places.entry(id).or_default();
+            if of_node.last().is_none_or(|&(last, _)| last != output) {
+                of_node.push((output, nonzero));
+            }
+        }
+    }
+    places
+}
+
 /// The name of the first output element that the node is.
 fn output_name(
     function: &Function,
     expressions: &Expressions,
+    places: &HashMap<NodeId, Vec<(usize, usize)>>,
     locals: &mut Locals,
     id: NodeId,
 ) -> Option<String> {
     if matches!(expressions.graph.node(id), Node::Constant(_)) {
         return None;
     }
-    function
-        .outputs
-        .iter()
-        .zip(&expressions.outputs)
-        .find_map(|(output, nodes)| {
-            let nonzero = nodes.iter().position(|&node| node == id)?;
-            locals.of_output(output, nonzero)
-        })
+    let mut of_node = places.get(&id)?.iter();
+    of_node.find_map(|&(output, nonzero)| locals.of_output(&function.outputs[output], nonzero))
 }
 
 /// A name that describes the value of a simple node.

@@ -1,9 +1,11 @@
+use gyrocal_scalar::Scalar;
+
 use super::{Binary, Expressions, Node, Unary};
 
 /// Values of every structural nonzero of every output at one point, in `f64`.
 ///
 /// `inputs` are the elements of each input of the function; an element that is not given
-/// is NaN.
+/// is NaN, and so is a call of an external function, of which only the name is known.
 #[must_use]
 pub fn evaluate(expressions: &Expressions, inputs: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut values: Vec<f64> = Vec::with_capacity(expressions.graph.len());
@@ -17,6 +19,7 @@ pub fn evaluate(expressions: &Expressions, inputs: &[Vec<f64>]) -> Vec<Vec<f64>>
                 .unwrap_or(f64::NAN),
             Node::Unary(function, x) => unary(function, values[x.index()]),
             Node::Binary(function, x, y) => binary(function, values[x.index()], values[y.index()]),
+            Node::Call(_) => f64::NAN,
         });
     }
     expressions
@@ -43,6 +46,15 @@ pub(crate) fn unary(function: Unary, x: f64) -> f64 {
         Unary::Sinh => x.sinh(),
         Unary::Cosh => x.cosh(),
         Unary::Tanh => x.tanh(),
+        Unary::Asinh => Scalar::asinh(x),
+        Unary::Acosh => Scalar::acosh(x),
+        Unary::Atanh => Scalar::atanh(x),
+        Unary::Expm1 => Scalar::exp_m1(x),
+        Unary::Log1p => Scalar::ln_1p(x),
+        Unary::Erf => Scalar::erf(x),
+        Unary::ErfInv => Scalar::erf_inv(x),
+        Unary::Floor => Scalar::floor(x),
+        Unary::Ceil => Scalar::ceil(x),
         Unary::Abs => x.abs(),
         Unary::Sign => {
             if x > 0.0 {
@@ -66,6 +78,10 @@ pub(crate) fn binary(function: Binary, x: f64, y: f64) -> f64 {
         Binary::Div => x / y,
         Binary::Power => x.powf(y),
         Binary::Atan2 => x.atan2(y),
+        Binary::Fmod => Scalar::fmod(x, y),
+        Binary::Remainder => Scalar::remainder(x, y),
+        Binary::Hypot => Scalar::hypot(x, y),
+        Binary::CopySign => x.copysign(y),
         Binary::Min => x.min(y),
         Binary::Max => x.max(y),
         Binary::Less => truth(x < y),

@@ -1,4 +1,4 @@
-use super::{Binary, Expressions, Graph, Node, NodeId, Type, Unary};
+use super::{Binary, Call, Expressions, Graph, Node, NodeId, Type, Unary};
 use crate::program::{BinaryOperation, Function, Instruction, UnaryOperation};
 
 /// Largest magnitude of an integer exponent that becomes a product: up to it the product is
@@ -13,7 +13,7 @@ const LARGEST_PRODUCT: f64 = 32.0;
 pub fn lower(function: &Function) -> Expressions {
     let mut graph = Graph::default();
     let zero = graph.constant(0.0);
-    let mut work = vec![zero; function.work_size];
+    let mut work = vec![zero; function.work_size.max(1)];
     let mut outputs: Vec<Vec<NodeId>> = function
         .outputs
         .iter()
@@ -32,6 +32,15 @@ pub fn lower(function: &Function) -> Expressions {
                 outputs[output][nonzero] = work[from];
             }
             Instruction::Constant { to, value } => work[to] = graph.constant(value),
+            Instruction::Call {
+                external,
+                to,
+                operands,
+                count,
+            } => {
+                let operands = operands.map(|operand| work[operand]);
+                work[to] = graph.add(Node::Call(Call::new(external, &operands[..count])));
+            }
             Instruction::Unary {
                 operation,
                 to,
@@ -72,6 +81,15 @@ fn unary(graph: &mut Graph, operation: UnaryOperation, x: NodeId) -> NodeId {
         UnaryOperation::Sinh => Unary::Sinh,
         UnaryOperation::Cosh => Unary::Cosh,
         UnaryOperation::Tanh => Unary::Tanh,
+        UnaryOperation::Asinh => Unary::Asinh,
+        UnaryOperation::Acosh => Unary::Acosh,
+        UnaryOperation::Atanh => Unary::Atanh,
+        UnaryOperation::Expm1 => Unary::Expm1,
+        UnaryOperation::Log1p => Unary::Log1p,
+        UnaryOperation::Erf => Unary::Erf,
+        UnaryOperation::ErfInv => Unary::ErfInv,
+        UnaryOperation::Floor => Unary::Floor,
+        UnaryOperation::Ceil => Unary::Ceil,
         UnaryOperation::Abs => Unary::Abs,
         UnaryOperation::Sign => Unary::Sign,
     };
@@ -98,6 +116,10 @@ fn binary(graph: &mut Graph, operation: BinaryOperation, x: NodeId, y: NodeId) -
         BinaryOperation::Mul => Binary::Mul,
         BinaryOperation::Div => Binary::Div,
         BinaryOperation::Atan2 => Binary::Atan2,
+        BinaryOperation::Fmod => Binary::Fmod,
+        BinaryOperation::Remainder => Binary::Remainder,
+        BinaryOperation::Hypot => Binary::Hypot,
+        BinaryOperation::CopySign => Binary::CopySign,
         BinaryOperation::Min => Binary::Min,
         BinaryOperation::Max => Binary::Max,
         BinaryOperation::Less => Binary::Less,

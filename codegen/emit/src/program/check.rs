@@ -3,9 +3,12 @@
 use std::collections::BTreeSet;
 
 use super::context::{Context, DERIVE_AGAIN};
-use super::operation::Instructions;
+use super::instructions::Instructions;
 use super::schema::{RawFunction, RawGroup, RawOutput, RawProgram};
-use super::{Element, Function, Group, Output, Program, model, table};
+use super::{
+    Element, External, Function, Group, LARGEST_OUTPUT, MOST_INSTRUCTIONS, Output, Program,
+    external, model, table,
+};
 use crate::Error;
 
 pub(super) fn program(raw: RawProgram, origin: &str) -> Result<Program, Error> {
@@ -21,10 +24,17 @@ pub(super) fn program(raw: RawProgram, origin: &str) -> Result<Program, Error> {
         .into_iter()
         .map(|raw| group(&context, raw))
         .collect::<Result<Vec<_>, _>>()?;
+    let externals = raw.externals.iter().map(|raw| raw.name.as_str());
+    context.names("external functions", externals)?;
+    let externals = raw
+        .externals
+        .into_iter()
+        .map(|raw| external::external(&context, raw))
+        .collect::<Result<Vec<_>, _>>()?;
     let functions = raw
         .functions
         .into_iter()
-        .map(|raw| function(&context, raw, &groups))
+        .map(|raw| function(&context, raw, &groups, &externals))
         .collect::<Result<Vec<_>, _>>()?;
     let model = raw
         .model
@@ -45,6 +55,7 @@ pub(super) fn program(raw: RawProgram, origin: &str) -> Result<Program, Error> {
         functions,
         model,
         tables,
+        externals,
     })
 }
 
@@ -83,7 +94,12 @@ fn group(context: &Context<'_>, raw: RawGroup) -> Result<Group, Error> {
     })
 }
 
-fn function(context: &Context<'_>, raw: RawFunction, groups: &[Group]) -> Result<Function, Error> {
+fn function(
+    context: &Context<'_>,
+    raw: RawFunction,
+    groups: &[Group],
+    externals: &[External],
+) -> Result<Function, Error> {
     let place = format!("function `{}`", raw.name);
     context.names(
         &format!("{place}, inputs"),
@@ -108,6 +124,14 @@ fn function(context: &Context<'_>, raw: RawFunction, groups: &[Group]) -> Result
     if raw.outputs.is_empty() {
         return Err(context.error(&place, "no outputs", "one at least", "give it an output"));
     }
+    if raw.work_size > MOST_INSTRUCTIONS {
+        return Err(context.error(
+            &place,
+            format!("a work vector of {} scalars", raw.work_size),
+            format!("at most {MOST_INSTRUCTIONS}, one for each instruction that there can be"),
+            DERIVE_AGAIN,
+        ));
+    }
     let outputs = raw
         .outputs
         .into_iter()
@@ -122,6 +146,7 @@ fn function(context: &Context<'_>, raw: RawFunction, groups: &[Group]) -> Result
         place: &place,
         input_lengths: &lengths,
         outputs: &outputs,
+        externals,
         work_size: raw.work_size,
     }
     .check(&raw.instructions)?;
@@ -139,6 +164,18 @@ fn function(context: &Context<'_>, raw: RawFunction, groups: &[Group]) -> Result
 
 fn output(context: &Context<'_>, place: &str, raw: RawOutput) -> Result<Output, Error> {
     let place = format!("{place}, output `{}`", raw.name);
+    if raw
+        .rows
+        .checked_mul(raw.columns)
+        .is_none_or(|all| all > LARGEST_OUTPUT)
+    {
+        return Err(context.error(
+            &place,
+            format!("{} rows and {} columns", raw.rows, raw.columns),
+            format!("at most {LARGEST_OUTPUT} elements"),
+            "split the output; if the derivation did not write it, derive the program again",
+        ));
+    }
     for (kind, names, count) in [
         ("row", &raw.row_names, raw.rows),
         ("column", &raw.column_names, raw.columns),

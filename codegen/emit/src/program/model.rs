@@ -64,6 +64,7 @@ pub(super) fn check(
         inputs,
         rates,
         output,
+        flat: raw.flat,
     })
 }
 
@@ -200,7 +201,8 @@ impl Checker<'_> {
                     "keep the rows and columns of the full form, zeros too",
                 ));
             }
-            let extra = |place: &&(usize, usize)| !of_full.nonzeros.contains(place);
+            let places = of_full.places();
+            let extra = |place: &&(usize, usize)| !places.contains_key(*place);
             if let Some((row, column)) = output.nonzeros.iter().find(extra) {
                 return Err(self.context.error(
                     &format!("{place}, output `{}`", output.name),

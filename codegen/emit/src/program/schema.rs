@@ -1,7 +1,12 @@
 //! The JSON form of a program, as it stands in the file.
 
+mod instruction;
+mod numbers;
+
 use serde::Deserialize;
 use serde_json::Value;
+
+pub(super) use instruction::{RawInstruction, RawOperands};
 
 use super::SCHEMA_VERSION;
 use crate::Error;
@@ -19,6 +24,17 @@ pub(super) struct RawProgram {
     pub(super) model: Option<RawModel>,
     #[serde(default)]
     pub(super) tables: Vec<RawTable>,
+    #[serde(default)]
+    pub(super) externals: Vec<RawExternal>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawExternal {
+    pub(super) name: String,
+    pub(super) path: String,
+    pub(super) doc: String,
+    pub(super) arguments: usize,
 }
 
 #[derive(Deserialize)]
@@ -68,7 +84,7 @@ pub(super) struct RawFunction {
     pub(super) inputs: Vec<RawInput>,
     pub(super) outputs: Vec<RawOutput>,
     pub(super) work_size: usize,
-    pub(super) instructions: Vec<Vec<Value>>,
+    pub(super) instructions: Vec<RawInstruction>,
 }
 
 #[derive(Deserialize)]
@@ -101,6 +117,12 @@ pub(super) struct RawModel {
     pub(super) inputs: Vec<String>,
     pub(super) rates: RawModelFunction,
     pub(super) output: RawModelFunction,
+    #[serde(default = "yes")]
+    pub(super) flat: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 #[derive(Deserialize)]
@@ -123,6 +145,9 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<RawProgram, Error> {
         origin: origin.to_owned(),
         reason: error.to_string(),
     };
+    // Numbers that JSON has not are texts from here on, which the checks name with their place.
+    let repaired = numbers::unreadable_as_texts(text);
+    let text = repaired.as_deref().unwrap_or(text);
     let version: Version = serde_json::from_str(text).map_err(json)?;
     if version.schema_version != Some(Value::from(SCHEMA_VERSION)) {
         return Err(Error::SchemaVersion {

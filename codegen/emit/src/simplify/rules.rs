@@ -33,7 +33,7 @@ impl Rules {
     /// Adds a node in normal form; its operands are in normal form.
     pub(super) fn add(&mut self, node: Node) -> NodeId {
         match node {
-            Node::Constant(_) | Node::Input { .. } => self.graph.add(node),
+            Node::Constant(_) | Node::Input { .. } | Node::Call(_) => self.graph.add(node),
             Node::Unary(function, x) => self.unary(function, x),
             Node::Binary(function, x, y) => {
                 self.folded(function, x, y)
@@ -64,6 +64,10 @@ impl Rules {
             | Unary::Atan
             | Unary::Sinh
             | Unary::Tanh
+            | Unary::Asinh
+            | Unary::Atanh
+            | Unary::Erf
+            | Unary::ErfInv
             | Unary::Sign => (true, false),
             Unary::Cos | Unary::Cosh | Unary::Abs => (false, true),
             _ => (false, false),
@@ -218,7 +222,7 @@ impl Rules {
     /// The value of correctly rounded operations on constants, where it is finite. Others
     /// are left to run time: their last bits depend on the machine that folds.
     fn folded(&mut self, function: Binary, x: NodeId, y: NodeId) -> Option<NodeId> {
-        if matches!(function, Binary::Power | Binary::Atan2) {
+        if matches!(function, Binary::Power | Binary::Atan2 | Binary::Hypot) {
             return None;
         }
         let value = evaluate_binary(
@@ -232,9 +236,15 @@ impl Rules {
     fn folded_unary(&mut self, function: Unary, x: NodeId) -> Option<NodeId> {
         let argument = self.graph.constant_value(x)?;
         let is_exact = match function {
-            Unary::Negate | Unary::Reciprocal | Unary::Sqrt | Unary::Abs | Unary::Sign => true,
+            Unary::Negate
+            | Unary::Reciprocal
+            | Unary::Sqrt
+            | Unary::Floor
+            | Unary::Ceil
+            | Unary::Abs
+            | Unary::Sign => true,
             // Zero is mapped to zero or one.
-            Unary::Acos | Unary::Log => false,
+            Unary::Acos | Unary::Log | Unary::Acosh => false,
             _ => argument == 0.0,
         };
         let value = evaluate_unary(function, argument);

@@ -8,11 +8,11 @@ use gyrocal::{Anchored, Chart, EstimationError, Integration, Platform, Recentrin
 use nalgebra::{SMatrix, SVector};
 
 use super::Error;
-use super::speed::{DENSITY, STEP_S, STEPS, VARIANCE};
-use super::timing::{medians, seconds, well_placed};
 use crate::figure::Figure;
 use gyrocal_testkit::extended_filter::samples;
 use gyrocal_testkit::peer_filters::{Adskalman, Multicalc};
+use gyrocal_testkit::step_times::{DENSITY, STEP_S, STEPS, VARIANCE};
+use gyrocal_testkit::timing::{medians, seconds, well_placed};
 
 /// Largest time relative to the fastest of them.
 const ALLOWED: f64 = 1.1;

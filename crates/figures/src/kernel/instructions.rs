@@ -105,7 +105,7 @@ fn skipped(reason: &str) -> Figure {
     Figure::note("instructions not judged", reason.to_owned())
 }
 
-fn root() -> PathBuf {
+pub(super) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
@@ -188,7 +188,7 @@ fn instructions(program: &Path, rule: &str, steps: u32) -> Result<f64, Error> {
 }
 
 /// Both outputs of a command that succeeds.
-fn output(command: &mut Command) -> Result<String, Error> {
+pub(super) fn output(command: &mut Command) -> Result<String, Error> {
     let output = command
         .output()
         .map_err(|error| format!("{command:?}: {error}"))?;

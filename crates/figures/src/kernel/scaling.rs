@@ -2,10 +2,10 @@
 
 use std::hint::black_box;
 
-use super::timing::{medians, seconds};
 use super::{Error, RULES};
 use crate::figure::Figure;
 use gyrocal_testkit::extended_filter::{SIZES, samples, start, step};
+use gyrocal_testkit::timing::{medians, seconds};
 
 /// Steps of one round: two hours.
 const STEPS: usize = 120;

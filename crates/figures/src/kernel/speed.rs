@@ -1,110 +1,120 @@
-//! Time of a step of the structured filter, in both forms, relative to the textbook filter.
+//! Time of a step of the structured filter, in both forms, relative to the textbook filter: in this
+//! build, and in builds for the vector units of this machine.
 
-use std::hint::black_box;
+use std::path::PathBuf;
+use std::process::Command;
 
-use gyrocal::estimation::dense::DenseFilter;
-use gyrocal::estimation::form::Form;
-use gyrocal::{
-    Anchored, Chart, Discretisation, EstimationError, FactorisedPlatformFilter, FilterSettings,
-    InitialAttitude, Platform, PlatformFilter, Recentring, Site,
-};
-use nalgebra::{SMatrix, SVector};
+use gyrocal_testkit::step_times::{StepTimes, step_times};
+use gyrocal_testkit::timing::is_x86_64_v3;
 
-use super::timing::{is_x86_64_v3, medians, seconds, well_placed};
-use super::{Error, RULES};
+use super::Error;
+use super::instructions::{output, root};
 use crate::figure::Figure;
-use gyrocal_testkit::extended_filter::samples;
 
-/// Steps of one round: ten hours.
-pub(super) const STEPS: usize = 600;
-pub(super) const STEP_S: f64 = 60.0;
-pub(super) const DENSITY: [f64; 3] = [2.4e-4; 3];
-pub(super) const VARIANCE: [f64; 3] = [1e-10; 3];
+/// Targets of the processor for which the example `step_times` is built as well.
+const PROCESSORS: [&str; 2] = ["x86-64-v3", "native"];
 
-/// Least ratio of the time of a step of `dense_joseph` of the bench `filter_step` (the same interval,
-/// samples and noise, Euler angles in one chart) to that of the structured filter.
+/// Figures of this build.
 pub(crate) fn figures(rounds: usize) -> Result<Vec<Figure>, Error> {
-    let samples = samples(STEPS)?;
-    let site = Site::at_latitude_deg(39.1);
+    let build = if is_x86_64_v3() { "x86-64-v3" } else { "" };
+    let times = step_times(rounds)?;
+    Ok(times
+        .iter()
+        .flat_map(|times| figures_of(build, times, rounds))
+        .collect())
+}
+
+/// Figures of builds for other processors; where this one lacks their instructions, the reason.
+pub(crate) fn of_other_builds(rounds: usize) -> Result<Vec<Figure>, Error> {
+    if !has_x86_64_v3() {
+        let reason = "this machine has no x86-64-v3".to_owned();
+        return Ok(vec![Figure::note("other builds not timed", reason)]);
+    }
     let mut figures = Vec::new();
-    for (rule, integration) in RULES {
-        let settings = FilterSettings {
-            discretisation: Discretisation {
-                integration,
-                ..Discretisation::default()
-            },
-            ..FilterSettings::at_site(site)
-        };
-        let attitude = InitialAttitude::aligned();
-        let ours = PlatformFilter::new(&settings, &attitude)?;
-        let factors = FactorisedPlatformFilter::factorised(&settings, &attitude)?;
-        let mut chart = Chart::east_north_up(site);
-        let angle = attitude.place(&mut chart).sigma_rad[0];
-        let variances: [f64; 12] =
-            core::array::from_fn(|i| if i < 3 { angle * angle } else { 1.0 });
-        let dense = DenseFilter::<_, _, 3, 3, 12>::new(
-            Anchored(Platform),
-            chart,
-            integration,
-            Recentring::Never,
-            SVector::zeros(),
-            SMatrix::from_diagonal(&SVector::from(variances)),
-        );
-        let (times, ratios) = medians(rounds, || {
-            let ours_s = well_placed(|| time(&ours, &samples))?;
-            let dense_s = well_placed(|| {
-                let mut dense = black_box(dense.clone());
-                let time = seconds(|| {
-                    samples.iter().try_for_each(|sample| {
-                        dense.predict(STEP_S, &DENSITY);
-                        dense
-                            .update(black_box(sample), &VARIANCE)
-                            .map(|innovation| {
-                                black_box(innovation);
-                            })
-                    })
-                });
-                black_box(&dense);
-                time
-            })?;
-            let factors_s = well_placed(|| time(&factors, &samples))?;
-            Ok::<_, EstimationError>([ours_s, dense_s, factors_s])
-        })?;
-        let target = match (rule, is_x86_64_v3()) {
-            ("euler", true) => 7.0,
-            ("euler", false) => 5.0,
-            _ => 4.0,
-        };
-        let what = format!("{rule} step: time of dense_joseph / of the kernel");
-        let bounds = [target, f64::INFINITY];
-        figures.push(Figure::within(&what, bounds, ratios[1]).over(rounds, ""));
-        let what = format!("{rule}, factors / covariance: time of a step");
-        figures.push(Figure::note(&what, format!("{:.2}", ratios[2])).over(rounds, ""));
-        let [ours_ns, dense_ns, factors_ns] = times.map(|time| time / STEPS as f64 * 1e9);
-        let what = format!("{rule} step: kernel, dense_joseph, kernel on factors");
-        let measured = format!("{ours_ns:.0} ns, {dense_ns:.0} ns, {factors_ns:.0} ns");
-        figures.push(Figure::note(&what, measured).over(rounds, ""));
+    for processor in PROCESSORS {
+        let printed = output(
+            Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+                .current_dir(root())
+                .env_remove("CARGO_ENCODED_RUSTFLAGS")
+                .env("RUSTFLAGS", format!("-C target-cpu={processor}"))
+                .env("CARGO_TARGET_DIR", target_directory(processor))
+                .args(["run", "--release", "--quiet", "--package", "gyrocal"])
+                .args(["--example", "step_times", "--", &rounds.to_string()]),
+        )?;
+        let times = printed.lines().filter_map(parsed);
+        let found: Vec<Figure> = times
+            .flat_map(|times| figures_of(processor, &times, rounds))
+            .collect();
+        if found.is_empty() {
+            return Err(format!("the example step_times printed no times: {printed}").into());
+        }
+        figures.extend(found);
     }
     Ok(figures)
 }
 
-/// Time of a copy of the filter for the samples, s.
-///
-/// A function of its own for each form, called from one place: in one body with the other form,
-/// or called from two, a step is not inlined and takes a tenth longer.
-#[inline(never)]
-fn time<F: Form<f64> + Clone>(
-    start: &PlatformFilter<f64, F>,
-    samples: &[[f64; 3]],
-) -> Result<f64, EstimationError> {
-    let mut filter = black_box(start.clone());
-    let time = seconds(|| {
-        samples.iter().try_for_each(|sample| {
-            filter.step(STEP_S, black_box(sample)).map(|innovation| {
-                black_box(innovation);
-            })
-        })
-    });
-    black_box(&filter);
-    time
+fn figures_of(build: &str, times: &StepTimes, rounds: usize) -> Vec<Figure> {
+    let rule = times.rule;
+    let of = match build {
+        "" => String::new(),
+        build => format!(", {build}"),
+    };
+    let target = match (rule, build) {
+        ("euler", "") => Some(5.0),
+        ("euler", "x86-64-v3") => Some(7.0),
+        (_, "native") => None,
+        _ => Some(4.0),
+    };
+    let what = format!("{rule} step{of}: time of dense_joseph / of the kernel");
+    let ratio = match target {
+        Some(target) => Figure::within(&what, [target, f64::INFINITY], times.ratios[1]),
+        None => Figure::note(&what, format!("{:.3}", times.ratios[1])),
+    };
+    let factors = format!("{rule}{of}, factors / covariance: time of a step");
+    let [ours, dense, on_factors] = times.ns;
+    let what = format!("{rule} step{of}: kernel, dense_joseph, kernel on factors");
+    let ns = format!("{ours:.0} ns, {dense:.0} ns, {on_factors:.0} ns");
+    [
+        ratio,
+        Figure::note(&factors, format!("{:.2}", times.ratios[2])),
+        Figure::note(&what, ns),
+    ]
+    .map(|figure| figure.over(rounds, ""))
+    .to_vec()
+}
+
+/// A line of the example `step_times`: the rule, three times in ns, three ratios.
+fn parsed(line: &str) -> Option<StepTimes> {
+    let mut words = line.split_whitespace();
+    let rule = match words.next()? {
+        "euler" => "euler",
+        "rk4" => "rk4",
+        _ => return None,
+    };
+    let numbers: Vec<f64> = words.map(str::parse).collect::<Result<_, _>>().ok()?;
+    let [a, b, c, x, y, z] = numbers[..] else {
+        return None;
+    };
+    Some(StepTimes {
+        rule,
+        ns: [a, b, c],
+        ratios: [x, y, z],
+    })
+}
+
+/// Builds for other processors stay apart: the flags would make cargo build everything again.
+fn target_directory(processor: &str) -> PathBuf {
+    root().join("target/figures").join(processor)
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_x86_64_v3() -> bool {
+    std::arch::is_x86_feature_detected!("avx2")
+        && std::arch::is_x86_feature_detected!("fma")
+        && std::arch::is_x86_feature_detected!("bmi2")
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn has_x86_64_v3() -> bool {
+    false
 }

@@ -1,7 +1,5 @@
 //! Integration of the attitude: Runge-Kutta steps that end where a mode of the drift changes.
 
-use libm::sqrt;
-
 use super::{Motion, State, sum};
 use crate::attitude::{Attitude, dot, norm};
 use crate::earth_rotation::EarthAngle;
@@ -124,7 +122,7 @@ impl Motion<'_> {
 /// The longest step at an inertial rate of the platform.
 fn longest_step_s(rate_deg_per_h: f64) -> f64 {
     let against_earth = EARTH_RATE_RAD_PER_S + rate_deg_per_h * RAD_PER_S_PER_DEG_PER_H;
-    LARGEST_STEP_RAD / (against_earth * sqrt(sqrt(rate_deg_per_h)))
+    LARGEST_STEP_RAD / (against_earth * rate_deg_per_h.sqrt().sqrt())
 }
 
 #[cfg(test)]

@@ -100,8 +100,9 @@ impl FormOutput<'_> {
     /// Row, column and expression of each place that is written.
     pub(super) fn entries(self) -> impl Iterator<Item = (usize, usize, TokenStream)> {
         let field = ident(&self.given.name);
+        let places = self.given.places();
         self.written.nonzeros.iter().map(move |&(row, column)| {
-            let Some(nonzero) = self.given.nonzero_at(row, column) else {
+            let Some(&nonzero) = places.get(&(row, column)) else {
                 return (row, column, quote!(zero));
             };
             let [i, j, k] = [row, column, nonzero].map(integer);

@@ -7,7 +7,7 @@ use std::time::Instant;
 const WARM_UP: usize = 10;
 
 /// Time of `work`, s.
-pub(crate) fn seconds<E>(work: impl FnOnce() -> Result<(), E>) -> Result<f64, E> {
+pub fn seconds<E>(work: impl FnOnce() -> Result<(), E>) -> Result<f64, E> {
     let begin = Instant::now();
     work()?;
     Ok(begin.elapsed().as_secs_f64())
@@ -17,7 +17,7 @@ pub(crate) fn seconds<E>(work: impl FnOnce() -> Result<(), E>) -> Result<f64, E>
 ///
 /// The start of the stack differs between runs of a program, and with it the alignment of numbers to
 /// cache lines, which is a fifth of the time of a dense step.
-pub(crate) fn well_placed<E>(mut work: impl FnMut() -> Result<f64, E>) -> Result<f64, E> {
+pub fn well_placed<E>(mut work: impl FnMut() -> Result<f64, E>) -> Result<f64, E> {
     Ok(placed::<2, E>(&mut work)?.min(placed::<4, E>(&mut work)?))
 }
 
@@ -33,7 +33,7 @@ fn placed<const WORDS: usize, E>(work: &mut dyn FnMut() -> Result<f64, E>) -> Re
 /// contender, and the median over rounds of its ratio to the first one.
 ///
 /// The ratio is taken before the median: all contenders of a round see the same load of the machine.
-pub(crate) fn medians<const N: usize, E>(
+pub fn medians<const N: usize, E>(
     rounds: usize,
     mut round: impl FnMut() -> Result<[f64; N], E>,
 ) -> Result<([f64; N], [f64; N]), E> {
@@ -55,7 +55,7 @@ pub(crate) fn medians<const N: usize, E>(
 }
 
 /// `true` if this build may use the instructions of x86-64-v3.
-pub(crate) const fn is_x86_64_v3() -> bool {
+pub const fn is_x86_64_v3() -> bool {
     cfg!(all(
         target_feature = "avx2",
         target_feature = "fma",
@@ -63,8 +63,18 @@ pub(crate) const fn is_x86_64_v3() -> bool {
     ))
 }
 
+/// Model name of the processor, where the system tells it.
+pub fn processor() -> String {
+    let description = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = description
+        .lines()
+        .find_map(|line| line.strip_prefix("model name"))
+        .map(|name| name.trim_start_matches([' ', '\t', ':']));
+    name.unwrap_or("an unnamed processor").to_owned()
+}
+
 /// Target features of this build.
-pub(crate) fn target_features() -> String {
+pub fn target_features() -> String {
     let known = [
         ("sse2", cfg!(target_feature = "sse2")),
         ("avx", cfg!(target_feature = "avx")),
