@@ -74,6 +74,7 @@ mod distinguishability;
 mod error;
 pub mod error_budget;
 mod filter_test;
+mod gate;
 mod magnitude;
 mod magnitude_test;
 mod noise;
@@ -88,9 +89,12 @@ mod series;
 mod untested;
 mod validation;
 
-pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, manifest, predict_later, record_summary};
+pub use diagnose::{
+    DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, manifest, predict_later, record_summary,
+};
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};
+pub use gate::Gate;
 pub use magnitude::{MagnitudeChannel, magnitude_channel};
 pub use magnitude_test::{MagnitudeTest, magnitude_test};
 pub use noise::{
