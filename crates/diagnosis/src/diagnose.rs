@@ -5,6 +5,7 @@ mod findings;
 mod gyro_noise;
 mod later;
 mod noise_audited_fit;
+mod screening;
 mod stopped;
 mod untestable_rows;
 
@@ -34,6 +35,7 @@ pub use answer::{manifest, record_summary};
 use gyro_noise::{gyro_noise_findings, over_declared};
 pub use later::predict_later;
 use noise_audited_fit::noise_audited_fit;
+pub use screening::screen_record;
 use untestable_rows::detect_outliers;
 
 /// Settings of a diagnosis.

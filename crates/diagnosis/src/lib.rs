@@ -69,6 +69,7 @@
 //! It reads no records and prints nothing; [`result::read`] reads a written result. It tests effects
 //! of the catalogue, sinusoids and functions of specific force, on a static base only.
 
+mod calibration_verdict;
 mod diagnose;
 mod distinguishability;
 mod error;
@@ -89,8 +90,10 @@ mod series;
 mod untested;
 mod validation;
 
+pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
 pub use diagnose::{
     DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, manifest, predict_later, record_summary,
+    screen_record,
 };
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};

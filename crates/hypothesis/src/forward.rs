@@ -26,7 +26,7 @@ pub(crate) struct FirstRound {
 /// Shares of the threshold above which an effect is fitted: its score test has the noise of the model
 /// without it, which an effect raises. Beside random walks more so: they take up most of a slow effect
 /// until both are fitted together.
-const WORTH_FITTING: f64 = 0.7;
+pub(crate) const WORTH_FITTING: f64 = 0.7;
 const WORTH_FITTING_BESIDE_WALKS: f64 = 0.5;
 
 /// Model that effects are added to.
@@ -80,8 +80,7 @@ pub(crate) fn forward<F: FittedModel>(
         let best = scores.named(&hypotheses).filter(|_| significant);
         // An unmodelled term goes into the model if no effect is significant, or if it explains so
         // much more that a name would be false.
-        let limit =
-            ln(context.options.unmodelled_probability) - 0.5 * margin.unwrap_or_default();
+        let limit = ln(context.options.unmodelled_probability) - 0.5 * margin.unwrap_or_default();
         let stands = |other: &Unmodelled| {
             let explains_more = |best: Best| {
                 // Several effects together look like a line at a natural period.

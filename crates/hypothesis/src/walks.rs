@@ -90,6 +90,21 @@ impl Candidates {
         }))
     }
 
+    /// Twice the log-likelihood that the walks gain over the nominal model without them, and its
+    /// p-value.
+    pub(crate) fn test<F>(&self, nominal: &FittedStage<F>) -> (f64, f64) {
+        let gained = 2.0 * (self.fit.log_likelihood - nominal.noise.log_likelihood);
+        (gained, tail(gained, self.rates.len()))
+    }
+
+    /// The effect of the largest walk.
+    pub(crate) fn largest(&self) -> Option<&'static str> {
+        let sizes = self.rates.iter().map(|rate| self.fit.noise.walk[*rate]);
+        let all = self.effects.iter().zip(sizes);
+        all.max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(effect, _)| effect.id)
+    }
+
     /// Log-likelihood of the nominal model with all walks.
     pub(crate) fn log_likelihood(&self) -> f64 {
         self.fit.log_likelihood
@@ -105,10 +120,8 @@ pub(crate) fn compare<F: FittedModel>(
     first: &FirstRound,
     draws: &mut GaussianDraws,
 ) -> Result<Compared<F>, F::Error> {
-    let of_nothing = nominal.noise.log_likelihood;
     let walk = &candidates.fit;
-    let gained = 2.0 * (walk.log_likelihood - of_nothing);
-    let p_value = tail(gained, candidates.rates.len());
+    let (gained, p_value) = candidates.test(nominal);
     let is_significant =
         |gained: f64| tail(gained, candidates.rates.len()) < context.options.walk_probability;
     let ranking = candidates.effects.iter().map(|effect| Ranked {

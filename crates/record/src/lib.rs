@@ -88,9 +88,9 @@ pub use output::{Outputs, write_json, write_whole};
 pub use record::Record;
 pub use record_file::RecordFile;
 pub use report::{
-    AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, FitVerdict,
-    NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport,
-    SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
+    AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, EffectTest,
+    FitVerdict, NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION,
+    SimulationReport, SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
 };
 pub use setup::SetupProblem;
 pub use site::{Gravity, Site, SiteUncertainty};
