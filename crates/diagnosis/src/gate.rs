@@ -17,6 +17,10 @@ const FITTED_ROWS: usize = 288;
 /// by chance in one of 300 000 records.
 const CONFIRMED_NATS: f64 = 10.0;
 
+/// Mean NIS below which a fit explains a record: three are expected, and noise is declared within a
+/// factor of three.
+const SOUND_NIS: f64 = 30.0;
+
 /// What was found of a set-up, with what is left of the record.
 #[derive(Clone, Debug)]
 pub struct Gate<'a> {
@@ -98,16 +102,23 @@ fn with_fits(finding: &SetupFinding, run: &Run<'_>, options: &Options) -> SetupP
 fn confirmed(finding: &SetupFinding, run: &Run<'_>, options: &Options) -> Option<SetupProblem> {
     let correction = finding.correction.as_ref()?;
     let fits = Fits::of(correction, run, options);
-    let nats = 0.5 * (fits.given?.cost - fits.corrected?.cost);
-    if nats < CONFIRMED_NATS {
-        return None;
-    }
+    let corrected = fits.corrected?;
+    let words = match fits.given {
+        Some(given) => {
+            let nats = 0.5 * (given.cost - corrected.cost);
+            if nats < CONFIRMED_NATS {
+                return None;
+            }
+            format!(
+                "the log-likelihood is {nats:.1} nats lower as given, {CONFIRMED_NATS} are allowed"
+            )
+        }
+        // Nothing fits, which the correction mends.
+        None if corrected.nis_mean < SOUND_NIS => "no fit can be made as given".to_owned(),
+        None => return None,
+    };
     let mut problem = finding.problem();
-    problem.evidence = format!(
-        "the log-likelihood is {nats:.1} nats lower as given, {CONFIRMED_NATS} are allowed; {}; {}",
-        fits.text(correction),
-        problem.evidence
-    );
+    problem.evidence = format!("{words}; {}; {}", fits.text(correction), problem.evidence);
     Some(problem)
 }
 
