@@ -107,7 +107,7 @@ impl FitStatistics {
             ),
             Consistency::Overconfident if self.is_gross() => format!(
                 "Consistency test failed: the innovations are far larger than the declared noise \
-                 predicts ({statistic}). Check that time is in seconds, that up is positive, and \
+                 predicts ({statistic}). Check the units of [noise] and time, that up is positive, and \
                  the latitude and initial angles of the bench file; the coefficients are not \
                  usable."
             ),
