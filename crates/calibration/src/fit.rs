@@ -88,6 +88,13 @@ impl FitStatistics {
         }
     }
 
+    /// Whether the innovations are so large that no effect that a model lacks explains them: the
+    /// inputs are wrong, and the estimates mean nothing.
+    #[must_use]
+    pub fn is_gross(&self) -> bool {
+        self.nis_mean() > GROSS
+    }
+
     /// The result of the consistency test in a few sentences.
     #[must_use]
     pub fn consistency_text(&self) -> String {
@@ -98,10 +105,9 @@ impl FitStatistics {
             Consistency::Consistent => format!(
                 "Consistency test passed: the innovations agree with the declared noise ({statistic})."
             ),
-            // No effect that a model lacks is as large as a mistake in the inputs.
-            Consistency::Overconfident if mean > GROSS => format!(
+            Consistency::Overconfident if self.is_gross() => format!(
                 "Consistency test failed: the innovations are far larger than the declared noise \
-                 predicts ({statistic}). Check that time is in seconds, that up is positive, and \
+                 predicts ({statistic}). Check the units of [noise] and time, that up is positive, and \
                  the latitude and initial angles of the bench file; the coefficients are not \
                  usable."
             ),

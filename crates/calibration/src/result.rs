@@ -137,7 +137,8 @@ pub struct CoefficientEstimate {
     pub estimate: f64,
     /// Standard deviation of its error.
     pub sigma: f64,
-    /// True if the records determined the coefficient: its sigma is below a tenth of the prior's.
+    /// True if the records determined the coefficient: its sigma is below a tenth of the prior's, and
+    /// the innovations are not far larger than any effect makes them.
     pub determined: bool,
 }
 
@@ -192,7 +193,7 @@ impl Calibration {
                 meaning: DRIFT[i].doc,
                 estimate: estimates[i],
                 sigma,
-                determined: sigma < DETERMINED * priors[i],
+                determined: sigma < DETERMINED * priors[i] && !self.fit.is_gross(),
             }
         })
     }

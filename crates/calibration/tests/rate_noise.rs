@@ -36,18 +36,33 @@ fn noise_of_the_gyros_is_estimated_with_their_walks() {
     let white = nominal.fit_rate_noise(&[], &[]).unwrap();
     let walk = nominal.fit_rate_noise(&[0, 1, 2], &[]).unwrap();
     // Far beyond the 1e-4 point of a variance that may be zero.
-    assert!(walk.log_likelihood - white.log_likelihood > 20.0, "{white:?} {walk:?}");
+    assert!(
+        walk.log_likelihood - white.log_likelihood > 20.0,
+        "{white:?} {walk:?}"
+    );
     let off = |found: f64, truth: f64, sigma: f64| (found / truth).ln() / sigma;
     // Three standard deviations of the logarithms.
-    assert!(off(walk.noise.walk[0], 5e-4, walk.walk_sigma[0]).abs() < 3.0, "{walk:?}");
-    assert!(off(walk.noise.white[1], 2.0, walk.white_sigma[1]).abs() < 3.0, "{walk:?}");
+    assert!(
+        off(walk.noise.walk[0], 5e-4, walk.walk_sigma[0]).abs() < 3.0,
+        "{walk:?}"
+    );
+    assert!(
+        off(walk.noise.white[1], 2.0, walk.white_sigma[1]).abs() < 3.0,
+        "{walk:?}"
+    );
     // The walk is no part of a fit that has it left out: nothing else has changed.
     let fitted = nominal.with_rate_noise(&walk.noise).unwrap();
     let again = fitted.fit_rate_noise(&[0, 1, 2], &[]).unwrap();
     let without = fitted.fit_rate_noise(&[], &[]).unwrap();
     // Other points of linearisation, and steps that end at a gain of 0.005.
-    assert!((again.log_likelihood - walk.log_likelihood).abs() < 0.5, "{again:?} {walk:?}");
-    assert!((without.log_likelihood - white.log_likelihood).abs() < 0.5, "{without:?} {white:?}");
+    assert!(
+        (again.log_likelihood - walk.log_likelihood).abs() < 0.5,
+        "{again:?} {walk:?}"
+    );
+    assert!(
+        (without.log_likelihood - white.log_likelihood).abs() < 0.5,
+        "{without:?} {white:?}"
+    );
 
     // With the walk the coefficients are within their standard deviations, of which the largest of
     // nine exceeds 4 in one of two thousand; without it they are not.
@@ -104,5 +119,8 @@ fn an_effect_that_is_left_out_leaves_the_likelihood_of_the_nominal_model() {
     let without = extended.fit_rate_noise(&[], &[place]).unwrap();
     assert!(with.log_likelihood > before.log_likelihood);
     // Other points of linearisation.
-    assert!((without.log_likelihood - before.log_likelihood).abs() < 0.1, "{without:?} {before:?}");
+    assert!(
+        (without.log_likelihood - before.log_likelihood).abs() < 0.1,
+        "{without:?} {before:?}"
+    );
 }

@@ -13,13 +13,17 @@ use gyrocal::Platform;
 use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
-use gyrocal_record::{CalibrationMethod, SetupProblem, write_json};
+use gyrocal_diagnosis::{
+    CalibrationVerdict, DiagnoseOptions, calibration_verdict, effect_test, screen_record,
+};
+use gyrocal_record::{CalibrationMethod, EffectTest, SetupProblem, write_json};
+use gyrocal_setup::PlatformKind;
 
-use crate::Failure;
 use crate::numbers::positive;
 use crate::outputs;
 use crate::progress::Progress;
-use failed::NotCalibrated;
+use crate::{Answer, Failure};
+use failed::{NotCalibrated, WrongSetup};
 use inputs::Measurement;
 
 /// Estimate the nine drift coefficients from one record or several.
@@ -79,6 +83,14 @@ impl CalibrateArguments {
             (true, _) => CalibrationMethod::Streaming,
             (_, true) => CalibrationMethod::Paper,
             _ => CalibrationMethod::Batch,
+        }
+    }
+
+    fn kind(&self) -> PlatformKind {
+        if self.gyro_axes.is_empty() {
+            PlatformKind::Stabilised
+        } else {
+            PlatformKind::Computed
         }
     }
 
@@ -145,8 +157,11 @@ impl CalibrateArguments {
     }
 }
 
+/// Exit code of coefficients that mean nothing.
+const EXIT_MEANINGLESS: u8 = 1;
+
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     arguments.check()?;
     let inputs: Vec<&Path> = arguments
         .records
@@ -156,14 +171,11 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
         .map(PathBuf::as_path)
         .collect();
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    // The platform of strapdown gyros is computed: it has no set-up.
-    let is_platform = arguments.gyro_axes.is_empty();
-    let measurements = inputs::read(
-        &arguments.records,
-        &arguments.benches,
-        arguments.average,
-        is_platform,
-    )?;
+    let (records, benches) = (&arguments.records, &arguments.benches);
+    let measurements = inputs::read(records, benches, arguments.average, arguments.kind())?;
+    if measurements.iter().any(|measurement| measurement.stops) {
+        return Err(stopped(arguments, &measurements, &inputs)?.into());
+    }
     let rows = measurements.iter().map(|m| m.record.len()).sum();
     tracing::info!(records = measurements.len(), rows, "read");
     let options = arguments.options();
@@ -172,9 +184,13 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
     let calibration = calibrate(&runs, &gyro_axes, rows, &options, arguments.method())
         .map_err(|source| NotCalibrated::new(arguments, &runs, source))?;
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
+    let effects = effects(arguments, &measurements);
     let found = CalibrationRun {
         method: arguments.method(),
+        kind: arguments.kind(),
         first_run_sigmas: first_run_sigmas(&runs, &gyro_axes, &options),
+        verdict: calibration_verdict(&calibration.fit, &effects),
+        effects,
         calibration,
         measurements,
     };
@@ -185,14 +201,52 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<String, Failure> {
     if let Some(path) = &arguments.json {
         text.push_str(&format!("\n{}: the result for programs\n", path.display()));
     }
-    Ok(text)
+    let is_meaningless = found.calibration.fit.is_gross();
+    Ok(Answer {
+        text,
+        exit_code: if is_meaningless { EXIT_MEANINGLESS } else { 0 },
+    })
+}
+
+/// Writes the result of records whose set-up is wrong; the failure that tells it.
+fn stopped(
+    arguments: &CalibrateArguments,
+    measurements: &[Measurement],
+    inputs: &[&Path],
+) -> Result<WrongSetup, Failure> {
+    let problems = measurements.iter().flat_map(|one| &one.setup);
+    let report = json::of_wrong_setup(arguments.method(), problems.cloned().collect(), inputs)?;
+    if let Some(path) = &arguments.json {
+        write_json(path, &report)?;
+    }
+    Ok(WrongSetup::new(&report, arguments.json.as_deref()))
+}
+
+/// Tests of the records for effects that the model lacks; none of computed platforms, to which the
+/// catalogue does not apply.
+fn effects(arguments: &CalibrateArguments, measurements: &[Measurement]) -> Vec<EffectTest> {
+    if arguments.kind() != PlatformKind::Stabilised {
+        return Vec::new();
+    }
+    let tests = measurements.iter().filter_map(|measurement| {
+        let path = measurement.path.display().to_string();
+        screen_record(&measurement.run(), &DiagnoseOptions::default())
+            .inspect_err(|error| tracing::warn!(%error, path, "not tested for effects"))
+            .ok()
+            .map(|screened| effect_test(&path, &screened))
+    });
+    tests.collect()
 }
 
 /// Inputs and result of the command.
 struct CalibrationRun {
     method: CalibrationMethod,
+    kind: PlatformKind,
     measurements: Vec<Measurement>,
     calibration: Calibration,
+    /// Tests of the records for effects that the model lacks.
+    effects: Vec<EffectTest>,
+    verdict: CalibrationVerdict,
     /// Sigmas of the coefficients from the first record alone, if there are several and it can
     /// be calibrated alone.
     first_run_sigmas: Option<[f64; Platform::PARAMETERS]>,

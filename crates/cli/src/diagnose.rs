@@ -6,14 +6,14 @@ mod figures;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use gyrocal::Platform;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, TestedFilter,
-    Verdict, diagnose, prose,
+    DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
+    Verdict, diagnose_gated, prose,
 };
-use gyrocal_record::{Bench, Outputs, Record, write_json};
+use gyrocal_record::{Bench, Outputs, RecordFile, write_json};
+use gyrocal_setup::PlatformKind;
 
 use crate::layout::layout;
 use crate::numbers::probability;
@@ -114,16 +114,13 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         )));
     }
     let bench = Bench::read(&arguments.bench)?;
-    let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
+    let file = RecordFile::read(&arguments.record)?;
     let later = match (&arguments.validate, &arguments.validate_bench) {
-        (Some(path), Some(bench)) => Some((
-            path.as_path(),
-            Record::read_at_least(path, Platform::STATES)?,
-            Bench::read(bench)?,
-        )),
+        (Some(path), Some(bench)) => Some((path, RecordFile::read(path)?, Bench::read(bench)?)),
         _ => None,
     };
-    tracing::info!(rows = record.len(), "read");
+    let rows = file.record().len();
+    tracing::info!(rows, "read");
     let options = DiagnoseOptions {
         false_alarm_probability: arguments.false_alarm,
         also: arguments.effects.clone(),
@@ -136,23 +133,32 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     if arguments.filter.is_some() && bench.initial_angles_deg.is_none() {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
-    let progress = Progress::waiting("diagnosing", record.len());
-    let mut diagnosis = match diagnose(&record, &bench, &options) {
-        Err(DiagnosisError::Setup { mut result }) => {
+    let progress = Progress::waiting("diagnosing", rows);
+    let gate =
+        |file, bench| Gate::of_file(PlatformKind::Stabilised, file, bench, &options.calibration);
+    let checked = gate(&file, &bench)?;
+    let mut diagnosis = match diagnose_gated(checked, &bench, &options) {
+        Err(DiagnosisError::Setup { result }) => {
             drop(progress);
-            result.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
-            return stopped(arguments, &result);
+            return stopped(arguments, *result, &inputs);
         }
         found => found.map_err(failed)?,
     };
     diagnosis.result.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
     if let Some((path, later, later_bench)) = &later {
         let failed = |source| NotDiagnosed::new(path, later_bench, source);
-        let [first, later] =
-            [(&record, &bench), (later, later_bench)].map(|(record, bench)| Run { record, bench });
-        diagnosis
-            .validate(&first, &later, &options)
-            .map_err(failed)?;
+        let first = Run {
+            record: file.record(),
+            bench: &bench,
+        };
+        let checked = gate(later, later_bench)?;
+        match diagnosis.validate_gated(&first, checked, later_bench, &options) {
+            Err(DiagnosisError::Setup { result }) => {
+                drop(progress);
+                return stopped(arguments, *result, &inputs);
+            }
+            validated => validated.map_err(failed)?,
+        }
     }
     drop(progress);
     tracing::info!(verdict = ?diagnosis.result.verdict, "diagnosed");
@@ -167,10 +173,15 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
 }
 
 /// The answer of a record whose set-up is wrong: no pictures, as nothing was fitted.
-fn stopped(arguments: &DiagnoseArguments, result: &DiagnosisResult) -> Result<Answer, Failure> {
-    let mut text = layout(&prose::diagnosis(result));
+fn stopped(
+    arguments: &DiagnoseArguments,
+    mut result: DiagnosisResult,
+    inputs: &[&Path],
+) -> Result<Answer, Failure> {
+    result.manifest = manifest(MODEL_HASH, result.manifest.seed, inputs)?;
+    let mut text = layout(&prose::diagnosis(&result));
     if let Some(path) = &arguments.json {
-        write_json(path, result)?;
+        write_json(path, &result)?;
         text.push_str(&format!("\n{}: the result for programs\n", path.display()));
     }
     Ok(Answer {

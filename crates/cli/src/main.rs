@@ -44,7 +44,7 @@ fn main() -> ExitCode {
     show_errors_plainly();
     let outcome = match &cli.command {
         Command::Allan(arguments) => allan::run(arguments).map(Answer::from),
-        Command::Calibrate(arguments) => calibrate::run(arguments).map(Answer::from),
+        Command::Calibrate(arguments) => calibrate::run(arguments),
         Command::Characterise(arguments) => characterise::run(arguments),
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Extend(arguments) => extend::run(arguments).map(Answer::from),

@@ -7,11 +7,10 @@ mod options;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use gyrocal::Platform;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
 use gyrocal_design::{Aim, PlanOptions, plan, prose};
-use gyrocal_record::{Bench, Outputs, Record};
+use gyrocal_record::{Bench, Outputs, RecordFile};
 
 use crate::Failure;
 use crate::layout::layout;
@@ -90,14 +89,15 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     refuse_repeated(&arguments.limits)?;
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let bench = Bench::read(&arguments.bench)?;
-    let record = Record::read_at_least(&arguments.record, Platform::STATES)?;
-    tracing::info!(rows = record.len(), "read");
+    let file = RecordFile::read(&arguments.record)?;
+    let rows = file.record().len();
+    tracing::info!(rows, "read");
+    let progress = Progress::waiting("planning on", rows);
+    let known = found::known(arguments, &file, &bench)?;
     let run = Run {
-        record: &record,
+        record: &known.record,
         bench: &bench,
     };
-    let progress = Progress::waiting("planning on", record.len());
-    let known = found::known(arguments, &run)?;
     tracing::info!(named = known.named.len(), "known");
     let options = PlanOptions {
         durations_s: durations_s(&arguments.hours),
@@ -112,6 +112,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     let mut planned = plan(&known.fitted, &run, &known.noise, &known.named, &options)
         .map_err(|source| NotPlanned::new(&arguments.record, source))?;
     drop(progress);
+    planned.setup.clone_from(&known.setup);
     planned.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
     let mut text = layout(&prose(&planned));
     let mut outputs = Outputs::new();

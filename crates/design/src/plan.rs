@@ -73,6 +73,7 @@ pub fn plan(
         schema_version: SCHEMA_VERSION,
         manifest: manifest(options.seed),
         record: record_summary(run.record),
+        setup: Vec::new(),
         aim: planner.aim,
         now,
         going_on,

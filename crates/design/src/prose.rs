@@ -1,7 +1,7 @@
 //! The sentences and tables of a plan, made from its result alone.
 
 use crate::result::{Aim, Outlook, PlanResult, Proposal, SetForecast};
-use gyrocal_diagnosis::prose::{Block, Column, Table, counted};
+use gyrocal_diagnosis::prose::{Block, Column, Table, counted, setup};
 
 /// Probability above which two causes count as distinguished.
 const DISTINGUISHED: f64 = 0.95;
@@ -22,6 +22,7 @@ pub fn prose(plan: &PlanResult) -> Vec<Block> {
         )),
         Block::Paragraph(question(plan.aim, &plan.now)),
     ];
+    blocks.extend(setup(&plan.setup));
     for (index, duration_s) in durations(plan).into_iter().enumerate() {
         let of_it = |p: &&Proposal| p.duration_s == duration_s;
         let Some(best) = plan.proposals.iter().find(of_it) else {

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use gyrocal_record::Manifest;
+use gyrocal_record::{Manifest, SetupProblem};
 use serde::{Deserialize, Serialize};
 
 use gyrocal_diagnosis::result::RecordSummary;
@@ -23,6 +23,9 @@ pub struct PlanResult {
     pub manifest: Manifest,
     /// Size of the record so far.
     pub record: RecordSummary,
+    /// Gross errors of its set-up that were mended.
+    #[serde(default)]
+    pub setup: Vec<SetupProblem>,
     /// Criterion that proposals are ranked by.
     pub aim: Aim,
     /// Forecast from the record so far.

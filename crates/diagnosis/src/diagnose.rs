@@ -3,10 +3,11 @@
 mod answer;
 mod coefficients;
 mod findings;
-mod gate;
 mod gyro_noise;
 mod later;
 mod noise_audited_fit;
+mod screening;
+mod stopped;
 mod untestable_rows;
 
 use std::borrow::Cow;
@@ -14,12 +15,13 @@ use std::borrow::Cow;
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run, rows};
 use gyrocal_hypothesis::{FittedModel, SearchOptions, Searched};
 use gyrocal_record::{Bench, Record, SetupProblem};
-use gyrocal_setup::check_setup;
+use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::allan_test;
 
 use crate::error::DiagnosisError;
 use crate::error_budget::{RESIDUAL_TESTS, shares};
 use crate::filter_test::{TestedFilter, filter_test};
+use crate::gate::Gate;
 use crate::magnitude_test::magnitude_test;
 use crate::noise::{NoiseAudit, Outlier};
 use crate::power::powers;
@@ -34,6 +36,7 @@ pub use answer::{manifest, record_summary};
 use gyro_noise::{gyro_noise_findings, over_declared};
 pub use later::predict_later;
 use noise_audited_fit::noise_audited_fit;
+pub use screening::screen_record;
 use untestable_rows::detect_outliers;
 
 /// Settings of a diagnosis.
@@ -115,18 +118,28 @@ pub fn diagnose<'a>(
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
     request::check(&options.also, record, bench)?;
-    let check = check_setup(record, bench);
-    if check.findings.is_empty() {
-        return diagnose_sound(record, bench, options, Vec::new());
-    }
-    let setup = gate::problems(&check, &Run { record, bench }, &options.calibration);
-    let Some(usable) = check.usable else {
-        let result = Box::new(gate::stopped(record, options, setup));
-        return Err(DiagnosisError::Setup { result });
-    };
+    let run = Run { record, bench };
+    let found = Gate::new(PlatformKind::Stabilised, &run, &options.calibration);
+    diagnose_gated(found, bench, options)
+}
+
+/// The same of a record whose set-up was checked.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn diagnose_gated<'a>(
+    found: Gate<'a>,
+    bench: &'a Bench,
+    options: &DiagnoseOptions,
+) -> Result<Diagnosis<'a>, DiagnosisError> {
+    let (usable, setup) = found.sound(options)?;
     request::check(&options.also, &usable, bench)?;
-    let found = diagnose_sound(&usable, bench, options, setup)?;
-    Ok(found.into_owned())
+    match usable {
+        Cow::Borrowed(record) => diagnose_sound(record, bench, options, setup),
+        Cow::Owned(record) => {
+            diagnose_sound(&record, bench, options, setup).map(Diagnosis::into_owned)
+        }
+    }
 }
 
 /// Diagnoses a record without gross errors; `setup` are those that it had.

@@ -69,11 +69,13 @@
 //! It reads no records and prints nothing; [`result::read`] reads a written result. It tests effects
 //! of the catalogue, sinusoids and functions of specific force, on a static base only.
 
+mod calibration_verdict;
 mod diagnose;
 mod distinguishability;
 mod error;
 pub mod error_budget;
 mod filter_test;
+mod gate;
 mod magnitude;
 mod magnitude_test;
 mod noise;
@@ -88,9 +90,14 @@ mod series;
 mod untested;
 mod validation;
 
-pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, manifest, predict_later, record_summary};
+pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
+pub use diagnose::{
+    DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, manifest, predict_later, record_summary,
+    screen_record,
+};
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};
+pub use gate::Gate;
 pub use magnitude::{MagnitudeChannel, magnitude_channel};
 pub use magnitude_test::{MagnitudeTest, magnitude_test};
 pub use noise::{

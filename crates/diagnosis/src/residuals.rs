@@ -52,11 +52,7 @@ pub(crate) fn residuals(
         })
         .collect();
     Ok(Residuals {
-        nis: nis(normalised, false_alarm).ok().map(|nis| Nis {
-            mean: nis.mean,
-            band: nis.band,
-            p_value: nis.p_value,
-        }),
+        nis: nis_of_rows(normalised, false_alarm),
         autocorrelation: autocorrelation(normalised, LAGS, false_alarm)
             .ok()
             .map(|found| Autocorrelation {
@@ -71,6 +67,19 @@ pub(crate) fn residuals(
             rms_of_present(misses.map(|(measured, simulated)| measured[axis] - simulated[axis])).0
         }),
         against,
+    })
+}
+
+/// Mean NIS of a row with its band; `None` without a value.
+fn nis_of_rows(normalised: &[[f64; 3]], false_alarm: f64) -> Option<Nis> {
+    let found = nis(normalised, false_alarm).ok()?;
+    let has_value = |row: &&[f64; 3]| row.iter().any(|value| !value.is_nan());
+    let rows = normalised.iter().filter(has_value).count();
+    let values_of_a_row = found.values as f64 / rows as f64;
+    Some(Nis {
+        mean: found.mean * values_of_a_row,
+        band: found.band.map(|bound| bound * values_of_a_row),
+        p_value: found.p_value,
     })
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct FirstRound {
 /// Shares of the threshold above which an effect is fitted: its score test has the noise of the model
 /// without it, which an effect raises. Beside random walks more so: they take up most of a slow effect
 /// until both are fitted together.
-const WORTH_FITTING: f64 = 0.7;
+pub(crate) const WORTH_FITTING: f64 = 0.7;
 const WORTH_FITTING_BESIDE_WALKS: f64 = 0.5;
 
 /// Model that effects are added to.

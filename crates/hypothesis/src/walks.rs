@@ -90,6 +90,21 @@ impl Candidates {
         }))
     }
 
+    /// Twice the log-likelihood that the walks gain over the nominal model without them, and its
+    /// p-value.
+    pub(crate) fn test<F>(&self, nominal: &FittedStage<F>) -> (f64, f64) {
+        let gained = 2.0 * (self.fit.log_likelihood - nominal.noise.log_likelihood);
+        (gained, self.p_value(gained))
+    }
+
+    /// The effect of the largest walk.
+    pub(crate) fn largest(&self) -> Option<&'static str> {
+        let sizes = self.rates.iter().map(|rate| self.fit.noise.walk[*rate]);
+        let all = self.effects.iter().zip(sizes);
+        all.max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(effect, _)| effect.id)
+    }
+
     /// Log-likelihood of the nominal model with all walks.
     pub(crate) fn log_likelihood(&self) -> f64 {
         self.fit.log_likelihood
@@ -122,13 +137,12 @@ pub(crate) fn compare<F: FittedModel>(
     draws: &mut GaussianDraws,
 ) -> Result<Compared<F>, F::Error> {
     let probability = context.options.walk_probability;
-    let gained = 2.0 * (candidates.fit.log_likelihood - nominal.noise.log_likelihood);
+    let (gained, p_value) = candidates.test(nominal);
     let ranking = candidates.ranking(gained);
     let only = |state| Compared {
         ranking: ranking.clone(),
         ..Compared::without_walks(state)
     };
-    let p_value = candidates.p_value(gained);
     let has_effects = !(state.accepted.is_empty() && state.unmodelled.is_empty());
     if !has_effects {
         if p_value >= probability {

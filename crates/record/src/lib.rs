@@ -64,7 +64,9 @@ mod manifest;
 mod model_file;
 mod module_name;
 mod output;
+mod plausible;
 mod record;
+mod record_file;
 mod report;
 mod rows;
 mod setup;
@@ -84,10 +86,11 @@ pub use model_file::{KnownEffect, ModelFile, ParameterEstimate, Standing};
 pub use module_name::module_name;
 pub use output::{Outputs, write_json, write_whole};
 pub use record::Record;
+pub use record_file::RecordFile;
 pub use report::{
-    AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, FitVerdict,
-    NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport,
-    SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
+    AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, EffectTest,
+    FitVerdict, NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION,
+    SimulationReport, SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
 };
 pub use setup::SetupProblem;
 pub use site::{Gravity, Site, SiteUncertainty};

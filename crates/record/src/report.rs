@@ -15,20 +15,23 @@ pub struct CalibrationReport {
     pub schema_version: u32,
     /// Origin of the result.
     pub manifest: Manifest,
-    /// Gross errors of the set-ups that were mended; one that leaves nothing sound ends the
-    /// calibration.
+    /// Gross errors of the set-ups. One that leaves nothing sound makes the verdict `setup`: nothing
+    /// was estimated.
     #[serde(default)]
     pub setup: Vec<SetupProblem>,
-    /// The drift coefficients, in the order of `covariance`.
+    /// Test of each record for effects that the model lacks; empty where none was made.
+    #[serde(default)]
+    pub effects: Vec<EffectTest>,
+    /// The drift coefficients, in the order of `covariance`; empty if nothing was estimated.
     pub coefficients: Vec<Coefficient>,
     /// Covariance of the coefficients, row by row, in products of their units.
     pub covariance: Vec<Vec<f64>>,
     /// Mean normalised innovation squared (NIS) of the rows; its expectation is the number of
-    /// measured components of a row, 3 without `nan`.
-    pub nis_mean: f64,
+    /// measured components of a row, 3 without `nan`. `None` if nothing was estimated.
+    pub nis_mean: Option<f64>,
     /// The interval that holds `nis_mean` of a record that fits the model, lower end first.
-    pub nis_band: [f64; 2],
-    /// Verdict on the fit by `nis_mean`.
+    pub nis_band: Option<[f64; 2]>,
+    /// Verdict on set-up, effects and `nis_mean`, in this order.
     pub verdict: FitVerdict,
     /// The verdict in a sentence.
     pub verdict_text: String,
@@ -37,8 +40,8 @@ pub struct CalibrationReport {
     /// Rows that were used, of all records.
     pub rows: usize,
     /// Platform against local east, north, up at the last row of the last record: angles about
-    /// x, y, z \[deg\].
-    pub final_angles_deg: [f64; 3],
+    /// x, y, z \[deg\]. `None` if nothing was estimated.
+    pub final_angles_deg: Option<[f64; 3]>,
     /// Method of estimation.
     pub method: CalibrationMethod,
     /// Combinations of coefficients that the records do not determine; batch estimator only.
@@ -49,6 +52,53 @@ pub struct CalibrationReport {
     pub site: Vec<SiteReport>,
     /// Sigmas of the coefficients from the first record alone, if there are several.
     pub first_record_sigmas: Option<Vec<f64>>,
+}
+
+impl CalibrationReport {
+    /// The result for records of whose set-ups one leaves nothing sound: nothing was estimated.
+    #[must_use]
+    pub fn of_wrong_setup(
+        manifest: Manifest,
+        method: CalibrationMethod,
+        setup: Vec<SetupProblem>,
+    ) -> Self {
+        let texts: Vec<String> = setup.iter().map(SetupProblem::text).collect();
+        Self {
+            schema_version: SCHEMA_VERSION,
+            manifest,
+            verdict_text: format!("The set-up is wrong: {}", texts.join(" ")),
+            setup,
+            effects: Vec::new(),
+            coefficients: Vec::new(),
+            covariance: Vec::new(),
+            nis_mean: None,
+            nis_band: None,
+            verdict: FitVerdict::Setup,
+            iterations: 0,
+            rows: 0,
+            final_angles_deg: None,
+            method,
+            undetermined: Vec::new(),
+            runs: Vec::new(),
+            site: Vec::new(),
+            first_record_sigmas: None,
+        }
+    }
+}
+
+/// Test of a record for effects that the model lacks: the first detection test of a diagnosis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EffectTest {
+    /// The record, as its path was given.
+    pub record: String,
+    /// The effect that a diagnosis would name first, whether it is significant or not.
+    pub effect: Option<String>,
+    /// Its size in standard deviations.
+    pub z: f64,
+    /// Family-wise p-value of the largest of all statistics.
+    pub p_value: f64,
+    /// Whether a diagnosis would name an effect.
+    pub significant: bool,
 }
 
 /// One estimated coefficient.
@@ -62,11 +112,12 @@ pub struct Coefficient {
     pub sigma: f64,
     /// `deg/h`, `deg/h/g` or `deg/h/g^2`.
     pub unit: String,
-    /// Whether the record determined it: `sigma` is below a tenth of the prior's.
+    /// Whether the record determined it: `sigma` is below a tenth of the prior's, and the innovations
+    /// are not far larger than any effect makes them.
     pub determined: bool,
 }
 
-/// Size of the innovations against the declared noise.
+/// What a calibration says of its records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -77,6 +128,10 @@ pub enum FitVerdict {
     TooLarge,
     /// They are smaller: the noise is smaller than declared.
     TooSmall,
+    /// A record shows an effect of the catalogue, whatever the size of the innovations.
+    EffectsFound,
+    /// A gross error of a set-up leaves nothing sound: nothing was estimated.
+    Setup,
 }
 
 /// Method of estimation of the coefficients.

@@ -24,16 +24,37 @@ pub struct SetupProblem {
     /// Other errors that the record cannot tell from it.
     #[serde(default)]
     pub equivalents: Vec<String>,
+    /// The record that has it, as its path was given; `None` of a record without a file.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// First and last line of the file that it concerns, counted from 1; `None` if it concerns all.
+    #[serde(default)]
+    pub lines: Option<[usize; 2]>,
 }
 
 impl SetupProblem {
-    /// The problem with its equivalents and its evidence, as one paragraph.
+    /// The problem with its place, its equivalents and its evidence, as one paragraph.
     #[must_use]
     pub fn text(&self) -> String {
         let equivalents = match &self.equivalents[..] {
             [] => String::new(),
             some => format!(" The record cannot tell it from: {}.", some.join("; ")),
         };
-        format!("{}{equivalents} ({})", self.description, self.evidence)
+        let Self {
+            description,
+            evidence,
+            ..
+        } = self;
+        format!("{}{description}{equivalents} ({evidence})", self.place())
+    }
+
+    /// File and lines, as the beginning of a sentence.
+    fn place(&self) -> String {
+        match (&self.file, self.lines) {
+            (None, _) => String::new(),
+            (Some(file), None) => format!("{file}: "),
+            (Some(file), Some([first, last])) if first == last => format!("{file}:{first}: "),
+            (Some(file), Some([first, last])) => format!("{file}:{first}-{last}: "),
+        }
     }
 }

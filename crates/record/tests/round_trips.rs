@@ -6,10 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use gyrocal_record::{
-    AveragedReport, AzimuthReport, Bench, CalibrationMethod, CalibrationReport, Coefficient, Error,
-    FitVerdict, GimbalLimits, Gravity, Input, Manifest, NoiseRatioReport, NoiseReport,
-    OtherAzimuth, Outputs, Prior, Record, RunReport, SCHEMA_VERSION, SiteReport, SiteUncertainty,
-    TurnOn, UndeterminedReport, write_json, write_whole,
+    AveragedReport, AzimuthReport, Bench, CalibrationMethod, CalibrationReport, Coefficient,
+    EffectTest, Error, FitVerdict, GimbalLimits, Gravity, Input, Manifest, NoiseRatioReport,
+    NoiseReport, OtherAzimuth, Outputs, Prior, Record, RunReport, SCHEMA_VERSION, SiteReport,
+    SiteUncertainty, TurnOn, UndeterminedReport, write_json, write_whole,
 };
 
 fn record() -> Record {
@@ -171,6 +171,13 @@ fn report() -> CalibrationReport {
             command: "gyrocal calibrate".to_owned(),
         },
         setup: Vec::new(),
+        effects: vec![EffectTest {
+            record: "r.csv".to_owned(),
+            effect: Some("gyro_y.g_z".to_owned()),
+            z: 16.1,
+            p_value: 1e-40,
+            significant: true,
+        }],
         coefficients: vec![Coefficient {
             name: "gyro_x.bias".to_owned(),
             estimate: 0.1 + 0.2,
@@ -179,13 +186,13 @@ fn report() -> CalibrationReport {
             determined: true,
         }],
         covariance: vec![vec![1e-10]],
-        nis_mean: 2.99,
-        nis_band: [2.9, 3.1],
+        nis_mean: Some(2.99),
+        nis_band: Some([2.9, 3.1]),
         verdict: FitVerdict::Consistent,
         verdict_text: "fits".to_owned(),
         iterations: 2,
         rows: 4321,
-        final_angles_deg: [1.0, 2.0, 3.0],
+        final_angles_deg: Some([1.0, 2.0, 3.0]),
         method: CalibrationMethod::Batch,
         undetermined: vec![UndeterminedReport {
             text: "1.00 gyro_x.bias".to_owned(),

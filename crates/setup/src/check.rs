@@ -3,6 +3,7 @@
 use gyrocal_record::{Bench, Record};
 
 use crate::finding::SetupFinding;
+use crate::platform_kind::PlatformKind;
 use crate::samples::Samples;
 use crate::{
     clipped, clock_order, coded, duplicated, gravity, jump, missing, motion, repeated, rotation,
@@ -17,6 +18,9 @@ pub struct SetupCheck {
     /// The record with what can be mended left out or corrected; `None` if an error leaves nothing
     /// sound. The same as was given if there is no finding.
     pub usable: Option<Record>,
+    /// An error that stops, which the rows alone do not decide: it is one if the record fits its
+    /// correction much better than what was given. Only where nothing else stops.
+    pub unconfirmed: Option<SetupFinding>,
 }
 
 impl SetupCheck {
@@ -29,21 +33,30 @@ impl SetupCheck {
 /// Fewest rows of which anything can be said: the medians of both sides of a jump.
 const LEAST_ROWS: usize = 12;
 
-/// Looks for gross errors of the set-up of a record. Of a record of fewer than twelve rows only the
-/// order of its times is judged. The cost is linear in the rows but for one sort.
+/// Looks for gross errors of the set-up of a record of a platform that gyros hold. Of a record of
+/// fewer than twelve rows only the order of its times is judged. The cost is linear in the rows but
+/// for one sort.
 #[must_use]
 pub fn check_setup(record: &Record, bench: &Bench) -> SetupCheck {
+    check_setup_of(PlatformKind::Stabilised, record, bench)
+}
+
+/// The same of a record of some kind of platform.
+#[must_use]
+pub fn check_setup_of(kind: PlatformKind, record: &Record, bench: &Bench) -> SetupCheck {
     let disorder = clock_order::find(record);
     if !disorder.is_empty() || record.measured_rows() < LEAST_ROWS {
         let usable = disorder.is_empty().then(|| record.clone());
         return SetupCheck {
             findings: disorder,
             usable,
+            unconfirmed: None,
         };
     }
     let mut samples = Samples::new(record, bench);
     let mut findings = Vec::new();
-    for test in TESTS {
+    let tests = TESTS.iter().filter(|(of, _)| of.contains(&kind));
+    for (_, test) in tests {
         findings.extend(test(&mut samples));
         // What follows would judge values that are known to be wrong.
         if findings.iter().any(|finding| finding.stops) {
@@ -56,24 +69,35 @@ pub fn check_setup(record: &Record, bench: &Bench) -> SetupCheck {
         (false, true) => Some(record.clone()),
         (false, false) => Some(samples.to_record(record)),
     };
-    SetupCheck { findings, usable }
+    SetupCheck {
+        findings,
+        usable,
+        unconfirmed: samples.unconfirmed.filter(|_| !stops),
+    }
 }
 
 /// A test: takes out of the samples what it explains.
 type Test = fn(&mut Samples<'_>) -> Vec<SetupFinding>;
 
-/// All tests but the first, each of which may rely on what those before it took out.
-const TESTS: [Test; 12] = [
-    missing::find,
-    coded::find,
-    unit::find,
-    clipped::find,
-    stuck::find,
-    repeated::find,
-    duplicated::find,
-    motion::find,
-    scale::find,
-    jump::find,
-    rotation::find,
-    gravity::find,
+/// All kinds of platforms; those whose attitude in space gyros hold.
+const ANY: &[PlatformKind] = &PlatformKind::ALL;
+const HELD: &[PlatformKind] = &[PlatformKind::Stabilised];
+
+/// All tests but the first, with the platforms that they are valid of; each may rely on what those
+/// before it took out. Magnitudes say the same of every platform. Those that follow the direction of
+/// gravity take the drift to be that of gyros that the priors describe, and the fine errors of
+/// accelerometers to be those of a laboratory.
+const TESTS: [(&[PlatformKind], Test); 12] = [
+    (ANY, missing::find),
+    (ANY, coded::find),
+    (ANY, unit::find),
+    (ANY, clipped::find),
+    (ANY, stuck::find),
+    (ANY, repeated::find),
+    (ANY, duplicated::find),
+    (HELD, motion::find),
+    (ANY, scale::find),
+    (HELD, jump::find),
+    (HELD, rotation::find),
+    (HELD, gravity::find),
 ];

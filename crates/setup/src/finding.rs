@@ -79,6 +79,8 @@ impl SetupFinding {
             rows: self.rows.clone().map(|rows| [rows.start + 1, rows.end]),
             stops: self.stops,
             equivalents: self.equivalents.clone(),
+            file: None,
+            lines: None,
         }
     }
 

@@ -4,7 +4,8 @@
 //!
 //! [`check_setup`] looks at a record and its bench description and returns a [`SetupCheck`]: the
 //! gross errors that it finds, each a [`SetupFinding`], and the record with what can be mended left
-//! out. No model is fitted, and the cost is linear in the rows.
+//! out. No model is fitted, and the cost is linear in the rows. Where the rows alone cannot decide
+//! between two signs of the latitude, the check says so, and whoever fits models decides.
 //!
 //! # The domain in brief
 //!
@@ -54,6 +55,7 @@ mod kind;
 mod missing;
 mod motion;
 mod noise;
+mod platform_kind;
 mod prior;
 mod rate;
 mod repeated;
@@ -67,7 +69,8 @@ mod turn;
 mod unit;
 mod vector;
 
-pub use check::{SetupCheck, check_setup};
+pub use check::{SetupCheck, check_setup, check_setup_of};
 pub use finding::{Correction, SetupFinding};
 pub use kind::SetupKind;
+pub use platform_kind::PlatformKind;
 pub use signed_axes::SignedAxes;

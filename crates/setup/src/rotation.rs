@@ -11,6 +11,13 @@ use crate::turn::{EARTH_DEG_PER_H, Turn, in_degrees};
 /// The size of the whole rate is that of the Earth within this factor, or the clock is wrong.
 const SOUND_CLOCK: core::ops::RangeInclusive<f64> = 0.6..=1.6;
 
+/// Latitudes at which fits of both signs tell more than the rate does; below them nothing tells them
+/// apart, since the drift per g of both differs by less than 2 deg/h/g.
+const LOW_LATITUDES_DEG: core::ops::RangeInclusive<f64> = 3.0..=15.0;
+
+/// A shorter record leaves the mean drift about the vertical unknown, s.
+const DECISIVE_S: f64 = 12.0 * 3600.0;
+
 /// A turn of gravity that the declared latitude, axes and attitude do not explain.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let complete = samples.complete();
@@ -18,9 +25,14 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     if let Some(clock) = turn.as_ref().and_then(clock) {
         return vec![clock];
     }
+    let latitude_deg = samples.bench.latitude_deg;
     let found = match (samples.bench.initial_angles_deg, &turn) {
         (Some(angles_deg), turn) => attitude::find(samples, &complete, angles_deg, turn.as_ref()),
-        (None, Some(turn)) => without_angles(samples, turn),
+        (None, Some(turn)) if is_undecided(turn, latitude_deg) => {
+            samples.unconfirmed = Some(handedness(turn, latitude_deg));
+            None
+        }
+        (None, Some(turn)) => without_angles(latitude_deg, turn),
         (None, None) => None,
     };
     found.into_iter().collect()
@@ -48,18 +60,33 @@ fn clock(turn: &Turn) -> Option<SetupFinding> {
     Some(SetupFinding::new(SetupKind::Clock, description, evidence).stopping())
 }
 
+/// Whether the latitude explains the turn with one sign or the other, and fits of both decide better
+/// than the rate: over so short a record, or so near the equator, the rate's tolerance is as large as
+/// the difference of the signs.
+fn is_undecided(turn: &Turn, declared_deg: f64) -> bool {
+    let latitude = declared_deg.to_radians();
+    let is_near = LOW_LATITUDES_DEG.contains(&declared_deg.abs());
+    let is_short = turn.span_s < DECISIVE_S && declared_deg.abs() > *LOW_LATITUDES_DEG.start();
+    (is_near || is_short)
+        && turn.fits_horizontal(latitude)
+        && (turn.fits_vertical(1.0, latitude) || is_reversed(turn, latitude))
+}
+
+/// Whether the opposite latitude explains the rate about the vertical, and much better.
+fn is_reversed(turn: &Turn, latitude_rad: f64) -> bool {
+    let opposite = turn.vertical_misfit(1.0, -latitude_rad);
+    opposite <= turn.vertical_tolerance_deg_per_h
+        && opposite < 0.5 * turn.vertical_misfit(1.0, latitude_rad)
+}
+
 /// Without declared angles only the sense of the turn and the latitude can be judged.
-fn without_angles(samples: &Samples<'_>, turn: &Turn) -> Option<SetupFinding> {
-    let declared = samples.bench.latitude_deg;
+fn without_angles(declared: f64, turn: &Turn) -> Option<SetupFinding> {
     let latitude = declared.to_radians();
     let fits = turn.fits_vertical(1.0, latitude);
     if fits && turn.fits_horizontal(latitude) {
         return None;
     }
-    let opposite = turn.vertical_misfit(1.0, -latitude);
-    let reversed = opposite <= turn.vertical_tolerance_deg_per_h
-        && opposite < 0.5 * turn.vertical_misfit(1.0, latitude);
-    if !fits && reversed && turn.fits_horizontal(latitude) {
+    if !fits && is_reversed(turn, latitude) && turn.fits_horizontal(latitude) {
         return Some(handedness(turn, declared));
     }
     Some(latitude_finding(turn, declared))

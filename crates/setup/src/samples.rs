@@ -2,6 +2,7 @@
 
 use gyrocal_record::{Bench, Record};
 
+use crate::finding::SetupFinding;
 use crate::noise::{ColumnNoise, column_noise};
 use crate::vector::{Vector, dot, unit};
 
@@ -19,6 +20,8 @@ pub(crate) struct Samples<'a> {
     pub(crate) square_g2: f64,
     /// Number of rows in use: those before a jump.
     pub(crate) end: usize,
+    /// An error that only a fit can confirm.
+    pub(crate) unconfirmed: Option<SetupFinding>,
 }
 
 /// One row with all three components.
@@ -52,6 +55,7 @@ impl<'a> Samples<'a> {
             noise: [ColumnNoise::default(); 3],
             square_g2: 1.0,
             end: rows,
+            unconfirmed: None,
         };
         samples.look_again();
         samples

@@ -9,8 +9,18 @@ use crate::text::{AXES, number, row, rows, span};
 /// Equal values in so many successive rows may be stuck; the magnitude decides.
 const LEAST_ROWS: usize = 3;
 
+/// Rows from which on readings that do not change are a fault, and not rounded noise.
+const FROZEN_ROWS: usize = 100;
+
+/// Share of equal values of each axis from which on they are not those of a platform, as gravity
+/// passes through the steps of the coarsest converter.
+const FROZEN_SHARE: f64 = 0.9;
+
 /// Runs of equal values during which the magnitude shows that the force moved.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
+    if let Some(finding) = frozen(samples) {
+        return vec![finding];
+    }
     let tolerance = samples.square_tolerance_g2();
     let mut findings = Vec::new();
     let mut taken: Vec<(usize, Vec<usize>)> = Vec::new();
@@ -33,6 +43,41 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         samples.look_again();
     }
     findings
+}
+
+/// All accelerometers repeat their values: the logger hangs.
+fn frozen(samples: &Samples<'_>) -> Option<SetupFinding> {
+    let most_equal = |axis: usize| {
+        let column = samples.accel_g.iter().map(|row| row[axis]);
+        let mut values: Vec<f64> = column.filter(|value| !value.is_nan()).collect();
+        values.sort_by(f64::total_cmp);
+        let equal = values.chunk_by(|a, b| a == b).map(<[f64]>::len).max();
+        (equal.unwrap_or(0), values.len())
+    };
+    let counts = [0, 1, 2].map(most_equal);
+    let is_frozen = |(equal, all): &(usize, usize)| *equal as f64 >= FROZEN_SHARE * *all as f64;
+    if samples.accel_g.len() < FROZEN_ROWS || !counts.iter().all(is_frozen) {
+        return None;
+    }
+    let description =
+        "The readings hardly ever change, while gravity turns against a platform that \
+                       gyros hold. Look for accelerometers, or a logger, that hang."
+            .to_owned();
+    let evidence = format!(
+        "of x, y and z {}, {} and {} values are the same, in {}",
+        counts[0].0,
+        counts[1].0,
+        counts[2].0,
+        rows(samples.accel_g.len())
+    );
+    Some(
+        SetupFinding::new(SetupKind::Stuck, description, evidence)
+            .stopping()
+            .or(
+                SetupKind::Still,
+                "a platform that stands still on the Earth, read in large steps",
+            ),
+    )
 }
 
 /// Whether the squared magnitude varies within a run by more than the tolerance and is wrong, without

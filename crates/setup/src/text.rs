@@ -48,7 +48,9 @@ pub(crate) fn span(rows: &[usize]) -> Range<usize> {
 
 /// A number with about four significant digits.
 pub(crate) fn number(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e6).contains(&value.abs()) {
         let digits = 3.0 - value.abs().max(1e-3).log10().floor();
         format!("{value:.*}", digits.clamp(0.0, 6.0) as usize)
     } else {

@@ -31,6 +31,8 @@ pub(crate) struct Turn {
     /// By how much these may be off.
     pub(crate) vertical_tolerance_deg_per_h: f64,
     pub(crate) horizontal_tolerance_deg_per_h: f64,
+    /// Time from the first row to the last, s.
+    pub(crate) span_s: f64,
     /// The rate in the first window.
     pub(crate) first: Rate,
 }
@@ -59,6 +61,7 @@ impl Turn {
                 * horizontal_sigma
                 * shortness
                 * inexact,
+            span_s,
             first,
         })
     }

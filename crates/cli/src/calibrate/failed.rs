@@ -1,10 +1,11 @@
 //! Errors of `gyrocal calibrate`, with advice.
 
 use std::fmt::Display;
+use std::path::Path;
 
 use gyrocal::EstimationError;
 use gyrocal_calibration::{CalibrationError, Run, is_gyro_noise_implausible};
-use gyrocal_record::CalibrationMethod;
+use gyrocal_record::{CalibrationMethod, CalibrationReport};
 use miette::Diagnostic;
 
 use super::CalibrateArguments;
@@ -90,6 +91,45 @@ impl NotCalibrated {
             "the values of the bench file are implausible, or inconsistent with the record: check \
              [noise], [prior] and initial_angles_sigma_deg"
         }
+    }
+}
+
+/// A gross error of a set-up leaves nothing sound.
+#[derive(Debug, thiserror::Error)]
+#[error("{text}")]
+pub(super) struct WrongSetup {
+    text: String,
+    written: String,
+}
+
+impl WrongSetup {
+    pub(super) fn new(report: &CalibrationReport, json: Option<&Path>) -> Self {
+        let written = json.map_or_else(String::new, |path| {
+            format!("; {}: the result for programs", path.display())
+        });
+        Self {
+            text: report.verdict_text.clone(),
+            written,
+        }
+    }
+}
+
+impl Diagnostic for WrongSetup {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new("gyrocal::calibrate::setup"))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        let Self { written, .. } = self;
+        Some(Box::new(format!(
+            "mend the record or its bench file: docs/setup-checks.md lists what is checked{written}"
+        )))
+    }
+}
+
+impl From<WrongSetup> for Failure {
+    fn from(error: WrongSetup) -> Self {
+        Self::Work(error.into())
     }
 }
 

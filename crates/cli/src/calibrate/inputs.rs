@@ -1,12 +1,15 @@
 //! Records and bench descriptions, read and checked against each other.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use gyrocal::Platform;
-use gyrocal_calibration::{GyroAxes, Run, attitude_walk_share, average_record, shared_rows};
+use gyrocal_calibration::{
+    GyroAxes, Options, Run, attitude_walk_share, average_record, shared_rows,
+};
+use gyrocal_diagnosis::Gate;
 use gyrocal_instruments::strapdown::read_axes;
-use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, SourceText};
-use gyrocal_setup::{SetupFinding, check_setup};
+use gyrocal_record::{AveragedReport, Bench, Record, RecordFile, SetupProblem, SourceText};
+use gyrocal_setup::PlatformKind;
 use miette::miette;
 
 use crate::Failure;
@@ -18,8 +21,10 @@ pub(super) struct Measurement {
     pub(super) record: Record,
     pub(super) bench: Bench,
     pub(super) averaged: Option<Averaging>,
-    /// Gross errors of the set-up that were mended.
+    /// Gross errors of the set-up.
     pub(super) setup: Vec<SetupProblem>,
+    /// Whether one of them leaves nothing sound; the record is then as it was given.
+    pub(super) stops: bool,
 }
 
 /// Averaging of the rows of a record.
@@ -47,7 +52,7 @@ pub(super) fn read(
     records: &[PathBuf],
     benches: &[PathBuf],
     average_s: Option<f64>,
-    is_platform: bool,
+    kind: PlatformKind,
 ) -> Result<Vec<Measurement>, Failure> {
     refuse_twins(records)?;
     let read: Vec<Bench> = benches
@@ -58,13 +63,18 @@ pub(super) fn read(
     let mut measurements = Vec::with_capacity(records.len());
     for (index, path) in records.iter().enumerate() {
         let bench = if benches.len() == 1 { 0 } else { index };
+        let file = RecordFile::read(path)?;
+        let found = Gate::of_file(kind, &file, &read[bench], &Options::default())?;
         measurements.push(Measurement {
             path: path.clone(),
             bench_path: benches[bench].clone(),
-            record: Record::read_at_least(path, Platform::STATES)?,
             bench: read[bench].clone(),
             averaged: None,
-            setup: Vec::new(),
+            stops: found.stops(),
+            record: found
+                .usable
+                .map_or_else(|| found.record.clone(), Cow::into_owned),
+            setup: found.problems,
         });
     }
     for (index, one) in measurements.iter().enumerate() {
@@ -72,12 +82,9 @@ pub(super) fn read(
             refuse_shared_rows(one, other)?;
         }
     }
-    if is_platform {
-        for measurement in &mut measurements {
-            mend(measurement, records.len() > 1)?;
-        }
-    }
-    if let Some(interval_s) = average_s {
+    if let Some(interval_s) = average_s
+        && !measurements.iter().any(|measurement| measurement.stops)
+    {
         for measurement in &mut measurements {
             take_means(measurement, interval_s)?;
         }
@@ -158,31 +165,6 @@ fn refuse_shared_rows(one: &Measurement, other: &Measurement) -> Result<(), Fail
         shared.first + 1,
         other.record.time_s[shared.first],
     )))
-}
-
-/// Leaves out what gross errors of the set-up spoilt; refuses a record of which nothing sound is left.
-fn mend(measurement: &mut Measurement, is_one_of_several: bool) -> Result<(), Failure> {
-    let check = check_setup(&measurement.record, &measurement.bench);
-    if check.findings.is_empty() {
-        return Ok(());
-    }
-    let path = measurement.path.display();
-    measurement.setup = check.findings.iter().map(SetupFinding::problem).collect();
-    let Some(usable) = check.usable else {
-        let texts = measurement.setup.iter().map(SetupProblem::text);
-        return Err(Failure::Work(miette!(
-            help = "mend the record or its bench file: docs/setup-checks.md lists what is checked",
-            "{path}: the set-up is wrong: {}",
-            texts.collect::<Vec<_>>().join(" "),
-        )));
-    };
-    if is_one_of_several {
-        for problem in &mut measurement.setup {
-            problem.description = format!("{path}: {}", problem.description);
-        }
-    }
-    measurement.record = usable;
-    Ok(())
 }
 
 fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Failure> {

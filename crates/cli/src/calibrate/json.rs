@@ -5,12 +5,11 @@ use std::path::Path;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
-    AzimuthSearch, ConsiderSensitivity, Consistency, RunResult, SiteQuantity,
-    UnobservableCombination,
+    AzimuthSearch, ConsiderSensitivity, RunResult, SiteQuantity, UnobservableCombination,
 };
 use gyrocal_record::{
-    AzimuthReport, CalibrationReport, Coefficient, FitVerdict, OtherAzimuth, RunReport,
-    SCHEMA_VERSION, SiteReport, TurnOn, UndeterminedReport,
+    AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, OtherAzimuth, RunReport,
+    SCHEMA_VERSION, SetupProblem, SiteReport, TurnOn, UndeterminedReport,
 };
 
 use super::CalibrationRun;
@@ -30,6 +29,7 @@ pub(super) fn report(
         schema_version: SCHEMA_VERSION,
         manifest: manifest(MODEL_HASH, 0, inputs)?,
         setup: found.setup().cloned().collect(),
+        effects: found.effects.clone(),
         coefficients: calibration
             .coefficients()
             .into_iter()
@@ -42,17 +42,13 @@ pub(super) fn report(
             })
             .collect(),
         covariance: calibration.covariance.map(Vec::from).to_vec(),
-        nis_mean: fit.nis_mean(),
-        nis_band: fit.nis_band(),
-        verdict: match fit.consistency() {
-            Consistency::Consistent => FitVerdict::Consistent,
-            Consistency::Overconfident => FitVerdict::TooLarge,
-            Consistency::Underconfident => FitVerdict::TooSmall,
-        },
-        verdict_text: fit.consistency_text(),
+        nis_mean: Some(fit.nis_mean()),
+        nis_band: Some(fit.nis_band()),
+        verdict: found.verdict.verdict,
+        verdict_text: found.verdict.text.clone(),
         iterations: calibration.iterations,
         rows: fit.rows(),
-        final_angles_deg: calibration.final_angles_rad.map(f64::to_degrees),
+        final_angles_deg: Some(calibration.final_angles_rad.map(f64::to_degrees)),
         method: found.method,
         undetermined: calibration.unobservable.iter().map(undetermined).collect(),
         runs: runs
@@ -61,6 +57,16 @@ pub(super) fn report(
         site: calibration.site_sensitivities.iter().map(site).collect(),
         first_record_sigmas: found.first_run_sigmas.map(Vec::from),
     })
+}
+
+/// The result for records whose set-up is wrong.
+pub(super) fn of_wrong_setup(
+    method: CalibrationMethod,
+    setup: Vec<SetupProblem>,
+    inputs: &[&Path],
+) -> Result<CalibrationReport, Failure> {
+    let manifest = manifest(MODEL_HASH, 0, inputs)?;
+    Ok(CalibrationReport::of_wrong_setup(manifest, method, setup))
 }
 
 fn undetermined(combination: &UnobservableCombination) -> UndeterminedReport {

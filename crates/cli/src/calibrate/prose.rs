@@ -7,7 +7,8 @@ use gyrocal_calibration::{
     AzimuthSearch, Calibration, ConsiderSensitivity, NoiseDifference, NoiseEstimate, NoiseRatio,
     RunResult, SIGNIFICANT_WALK_SHARE, SiteQuantity, times_overlap,
 };
-use gyrocal_record::CalibrationMethod;
+use gyrocal_record::{CalibrationMethod, FitVerdict};
+use gyrocal_setup::PlatformKind;
 
 use super::inputs::Measurement;
 use super::{CalibrationRun, tables};
@@ -29,7 +30,11 @@ pub(super) fn summary(found: &CalibrationRun) -> String {
             problem.text()
         )));
     }
-    text.push_str(&paragraph(&calibration.fit.consistency_text()));
+    text.push_str(&paragraph(&found.verdict.text));
+    text.push_str(&next(found));
+    if calibration.fit.is_gross() {
+        return text;
+    }
     text.push_str(&observability(found));
     for (measurement, run) in found.measurements.iter().zip(&calibration.runs) {
         text.push_str(&run_results(measurement, run, found.has_several_records()));
@@ -101,6 +106,26 @@ fn record_line(measurement: &Measurement) -> String {
     text
 }
 
+/// The commands to run next.
+fn next(found: &CalibrationRun) -> String {
+    if found.kind != PlatformKind::Stabilised {
+        return String::new();
+    }
+    let why = match found.verdict.verdict {
+        FitVerdict::Consistent => "tests for all else and says what could go undetected",
+        _ => "looks for the causes",
+    };
+    let mut text = String::new();
+    for measurement in &found.measurements {
+        text.push_str(&paragraph(&format!(
+            "Next: `gyrocal diagnose {} --bench {}` {why}.",
+            measurement.path.display(),
+            measurement.bench_path.display()
+        )));
+    }
+    text
+}
+
 fn observability(found: &CalibrationRun) -> String {
     let coefficients = found.calibration.coefficients();
     let ids = |determined: bool| -> Vec<&str> {
@@ -115,7 +140,10 @@ fn observability(found: &CalibrationRun) -> String {
     let (yes, no) = (ids(true), ids(false));
     let mut text = paragraph(&match (yes.as_slice(), no.as_slice()) {
         (_, []) => format!("The {records} {determine} all nine coefficients."),
-        ([], _) => format!("The {records} {determine} none of the coefficients."),
+        ([], _) => format!(
+            "The {records} {determine} none of the coefficients: estimates and sigmas below are \
+             mostly those of the prior."
+        ),
         _ => format!(
             "The {records} {determine} {}. Not determined: {}.",
             yes.join(", "),

@@ -1,11 +1,13 @@
 //! Findings of the record: read from a diagnosis file, or by a diagnosis.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
 use gyrocal_design::{NamedCause, noise_of};
-use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, diagnose, result};
-use gyrocal_record::Input;
+use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_gated, result};
+use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem};
+use gyrocal_setup::PlatformKind;
 
 use super::PlanArguments;
 use super::failed::{NotPlanned, OtherInput};
@@ -14,45 +16,74 @@ use crate::diagnose::NotDiagnosed;
 
 /// Starting point of a plan.
 pub(super) struct Known<'a> {
+    /// The record without what gross errors of the set-up spoilt.
+    pub(super) record: Cow<'a, Record>,
+    /// Gross errors that were mended.
+    pub(super) setup: Vec<SetupProblem>,
     pub(super) fitted: FittedPlatform<'a>,
     pub(super) noise: NoiseModel,
     pub(super) named: Vec<NamedCause>,
 }
 
-pub(super) fn known<'a>(arguments: &PlanArguments, run: &Run<'a>) -> Result<Known<'a>, Failure> {
+pub(super) fn known<'a>(
+    arguments: &PlanArguments,
+    file: &'a RecordFile,
+    bench: &'a Bench,
+) -> Result<Known<'a>, Failure> {
+    let kind = PlatformKind::Stabilised;
+    let checked = Gate::of_file(kind, file, bench, &Options::default())?;
     match &arguments.diagnosis {
-        Some(path) => written(path, arguments, run),
-        None => made(arguments, run),
+        Some(path) => written(path, arguments, checked, bench),
+        None => made(arguments, checked, bench),
     }
 }
 
-fn made<'a>(arguments: &PlanArguments, run: &Run<'a>) -> Result<Known<'a>, Failure> {
+fn made<'a>(
+    arguments: &PlanArguments,
+    checked: Gate<'a>,
+    bench: &'a Bench,
+) -> Result<Known<'a>, Failure> {
     let options = DiagnoseOptions {
         false_alarm_probability: arguments.false_alarm,
         also: arguments.effects.clone(),
         ..DiagnoseOptions::default()
     };
-    let found = diagnose(run.record, run.bench, &options)
-        .map_err(|source| NotDiagnosed::new(&arguments.record, run.bench, source))?;
+    let found = diagnose_gated(checked, bench, &options)
+        .map_err(|source| NotDiagnosed::new(&arguments.record, bench, source))?;
     Ok(Known {
         named: NamedCause::all(&found.result),
         noise: found.noise_model,
         fitted: found.extended.unwrap_or(found.nominal),
+        record: found.record,
+        setup: found.result.setup,
     })
 }
 
 fn written<'a>(
     path: &Path,
     arguments: &PlanArguments,
-    run: &Run<'a>,
+    checked: Gate<'a>,
+    bench: &'a Bench,
 ) -> Result<Known<'a>, Failure> {
     let diagnosis = result::read(path)?;
     check_inputs(path, &diagnosis, arguments)?;
     let named = NamedCause::all(&diagnosis);
     let noise = noise_of(&diagnosis);
-    let fitted = NamedCause::fitted(&named, run, &noise, &Options::default())
-        .map_err(|source| NotPlanned::new(&arguments.record, source))?;
+    let (record, setup) = checked
+        .sound(&DiagnoseOptions::default())
+        .map_err(|source| NotDiagnosed::new(&arguments.record, bench, source))?;
+    let fitted = {
+        let run = Run {
+            record: &record,
+            bench,
+        };
+        let fitted = NamedCause::fitted(&named, &run, &noise, &Options::default())
+            .map_err(|source| NotPlanned::new(&arguments.record, source))?;
+        fitted.into_owned()
+    };
     Ok(Known {
+        record,
+        setup,
         fitted,
         noise,
         named,

@@ -5,6 +5,9 @@ mod several;
 
 use std::fs;
 
+use gyrocal_diagnosis::{DiagnosisResult, Verdict};
+use gyrocal_record::{CalibrationReport, FitVerdict, SetupProblem};
+
 use crate::folder::{Folder, example};
 
 const JSON: [&str; 6] = [
@@ -84,14 +87,6 @@ fn bad_records_are_shown_where_they_are_wrong() {
             "r.csv:4322:10: found `inf`, expected a finite number or `nan`",
         ),
         (
-            with_line(20, 7, "180.0,0.46,-0.114,0.89"),
-            "r.csv:7:1: found time 180 s after 240 s, expected a time greater than 240 s",
-        ),
-        (
-            with_line(20, 7, "240.0,0.46,-0.114,0.89"),
-            "r.csv:7:1: found time 240 s after 240 s, expected a time greater than 240 s",
-        ),
-        (
             record(11),
             "r.csv:12:1: found 11 rows after the header, expected at least 12 rows",
         ),
@@ -119,6 +114,114 @@ fn bad_records_are_shown_where_they_are_wrong() {
     }
 }
 
+/// What is told of a set-up that is wrong, and its one problem in the result.
+fn wrong_setup(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> (String, SetupProblem) {
+    let folder = Folder::new();
+    folder.put("r.csv", record);
+    folder.put("b.toml", bench);
+    let errors = folder.fail_writing(&JSON, &["o.json"]);
+    let mut report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_eq!(report.verdict, FitVerdict::Setup);
+    assert!(report.coefficients.is_empty() && report.nis_mean.is_none());
+    assert_eq!(report.setup.len(), 1, "{:?}", report.setup);
+    let problem = report.setup.remove(0);
+    assert_says(&errors, &problem.text());
+    assert_says(&errors, "o.json: the result for programs");
+    assert!(problem.stops);
+    // The diagnosis says the same.
+    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
+    let diagnosis: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
+    assert_eq!(diagnosis.verdict, Verdict::Setup);
+    assert_eq!(diagnosis.setup, [problem.clone()]);
+    (errors, problem)
+}
+
+#[test]
+fn times_that_do_not_rise_are_told_with_their_lines() {
+    for (line, evidence) in [
+        (
+            "180.0,0.46,-0.114,0.89",
+            "the first at 180.0 s after 240.0 s",
+        ),
+        (
+            "240.0,0.46,-0.114,0.89",
+            "the first at 240.0 s after 240.0 s",
+        ),
+    ] {
+        let (errors, problem) = wrong_setup(with_line(20, 7, line), bench());
+        assert_says(
+            &errors,
+            "r.csv:7: Time does not rise at row 6. Sort the rows",
+        );
+        assert_eq!(problem.kind, "clock");
+        assert!(problem.evidence.contains(evidence), "{problem:?}");
+        assert_eq!((problem.rows, problem.lines), (Some([6, 6]), Some([7, 7])));
+    }
+}
+
+#[test]
+fn empty_columns_and_hanging_loggers_are_told() {
+    let change = |column: usize, value: Option<&str>| {
+        let mut first: Option<String> = None;
+        let text = record(300);
+        let lines = text.lines().enumerate().map(|(index, line)| {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if index > 0 {
+                match value {
+                    Some(value) => fields[column] = value.to_owned(),
+                    None => {
+                        let values = first.get_or_insert_with(|| fields[1..].join(",")).clone();
+                        return format!("{},{values}\n", fields[0]);
+                    }
+                }
+            }
+            fields.join(",") + "\n"
+        });
+        lines.collect::<String>()
+    };
+    let free: String = bench()
+        .lines()
+        .filter(|line| !line.contains("initial"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    for empty in ["", "nan"] {
+        let (_, problem) = wrong_setup(change(2, Some(empty)), &free);
+        assert_eq!((&*problem.kind, problem.lines), ("missing", None));
+        assert!(problem.description.starts_with("Accelerometer y has no"));
+    }
+    let (_, problem) = wrong_setup(change(0, None), bench());
+    assert_eq!(problem.kind, "stuck");
+    assert!(problem.description.contains("hardly ever change"));
+}
+
+#[test]
+fn an_axis_in_another_unit_is_corrected_told_and_used() {
+    let folder = Folder::new();
+    let text = example("three_days.csv");
+    let lines = text.lines().enumerate().map(|(index, line)| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if index > 0 {
+            let value: f64 = fields[2].parse().unwrap();
+            fields[2] = format!("{}", 9.806_65 * value);
+        }
+        fields.join(",") + "\n"
+    });
+    folder.put("r.csv", lines.collect::<String>());
+    folder.put("b.toml", bench());
+    let said = folder.succeed(&JSON);
+    assert_says(&said.replace('\n', " "), "Its unit seems to be m/s^2.");
+    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_eq!(report.setup.len(), 1);
+    assert_eq!(
+        (&*report.setup[0].kind, report.setup[0].stops),
+        ("scale", false)
+    );
+    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
+    let diagnosis: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
+    assert_eq!(diagnosis.setup, report.setup);
+    assert!(diagnosis.coefficients.is_some());
+}
+
 #[test]
 fn a_record_in_another_unit_is_suspected_of_it() {
     let rows = (0..20).map(|row| format!("{},0.0,0.0,9.81\n", 60 * row));
@@ -126,13 +229,11 @@ fn a_record_in_another_unit_is_suspected_of_it() {
         "time_s,accel_x_g,accel_y_g,accel_z_g\n{}",
         rows.collect::<String>()
     );
-    let errors = refused(text, bench());
-    assert_says(
-        &errors,
-        "r.csv:2:1: found a record in which the median norm of specific force is 9.810 g (row 1 \
-         after the header), expected a norm near 1 g",
-    );
-    assert_says(&errors, "the columns seem to be in m/s^2");
+    let (errors, problem) = wrong_setup(text, bench());
+    assert_eq!((&*problem.kind, problem.lines), ("unit", None));
+    assert_says(&errors, "r.csv: Specific force is not in units of gravity.");
+    assert_says(&errors, "It seems to be in m/s^2");
+    assert_says(&errors, "median magnitude is 9.810 times that at rest");
 }
 
 #[test]
@@ -338,10 +439,10 @@ fn one_pass_needs_an_attitude() {
         })
         .collect();
     folder.put("r.csv", blank.join("\n"));
-    let errors = folder.fail(&JSON);
+    let errors = folder.fail_writing(&JSON, &["o.json"]);
     assert_says(
         &errors,
-        "the set-up is wrong: Accelerometer z has no values.",
+        "The set-up is wrong: r.csv: Accelerometer z has no values.",
     );
     assert_says(&errors, "values in 0 of 40 rows");
 }

@@ -1,6 +1,7 @@
 //! `gyrocal calibrate` as a user runs it.
 
 mod findings;
+mod verdict;
 
 use gyrocal_record::{Bench, CalibrationReport, Record};
 use gyrocal_truth::Scenario;

@@ -90,6 +90,8 @@ fn residuals_of_the_nominal_model_are_told_and_written() {
     // The residual of the nominal model with the cross-axis term exceeds the noise.
     let nis = shown.nis.unwrap();
     assert!(nis.mean > nis.band[1] && nis.p_value < 0.01, "{nis:?}");
+    // Three values a row are expected.
+    assert!(nis.band[0] < 3.0 && 3.0 < nis.band[1], "{nis:?}");
     assert_eq!(shown.autocorrelation.unwrap().correlation.len(), 20);
     assert!(shown.lines.unwrap()[0].p_value < 1e-6);
     assert!(shown.free_run_rms_g.iter().all(|rms_g| *rms_g > 2e-5));
@@ -100,7 +102,7 @@ fn residuals_of_the_nominal_model_are_told_and_written() {
         assert!(against.mean.iter().all(|mean| mean.len() == 12));
     }
     assert!(
-        said.contains("Residuals of the nominal model; mean NIS 1.0"),
+        said.contains("Residuals of the nominal model; mean NIS 3.1"),
         "{said}"
     );
 }

@@ -98,7 +98,15 @@ impl Folder {
     /// Runs a command that must fail with exit code 1, without output on stdout, changed files or a
     /// panic; returns stderr.
     pub(crate) fn fail(&self, arguments: &[&str]) -> String {
-        let before = self.names();
+        self.fail_writing(arguments, &[])
+    }
+
+    /// The same of a command that writes these files.
+    pub(crate) fn fail_writing(&self, arguments: &[&str], written: &[&str]) -> String {
+        let mut before = self.names();
+        before.extend(written.iter().map(|name| (*name).to_owned()));
+        before.sort();
+        before.dedup();
         let output = self.run(arguments);
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(1), "{errors}");

@@ -1,5 +1,7 @@
 //! `gyrocal import` on the recording that ships with the repository.
 
+use gyrocal_record::{CalibrationReport, FitVerdict};
+
 use crate::folder::{Folder, repository, repository_argument};
 
 const LOG: &str = "tests/data/measured/ring_laser_static/imu.csv";
@@ -228,6 +230,49 @@ fn a_heading_that_is_none_is_refused_as_an_option() {
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(errors.contains(message), "{message}\nis not in\n{errors}");
     }
+}
+
+#[test]
+fn a_computed_platform_is_checked_as_far_as_it_is_one() {
+    let folder = Folder::new();
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
+    folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
+    let sound = folder.text("r.csv");
+    let calibrate = [
+        "calibrate",
+        "r.csv",
+        "--bench",
+        "b.toml",
+        "--gyro-axes",
+        "a.csv",
+        "--json",
+        "c.json",
+    ];
+    folder.succeed(&calibrate);
+    let report: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
+    assert!(report.setup.is_empty() && report.effects.is_empty());
+    let change = |change: &dyn Fn(usize, &mut Vec<f64>)| {
+        let mut lines = sound.lines();
+        let mut text = lines.next().unwrap().to_owned();
+        for (row, line) in lines.enumerate() {
+            let numbers = line.split(',').map(|field| field.parse().unwrap());
+            let mut fields: Vec<f64> = numbers.collect();
+            change(row, &mut fields);
+            let fields: Vec<String> = fields.iter().map(|value| format!("{value:?}")).collect();
+            text.push_str(&format!("\n{}", fields.join(",")));
+        }
+        folder.put("r.csv", text + "\n");
+    };
+    let wrong = |kind: &str| {
+        let errors = folder.fail_writing(&calibrate, &["c.json"]);
+        let report: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
+        assert_eq!(report.verdict, FitVerdict::Setup, "{errors}");
+        assert_eq!(report.setup[0].kind, kind, "{errors}");
+    };
+    change(&|_, fields| fields[1..4].iter_mut().for_each(|value| *value *= 9.81));
+    wrong("unit");
+    change(&|row, fields| fields[0] -= if row == 30 { 1e4 } else { 0.0 });
+    wrong("clock");
 }
 
 #[test]

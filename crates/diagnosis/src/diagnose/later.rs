@@ -1,14 +1,15 @@
 //! Validation of a diagnosis on a later record of the same platform.
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Run};
-use gyrocal_record::SetupProblem;
-use gyrocal_setup::check_setup;
+use gyrocal_record::{Bench, SetupProblem};
+use gyrocal_setup::PlatformKind;
 
 use super::answer::record_summary;
 use super::noise_audited_fit::noise_audited_fit;
-use super::{DiagnoseOptions, Diagnosis, gate};
+use super::{DiagnoseOptions, Diagnosis};
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
+use crate::gate::Gate;
 use crate::request;
 use crate::result::{Compensation, Validation};
 use crate::validation::{LaterPrediction, predict};
@@ -27,17 +28,27 @@ impl Diagnosis<'_> {
         later: &Run<'_>,
         options: &DiagnoseOptions,
     ) -> Result<(), DiagnosisError> {
+        let found = Gate::new(PlatformKind::Stabilised, later, &options.calibration);
+        self.validate_gated(first, found, later.bench, options)
+    }
+
+    /// The same with a later record whose set-up was checked.
+    ///
+    /// # Errors
+    /// As [`Self::validate`].
+    pub fn validate_gated(
+        &mut self,
+        first: &Run<'_>,
+        later: Gate<'_>,
+        later_bench: &Bench,
+        options: &DiagnoseOptions,
+    ) -> Result<(), DiagnosisError> {
         self.result.later_record = Some(record_summary(later.record));
-        let check = check_setup(later.record, later.bench);
-        let setup = gate::problems(&check, later, &options.calibration);
-        let Some(usable) = check.usable else {
-            let result = Box::new(gate::stopped(later.record, options, setup));
-            return Err(DiagnosisError::Setup { result });
-        };
+        let (usable, setup) = later.sound(options)?;
         self.result.setup.extend(setup.into_iter().map(of_later));
         let later = &Run {
             record: &usable,
-            bench: later.bench,
+            bench: later_bench,
         };
         let diagnosed = self.record.clone();
         let first = &Run {

@@ -20,6 +20,7 @@ pub use findings::{likelihood, parameter_values};
 pub use format::counted;
 pub use limits::{near_twins, not_tested, why_not_distinguished, would_distinguish};
 pub use tests::residual_description;
+pub use verdict::setup;
 
 /// A piece of an answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -96,7 +97,7 @@ pub fn diagnosis(result: &DiagnosisResult) -> Vec<Block> {
         Block::Paragraph(verdict::record(result)),
         Block::Paragraph(verdict::verdict(result)),
     ];
-    blocks.extend(verdict::setup(result));
+    blocks.extend(verdict::setup(&result.setup));
     if result.verdict == Verdict::Setup {
         return blocks;
     }

@@ -118,7 +118,7 @@ fn residuals(shown: &Residuals, duration_h: f64) -> Table {
     let nis = shown.nis.map_or_else(String::new, |nis| {
         let [low, high] = nis.band;
         format!(
-            "; mean NIS {:.3} per value (acceptance band {low:.3} to {high:.3})",
+            "; mean NIS {:.3} (acceptance band {low:.3} to {high:.3})",
             nis.mean
         )
     });

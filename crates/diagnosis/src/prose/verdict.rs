@@ -90,10 +90,11 @@ fn low_power(result: &DiagnosisResult) -> String {
     }
 }
 
-/// Gross errors of the set-up.
-pub(super) fn setup(result: &DiagnosisResult) -> Option<Block> {
-    (!result.setup.is_empty()).then(|| Block::List {
+/// Gross errors of the set-up, as a list; `None` if there are none.
+#[must_use]
+pub fn setup(problems: &[SetupProblem]) -> Option<Block> {
+    (!problems.is_empty()).then(|| Block::List {
         title: "Errors of the set-up:".to_owned(),
-        entries: result.setup.iter().map(SetupProblem::text).collect(),
+        entries: problems.iter().map(SetupProblem::text).collect(),
     })
 }

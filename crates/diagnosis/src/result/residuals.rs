@@ -24,7 +24,8 @@ pub struct Residuals {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Nis {
-    /// Their sum over the number of values; 1 is expected of a consistent filter.
+    /// Their mean over the rows; the number of values of a row is expected of a consistent filter, 3
+    /// if none is missing.
     pub mean: f64,
     /// Acceptance band of the mean at the false-alarm probability of the diagnosis.
     pub band: [f64; 2],

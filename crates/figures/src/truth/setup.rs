@@ -2,15 +2,16 @@
 
 use std::time::Instant;
 
-use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, diagnose};
+use gyrocal_calibration::{Options, Run};
+use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, Gate, diagnose};
 use gyrocal_evaluation::{Outcome, inject_any};
-use gyrocal_setup::check_setup;
+use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
 use gyrocal_testkit::broken_setups::{
     BREAKAGES, Breakage, leave_angles_out, varied_record, varied_scenario,
 };
-use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
+use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -27,6 +28,11 @@ const SOUND: u64 = 3_100_000;
 const SOUND_RECORDS: u64 = 1_000;
 const SMALL_SOUND_RECORDS: u64 = 60;
 
+/// First seed and number of the records whose sign of the latitude fits decide; of the small version.
+const UNDECIDED: u64 = 3_210_000;
+const UNDECIDED_RECORDS: u64 = 400;
+const SMALL_UNDECIDED_RECORDS: u64 = 16;
+
 /// Strength of the effects in every other sound record, in sigmas of their own bound.
 const STRENGTHS: [f64; 2] = [5.0, 100.0];
 
@@ -40,6 +46,7 @@ const MORE: f64 = 10.0;
 pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let mut figures = broken(small)?;
     figures.extend(sound(small)?);
+    figures.extend(undecided(small)?);
     figures.extend(time()?);
     Ok(figures)
 }
@@ -140,16 +147,7 @@ fn sound(small: bool) -> Result<Vec<Figure>, Error> {
     };
     let seeds = SOUND..SOUND + records;
     let campaign = resumable::campaign("truth", "sound", seeds.clone(), small)?;
-    let job = |seed: u64| {
-        let simulation = sound_record(seed)?;
-        let found = check_setup(&simulation.record, &simulation.bench).findings;
-        Ok::<_, Error>(
-            found
-                .iter()
-                .map(|finding| finding.kind.as_str().to_owned())
-                .collect::<Vec<_>>(),
-        )
-    };
+    let job = |seed: u64| Ok::<_, Error>(told(&sound_record(seed)?));
     let outcome: Outcome<Vec<String>> = campaign.run(job, |_| ())?;
     let alarms = Proportion::of(outcome.successes().map(|(_, kinds)| !kinds.is_empty()));
     let mut figure = Figure::within(
@@ -169,6 +167,92 @@ fn sound(small: bool) -> Result<Vec<Figure>, Error> {
         ));
     }
     Ok(figures)
+}
+
+/// Kinds that the gate tells, fits included.
+fn told(simulation: &Simulation) -> Vec<String> {
+    let (record, bench) = (&simulation.record, &simulation.bench);
+    let run = Run { record, bench };
+    let found = Gate::new(PlatformKind::Stabilised, &run, &Options::default());
+    found.problems.into_iter().map(|one| one.kind).collect()
+}
+
+/// A record without angles whose sign of the latitude only fits decide: at 10 to 15 degrees over a day
+/// or two, or over 7 to 12 hours at 20 to 70 degrees; coefficients from the prior of 1 deg/h.
+fn undecided_record(seed: u64) -> Result<Simulation, Error> {
+    let mut random = Draw::new(seed, 5);
+    let mut between = |[from, to]: [f64; 2]| from + (to - from) * random.uniform();
+    let (size_deg, hours) = if seed % 4 < 2 {
+        (between([10.0, 15.0]), between([24.0, 48.0]))
+    } else {
+        (between([20.0, 70.0]), between([7.0, 12.0]))
+    };
+    let sign = random.sign();
+    let mut three = || [0, 1, 2].map(|_| random.normal());
+    let scenario = Scenario {
+        seed,
+        latitude_deg: sign * size_deg,
+        initial: InitialAttitude::Random,
+        duration_s: 3600.0 * hours,
+        coefficients: Coefficients {
+            bias_deg_per_h: three(),
+            g_deg_per_h_per_g: three(),
+            gg_deg_per_h_per_g2: three(),
+        },
+        ..Scenario::default()
+    };
+    let mut simulation = simulate(&scenario)?;
+    leave_angles_out(&mut simulation.bench);
+    Ok(simulation)
+}
+
+fn undecided(small: bool) -> Result<Vec<Figure>, Error> {
+    let records = if small {
+        SMALL_UNDECIDED_RECORDS
+    } else {
+        UNDECIDED_RECORDS
+    };
+    let seeds = UNDECIDED..UNDECIDED + records;
+    let campaign = resumable::campaign("truth", "undecided", seeds.clone(), small)?;
+    let job = |seed: u64| {
+        let mut simulation = undecided_record(seed)?;
+        // Every other one has the wrong sign.
+        if seed % 2 == 1 {
+            simulation.bench.latitude_deg *= -1.0;
+        }
+        Ok::<_, Error>(told(&simulation))
+    };
+    let outcome: Outcome<Vec<String>> = campaign.run(job, |_| ())?;
+    let of = |wrong: u64| {
+        outcome
+            .successes()
+            .filter(move |(seed, _)| *seed % 2 == wrong)
+    };
+    let right = Proportion::of(of(1).map(|(_, kinds)| *kinds == ["handedness"]));
+    let alarms = Proportion::of(of(0).map(|(_, kinds)| !kinds.is_empty()));
+    let name = "sign of the latitude by fits, below 15 deg or 12 h:";
+    let mut figures = [
+        Figure::within(
+            &format!("{name} told"),
+            [0.95, f64::INFINITY],
+            right.share(),
+        ),
+        Figure::within(
+            &format!("{name} false"),
+            [f64::NEG_INFINITY, 0.005],
+            alarms.share(),
+        ),
+    ];
+    if small {
+        figures[0].holds = Some(right.upper_bound(0.999) >= 0.95);
+        figures[1].holds = Some(alarms.lower_bound(0.999) <= 0.005);
+    }
+    let seeds = format!("{seeds:?}");
+    let [first, second] = figures;
+    Ok(vec![
+        first.over(right.trials as usize, seeds.clone()),
+        second.over(alarms.trials as usize, seeds),
+    ])
 }
 
 fn simulated(days: f64) -> Result<Simulation, Error> {

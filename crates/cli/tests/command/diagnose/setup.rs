@@ -1,6 +1,8 @@
 //! Gross errors of the set-up: told, mended or refused.
 
+use gyrocal_design::PlanResult;
 use gyrocal_diagnosis::{DiagnosisResult, Verdict};
+use gyrocal_record::{CalibrationReport, FitVerdict};
 
 use super::{BENCH, RECORD, folder, report};
 use crate::folder::Folder;
@@ -56,9 +58,55 @@ fn a_wrong_latitude_stops_both_commands() {
     );
     let folder = super::folder();
     negate_latitude(&folder);
-    let errors = folder.fail(&["calibrate", RECORD, "--bench", BENCH, "--json", "c.json"]);
-    assert!(errors.contains("the set-up is wrong"), "{errors}");
+    let calibrate = ["calibrate", RECORD, "--bench", BENCH, "--json", "c.json"];
+    let errors = folder.fail_writing(&calibrate, &["c.json"]);
+    assert!(
+        errors.contains("The set-up is wrong: hidden_fault.csv: "),
+        "{errors}"
+    );
     assert!(errors.contains("help: "), "{errors}");
+    let calibration: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
+    assert_eq!(calibration.verdict, FitVerdict::Setup);
+    // Both NIS in both results.
+    assert_eq!(calibration.setup, report.setup);
+    // A plan is refused as well, with a diagnosis of the record or without.
+    let plan = ["plan", RECORD, "--bench", BENCH];
+    let errors = folder.fail(&plan);
+    assert!(
+        errors.contains("the set-up is wrong: hidden_fault.csv: "),
+        "{errors}"
+    );
+}
+
+#[test]
+fn a_plan_needs_a_sound_setup_whatever_diagnosis_is_given() {
+    let folder = folder();
+    negate_latitude(&folder);
+    folder.succeed(&DIAGNOSE);
+    let plan = ["plan", RECORD, "--bench", BENCH, "--diagnosis", "o.json"];
+    let errors = folder.fail(&plan);
+    assert!(errors.contains("the set-up is wrong"), "{errors}");
+}
+
+#[test]
+fn a_plan_tells_what_was_mended_and_uses_the_rest() {
+    let folder = folder();
+    spoil(&folder, |row, fields| {
+        if row % 50 == 7 {
+            fields[3] = "-999".to_owned();
+        }
+    });
+    folder.succeed(&DIAGNOSE);
+    for diagnosis in [&["--diagnosis", "o.json"][..], &[]] {
+        let plan = [
+            "plan", RECORD, "--bench", BENCH, "--hours", "24", "--json", "p.json",
+        ];
+        let said = folder.succeed(&[&plan[..], diagnosis].concat());
+        assert!(said.contains("Errors of the set-up:"), "{said}");
+        let plan: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+        assert_eq!(plan.setup, report(&folder, "o.json").setup);
+        assert_eq!(plan.now.sizes[0].name, "gyro_y.g_z size");
+    }
 }
 
 #[test]
@@ -75,13 +123,15 @@ fn missing_values_that_are_written_as_numbers_are_left_out_and_told() {
         assert_eq!(report.verdict, Verdict::EffectsFound);
         assert_eq!(report.setup.len(), 1);
         assert_eq!(report.setup[0].kind, "missing-coded");
-        assert_eq!(report.setup[0].rows.map(|rows| rows[0]), Some(7));
+        assert_eq!(report.setup[0].rows, Some([7, 4307]));
+        assert_eq!(report.setup[0].lines, Some([8, 4308]));
+        assert_eq!(report.setup[0].file.as_deref(), Some(RECORD));
         assert!(!report.setup[0].stops);
         // The fault is still found.
         assert_eq!(report.findings[0].effect, "gyro_y.g_z");
         let said = folder.succeed(&["calibrate", RECORD, "--bench", BENCH, "--json", "c.json"]);
         assert!(
-            said.contains("Error of the set-up: Missing values of accelerometer z"),
+            said.contains("Error of the set-up: hidden_fault.csv:8-4308: Missing values of"),
             "{said}"
         );
         assert!(folder.text("c.json").contains("missing-coded"));

@@ -1,0 +1,88 @@
+//! The verdict of `gyrocal calibrate`, in the scale of the diagnosis, and what follows from it.
+
+use gyrocal_diagnosis::DiagnosisResult;
+use gyrocal_record::{CalibrationReport, FitVerdict};
+
+use super::{JSON, folder, report, unwrapped};
+use crate::folder::{Folder, example};
+
+/// A folder with the record with a hidden fault and its bench description.
+fn hidden_fault() -> Folder {
+    let folder = Folder::new();
+    folder.put("r.csv", example("hidden_fault.csv"));
+    folder.put("b.toml", example("hidden_fault.bench.toml"));
+    folder
+}
+
+#[test]
+fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
+    let folder = hidden_fault();
+    let said = unwrapped(&folder.succeed(&JSON));
+    assert!(
+        said.contains("Model mismatch detected: the record shows an effect"),
+        "{said}"
+    );
+    assert!(!said.contains("Consistency test passed"), "{said}");
+    let next = "Next: `gyrocal diagnose r.csv --bench b.toml` looks for the causes.";
+    assert!(said.contains(next), "{said}");
+    let found = report(&folder);
+    assert_eq!(found.verdict, FitVerdict::EffectsFound);
+    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
+    let diagnosis: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let [test] = &found.effects[..] else {
+        panic!("{:?}", found.effects)
+    };
+    assert_eq!(test.effect.as_deref(), Some(&*diagnosis.findings[0].effect));
+    assert_eq!(test.p_value, diagnosis.findings[0].p_value);
+    assert!(test.significant && test.z > 15.0, "{test:?}");
+    // Both give the mean of a row.
+    let nis = diagnosis.residuals.unwrap().nis.unwrap().mean;
+    assert!((nis / found.nis_mean.unwrap() - 1.0).abs() < 0.01, "{nis}");
+}
+
+#[test]
+fn a_record_that_fits_is_told_as_such_with_what_to_run_next() {
+    let folder = folder();
+    let said = unwrapped(&folder.succeed(&JSON));
+    assert!(
+        said.contains("No effect of the catalogue is significant."),
+        "{said}"
+    );
+    assert!(
+        said.contains("Next: `gyrocal diagnose r.csv --bench b.toml` tests"),
+        "{said}"
+    );
+    let found = report(&folder);
+    assert_eq!(found.verdict, FitVerdict::Consistent);
+    assert!(!found.effects[0].significant && found.effects[0].p_value > 0.01);
+}
+
+#[test]
+fn noise_that_is_declared_too_small_is_no_effect() {
+    let folder = folder();
+    let bench = example("three_days.bench.toml").replace("deg_per_h = 0.002", "deg_per_h = 0.0008");
+    assert_ne!(bench, example("three_days.bench.toml"));
+    folder.put("b.toml", bench);
+    folder.succeed(&JSON);
+    let found = report(&folder);
+    assert_eq!(found.verdict, FitVerdict::TooLarge, "{:?}", found.effects);
+}
+
+#[test]
+fn coefficients_that_mean_nothing_are_not_tabled() {
+    let folder = folder();
+    // A hundredth of the noise that the record has.
+    let bench = example("three_days.bench.toml").replace("accel_g = 1e-5", "accel_g = 1e-7");
+    folder.put("b.toml", bench);
+    let output = folder.run(&JSON);
+    assert_eq!(output.status.code(), Some(1));
+    let said = unwrapped(&String::from_utf8(output.stdout).unwrap());
+    assert!(said.contains("the coefficients are not usable"), "{said}");
+    assert!(
+        !said.contains("determine") && !said.contains("gyro_x.bias"),
+        "{said}"
+    );
+    let found: CalibrationReport = report(&folder);
+    assert_eq!(found.verdict, FitVerdict::TooLarge);
+    assert!(found.coefficients.iter().all(|one| !one.determined));
+}

@@ -1,0 +1,66 @@
+//! The answer of a record of whose set-up nothing sound is left.
+
+use std::borrow::Cow;
+
+use gyrocal_record::{Record, SetupProblem};
+
+use super::DiagnoseOptions;
+use super::answer::{manifest, record_summary};
+use crate::error::DiagnosisError;
+use crate::error_budget::shares;
+use crate::gate::Gate;
+use crate::result::{DiagnosisResult, ResidualTest, ResidualVerdict, SCHEMA_VERSION, Verdict};
+
+impl<'a> Gate<'a> {
+    /// The record without what gross errors spoilt, and these errors.
+    ///
+    /// # Errors
+    /// [`DiagnosisError::Setup`] with the answer if one leaves nothing sound.
+    pub fn sound(
+        self,
+        options: &DiagnoseOptions,
+    ) -> Result<(Cow<'a, Record>, Vec<SetupProblem>), DiagnosisError> {
+        match self.usable {
+            Some(usable) => Ok((usable, self.problems)),
+            None => Err(DiagnosisError::Setup {
+                result: Box::new(result(self.record, options, self.problems)),
+            }),
+        }
+    }
+}
+
+/// The result of a record of whose set-up nothing sound is left: nothing was fitted.
+fn result(record: &Record, options: &DiagnoseOptions, setup: Vec<SetupProblem>) -> DiagnosisResult {
+    DiagnosisResult {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest(options.seed),
+        record: record_summary(record),
+        later_record: None,
+        verdict: Verdict::Setup,
+        false_alarm_probability: options.false_alarm_probability,
+        false_alarm_shares: shares(options.false_alarm_probability),
+        setup,
+        norm: None,
+        residuals: None,
+        findings: Vec::new(),
+        coefficients: None,
+        gain: None,
+        remainder: ResidualTest {
+            verdict: ResidualVerdict::NotTested,
+            p_value: 1.0,
+            description: "the set-up is wrong: nothing was fitted".to_owned(),
+            line: None,
+            correlation: None,
+            unmodelled: Vec::new(),
+        },
+        cannot_tell: Vec::new(),
+        ranking: Vec::new(),
+        threshold: None,
+        power: Vec::new(),
+        noise: None,
+        noise_audit: None,
+        allan: None,
+        not_searched: Vec::new(),
+        filter: None,
+    }
+}

@@ -1,0 +1,96 @@
+//! The gate: what rows alone do not decide is decided by fits of both signs of the latitude.
+
+use gyrocal_calibration::{Options, Run};
+use gyrocal_diagnosis::Gate;
+use gyrocal_record::RecordFile;
+use gyrocal_setup::{PlatformKind, check_setup};
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_testkit::broken_setups::leave_angles_out;
+use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
+
+/// A record without angles, with coefficients from the prior of 1 deg/h.
+fn record(seed: u64, latitude_deg: f64, hours: f64) -> Simulation {
+    let mut random = Draw::new(seed, 0);
+    let mut three = || [0, 1, 2].map(|_| random.normal());
+    let scenario = Scenario {
+        seed,
+        latitude_deg,
+        initial: InitialAttitude::Random,
+        duration_s: 3600.0 * hours,
+        coefficients: Coefficients {
+            bias_deg_per_h: three(),
+            g_deg_per_h_per_g: three(),
+            gg_deg_per_h_per_g2: three(),
+        },
+        ..Scenario::default()
+    };
+    let mut simulation = simulate(&scenario).unwrap();
+    leave_angles_out(&mut simulation.bench);
+    simulation
+}
+
+fn kinds(simulation: &Simulation) -> Vec<String> {
+    let (record, bench) = (&simulation.record, &simulation.bench);
+    let run = Run { record, bench };
+    let found = Gate::new(PlatformKind::Stabilised, &run, &Options::default());
+    assert_eq!(found.stops(), !found.problems.is_empty());
+    found.problems.into_iter().map(|p| p.kind).collect()
+}
+
+#[test]
+fn a_wrong_sign_of_the_latitude_is_told_where_rates_do_not_decide() {
+    // Near the equator; over a short record.
+    for (latitude_deg, hours, first) in [(12.0, 24.0, 2_180_000), (-40.0, 9.0, 2_180_100)] {
+        for seed in first..first + 6 {
+            let mut simulation = record(seed, latitude_deg, hours);
+            let check = check_setup(&simulation.record, &simulation.bench);
+            assert!(check.findings.is_empty() && check.unconfirmed.is_some());
+            assert_eq!(kinds(&simulation), [""; 0], "{latitude_deg} deg, {seed}");
+            simulation.bench.latitude_deg *= -1.0;
+            // 1.5 (2 Ω sin φ)² is 58 nats at 12 deg, with a sigma of 11.
+            assert_eq!(kinds(&simulation), ["handedness"], "{latitude_deg}, {seed}");
+        }
+    }
+}
+
+#[test]
+fn nothing_tells_the_sign_at_the_equator_or_with_a_wide_prior() {
+    let mut simulation = record(2_180_200, 2.0, 48.0);
+    simulation.bench.latitude_deg *= -1.0;
+    let check = check_setup(&simulation.record, &simulation.bench);
+    assert!(check.findings.is_empty() && check.unconfirmed.is_none());
+    let mut simulation = record(2_180_201, 10.0, 24.0);
+    simulation.bench.latitude_deg *= -1.0;
+    simulation.bench.prior.g_sigma_deg_per_h_per_g = [10.0; 3];
+    assert_eq!(kinds(&simulation), [""; 0]);
+}
+
+#[test]
+fn problems_of_a_file_have_its_lines_and_the_rest_is_checked() {
+    let mut simulation = record(2_180_300, 45.0, 24.0);
+    for row in &mut simulation.record.accel_g[300..320] {
+        row[1] = -999.0;
+    }
+    let bench = &simulation.bench;
+    let text = simulation.record.to_csv("r.csv".as_ref()).unwrap();
+    let of = |text: &str| {
+        let file = RecordFile::parse(text, "r.csv").unwrap();
+        let kind = PlatformKind::Stabilised;
+        let found = Gate::of_file(kind, &file, bench, &Options::default());
+        found.map(|found| (found.problems, found.usable.map(|usable| usable.len())))
+    };
+    let (problems, rows) = of(&text).unwrap();
+    assert_eq!(problems.len(), 1);
+    assert_eq!(problems[0].lines, Some([302, 321]));
+    assert!(
+        problems[0]
+            .text()
+            .starts_with("r.csv:302-321: Missing values")
+    );
+    assert_eq!(rows, Some(simulation.record.len()));
+    // One row of nonsense is no set-up: it is refused at its place.
+    let mut lines: Vec<&str> = text.lines().collect();
+    lines[100] = "5940.0,0.0,0.0,9.81";
+    let error = of(&(lines.join("\n") + "\n")).unwrap_err().to_string();
+    assert!(error.starts_with("r.csv:101:1: found a norm"), "{error}");
+}

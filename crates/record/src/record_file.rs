@@ -1,0 +1,138 @@
+//! A record as it stands in its file.
+
+use std::ops::Range;
+use std::path::Path;
+
+use crate::error::Error;
+use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, refuse_too_few};
+use crate::record::Record;
+use crate::rows::{Form, parse};
+use crate::setup::SetupProblem;
+use crate::source::SourceText;
+
+/// A record as it stands in its file, with the places of its rows: in the format of a record, with
+/// values that may be those of no platform. Times may not rise, specific force may be in any unit, and
+/// an empty field of an accelerometer is a missing value.
+///
+/// A check of the set-up tells what is wrong with it, and leaves what is sound; [`Self::check`] refuses
+/// what no reader accepts of the rest, with its place.
+#[derive(Debug, Clone)]
+pub struct RecordFile {
+    record: Record,
+    source: SourceText,
+    places: Vec<Range<usize>>,
+    header: Range<usize>,
+}
+
+impl RecordFile {
+    /// Reads a record as it stands.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unreadable`], or [`Error::Input`] if the text is not in the format of a record.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Self::of(SourceText::read(path)?)
+    }
+
+    /// Takes the text of a record; errors call it `name`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if the text is not in the format of a record.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
+        Self::of(SourceText::new(text, name)?)
+    }
+
+    fn of(source: SourceText) -> Result<Self, Error> {
+        let (record, places, header) = parse(&source, Form::Lenient)?;
+        Ok(Self {
+            record,
+            source,
+            places,
+            header,
+        })
+    }
+
+    /// The record as it stands.
+    #[must_use]
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// The name of the file as it was given.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.source.name()
+    }
+
+    /// The line of a row, counted from 1; rows are counted from 0. `None` beyond the last row.
+    #[must_use]
+    pub fn line(&self, row: usize) -> Option<usize> {
+        let place = self.places.get(row)?;
+        Some(self.source.line_and_column(place.start).0)
+    }
+
+    /// Gives problems of this record their file and lines, unless they have them.
+    pub fn locate(&self, problems: &mut [SetupProblem]) {
+        for problem in problems.iter_mut().filter(|problem| problem.file.is_none()) {
+            problem.file = Some(self.name().to_owned());
+            problem.lines = problem.rows.and_then(|[first, last]| {
+                let line = |row: usize| self.line(row.checked_sub(1)?);
+                Some([line(first)?, line(last)?])
+            });
+        }
+    }
+
+    /// Refuses values that are no platform's in what is left of the record: fewer than `least` rows
+    /// with a value, rows too far apart, readings that do not change, and magnitudes far from gravity.
+    /// The rows of `usable` are the first of this record, with values missing or corrected.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`].
+    pub fn check(&self, usable: &Record, least: usize) -> Result<(), Error> {
+        let Self { source, places, .. } = self;
+        let last = places.last().unwrap_or(&self.header);
+        refuse_too_few(usable, source, last, least)?;
+        check_norms(usable, source, places, Codes::Read)?;
+        check_intervals(usable, source, places)?;
+        check_stuck(usable, source, places)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "time_s,accel_x_g,accel_y_g,accel_z_g";
+
+    fn file(rows: &str) -> RecordFile {
+        RecordFile::parse(&format!("\n{HEADER}\n{rows}"), "r.csv").unwrap()
+    }
+
+    #[test]
+    fn values_of_no_platform_are_read_with_their_lines() {
+        let file = file("0,0,0,9.81\n60,,0,9.81\n\n30,-999,0,9.81\n");
+        assert_eq!(file.record().time_s, [0.0, 60.0, 30.0]);
+        assert!(file.record().accel_g[1][0].is_nan());
+        assert_eq!(file.record().accel_g[2], [-999.0, 0.0, 9.81]);
+        let lines = [0, 1, 2, 3].map(|row| file.line(row));
+        assert_eq!(lines, [Some(3), Some(4), Some(6), None]);
+        let refused = RecordFile::parse(&format!("{HEADER}\n0,0,0,up\n"), "r.csv");
+        assert!(refused.unwrap_err().to_string().contains("r.csv:2:7"));
+    }
+
+    #[test]
+    fn what_is_left_is_checked_at_its_place() {
+        let file = file("0,0,0,1\n60,0,0,9.81\n120,0,0,1\n180,0,0,1\n");
+        let error = file.check(file.record(), 2).unwrap_err().to_string();
+        assert!(error.starts_with("r.csv:4:1: found a norm"), "{error}");
+        let mut left = file.record().without([[1, 2]]);
+        assert!(file.check(&left, 4).is_ok());
+        left.accel_g.truncate(2);
+        left.time_s.truncate(2);
+        let error = file.check(&left, 3).unwrap_err().to_string();
+        assert!(error.contains("found 2 rows after the header"), "{error}");
+    }
+}
