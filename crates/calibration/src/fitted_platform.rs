@@ -9,7 +9,7 @@ mod rate_noise;
 use gyrocal::estimation::batch::Walk;
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
 use gyrocal::trajectory::Orientation;
-use gyrocal::{Anchored, Catalogue, Chart, Discretisation};
+use gyrocal::{Anchored, Catalogue, Chart, Discretisation, FilterSettings};
 use gyrocal_hypothesis::{ExtraColumns, ModelExtension};
 use gyrocal_record::Bench;
 use nalgebra::DMatrix;
@@ -113,8 +113,14 @@ impl<'a> FittedPlatform<'a> {
         noise: &NoiseModel,
     ) -> Result<Self, CalibrationError> {
         let settings = filter_settings(run.bench, options.moving_chart());
+        // Noise that is believed to be far larger than declared is that of the first guess as well.
+        let largest_ratio = noise.accel_ratio.into_iter().fold(1.0, f64::max);
+        let guessing = FilterSettings {
+            accel_noise_g: largest_ratio * settings.accel_noise_g,
+            ..settings
+        };
         let fit = |careful| {
-            let beginning = initial_guess(run, &settings, options, careful)?;
+            let beginning = initial_guess(run, &guessing, options, careful)?;
             let extension = of_site(run.bench);
             let mut values = beginning.start.drift.to_vec();
             values.resize(PARAMETERS + extension.parameters.len(), 0.0);

@@ -128,6 +128,7 @@ mod single_run;
 mod solve;
 mod streaming;
 mod uncertainty;
+mod work;
 
 pub use averaging::{AveragedRecord, SIGNIFICANT_WALK_SHARE, attitude_walk_share, average_record};
 pub use calibrate::{calibrate, calibrate_runs, calibrate_strapdown, first_run_sigmas};
@@ -154,3 +155,4 @@ pub use run::Run;
 pub use same_rows::{SharedRows, shared_rows, times_overlap};
 pub use settings::{declared_attitude, filter_settings};
 pub use streaming::{FilterWatch, run_factorised_filter};
+pub use work::work;

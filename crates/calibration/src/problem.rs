@@ -9,6 +9,7 @@ use gyrocal::trajectory::Orientation;
 use gyrocal::{Chart, Integration};
 
 use crate::run::{Conditions, WeightedRows};
+use crate::work;
 use gyrocal_hypothesis::ExtraColumns;
 
 /// One unknown of the joint problem.
@@ -209,6 +210,7 @@ where
         pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, C, 3, 3>) -> R,
     ) -> R {
         let run = &self.runs[index];
+        work::carry(active.len() + further.count());
         pass(&Linearisation {
             model: self.model,
             inputs: run.chart,

@@ -10,6 +10,7 @@ use gyrocal::{Chart, ChartInputs};
 use gyrocal_record::{Bench, Record};
 
 use crate::gyro_axes::GyroAxes;
+use crate::work;
 
 /// Model inputs that may depend on time, temperature and the axes of the gyros.
 pub(crate) trait Conditions: ChartInputs<f64> {
@@ -143,6 +144,8 @@ impl<I: Conditions> Series<Chart<f64, I>, 3> for WeightedRows<'_> {
     }
 
     fn measured(&self, row: usize) -> [f64; 3] {
+        // Every pass asks for every row once.
+        work::count_row();
         let mut measured = self.record.accel_g[row];
         if let Some(weights) = &self.weights {
             for (value, weight) in measured.iter_mut().zip(weights[row]) {

@@ -10,6 +10,7 @@ use gyrocal_record::Record;
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fit::FitStatistics;
+use crate::work;
 
 /// Estimates of the filter after the last row.
 pub(crate) struct Filtered {
@@ -97,6 +98,7 @@ pub(crate) fn run_filter<F: Form<f64>>(
     };
     let mut filter = filter.map_err(at(0))?;
     for row in 0..rows {
+        work::count_filtered_row();
         if row > 0 {
             let interval_s = record.time_s[row] - record.time_s[row - 1];
             filter.predict(interval_s).map_err(at(row))?;

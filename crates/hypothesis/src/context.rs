@@ -3,6 +3,7 @@
 use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::Accepted;
+use crate::budget::Budget;
 use crate::hypothesis::HypothesisSet;
 use crate::model::{FittedModel, ModelExtension};
 use crate::pattern::Unmodelled;
@@ -46,6 +47,7 @@ pub(crate) struct SearchContext<'t> {
     pub(crate) base: ModelExtension,
     pub(crate) rows: Rows,
     pub(crate) options: &'t SearchOptions,
+    pub(crate) budget: Budget,
 }
 
 impl SearchContext<'_> {

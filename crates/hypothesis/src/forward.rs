@@ -67,6 +67,9 @@ pub(crate) fn forward<F: FittedModel>(
             ranking: scores.ranking(&hypotheses),
             threshold,
         });
+        if context.budget.is_spent(&state.stage.fitted) {
+            return Ok((state, first.unwrap_or_default()));
+        }
         let share = if margin.is_some() {
             WORTH_FITTING_BESIDE_WALKS
         } else {

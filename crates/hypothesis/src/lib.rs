@@ -96,6 +96,7 @@
 
 mod accepted;
 mod bank;
+mod budget;
 mod column;
 mod context;
 mod continuation;

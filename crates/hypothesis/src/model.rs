@@ -137,6 +137,12 @@ pub trait FittedModel: Clone {
     /// Those of a pass over the record.
     fn conditional_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, Self::Error>;
 
+    /// Work of all passes that were made so far, in a unit that grows with rows and columns; zero of a
+    /// model that does not count it, whose searches have no budget.
+    fn work(&self) -> u64 {
+        0
+    }
+
     /// Sudden changes of the moving states in each step, by the row that ends it; `None` for the
     /// first row.
     ///

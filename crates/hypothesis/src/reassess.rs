@@ -43,6 +43,7 @@ pub(crate) fn reassess<F: FittedModel>(
         if let Some((index, other, _)) = better
             && state.accepted.len() > 1
             && swaps < MOST_EFFECTS
+            && !context.budget.is_spent(&state.stage.fitted)
         {
             swaps += 1;
             // An effect stays if its successor cannot be fitted.

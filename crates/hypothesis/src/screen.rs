@@ -3,6 +3,7 @@
 use gyrocal_scalar::effect::EffectKind;
 
 use crate::accepted::Accepted;
+use crate::budget::Budget;
 use crate::context::{SearchContext, SearchOptions};
 use crate::forward::WORTH_FITTING;
 use crate::hypothesis::{HypothesisSet, Selection};
@@ -61,6 +62,7 @@ pub fn screen<F: FittedModel>(
         base: nominal.extension().clone(),
         rows,
         options,
+        budget: Budget::unlimited(),
     };
     let nominal = settled(&context, nominal, &[])?;
     let effect = of_effects(&context, &nominal)?;

@@ -3,6 +3,7 @@
 use gyrocal_scalar::effect::{Effect, EffectKind};
 
 use crate::accepted::Accepted;
+use crate::budget::Budget;
 use crate::context::{SearchContext, SearchOptions, extension};
 use crate::forward::{Beside, FirstRound, forward};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
@@ -36,6 +37,8 @@ pub struct Searched<F> {
     pub threshold: f64,
     /// Effects that the record cannot show.
     pub unavailable: Vec<Unavailable>,
+    /// Whether the search ended at its budget of work: there may be more to be found.
+    pub is_cut: bool,
     base: ModelExtension,
     plant: &'static Plant,
     rows: Rows,
@@ -81,9 +84,12 @@ pub fn search<F: FittedModel>(
         base: nominal.extension().clone(),
         rows,
         options,
+        budget: Budget::unlimited(),
     };
     let mut draws = GaussianDraws::new(options.seed);
+    let before = nominal.work();
     let nominal = settled(&context, nominal, &[])?;
+    context.budget.start(before, &nominal.fitted);
     let state = SearchState::new(nominal.clone());
     let candidates = Candidates::new(&context, &nominal)?;
     let walks = candidates.as_ref().map(Candidates::log_likelihood);
@@ -114,6 +120,7 @@ pub fn search<F: FittedModel>(
         ranking,
         threshold,
         unavailable: selection.unavailable.clone(),
+        is_cut: context.budget.is_cut(),
         base: context.base,
         plant,
         rows: context.rows,

@@ -207,6 +207,9 @@ pub(crate) fn estimate_shapes<F: FittedModel>(
     let mut fitted = fitted;
     for _ in 0..ROUNDS {
         let mut moved = false;
+        if context.budget.is_spent(&fitted) {
+            break;
+        }
         for index in 0..accepted.len() {
             let hypothesis = &context.set.hypotheses[accepted[index].hypothesis];
             let Some(now) = accepted[index].shape else {

@@ -72,5 +72,6 @@ mod vector;
 pub use check::{SetupCheck, check_setup, check_setup_of};
 pub use finding::{Correction, SetupFinding};
 pub use kind::SetupKind;
+pub use noise::shown_noise_g;
 pub use platform_kind::PlatformKind;
 pub use signed_axes::SignedAxes;

@@ -1,5 +1,6 @@
 //! Noise and resolution of a column, as its own values show them.
 
+use gyrocal_record::Record;
 use gyrocal_statistics::{NORMAL_MAD, upper_median};
 
 /// Noise of a column.
@@ -63,6 +64,16 @@ pub(crate) fn column_noise(time_s: &[f64], column: &[f64], declared_g: f64) -> C
         sigma_g: declared_g.max(shown_g),
         step_g,
     }
+}
+
+/// Noise of the accelerometers x, y, z as fourth differences of their values show it, whatever is
+/// declared; zero of a column with too few equally spaced values.
+#[must_use]
+pub fn shown_noise_g(record: &Record) -> [f64; 3] {
+    [0, 1, 2].map(|axis| {
+        let column: Vec<f64> = record.accel_g.iter().map(|row| row[axis]).collect();
+        column_noise(&record.time_s, &column, 0.0).sigma_g
+    })
 }
 
 /// Whether five times are equally spaced, so that a smooth curve leaves nothing.

@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use super::FittedPlatform;
 use crate::error::CalibrationError;
 use crate::platform::{PLATFORM, covariates};
+use crate::work::work;
 
 impl From<Singular> for CalibrationError {
     fn from(_: Singular) -> Self {
@@ -73,6 +74,10 @@ impl FittedModel for FittedPlatform<'_> {
 
     fn conditional_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, CalibrationError> {
         Ok(self.conditional(further)?.gram)
+    }
+
+    fn work(&self) -> u64 {
+        work()
     }
 
     fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, CalibrationError> {

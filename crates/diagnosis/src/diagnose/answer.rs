@@ -48,7 +48,7 @@ impl Evidence<'_, '_> {
         let findings = self.findings();
         let verdict = if !findings.is_empty() {
             Verdict::EffectsFound
-        } else if self.remainder.verdict == ResidualVerdict::Unexplained {
+        } else if self.remainder.verdict == ResidualVerdict::Unexplained || self.searched.is_cut {
             Verdict::Unexplained
         } else {
             Verdict::Clean
@@ -83,6 +83,7 @@ impl Evidence<'_, '_> {
             noise_audit: Some(audit(self.audit)),
             allan: self.allan.as_ref().map(allan),
             not_searched: self.not_tested(),
+            search_complete: !self.searched.is_cut,
             power: self.power,
             setup: self.setup,
             residuals: Some(self.residuals),

@@ -5,6 +5,7 @@ use gyrocal_calibration::{
     FittedPlatform, NoiseModel, Options, Run, filter_settings, gross_errors, run_factorised_filter,
 };
 use gyrocal_record::{Bench, Record};
+use gyrocal_setup::shown_noise_g;
 
 use super::untestable_rows::{detect_outliers, untestable_rows};
 use crate::error::DiagnosisError;
@@ -14,6 +15,10 @@ use crate::series::Innovations;
 /// Standard deviation given to the fitted first attitude about each axis, deg: wide against the noise
 /// of a sample, so that the first rows correct the attitude.
 const FITTED_ATTITUDE_SIGMA_DEG: f64 = 0.01;
+
+/// Noise that neighbouring rows show over the declared one, beyond which that is not believed at all:
+/// smaller ratios are found by the audit.
+const OTHER_UNIT: f64 = 20.0;
 
 /// The nominal model, fitted with the noise that the audit found.
 pub(super) struct AuditedFit<'a> {
@@ -42,6 +47,7 @@ pub(super) fn noise_audited_fit<'a>(
         .collect();
     let mut noise_model = before.clone();
     leave_out(&mut noise_model, record.len(), &whole);
+    noise_model.accel_ratio = first_ratio(&noise_model, run);
     let first = FittedPlatform::nominal(run, options, &noise_model)?;
     let mut screened = record.without(whole.iter().copied());
     let mut seen = innovations(&screened, bench, &first)?;
@@ -82,6 +88,7 @@ pub(super) fn noise_audited_fit<'a>(
             // A gross mismatch may look like noise with which no fit converges: use the declared one.
             Err(_) => {
                 noise_model = before.clone();
+                noise_model.accel_ratio = first_ratio(before, run);
                 leave_out(&mut noise_model, record.len(), &whole);
                 first
             }
@@ -93,6 +100,22 @@ pub(super) fn noise_audited_fit<'a>(
         innovations: seen,
         audit,
         suspects,
+    })
+}
+
+/// Noise of the accelerometers over the declared one in the first fit: as assumed, or, if it is
+/// declared in another unit, as neighbouring rows show it. A fit with a hundredth of the noise does
+/// not converge.
+fn first_ratio(assumed: &NoiseModel, run: &Run<'_>) -> [f64; 3] {
+    let declared_g = run.bench.accel_noise_g;
+    let shown = shown_noise_g(run.record).map(|shown_g| shown_g / declared_g);
+    core::array::from_fn(|axis| {
+        let assumed = assumed.accel_ratio[axis];
+        if shown[axis] > OTHER_UNIT * assumed {
+            shown[axis]
+        } else {
+            assumed
+        }
     })
 }
 

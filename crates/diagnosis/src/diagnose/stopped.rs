@@ -61,6 +61,7 @@ fn result(record: &Record, options: &DiagnoseOptions, setup: Vec<SetupProblem>) 
         noise_audit: None,
         allan: None,
         not_searched: Vec::new(),
+        search_complete: true,
         filter: None,
     }
 }

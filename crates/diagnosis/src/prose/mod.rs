@@ -101,6 +101,7 @@ pub fn diagnosis(result: &DiagnosisResult) -> Vec<Block> {
     if result.verdict == Verdict::Setup {
         return blocks;
     }
+    blocks.extend(verdict::unfinished(result).map(Block::Paragraph));
     blocks.push(Block::Paragraph(tests::magnitude(result)));
     blocks.extend(findings::entries(result));
     blocks.extend(tests::filter(result).map(Block::Paragraph));

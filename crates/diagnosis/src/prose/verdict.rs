@@ -59,6 +59,16 @@ pub(super) fn verdict(result: &DiagnosisResult) -> String {
     }
 }
 
+/// The caveat on a search that ended at its budget of work.
+pub(super) fn unfinished(result: &DiagnosisResult) -> Option<String> {
+    (!result.search_complete).then(|| {
+        "The search ended at its budget of work: the record contradicts the model in more ways than \
+         these effects explain. Names, sizes and coefficients are what was found until then. Look at \
+         the residuals (--figures), mend the largest fault, and record again."
+            .to_owned()
+    })
+}
+
 /// The smallest p-value: of the diagnosis itself, and of a filter only if there is nothing else.
 fn least_p_value(result: &DiagnosisResult) -> f64 {
     let least = |of_filter: bool| {

@@ -1,0 +1,54 @@
+//! Budget of the work of a search.
+//!
+//! A record that contradicts the model in more ways than the catalogue has names for makes every fit
+//! long, and every round of a search finds something. A search may therefore do only so much work, in
+//! passes over the record, and says what it had found when it ended.
+
+use core::cell::Cell;
+
+use crate::model::FittedModel;
+
+/// Work of a search over that of its first stage, the noise of the nominal model with all signatures. A
+/// whole diagnosis of a sound record takes less than twice that stage. `cargo figures truth` measures
+/// the work of hostile records, which comes out at most at twenty times that of a sound one, with the
+/// round that was begun and the validation of what was found.
+const STAGES: u64 = 14;
+
+/// What a search may still do.
+#[derive(Clone, Debug)]
+pub(crate) struct Budget {
+    /// Work at which it is spent, in the unit of [`FittedModel::work`].
+    end: Cell<u64>,
+    is_cut: Cell<bool>,
+}
+
+impl Budget {
+    pub(crate) fn unlimited() -> Self {
+        Self {
+            end: Cell::new(u64::MAX),
+            is_cut: Cell::new(false),
+        }
+    }
+
+    /// Sets the end: `before` was the work done before the first stage, of which `fitted` is the model.
+    pub(crate) fn start<F: FittedModel>(&self, before: u64, fitted: &F) {
+        let now = fitted.work();
+        let stage = now.saturating_sub(before);
+        if stage > 0 {
+            self.end
+                .set(now.saturating_add(STAGES.saturating_mul(stage)));
+        }
+    }
+
+    /// Whether nothing more may be looked for. The search is then cut.
+    pub(crate) fn is_spent<F: FittedModel>(&self, fitted: &F) -> bool {
+        let is_spent = fitted.work() > self.end.get();
+        self.is_cut.set(self.is_cut.get() || is_spent);
+        is_spent
+    }
+
+    /// Whether the budget has ended something.
+    pub(crate) fn is_cut(&self) -> bool {
+        self.is_cut.get()
+    }
+}
