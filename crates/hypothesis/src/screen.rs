@@ -1,12 +1,13 @@
 //! The first detection tests of a search, without the search.
 
 use gyrocal_scalar::effect::EffectKind;
+use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::accepted::Accepted;
+use crate::accepted::{Accepted, value_places};
 use crate::budget::Budget;
 use crate::context::{SearchContext, SearchOptions};
 use crate::forward::WORTH_FITTING;
-use crate::hypothesis::{HypothesisSet, Selection};
+use crate::hypothesis::{Hypothesis, HypothesisSet, Selection};
 use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
@@ -118,11 +119,22 @@ fn of_effects<F: FittedModel>(
     let gained = 2.0 * (with.noise.log_likelihood - nominal.noise.log_likelihood);
     let tested = gained - best.searched - null.detection_penalties[best.hypothesis];
     Ok(Screened {
-        z: gained.max(0.0).sqrt(),
+        z: strength(&with.fitted, &hypotheses[best.hypothesis]).unwrap_or(by_score.z),
         p_value: null.probability(tested),
         is_significant: tested > threshold,
         ..by_score
     })
+}
+
+/// Size of a fitted effect in standard deviations.
+fn strength<F: FittedModel>(fitted: &F, hypothesis: &Hypothesis) -> Option<f64> {
+    let places = value_places(fitted, hypothesis);
+    let values = DVector::from_fn(places.len(), |i, _| fitted.values()[places[i]]);
+    let covariance = DMatrix::from_fn(places.len(), places.len(), |i, j| {
+        fitted.covariance()[(places[i], places[j])]
+    });
+    let squares = Cholesky::new(covariance)?.solve(&values).dot(&values);
+    (!places.is_empty()).then(|| squares.sqrt())
 }
 
 /// Random walks of all rates together.
