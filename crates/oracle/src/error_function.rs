@@ -32,12 +32,11 @@ pub(crate) fn slope(x: f64) -> f64 {
 /// The inverse of the error function by bisection, on the complement beyond a half.
 pub(crate) fn erf_inv(x: f64) -> f64 {
     let size = x.abs();
-    if !(size < 1.0) {
-        return if size == 1.0 {
-            f64::INFINITY.copysign(x)
-        } else {
-            f64::NAN
-        };
+    if size.is_nan() || size > 1.0 {
+        return f64::NAN;
+    }
+    if size == 1.0 {
+        return f64::INFINITY.copysign(x);
     }
     // Near zero the error function is its slope there, to the last bit.
     if size < 1e-9 {

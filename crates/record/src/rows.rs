@@ -72,10 +72,10 @@ pub(crate) enum Form {
 }
 
 /// A record with the places of its rows, and that of its header.
-pub(crate) fn parse(
-    source: &SourceText,
-    form: Form,
-) -> Result<(Record, Vec<Range<usize>>, Range<usize>), Error> {
+pub(crate) type Placed = (Record, Vec<Range<usize>>, Range<usize>);
+
+/// Reads all rows.
+pub(crate) fn parse(source: &SourceText, form: Form) -> Result<Placed, Error> {
     let mut lines = Lines::of(source);
     let first = lines.next_line()?.unwrap_or_default();
     let header = Header::parse(source, &first)?;

@@ -33,7 +33,8 @@ impl Case {
         let mut command = codegen(&self.tiny.directory(), &["write"]);
         change(&mut command);
         let outcome = run(&mut command);
-        assert_eq!(snapshot(&self.tiny.root), before, "something was written");
+        // Without the contents in the message.
+        assert!(snapshot(&self.tiny.root) == before, "something was written");
         outcome
     }
 
@@ -189,8 +190,8 @@ fn what_a_program_cannot_hold_is_refused() {
     let mut now = "x * y + 2".to_owned();
     for (expression, message) in [
         (
-            "ca.erf(x)",
-            "uses the CasADi operation OP_ERF, which is not supported; write it with",
+            "x.printme(y)",
+            "uses the CasADi operation OP_PRINTME, which is not supported; it prints",
         ),
         (
             "x * other",

@@ -47,8 +47,8 @@ impl CartAndPole {
             let half = self.rates(&self.state, push);
             let middle = core::array::from_fn(|i| self.state[i] + 0.5 * dt * half[i]);
             let rates = self.rates(&middle, push);
-            for i in 0..6 {
-                self.state[i] += dt * rates[i];
+            for (state, rate) in self.state.iter_mut().zip(rates) {
+                *state += dt * rate;
             }
         }
         self.time_s += STEP_S;

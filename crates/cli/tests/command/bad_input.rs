@@ -132,7 +132,7 @@ fn wrong_setup(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> (String, Se
     folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
     let diagnosis: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
     assert_eq!(diagnosis.verdict, Verdict::Setup);
-    assert_eq!(diagnosis.setup, [problem.clone()]);
+    assert_eq!(diagnosis.setup, std::slice::from_ref(&problem));
     (errors, problem)
 }
 

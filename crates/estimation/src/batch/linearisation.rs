@@ -99,6 +99,9 @@ pub struct Smoothed<const M: usize> {
 /// Sees an output, its Jacobian and its covariance with moving states and walks.
 type OutputWatch<'a, const M: usize> = dyn FnMut(&Whitened<'_>, &[f64; M], &[f64; M], &[f64]) + 'a;
 
+/// Sees the transition of the moving states over a step, and the walks.
+type StepWatch<'a, const M: usize> = dyn FnMut(&[[f64; M]; M], &[WalkStep<M>]) + 'a;
+
 impl<D, S, C, const M: usize, const Y: usize> Clone for Linearisation<'_, D, S, C, M, Y>
 where
     D: Manifold<M, Y>,
@@ -194,7 +197,7 @@ where
     pub(crate) fn forward(
         &self,
         output: &mut OutputWatch<'_, M>,
-        step: &mut dyn FnMut(&[[f64; M]; M], &[WalkStep<M>]),
+        step: &mut StepWatch<'_, M>,
     ) -> Result<(), EstimationError> {
         let count = self.active.len() + self.further.count();
         let mut pass = Pass::new(self, count, None)?;

@@ -19,7 +19,7 @@ pub(in crate::program) struct RawInstruction {
 /// Operands: counts, few of them, or anything.
 pub(in crate::program) enum RawOperands {
     Counts([u32; FEW], u8),
-    Others(Box<Vec<Value>>),
+    Others(Vec<Value>),
 }
 
 impl RawOperands {
@@ -32,9 +32,13 @@ impl RawOperands {
             *length += 1;
             return;
         }
+        if let Self::Others(values) = self {
+            values.push(value);
+            return;
+        }
         let mut values = self.values();
         values.push(value);
-        *self = Self::Others(Box::new(values));
+        *self = Self::Others(values);
     }
 
     /// The operands as they stand in the file.
@@ -44,7 +48,7 @@ impl RawOperands {
                 .iter()
                 .map(|&count| Value::from(count))
                 .collect(),
-            Self::Others(values) => values.to_vec(),
+            Self::Others(values) => values.clone(),
         }
     }
 }
