@@ -88,31 +88,7 @@ struct DiagnosisRun<'a> {
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
-    let inputs: Vec<&Path> = [&arguments.record, &arguments.bench]
-        .into_iter()
-        .chain(&arguments.validate)
-        .chain(&arguments.validate_bench)
-        .map(PathBuf::as_path)
-        .collect();
-    outputs::check(
-        &inputs,
-        arguments.json.as_deref(),
-        arguments.figures.as_deref(),
-    )?;
-    if let Some(later) = &arguments.validate
-        && same_file(later, &arguments.record)
-    {
-        return Err(Failure::Usage(format!(
-            "--validate {} is the record itself: a later one has had no part in the models",
-            later.display()
-        )));
-    }
-    if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {
-        return Err(Failure::Usage(format!(
-            "{} is an error of a filter and not of the record: --filter euler tests it",
-            FILTER_EFFECT
-        )));
-    }
+    let inputs = checked_inputs(arguments)?;
     let bench = Bench::read(&arguments.bench)?;
     let file = RecordFile::read(&arguments.record)?;
     let later = match (&arguments.validate, &arguments.validate_bench) {
@@ -170,6 +146,36 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
             diagnosis,
         },
     )
+}
+
+/// The files that are read. Arguments that contradict each other are refused before that.
+fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> {
+    let inputs: Vec<&Path> = [&arguments.record, &arguments.bench]
+        .into_iter()
+        .chain(&arguments.validate)
+        .chain(&arguments.validate_bench)
+        .map(PathBuf::as_path)
+        .collect();
+    outputs::check(
+        &inputs,
+        arguments.json.as_deref(),
+        arguments.figures.as_deref(),
+    )?;
+    if let Some(later) = &arguments.validate
+        && same_file(later, &arguments.record)
+    {
+        return Err(Failure::Usage(format!(
+            "--validate {} is the record itself: a later one has had no part in the models",
+            later.display()
+        )));
+    }
+    if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {
+        return Err(Failure::Usage(format!(
+            "{} is an error of a filter and not of the record: --filter euler tests it",
+            FILTER_EFFECT
+        )));
+    }
+    Ok(inputs)
 }
 
 /// The answer of a record whose set-up is wrong: no pictures, as nothing was fitted.

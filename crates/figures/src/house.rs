@@ -20,7 +20,11 @@ use crate::figure::Figure;
 use sizes::Long;
 
 /// Functions and files above the limits, and the reason of each.
-const LONG: [(&str, &str, &str); 0] = [];
+const LONG: [(&str, &str, &str); 1] = [(
+    "codegen/emit/src/emit/function.rs",
+    "emit",
+    "one function, returned by value or written to a place: two forms of the same text",
+)];
 
 /// Most of them.
 const MOST_LONG: usize = 5;

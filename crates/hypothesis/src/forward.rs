@@ -106,41 +106,64 @@ pub(crate) fn forward<F: FittedModel>(
         let Some(best) = best else {
             return Ok((state, first.unwrap_or_default()));
         };
-        let accepted = Accepted {
-            hypothesis: best.hypothesis,
-            shape: best.shape(&hypotheses),
-            p_value: null.probability(scores.largest()),
-            searched: best.searched,
-            penalty: best.searched + null.penalties[best.hypothesis],
-        };
-        let before = state.clone();
-        let penalty = accepted.penalty;
-        accept(context, &mut state, accepted);
-        if state.accepted.len() == before.accepted.len() {
-            continue;
-        }
-        let gained = 2.0 * (state.stage.noise.log_likelihood - before.stage.noise.log_likelihood);
-        // The test: the likelihood ratio, the noise estimated with and without the effect.
-        let tested = gained - best.searched - null.detection_penalties[best.hypothesis];
-        let is_detected = match margin {
-            Some(margin) => gained - penalty > threshold + margin,
-            None => tested > threshold,
-        };
-        if !is_detected {
-            return Ok((before, first.unwrap_or_default()));
-        }
-        if let Some(own) = state.accepted.last_mut() {
-            own.p_value = null.probability(tested);
-        }
-        if let Beside::WhiteNoise { walks: Some(walks) } = beside {
-            let advantage = 2.0 * (state.stage.noise.log_likelihood - walks)
-                - state.penalties(threshold, 0.0, 1);
-            let further = (MOST_EFFECTS - state.accepted.len()) as f64;
-            if advantage + further * (gained - threshold - penalty) < 0.0 {
-                return Ok((state, first.unwrap_or_default()));
-            }
+        let candidate = (best, best.shape(&hypotheses));
+        match try_effect(context, &mut state, candidate, (&null, threshold), beside) {
+            Outcome::Goes => {}
+            Outcome::Ends => return Ok((state, first.unwrap_or_default())),
         }
     }
+}
+
+/// Whether the selection goes on.
+enum Outcome {
+    Goes,
+    Ends,
+}
+
+/// Adds the best effect to the model if it is detected: by the likelihood ratio, the noise estimated
+/// with and without it.
+fn try_effect<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &mut SearchState<F>,
+    (best, shape): (Best, Option<f64>),
+    (null, threshold): (&NullDistribution, f64),
+    beside: Beside,
+) -> Outcome {
+    let penalty = best.searched + null.penalties[best.hypothesis];
+    let before = state.clone();
+    let accepted = Accepted {
+        hypothesis: best.hypothesis,
+        shape,
+        p_value: 1.0,
+        searched: best.searched,
+        penalty,
+    };
+    accept(context, state, accepted);
+    if state.accepted.len() == before.accepted.len() {
+        return Outcome::Goes;
+    }
+    let gained = 2.0 * (state.stage.noise.log_likelihood - before.stage.noise.log_likelihood);
+    let tested = gained - best.searched - null.detection_penalties[best.hypothesis];
+    let is_detected = match beside {
+        Beside::Walks { margin } => gained - penalty > threshold + margin,
+        Beside::WhiteNoise { .. } => tested > threshold,
+    };
+    if !is_detected {
+        *state = before;
+        return Outcome::Ends;
+    }
+    if let Some(own) = state.accepted.last_mut() {
+        own.p_value = null.probability(tested);
+    }
+    if let Beside::WhiteNoise { walks: Some(walks) } = beside {
+        let advantage =
+            2.0 * (state.stage.noise.log_likelihood - walks) - state.penalties(threshold, 0.0, 1);
+        let further = (MOST_EFFECTS - state.accepted.len()) as f64;
+        if advantage + further * (gained - threshold - penalty) < 0.0 {
+            return Outcome::Ends;
+        }
+    }
+    Outcome::Goes
 }
 
 /// Hypotheses that are not in the model and can be distinguished from it.

@@ -98,23 +98,8 @@ where
                 expected: "one point a row, all parameters of the model, and one change a column",
             });
         }
+        let walk_places = Self::walk_places(of)?;
         let walks = of.walks.walks;
-        let place = |parameter: usize| of.active.iter().position(|active| *active == parameter);
-        let walk_places: Vec<usize> = walks
-            .iter()
-            .filter_map(|walk| place(walk.parameter))
-            .collect();
-        let changes = of.walks.changes.len();
-        if walk_places.len() < walks.len()
-            || walks
-                .iter()
-                .any(|walk| !(walk.density > 0.0 && walk.density.is_finite()))
-            || !(changes == 0 || changes == walks.len() * of.points.len())
-        {
-            return Err(EstimationError::InvalidArgument {
-                expected: "walks of active parameters with a positive density and one change a row",
-            });
-        }
         let mut mean = of.model.difference(&of.points[0], &of.prior);
         // The prior is of a correction of its own mean; here it counts as one of the first point.
         let covariance = match of.model.corrected(&mean.map(|component| -component)) {
@@ -162,6 +147,27 @@ where
             drive: vec![0.0; M * further],
             direct: vec![0.0; further],
         })
+    }
+
+    /// Place of the parameter of each walk among the active ones.
+    fn walk_places(of: &Linearisation<'a, D, S, C, M, Y>) -> Result<Vec<usize>, EstimationError> {
+        let walks = of.walks.walks;
+        let place = |parameter: usize| of.active.iter().position(|active| *active == parameter);
+        let places: Vec<usize> = walks
+            .iter()
+            .filter_map(|walk| place(walk.parameter))
+            .collect();
+        let changes = of.walks.changes.len();
+        let density = |density: f64| density > 0.0 && density.is_finite();
+        if places.len() < walks.len()
+            || !walks.iter().all(|walk| density(walk.density))
+            || !(changes == 0 || changes == walks.len() * of.points.len())
+        {
+            return Err(EstimationError::InvalidArgument {
+                expected: "walks of active parameters with a positive density and one change a row",
+            });
+        }
+        Ok(places)
     }
 
     /// Updates with the outputs of a row; `used` gets each of them and its quantities. It is called
