@@ -44,22 +44,21 @@ pub(crate) fn gain(
             after: rms(record, noise, &extended.free_run_g()?),
             noise: accel_noise_g * (squares.sum::<f64>() / 3.0).sqrt(),
         },
-        coefficient_shift: shifts(nominal, extended)?,
+        coefficient_shift: shifts(nominal, extended),
         validation: None,
     })
 }
 
 /// Changes of the coefficients. The nominal model is fitted with the white noise of the extended one:
 /// noise that an effect had raised says nothing of the shift.
-fn shifts(
-    nominal: &FittedPlatform<'_>,
-    extended: &FittedPlatform<'_>,
-) -> Result<Vec<CoefficientShift>, CalibrationError> {
+fn shifts(nominal: &FittedPlatform<'_>, extended: &FittedPlatform<'_>) -> Vec<CoefficientShift> {
     let has_walks = !extended.rate_noise().walking().is_empty();
-    let same_noise = extended.refitted(nominal.extension())?;
-    let from = if has_walks { nominal } else { &same_noise };
+    // A record that the nominal model is far from cannot always be fitted with the noise that is left.
+    let refitted = extended.refitted(nominal.extension()).ok();
+    let same_noise = refitted.as_ref().unwrap_or(nominal);
+    let from = if has_walks { nominal } else { same_noise };
     let covariances = [same_noise.covariance(), extended.covariance()];
-    Ok((0..DRIFT.len())
+    (0..DRIFT.len())
         .map(|index| {
             let shift = extended.values()[index] - from.values()[index];
             let [before, after] = covariances.map(|all| all[(index, index)]);
@@ -67,7 +66,7 @@ fn shifts(
             let variance = if has_walks { after } else { after - before };
             coefficient_shift(index, shift, variance, before)
         })
-        .collect())
+        .collect()
 }
 
 /// Change of a coefficient with its standard deviation: extended = nominal + shift, the two

@@ -148,8 +148,11 @@ pub(crate) fn compare<F: FittedModel>(
         if p_value >= probability {
             return Ok(only(state));
         }
-        let walking = walking(context, candidates, nominal, draws)?;
-        return with_walks(candidates, walking, (p_value, Vec::new()), ranking);
+        // Walks that no fit converges with are not what the record has.
+        return match walking(context, candidates, nominal, draws) {
+            Ok(walking) => with_walks(candidates, walking, (p_value, Vec::new()), ranking),
+            Err(_) => Ok(only(state)),
+        };
     }
     let own = state.stage.noise.log_likelihood;
     let beside = state.stage.fitted.fit_rate_noise(&candidates.rates, &[])?;
@@ -159,7 +162,9 @@ pub(crate) fn compare<F: FittedModel>(
     if alone > WALK_SET_DEVIANCE && p_beside >= probability {
         return Ok(only(state));
     }
-    let walking = walking(context, candidates, nominal, draws)?;
+    let Ok(walking) = walking(context, candidates, nominal, draws) else {
+        return Ok(only(state));
+    };
     let advantage = 2.0 * (own - walking.stage.noise.log_likelihood) - penalties
         + walking.penalties(first.threshold, BESIDE_WALKS, 0);
     if advantage > WALK_SET_DEVIANCE {
@@ -167,7 +172,9 @@ pub(crate) fn compare<F: FittedModel>(
             return Ok(only(state));
         }
         let mut state = state;
-        let fitted = state.stage.fitted.with_rate_noise(&beside.noise)?;
+        let Ok(fitted) = state.stage.fitted.with_rate_noise(&beside.noise) else {
+            return Ok(only(state));
+        };
         state.stage = settled(context, fitted, &state.accepted)?;
         return with_walks(candidates, state, (p_beside, Vec::new()), ranking);
     }

@@ -210,8 +210,9 @@ impl Likelihood<'_, '_> {
         }
         let mut at = self.at(&logarithms)?;
         for _ in 0..MAX_STEPS {
-            let cholesky = Cholesky::new(at.information.clone())
-                .ok_or(CalibrationError::NotPositiveDefinite)?;
+            let Some(cholesky) = Cholesky::new(at.information.clone()) else {
+                break;
+            };
             let mut step = cholesky.solve(&at.gradient);
             let longest = step.amax();
             if longest > LARGEST_STEP {
@@ -223,8 +224,10 @@ impl Likelihood<'_, '_> {
             let mut halvings = 0;
             loop {
                 let next = &logarithms + &step;
-                let moved = self.at(&next)?;
-                if moved.value >= at.value {
+                // A step may lead to where the filter leaves the numbers: it was too long.
+                if let Ok(moved) = self.at(&next)
+                    && moved.value >= at.value
+                {
                     (logarithms, at) = (next, moved);
                     break;
                 }

@@ -86,6 +86,12 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         }
         figures.push(figure.over(own.len(), seeds.as_str()));
     }
+    for failure in outcome.failures() {
+        eprintln!(
+            "record {} is not diagnosed: {}",
+            failure.seed, failure.message
+        );
+    }
     let failed = outcome.failures().count();
     figures.push(Figure::truth(
         "the same: every record is diagnosed",
