@@ -9,9 +9,9 @@ use core::cell::Cell;
 use crate::model::FittedModel;
 
 /// Work of a search over that of its first stage, the noise of the nominal model with all signatures. A
-/// whole diagnosis of a sound record takes less than twice that stage. `cargo figures truth` measures
-/// the work of hostile records, which comes out at most at twenty times that of a sound one, with the
-/// round that was begun and the validation of what was found.
+/// whole diagnosis of a sound record takes less than twice that stage. Chosen with one record of each
+/// hostile kind, so that their work stays below twenty times that of a sound one; `cargo figures truth`
+/// measures it.
 const STAGES: u64 = 14;
 
 /// What a search may still do.
