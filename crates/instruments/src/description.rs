@@ -179,6 +179,8 @@ impl Description {
     /// # Errors
     ///
     /// [`Error::Unreadable`], or [`Error::Input`] for the first mistake in it.
+    // As the others inline: the code of the deserialisation is made where it is used.
+    #[inline]
     pub fn read(path: &Path) -> Result<Self, Error> {
         Self::from_source(&SourceText::read(path)?)
     }
@@ -188,10 +190,12 @@ impl Description {
     /// # Errors
     ///
     /// [`Error::Input`] for the first mistake in it.
+    #[inline]
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
         Self::from_source(&SourceText::new(text, name)?)
     }
 
+    #[inline]
     fn from_source(source: &SourceText) -> Result<Self, Error> {
         let description: Self = toml::from_str(source.text()).map_err(|error| {
             let span = error.span().unwrap_or(0..0);

@@ -17,6 +17,8 @@ struct Versioned {
 ///
 /// # Errors
 /// As [`read_text`], and [`Error::Unreadable`] if there is no such file.
+// Both inline: the code of the deserialisation, a third of this package's, is made where it is used.
+#[inline]
 pub fn read(path: &Path) -> Result<DiagnosisResult, Error> {
     read_text(&SourceText::read(path)?)
 }
@@ -26,6 +28,7 @@ pub fn read(path: &Path) -> Result<DiagnosisResult, Error> {
 ///
 /// # Errors
 /// [`Error::Input`] with line and column if the text is no result of this version.
+#[inline]
 pub fn read_text(source: &SourceText) -> Result<DiagnosisResult, Error> {
     let text = source.text();
     let versioned: Versioned =
