@@ -86,6 +86,7 @@ mod record_score;
 mod scenario;
 mod score;
 mod signature;
+mod unlisted;
 
 pub use baseline::{BaselineMethod, BaselineResult};
 pub use calibration_summary::{BandedMean, CalibrationSummary, CoefficientSummary, MeasuredValue};
@@ -102,6 +103,7 @@ pub use injection::{
     InjectedEffect, draw_shape, inject, inject_any, inject_into, nominal_fit, testable_effects,
 };
 pub use monte_carlo_report::MonteCarloReport;
+pub use out_of_catalogue::UnlistedRecord;
 pub use population::PopulationCell;
 pub use projection::ProjectedScores;
 pub use record_score::{
@@ -109,3 +111,4 @@ pub use record_score::{
 };
 pub use scenario::scenario;
 pub use signature::{Signature, SignatureColumns};
+pub use unlisted::{UnlistedEffect, UnlistedKind};

@@ -4,16 +4,17 @@
 //! in the whitened residuals: the fitted model, with the effects that the diagnosis named in it, is
 //! fitted to the record with and without the effect, the noise of both being the same.
 
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_calibration::{FittedPlatform, Options, Run};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_hypothesis::{Column, ExtraColumns, ModelExtension};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
+use gyrocal_truth::{Scenario, Simulation, simulate};
 
 use crate::error::EvaluationError;
 use crate::injection::nominal_fit;
 use crate::record_score::{InjectedScore, RecordScore};
-use crate::scenario::duration_h;
 use crate::score::findings_score;
+use crate::unlisted::{UnlistedEffect, UnlistedKind};
 
 /// Corrections of a size after a diagnosis: the findings depend on the size.
 const CORRECTIONS: usize = 3;
@@ -31,89 +32,9 @@ const MAX_DRAWS: usize = 8;
 /// switch are not proportional to their size.
 const REACHED: f64 = 1.2;
 
-/// Largest size of an effect of a gyro \[deg/h\]. Larger ones change the motion of the platform: the
-/// record is then a different one and not the same with a small disturbance.
-const LARGEST_GYRO_DEG_PER_H: f64 = 0.05;
-
-/// The same of an accelerometer \[g\].
-const LARGEST_ACCEL_G: f64 = 5e-4;
-
 /// An effect with less strength than this given the findings, in sigmas, is equivalent to them, as a
 /// sign that never switches is to a bias.
 const LEAST_STRENGTH: f64 = 0.5;
-
-/// An effect of the simulator with its size.
-struct UnlistedEffect {
-    id: String,
-    size: f64,
-    largest_size: f64,
-    /// Names and values of all other parameters.
-    further: Vec<(&'static str, f64)>,
-}
-
-impl UnlistedEffect {
-    /// Draws a tone at a period that no term of the catalogue has, a term with the sign of a specific
-    /// force (Coulomb friction), or a dead zone, of a gyro or an accelerometer.
-    fn draw(kind: u64, scenario: &Scenario, random: &mut Draw) -> Self {
-        let axis = *random.one_of(&["x", "y", "z"]);
-        let other = *random.one_of(&["x", "y", "z"]);
-        let gyro = |id: String| (id, 1e-3, LARGEST_GYRO_DEG_PER_H);
-        let accel = |id: String| (id, 1e-6, LARGEST_ACCEL_G);
-        let is_tone = matches!(kind % 6, 0 | 3);
-        let (id, size, largest_size) = match kind % 6 {
-            0 => gyro(format!("gyro_{axis}.tone")),
-            1 => gyro(format!("gyro_{axis}.sign_{other}")),
-            2 => gyro(format!("gyro_{axis}.dead_zone")),
-            3 => accel(format!("accel_{axis}.tone")),
-            4 => accel(format!("accel_{axis}.sign")),
-            _ => accel(format!("accel_{axis}.dead_zone")),
-        };
-        let further = if is_tone {
-            vec![
-                ("period_h", odd_period_h(scenario, random)),
-                ("phase_deg", 360.0 * random.uniform()),
-            ]
-        } else {
-            Vec::new()
-        };
-        Self {
-            id,
-            size,
-            largest_size,
-            further,
-        }
-    }
-
-    fn to_hidden(&self) -> Result<Hidden, gyrocal_truth::Error> {
-        let mut parameters = vec![("size", self.size)];
-        parameters.extend(self.further.iter().copied());
-        Hidden::new(&self.id, &parameters)
-    }
-
-    /// Simulates the scenario with this effect.
-    fn simulate(&self, scenario: &Scenario) -> Result<Simulation, EvaluationError> {
-        Ok(simulate(&Scenario {
-            hidden: vec![self.to_hidden()?],
-            ..scenario.clone()
-        })?)
-    }
-}
-
-/// A period between six rows and a third of the record, away from the day and its half, which terms of
-/// the catalogue have.
-fn odd_period_h(scenario: &Scenario, random: &mut Draw) -> f64 {
-    let range = [
-        6.0 * scenario.interval_s / 3600.0,
-        duration_h(scenario) / 3.0,
-    ];
-    loop {
-        let period_h = random.log_uniform(range);
-        let away = |from_h: f64| libm::fabs(libm::log(period_h / from_h)) > 0.15;
-        if away(24.0) && away(12.0) {
-            return period_h;
-        }
-    }
-}
 
 /// Injects an effect that is not in the catalogue, diagnoses the record and returns its score.
 ///
@@ -129,7 +50,9 @@ pub(crate) fn score_out_of_catalogue(
     let clean = simulate(scenario)?;
     let residuals = whitened_residuals(&clean, &ModelExtension::default())?;
     for attempt in 0..MAX_DRAWS {
-        let mut effect = UnlistedEffect::draw(number + attempt as u64, scenario, random);
+        let kinds = UnlistedKind::ALL;
+        let kind = kinds[(number as usize + attempt) % kinds.len()];
+        let mut effect = UnlistedEffect::draw(kind, scenario, random)?;
         if !scale(scenario, &residuals, &mut effect, strength)? {
             continue;
         }
@@ -191,7 +114,70 @@ fn diagnosed(
     }
 }
 
-/// Scales an effect to a strength given the nominal model; `false` if it cannot be reached.
+/// A record with an effect that the catalogue does not hold, and the same record without it.
+pub struct UnlistedRecord {
+    /// The record without the effect.
+    pub clean: Simulation,
+    /// The record with it.
+    pub with: Simulation,
+    /// The effect.
+    pub effect: UnlistedEffect,
+}
+
+impl UnlistedRecord {
+    /// Draws an effect of a kind and scales it to a strength given the nominal model; `None` if none of
+    /// those drawn reaches it.
+    ///
+    /// # Errors
+    /// Those of simulation and calibration.
+    pub fn draw(
+        scenario: &Scenario,
+        kind: UnlistedKind,
+        strength: f64,
+        random: &mut Draw,
+    ) -> Result<Option<Self>, EvaluationError> {
+        let clean = simulate(scenario)?;
+        let residuals = whitened_residuals(&clean, &ModelExtension::default())?;
+        for _ in 0..MAX_DRAWS {
+            let mut effect = UnlistedEffect::draw(kind, scenario, random)?;
+            if scale(scenario, &residuals, &mut effect, strength)? {
+                let with = effect.simulate(scenario)?;
+                return Ok(Some(Self {
+                    clean,
+                    with,
+                    effect,
+                }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Strength of the effect beside the effects and the noise of a diagnosis of the record with it: the
+    /// length of the change of the whitened residuals. `None` if that model cannot be fitted.
+    #[must_use]
+    pub fn strength_beside(&self, found: &Diagnosis<'_>) -> Option<f64> {
+        let extended = found.extended.as_ref();
+        let named = extended.map_or_else(ModelExtension::default, |extended| {
+            named_effects(extended.extension())
+        });
+        let residuals = |simulation: &Simulation| {
+            let run = Run {
+                record: &simulation.record,
+                bench: &simulation.bench,
+            };
+            let nominal =
+                FittedPlatform::nominal(&run, &Options::default(), &found.noise_model).ok()?;
+            nominal.refitted(&named).ok()?.whitened().ok()
+        };
+        Some(distance(&residuals(&self.clean)?, &residuals(&self.with)?))
+    }
+}
+
+/// Scales an effect to a strength given the nominal model; `false` if it cannot be reached. `without`
+/// are the whitened residuals without it.
+///
+/// # Errors
+/// Those of a simulation of the record.
 fn scale(
     scenario: &Scenario,
     without: &[[f64; 3]],
@@ -295,9 +281,9 @@ mod tests {
         let clean = simulate(&scenario).unwrap();
         let without = whitened_residuals(&clean, &ModelExtension::default()).unwrap();
         let mut scaled = 0;
-        for kind in 0..6 {
-            let random = &mut Draw::new(kind, 0);
-            let mut effect = UnlistedEffect::draw(kind, &scenario, random);
+        for (number, kind) in UnlistedKind::ALL.into_iter().enumerate() {
+            let random = &mut Draw::new(number as u64, 0);
+            let mut effect = UnlistedEffect::draw(kind, &scenario, random).unwrap();
             if scale(&scenario, &without, &mut effect, 10.0).unwrap() {
                 scaled += 1;
                 let other = effect.simulate(&scenario).unwrap();
@@ -312,6 +298,6 @@ mod tests {
             }
         }
         // A term whose force never changes its sign in a day is a constant, and cannot be scaled.
-        assert!(scaled >= 3, "{scaled}");
+        assert!(scaled >= 6, "{scaled}");
     }
 }

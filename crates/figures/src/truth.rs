@@ -2,6 +2,7 @@
 
 mod hostile;
 mod noise;
+mod outside;
 mod setup;
 mod shapes;
 
@@ -14,5 +15,6 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     figures.extend(hostile::figures(small)?);
     figures.extend(shapes::figures(small)?);
     figures.extend(noise::figures(small)?);
+    figures.extend(outside::figures(small)?);
     Ok(figures)
 }

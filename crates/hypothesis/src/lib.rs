@@ -109,6 +109,7 @@ mod jump;
 mod line;
 mod model;
 mod null_distribution;
+mod outside;
 mod pattern;
 mod plant;
 mod rate_noise;

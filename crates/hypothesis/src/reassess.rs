@@ -5,7 +5,7 @@ use crate::accepted::Accepted;
 use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::result::{Finding, add_intervals, evaluate};
+use crate::result::{ConditionalResult, add_intervals, evaluate};
 use crate::score::Best;
 use crate::state::{SearchState, stage};
 use crate::walks::Walks;
@@ -18,10 +18,10 @@ pub(crate) fn reassess<F: FittedModel>(
     threshold: f64,
     walks: &Walks,
     draws: &mut GaussianDraws,
-) -> Result<Vec<Finding>, F::Error> {
+) -> Result<Vec<ConditionalResult>, F::Error> {
     let mut swaps = 0;
     loop {
-        let mut findings = Vec::with_capacity(state.accepted.len());
+        let mut results = Vec::with_capacity(state.accepted.len());
         let mut weakest: Option<(usize, f64)> = None;
         let mut better: Option<(usize, Best, f64)> = None;
         for index in 0..state.accepted.len() {
@@ -29,7 +29,6 @@ pub(crate) fn reassess<F: FittedModel>(
                 stage, accepted, ..
             } = &*state;
             let result = evaluate(stage, context, accepted, index, draws)?;
-            findings.push(result.finding);
             if weakest.is_none_or(|(_, least)| result.tested < least) {
                 weakest = Some((index, result.tested));
             }
@@ -38,6 +37,7 @@ pub(crate) fn reassess<F: FittedModel>(
             {
                 better = Some((index, other, advantage));
             }
+            results.push(result);
         }
         // A single effect has been compared with all others already.
         if let Some((index, other, _)) = better
@@ -65,7 +65,8 @@ pub(crate) fn reassess<F: FittedModel>(
                 )?;
             }
             _ => {
-                for (index, finding) in findings.iter_mut().enumerate() {
+                for (index, result) in results.iter_mut().enumerate() {
+                    let finding = &mut result.finding;
                     add_intervals(
                         &state.stage,
                         context,
@@ -79,7 +80,7 @@ pub(crate) fn reassess<F: FittedModel>(
                         finding.alternatives.extend(walks.rivals.iter().cloned());
                     }
                 }
-                return Ok(findings);
+                return Ok(results);
             }
         }
     }

@@ -10,6 +10,7 @@ use crate::context::SearchContext;
 use crate::hypothesis::{Hypothesis, HypothesisSet, Variant};
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
+use crate::outside::ln_likelihood_of_all;
 use crate::rate_noise::RateNoiseFit;
 use crate::rows::Rows;
 use crate::score::{Best, NESTED_MODEL_CHI2, Scores};
@@ -64,6 +65,8 @@ pub struct Finding {
     pub alternatives: Vec<Alternative>,
     /// Exact equivalents with their estimates.
     pub exact_equivalents: Vec<(&'static str, Vec<EffectEstimate>)>,
+    /// Probability that nothing of the catalogue is the cause; `None` where it was not estimated.
+    pub none_of_these: Option<f64>,
 }
 
 /// A fitted model with its accepted effects, and the Gram matrix of its signatures.
@@ -141,6 +144,8 @@ impl<F: FittedModel> FittedStage<F> {
 /// Conditional result for one accepted effect, the others being in the model.
 pub(crate) struct ConditionalResult {
     pub(crate) finding: Finding,
+    /// Logarithm of the sum of its likelihood and those of all that could be in its place over its own.
+    pub(crate) ln_others: f64,
     /// Its statistic in the detection test.
     pub(crate) tested: f64,
     /// A hypothesis that would be named in its place, and its advantage.
@@ -180,6 +185,9 @@ pub(crate) fn evaluate<F: FittedModel>(
         .filter(|(_, advantage)| *advantage > NESTED_MODEL_CHI2)
         .and_then(|(other, advantage)| Some((scores.best[other]?, advantage)));
     let effect = set.hypotheses[own.hypothesis].effect;
+    let others = (0..hypotheses.len())
+        .filter(|other| *other != own.hypothesis && scores.best[*other].is_some());
+    let ln_others = ln_likelihood_of_all(penalised, others.map(|other| scores.penalised(other)));
     Ok(ConditionalResult {
         finding: Finding {
             effect: effect.id,
@@ -196,7 +204,9 @@ pub(crate) fn evaluate<F: FittedModel>(
                 },
             ),
             exact_equivalents: exact_equivalents(&stage.fitted, effect, &bank),
+            none_of_these: None,
         },
+        ln_others,
         tested,
         better,
     })

@@ -9,6 +9,7 @@ use crate::forward::{Beside, FirstRound, forward};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
 use crate::null_distribution::GaussianDraws;
+use crate::outside::add_none_of_these;
 use crate::pattern::Unmodelled;
 use crate::plant::Plant;
 use crate::rate_noise::RateNoiseFit;
@@ -109,8 +110,11 @@ pub fn search<F: FittedModel>(
     } = first;
     ranking.extend(ranked_walks);
     ranking.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
-    let mut findings = reassess(&context, &mut state, threshold, &walks, &mut draws)?;
-    findings.append(&mut walks.named);
+    let mut effects = reassess(&context, &mut state, threshold, &walks, &mut draws)?;
+    let model = (&state.stage, state.unmodelled.as_slice());
+    add_none_of_these(&context, model, &mut effects, &mut walks.named)?;
+    let effects = effects.into_iter().map(|effect| effect.finding);
+    let findings = effects.chain(walks.named).collect();
     Ok(Searched {
         fitted: state.stage.fitted,
         nominal: nominal.fitted,

@@ -323,6 +323,7 @@ fn walk_finding(
         p_value,
         alternatives: Vec::new(),
         exact_equivalents: Vec::new(),
+        none_of_these: None,
     }
 }
 

@@ -51,6 +51,7 @@ pub(super) fn of_cause(finding: &hypothesis::Finding, decision: &KeepDecision) -
         coverage: Some(CONFIDENCE_SET_COVERAGE),
         rivals: alternatives.clone(),
         alternatives,
+        none_of_these: finding.none_of_these,
         equivalents: equivalents.collect(),
         gain_nats: Some(decision.gain_nats),
         accepted: Some(decision.accepted),

@@ -9,6 +9,9 @@ use crate::result::{Alternative, DiagnosisResult, Finding, Parameter};
 /// Alternatives that an entry names; the ranking shows all of them.
 const ALTERNATIVES_SHOWN: usize = 4;
 
+/// Probability of none of the catalogue from which on it is told.
+const TOLD: f64 = 0.2;
+
 /// One entry for each detected effect.
 pub(super) fn entries(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
     let findings = result.findings.iter().enumerate();
@@ -30,6 +33,12 @@ fn paragraphs(finding: &Finding) -> Vec<String> {
     if !finding.alternatives.is_empty() {
         paragraphs.push(alternatives(finding));
     }
+    paragraphs.extend(
+        finding
+            .none_of_these
+            .filter(|none| *none >= TOLD)
+            .map(none_of_these),
+    );
     let equivalents = finding.equivalents.iter();
     paragraphs.extend(equivalents.map(|equivalent| {
         format!(
@@ -67,11 +76,22 @@ fn alternatives(finding: &Finding) -> String {
         Some(coverage) => format!("{} confidence set", percent(coverage)),
         None => "confidence set".to_owned(),
     };
-    let none = match finding.none_of_these {
-        Some(probability) => format!(" None of these: probability {}.", percent(probability)),
-        None => String::new(),
+    format!("Alternatives ({set}): {}{more}.", shown.join(", "))
+}
+
+/// The probability that the cause is not in the catalogue.
+fn none_of_these(probability: f64) -> String {
+    let followed = "the residuals follow the specific force, its past, its products with time or the \
+                    temperature as no effect of the catalogue does";
+    let likelier = if probability > 0.5 {
+        format!("likelier than not: {followed}")
+    } else {
+        "less likely than not".to_owned()
     };
-    format!("Alternatives ({set}): {}{more}.{none}", shown.join(", "))
+    format!(
+        "None of these: probability {}, {likelier}.",
+        percent(probability)
+    )
 }
 
 /// All parameters with their sigmas and units.
