@@ -4,7 +4,9 @@
 //! 18): a deviation is an error of the accelerometers, or of gravity.
 
 use gyrocal_record::Record;
-use gyrocal_statistics::{BinnedMeans, binned_means, chi_square_two_sided_p, two_sided_p};
+use gyrocal_statistics::{
+    BinnedMeans, binned_means, chi_square_two_sided_p, p_of_least, two_sided_p,
+};
 
 use crate::error::DiagnosisError;
 
@@ -37,7 +39,7 @@ pub struct MagnitudeChannel {
 }
 
 impl MagnitudeChannel {
-    /// The least p-value of the mean and of all binned means, times their number (Bonferroni).
+    /// p-value of the least p-value of the mean and of all binned means.
     #[must_use]
     pub fn least_p_value(&self) -> f64 {
         let binned = self.on_component.iter().chain([&self.on_time]);
@@ -45,7 +47,7 @@ impl MagnitudeChannel {
         let (count, least) = binned.fold((1.0, self.mean_p_value), |(count, least), means| {
             (count + 1.0, f64::min(least, means.p_value))
         });
-        f64::min(count * least, 1.0)
+        p_of_least(least, count)
     }
 }
 

@@ -2,7 +2,7 @@
 //! attitude and site (docs/method.md, equation 18).
 
 use gyrocal_record::{Bench, Record};
-use gyrocal_statistics::BinnedMeans;
+use gyrocal_statistics::{BinnedMeans, p_of_least};
 
 use crate::error::DiagnosisError;
 use crate::magnitude::{MagnitudeChannel, magnitude_channel};
@@ -21,7 +21,7 @@ const LEAST_RANGE_SIGMAS: f64 = 3000.0;
 pub struct MagnitudeTest {
     /// Whether the accelerometers, or gravity, differ from what is declared.
     pub accelerometers: bool,
-    /// p-value with a Bonferroni bound over all its tests.
+    /// p-value of the least of all its tests: exact of independent ones, else an upper bound.
     pub p_value: f64,
     /// Mean of |E| less gravity \[g\]; zero if gravity is declared uncertain.
     pub mean_g: f64,
@@ -108,7 +108,7 @@ pub fn magnitude_test(
         .into_iter()
         .min_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
     let (least, words) = strongest.map_or((1.0, String::new()), |(p, _, words)| (p, words));
-    let p_value = (count * least).min(1.0);
+    let p_value = p_of_least(least, count);
     let accelerometers = p_value < false_alarm;
     Ok(MagnitudeTest {
         accelerometers,

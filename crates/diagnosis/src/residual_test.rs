@@ -3,7 +3,7 @@
 use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use gyrocal_hypothesis::{Pattern, Unmodelled};
 use gyrocal_record::Record;
-use gyrocal_statistics::{autocorrelation, periodogram, strongest_line};
+use gyrocal_statistics::{autocorrelation, p_of_least, periodogram, strongest_line};
 
 use crate::error_budget::RESIDUAL_TESTS;
 use crate::prose::residual_description;
@@ -63,18 +63,19 @@ pub(crate) fn residual_test(
                 ljung_box: found.ljung_box,
                 degrees_of_freedom: found.degrees_of_freedom,
                 p_value: found.p_value,
-                significant: RESIDUAL_TESTS * found.p_value < alpha,
+                significant: p_of_least(found.p_value, RESIDUAL_TESTS) < alpha,
             });
     let of_line = line.as_ref().map(|line| line.p_value);
     let of_correlation = correlation.as_ref().map(|found| found.p_value);
     let tested = of_line.into_iter().chain(of_correlation);
-    let tested = tested.map(|p| RESIDUAL_TESTS * p).fold(1.0, f64::min);
+    let count = tested.clone().count();
+    let least = tested.fold(1.0, f64::min);
     let unmodelled: Vec<UnmodelledTerm> = unmodelled.iter().map(term).collect();
     let p_value = unmodelled
         .iter()
         .map(|term| term.p_value)
-        .fold(tested, f64::min);
-    let verdict = if tested < alpha || !unmodelled.is_empty() {
+        .fold(p_of_least(least, count as f64), f64::min);
+    let verdict = if p_of_least(least, RESIDUAL_TESTS) < alpha || !unmodelled.is_empty() {
         ResidualVerdict::Unexplained
     } else if line.is_none() || correlation.is_none() {
         ResidualVerdict::NotTested
@@ -106,7 +107,7 @@ fn largest_line(time_s: &[f64], whitened: &[[f64; 3]], alpha: f64) -> Option<Res
         period_h: 1.0 / (3600.0 * lines[axis].frequency_hz),
         amplitude: lines[axis].amplitude,
         p_value,
-        significant: RESIDUAL_TESTS * p_value < alpha,
+        significant: p_of_least(p_value, RESIDUAL_TESTS) < alpha,
     })
 }
 

@@ -37,6 +37,12 @@ struct Arguments {
     /// runs. Targets stay as they are.
     #[arg(long)]
     small: bool,
+    /// Only these parts of the topic (truth).
+    #[arg(long = "part", value_name = "PART")]
+    parts: Vec<truth::Part>,
+    /// Most records of each population (truth): a part of the full version, which goes on from there.
+    #[arg(long, value_name = "COUNT")]
+    records: Option<u64>,
     /// Also write the table into this file, with the command that printed it.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -82,7 +88,13 @@ fn main() -> ExitCode {
         Topic::Gain => gain::figures(arguments.small),
         Topic::House => house::figures(arguments.small, arguments.write),
         Topic::Measured => measured::figures(arguments.write),
-        Topic::Truth => truth::figures(arguments.small),
+        Topic::Truth => {
+            let extent = truth::Extent {
+                small: arguments.small,
+                most: arguments.records,
+            };
+            truth::figures(extent, &arguments.parts)
+        }
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {

@@ -117,6 +117,12 @@ pub trait FittedModel: Clone {
         absent: &[usize],
     ) -> Result<RateNoiseFit, Self::Error>;
 
+    /// 95 % interval of each random walk of the rates that the fit has, by its profile likelihood.
+    ///
+    /// # Errors
+    /// Those of a pass over the record.
+    fn walk_intervals(&self) -> Result<Vec<Option<[f64; 2]>>, Self::Error>;
+
     /// Fits the same extension with other noise of the rates.
     ///
     /// # Errors

@@ -29,9 +29,6 @@ pub const BESIDE_WALKS: f64 = 6.0;
 /// named: the 5 % point of a variance that may be zero, ½ χ²(1).
 const NAMED_WALK: f64 = 2.71;
 
-/// 95 % deviate of a normal distribution, two-sided.
-const NORMAL_95: f64 = 1.96;
-
 /// What a search says of walks.
 #[derive(Clone, Default)]
 pub(crate) struct Walks {
@@ -294,26 +291,29 @@ fn named<F: FittedModel>(
         gains.push(2.0 * (noise.log_likelihood - without.log_likelihood));
     }
     let largest = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let intervals = state.stage.fitted.walk_intervals()?;
     let all = candidates.effects.iter().zip(&candidates.rates).zip(gains);
     Ok(all
         .filter(|(_, gain)| *gain >= NAMED_WALK.min(largest))
-        .map(|((effect, rate), gain)| walk_finding(effect, *rate, noise, (gain, p_value)))
+        .map(|((effect, rate), gain)| {
+            let size = noise.noise.walk[*rate];
+            let interval = intervals.get(*rate).copied().flatten();
+            walk_finding(effect, size, interval, (gain, p_value))
+        })
         .collect())
 }
 
 fn walk_finding(
     effect: &'static Effect,
-    rate: usize,
-    noise: &RateNoiseFit,
+    size: f64,
+    interval: Option<[f64; 2]>,
     (gain, p_value): (f64, f64),
 ) -> Finding {
-    let (size, sigma) = (noise.noise.walk[rate], noise.walk_sigma[rate]);
-    let factor = gyrocal_statistics::math::exp(NORMAL_95 * sigma);
     let parameters = effect.parameters.first().map(|parameter| EffectEstimate {
         name: parameter.name,
         estimate: size,
         sigma: None,
-        interval: Some(vec![[size / factor, size * factor]]),
+        interval: interval.map(|ends| vec![ends]),
         unit: parameter.unit,
     });
     Finding {

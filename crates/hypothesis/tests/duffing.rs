@@ -365,6 +365,10 @@ impl FittedModel for FittedDuffing {
     }
 
     // No noise drives the oscillator.
+    fn walk_intervals(&self) -> Result<Vec<Option<[f64; 2]>>, NotObservable> {
+        Ok(Vec::new())
+    }
+
     fn fit_rate_noise(&self, _: &[usize], _: &[usize]) -> Result<RateNoiseFit, NotObservable> {
         Ok(RateNoiseFit {
             noise: self.rate_noise(),

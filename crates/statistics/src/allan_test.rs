@@ -2,7 +2,7 @@
 
 use crate::allan::{AllanPoint, NoiseType, allan_deviation, octaves};
 use crate::error::StatisticsError;
-use crate::probability::chi_square_tail;
+use crate::probability::{chi_square_tail, p_of_least};
 use crate::sampling::median_interval_s;
 
 /// Fewer rows in a stretch say nothing of long times.
@@ -116,15 +116,15 @@ pub fn allan_test(
             a.0.total_cmp(&b.0).then(larger)
         });
     let (p_value, course, at) = match most {
-        Some((p, axis, point)) if count * p < false_alarm => {
+        Some((p, axis, point)) if p_of_least(p, count) < false_alarm => {
             let course = match point.noise {
                 NoiseType::FlickerRate => NoiseCourse::Flicker,
                 NoiseType::RandomWalkRate | NoiseType::RateRamp => NoiseCourse::Slow,
                 _ => NoiseCourse::LargerWhite,
             };
-            (count * p, course, Some((axis, point.tau_s)))
+            (p_of_least(p, count), course, Some((axis, point.tau_s)))
         }
-        Some((p, ..)) => ((count * p).min(1.0), NoiseCourse::White, None),
+        Some((p, ..)) => (p_of_least(p, count), NoiseCourse::White, None),
         None => (1.0, NoiseCourse::White, None),
     };
     Ok(AllanTest {

@@ -7,7 +7,8 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft as _, FftDirection};
 
 use crate::error::StatisticsError;
-use crate::math::{atan2, exp, exp_m1, ln, ln_1p, sin_cos};
+use crate::math::{atan2, exp, exp_m1, ln, sin_cos};
+use crate::probability::p_of_least;
 use crate::sampling::median_interval_s;
 use crate::whiteness::check_probability;
 
@@ -175,7 +176,7 @@ fn refine(
 pub fn strongest_line(lines: &[SpectralLine; 3]) -> (usize, f64) {
     let weaker = |a: &usize, b: &usize| lines[*a].p_value.total_cmp(&lines[*b].p_value);
     let axis = (0..3).min_by(weaker).unwrap_or(0);
-    (axis, -exp_m1(3.0 * ln_1p(-lines[axis].p_value)))
+    (axis, p_of_least(lines[axis].p_value, 3.0))
 }
 
 /// Extent of a search for the largest power: frequency range times effective duration.

@@ -3,7 +3,7 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
 use statrs::function::erf::{erf_inv, erfc_inv};
 
-use crate::math::{erfc, exp, ln, ln_1p, ln_gamma};
+use crate::math::{erfc, exp, exp_m1, ln, ln_1p, ln_gamma};
 
 /// The 97.5 % quantile of the standard normal distribution: half the width of a two-sided 95 %
 /// interval, in standard deviations.
@@ -16,6 +16,15 @@ pub const CHI_SQUARE_99: f64 = 6.634_896_601_021_214;
 #[must_use]
 pub fn two_sided_p(z: f64) -> f64 {
     erfc(z.abs() / core::f64::consts::SQRT_2)
+}
+
+/// Probability that the least of several p-values is as small, if there is nothing to be found: exact of
+/// independent tests (Šidák, J. Amer. Statist. Assoc. 62, 626, 1967), an upper bound of positively
+/// dependent ones.
+#[must_use]
+pub fn p_of_least(least: f64, tests: f64) -> f64 {
+    // 1 − (1 − p)^n without the loss of small p.
+    -exp_m1(tests * ln_1p(-least.clamp(0.0, 1.0)))
 }
 
 /// Probability that a standard normal variable is at most `z`.
@@ -130,6 +139,14 @@ pub fn normal_quantile(p: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_p_value_of_the_least_is_uniform() {
+        // 1 − 0.9³, and n p where p is small.
+        assert!((p_of_least(0.1, 3.0) - 0.271).abs() < 1e-12);
+        assert!((p_of_least(1e-20, 5.0) / 5e-20 - 1.0).abs() < 1e-12);
+        assert!((p_of_least(1.0, 3.0) - 1.0).abs() < 1e-15);
+    }
 
     #[test]
     fn they_are_those_of_tables() {

@@ -56,6 +56,10 @@ impl FittedModel for FittedPlatform<'_> {
         FittedPlatform::rate_noise(self)
     }
 
+    fn walk_intervals(&self) -> Result<Vec<Option<[f64; 2]>>, CalibrationError> {
+        Self::walk_intervals(self)
+    }
+
     fn fit_rate_noise(
         &self,
         walking: &[usize],

@@ -1,15 +1,16 @@
 //! Restricted likelihood of the gyros' noise: white noise and random walks.
 
-use gyrocal::estimation::EstimationError;
-use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
-use gyrocal_hypothesis::{RateNoise, RateNoiseFit};
-use nalgebra::{Cholesky, DMatrix, DVector};
+mod likelihood;
 
-use super::{FittedPlatform, S_PER_H, walks};
-use crate::coefficients::PARAMETERS;
+use gyrocal::estimation::batch::Walk;
+use gyrocal_hypothesis::{RateNoise, RateNoiseFit};
+use gyrocal_statistics::NORMAL_97_5;
+use likelihood::Likelihood;
+use nalgebra::Cholesky;
+
+use super::{FittedPlatform, walks};
 use crate::error::CalibrationError;
 use crate::platform::PLATFORM;
-use crate::solve::add_gram;
 
 /// Standard deviation of the logarithm of a gyro's white noise over the declared one before the
 /// record: bench files are off by factors of two, seldom of four.
@@ -18,51 +19,38 @@ pub const GYRO_NOISE_PRIOR_SIGMA: f64 = 0.7;
 /// Axes.
 const AXES: usize = 3;
 
-/// Most steps of Fisher's scoring.
-const MAX_STEPS: usize = 25;
-
-/// Most halvings of a step.
-const MAX_HALVINGS: usize = 8;
-
-/// Largest step in the logarithm of a variance.
-const LARGEST_STEP: f64 = 2.5;
-
-/// Gain of the log-likelihood that a step expects below which it is not made: a likelihood ratio is
-/// then good to a fiftieth.
-const LEAST_GAIN: f64 = 0.005;
-
-/// Precision of the logarithm of the variance of a walk that keeps a step finite where the record says
-/// nothing of it.
-const DAMPING: f64 = 1e-3;
-
-/// Densities that an estimate starts from, over that of a walk that does over the record as much as
-/// the declared white noise.
-const STARTS: [f64; 3] = [3.0, 100.0, 3000.0];
-
 /// Density of a walk that counts as none, over that of the white noise over the square of the
 /// record's duration.
 const NO_WALK: f64 = 1e-6;
 
-/// The likelihood at one point.
-struct At {
-    value: f64,
-    gradient: DVector<f64>,
-    information: DMatrix<f64>,
-}
+/// Length of an interval of the logarithm of a density beyond which it has no end: a factor of 400 in a
+/// walk.
+const LONGEST_INTERVAL: f64 = 12.0;
 
-/// The unknown logarithms of variances: the white noise of each gyro over the fit's, then densities
-/// of walks.
-struct Likelihood<'p, 'a> {
-    fitted: &'p FittedPlatform<'a>,
-    /// Walks with the densities that factors are over.
-    walks: Vec<Walk>,
-    /// Places of the walks that are unknown; the others stay.
-    free: Vec<usize>,
-    /// Places of unknowns of the fit that are left out.
-    absent: &'p [usize],
-    /// Gyros whose white noise is held at the declared one.
-    held: &'p [usize],
-    parameters: Vec<f64>,
+/// Most evaluations for one end of an interval, and the error of an end that is good enough, in
+/// standard deviations.
+const MAX_EVALUATIONS: usize = 6;
+const END_PRECISION: f64 = 0.02;
+
+/// The distance from the maximum at which twice the log-likelihood has fallen to the 95 % point of χ²(1),
+/// in standard deviations; `None` if that is farther than `longest`. The root of the fall is nearly
+/// proportional to the distance.
+fn profile_end(
+    longest: f64,
+    mut fall: impl FnMut(f64) -> Result<f64, CalibrationError>,
+) -> Result<Option<f64>, CalibrationError> {
+    let mut distance = NORMAL_97_5;
+    for _ in 0..MAX_EVALUATIONS {
+        let root = fall(distance)?.max(0.0).sqrt();
+        if (root - NORMAL_97_5).abs() < END_PRECISION {
+            break;
+        }
+        if distance >= longest && root < NORMAL_97_5 {
+            return Ok(None);
+        }
+        distance = (distance * (NORMAL_97_5 / root).clamp(0.4, 2.5)).min(longest);
+    }
+    Ok(Some(distance))
 }
 
 impl FittedPlatform<'_> {
@@ -110,6 +98,59 @@ impl FittedPlatform<'_> {
         absent: &[usize],
         held: &[usize],
     ) -> Result<RateNoiseFit, CalibrationError> {
+        let (mut likelihood, unit) = self.likelihood(walking, absent, held);
+        likelihood.start(unit)?;
+        let (logarithms, at) = likelihood.maximise()?;
+        likelihood.result(&logarithms, &at)
+    }
+
+    /// 95 % interval of each walk of this fit by its profile likelihood: the other noise moves with it
+    /// as at the maximum. The lower end is zero where the likelihood stays high; `None` of a gyro
+    /// without a walk, and where there is no upper end.
+    ///
+    /// # Errors
+    /// As [`Self::fit_rate_noise`].
+    pub fn walk_intervals(&self) -> Result<Vec<Option<[f64; 2]>>, CalibrationError> {
+        let walking = self.rate_noise().walking();
+        let mut intervals = vec![None; AXES];
+        if walking.is_empty() {
+            return Ok(intervals);
+        }
+        let (likelihood, _) = self.likelihood(&walking, &[], &[]);
+        let (logarithms, at) = likelihood.maximise()?;
+        let fit = likelihood.result(&logarithms, &at)?;
+        let covariance = Cholesky::new(at.information.clone())
+            .ok_or(CalibrationError::NotPositiveDefinite)?
+            .inverse();
+        for (index, rate) in walking.into_iter().enumerate() {
+            let own = AXES + index;
+            let along = covariance.column(own) / covariance[(own, own)].sqrt();
+            let fall = |deviates: f64| -> Result<f64, CalibrationError> {
+                let moved = &logarithms + &along * deviates;
+                Ok(2.0 * (at.value - likelihood.value(moved.as_slice())?))
+            };
+            let sigma = covariance[(own, own)].sqrt();
+            let factor = |deviates: f64| (0.5 * sigma * deviates).exp();
+            let longest = LONGEST_INTERVAL / sigma;
+            let low = profile_end(longest, |deviates| fall(-deviates))?;
+            let high = profile_end(longest, fall)?;
+            let size = fit.noise.walk[rate];
+            intervals[rate] = high.map(|high| {
+                let low = low.map_or(0.0, |low| size * factor(-low));
+                [low, size * factor(high)]
+            });
+        }
+        Ok(intervals)
+    }
+
+    /// The likelihood of the noise about this fit, and the density of a walk that does over the record
+    /// as much as the declared white noise.
+    fn likelihood<'p>(
+        &'p self,
+        walking: &[usize],
+        absent: &'p [usize],
+        held: &'p [usize],
+    ) -> (Likelihood<'p, 'p>, f64) {
         let leg = &self.problem.runs[0];
         let duration_s = leg.rows.duration_s();
         let unit = leg.noise_density.iter().sum::<f64>() / AXES as f64 / (duration_s * duration_s);
@@ -134,7 +175,7 @@ impl FittedPlatform<'_> {
                 });
             }
         }
-        let mut likelihood = Likelihood {
+        let likelihood = Likelihood {
             fitted: self,
             walks,
             free,
@@ -142,9 +183,7 @@ impl FittedPlatform<'_> {
             held,
             parameters: self.parameters(),
         };
-        likelihood.start(unit)?;
-        let (logarithms, at) = likelihood.maximise()?;
-        likelihood.result(&logarithms, &at)
+        (likelihood, unit)
     }
 
     /// The same extension fitted with other noise of the gyros.
@@ -171,260 +210,5 @@ impl FittedPlatform<'_> {
             },
             model,
         )
-    }
-}
-
-impl Likelihood<'_, '_> {
-    /// Chooses the densities that walks start from, if none are known: one for all.
-    fn start(&mut self, unit: f64) -> Result<(), CalibrationError> {
-        let unknown: Vec<usize> = self
-            .free
-            .iter()
-            .copied()
-            .filter(|place| self.walks[*place].density <= NO_WALK * unit)
-            .collect();
-        if unknown.is_empty() {
-            return Ok(());
-        }
-        let mut best = (f64::NEG_INFINITY, STARTS[0]);
-        for start in STARTS {
-            for place in &unknown {
-                self.walks[*place].density = start * unit;
-            }
-            let value = self.value(&vec![0.0; AXES + self.free.len()])?;
-            if value > best.0 {
-                best = (value, start);
-            }
-        }
-        for place in &unknown {
-            self.walks[*place].density = best.1 * unit;
-        }
-        Ok(())
-    }
-
-    /// Fisher's scoring from the noise of the fit.
-    fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
-        let mut logarithms = DVector::zeros(AXES + self.free.len());
-        for axis in self.held {
-            logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
-        }
-        let mut at = self.at(&logarithms)?;
-        for _ in 0..MAX_STEPS {
-            let Some(cholesky) = Cholesky::new(at.information.clone()) else {
-                break;
-            };
-            let mut step = cholesky.solve(&at.gradient);
-            let longest = step.amax();
-            if longest > LARGEST_STEP {
-                step *= LARGEST_STEP / longest;
-            }
-            if 0.5 * step.dot(&at.gradient) < LEAST_GAIN {
-                break;
-            }
-            let mut halvings = 0;
-            loop {
-                let next = &logarithms + &step;
-                // A step may lead to where the filter leaves the numbers: it was too long.
-                if let Ok(moved) = self.at(&next)
-                    && moved.value >= at.value
-                {
-                    (logarithms, at) = (next, moved);
-                    break;
-                }
-                halvings += 1;
-                if halvings > MAX_HALVINGS {
-                    return Ok((logarithms, at));
-                }
-                step *= 0.5;
-            }
-        }
-        Ok((logarithms, at))
-    }
-
-    fn result(&self, logarithms: &DVector<f64>, at: &At) -> Result<RateNoiseFit, CalibrationError> {
-        let sigma = Cholesky::new(at.information.clone())
-            .ok_or(CalibrationError::NotPositiveDefinite)?
-            .inverse()
-            .diagonal()
-            .map(|variance| 0.5 * variance.sqrt());
-        let believed = self.fitted.rate_noise();
-        let mut fit = RateNoiseFit {
-            noise: believed.without_walks(),
-            log_likelihood: at.value,
-            white_sigma: sigma.iter().take(AXES).copied().collect(),
-            walk_sigma: vec![f64::INFINITY; AXES],
-        };
-        for (white, logarithm) in fit.noise.white.iter_mut().zip(logarithms.iter()) {
-            *white *= (0.5 * logarithm).exp();
-        }
-        for (index, place) in self.free.iter().enumerate() {
-            let walk = self.walks[*place];
-            let density = walk.density * logarithms[AXES + index].exp();
-            let rates = PLATFORM.rates.iter();
-            for (rate, _) in rates
-                .enumerate()
-                .filter(|(_, r)| r.constant == walk.parameter)
-            {
-                fit.noise.walk[rate] = (density * S_PER_H).sqrt();
-                fit.walk_sigma[rate] = sigma[AXES + index];
-            }
-        }
-        Ok(fit)
-    }
-
-    /// Factors of outputs, inputs and walks.
-    fn factors(&self, logarithms: &[f64]) -> Vec<f64> {
-        let mut factors = vec![1.0; AXES];
-        factors.extend(logarithms[..AXES].iter().map(|logarithm| logarithm.exp()));
-        let walks = (0..self.walks.len()).map(|place| {
-            let unknown = self.free.iter().position(|free| *free == place);
-            unknown.map_or(1.0, |unknown| logarithms[AXES + unknown].exp())
-        });
-        factors.extend(walks);
-        factors
-    }
-
-    fn pass<R>(
-        &self,
-        pass: impl FnOnce(
-            &dyn Fn(&[f64], usize) -> Result<NoiseScore, EstimationError>,
-        ) -> Result<R, EstimationError>,
-    ) -> Result<R, CalibrationError> {
-        let fitted = self.fitted;
-        let changes = if self.walks.len() == fitted.problem.runs[0].walks.len() {
-            &fitted.problem.runs[0].walk_changes[..]
-        } else {
-            &[]
-        };
-        fitted
-            .problem
-            .with_run(0, &self.parameters, |linearised| {
-                let tape = fitted.solution.tapes[0].as_deref();
-                let walks = Walks {
-                    walks: &self.walks,
-                    changes,
-                };
-                let linearised = Linearisation {
-                    tape,
-                    walks,
-                    ..*linearised
-                };
-                pass(&|factors, first| linearised.noise_score_of_columns(factors, first))
-            })
-            .map_err(|error| CalibrationError::pass(0, error))
-    }
-
-    fn value(&self, logarithms: &[f64]) -> Result<f64, CalibrationError> {
-        let score = self.pass(|score| score(&self.factors(logarithms), usize::MAX))?;
-        let (value, ..) = self.restricted(&score, logarithms)?;
-        Ok(value)
-    }
-
-    fn at(&self, logarithms: &DVector<f64>) -> Result<At, CalibrationError> {
-        let score = self.pass(|score| score(&self.factors(logarithms.as_slice()), AXES))?;
-        let (value, solution, inverse) = self.restricted(&score, logarithms.as_slice())?;
-        // After the noise of the outputs: inputs, walks.
-        let unknowns: Vec<usize> = (AXES..2 * AXES)
-            .chain(self.free.iter().map(|place| 2 * AXES + place))
-            .collect();
-        let prior = 0.25 * GYRO_NOISE_PRIOR_SIGMA.powi(-2);
-        let believed = self.fitted.noise.gyro_ratio;
-        let mut gradient = DVector::zeros(unknowns.len());
-        let stride = score.d_log_variance.len();
-        let mut information = DMatrix::from_fn(unknowns.len(), unknowns.len(), |i, j| {
-            score.information[unknowns[i] * stride + unknowns[j]]
-        });
-        for (index, unknown) in unknowns.iter().enumerate() {
-            let gram = self.gram(&score.d_gram[*unknown]);
-            let squares = (&gram * &solution).dot(&solution);
-            let count = inverse.nrows();
-            let determinant = gram
-                .view((1, 1), (count, count))
-                .component_mul(&inverse)
-                .sum();
-            gradient[index] = -0.5 * (score.d_log_variance[*unknown] + squares + determinant);
-            if index < AXES {
-                let off = logarithms[index] + 2.0 * believed[index].ln();
-                gradient[index] -= prior * off;
-                information[(index, index)] += prior;
-            } else {
-                information[(index, index)] += DAMPING;
-            }
-        }
-        for axis in self.held {
-            information.row_mut(*axis).fill(0.0);
-            information.column_mut(*axis).fill(0.0);
-            information[(*axis, *axis)] = 1.0;
-            gradient[*axis] = 0.0;
-        }
-        Ok(At {
-            value,
-            gradient,
-            information,
-        })
-    }
-
-    /// Gram matrix of the unknowns of the fit.
-    fn gram(&self, of_columns: &DMatrix<f64>) -> DMatrix<f64> {
-        let count = self.fitted.problem.unknowns.len();
-        let mut gram = DMatrix::zeros(count + 1, count + 1);
-        let columns = self.fitted.problem.runs[0].column_unknowns();
-        add_gram(&mut gram, of_columns, &columns);
-        gram
-    }
-
-    /// The logarithm of the restricted likelihood with the prior; one and the change of every unknown;
-    /// the inverse information of those that are integrated out.
-    fn restricted(
-        &self,
-        score: &NoiseScore,
-        logarithms: &[f64],
-    ) -> Result<(f64, DVector<f64>, DMatrix<f64>), CalibrationError> {
-        let problem = &self.fitted.problem;
-        let gram = self.gram(&score.gram);
-        let count = problem.unknowns.len();
-        let integrated = PARAMETERS + self.fitted.nuisances();
-        let mut solution = DVector::zeros(count + 1);
-        solution[0] = 1.0;
-        let present: Vec<usize> = (0..count).filter(|at| !self.absent.contains(at)).collect();
-        for place in self.absent {
-            solution[place + 1] = -problem.values[*place];
-        }
-        let weight = |place: usize| problem.unknowns[place].sigma.powi(-2);
-        let pull = &gram * &solution;
-        let gradient = DVector::from_fn(present.len(), |i, _| {
-            let place = present[i];
-            -pull[place + 1] - weight(place) * problem.values[place]
-        });
-        let mut inner = DMatrix::from_fn(present.len(), present.len(), |i, j| {
-            gram[(present[i] + 1, present[j] + 1)]
-        });
-        for (i, place) in present.iter().enumerate() {
-            inner[(i, i)] += weight(*place);
-        }
-        let own = inner.view((0, 0), (integrated, integrated)).into_owned();
-        let not_definite = || CalibrationError::NotPositiveDefinite;
-        let change = Cholesky::new(inner)
-            .ok_or_else(not_definite)?
-            .solve(&gradient);
-        for (place, change) in present.iter().zip(change.iter()) {
-            solution[place + 1] = *change;
-        }
-        let own = Cholesky::new(own).ok_or_else(not_definite)?;
-        let determinant = 2.0 * own.l().diagonal().iter().map(|x| x.ln()).sum::<f64>();
-        let prior: f64 = present
-            .iter()
-            .map(|place| weight(*place) * (problem.values[*place] + solution[place + 1]).powi(2))
-            .sum();
-        let squares = (&gram * &solution).dot(&solution);
-        let believed = self.fitted.noise.gyro_ratio;
-        let of_noise: f64 = (0..AXES)
-            .map(|axis| {
-                let off = 0.5 * logarithms[axis] + believed[axis].ln();
-                (off / GYRO_NOISE_PRIOR_SIGMA).powi(2)
-            })
-            .sum();
-        let value = -0.5 * (score.log_variance + determinant + squares + prior + of_noise);
-        Ok((value, solution, own.inverse()))
     }
 }

@@ -10,6 +10,7 @@ use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, Term, simulate, simulate_with};
 use serde::{Deserialize, Serialize};
 
+use super::Extent;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
@@ -111,15 +112,22 @@ struct Noisy {
     /// unexplained.
     causes: Vec<String>,
     unexplained: bool,
+    /// Whether the 95 % interval of each named walk holds its size.
+    covered: Vec<bool>,
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let rows = ROWS.iter().filter(|row| row.small > 0 || !small);
-    rows.map(|row| figure(row, small)).collect()
+/// Range of a coverage of 95 % in cells of a thousand intervals.
+const COVERAGE: [f64; 2] = [0.93, 0.97];
+
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let rows = ROWS.iter().filter(|row| row.small > 0 || !extent.small);
+    let all: Result<Vec<Vec<Figure>>, Error> = rows.map(|row| of_row(row, extent)).collect();
+    Ok(all?.into_iter().flatten().collect())
 }
 
-fn figure(row: &Row, small: bool) -> Result<Figure, Error> {
-    let count = if small { row.small } else { row.records };
+fn of_row(row: &Row, extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
+    let count = extent.records(row.records, row.small);
     let seeds = row.first_seed..row.first_seed + count;
     let campaign = resumable::campaign("truth", row.cell, seeds.clone(), small)?;
     let outcome = campaign.run(|seed| record(row.noise, seed), |_| ())?;
@@ -136,7 +144,27 @@ fn figure(row: &Row, small: bool) -> Result<Figure, Error> {
         // A dozen records: the share may be the target.
         figure.holds = Some(wrong.interval(0.999)[0] <= row.limit);
     }
-    Ok(figure.over(outcome.successes().count(), format!("{seeds:?}")))
+    let seeds = format!("{seeds:?}");
+    let mut figures = vec![figure.over(outcome.successes().count(), seeds.as_str())];
+    if matches!(row.noise, Noise::Walks(_)) {
+        let all = outcome
+            .successes()
+            .flat_map(|(_, record)| record.covered.iter());
+        let all: Vec<bool> = all.copied().collect();
+        let count = all.len();
+        let covered = Proportion::of(all);
+        let name = format!(
+            "{}: coverage of the 95 % interval of a walk's size",
+            row.cell
+        );
+        let mut figure = Figure::within(&name, COVERAGE, covered.share());
+        if count < 1000 {
+            let [low, high] = covered.interval(0.999);
+            figure.holds = Some(low <= 0.95 && 0.95 <= high);
+        }
+        figures.push(figure.over(count, seeds.as_str()));
+    }
+    Ok(figures)
 }
 
 fn record(noise: Noise, seed: u64) -> Result<Noisy, EvaluationError> {
@@ -146,6 +174,7 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, EvaluationError> {
         ..scenario(seed)
     };
     let mut hidden = Vec::new();
+    let mut walks: Vec<(String, f64)> = Vec::new();
     if random.uniform() < 0.5 || matches!(noise, Noise::Clean) {
         for axis in ["x", "y", "z"] {
             for instrument in ["gyro", "accel"] {
@@ -163,6 +192,7 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, EvaluationError> {
                 let size = random.log_uniform(WALKS);
                 let id = format!("gyro_{axis}.random_walk");
                 hidden.push(Hidden::new(&id, &[("size", size)])?);
+                walks.push((id, size));
             }
             simulate(&Scenario { hidden, ..plain })?
         }
@@ -189,7 +219,22 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, EvaluationError> {
     Ok(Noisy {
         causes: false_causes(&found),
         unexplained: found.is_unexplained(),
+        covered: walks
+            .iter()
+            .filter_map(|(id, size)| holds_size(&found, id, *size))
+            .collect(),
     })
+}
+
+/// Whether the interval of a named walk holds its size.
+fn holds_size(found: &DiagnosisResult, id: &str, size: f64) -> Option<bool> {
+    let finding = found.causes().find(|cause| cause.effect == id)?;
+    let pieces = finding.parameter("size")?.interval.as_ref()?;
+    Some(
+        pieces
+            .iter()
+            .any(|[low, high]| (*low..=*high).contains(&size)),
+    )
 }
 
 /// Causes of kinds other than noise without a random walk of their own gyro in the set; those that

@@ -8,6 +8,7 @@ use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
+use super::Extent;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
@@ -17,7 +18,7 @@ const FIRST_SEEDS: [u64; 3] = [760_000, 770_000, 780_000];
 
 /// Records of each, and in the small version.
 const RECORDS: u64 = 1000;
-const SMALL: u64 = 5;
+const SMALL: u64 = 2;
 
 /// Names of the cells of results.
 const CELLS: [&str; 3] = ["outside-developed", "outside-unseen", "outside-listed"];
@@ -82,8 +83,9 @@ impl Outside {
     }
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let count = if small { SMALL } else { RECORDS };
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
+    let count = extent.records(RECORDS, SMALL);
     let cell = |place: usize| -> Result<Vec<Outside>, Error> {
         let seeds = FIRST_SEEDS[place]..FIRST_SEEDS[place] + count;
         let campaign = resumable::campaign("truth", CELLS[place], seeds, small)?;

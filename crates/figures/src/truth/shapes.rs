@@ -9,6 +9,7 @@ use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
+use super::Extent;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
@@ -47,8 +48,9 @@ struct Shaped {
     estimate: Option<f64>,
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let count = if small { SMALL } else { SEEDS[1] };
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
+    let count = extent.records(SEEDS[1], SMALL);
     let seeds = SEEDS[0]..SEEDS[0] + count;
     let outcome =
         resumable::campaign("truth", "shapes", seeds.clone(), small)?.run(record, |_| ())?;

@@ -1,0 +1,315 @@
+//! The restricted likelihood of the gyros' noise and its maximum.
+
+use gyrocal::estimation::EstimationError;
+use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
+use gyrocal_hypothesis::RateNoiseFit;
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::{AXES, GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
+use crate::coefficients::PARAMETERS;
+use crate::error::CalibrationError;
+use crate::fitted_platform::{FittedPlatform, S_PER_H};
+use crate::platform::PLATFORM;
+use crate::solve::add_gram;
+
+/// Most steps of Fisher's scoring.
+const MAX_STEPS: usize = 25;
+
+/// Most halvings of a step.
+const MAX_HALVINGS: usize = 8;
+
+/// Largest step in the logarithm of a variance.
+const LARGEST_STEP: f64 = 2.5;
+
+/// Gain of the log-likelihood that a step expects below which it is not made: a likelihood ratio is
+/// then good to a fiftieth.
+const LEAST_GAIN: f64 = 0.005;
+
+/// Precision of the logarithm of the variance of a walk that keeps a step finite where the record says
+/// nothing of it.
+const DAMPING: f64 = 1e-3;
+
+/// Densities that an estimate starts from, over that of a walk that does over the record as much as
+/// the declared white noise.
+const STARTS: [f64; 3] = [3.0, 100.0, 3000.0];
+
+/// The likelihood at one point.
+pub(super) struct At {
+    pub(super) value: f64,
+    gradient: DVector<f64>,
+    pub(super) information: DMatrix<f64>,
+}
+
+/// The unknown logarithms of variances: the white noise of each gyro over the fit's, then densities
+/// of walks.
+pub(super) struct Likelihood<'p, 'a> {
+    pub(super) fitted: &'p FittedPlatform<'a>,
+    /// Walks with the densities that factors are over.
+    pub(super) walks: Vec<Walk>,
+    /// Places of the walks that are unknown; the others stay.
+    pub(super) free: Vec<usize>,
+    /// Places of unknowns of the fit that are left out.
+    pub(super) absent: &'p [usize],
+    /// Gyros whose white noise is held at the declared one.
+    pub(super) held: &'p [usize],
+    pub(super) parameters: Vec<f64>,
+}
+
+impl Likelihood<'_, '_> {
+    /// Chooses the densities that walks start from, if none are known: one for all.
+    pub(super) fn start(&mut self, unit: f64) -> Result<(), CalibrationError> {
+        let unknown: Vec<usize> = self
+            .free
+            .iter()
+            .copied()
+            .filter(|place| self.walks[*place].density <= NO_WALK * unit)
+            .collect();
+        if unknown.is_empty() {
+            return Ok(());
+        }
+        let mut best = (f64::NEG_INFINITY, STARTS[0]);
+        for start in STARTS {
+            for place in &unknown {
+                self.walks[*place].density = start * unit;
+            }
+            let value = self.value(&vec![0.0; AXES + self.free.len()])?;
+            if value > best.0 {
+                best = (value, start);
+            }
+        }
+        for place in &unknown {
+            self.walks[*place].density = best.1 * unit;
+        }
+        Ok(())
+    }
+
+    /// Fisher's scoring from the noise of the fit.
+    pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
+        let mut logarithms = DVector::zeros(AXES + self.free.len());
+        for axis in self.held {
+            logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
+        }
+        let mut at = self.at(&logarithms)?;
+        for _ in 0..MAX_STEPS {
+            let Some(cholesky) = Cholesky::new(at.information.clone()) else {
+                break;
+            };
+            let mut step = cholesky.solve(&at.gradient);
+            let longest = step.amax();
+            if longest > LARGEST_STEP {
+                step *= LARGEST_STEP / longest;
+            }
+            if 0.5 * step.dot(&at.gradient) < LEAST_GAIN {
+                break;
+            }
+            let mut halvings = 0;
+            loop {
+                let next = &logarithms + &step;
+                // A step may lead to where the filter leaves the numbers: it was too long.
+                if let Ok(moved) = self.at(&next)
+                    && moved.value >= at.value
+                {
+                    (logarithms, at) = (next, moved);
+                    break;
+                }
+                halvings += 1;
+                if halvings > MAX_HALVINGS {
+                    return Ok((logarithms, at));
+                }
+                step *= 0.5;
+            }
+        }
+        Ok((logarithms, at))
+    }
+
+    pub(super) fn result(
+        &self,
+        logarithms: &DVector<f64>,
+        at: &At,
+    ) -> Result<RateNoiseFit, CalibrationError> {
+        let sigma = Cholesky::new(at.information.clone())
+            .ok_or(CalibrationError::NotPositiveDefinite)?
+            .inverse()
+            .diagonal()
+            .map(|variance| 0.5 * variance.sqrt());
+        let believed = self.fitted.rate_noise();
+        let mut fit = RateNoiseFit {
+            noise: believed.without_walks(),
+            log_likelihood: at.value,
+            white_sigma: sigma.iter().take(AXES).copied().collect(),
+            walk_sigma: vec![f64::INFINITY; AXES],
+        };
+        for (white, logarithm) in fit.noise.white.iter_mut().zip(logarithms.iter()) {
+            *white *= (0.5 * logarithm).exp();
+        }
+        for (index, place) in self.free.iter().enumerate() {
+            let walk = self.walks[*place];
+            let density = walk.density * logarithms[AXES + index].exp();
+            let rates = PLATFORM.rates.iter();
+            for (rate, _) in rates
+                .enumerate()
+                .filter(|(_, r)| r.constant == walk.parameter)
+            {
+                fit.noise.walk[rate] = (density * S_PER_H).sqrt();
+                fit.walk_sigma[rate] = sigma[AXES + index];
+            }
+        }
+        Ok(fit)
+    }
+
+    /// Factors of outputs, inputs and walks.
+    fn factors(&self, logarithms: &[f64]) -> Vec<f64> {
+        let mut factors = vec![1.0; AXES];
+        factors.extend(logarithms[..AXES].iter().map(|logarithm| logarithm.exp()));
+        let walks = (0..self.walks.len()).map(|place| {
+            let unknown = self.free.iter().position(|free| *free == place);
+            unknown.map_or(1.0, |unknown| logarithms[AXES + unknown].exp())
+        });
+        factors.extend(walks);
+        factors
+    }
+
+    fn pass<R>(
+        &self,
+        pass: impl FnOnce(
+            &dyn Fn(&[f64], usize) -> Result<NoiseScore, EstimationError>,
+        ) -> Result<R, EstimationError>,
+    ) -> Result<R, CalibrationError> {
+        let fitted = self.fitted;
+        let changes = if self.walks.len() == fitted.problem.runs[0].walks.len() {
+            &fitted.problem.runs[0].walk_changes[..]
+        } else {
+            &[]
+        };
+        fitted
+            .problem
+            .with_run(0, &self.parameters, |linearised| {
+                let tape = fitted.solution.tapes[0].as_deref();
+                let walks = Walks {
+                    walks: &self.walks,
+                    changes,
+                };
+                let linearised = Linearisation {
+                    tape,
+                    walks,
+                    ..*linearised
+                };
+                pass(&|factors, first| linearised.noise_score_of_columns(factors, first))
+            })
+            .map_err(|error| CalibrationError::pass(0, error))
+    }
+
+    pub(super) fn value(&self, logarithms: &[f64]) -> Result<f64, CalibrationError> {
+        let score = self.pass(|score| score(&self.factors(logarithms), usize::MAX))?;
+        let (value, ..) = self.restricted(&score, logarithms)?;
+        Ok(value)
+    }
+
+    fn at(&self, logarithms: &DVector<f64>) -> Result<At, CalibrationError> {
+        let score = self.pass(|score| score(&self.factors(logarithms.as_slice()), AXES))?;
+        let (value, solution, inverse) = self.restricted(&score, logarithms.as_slice())?;
+        // After the noise of the outputs: inputs, walks.
+        let unknowns: Vec<usize> = (AXES..2 * AXES)
+            .chain(self.free.iter().map(|place| 2 * AXES + place))
+            .collect();
+        let prior = 0.25 * GYRO_NOISE_PRIOR_SIGMA.powi(-2);
+        let believed = self.fitted.noise.gyro_ratio;
+        let mut gradient = DVector::zeros(unknowns.len());
+        let stride = score.d_log_variance.len();
+        let mut information = DMatrix::from_fn(unknowns.len(), unknowns.len(), |i, j| {
+            score.information[unknowns[i] * stride + unknowns[j]]
+        });
+        for (index, unknown) in unknowns.iter().enumerate() {
+            let gram = self.gram(&score.d_gram[*unknown]);
+            let squares = (&gram * &solution).dot(&solution);
+            let count = inverse.nrows();
+            let determinant = gram
+                .view((1, 1), (count, count))
+                .component_mul(&inverse)
+                .sum();
+            gradient[index] = -0.5 * (score.d_log_variance[*unknown] + squares + determinant);
+            if index < AXES {
+                let off = logarithms[index] + 2.0 * believed[index].ln();
+                gradient[index] -= prior * off;
+                information[(index, index)] += prior;
+            } else {
+                information[(index, index)] += DAMPING;
+            }
+        }
+        for axis in self.held {
+            information.row_mut(*axis).fill(0.0);
+            information.column_mut(*axis).fill(0.0);
+            information[(*axis, *axis)] = 1.0;
+            gradient[*axis] = 0.0;
+        }
+        Ok(At {
+            value,
+            gradient,
+            information,
+        })
+    }
+
+    /// Gram matrix of the unknowns of the fit.
+    fn gram(&self, of_columns: &DMatrix<f64>) -> DMatrix<f64> {
+        let count = self.fitted.problem.unknowns.len();
+        let mut gram = DMatrix::zeros(count + 1, count + 1);
+        let columns = self.fitted.problem.runs[0].column_unknowns();
+        add_gram(&mut gram, of_columns, &columns);
+        gram
+    }
+
+    /// The logarithm of the restricted likelihood with the prior; one and the change of every unknown;
+    /// the inverse information of those that are integrated out.
+    fn restricted(
+        &self,
+        score: &NoiseScore,
+        logarithms: &[f64],
+    ) -> Result<(f64, DVector<f64>, DMatrix<f64>), CalibrationError> {
+        let problem = &self.fitted.problem;
+        let gram = self.gram(&score.gram);
+        let count = problem.unknowns.len();
+        let integrated = PARAMETERS + self.fitted.nuisances();
+        let mut solution = DVector::zeros(count + 1);
+        solution[0] = 1.0;
+        let present: Vec<usize> = (0..count).filter(|at| !self.absent.contains(at)).collect();
+        for place in self.absent {
+            solution[place + 1] = -problem.values[*place];
+        }
+        let weight = |place: usize| problem.unknowns[place].sigma.powi(-2);
+        let pull = &gram * &solution;
+        let gradient = DVector::from_fn(present.len(), |i, _| {
+            let place = present[i];
+            -pull[place + 1] - weight(place) * problem.values[place]
+        });
+        let mut inner = DMatrix::from_fn(present.len(), present.len(), |i, j| {
+            gram[(present[i] + 1, present[j] + 1)]
+        });
+        for (i, place) in present.iter().enumerate() {
+            inner[(i, i)] += weight(*place);
+        }
+        let own = inner.view((0, 0), (integrated, integrated)).into_owned();
+        let not_definite = || CalibrationError::NotPositiveDefinite;
+        let change = Cholesky::new(inner)
+            .ok_or_else(not_definite)?
+            .solve(&gradient);
+        for (place, change) in present.iter().zip(change.iter()) {
+            solution[place + 1] = *change;
+        }
+        let own = Cholesky::new(own).ok_or_else(not_definite)?;
+        let determinant = 2.0 * own.l().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        let prior: f64 = present
+            .iter()
+            .map(|place| weight(*place) * (problem.values[*place] + solution[place + 1]).powi(2))
+            .sum();
+        let squares = (&gram * &solution).dot(&solution);
+        let believed = self.fitted.noise.gyro_ratio;
+        let of_noise: f64 = (0..AXES)
+            .map(|axis| {
+                let off = 0.5 * logarithms[axis] + believed[axis].ln();
+                (off / GYRO_NOISE_PRIOR_SIGMA).powi(2)
+            })
+            .sum();
+        let value = -0.5 * (score.log_variance + determinant + squares + prior + of_noise);
+        Ok((value, solution, own.inverse()))
+    }
+}
