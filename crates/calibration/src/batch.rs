@@ -10,7 +10,7 @@ use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fit::FitStatistics;
 use crate::gyro_axes::GyroAxes;
-use crate::initial_guess::initial_guess;
+use crate::initial_guess::{Start, best_fit, initial_guess};
 use crate::layout::{Layout, SiteQuantity};
 use crate::noise::{self, NoiseEstimate};
 use crate::observability::unobservable;
@@ -66,8 +66,10 @@ where
         layout: &layout,
         options,
     };
-    // The filtered trajectory is a sufficient initial guess for nearly every record.
-    let solved = solve(task, false, progress).or_else(|_| solve(task, true, progress))?;
+    let solved = best_fit(
+        |start| solve(task, start, progress),
+        |solved| (solved.solution.cost, solved.solution.values),
+    )?;
     let (problem, solution) = (&solved.problem, &solved.solution);
     let uncertainty = Uncertainty::new(&problem.unknowns, solution)
         .ok_or(CalibrationError::NotPositiveDefinite)?;
@@ -96,17 +98,17 @@ where
     })
 }
 
-/// Solves the joint problem; `careful` makes the initial guesses by growing windows.
+/// Solves the joint problem.
 fn solve<'a, D, I>(
     task: &Task<'a, '_, D>,
-    careful: bool,
+    start: Start,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Solved<'a, D, I>, CalibrationError>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
-    let (mut problem, azimuths) = problem_at_guess(task, careful, progress)?;
+    let (mut problem, azimuths) = problem_at_guess(task, start, progress)?;
     let (solution, bounded) = match task.options.outlier_bound {
         Some(bound) => solve_robust(&mut problem, bound)?,
         None => (problem.solve(MAX_ITERATIONS)?, vec![0; task.runs.len()]),
@@ -125,7 +127,7 @@ type ProblemAtGuess<'a, D, I> = (Problem<'a, D, I>, Vec<Option<AzimuthSearch>>);
 /// The joint problem at its initial guess, and the search for each run's azimuth.
 fn problem_at_guess<'a, D, I>(
     task: &Task<'a, '_, D>,
-    careful: bool,
+    start: Start,
     progress: &mut dyn FnMut(usize),
 ) -> Result<ProblemAtGuess<'a, D, I>, CalibrationError>
 where
@@ -150,7 +152,7 @@ where
     let mut azimuths = Vec::with_capacity(runs.len());
     for (index, run) in runs.iter().enumerate() {
         let settings = filter_settings(run.bench, options.moving_chart());
-        let guess = initial_guess(run, &settings, options, careful)
+        let guess = initial_guess(run, &settings, options, start)
             .map_err(|error| error.of_record(index, runs.len()))?;
         let start = guess.start;
         // Weighted means of the filters' drifts, which are those of gyros along the platform's axes.

@@ -16,7 +16,7 @@ use nalgebra::DMatrix;
 
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
-use crate::initial_guess::initial_guess;
+use crate::initial_guess::{Start, best_fit, initial_guess};
 use crate::layout::SiteQuantity;
 use crate::options::Options;
 use crate::platform::PLATFORM;
@@ -112,6 +112,31 @@ impl<'a> FittedPlatform<'a> {
         options: &Options,
         noise: &NoiseModel,
     ) -> Result<Self, CalibrationError> {
+        best_fit(
+            |start| Self::nominal_from(run, options, noise, start),
+            |fit| (fit.solution.cost, fit.solution.values),
+        )
+    }
+
+    /// The same from the usual start only, however poor the fit: quicker where the record fits no model.
+    ///
+    /// # Errors
+    /// As [`Self::nominal`].
+    pub fn nominal_once(
+        run: &Run<'a>,
+        options: &Options,
+        noise: &NoiseModel,
+    ) -> Result<Self, CalibrationError> {
+        Self::nominal_from(run, options, noise, Start::FILTERED)
+            .or_else(|_| Self::nominal_from(run, options, noise, Start::CAREFUL))
+    }
+
+    fn nominal_from(
+        run: &Run<'a>,
+        options: &Options,
+        noise: &NoiseModel,
+        start: Start,
+    ) -> Result<Self, CalibrationError> {
         let settings = filter_settings(run.bench, options.moving_chart());
         // Noise that is believed to be far larger than declared is that of the first guess as well.
         let largest_ratio = noise.accel_ratio.into_iter().fold(1.0, f64::max);
@@ -119,51 +144,48 @@ impl<'a> FittedPlatform<'a> {
             accel_noise_g: largest_ratio * settings.accel_noise_g,
             ..settings
         };
-        let fit = |careful| {
-            let beginning = initial_guess(run, &guessing, options, careful)?;
-            let extension = of_site(run.bench);
-            let mut values = beginning.start.drift.to_vec();
-            values.resize(PARAMETERS + extension.parameters.len(), 0.0);
-            let accel_noise_g = noise
-                .accel_ratio
-                .map(|ratio| ratio * settings.accel_noise_g);
-            let mut rows = WeightedRows::new(run.record, run.record.len(), accel_noise_g);
-            rows.weights.clone_from(&noise.weights);
-            let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
-            if let Some(field_gauss) = run.bench.magnetic_field_gauss {
-                chart.set_field_gauss(field_gauss);
-            }
-            let density = settings.drift_noise_density();
-            let leg = RunProblem {
-                rows,
-                chart,
-                noise_density: noise.gyro_ratio.map(|ratio| ratio * ratio * density),
-                prior: beginning.prior.orientation,
-                prior_covariance: beginning.prior.covariance,
-                points: beginning.start.points,
-                parameter_unknowns: Vec::new(),
-                further: ExtraColumns::default(),
-                amplitudes: Vec::new(),
-                walks: walks(&noise.gyro_walk_deg_per_h_per_sqrt_h),
-                walk_changes: Vec::new(),
-            };
-            let problem = Problem {
-                model: &Anchored(Catalogue),
-                integration: options.discretisation.integration,
-                longest_step_s: options.discretisation.longest_step_s,
-                unknowns: settings
-                    .drift_sigma
-                    .to_array()
-                    .into_iter()
-                    .chain(extension.parameters.iter().map(|(_, sigma)| *sigma))
-                    .map(Unknown::estimated)
-                    .collect(),
-                runs: vec![leg],
-                values,
-            };
-            Self::solved(problem, extension, noise.clone())
+        let beginning = initial_guess(run, &guessing, options, start)?;
+        let extension = of_site(run.bench);
+        let mut values = beginning.start.drift.to_vec();
+        values.resize(PARAMETERS + extension.parameters.len(), 0.0);
+        let accel_noise_g = noise
+            .accel_ratio
+            .map(|ratio| ratio * settings.accel_noise_g);
+        let mut rows = WeightedRows::new(run.record, run.record.len(), accel_noise_g);
+        rows.weights.clone_from(&noise.weights);
+        let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
+        if let Some(field_gauss) = run.bench.magnetic_field_gauss {
+            chart.set_field_gauss(field_gauss);
+        }
+        let density = settings.drift_noise_density();
+        let leg = RunProblem {
+            rows,
+            chart,
+            noise_density: noise.gyro_ratio.map(|ratio| ratio * ratio * density),
+            prior: beginning.prior.orientation,
+            prior_covariance: beginning.prior.covariance,
+            points: beginning.start.points,
+            parameter_unknowns: Vec::new(),
+            further: ExtraColumns::default(),
+            amplitudes: Vec::new(),
+            walks: walks(&noise.gyro_walk_deg_per_h_per_sqrt_h),
+            walk_changes: Vec::new(),
         };
-        fit(false).or_else(|_| fit(true))
+        let problem = Problem {
+            model: &Anchored(Catalogue),
+            integration: options.discretisation.integration,
+            longest_step_s: options.discretisation.longest_step_s,
+            unknowns: settings
+                .drift_sigma
+                .to_array()
+                .into_iter()
+                .chain(extension.parameters.iter().map(|(_, sigma)| *sigma))
+                .map(Unknown::estimated)
+                .collect(),
+            runs: vec![leg],
+            values,
+        };
+        Self::solved(problem, extension, noise.clone())
     }
 
     /// Fits another extension, from where this one is.

@@ -22,14 +22,101 @@ pub(crate) struct InitialGuess {
     pub(crate) gross_errors: Vec<usize>,
 }
 
-/// Initial guess of a run without its gross errors; `careful` goes by growing windows even if
-/// the filter does not diverge.
+/// Mean of the squared normalised innovations from which on a fit is poor: an effect of a thousand
+/// standard deviations in a record of a day stays below it, and a minimum far from the right one lies
+/// above it.
+const POOR_FIT: f64 = 1000.0;
+
+/// Noise of the gyros over the declared one in a filter that follows the samples more closely.
+const LOOSE: f64 = 30.0;
+
+/// How the initial guess of a fit is made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Start {
+    /// By growing windows even if the filter does not diverge.
+    pub(crate) careful: bool,
+    /// By a filter that follows the samples more closely: what the model lacks does not lead it astray.
+    pub(crate) loose: bool,
+}
+
+impl Start {
+    /// The usual one, sufficient for nearly every record.
+    pub(crate) const FILTERED: Self = Self {
+        careful: false,
+        loose: false,
+    };
+
+    pub(crate) const CAREFUL: Self = Self {
+        careful: true,
+        loose: false,
+    };
+
+    /// Those that are tried where the fit from the usual one is poor.
+    const OTHERS: [Self; 3] = [
+        Self::CAREFUL,
+        Self {
+            careful: false,
+            loose: true,
+        },
+        Self {
+            careful: true,
+            loose: true,
+        },
+    ];
+
+    /// Settings of the filter that makes the guess.
+    fn settings(self, settings: &FilterSettings<f64>) -> FilterSettings<f64> {
+        let factor = if self.loose { LOOSE } else { 1.0 };
+        FilterSettings {
+            drift_noise_deg_per_h: factor * settings.drift_noise_deg_per_h,
+            ..*settings
+        }
+    }
+}
+
+/// The fit from the usual start; where it is poor or fails, the best from all starts. `quality` gives
+/// the cost of a fit and its number of values.
+pub(crate) fn best_fit<T, E>(
+    mut fit: impl FnMut(Start) -> Result<T, E>,
+    quality: impl Fn(&T) -> (f64, usize),
+) -> Result<T, E> {
+    let first = fit(Start::FILTERED);
+    let is_good = |fit: &T| {
+        let (cost, values) = quality(fit);
+        cost < POOR_FIT * values as f64
+    };
+    if first.as_ref().is_ok_and(is_good) {
+        return first;
+    }
+    let failed = first.is_err();
+    let mut best = first;
+    for start in Start::OTHERS {
+        let Ok(other) = fit(start) else { continue };
+        // A fit that succeeds after a failure is taken as before, unless it is poor.
+        let good = failed && is_good(&other);
+        let is_better = match &best {
+            Ok(best) => quality(&other).0 < quality(best).0,
+            Err(_) => true,
+        };
+        if is_better {
+            best = Ok(other);
+        }
+        if good {
+            break;
+        }
+    }
+    best
+}
+
+/// Initial guess of a run without its gross errors.
 pub(crate) fn initial_guess(
     run: &Run<'_>,
     settings: &FilterSettings<f64>,
     options: &Options,
-    careful: bool,
+    start: Start,
 ) -> Result<InitialGuess, CalibrationError> {
+    let settings = &start.settings(settings);
+    let careful = start.careful;
     let gross_errors = gross_errors(run.record, settings.accel_noise_g);
     if gross_errors.is_empty() {
         return guess_from_all_rows(run, settings, options, careful);

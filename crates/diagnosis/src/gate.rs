@@ -164,7 +164,7 @@ impl Fits {
 
 fn fit(record: &Record, bench: &Bench, options: &Options) -> Option<Fit> {
     let run = Run { record, bench };
-    let fitted = FittedPlatform::nominal(&run, options, &NoiseModel::default()).ok()?;
+    let fitted = FittedPlatform::nominal_once(&run, options, &NoiseModel::default()).ok()?;
     Some(Fit {
         nis_mean: fitted.nis_mean(),
         cost: fitted.cost(),
