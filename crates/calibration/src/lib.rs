@@ -144,7 +144,7 @@ pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;
 pub use layout::SiteQuantity;
 pub use noise::{NoiseDifference, NoiseEstimate, NoiseRatio, is_gyro_noise_implausible};
-pub use observability::UnobservableCombination;
+pub use observability::{DETERMINED, UnobservableCombination};
 pub use options::{Method, Options};
 pub use planned_run::{PlannedRun, PredictedInformation};
 pub use platform::{PLATFORM, rows};

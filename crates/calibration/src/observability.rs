@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use gyrocal::generated::platform::DRIFT;
 
 /// Ratio of posterior to prior sigma from which on a coefficient or combination is unobservable.
-pub(crate) const DETERMINED: f64 = 0.1;
+pub const DETERMINED: f64 = 0.1;
 
 /// Least weight of a coefficient that [`UnobservableCombination::text`] names.
 const NAMED: f64 = 0.15;

@@ -74,6 +74,16 @@ fn noise_of_the_gyros_is_estimated_with_their_walks() {
     assert!(worst(&fitted) < 4.0, "{}", worst(&fitted));
     assert!(worst(&nominal) > 5.0, "{}", worst(&nominal));
 
+    // A walk that two days determine well has nearly the interval of its standard deviation; the profile
+    // of a variance is a little skew.
+    let intervals = fitted.walk_intervals().unwrap();
+    let [low, high] = intervals[0].unwrap();
+    assert!(low < 5e-4 && 5e-4 < high, "{low} {high}");
+    for (end, deviates) in [(low, -1.96), (high, 1.96)] {
+        let expected = again.noise.walk[0] * (deviates * again.walk_sigma[0]).exp();
+        assert!((end / expected - 1.0).abs() < 0.2, "{end} {expected}");
+    }
+
     // The drift at the end of the record is the walk.
     let ends = fitted.walk_ends().unwrap();
     let truth = simulation.truth.drift_deg_per_h.last().unwrap();

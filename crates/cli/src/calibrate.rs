@@ -14,10 +14,12 @@ use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
 use gyrocal_diagnosis::{
-    CalibrationVerdict, DiagnoseOptions, calibration_verdict, effect_test, screen_record,
+    CalibrationVerdict, DiagnoseOptions, calibration_verdict, effect_test, fit_effects,
+    screen_record,
 };
-use gyrocal_record::{CalibrationMethod, EffectTest, SetupProblem, write_json};
+use gyrocal_record::{CalibrationMethod, EffectTest, FittedEffects, SetupProblem, write_json};
 use gyrocal_setup::PlatformKind;
+use miette::miette;
 
 use crate::numbers::positive;
 use crate::outputs;
@@ -71,6 +73,11 @@ pub(crate) struct CalibrateArguments {
     /// only with records simulated by the same rule.
     #[arg(long, conflicts_with = "streaming")]
     paper: bool,
+    /// Estimate the coefficients with these effects of the catalogue in the model too, and print them beside
+    /// the nominal ones; for one record.
+    #[arg(long, value_name = "EFFECT,EFFECT", value_delimiter = ',',
+          conflicts_with_all = ["gyro_axes", "streaming", "paper"])]
+    with: Vec<String>,
     /// Carry the filter's covariance as factors: slower, for very wide priors; with --streaming or
     /// --paper.
     #[arg(long)]
@@ -117,6 +124,11 @@ impl CalibrateArguments {
                 "{benches} bench files for {records} {}: give --bench once for all records, or \
                  once for each in their order",
                 if records == 1 { "record" } else { "records" }
+            ));
+        }
+        if !self.with.is_empty() && records > 1 {
+            return usage(format!(
+                "--with goes with one record, {records} are given: calibrate them one by one"
             ));
         }
         let axes = self.gyro_axes.len();
@@ -185,12 +197,14 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         .map_err(|source| NotCalibrated::new(arguments, &runs, source))?;
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
     let effects = effects(arguments, &measurements);
+    let with_effects = with_effects(arguments, &runs)?;
     let found = CalibrationRun {
         method: arguments.method(),
         kind: arguments.kind(),
         first_run_sigmas: first_run_sigmas(&runs, &gyro_axes, &options),
         verdict: calibration_verdict(&calibration.fit, &effects),
         effects,
+        with_effects,
         calibration,
         measurements,
     };
@@ -222,6 +236,25 @@ fn stopped(
     Ok(WrongSetup::new(&report, arguments.json.as_deref()))
 }
 
+/// The coefficients of the first record with the effects of `--with`; `None` without such.
+fn with_effects(
+    arguments: &CalibrateArguments,
+    runs: &[Run<'_>],
+) -> Result<Option<FittedEffects>, Failure> {
+    let Some(run) = runs.first().filter(|_| !arguments.with.is_empty()) else {
+        return Ok(None);
+    };
+    fit_effects(run, &arguments.with, &DiagnoseOptions::default())
+        .map(Some)
+        .map_err(|error| {
+            let given = arguments.with.join(",");
+            Failure::Work(miette!(
+                help = "`gyrocal diagnose` finds which effects the record shows",
+                "--with {given}: {error}"
+            ))
+        })
+}
+
 /// Tests of the records for effects that the model lacks; none of computed platforms, to which the
 /// catalogue does not apply.
 fn effects(arguments: &CalibrateArguments, measurements: &[Measurement]) -> Vec<EffectTest> {
@@ -246,6 +279,8 @@ struct CalibrationRun {
     calibration: Calibration,
     /// Tests of the records for effects that the model lacks.
     effects: Vec<EffectTest>,
+    /// The coefficients with the effects of `--with`.
+    with_effects: Option<FittedEffects>,
     verdict: CalibrationVerdict,
     /// Sigmas of the coefficients from the first record alone, if there are several and it can
     /// be calibrated alone.

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::outputs::{manifest, refuse_overlap};
-use effects::{Extension, known, of_diagnosis, of_list};
+use effects::{Extension, known, of_diagnosis, of_list, with_members};
 
 /// Write the model file of an extended filter.
 ///
@@ -28,6 +28,15 @@ pub(crate) struct ExtendArguments {
     /// Effects of the catalogue instead of a diagnosis.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     effects: Option<Vec<String>>,
+    /// Members of the confidence sets to take in the place of the effects that the diagnosis names; without
+    /// initial values, which the diagnosis gives for the named ones only.
+    #[arg(
+        long,
+        value_name = "ID,ID",
+        value_delimiter = ',',
+        conflicts_with = "effects"
+    )]
+    member: Vec<String>,
     /// Write the model file (TOML); its name up to the first dot is that of the model.
     #[arg(long, value_name = "NAME.model.toml")]
     out: PathBuf,
@@ -63,7 +72,11 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<String, Failure> {
         ],
     )?;
     let extension = match &arguments.diagnosis {
-        Some(path) => of_diagnosis(&result::read(path)?, &path.display().to_string()),
+        Some(path) => {
+            let name = path.display().to_string();
+            let diagnosis = with_members(result::read(path)?, &arguments.member, &name);
+            diagnosis.and_then(|diagnosis| of_diagnosis(&diagnosis, &name))
+        }
         None => of_list(arguments.effects.as_deref().unwrap_or_default()),
     }
     .map_err(Failure::Work)?;

@@ -3,6 +3,7 @@
 mod answer;
 mod coefficients;
 mod findings;
+mod given;
 mod gyro_noise;
 mod later;
 mod noise_audited_fit;
@@ -33,6 +34,7 @@ use crate::series::Innovations;
 use crate::validation::{CrossValidated, LaterPrediction, cross_validate, gain};
 use answer::Evidence;
 pub use answer::{manifest, record_summary};
+pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
 pub use later::predict_later;
 use noise_audited_fit::noise_audited_fit;

@@ -71,6 +71,25 @@ pub enum DiagnosisError {
         /// The missing input.
         why: String,
     },
+    /// Two effects that no record distinguishes were asked for together.
+    #[error(
+        "`{effect}` and `{other}` cannot be in one model: they are the same or exact equivalents; leave one \
+         out"
+    )]
+    NotTogether {
+        /// Its id.
+        effect: &'static str,
+        /// That of the effect before it.
+        other: &'static str,
+    },
+    /// An effect was asked for that is no term of a model.
+    #[error(
+        "`{effect}` is no effect that a model can have beside the drift coefficients; leave it out"
+    )]
+    NoTerm {
+        /// Its id.
+        effect: &'static str,
+    },
 }
 
 /// The problems of the set-up, in words.

@@ -92,8 +92,8 @@ mod validation;
 
 pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
 pub use diagnose::{
-    DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, manifest, predict_later, record_summary,
-    screen_record,
+    DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, fit_effects, manifest, predict_later,
+    record_summary, screen_record,
 };
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};

@@ -5,7 +5,7 @@ use crate::accepted::Accepted;
 use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::result::{ConditionalResult, add_intervals, evaluate};
+use crate::result::{ConditionalResult, add_shape_intervals, evaluate};
 use crate::score::Best;
 use crate::state::{SearchState, stage};
 use crate::walks::Walks;
@@ -67,12 +67,12 @@ pub(crate) fn reassess<F: FittedModel>(
             _ => {
                 for (index, result) in results.iter_mut().enumerate() {
                     let finding = &mut result.finding;
-                    add_intervals(
+                    add_shape_intervals(
                         &state.stage,
                         context,
                         &state.accepted,
                         index,
-                        finding,
+                        &mut finding.parameters,
                         draws,
                     )?;
                     let hypothesis = state.accepted[index].hypothesis;

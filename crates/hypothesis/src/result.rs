@@ -191,7 +191,7 @@ pub(crate) fn evaluate<F: FittedModel>(
     Ok(ConditionalResult {
         finding: Finding {
             effect: effect.id,
-            parameters: parameters(stage, set, own, places),
+            parameters: parameters_of(stage, set, accepted, index),
             z: statistic.max(0.0).sqrt(),
             p_value: own.p_value,
             alternatives: alternatives(
@@ -305,14 +305,14 @@ fn exact_equivalents<F: FittedModel>(
         .collect()
 }
 
-/// Adds the interval of its shape to a finding, and the standard deviations of its sizes with the shape
-/// unknown.
-pub(crate) fn add_intervals<F: FittedModel>(
+/// Adds the interval of its shape to the estimates of an effect, and the standard deviations of its sizes
+/// with the shape unknown.
+pub(crate) fn add_shape_intervals<F: FittedModel>(
     stage: &FittedStage<F>,
     context: &SearchContext<'_>,
     accepted: &[Accepted],
     index: usize,
-    finding: &mut Finding,
+    estimates: &mut [EffectEstimate],
     draws: &mut GaussianDraws,
 ) -> Result<(), F::Error> {
     let hypothesis = &context.set.hypotheses[accepted[index].hypothesis];
@@ -335,10 +335,7 @@ pub(crate) fn add_intervals<F: FittedModel>(
     let found = shape_interval(fitted, context, (hypothesis, shape), (absent, &free), draws)?;
     let Some(found) = found else { return Ok(()) };
     let mut sigmas = found.size_sigmas.into_iter();
-    let described = finding
-        .parameters
-        .iter_mut()
-        .zip(hypothesis.effect.parameters);
+    let described = estimates.iter_mut().zip(hypothesis.effect.parameters);
     for (estimate, parameter) in described {
         if parameter.role.is_shape() {
             estimate.sigma = found.sigma;
@@ -366,12 +363,14 @@ fn change_by_shape(context: &SearchContext<'_>, accepted: &Accepted, size: f64) 
     )
 }
 
-fn parameters<F: FittedModel>(
+/// Estimates of the parameters of an accepted effect.
+pub(crate) fn parameters_of<F: FittedModel>(
     stage: &FittedStage<F>,
     set: &HypothesisSet,
-    own: &Accepted,
-    places: &EffectPlaces,
+    accepted: &[Accepted],
+    index: usize,
 ) -> Vec<EffectEstimate> {
+    let (own, places) = (&accepted[index], &stage.places[index]);
     let hypothesis = &set.hypotheses[own.hypothesis];
     let (values, covariance): (&[f64], &DMatrix<f64>) =
         (stage.fitted.values(), stage.fitted.covariance());

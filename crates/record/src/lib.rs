@@ -89,8 +89,9 @@ pub use record::Record;
 pub use record_file::RecordFile;
 pub use report::{
     AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, EffectTest,
-    FitVerdict, NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport, SCHEMA_VERSION,
-    SimulationReport, SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
+    FitVerdict, FittedEffect, FittedEffects, FittedParameter, NoiseRatioReport, NoiseReport,
+    OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport, SiteReport, TrueCoefficient, TurnOn,
+    UndeterminedReport,
 };
 pub use setup::SetupProblem;
 pub use site::{Gravity, Site, SiteUncertainty};

@@ -52,6 +52,9 @@ pub struct CalibrationReport {
     pub site: Vec<SiteReport>,
     /// Sigmas of the coefficients from the first record alone, if there are several.
     pub first_record_sigmas: Option<Vec<f64>>,
+    /// The coefficients with the effects of `--with` in the model; `None` without such.
+    #[serde(default)]
+    pub with_effects: Option<FittedEffects>,
 }
 
 impl CalibrationReport {
@@ -82,6 +85,7 @@ impl CalibrationReport {
             runs: Vec::new(),
             site: Vec::new(),
             first_record_sigmas: None,
+            with_effects: None,
         }
     }
 }
@@ -99,6 +103,46 @@ pub struct EffectTest {
     pub p_value: f64,
     /// Whether a diagnosis would name an effect.
     pub significant: bool,
+}
+
+/// The drift coefficients with given effects in the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FittedEffects {
+    /// The effects, in the order given.
+    pub effects: Vec<FittedEffect>,
+    /// Log-likelihood that the effects gain over the nominal model, the noise estimated with and without
+    /// them \[nats\].
+    pub gained_nats: f64,
+    /// The drift coefficients, in the order of `covariance`.
+    pub coefficients: Vec<Coefficient>,
+    /// Their covariance, row by row, in products of their units.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+/// An effect that was fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FittedEffect {
+    /// Its id.
+    pub effect: String,
+    /// Its physical name.
+    pub name: String,
+    /// Its parameters.
+    pub parameters: Vec<FittedParameter>,
+}
+
+/// A parameter of an effect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FittedParameter {
+    /// `size`, `onset_s`, `time_constant_h`, `sine`, `cosine`, ….
+    pub name: String,
+    /// The estimate, in `unit`.
+    pub estimate: f64,
+    /// Its standard deviation; `None` where the likelihood is not quadratic.
+    pub sigma: Option<f64>,
+    /// 95 % interval of an onset, a time constant or the size of a random walk, in pieces.
+    pub interval: Option<Vec<[f64; 2]>>,
+    /// The unit; `1` of plain numbers.
+    pub unit: String,
 }
 
 /// One estimated coefficient.

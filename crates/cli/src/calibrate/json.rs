@@ -56,6 +56,7 @@ pub(super) fn report(
             .collect(),
         site: calibration.site_sensitivities.iter().map(site).collect(),
         first_record_sigmas: found.first_run_sigmas.map(Vec::from),
+        with_effects: found.with_effects.clone(),
     })
 }
 

@@ -7,7 +7,7 @@ use gyrocal_calibration::{
     AzimuthSearch, Calibration, ConsiderSensitivity, NoiseDifference, NoiseEstimate, NoiseRatio,
     RunResult, SIGNIFICANT_WALK_SHARE, SiteQuantity, times_overlap,
 };
-use gyrocal_record::{CalibrationMethod, FitVerdict};
+use gyrocal_record::{CalibrationMethod, FitVerdict, FittedEffects};
 use gyrocal_setup::PlatformKind;
 
 use super::inputs::Measurement;
@@ -43,6 +43,9 @@ pub(super) fn summary(found: &CalibrationRun) -> String {
     text.push_str(&overlapping_times(&found.measurements));
     text.push_str(&paragraph(&final_angles(found)));
     let _ = writeln!(text, "\n{}", tables::coefficients(calibration));
+    if let Some(with) = &found.with_effects {
+        text.push_str(&with_effects(calibration, with));
+    }
     let site_title = if found.has_several_records() {
         "Sensitivity to errors of the first record's site, which the residuals do not show: bias of \
          each coefficient in its unit"
@@ -67,6 +70,19 @@ pub(super) fn summary(found: &CalibrationRun) -> String {
         }
     }
     text
+}
+
+/// The effects that were given, and the coefficients with and without them.
+fn with_effects(calibration: &Calibration, with: &FittedEffects) -> String {
+    let names: Vec<&str> = with.effects.iter().map(|one| one.effect.as_str()).collect();
+    let title = format!(
+        "Coefficients with {} in the model, which gains {:.1} nats of log-likelihood:",
+        names.join(", "),
+        with.gained_nats
+    );
+    let coefficients = tables::with_effects(calibration, with);
+    let effects = tables::given_effects(with);
+    format!("\n{}\n{coefficients}\n\n{effects}\n", paragraph(&title))
 }
 
 fn record_line(measurement: &Measurement) -> String {

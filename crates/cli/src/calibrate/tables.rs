@@ -2,6 +2,7 @@
 
 use comfy_table::Cell;
 use gyrocal_calibration::{BIASES, Calibration, ConsiderSensitivity, SiteQuantity};
+use gyrocal_record::FittedEffects;
 use gyrocal_statistics::format;
 
 use super::CalibrationRun;
@@ -30,6 +31,47 @@ pub(super) fn coefficients(calibration: &Calibration) -> String {
             Cell::new(if coefficient.determined { "yes" } else { "no" }),
             Cell::new(coefficient.meaning),
         ]);
+    }
+    table.trim_fmt()
+}
+
+/// The coefficients without and with given effects in the model.
+pub(super) fn with_effects(calibration: &Calibration, with: &FittedEffects) -> String {
+    let mut table = table(["coefficient", "nominal model", "with these effects", "unit"]);
+    let value = |estimate: f64, sigma: f64| format::estimate(estimate, sigma).join(" ± ");
+    for (nominal, with) in calibration.coefficients().iter().zip(&with.coefficients) {
+        table.add_row([
+            Cell::new(nominal.id),
+            right(value(nominal.estimate, nominal.sigma)),
+            right(value(with.estimate, with.sigma)),
+            Cell::new(nominal.unit),
+        ]);
+    }
+    table.trim_fmt()
+}
+
+/// The parameters of given effects.
+pub(super) fn given_effects(with: &FittedEffects) -> String {
+    let mut table = table(["effect", "parameter", "estimate", "95 % interval", "unit"]);
+    for effect in &with.effects {
+        for parameter in &effect.parameters {
+            let estimate = match parameter.sigma {
+                Some(sigma) => format::estimate(parameter.estimate, sigma).join(" ± "),
+                None => format::significant(parameter.estimate, 4),
+            };
+            let pieces = parameter.interval.iter().flatten().map(|[low, high]| {
+                let ends = [low, high].map(|end| format::significant(*end, 4));
+                ends.join(" to ")
+            });
+            let pieces: Vec<String> = pieces.collect();
+            table.add_row([
+                Cell::new(&effect.effect),
+                Cell::new(&parameter.name),
+                right(estimate),
+                right(pieces.join(" or ")),
+                Cell::new(&parameter.unit),
+            ]);
+        }
     }
     table.trim_fmt()
 }

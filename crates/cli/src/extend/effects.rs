@@ -3,6 +3,7 @@
 use gyrocal::effect::{Enters, Role};
 use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_diagnosis::result::Finding;
 use gyrocal_diagnosis::{DiagnosisResult, Verdict};
 use gyrocal_record::{KnownEffect, ModelFile, ParameterEstimate, Standing, any_of, nearest_names};
 use miette::{Report, miette};
@@ -40,6 +41,43 @@ fn known_effect(row: &'static Effect) -> KnownEffect<'static> {
         states: row.model_parameters().map(|at| PARAMETERS[at].id).collect(),
         shapes: shape.into_iter().map(|at| SHAPES[at].id).collect(),
     }
+}
+
+/// The diagnosis with members of its confidence sets in the place of the effects that it names.
+pub(super) fn with_members(
+    mut diagnosis: DiagnosisResult,
+    members: &[String],
+    name: &str,
+) -> Result<DiagnosisResult, Report> {
+    for member in members {
+        let others = |finding: &Finding| -> Vec<String> {
+            let alternatives = finding.alternatives.iter().map(|one| one.effect.clone());
+            let equivalents = finding.equivalents.iter().map(|one| one.effect.clone());
+            alternatives.chain(equivalents).collect()
+        };
+        let mut findings = diagnosis.findings.iter();
+        let Some(place) = findings.position(|finding| others(finding).contains(member)) else {
+            let all: Vec<String> = diagnosis.findings.iter().flat_map(others).collect();
+            let known: Vec<&str> = all.iter().map(String::as_str).collect();
+            let expected = if known.is_empty() {
+                "no set has another member than the effect that is named".to_owned()
+            } else {
+                format!("expected {}", any_of(&known))
+            };
+            return Err(miette!(
+                help = "--effects takes any effect of the catalogue",
+                "{name}: found no alternative `{member}` in a confidence set, {expected}"
+            ));
+        };
+        let finding = &mut diagnosis.findings[place];
+        let equivalent = finding.equivalents.iter().find(|one| one.effect == *member);
+        finding.parameters = equivalent.map_or_else(Vec::new, |one| one.parameters.clone());
+        finding.effect.clone_from(member);
+        finding.equivalents.clear();
+        finding.alternatives.clear();
+        finding.accepted = Some(true);
+    }
+    Ok(diagnosis)
 }
 
 /// The model of what a diagnosis found.

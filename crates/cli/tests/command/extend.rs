@@ -96,6 +96,30 @@ fn terms_that_were_found_are_in_the_model_and_the_rest_is_explained() {
 }
 
 #[test]
+fn a_member_of_a_set_takes_the_place_of_the_effect_that_is_named() {
+    let folder = Folder::new();
+    let mut found = finding("gyro_y.g_z", &[("size", 0.05)]);
+    found["alternatives"] = json!([{ "effect": "gyro_y.ramp", "log_likelihood_deficit": 0.7 }]);
+    let findings = [found, finding("gyro_x.g_y", &[("size", 0.1)])];
+    folder.put("d.json", diagnosis("effects-found", &findings));
+    let with = |member| {
+        MODEL
+            .into_iter()
+            .chain(["--member", member])
+            .collect::<Vec<_>>()
+    };
+    folder.succeed(&with("gyro_y.ramp"));
+    let text = folder.text("extended.model.toml");
+    assert_says(&text, "effects = [\"gyro_y.ramp\", \"gyro_x.g_y\"]\n");
+    // The diagnosis estimates the named effect only.
+    assert!(!text.contains("\"gyro_y.ramp\" = {"), "{text}");
+    assert_says(&text, "\"gyro_x.g_y\" = { value = 0.1, sigma = 0.0001 }");
+    let said = folder.fail(&with("gyro_y.step"));
+    assert_says(&said, "found no alternative `gyro_y.step`");
+    assert_says(&said, "expected `gyro_y.ramp`");
+}
+
+#[test]
 fn a_list_of_effects_is_a_model_without_estimates() {
     let folder = Folder::new();
     let said = folder.succeed(&[

@@ -366,3 +366,55 @@ fn what_a_short_record_does_not_determine_is_named() {
         "{said}"
     );
 }
+
+/// The table of the extended model without a search.
+#[test]
+fn given_effects_are_in_the_model() {
+    let folder = Folder::new();
+    folder.put("r.csv", example("hidden_fault.csv"));
+    folder.put("b.toml", example("hidden_fault.bench.toml"));
+    let with = |effects| {
+        JSON.into_iter()
+            .chain(["--with", effects])
+            .collect::<Vec<_>>()
+    };
+    let said = folder.succeed(&with("gyro_y.g_z"));
+    assert!(
+        said.contains("Coefficients with gyro_y.g_z in the model"),
+        "{said}"
+    );
+    let report = report(&folder);
+    let given = report.with_effects.unwrap();
+    let [effect] = given.effects.as_slice() else {
+        panic!("{given:?}");
+    };
+    let [size] = effect.parameters.as_slice() else {
+        panic!("{given:?}");
+    };
+    // What a diagnosis of the same record finds.
+    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
+    let found: serde_json::Value = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let same = |own: f64, sigma: f64, other: &serde_json::Value| {
+        // Both fits end where a step changes less than a hundredth of a sigma.
+        (own - other.as_f64().unwrap()).abs() < 0.02 * sigma
+    };
+    let other = &found["findings"][0]["parameters"][0]["estimate"];
+    let sigma = size.sigma.unwrap();
+    assert!(same(size.estimate, sigma, other), "{size:?} {other}");
+    for (index, own) in given.coefficients.iter().enumerate() {
+        let other = &found["coefficients"]["extended"][index]["estimate"];
+        assert!(same(own.estimate, own.sigma, other), "{own:?} {other}");
+        let variance = given.covariance[index][index];
+        assert!((variance.sqrt() / own.sigma - 1.0).abs() < 1e-12);
+    }
+
+    for (effects, message) in [
+        ("gyro_y.gz", "the nearest are `gyro_y.g_z`"),
+        ("site.latitude,clock.rate", "cannot be in one model"),
+        ("gyro_x.noise", "is no effect that a model can have"),
+        ("gyro_x.temperature", "the record has no column"),
+    ] {
+        let said = unwrapped(&folder.fail(&with(effects)));
+        assert!(said.contains(message), "{effects}: {said}");
+    }
+}
