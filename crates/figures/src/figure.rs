@@ -1,6 +1,7 @@
 //! Figures of the documentation with their targets, and their table.
 
 use comfy_table::{ContentArrangement, Table, presets};
+use gyrocal_statistics::{Judgement, Proportion};
 
 /// One figure: target and measurement.
 #[derive(Clone, Debug)]
@@ -15,8 +16,12 @@ pub(crate) struct Figure {
     pub(crate) runs: usize,
     /// Seeds, or another identification of the runs.
     pub(crate) seeds: String,
-    /// `true` if the target is met; `None` without a target.
+    /// `true` if the target is met; `None` without a target or with too few runs to tell.
     pub(crate) holds: Option<bool>,
+    /// `true` if the runs are too few to tell whether the target is met.
+    pub(crate) too_few: bool,
+    /// The share that is the first number of `measured`; `None` for other figures.
+    pub(crate) share: Option<Proportion>,
 }
 
 impl Figure {
@@ -33,6 +38,8 @@ impl Figure {
             runs: 1,
             seeds: String::new(),
             holds: Some(bounds[0] <= measured && measured <= bounds[1]),
+            too_few: false,
+            share: None,
         }
     }
 
@@ -54,6 +61,8 @@ impl Figure {
             runs: 1,
             seeds: String::new(),
             holds: Some(measured),
+            too_few: false,
+            share: None,
         }
     }
 
@@ -66,6 +75,37 @@ impl Figure {
             runs: 1,
             seeds: String::new(),
             holds: None,
+            too_few: false,
+            share: None,
+        }
+    }
+
+    /// A share without a target, with its exact 95 % interval.
+    pub(crate) fn note_share(name: &str, share: Proportion, seeds: impl Into<String>) -> Self {
+        let [low, high] = share.interval(0.95);
+        let measured = match share.trials {
+            0 => "nothing to measure on".to_owned(),
+            _ => format!("{:.3} ({low:.3} to {high:.3})", share.share()),
+        };
+        Self::note(name, measured)
+            .of_share(share)
+            .over(share.trials as usize, seeds)
+    }
+
+    /// The same figure with the share that it states.
+    pub(crate) fn of_share(self, share: Proportion) -> Self {
+        Self {
+            share: Some(share),
+            ..self
+        }
+    }
+
+    /// The same figure, judged by its runs, which may be too few to tell.
+    pub(crate) fn judged(self, judgement: Judgement) -> Self {
+        Self {
+            holds: judgement.holds(),
+            too_few: judgement == Judgement::TooFew,
+            ..self
         }
     }
 
@@ -95,9 +135,27 @@ pub(crate) fn table(figures: &[Figure]) -> Table {
             match figure.holds {
                 Some(true) => "yes".to_owned(),
                 Some(false) => "NO".to_owned(),
+                None if figure.too_few => "too few records to tell".to_owned(),
                 None => String::new(),
             },
         ]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn too_few_runs_are_said_to_be_too_few() {
+        let of = |hits, trials| {
+            let share = Proportion { hits, trials };
+            let figure = Figure::within("detected", [0.99, f64::INFINITY], share.share());
+            table(&[figure.judged(share.at_least(0.99))]).to_string()
+        };
+        assert!(of(45, 45).contains("| too few records to tell |"));
+        assert!(of(20, 45).contains("| NO "));
+        assert!(of(1000, 1000).contains("| yes "));
+    }
 }

@@ -79,11 +79,11 @@ fn cell<T: Serialize + DeserializeOwned + Send>(
     Ok((campaign.run(job, |_| ())?, seeds))
 }
 
-/// A fraction with a lower limit; a small population fails if it rejects it.
+/// A fraction with a lower limit; a small population may be too small to tell.
 fn at_least(name: &str, least: f64, found: Proportion, small: bool) -> Figure {
-    let mut figure = Figure::within(name, [least, f64::INFINITY], found.share());
+    let figure = Figure::within(name, [least, f64::INFINITY], found.share()).of_share(found);
     if small {
-        figure.holds = Some(found.upper_bound(0.999) >= least);
+        return figure.judged(found.at_least(least));
     }
     figure
 }

@@ -137,12 +137,11 @@ fn of_row(row: &Row, extent: Extent) -> Result<Vec<Figure>, Error> {
             !record.causes.is_empty() || (with_unexplained && record.unexplained)
         }));
     let bound = wrong.upper_bound(0.95);
-    let mut figure = Figure::within(row.name, [0.0, row.limit], bound);
+    let mut figure = Figure::within(row.name, [0.0, row.limit], bound).of_share(wrong);
     figure.target = format!("<= {} (upper 95 % bound)", row.limit);
     figure.measured = format!("{:.3}, bound {bound:.3}", wrong.share());
     if small {
-        // A dozen records: the share may be the target.
-        figure.holds = Some(wrong.interval(0.999)[0] <= row.limit);
+        figure = figure.judged(wrong.at_most(row.limit));
     }
     let seeds = format!("{seeds:?}");
     let mut figures = vec![figure.over(outcome.successes().count(), seeds.as_str())];
