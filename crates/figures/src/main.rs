@@ -15,6 +15,7 @@ mod naming;
 mod page;
 mod paper;
 mod resumable;
+mod topic_page;
 mod truth;
 mod values;
 
@@ -23,7 +24,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 
-use figure::table;
+use error::Error;
+use figure::{Figure, table};
 
 #[derive(Parser)]
 #[command(
@@ -47,9 +49,9 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
-    /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper: docs/paper.md and its
-    /// pictures).
-    #[arg(long)]
+    /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper:
+    /// docs/paper.md and its pictures; all others: docs/figures/TOPIC.md).
+    #[arg(long, conflicts_with = "small")]
     write: bool,
 }
 
@@ -98,12 +100,13 @@ fn main() -> ExitCode {
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {
-        Ok(figures) => {
-            let table = table(&figures);
-            println!("{table}");
-            if let Some(path) = &arguments.out
-                && let Err(error) = write_page(path, &arguments, &table.to_string())
-            {
+        Ok(mut figures) => {
+            let written = written(&arguments, &figures);
+            if arguments.small {
+                figures.extend(compared(arguments.topic, &figures));
+            }
+            println!("{}", table(&figures));
+            if let Err(error) = written {
                 eprintln!("{error}");
                 return ExitCode::FAILURE;
             }
@@ -125,22 +128,41 @@ fn main() -> ExitCode {
     }
 }
 
-/// Writes the printed table as a page of the documentation.
-fn write_page(
-    path: &std::path::Path,
-    arguments: &Arguments,
-    table: &str,
-) -> Result<(), gyrocal_record::Error> {
-    let topic = arguments.topic.to_possible_value();
-    let topic = topic.as_ref().map_or("", |value| value.get_name());
-    let small = if arguments.small { " --small" } else { "" };
-    let processor = gyrocal_testkit::timing::processor();
-    let commit = house::commit(&gyrocal_testkit::workspace());
-    let page = format!(
-        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{small}` of commit {commit} on \
-         {processor}. Times and ratios of times are those of that machine, and instruction counts \
-         those of its compiler. All else differs by rounding at most: where the target fuses \
-         multiplication and addition, last bits differ.\n\n{table}\n"
-    );
-    gyrocal_record::write_whole(path, page.as_bytes())
+impl Topic {
+    /// Its name on the command line.
+    fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// `true` if `--write` renews the page of figures and not other measurements.
+    fn writes_its_page(self) -> bool {
+        !matches!(
+            self,
+            Self::Kernel | Self::House | Self::Measured | Self::Paper
+        )
+    }
+}
+
+/// Writes the figures into the pages that were asked for.
+fn written(arguments: &Arguments, figures: &[Figure]) -> Result<(), Error> {
+    let topic = arguments.topic;
+    let own = (arguments.write && topic.writes_its_page()).then(|| topic_page::path(&topic.name()));
+    let table = table(figures).to_string();
+    for path in own.iter().chain(&arguments.out) {
+        topic_page::write(path, &topic.name(), arguments.small, "", &table)?;
+    }
+    Ok(())
+}
+
+/// Comparison of a small run with the committed page of its topic.
+fn compared(topic: Topic, figures: &[Figure]) -> Vec<Figure> {
+    let name = topic.name();
+    let renewed_by = match topic {
+        // Their pages are compared as a whole, in any version.
+        Topic::Measured | Topic::Paper => return Vec::new(),
+        _ if topic.writes_its_page() => format!("cargo figures {name} --write"),
+        _ => format!("cargo figures {name} --out docs/figures/{name}.md"),
+    };
+    topic_page::compared(&name, &renewed_by, figures)
 }

@@ -95,10 +95,7 @@ fn broken(small: bool) -> Result<Vec<Figure>, Error> {
             worst = (hits, breakage.name);
         }
     }
-    let name = format!(
-        "gross errors, {} kinds, {each} records each:",
-        BREAKAGES.len()
-    );
+    let name = format!("gross errors, {} kinds:", BREAKAGES.len());
     let seeds = format!("{seeds:?}");
     let mut over_all = Figure::within(
         &format!("{name} right kind or class, over all"),
@@ -152,7 +149,7 @@ fn sound(small: bool) -> Result<Vec<Figure>, Error> {
     let outcome: Outcome<Vec<String>> = campaign.run(job, |_| ())?;
     let alarms = Proportion::of(outcome.successes().map(|(_, kinds)| !kinds.is_empty()));
     let mut figure = Figure::within(
-        &format!("false alarms of the gate: {records} sound records"),
+        "false alarms of the gate: sound records",
         [f64::NEG_INFINITY, 0.005],
         alarms.share(),
     )
