@@ -2,6 +2,7 @@
 //! number of runs and seeds. The exit code is 1 if a figure does not hold.
 
 mod calibration;
+mod comparison;
 mod cost;
 mod diagnosis_ground;
 mod error;
@@ -67,6 +68,8 @@ enum Topic {
     DiagnosisGround,
     /// Operating characteristics of the diagnosis on records with injected effects and on clean ones.
     Naming,
+    /// The diagnosis beside the usual tests and selection methods, on the same records.
+    Comparison,
     /// Gain of extended models: in cross-validation, in the coefficients, and on a second record.
     Gain,
     /// Structure of the tree, equal results before and after, cost of a build.
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),
+        Topic::Comparison => comparison::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
         Topic::House => house::figures(arguments.small, arguments.write),
         Topic::Measured => measured::figures(arguments.write),
@@ -148,9 +152,13 @@ impl Topic {
 fn written(arguments: &Arguments, figures: &[Figure]) -> Result<(), Error> {
     let topic = arguments.topic;
     let own = (arguments.write && topic.writes_its_page()).then(|| topic_page::path(&topic.name()));
+    let introduction = match topic {
+        Topic::Comparison => comparison::side_by_side(figures),
+        _ => String::new(),
+    };
     let table = table(figures).to_string();
     for path in own.iter().chain(&arguments.out) {
-        topic_page::write(path, &topic.name(), arguments.small, "", &table)?;
+        topic_page::write(path, &topic.name(), arguments.small, &introduction, &table)?;
     }
     Ok(())
 }
