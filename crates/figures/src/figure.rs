@@ -20,7 +20,8 @@ pub(crate) struct Figure {
     pub(crate) holds: Option<bool>,
     /// `true` if the runs are too few to tell whether the target is met.
     pub(crate) too_few: bool,
-    /// The share that is the first number of `measured`; `None` for other figures.
+    /// The share that is the first number of `measured`, in percent where the name says `% of`; `None` for
+    /// other figures.
     pub(crate) share: Option<Proportion>,
 }
 
@@ -118,6 +119,17 @@ impl Figure {
     }
 }
 
+/// Judgement of the coverage of 95 % intervals by few records: it is missed if the exact 99.9 % interval
+/// of the share does not contain 95 %, and met if the 90 % interval lies within a band.
+pub(crate) fn coverage(covered: Proportion, band: [f64; 2]) -> Judgement {
+    let [low, high] = covered.interval(0.999);
+    let [least, most] = covered.interval(0.9);
+    Judgement::of(
+        band[0] <= least && most <= band[1],
+        !(low..=high).contains(&0.95),
+    )
+}
+
 /// The figures as a table.
 pub(crate) fn table(figures: &[Figure]) -> Table {
     let mut table = Table::new();
@@ -157,5 +169,14 @@ mod tests {
         assert!(of(45, 45).contains("| too few records to tell |"));
         assert!(of(20, 45).contains("| NO "));
         assert!(of(1000, 1000).contains("| yes "));
+    }
+
+    #[test]
+    fn a_coverage_is_missed_where_95_percent_is_excluded() {
+        let of = |hits, trials| coverage(Proportion { hits, trials }, [0.93, 0.97]);
+        assert_eq!(of(38, 40), Judgement::TooFew);
+        assert_eq!(of(950, 1000), Judgement::Met);
+        assert_eq!(of(28, 40), Judgement::Missed);
+        assert_eq!(of(1000, 1000), Judgement::Missed);
     }
 }

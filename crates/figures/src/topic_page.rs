@@ -131,7 +131,13 @@ impl Row {
     /// The share that begins its measured value; `None` if it begins with none.
     fn share(&self) -> Option<Proportion> {
         let first = self.measured.split([' ', ',']).next()?;
-        let share: f64 = first.parse().ok()?;
+        let number: f64 = first.parse().ok()?;
+        let unit = if self.name.contains(": % of ") {
+            100.0
+        } else {
+            1.0
+        };
+        let share = number / unit;
         let is_share = (0.0..=1.0).contains(&share) && first.contains('.');
         is_share.then(|| Proportion {
             hits: (share * self.runs as f64).round() as u64,
@@ -206,6 +212,30 @@ mod tests {
             (result[0].measured.as_str(), result[0].holds),
             ("2 of 2", Some(true))
         );
+    }
+
+    #[test]
+    fn percents_are_shares_where_the_name_says_so() {
+        let of = |name: &str, measured: &str| {
+            let (name, measured) = (name.to_owned(), measured.to_owned());
+            Row {
+                name,
+                measured,
+                runs: 200,
+            }
+            .share()
+            .map(|share| share.hits)
+        };
+        assert_eq!(
+            of(
+                "gyro_x.bias: % of 95 % intervals",
+                "95.500 (95 %: 91 to 98)"
+            ),
+            Some(191)
+        );
+        assert_eq!(of("detected", "0.955, bound 0.97"), Some(191));
+        assert_eq!(of("mean NIS", "2.996"), None);
+        assert_eq!(of("failures", "0"), None);
     }
 
     #[test]

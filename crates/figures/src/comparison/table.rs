@@ -7,13 +7,14 @@ use crate::figure::Figure;
 pub(crate) fn side_by_side(figures: &[Figure]) -> String {
     let mut text = format!(
         "All methods see the same records, with the noise as declared; \
-         [characteristics.md](../characteristics.md) describes the records and the methods. The \
-         records with an effect hide one effect of the catalogue of 8 standard deviations of its own \
-         bound. Columns but the first are of them. A test names nothing. `gyrocal` names sets: its \
-         first name is the first member of its first set. The coefficients are the nine of the model \
-         that a method ends with: the nominal one of a test, with the selected effects in it of `bic` \
-         and `stls`, over the members of the sets of `gyrocal`. Intervals are exact 95 % ones; that of \
-         the coefficients is over records, the nine of which err together.\n\n| method | {} |\n|---{}|",
+         [characteristics.md](../characteristics.md) describes the records and the methods. All \
+         columns but the first refer to records with one effect of the catalogue, of 8 standard \
+         deviations of its own bound. A test names nothing. `gyrocal` names sets: its first name \
+         is the first member of its first set. The coefficients are the nine of the model that a \
+         method ends with: the nominal model of a test, the model with the selected effects of \
+         `bic` and `stls`, the members of the sets of `gyrocal` by their weights. Intervals are \
+         exact 95 % ones, but that of the coefficients, which is over records: the nine of one \
+         record err together.\n\n| method | {} |\n|---{}|",
         COLUMNS.join(" | "),
         "|---".repeat(COLUMNS.len())
     );

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Extent;
 use crate::error::Error;
-use crate::figure::Figure;
+use crate::figure::{Figure, coverage};
 use crate::resumable;
 
 /// Seeds of the records, and their number in the small version.
@@ -83,8 +83,11 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
             covered.share(),
         )
         .of_share(covered);
-        if own.len() < 1000 {
-            figure = figure.judged(coverage(covered, small));
+        let judgement = coverage(covered, COVERAGE);
+        if small {
+            figure = figure.judged(judgement);
+        } else if own.len() < 1000 {
+            figure.holds = Some(judgement != Judgement::Missed);
         }
         figures.push(figure.over(own.len(), seeds.as_str()));
     }
@@ -100,15 +103,6 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         failed == 0,
     ));
     Ok(figures)
-}
-
-/// Judgement of the coverage of fewer than 1000 intervals: it is missed if the exact 99.9 % interval of
-/// the share does not contain 95 %. A small population confirms it only with an interval within the
-/// target.
-fn coverage(covered: Proportion, small: bool) -> Judgement {
-    let [low, high] = covered.interval(0.999);
-    let within = COVERAGE[0] <= low && high <= COVERAGE[1];
-    Judgement::of(within || !small, !(low..=high).contains(&0.95))
 }
 
 fn kind_of(id: &str) -> Option<EffectKind> {
