@@ -52,8 +52,27 @@ struct Arguments {
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
     /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper:
     /// docs/paper.md and its pictures; all others: docs/figures/TOPIC.md).
-    #[arg(long, conflicts_with = "small")]
+    #[arg(long, conflicts_with_all = ["small", "parts", "records"])]
     write: bool,
+}
+
+impl Arguments {
+    /// The options that leave out a part of the topic, as they are given.
+    fn extent(&self) -> String {
+        let mut extent = String::new();
+        if self.small {
+            extent.push_str(" --small");
+        }
+        for part in &self.parts {
+            if let Some(value) = part.to_possible_value() {
+                extent = format!("{extent} --part {}", value.get_name());
+            }
+        }
+        if let Some(records) = self.records {
+            extent = format!("{extent} --records {records}");
+        }
+        extent
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -158,7 +177,13 @@ fn written(arguments: &Arguments, figures: &[Figure]) -> Result<(), Error> {
     };
     let table = table(figures).to_string();
     for path in own.iter().chain(&arguments.out) {
-        topic_page::write(path, &topic.name(), arguments.small, &introduction, &table)?;
+        topic_page::write(
+            path,
+            &topic.name(),
+            &arguments.extent(),
+            &introduction,
+            &table,
+        )?;
     }
     Ok(())
 }

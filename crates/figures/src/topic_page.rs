@@ -24,18 +24,18 @@ pub(crate) fn path(topic: &str) -> PathBuf {
         .with_extension("md")
 }
 
-/// Writes the printed table as a page of the documentation, below an introduction.
+/// Writes the printed table as a page of the documentation, below an introduction. `extent` are the
+/// options of the command beside the topic.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub(crate) fn write(
     path: &Path,
     topic: &str,
-    small: bool,
+    extent: &str,
     introduction: &str,
     table: &str,
 ) -> Result<(), Error> {
-    let small = if small { " --small" } else { "" };
     let processor = gyrocal_testkit::timing::processor();
     let commit = house::commit(&gyrocal_testkit::workspace());
     let introduction = match introduction {
@@ -43,7 +43,7 @@ pub(crate) fn write(
         text => format!("{text}\n\n"),
     };
     let page = format!(
-        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{small}` of commit {commit} on \
+        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{extent}` of commit {commit} on \
          {processor}. Times and ratios of times are those of that machine, and instruction counts \
          those of its compiler. All else differs by rounding at most: where the target fuses \
          multiplication and addition, last bits differ.\n\n{introduction}{table}\n"
@@ -273,7 +273,8 @@ mod tests {
                 .and_then(|stem| stem.to_str())
                 .expect("a name");
             let commit = text
-                .split_once(&format!("Printed by `cargo figures {topic}` of commit "))
+                .split_once(&format!("Printed by `cargo figures {topic}"))
+                .and_then(|(_, rest)| rest.split_once("` of commit "))
                 .map(|(_, rest)| rest.chars().take_while(char::is_ascii_hexdigit).count());
             assert!(
                 commit.is_some_and(|digits| digits >= 7),
