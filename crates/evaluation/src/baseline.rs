@@ -58,12 +58,12 @@ impl BaselineMethod {
         matches!(self, Self::Bic | Self::Stls)
     }
 
-    /// Applies the method; returns the result and the numbers of the selected entries.
+    /// Applies the method; returns the result and the selected terms.
     pub(crate) fn apply(
         self,
         scores: &ProjectedScores,
         library: &[LibraryEntry],
-    ) -> (BaselineResult, Vec<usize>) {
+    ) -> (BaselineResult, Vec<Term>) {
         let selected = match self {
             Self::Nis => return (BaselineResult::detection(nis::detects(scores)), Vec::new()),
             Self::LjungBox => {
@@ -76,8 +76,8 @@ impl BaselineMethod {
             Self::Stls => stls::select(scores, library),
         };
         let mut names: Vec<String> = Vec::new();
-        for entry in &selected {
-            let id = library[*entry].effect.id;
+        for term in &selected {
+            let id = library[term.entry].effect.id;
             if !names.iter().any(|name| name == id) {
                 names.push(id.to_owned());
             }
@@ -103,6 +103,13 @@ impl BaselineResult {
             names: Vec::new(),
         }
     }
+}
+
+/// One size of an effect of the library: the number of its entry, and that of its column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Term {
+    pub(crate) entry: usize,
+    pub(crate) column: usize,
 }
 
 /// An effect at one onset or time constant.

@@ -2,18 +2,16 @@
 
 use core::ops::Range;
 
-use gyrocal_statistics::{NORMAL_97_5, Proportion, mean, standard_error};
+use gyrocal_statistics::{Judgement, NORMAL_97_5, Proportion, mean, standard_error};
 use serde::{Deserialize, Serialize};
 
 /// Confidence of reported intervals.
 const CONFIDENCE: f64 = 0.95;
 
-/// Confidence of a rejection: a population smaller than the target asks for misses the target if it
-/// rejects, with this confidence, that the true value meets it.
-const REJECTION_CONFIDENCE: f64 = 0.999;
-
-/// The same, as a one-sided point of the normal distribution.
-const REJECTION_SIGMAS: f64 = 3.090_232_306_167_813;
+/// One-sided points of the normal distribution at which a population smaller than the target asks for
+/// shows that the target is met (95 %) or missed (99.9 %), as [`Judgement`] has them.
+const MET_SIGMAS: f64 = 1.644_853_626_951_472_2;
+const MISSED_SIGMAS: f64 = 3.090_232_306_167_813;
 
 /// Target of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -42,9 +40,14 @@ pub struct Characteristic {
     pub runs: u64,
     /// The first seed of the cell and the one after the last.
     pub seeds: [u64; 2],
-    /// `true` if the target is met or, for a population smaller than the target asks for, not
-    /// rejected; `None` without a target.
+    /// `true` if the target is met; `None` without a target, and for a population smaller than the
+    /// target asks for that shows neither that it is met nor that it is missed.
     pub holds: Option<bool>,
+    /// `true` if the records are too few to tell whether the target is met.
+    pub too_few: bool,
+    /// Hits and trials of a fraction; `None` for other figures.
+    #[serde(skip)]
+    pub share: Option<Proportion>,
 }
 
 /// Builder of the figures of one cell.
@@ -64,7 +67,7 @@ impl CellFigures {
         measured: f64,
         interval: Option<[f64; 2]>,
         runs: u64,
-        holds: Option<bool>,
+        judged: Option<Judgement>,
     ) {
         self.all.push(Characteristic {
             cell: self.cell.clone(),
@@ -74,18 +77,20 @@ impl CellFigures {
             interval: interval.filter(|_| runs > 0),
             runs,
             seeds: [self.seeds.start, self.seeds.end],
-            holds,
+            holds: judged.and_then(Judgement::holds),
+            too_few: judged == Some(Judgement::TooFew),
+            share: None,
         });
     }
 
     /// A fraction with a lower limit.
     pub(crate) fn at_least(&mut self, figure: &str, least: f64, of: Proportion) {
-        let holds = if self.full {
-            of.share() >= least
+        let judged = if self.full {
+            decided(of.share() >= least)
         } else {
-            of.trials == 0 || of.upper_bound(REJECTION_CONFIDENCE) >= least
+            of.at_least(least)
         };
-        self.share(figure, Some(Target::AtLeast(least)), of, Some(holds));
+        self.share(figure, Some(Target::AtLeast(least)), of, Some(judged));
     }
 
     /// The unweighted average of fractions, with a lower limit.
@@ -93,56 +98,54 @@ impl CellFigures {
         let average = mean(all.iter().map(Proportion::share));
         let variance = all.iter().map(Proportion::variance).sum::<f64>();
         let sigma = variance.sqrt() / all.len() as f64;
-        let up_to = |sigmas: f64| f64::min(average + sigmas * sigma, 1.0);
-        let interval = [
-            f64::max(average - NORMAL_97_5 * sigma, 0.0),
-            up_to(NORMAL_97_5),
-        ];
-        let holds = if self.full {
-            average >= least
+        let at = |sigmas: f64| (average + sigmas * sigma).clamp(0.0, 1.0);
+        let judged = if self.full {
+            decided(average >= least)
         } else {
-            all.is_empty() || up_to(REJECTION_SIGMAS) >= least
+            Judgement::of(at(-MET_SIGMAS) >= least, at(MISSED_SIGMAS) < least)
         };
         let target = Some(Target::AtLeast(least));
         let runs = all.iter().map(|of| of.trials).sum();
-        self.push(figure, target, average, Some(interval), runs, Some(holds));
+        let interval = [-NORMAL_97_5, NORMAL_97_5].map(at);
+        self.push(figure, target, average, Some(interval), runs, Some(judged));
     }
 
     /// A fraction with an upper limit.
     pub(crate) fn at_most(&mut self, figure: &str, most: f64, of: Proportion) {
-        let holds = if self.full {
-            of.share() <= most
+        let judged = if self.full {
+            decided(of.share() <= most)
         } else {
-            of.trials == 0 || of.lower_bound(REJECTION_CONFIDENCE) <= most
+            of.at_most(most)
         };
-        self.share(figure, Some(Target::AtMost(most)), of, Some(holds));
+        self.share(figure, Some(Target::AtMost(most)), of, Some(judged));
     }
 
     /// The upper 95 % confidence bound of a fraction, with an upper limit.
     pub(crate) fn bound_at_most(&mut self, figure: &str, most: f64, of: Proportion) {
         let bound = of.upper_bound(CONFIDENCE);
-        let holds = if self.full {
-            bound <= most
+        let judged = if self.full {
+            decided(bound <= most)
         } else {
-            of.lower_bound(REJECTION_CONFIDENCE) <= most
+            of.at_most(most)
         };
         let target = Some(Target::AtMost(most));
-        self.push(figure, target, bound, None, of.trials, Some(holds));
+        self.push(figure, target, bound, None, of.trials, Some(judged));
     }
 
-    /// The smallest of several fractions, with a lower limit that none of them may be shown to miss.
+    /// The smallest of several fractions, with a lower limit for each of them. Each has a part of the
+    /// records only, which in a full population, too, may be too few to tell.
     pub(crate) fn none_below(&mut self, figure: &str, least: f64, all: &[Proportion]) {
         let worst = all
             .iter()
             .min_by(|one, other| one.share().total_cmp(&other.share()));
         let Some(worst) = worst else { return };
-        let confidence = if self.full {
-            CONFIDENCE
-        } else {
-            REJECTION_CONFIDENCE
+        let met = |of: &Proportion| of.at_least(least) == Judgement::Met;
+        let missed = |of: &Proportion| match self.full {
+            true => of.upper_bound(CONFIDENCE) < least,
+            false => of.at_least(least) == Judgement::Missed,
         };
-        let holds = all.iter().all(|of| of.upper_bound(confidence) >= least);
-        self.share(figure, Some(Target::AtLeast(least)), *worst, Some(holds));
+        let judged = Judgement::of(all.iter().all(met), all.iter().any(missed));
+        self.share(figure, Some(Target::AtLeast(least)), *worst, Some(judged));
     }
 
     /// A fraction without a target.
@@ -150,15 +153,32 @@ impl CellFigures {
         self.share(figure, None, of, None);
     }
 
-    fn share(&mut self, figure: &str, target: Option<Target>, of: Proportion, holds: Option<bool>) {
+    fn share(
+        &mut self,
+        figure: &str,
+        target: Option<Target>,
+        of: Proportion,
+        judged: Option<Judgement>,
+    ) {
         let interval = of.interval(CONFIDENCE);
-        self.push(figure, target, of.share(), Some(interval), of.trials, holds);
+        self.push(
+            figure,
+            target,
+            of.share(),
+            Some(interval),
+            of.trials,
+            judged,
+        );
+        if let Some(last) = self.all.last_mut() {
+            last.share = Some(of);
+        }
     }
 
     /// A count that should be 0.
     pub(crate) fn none(&mut self, figure: &str, count: usize, of: u64) {
         let target = Some(Target::AtMost(0.0));
-        self.push(figure, target, count as f64, None, of, Some(count == 0));
+        let judged = Some(decided(count == 0));
+        self.push(figure, target, count as f64, None, of, judged);
     }
 
     /// A mean without a target.
@@ -173,24 +193,29 @@ impl CellFigures {
         let excess: Vec<f64> = pairs.iter().map(|pair| pair[0] - most * pair[1]).collect();
         // The ratio exceeds the limit if the mean of this difference is positive; over tens of records
         // that mean is normal.
-        let least = mean(&excess) - REJECTION_SIGMAS * standard_error(&excess);
-        let holds = if self.full {
-            ratio <= most
+        let at = |sigmas: f64| mean(&excess) + sigmas * standard_error(&excess);
+        let judged = if self.full {
+            decided(ratio <= most)
         } else {
-            // One record or none cannot reject.
-            least.is_nan() || least <= 0.0
+            // One record or none has no standard error, and shows neither.
+            Judgement::of(at(MET_SIGMAS) <= 0.0, at(-MISSED_SIGMAS) > 0.0)
         };
         let target = Some(Target::AtMost(most));
         let runs = pairs.len() as u64;
-        self.push(figure, target, ratio, None, runs, Some(holds));
+        self.push(figure, target, ratio, None, runs, Some(judged));
     }
+}
+
+/// The judgement of a population as large as the target asks for: by the value itself.
+fn decided(met: bool) -> Judgement {
+    Judgement::of(met, !met)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn judged(full: bool, judge: impl Fn(&mut CellFigures)) -> Option<bool> {
+    fn judged(full: bool, judge: impl FnOnce(&mut CellFigures)) -> Option<bool> {
         let mut figures = CellFigures {
             cell: String::new(),
             seeds: 0..10,
@@ -202,18 +227,22 @@ mod tests {
     }
 
     #[test]
-    fn a_full_population_must_meet_a_target_and_a_small_one_must_not_reject_it() {
+    fn a_full_population_meets_a_target_or_not_and_a_small_one_may_be_too_small_to_tell() {
         let of = |hits, trials| Proportion { hits, trials };
         let least =
             |full, hits, trials| judged(full, |all| all.at_least("", 0.9, of(hits, trials)));
         assert_eq!(least(true, 900, 1000), Some(true));
         assert_eq!(least(true, 899, 1000), Some(false));
-        // 0.8 of ten does not reject 0.9; 0.4 does: its 99.9 % bound is 0.83.
-        assert_eq!(least(false, 8, 10), Some(true));
+        // 0.8 of ten does not reject 0.9; 0.4 does: its 99.9 % bound is 0.83. 30 of 30 show 0.905.
+        assert_eq!(least(false, 8, 10), None);
         assert_eq!(least(false, 4, 10), Some(false));
+        assert_eq!(least(false, 10, 10), None);
+        assert_eq!(least(false, 30, 30), Some(true));
         let most = |full, hits, trials| judged(full, |all| all.at_most("", 0.1, of(hits, trials)));
         assert_eq!(most(true, 101, 1000), Some(false));
-        assert_eq!(most(false, 2, 10), Some(true));
+        assert_eq!(most(false, 2, 10), None);
+        assert_eq!(most(false, 0, 10), None);
+        assert_eq!(most(false, 0, 29), Some(true));
         assert_eq!(most(false, 6, 10), Some(false));
         // The upper bound of 27 of 2000 is below 2 %, that of 30 is not.
         let bound = |hits| judged(true, |all| all.bound_at_most("", 0.02, of(hits, 2000)));
@@ -227,17 +256,27 @@ mod tests {
         assert_eq!(averaged(true, &[all, few, few]), Some(false));
         // (0.25 + 0.27) / 2 with a sigma of about 0.07.
         assert_eq!(averaged(false, &[of(5, 20), of(6, 22)]), Some(false));
-        assert_eq!(averaged(false, &[of(0, 1), of(1, 1)]), Some(true));
-        // One family of two that misses all of its twenty records.
-        let families = [of(20, 20), of(0, 20)];
-        assert_eq!(
-            judged(true, |all| all.none_below("", 0.8, &families)),
-            Some(false)
-        );
-        assert_eq!(
-            judged(true, |all| all.none_below("", 0.8, &families[..1])),
-            Some(true)
-        );
+        assert_eq!(averaged(false, &[of(0, 1), of(1, 1)]), None);
+        assert_eq!(averaged(false, &[of(30, 30), of(30, 30)]), Some(true));
+    }
+
+    #[test]
+    fn families_of_few_records_are_too_few_to_tell_in_a_full_population_too() {
+        let of = |hits, trials| Proportion { hits, trials };
+        let families = |least, all: &[Proportion]| {
+            let mut figures = None;
+            let holds = judged(true, |of| {
+                of.none_below("", least, all);
+                figures = Some(of.all[0].too_few);
+            });
+            (holds, figures)
+        };
+        // One of two that misses all of its twenty records.
+        let (all, none) = (of(20, 20), of(0, 20));
+        assert_eq!(families(0.8, &[all, none]), (Some(false), Some(false)));
+        assert_eq!(families(0.8, &[all]), (Some(true), Some(false)));
+        // 45 of 45 show no more than 0.936.
+        assert_eq!(families(0.99, &[of(45, 45)]), (None, Some(true)));
     }
 
     #[test]
@@ -254,10 +293,8 @@ mod tests {
             (ratio(false, &fine), ratio(false, &large)),
             (Some(true), Some(false))
         );
-        // One outlier among others does not reject.
-        assert_eq!(
-            ratio(false, &[[5.0, 1.0], [1.0, 1.0], [1.0, 1.0]]),
-            Some(true)
-        );
+        // One outlier among others does not reject, and confirms nothing.
+        assert_eq!(ratio(false, &[[5.0, 1.0], [1.0, 1.0], [1.0, 1.0]]), None);
+        assert_eq!(ratio(false, &[[1.0, 1.0]]), None);
     }
 }

@@ -74,6 +74,7 @@ mod catalogue;
 mod cell_characteristics;
 mod characterise_report;
 mod characteristic;
+mod coefficient_score;
 mod comparison;
 mod effect_family;
 mod error;
@@ -96,6 +97,7 @@ pub use catalogue::{constant_of_channel, effect_family, effect_of, same_or_equiv
 pub use cell_characteristics::characteristics;
 pub use characterise_report::{CellReport, CharacteriseReport, cell_campaign, cell_report};
 pub use characteristic::{Characteristic, Target};
+pub use coefficient_score::CoefficientScore;
 pub use comparison::{ComparisonRow, OWN_METHOD, comparison};
 pub use effect_family::{FamilyRow, families};
 pub use error::EvaluationError;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::baseline::BaselineResult;
 use crate::catalogue::same_or_equivalent;
+use crate::coefficient_score::CoefficientScore;
 
 /// Two signatures are of one class if the cosine of the angle between them is at least this.
 pub const SAME_CLASS_COSINE: f64 = 0.9;
@@ -26,6 +27,8 @@ pub struct RecordScore {
     /// Hypotheses next to the best in the first search, each with twice its log-likelihood deficit,
     /// search penalties included; without exact equivalents of the best and of each other.
     pub nearest: Vec<(String, f64)>,
+    /// Drift coefficients of the diagnosis against the true ones; `None` where they were not compared.
+    pub coefficients: Option<CoefficientScore>,
     /// Results of the baseline methods.
     pub methods: Vec<BaselineScore>,
 }
@@ -83,6 +86,9 @@ pub struct BaselineScore {
     pub result: BaselineResult,
     /// As [`InjectedScore::first_cosine`], of the first injected effect.
     pub first_cosine: f64,
+    /// Drift coefficients of the model with the selected effects, those of the nominal model for a test;
+    /// `None` if the record does not determine them.
+    pub coefficients: Option<CoefficientScore>,
 }
 
 impl RecordScore {
@@ -167,6 +173,7 @@ mod tests {
             unexplained: None,
             oracle_set_size: None,
             nearest: Vec::new(),
+            coefficients: None,
             methods: Vec::new(),
         };
         // One finding whose set holds both is not enough.

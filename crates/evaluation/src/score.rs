@@ -10,6 +10,7 @@ use gyrocal_truth::{Scenario, Simulation};
 
 use crate::baseline::{BaselineMethod, LibraryEntry, library};
 use crate::catalogue::{effect_of, same_or_equivalent};
+use crate::coefficient_score::CoefficientScore;
 use crate::error::EvaluationError;
 use crate::injection::{InjectedEffect, nominal_fit, testable_effects};
 use crate::projection::ProjectedScores;
@@ -76,14 +77,23 @@ pub(crate) fn score(
             injected_score(&found.result, truth, first_cosine, scenario.duration_s)
         })
         .collect();
+    let coefficients = simulation.truth.coefficients.named();
+    let coefficients = coefficients.map(|(_, value, _)| value);
     let methods = scores.as_ref().map_or_else(Vec::new, |scores| {
         let truth = truths.first();
-        let of = |method: &BaselineMethod| baseline_score(*method, scores, &library, truth);
+        let of = |method: &BaselineMethod| {
+            baseline_score(*method, scores, &library, truth, coefficients)
+        };
         methods.iter().map(of).collect()
     });
     Ok(RecordScore {
         hidden,
         oracle_set_size: oracle_set_size(simulation, &found)?,
+        coefficients: found
+            .result
+            .coefficients
+            .as_ref()
+            .and_then(|found| CoefficientScore::diagnosed(coefficients, found)),
         methods,
         ..findings_score(&found.result)
     })
@@ -135,19 +145,24 @@ fn baseline_score(
     scores: &ProjectedScores,
     library: &[LibraryEntry],
     truth: Option<&Truth<'_>>,
+    coefficients: [f64; 9],
 ) -> BaselineScore {
     let (result, selected) = method.apply(scores, library);
     let first_cosine = match (selected.first(), truth) {
-        (Some(entry), Some(truth)) => {
-            let entry = &library[*entry];
+        (Some(term), Some(truth)) => {
+            let entry = &library[term.entry];
             truth.cosine(entry.effect.id, Some(&entry.signature), Some(scores))
         }
         _ => 0.0,
     };
+    let columns: Vec<usize> = selected.iter().map(|term| term.column).collect();
     BaselineScore {
         method: method.name().to_owned(),
         result,
         first_cosine,
+        coefficients: scores
+            .coefficients_with(&columns)
+            .and_then(|estimates| CoefficientScore::normal(coefficients, estimates)),
     }
 }
 
@@ -171,6 +186,7 @@ pub(crate) fn findings_score(found: &DiagnosisResult) -> RecordScore {
             .then(|| found.remainder.description.clone()),
         oracle_set_size: None,
         nearest: nearest(&found.ranking),
+        coefficients: None,
         methods: Vec::new(),
     }
 }

@@ -1,6 +1,7 @@
 //! Figures of the documentation with their targets, and their table.
 
 use comfy_table::{ContentArrangement, Table, presets};
+use gyrocal_statistics::{Judgement, Proportion};
 
 /// One figure: target and measurement.
 #[derive(Clone, Debug)]
@@ -15,8 +16,13 @@ pub(crate) struct Figure {
     pub(crate) runs: usize,
     /// Seeds, or another identification of the runs.
     pub(crate) seeds: String,
-    /// `true` if the target is met; `None` without a target.
+    /// `true` if the target is met; `None` without a target or with too few runs to tell.
     pub(crate) holds: Option<bool>,
+    /// `true` if the runs are too few to tell whether the target is met.
+    pub(crate) too_few: bool,
+    /// The share that is the first number of `measured`, in percent where the name says `% of`; `None` for
+    /// other figures.
+    pub(crate) share: Option<Proportion>,
 }
 
 impl Figure {
@@ -33,6 +39,8 @@ impl Figure {
             runs: 1,
             seeds: String::new(),
             holds: Some(bounds[0] <= measured && measured <= bounds[1]),
+            too_few: false,
+            share: None,
         }
     }
 
@@ -54,6 +62,8 @@ impl Figure {
             runs: 1,
             seeds: String::new(),
             holds: Some(measured),
+            too_few: false,
+            share: None,
         }
     }
 
@@ -66,6 +76,37 @@ impl Figure {
             runs: 1,
             seeds: String::new(),
             holds: None,
+            too_few: false,
+            share: None,
+        }
+    }
+
+    /// A share without a target, with its exact 95 % interval.
+    pub(crate) fn note_share(name: &str, share: Proportion, seeds: impl Into<String>) -> Self {
+        let [low, high] = share.interval(0.95);
+        let measured = match share.trials {
+            0 => "nothing to measure on".to_owned(),
+            _ => format!("{:.3} ({low:.3} to {high:.3})", share.share()),
+        };
+        Self::note(name, measured)
+            .of_share(share)
+            .over(share.trials as usize, seeds)
+    }
+
+    /// The same figure with the share that it states.
+    pub(crate) fn of_share(self, share: Proportion) -> Self {
+        Self {
+            share: Some(share),
+            ..self
+        }
+    }
+
+    /// The same figure, judged by its runs, which may be too few to tell.
+    pub(crate) fn judged(self, judgement: Judgement) -> Self {
+        Self {
+            holds: judgement.holds(),
+            too_few: judgement == Judgement::TooFew,
+            ..self
         }
     }
 
@@ -76,6 +117,17 @@ impl Figure {
             ..self
         }
     }
+}
+
+/// Judgement of the coverage of 95 % intervals by few records: it is missed if the exact 99.9 % interval
+/// of the share does not contain 95 %, and met if the 90 % interval lies within a band.
+pub(crate) fn coverage(covered: Proportion, band: [f64; 2]) -> Judgement {
+    let [low, high] = covered.interval(0.999);
+    let [least, most] = covered.interval(0.9);
+    Judgement::of(
+        band[0] <= least && most <= band[1],
+        !(low..=high).contains(&0.95),
+    )
 }
 
 /// The figures as a table.
@@ -95,9 +147,36 @@ pub(crate) fn table(figures: &[Figure]) -> Table {
             match figure.holds {
                 Some(true) => "yes".to_owned(),
                 Some(false) => "NO".to_owned(),
+                None if figure.too_few => "too few records to tell".to_owned(),
                 None => String::new(),
             },
         ]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn too_few_runs_are_said_to_be_too_few() {
+        let of = |hits, trials| {
+            let share = Proportion { hits, trials };
+            let figure = Figure::within("detected", [0.99, f64::INFINITY], share.share());
+            table(&[figure.judged(share.at_least(0.99))]).to_string()
+        };
+        assert!(of(45, 45).contains("| too few records to tell |"));
+        assert!(of(20, 45).contains("| NO "));
+        assert!(of(1000, 1000).contains("| yes "));
+    }
+
+    #[test]
+    fn a_coverage_is_missed_where_95_percent_is_excluded() {
+        let of = |hits, trials| coverage(Proportion { hits, trials }, [0.93, 0.97]);
+        assert_eq!(of(38, 40), Judgement::TooFew);
+        assert_eq!(of(950, 1000), Judgement::Met);
+        assert_eq!(of(28, 40), Judgement::Missed);
+        assert_eq!(of(1000, 1000), Judgement::Missed);
+    }
 }

@@ -177,5 +177,7 @@ fn own_terms() -> Result<Figure, Error> {
         runs: found.len(),
         seeds: "5 to 8".to_owned(),
         holds: Some(within == 4 && found.len() == 4),
+        too_few: false,
+        share: None,
     })
 }

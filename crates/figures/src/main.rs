@@ -2,6 +2,7 @@
 //! number of runs and seeds. The exit code is 1 if a figure does not hold.
 
 mod calibration;
+mod comparison;
 mod cost;
 mod diagnosis_ground;
 mod error;
@@ -15,6 +16,7 @@ mod naming;
 mod page;
 mod paper;
 mod resumable;
+mod topic_page;
 mod truth;
 mod values;
 
@@ -23,7 +25,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 
-use figure::table;
+use error::Error;
+use figure::{Figure, table};
 
 #[derive(Parser)]
 #[command(
@@ -47,10 +50,29 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
-    /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper: docs/paper.md and its
-    /// pictures).
-    #[arg(long)]
+    /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper:
+    /// docs/paper.md and its pictures; all others: docs/figures/TOPIC.md).
+    #[arg(long, conflicts_with_all = ["small", "parts", "records"])]
     write: bool,
+}
+
+impl Arguments {
+    /// The options that leave out a part of the topic, as they are given.
+    fn extent(&self) -> String {
+        let mut extent = String::new();
+        if self.small {
+            extent.push_str(" --small");
+        }
+        for part in &self.parts {
+            if let Some(value) = part.to_possible_value() {
+                extent = format!("{extent} --part {}", value.get_name());
+            }
+        }
+        if let Some(records) = self.records {
+            extent = format!("{extent} --records {records}");
+        }
+        extent
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -65,6 +87,8 @@ enum Topic {
     DiagnosisGround,
     /// Operating characteristics of the diagnosis on records with injected effects and on clean ones.
     Naming,
+    /// The diagnosis beside the usual tests and selection methods, on the same records.
+    Comparison,
     /// Gain of extended models: in cross-validation, in the coefficients, and on a second record.
     Gain,
     /// Structure of the tree, equal results before and after, cost of a build.
@@ -85,6 +109,7 @@ fn main() -> ExitCode {
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),
+        Topic::Comparison => comparison::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
         Topic::House => house::figures(arguments.small, arguments.write),
         Topic::Measured => measured::figures(arguments.write),
@@ -98,12 +123,13 @@ fn main() -> ExitCode {
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {
-        Ok(figures) => {
-            let table = table(&figures);
-            println!("{table}");
-            if let Some(path) = &arguments.out
-                && let Err(error) = write_page(path, &arguments, &table.to_string())
-            {
+        Ok(mut figures) => {
+            let written = written(&arguments, &figures);
+            if arguments.small {
+                figures.extend(compared(arguments.topic, &figures));
+            }
+            println!("{}", table(&figures));
+            if let Err(error) = written {
                 eprintln!("{error}");
                 return ExitCode::FAILURE;
             }
@@ -125,22 +151,51 @@ fn main() -> ExitCode {
     }
 }
 
-/// Writes the printed table as a page of the documentation.
-fn write_page(
-    path: &std::path::Path,
-    arguments: &Arguments,
-    table: &str,
-) -> Result<(), gyrocal_record::Error> {
-    let topic = arguments.topic.to_possible_value();
-    let topic = topic.as_ref().map_or("", |value| value.get_name());
-    let small = if arguments.small { " --small" } else { "" };
-    let processor = gyrocal_testkit::timing::processor();
-    let commit = house::commit(&gyrocal_testkit::workspace());
-    let page = format!(
-        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{small}` of commit {commit} on \
-         {processor}. Times and ratios of times are those of that machine, and instruction counts \
-         those of its compiler. All else differs by rounding at most: where the target fuses \
-         multiplication and addition, last bits differ.\n\n{table}\n"
-    );
-    gyrocal_record::write_whole(path, page.as_bytes())
+impl Topic {
+    /// Its name on the command line.
+    fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// `true` if `--write` renews the page of figures and not other measurements.
+    fn writes_its_page(self) -> bool {
+        !matches!(
+            self,
+            Self::Kernel | Self::House | Self::Measured | Self::Paper
+        )
+    }
+}
+
+/// Writes the figures into the pages that were asked for.
+fn written(arguments: &Arguments, figures: &[Figure]) -> Result<(), Error> {
+    let topic = arguments.topic;
+    let own = (arguments.write && topic.writes_its_page()).then(|| topic_page::path(&topic.name()));
+    let introduction = match topic {
+        Topic::Comparison => comparison::side_by_side(figures),
+        _ => String::new(),
+    };
+    let table = table(figures).to_string();
+    for path in own.iter().chain(&arguments.out) {
+        topic_page::write(
+            path,
+            &topic.name(),
+            &arguments.extent(),
+            &introduction,
+            &table,
+        )?;
+    }
+    Ok(())
+}
+
+/// Comparison of a small run with the committed page of its topic.
+fn compared(topic: Topic, figures: &[Figure]) -> Vec<Figure> {
+    let name = topic.name();
+    let renewed_by = match topic {
+        // Their pages are compared as a whole, in any version.
+        Topic::Measured | Topic::Paper => return Vec::new(),
+        _ if topic.writes_its_page() => format!("cargo figures {name} --write"),
+        _ => format!("cargo figures {name} --out docs/figures/{name}.md"),
+    };
+    topic_page::compared(&name, &renewed_by, figures)
 }

@@ -65,5 +65,7 @@ fn figure(title: &str, of: &Characteristic) -> Figure {
         runs: of.runs as usize,
         seeds: format!("{}..{}", of.seeds[0], of.seeds[1]),
         holds: of.holds,
+        too_few: of.too_few,
+        share: of.share,
     }
 }

@@ -72,7 +72,7 @@ pub use probability::{
     chi_square_two_sided_p, chi_square_z, f_tail, ln_chi_square_tail, normal_probability,
     normal_quantile, p_of_least, student_two_sided_p, two_sided_p, z_of_two_sided_p,
 };
-pub use proportion::Proportion;
+pub use proportion::{Judgement, Proportion};
 pub use robust::{NORMAL_MAD, robust_sigma, theil_sen_at_zero};
 pub use sampling::median_interval_s;
 pub use whiteness::{Autocorrelation, Nis, autocorrelation, nis};

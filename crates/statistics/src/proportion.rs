@@ -4,6 +4,46 @@ use statrs::distribution::{Beta, ContinuousCDF};
 
 use crate::bands::check;
 
+/// Confidence at which a limit is shown to be met, one-sided.
+const MET: f64 = 0.95;
+
+/// Confidence at which a limit is shown to be missed, one-sided: with tens of shares judged at once,
+/// none is to be missed by chance.
+const MISSED: f64 = 0.999;
+
+/// Comparison of a true share with a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Judgement {
+    /// The trials show, with 95 % confidence, that the limit is met.
+    Met,
+    /// The trials show, with 99.9 % confidence, that the limit is missed.
+    Missed,
+    /// The trials are too few to show either.
+    TooFew,
+}
+
+impl Judgement {
+    /// From what the trials show.
+    #[must_use]
+    pub fn of(met: bool, missed: bool) -> Self {
+        match (met, missed) {
+            (_, true) => Self::Missed,
+            (true, false) => Self::Met,
+            (false, false) => Self::TooFew,
+        }
+    }
+
+    /// `true` if the limit is met, `false` if it is missed, `None` if the trials are too few to tell.
+    #[must_use]
+    pub fn holds(self) -> Option<bool> {
+        match self {
+            Self::Met => Some(true),
+            Self::Missed => Some(false),
+            Self::TooFew => None,
+        }
+    }
+}
+
 /// Number of independent trials that came out in one way, of all of them.
 ///
 /// Its bounds are those of Clopper and Pearson (1934): at least the stated confidence, whatever
@@ -78,6 +118,24 @@ impl Proportion {
     pub fn interval(&self, confidence: f64) -> [f64; 2] {
         let one_sided = (1.0 + confidence) / 2.0;
         [self.lower_bound(one_sided), self.upper_bound(one_sided)]
+    }
+
+    /// Comparison of the true share with a lower limit.
+    #[must_use]
+    pub fn at_least(&self, least: f64) -> Judgement {
+        Judgement::of(
+            self.lower_bound(MET) >= least,
+            self.upper_bound(MISSED) < least,
+        )
+    }
+
+    /// Comparison of the true share with an upper limit.
+    #[must_use]
+    pub fn at_most(&self, most: f64) -> Judgement {
+        Judgement::of(
+            self.upper_bound(MET) <= most,
+            self.lower_bound(MISSED) > most,
+        )
     }
 
     fn counts(&self) -> [f64; 2] {

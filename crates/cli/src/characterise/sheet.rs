@@ -111,8 +111,10 @@ fn figures(reports: &[CellReport]) -> Sheet {
     });
     Sheet {
         heading: "Figures",
-        words: "Intervals are 95 %. On fewer records than 1000 (clean: 2000) a figure holds unless it \
-                misses its target significantly.",
+        words: "Intervals are 95 %. On fewer records than 1000 (clean: 2000), and for a family of \
+                effects, a figure holds if its one-sided 95 % bound meets the target, and does not if \
+                its 99.9 % bound misses it (of a family among all records: 95 %); otherwise the records \
+                are too few to tell.",
         text_columns: 3,
         header: vec![
             "records", "figure", "holds", "target", "measured", "interval", "runs", "seeds",
@@ -211,6 +213,7 @@ fn holds(figure: &Characteristic) -> &'static str {
     match figure.holds {
         Some(true) => "yes",
         Some(false) => "NO",
+        None if figure.too_few => "too few records to tell",
         None => "",
     }
 }

@@ -6,7 +6,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::LibraryEntry;
+use super::{LibraryEntry, Term};
 use crate::projection::ProjectedScores;
 
 /// Largest number of selected effects, the same as in the diagnosis.
@@ -15,8 +15,8 @@ const MOST_EFFECTS: usize = 6;
 /// A column is skipped if the selected ones leave less than this fraction of its information.
 const LEAST_LEFT: f64 = 1e-6;
 
-/// Numbers of the selected entries, in the order of selection.
-pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<usize> {
+/// The terms of the selected entries, in the order of selection.
+pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<Term> {
     let mut information = scores.information.clone();
     let mut score = scores.score.clone();
     let penalty = (scores.values as f64).ln();
@@ -49,7 +49,14 @@ pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<
             &library[index].signature.columns,
         );
     }
-    selected
+    let terms = |entry: usize| {
+        let columns = library[entry].signature.columns.iter();
+        columns.map(move |column| Term {
+            entry,
+            column: *column,
+        })
+    };
+    selected.into_iter().flat_map(terms).collect()
 }
 
 fn part(

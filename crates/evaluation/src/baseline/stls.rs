@@ -9,7 +9,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::LibraryEntry;
+use super::{LibraryEntry, Term};
 use crate::projection::ProjectedScores;
 
 const THRESHOLDS: [f64; 8] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0];
@@ -19,26 +19,28 @@ const MOST_ROUNDS: usize = 20;
 /// Added to the diagonal of the last fit: exact equivalents have equal columns, which make it singular.
 const JITTER: f64 = 1e-6;
 
-/// Numbers of the remaining entries, the largest coefficient first.
-pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<usize> {
-    // Entry and column of each observable term.
-    let terms: Vec<(usize, usize)> = library
+/// The remaining terms, the largest coefficient first.
+pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<Term> {
+    // The observable terms.
+    let terms: Vec<Term> = library
         .iter()
         .enumerate()
         .filter(|(_, entry)| scores.observes(&entry.signature))
         .flat_map(|(index, entry)| {
-            entry
-                .signature
-                .columns
-                .iter()
-                .map(move |column| (index, *column))
+            let columns = entry.signature.columns.iter();
+            columns.map(move |column| Term {
+                entry: index,
+                column: *column,
+            })
         })
         .collect();
-    let length = |term: usize| scores.information[(terms[term].1, terms[term].1)].sqrt();
+    let length = |term: usize| scores.information[(terms[term].column, terms[term].column)].sqrt();
     let gram = DMatrix::from_fn(terms.len(), terms.len(), |i, j| {
-        scores.information[(terms[i].1, terms[j].1)] / (length(i) * length(j))
+        scores.information[(terms[i].column, terms[j].column)] / (length(i) * length(j))
     });
-    let moment = DVector::from_fn(terms.len(), |i, _| scores.score[terms[i].1] / length(i));
+    let moment = DVector::from_fn(terms.len(), |i, _| {
+        scores.score[terms[i].column] / length(i)
+    });
     let penalty = (scores.values as f64).ln();
     let best = THRESHOLDS
         .iter()
@@ -57,13 +59,13 @@ pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<
     let Some((_, support, coefficients)) = best else {
         return Vec::new();
     };
-    let mut sized: Vec<(f64, usize)> = support
+    let mut sized: Vec<(f64, Term)> = support
         .iter()
         .zip(coefficients.iter())
-        .map(|(term, coefficient)| (coefficient.abs(), terms[*term].0))
+        .map(|(term, coefficient)| (coefficient.abs(), terms[*term]))
         .collect();
     sized.sort_by(|one, other| other.0.total_cmp(&one.0));
-    sized.into_iter().map(|(_, entry)| entry).collect()
+    sized.into_iter().map(|(_, term)| term).collect()
 }
 
 /// Terms that remain at a threshold; `None` if a fit fails.

@@ -2,11 +2,11 @@
 
 use gyrocal_calibration::Options;
 use gyrocal_evaluation::{BandedMean, CalibrationSummary, CalibrationTrial, Outcome};
-use gyrocal_statistics::mean;
+use gyrocal_statistics::{Judgement, Proportion, mean};
 use gyrocal_truth::Population;
 
 use super::Error;
-use crate::figure::Figure;
+use crate::figure::{Figure, coverage};
 use crate::resumable;
 
 /// Seed of the population, fixed beforehand; no record of it is ever drawn again.
@@ -19,8 +19,8 @@ const FEW: u64 = 60;
 /// Root mean square error over Cramér–Rao bound.
 const RATIO: [f64; 2] = [0.93, 1.07];
 
-/// Coverage of 95 % intervals, %.
-const COVERAGE: [f64; 2] = [93.0, 97.0];
+/// Coverage of 95 % intervals.
+const COVERAGE: [f64; 2] = [0.93, 0.97];
 
 /// Normal quantile of the two-sided 99.9 % interval.
 const NORMAL_99_9: f64 = 3.2905;
@@ -53,39 +53,31 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     for coefficient in &summary.coefficients {
         let name = &coefficient.name;
         let determined = coefficient.determined;
-        // A small part of the population scatters: its interval is wider by what chance does,
-        // 99.9 % of it, and the full population is held to the target itself.
-        let scatter = if small {
-            NORMAL_99_9 / (determined as f64).sqrt()
-        } else {
-            0.0
-        };
         let ratio = coefficient.rmse_over_bound.ok_or("a bound is missing")?;
-        let half_width = scatter / 2.0_f64.sqrt();
-        let bounds = [RATIO[0] - half_width, RATIO[1] + half_width].map(rounded);
         let what = format!("{name}: RMSE / Cramér–Rao bound");
-        figures.push(judged(
-            &what,
-            bounds,
-            ratio.value,
-            ratio.interval,
-            determined,
-        ));
-        let coverage = coefficient.coverage.ok_or("no coverage")?;
-        let half_width = scatter * (COVERAGE[0] * (100.0 - COVERAGE[0])).sqrt();
-        let bounds = [
-            COVERAGE[0] - half_width,
-            (COVERAGE[1] + half_width).min(100.0),
-        ]
-        .map(rounded);
+        let mut figure = measured(&what, RATIO, ratio.value, ratio.interval, determined);
+        if small {
+            // The root of a mean square of so many scatters by this.
+            let off = (ratio.value - 1.0).abs() - (RATIO[1] - 1.0);
+            let scatter = NORMAL_99_9 / (2.0 * determined as f64).sqrt();
+            let [low, high] = ratio.interval;
+            let met = RATIO[0] <= low && high <= RATIO[1];
+            figure = figure.judged(Judgement::of(met, off > scatter));
+        }
+        figures.push(figure);
+        let of = coefficient.coverage.ok_or("no coverage")?;
         let what = format!("{name}: % of 95 % intervals that hold the truth");
-        figures.push(judged(
-            &what,
-            bounds,
-            100.0 * coverage.value,
-            coverage.interval.map(|bound| 100.0 * bound),
-            determined,
-        ));
+        let percent = of.interval.map(|bound| 100.0 * bound);
+        let bounds = COVERAGE.map(|bound| 100.0 * bound);
+        let covered = Proportion {
+            hits: (of.value * determined as f64).round() as u64,
+            trials: determined as u64,
+        };
+        let mut figure = measured(&what, bounds, 100.0 * of.value, percent, determined);
+        if small {
+            figure = figure.judged(coverage(covered, COVERAGE));
+        }
+        figures.push(figure.of_share(covered));
     }
     for figure in &mut figures {
         if figure.runs == 1 {
@@ -96,11 +88,7 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
-fn rounded(bound: f64) -> f64 {
-    (bound * 100.0).round() / 100.0
-}
-
-fn judged(what: &str, bounds: [f64; 2], value: f64, interval: [f64; 2], runs: usize) -> Figure {
+fn measured(what: &str, bounds: [f64; 2], value: f64, interval: [f64; 2], runs: usize) -> Figure {
     let mut figure = Figure::within(what, bounds, value);
     figure.measured += &format!(" (95 %: {:.3} to {:.3})", interval[0], interval[1]);
     figure.over(runs, "")

@@ -66,6 +66,8 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
             runs: 1,
             seeds: String::new(),
             holds: same.then(|| (measured / expected - 1.0).abs() <= TOLERANCE),
+            too_few: false,
+            share: None,
         });
     }
     for ((rule, _), count) in RULES.iter().zip(factors) {

@@ -5,6 +5,7 @@ use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
 use gyrocal_design::{NamedCause, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_evaluation::{constant_of_channel, effect_of, inject_any};
+use gyrocal_statistics::Judgement;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, InitialAttitude, Population, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
@@ -98,12 +99,12 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         let mut figure = Figure::within(&name, WITHIN, found / predicted)
             .over(cases.len(), format!("{seeds:?}"));
         if small {
-            // A small population holds the target if it does not show that it is missed.
             let missed = |case: &Sets| case.after[index][1] - case.after[index][0];
             let square = mean(&|case| (missed(case) - (found - predicted)).powi(2));
             let error = (square / cases.len() as f64).sqrt();
-            let allowed = 0.2 * predicted + 3.3 * error;
-            figure.holds = Some((found - predicted).abs() <= allowed);
+            // Two-sided 90 % for met and 99.9 % for missed.
+            let off = (found - predicted).abs() - 0.2 * predicted;
+            figure = figure.judged(Judgement::of(off + 1.645 * error <= 0.0, off > 3.3 * error));
         }
         figures.push(figure);
         figures.push(Figure::note(

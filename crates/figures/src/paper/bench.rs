@@ -35,7 +35,7 @@ impl Data {
     }
 }
 
-/// The paper's bench with coefficients like the paper's.
+/// The paper's bench: its coefficients, noise and step.
 pub(super) fn scenario(seed: u64, days: f64) -> Scenario {
     Scenario {
         seed,

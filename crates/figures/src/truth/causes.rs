@@ -12,7 +12,7 @@ use gyrocal_evaluation::{
 };
 use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension, SearchOptions, search};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_statistics::{NORMAL_97_5, Proportion};
+use gyrocal_statistics::{Judgement, NORMAL_97_5, Proportion};
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
@@ -121,17 +121,16 @@ fn cell_figures(cell: &Cell, records: &[Caused], small: bool, seeds: &str) -> Ve
         let count = all.len();
         let share = Proportion::of(all);
         let name = format!("{}: {what}", cell.name);
-        let mut figure = Figure::within(&name, [least, 1.0], share.share());
+        let mut figure = Figure::within(&name, [least, 1.0], share.share()).of_share(share);
         if small || count < 100 {
-            // A few records: the share may be the target.
-            figure.holds = Some(share.interval(0.999)[1] >= least);
+            figure = figure.judged(share.at_least(least));
         }
         figure.over(count, seeds)
     };
     let ratio = |what: &str, bounds: [f64; 2], measured: f64| {
         let mut figure = Figure::within(&format!("{}: {what}", cell.name), bounds, measured);
         if small {
-            figure.holds = Some(true);
+            figure = figure.judged(Judgement::TooFew);
         }
         figure.over(records.len(), seeds)
     };

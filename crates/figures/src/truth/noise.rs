@@ -5,14 +5,14 @@ use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, diagnose};
 use gyrocal_evaluation::{EvaluationError, scenario};
-use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::{Judgement, Proportion};
 use gyrocal_truth::{Hidden, Scenario, Simulation, Term, simulate, simulate_with};
 use serde::{Deserialize, Serialize};
 
 use super::Extent;
 use crate::error::Error;
-use crate::figure::Figure;
+use crate::figure::{Figure, coverage};
 use crate::resumable;
 
 /// Purposes of the streams of draws: of the noise levels, and of the series.
@@ -137,12 +137,11 @@ fn of_row(row: &Row, extent: Extent) -> Result<Vec<Figure>, Error> {
             !record.causes.is_empty() || (with_unexplained && record.unexplained)
         }));
     let bound = wrong.upper_bound(0.95);
-    let mut figure = Figure::within(row.name, [0.0, row.limit], bound);
+    let mut figure = Figure::within(row.name, [0.0, row.limit], bound).of_share(wrong);
     figure.target = format!("<= {} (upper 95 % bound)", row.limit);
     figure.measured = format!("{:.3}, bound {bound:.3}", wrong.share());
     if small {
-        // A dozen records: the share may be the target.
-        figure.holds = Some(wrong.interval(0.999)[0] <= row.limit);
+        figure = figure.judged(wrong.at_most(row.limit));
     }
     let seeds = format!("{seeds:?}");
     let mut figures = vec![figure.over(outcome.successes().count(), seeds.as_str())];
@@ -157,10 +156,12 @@ fn of_row(row: &Row, extent: Extent) -> Result<Vec<Figure>, Error> {
             "{}: coverage of the 95 % interval of a walk's size",
             row.cell
         );
-        let mut figure = Figure::within(&name, COVERAGE, covered.share());
-        if count < 1000 {
-            let [low, high] = covered.interval(0.999);
-            figure.holds = Some(low <= 0.95 && 0.95 <= high);
+        let mut figure = Figure::within(&name, COVERAGE, covered.share()).of_share(covered);
+        let judgement = coverage(covered, COVERAGE);
+        if small {
+            figure = figure.judged(judgement);
+        } else if count < 1000 {
+            figure.holds = Some(judgement != Judgement::Missed);
         }
         figures.push(figure.over(count, seeds.as_str()));
     }

@@ -3,8 +3,8 @@
 
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_evaluation::{EvaluationError, UnlistedKind, UnlistedRecord, inject_any, scenario};
-use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::{Judgement, Proportion};
 use gyrocal_truth::{Hidden, Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
@@ -131,10 +131,9 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
 fn share(name: &str, limit: f64, all: Vec<bool>, small: bool) -> Figure {
     let records = all.len();
     let share = Proportion::of(all);
-    let mut figure = Figure::within(name, [0.0, limit], share.share());
+    let mut figure = Figure::within(name, [0.0, limit], share.share()).of_share(share);
     if small {
-        // A few records: the share may be the target.
-        figure.holds = Some(share.interval(0.999)[0] <= limit);
+        figure = figure.judged(share.at_most(limit));
     }
     figure.over(records, "")
 }
@@ -161,7 +160,7 @@ fn calibration(stated: &mut [(f64, bool)], small: bool) -> Figure {
     let mut figure = Figure::within(name, [0.0, CALIBRATED], worst);
     figure.measured = shown.join(", ");
     if small {
-        figure.holds = Some(true);
+        figure = figure.judged(Judgement::TooFew);
     }
     figure.over(stated.len(), "")
 }

@@ -95,18 +95,16 @@ fn broken(small: bool) -> Result<Vec<Figure>, Error> {
             worst = (hits, breakage.name);
         }
     }
-    let name = format!(
-        "gross errors, {} kinds, {each} records each:",
-        BREAKAGES.len()
-    );
+    let name = format!("gross errors, {} kinds:", BREAKAGES.len());
     let seeds = format!("{seeds:?}");
     let mut over_all = Figure::within(
         &format!("{name} right kind or class, over all"),
         [0.98, f64::INFINITY],
         right.share(),
-    );
+    )
+    .of_share(right);
     if small {
-        over_all.holds = Some(right.upper_bound(0.999) >= 0.98);
+        over_all = over_all.judged(right.at_least(0.98));
     }
     let least = if small { 1 } else { 17 };
     let mut worst_kind = Figure::note(
@@ -151,12 +149,13 @@ fn sound(small: bool) -> Result<Vec<Figure>, Error> {
     let outcome: Outcome<Vec<String>> = campaign.run(job, |_| ())?;
     let alarms = Proportion::of(outcome.successes().map(|(_, kinds)| !kinds.is_empty()));
     let mut figure = Figure::within(
-        &format!("false alarms of the gate: {records} sound records"),
+        "false alarms of the gate: sound records",
         [f64::NEG_INFINITY, 0.005],
         alarms.share(),
-    );
+    )
+    .of_share(alarms);
     if small {
-        figure.holds = Some(alarms.lower_bound(0.999) <= 0.005);
+        figure = figure.judged(alarms.at_most(0.005));
     }
     let failed = outcome.failures().count();
     let mut figures = vec![figure.over(alarms.trials as usize, format!("{seeds:?}"))];
@@ -231,24 +230,23 @@ fn undecided(small: bool) -> Result<Vec<Figure>, Error> {
     let right = Proportion::of(of(1).map(|(_, kinds)| *kinds == ["handedness"]));
     let alarms = Proportion::of(of(0).map(|(_, kinds)| !kinds.is_empty()));
     let name = "sign of the latitude by fits, below 15 deg or 12 h:";
-    let mut figures = [
-        Figure::within(
-            &format!("{name} told"),
-            [0.95, f64::INFINITY],
-            right.share(),
-        ),
-        Figure::within(
-            &format!("{name} false"),
-            [f64::NEG_INFINITY, 0.005],
-            alarms.share(),
-        ),
-    ];
+    let mut first = Figure::within(
+        &format!("{name} told"),
+        [0.95, f64::INFINITY],
+        right.share(),
+    )
+    .of_share(right);
+    let mut second = Figure::within(
+        &format!("{name} false"),
+        [f64::NEG_INFINITY, 0.005],
+        alarms.share(),
+    )
+    .of_share(alarms);
     if small {
-        figures[0].holds = Some(right.upper_bound(0.999) >= 0.95);
-        figures[1].holds = Some(alarms.lower_bound(0.999) <= 0.005);
+        first = first.judged(right.at_least(0.95));
+        second = second.judged(alarms.at_most(0.005));
     }
     let seeds = format!("{seeds:?}");
-    let [first, second] = figures;
     Ok(vec![
         first.over(right.trials as usize, seeds.clone()),
         second.over(alarms.trials as usize, seeds),

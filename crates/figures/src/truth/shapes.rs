@@ -4,14 +4,14 @@ use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_evaluation::{EvaluationError, draw_shape, inject, scenario};
-use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::{Judgement, Proportion};
 use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::Extent;
 use crate::error::Error;
-use crate::figure::Figure;
+use crate::figure::{Figure, coverage};
 use crate::resumable;
 
 /// Seeds of the records, and their number in the small version.
@@ -61,10 +61,10 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         "warm-ups and steps of 5 to 500 σ: share of records with a spurious extra cause",
         [0.0, SPURIOUS],
         spurious.share(),
-    );
+    )
+    .of_share(spurious);
     if small {
-        // Forty records: the exact 99.9 % interval of the share holds a value within the target.
-        first.holds = Some(spurious.interval(0.999)[0] <= SPURIOUS);
+        first = first.judged(spurious.at_most(SPURIOUS));
     }
     let mut figures = vec![first.over(records.len(), seeds.as_str())];
     for (name, kind) in [
@@ -81,10 +81,13 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
             &format!("the same: coverage of the 95 % interval of the {name}"),
             COVERAGE,
             covered.share(),
-        );
-        if own.len() < 1000 {
-            let [low, high] = covered.interval(0.999);
-            figure.holds = Some(low <= 0.95 && 0.95 <= high);
+        )
+        .of_share(covered);
+        let judgement = coverage(covered, COVERAGE);
+        if small {
+            figure = figure.judged(judgement);
+        } else if own.len() < 1000 {
+            figure.holds = Some(judgement != Judgement::Missed);
         }
         figures.push(figure.over(own.len(), seeds.as_str()));
     }

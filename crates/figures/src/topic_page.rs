@@ -1,0 +1,291 @@
+//! Pages of figures, `docs/figures/TOPIC.md`: written by the full version of a topic, and compared with
+//! by the small one.
+
+use std::path::{Path, PathBuf};
+
+use gyrocal_statistics::Proportion;
+
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::{house, page};
+
+/// Confidence of the intervals of a share, here and on the page, that must overlap: a hundred rows are
+/// compared at once, and none is to differ by chance.
+const CONFIDENCE: f64 = 0.999;
+
+/// First words of the header of a table of figures.
+const HEADER: [&str; 3] = ["figure", "target", "measured"];
+
+/// Path of the page of a topic.
+pub(crate) fn path(topic: &str) -> PathBuf {
+    page::docs()
+        .join("figures")
+        .join(topic)
+        .with_extension("md")
+}
+
+/// Writes the printed table as a page of the documentation, below an introduction. `extent` are the
+/// options of the command beside the topic.
+///
+/// # Errors
+/// If the file cannot be written.
+pub(crate) fn write(
+    path: &Path,
+    topic: &str,
+    extent: &str,
+    introduction: &str,
+    table: &str,
+) -> Result<(), Error> {
+    let processor = gyrocal_testkit::timing::processor();
+    let commit = house::commit(&gyrocal_testkit::workspace());
+    let introduction = match introduction {
+        "" => String::new(),
+        text => format!("{text}\n\n"),
+    };
+    let page = format!(
+        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{extent}` of commit {commit} on \
+         {processor}. Times and ratios of times are those of that machine, and instruction counts \
+         those of its compiler. All else differs by rounding at most: where the target fuses \
+         multiplication and addition, last bits differ.\n\n{introduction}{table}\n"
+    );
+    gyrocal_record::write_whole(path, page.as_bytes())?;
+    Ok(())
+}
+
+/// Comparison of the figures of a small run with the committed page of the topic: each share of this run
+/// must be consistent with that of the page. Rows that the page lacks are told as a note.
+pub(crate) fn compared(topic: &str, renewed_by: &str, figures: &[Figure]) -> Vec<Figure> {
+    let name = format!("docs/figures/{topic}.md");
+    match std::fs::read_to_string(path(topic)) {
+        Ok(text) => compared_with(&name, renewed_by, &rows(&text), figures),
+        Err(_) => vec![Figure::note(
+            &format!("{name}: the page"),
+            format!("there is none: measure it with `{renewed_by}`"),
+        )],
+    }
+}
+
+fn compared_with(page: &str, renewed_by: &str, rows: &[Row], figures: &[Figure]) -> Vec<Figure> {
+    let mut lacking: Vec<&str> = Vec::new();
+    let mut differing = Vec::new();
+    let mut agreeing = 0;
+    for figure in figures {
+        let Some(row) = rows.iter().find(|row| row.name == figure.name) else {
+            lacking.push(&figure.name);
+            continue;
+        };
+        let (Some(here), Some(there)) = (figure.share, row.share()) else {
+            continue;
+        };
+        if are_consistent(here, there) {
+            agreeing += 1;
+        } else {
+            differing.push(format!(
+                "`{}` is {:.3} of {} on the page and {:.3} of {} here",
+                figure.name,
+                there.share(),
+                there.trials,
+                here.share(),
+                here.trials
+            ));
+        }
+    }
+    let mut result = Vec::new();
+    let compared = agreeing + differing.len();
+    if compared > 0 {
+        let measured = match differing.as_slice() {
+            [] => format!("{agreeing} of {compared}"),
+            rows => format!("{agreeing} of {compared}: {}", rows.join("; ")),
+        };
+        let mut figure = Figure::note(&format!("{page}: shares of this run agree"), measured);
+        figure.target = format!("{compared} of {compared}");
+        figure.holds = Some(differing.is_empty());
+        result.push(figure.over(compared, "rows"));
+    }
+    if let Some(first) = lacking.first() {
+        let what = match lacking.len() {
+            1 => format!("page lacks this row: `{first}`"),
+            count => format!("page lacks {count} rows, the first `{first}`"),
+        };
+        let measured = format!("{what}: measure it again with `{renewed_by}`");
+        result.push(Figure::note(&format!("{page}: its rows"), measured));
+    }
+    result
+}
+
+/// `true` if the exact intervals of both shares overlap.
+fn are_consistent(one: Proportion, other: Proportion) -> bool {
+    let ([low, high], [least, most]) = (one.interval(CONFIDENCE), other.interval(CONFIDENCE));
+    low <= most && least <= high
+}
+
+/// A row of a committed table.
+#[derive(Debug)]
+struct Row {
+    name: String,
+    measured: String,
+    runs: u64,
+}
+
+impl Row {
+    /// The share that begins its measured value; `None` if it begins with none.
+    fn share(&self) -> Option<Proportion> {
+        let first = self.measured.split([' ', ',']).next()?;
+        let number: f64 = first.parse().ok()?;
+        let unit = if self.name.contains(": % of ") {
+            100.0
+        } else {
+            1.0
+        };
+        let share = number / unit;
+        let is_share = (0.0..=1.0).contains(&share) && first.contains('.');
+        is_share.then(|| Proportion {
+            hits: (share * self.runs as f64).round() as u64,
+            trials: self.runs,
+        })
+    }
+}
+
+/// The rows of the table of figures of a page; other tables are passed over.
+fn rows(page: &str) -> Vec<Row> {
+    let cells = |line: &str| -> Vec<String> {
+        let line = line.trim().trim_matches('|');
+        line.split('|').map(|cell| cell.trim().to_owned()).collect()
+    };
+    page.lines()
+        .skip_while(|line| {
+            !cells(line)
+                .iter()
+                .zip(HEADER)
+                .all(|(cell, word)| cell == word)
+        })
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .filter_map(|line| match cells(line).as_slice() {
+            [name, _, measured, runs, ..] => Some(Row {
+                name: name.clone(),
+                measured: measured.clone(),
+                runs: runs.parse().ok()?,
+            }),
+            _ => None,
+        })
+        .collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "a failure here is a failed test")]
+mod tests {
+    use super::*;
+    use crate::figure::table;
+
+    fn share(name: &str, hits: u64, trials: u64) -> Figure {
+        Figure::note_share(name, Proportion { hits, trials }, "0..9")
+    }
+
+    fn page() -> Vec<Row> {
+        let figures = [
+            share("detected", 975, 1000),
+            share("missed", 0, 1000),
+            Figure::within("time", [0.0, 2.0], 1.0),
+        ];
+        rows(&format!(
+            "# Figures\n\n| a | b |\n|---|---|\n| 1 | 2 |\n\n{}\n",
+            table(&figures)
+        ))
+    }
+
+    fn judged(figures: &[Figure]) -> Vec<Figure> {
+        compared_with(
+            "docs/figures/x.md",
+            "cargo figures x --write",
+            &page(),
+            figures,
+        )
+    }
+
+    #[test]
+    fn shares_that_chance_explains_agree() {
+        let time = Figure::within("time", [0.0, 2.0], 1.9);
+        let result = judged(&[share("detected", 6, 8), share("missed", 1, 8), time]);
+        assert_eq!(result.len(), 1, "{result:?}");
+        assert_eq!(
+            (result[0].measured.as_str(), result[0].holds),
+            ("2 of 2", Some(true))
+        );
+    }
+
+    #[test]
+    fn percents_are_shares_where_the_name_says_so() {
+        let of = |name: &str, measured: &str| {
+            let (name, measured) = (name.to_owned(), measured.to_owned());
+            Row {
+                name,
+                measured,
+                runs: 200,
+            }
+            .share()
+            .map(|share| share.hits)
+        };
+        assert_eq!(
+            of(
+                "gyro_x.bias: % of 95 % intervals",
+                "95.500 (95 %: 91 to 98)"
+            ),
+            Some(191)
+        );
+        assert_eq!(of("detected", "0.955, bound 0.97"), Some(191));
+        assert_eq!(of("mean NIS", "2.996"), None);
+        assert_eq!(of("failures", "0"), None);
+    }
+
+    #[test]
+    fn a_share_that_differs_is_told_with_its_row() {
+        let result = judged(&[share("detected", 2, 8), share("missed", 0, 8)]);
+        assert_eq!(result[0].holds, Some(false));
+        assert_eq!(
+            result[0].measured,
+            "1 of 2: `detected` is 0.975 of 1000 on the page and 0.250 of 8 here"
+        );
+    }
+
+    #[test]
+    fn a_row_that_the_page_lacks_is_a_note() {
+        let result = judged(&[share("detected", 8, 8), share("new", 0, 8)]);
+        assert_eq!((result[0].holds, result[1].holds), (Some(true), None));
+        assert_eq!(
+            result[1].measured,
+            "page lacks this row: `new`: measure it again with `cargo figures x --write`"
+        );
+        let none = compared("no-such-topic", "cargo figures no-such-topic --write", &[]);
+        assert!(none[0].holds.is_none() && none[0].measured.contains("there is none"));
+    }
+
+    /// Each committed page names its command and the commit that it was measured at, and has figures
+    /// with unique names.
+    #[test]
+    fn committed_pages_name_their_commit_and_can_be_read() {
+        let pages = std::fs::read_dir(page::docs().join("figures")).expect("it is committed");
+        for page in pages {
+            let path = page.expect("a file").path();
+            let text = std::fs::read_to_string(&path).expect("a page");
+            let topic = path
+                .file_stem()
+                .and_then(|stem| stem.to_str())
+                .expect("a name");
+            let commit = text
+                .split_once(&format!("Printed by `cargo figures {topic}"))
+                .and_then(|(_, rest)| rest.split_once("` of commit "))
+                .map(|(_, rest)| rest.chars().take_while(char::is_ascii_hexdigit).count());
+            assert!(
+                commit.is_some_and(|digits| digits >= 7),
+                "{topic} names no commit"
+            );
+            let mut names: Vec<String> = rows(&text).into_iter().map(|row| row.name).collect();
+            assert!(!names.is_empty(), "{topic} has no figures");
+            names.sort();
+            let count = names.len();
+            names.dedup();
+            assert_eq!(names.len(), count, "{topic} has two figures of one name");
+        }
+    }
+}
