@@ -136,20 +136,36 @@ impl UnlistedRecord {
         strength: f64,
         random: &mut Draw,
     ) -> Result<Option<Self>, EvaluationError> {
-        let clean = simulate(scenario)?;
-        let residuals = whitened_residuals(&clean, &ModelExtension::default())?;
         for _ in 0..MAX_DRAWS {
-            let mut effect = UnlistedEffect::draw(kind, scenario, random)?;
-            if scale(scenario, &residuals, &mut effect, strength)? {
-                let with = effect.simulate(scenario)?;
-                return Ok(Some(Self {
-                    clean,
-                    with,
-                    effect,
-                }));
+            let effect = UnlistedEffect::draw(kind, scenario, random)?;
+            if let Some(record) = Self::scaled(scenario, effect, strength)? {
+                return Ok(Some(record));
             }
         }
         Ok(None)
+    }
+
+    /// A record with an effect that is scaled to a strength given the nominal model; `None` if it does not
+    /// reach it.
+    ///
+    /// # Errors
+    /// Those of simulation and calibration.
+    pub fn scaled(
+        scenario: &Scenario,
+        mut effect: UnlistedEffect,
+        strength: f64,
+    ) -> Result<Option<Self>, EvaluationError> {
+        let clean = simulate(scenario)?;
+        let residuals = whitened_residuals(&clean, &ModelExtension::default())?;
+        if !scale(scenario, &residuals, &mut effect, strength)? {
+            return Ok(None);
+        }
+        let with = effect.simulate(scenario)?;
+        Ok(Some(Self {
+            clean,
+            with,
+            effect,
+        }))
     }
 
     /// Strength of the effect beside the effects and the noise of a diagnosis of the record with it: the

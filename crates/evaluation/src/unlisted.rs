@@ -212,7 +212,10 @@ impl UnlistedEffect {
         })
     }
 
-    fn named(id: String, gyro: bool, further: Vec<(&'static str, f64)>) -> Self {
+    /// An effect that the simulator knows by its id, in a gyro or in an accelerometer, with the values of
+    /// its parameters other than its size.
+    #[must_use]
+    pub fn named(id: String, gyro: bool, further: Vec<(&'static str, f64)>) -> Self {
         let (size, largest_size) = sizes(gyro);
         Self {
             id,

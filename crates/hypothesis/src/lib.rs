@@ -123,6 +123,7 @@ mod search;
 mod shape;
 mod shape_interval;
 mod signature;
+mod smooth_functions;
 mod state;
 mod unmodelled;
 mod walks;

@@ -10,7 +10,6 @@ use crate::context::SearchContext;
 use crate::hypothesis::{Hypothesis, HypothesisSet, Variant};
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
-use crate::outside::ln_likelihood_of_all;
 use crate::rate_noise::RateNoiseFit;
 use crate::rows::Rows;
 use crate::score::{Best, NESTED_MODEL_CHI2, Scores};
@@ -185,9 +184,7 @@ pub(crate) fn evaluate<F: FittedModel>(
         .filter(|(_, advantage)| *advantage > NESTED_MODEL_CHI2)
         .and_then(|(other, advantage)| Some((scores.best[other]?, advantage)));
     let effect = set.hypotheses[own.hypothesis].effect;
-    let others = (0..hypotheses.len())
-        .filter(|other| *other != own.hypothesis && scores.best[*other].is_some());
-    let ln_others = ln_likelihood_of_all(penalised, others.map(|other| scores.penalised(other)));
+    let ln_others = scores.ln_likelihood_of_all(own.hypothesis, penalised);
     Ok(ConditionalResult {
         finding: Finding {
             effect: effect.id,

@@ -1,6 +1,6 @@
 //! The statistics of all hypotheses, and the choice of the one that is named.
 
-use gyrocal_statistics::math::ln_1p;
+use gyrocal_statistics::math::{exp, ln_1p};
 
 use crate::bank::ScoreBank;
 use crate::context::SearchContext;
@@ -135,6 +135,15 @@ impl<'a> Scores<'a> {
     /// The statistic for ranking: less the whole search penalty.
     pub(crate) fn penalised(&self, hypothesis: usize) -> f64 {
         self.likelihood_ratio(hypothesis) - self.null.penalties[hypothesis]
+    }
+
+    /// Logarithm of the sum of the likelihoods of a hypothesis and of all that could be in its place over
+    /// its own, search penalties subtracted; `own` is twice the logarithm of its own.
+    pub(crate) fn ln_likelihood_of_all(&self, hypothesis: usize, own: f64) -> f64 {
+        let others = (0..self.best.len())
+            .filter(|other| *other != hypothesis && self.best[*other].is_some());
+        let each = others.map(|other| exp(0.5 * (self.penalised(other) - own).min(0.0)));
+        ln_1p(each.sum())
     }
 
     /// The statistic for detection: less the detection penalty.

@@ -31,6 +31,9 @@ const MISDECLARED: [f64; 2] = [0.5, 2.0];
 /// Most draws of an effect that the record shows.
 const DRAWS: usize = 100;
 
+/// Fewer records than these are judged by an interval.
+const FEW: usize = 100;
+
 /// Number of drift coefficients.
 const COEFFICIENTS: usize = 9;
 
@@ -40,6 +43,10 @@ struct Cell {
     strength: f64,
     /// Only causes that change slowly in time.
     slow: bool,
+    /// Whether detection and sets are figures of it.
+    tells_sets: bool,
+    /// Least share of records named alone: with diurnal and g terms, with warm-ups.
+    least_alone: [f64; 2],
     first_seed: u64,
     records: u64,
     small: u64,
@@ -50,6 +57,8 @@ const CELLS: [Cell; 4] = [
         name: "d = 8",
         strength: 8.0,
         slow: false,
+        tells_sets: true,
+        least_alone: [0.85, 0.55],
         first_seed: 800_000,
         records: 1000,
         small: 4,
@@ -58,6 +67,8 @@ const CELLS: [Cell; 4] = [
         name: "d = 12",
         strength: 12.0,
         slow: false,
+        tells_sets: false,
+        least_alone: [0.97, 0.88],
         first_seed: 810_000,
         records: 600,
         small: 0,
@@ -66,6 +77,8 @@ const CELLS: [Cell; 4] = [
         name: "slow causes, d = 5",
         strength: 5.0,
         slow: true,
+        tells_sets: false,
+        least_alone: [0.0, 0.0],
         first_seed: 820_000,
         records: 300,
         small: 0,
@@ -74,6 +87,8 @@ const CELLS: [Cell; 4] = [
         name: "slow causes, d = 6",
         strength: 6.0,
         slow: true,
+        tells_sets: false,
+        least_alone: [0.0, 0.0],
         first_seed: 830_000,
         records: 300,
         small: 0,
@@ -110,97 +125,127 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         let campaign = resumable::campaign("truth", cell.name, seeds.clone(), small)?;
         let outcome = campaign.run(|seed| record(cell, seed), |_| ())?;
         let records: Vec<Caused> = outcome.successes().map(|(_, one)| one.clone()).collect();
-        figures.extend(cell_figures(cell, &records, small, &format!("{seeds:?}")));
+        figures.extend(cell_figures(&Told {
+            cell,
+            records: &records,
+            small,
+            seeds: &format!("{seeds:?}"),
+        }));
     }
     Ok(figures)
 }
 
-fn cell_figures(cell: &Cell, records: &[Caused], small: bool, seeds: &str) -> Vec<Figure> {
-    let share = |what: &str, least: f64, of: &mut dyn Iterator<Item = bool>| {
+/// The records of a cell, to be told as figures.
+struct Told<'r> {
+    cell: &'r Cell,
+    records: &'r [Caused],
+    small: bool,
+    seeds: &'r str,
+}
+
+impl Told<'_> {
+    fn share(&self, what: &str, least: f64, of: impl Iterator<Item = bool>) -> Figure {
         let all: Vec<bool> = of.collect();
         let count = all.len();
         let share = Proportion::of(all);
-        let name = format!("{}: {what}", cell.name);
+        let name = format!("{}: {what}", self.cell.name);
         let mut figure = Figure::within(&name, [least, 1.0], share.share()).of_share(share);
-        if small || count < 100 {
+        if self.small || count < FEW {
             figure = figure.judged(share.at_least(least));
         }
-        figure.over(count, seeds)
-    };
-    let ratio = |what: &str, bounds: [f64; 2], measured: f64| {
-        let mut figure = Figure::within(&format!("{}: {what}", cell.name), bounds, measured);
-        if small {
+        figure.over(count, self.seeds)
+    }
+
+    fn ratio(&self, what: &str, bounds: [f64; 2], measured: f64) -> Figure {
+        let name = format!("{}: {what}", self.cell.name);
+        let mut figure = Figure::within(&name, bounds, measured);
+        if self.small {
             figure = figure.judged(Judgement::TooFew);
         }
-        figure.over(records.len(), seeds)
-    };
-    if cell.slow {
-        let of = |held: fn(&Caused) -> bool| Proportion::of(records.iter().map(held)).share();
+        figure.over(self.records.len(), self.seeds)
+    }
+
+    fn note(&self, what: &str, of: impl Iterator<Item = bool>) -> Figure {
+        let name = format!("{}: {what}", self.cell.name);
+        let measured = format!("{:.3}", Proportion::of(of).share());
+        Figure::note(&name, measured).over(self.records.len(), self.seeds)
+    }
+
+    /// Power for slow causes.
+    fn power(&self) -> Figure {
+        let of = |held: fn(&Caused) -> bool| Proportion::of(self.records.iter().map(held)).share();
         let power = of(|one| one.in_set) / of(|one| one.oracle_in_set).max(f64::MIN_POSITIVE);
         let what = "power over that of a search that knows that no rate walks";
-        let mut figure = ratio(what, [0.95, f64::INFINITY], power);
-        figure.target = ">= 0.95".to_owned();
-        return vec![figure];
+        Figure {
+            target: ">= 0.95".to_owned(),
+            ..self.ratio(what, [0.95, f64::INFINITY], power)
+        }
     }
-    let mut figures = Vec::new();
-    let kind = |one: &Caused| effect(&one.effect).map(|effect| effect.kind);
-    let fast = |one: &&Caused| {
-        kind(one) == Some(EffectKind::Periodic)
-            || (kind(one) == Some(EffectKind::Constant) && one.effect.contains(".g_"))
-    };
-    let warm = |one: &&Caused| kind(one) == Some(EffectKind::Exponential);
-    let least = if cell.strength > 10.0 {
-        [0.97, 0.88]
-    } else {
-        [0.85, 0.55]
-    };
-    if cell.strength < 10.0 {
-        figures.push(share(
-            "detected",
-            0.98,
-            &mut records.iter().map(|one| one.detected),
-        ));
-        figures.push(share(
-            "a set holds the cause",
-            0.95,
-            &mut records.iter().map(|one| one.in_set),
-        ));
-        let sizes = records
-            .iter()
-            .filter_map(|one| Some([one.set_size?, one.oracle_set_size?]));
+
+    /// Detection and sets.
+    fn naming(&self) -> Vec<Figure> {
+        let all = || self.records.iter();
+        let sizes = all().filter_map(|one| Some([one.set_size?, one.oracle_set_size?]));
         let [own, oracle] = sizes.fold([0.0, 0.0], |[own, oracle], [one, other]| {
             [own + one as f64, oracle + other as f64]
         });
         let what = "mean set size over that of a search that knows that no rate walks";
-        figures.push(ratio(what, [0.0, 1.1], own / oracle.max(1.0)));
-        let spurious: Vec<bool> = records.iter().map(|one| one.spurious).collect();
-        let measured = format!("{:.3}", Proportion::of(spurious).share());
-        let name = format!("{}: spurious second cause", cell.name);
-        figures.push(Figure::note(&name, measured).over(records.len(), seeds));
+        vec![
+            self.share("detected", 0.98, all().map(|one| one.detected)),
+            self.share("a set holds the cause", 0.95, all().map(|one| one.in_set)),
+            self.ratio(what, [0.0, 1.1], own / oracle.max(1.0)),
+            self.note("spurious second cause", all().map(|one| one.spurious)),
+        ]
     }
-    let mut of_fast = records.iter().filter(fast).map(|one| one.alone);
-    figures.push(share(
-        "named alone, diurnal and g terms",
-        least[0],
-        &mut of_fast,
-    ));
-    let mut of_warm = records.iter().filter(warm).map(|one| one.alone);
-    figures.push(share("named alone, warm-ups", least[1], &mut of_warm));
-    let mut covered = records.iter().flat_map(|one| one.over_set.iter().copied());
-    let what = "coefficients in the 95 % intervals over the sets, whatever was named";
-    figures.push(share(what, 0.93, &mut covered));
-    let first = records.iter().flat_map(|one| one.first.iter().copied());
-    let measured = format!("{:.3}", Proportion::of(first).share());
-    let name = format!("{}: in those of the first member", cell.name);
-    figures.push(Figure::note(&name, measured).over(records.len(), seeds));
-    let mut widths: Vec<f64> = records.iter().flat_map(|one| one.widths.clone()).collect();
-    widths.sort_by(f64::total_cmp);
-    let median = widths.get(widths.len() / 2).copied().unwrap_or(f64::NAN);
-    figures.push(ratio(
-        "median width of these over the true model's",
-        [0.0, 1.3],
-        median,
-    ));
+
+    /// Names without alternatives.
+    fn alone(&self) -> [Figure; 2] {
+        let kind = |one: &Caused| effect(&one.effect).map(|effect| effect.kind);
+        let is_quick = |one: &&Caused| {
+            kind(one) == Some(EffectKind::Periodic)
+                || (kind(one) == Some(EffectKind::Constant) && one.effect.contains(".g_"))
+        };
+        let is_warm_up = |one: &&Caused| kind(one) == Some(EffectKind::Exponential);
+        let [quick, warm_up] = self.cell.least_alone;
+        let of_quick = self.records.iter().filter(is_quick).map(|one| one.alone);
+        let of_warm_ups = self.records.iter().filter(is_warm_up).map(|one| one.alone);
+        [
+            self.share("named alone, diurnal and g terms", quick, of_quick),
+            self.share("named alone, warm-ups", warm_up, of_warm_ups),
+        ]
+    }
+
+    /// Intervals of the coefficients.
+    fn coefficients(&self) -> [Figure; 3] {
+        let all = || self.records.iter();
+        let covered = all().flat_map(|one| one.over_set.iter().copied());
+        let first = all().flat_map(|one| one.first.iter().copied());
+        let mut widths: Vec<f64> = all().flat_map(|one| one.widths.clone()).collect();
+        widths.sort_by(f64::total_cmp);
+        let median = widths.get(widths.len() / 2).copied().unwrap_or(f64::NAN);
+        let what = "coefficients in the 95 % intervals over the sets, whatever was named";
+        [
+            self.share(what, 0.93, covered),
+            self.note("in those of the first member", first),
+            self.ratio(
+                "median width of these over the true model's",
+                [0.0, 1.3],
+                median,
+            ),
+        ]
+    }
+}
+
+fn cell_figures(told: &Told<'_>) -> Vec<Figure> {
+    if told.cell.slow {
+        return vec![told.power()];
+    }
+    let mut figures = Vec::new();
+    if told.cell.tells_sets {
+        figures.extend(told.naming());
+    }
+    figures.extend(told.alone());
+    figures.extend(told.coefficients());
     figures
 }
 
