@@ -181,7 +181,9 @@ pub(crate) fn compare<F: FittedModel>(
             walks: Walks {
                 named: Vec::new(),
                 rivals: alternatives(
-                    candidates.effects.iter().map(|effect| effect.id),
+                    needed(candidates, &walking)?
+                        .into_iter()
+                        .map(|(effect, ..)| effect.id),
                     deficit,
                     &walking.stage.fitted,
                 ),
@@ -272,15 +274,15 @@ fn tail(gained: f64, rates: usize) -> f64 {
     sum
 }
 
-/// The walks of a model that are named: each that the likelihood needs, the largest at least.
-fn named<F: FittedModel>(
+/// The walks that a model needs, with their rates and what each gains beside the others: each that the
+/// likelihood needs, the largest at least.
+fn needed<F: FittedModel>(
     candidates: &Candidates,
     state: &SearchState<F>,
-    p_value: f64,
-) -> Result<Vec<Finding>, F::Error> {
+) -> Result<Vec<(&'static Effect, usize, f64)>, F::Error> {
     let noise = &state.stage.noise;
-    let mut gains = Vec::with_capacity(candidates.rates.len());
-    for rate in &candidates.rates {
+    let mut all = Vec::with_capacity(candidates.rates.len());
+    for (effect, rate) in candidates.effects.iter().zip(&candidates.rates) {
         let others: Vec<usize> = candidates
             .rates
             .iter()
@@ -288,19 +290,29 @@ fn named<F: FittedModel>(
             .filter(|other| other != rate)
             .collect();
         let without = state.stage.fitted.fit_rate_noise(&others, &[])?;
-        gains.push(2.0 * (noise.log_likelihood - without.log_likelihood));
+        let gain = 2.0 * (noise.log_likelihood - without.log_likelihood);
+        all.push((*effect, *rate, gain));
     }
-    let largest = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let gains = all.iter().map(|(.., gain)| *gain);
+    let least = NAMED_WALK.min(gains.fold(f64::NEG_INFINITY, f64::max));
+    all.retain(|(.., gain)| *gain >= least);
+    Ok(all)
+}
+
+/// The walks of a model that are named.
+fn named<F: FittedModel>(
+    candidates: &Candidates,
+    state: &SearchState<F>,
+    p_value: f64,
+) -> Result<Vec<Finding>, F::Error> {
+    let sizes = &state.stage.noise.noise.walk;
+    let needed = needed(candidates, state)?;
     let intervals = state.stage.fitted.walk_intervals()?;
-    let all = candidates.effects.iter().zip(&candidates.rates).zip(gains);
-    Ok(all
-        .filter(|(_, gain)| *gain >= NAMED_WALK.min(largest))
-        .map(|((effect, rate), gain)| {
-            let size = noise.noise.walk[*rate];
-            let interval = intervals.get(*rate).copied().flatten();
-            walk_finding(effect, size, interval, (gain, p_value))
-        })
-        .collect())
+    let finding = |(effect, rate, gain): &(&'static Effect, usize, f64)| {
+        let interval = intervals.get(*rate).copied().flatten();
+        walk_finding(effect, sizes[*rate], interval, (*gain, p_value))
+    };
+    Ok(needed.iter().map(finding).collect())
 }
 
 fn walk_finding(

@@ -35,22 +35,19 @@ const END_PRECISION: f64 = 0.02;
 /// The distance from the maximum at which twice the log-likelihood has fallen to the 95 % point of χ²(1),
 /// in standard deviations; `None` if that is farther than `longest`. The root of the fall is nearly
 /// proportional to the distance.
-fn profile_end(
-    longest: f64,
-    mut fall: impl FnMut(f64) -> Result<f64, CalibrationError>,
-) -> Result<Option<f64>, CalibrationError> {
+fn profile_end(longest: f64, fall: impl Fn(f64) -> f64) -> Option<f64> {
     let mut distance = NORMAL_97_5;
     for _ in 0..MAX_EVALUATIONS {
-        let root = fall(distance)?.max(0.0).sqrt();
+        let root = fall(distance).max(0.0).sqrt();
         if (root - NORMAL_97_5).abs() < END_PRECISION {
             break;
         }
         if distance >= longest && root < NORMAL_97_5 {
-            return Ok(None);
+            return None;
         }
         distance = (distance * (NORMAL_97_5 / root).clamp(0.4, 2.5)).min(longest);
     }
-    Ok(Some(distance))
+    Some(distance)
 }
 
 impl FittedPlatform<'_> {
@@ -125,15 +122,17 @@ impl FittedPlatform<'_> {
         for (index, rate) in walking.into_iter().enumerate() {
             let own = AXES + index;
             let along = covariance.column(own) / covariance[(own, own)].sqrt();
-            let fall = |deviates: f64| -> Result<f64, CalibrationError> {
+            // Where the filter leaves the numbers the likelihood is nothing.
+            let fall = |deviates: f64| {
                 let moved = &logarithms + &along * deviates;
-                Ok(2.0 * (at.value - likelihood.value(moved.as_slice())?))
+                let value = likelihood.value(moved.as_slice());
+                value.map_or(f64::INFINITY, |value| 2.0 * (at.value - value))
             };
             let sigma = covariance[(own, own)].sqrt();
             let factor = |deviates: f64| (0.5 * sigma * deviates).exp();
             let longest = LONGEST_INTERVAL / sigma;
-            let low = profile_end(longest, |deviates| fall(-deviates))?;
-            let high = profile_end(longest, fall)?;
+            let low = profile_end(longest, |deviates| fall(-deviates));
+            let high = profile_end(longest, fall);
             let size = fit.noise.walk[rate];
             intervals[rate] = high.map(|high| {
                 let low = low.map_or(0.0, |low| size * factor(-low));

@@ -45,7 +45,7 @@ struct Cell {
     slow: bool,
     /// Whether detection and sets are figures of it.
     tells_sets: bool,
-    /// Least share of records named alone: with diurnal and g terms, with warm-ups.
+    /// Least share of sets without a noise process: with diurnal and g terms, with warm-ups.
     least_alone: [f64; 2],
     first_seed: u64,
     records: u64,
@@ -100,7 +100,7 @@ const CELLS: [Cell; 4] = [
 struct Caused {
     effect: String,
     detected: bool,
-    /// Whether the set of a finding holds the cause; with a set of one.
+    /// Whether the set of a finding holds the cause; and no noise process.
     in_set: bool,
     alone: bool,
     set_size: Option<usize>,
@@ -198,7 +198,7 @@ impl Told<'_> {
         ]
     }
 
-    /// Names without alternatives.
+    /// Sets without a noise process.
     fn alone(&self) -> [Figure; 2] {
         let kind = |one: &Caused| effect(&one.effect).map(|effect| effect.kind);
         let is_quick = |one: &&Caused| {
@@ -210,8 +210,16 @@ impl Told<'_> {
         let of_quick = self.records.iter().filter(is_quick).map(|one| one.alone);
         let of_warm_ups = self.records.iter().filter(is_warm_up).map(|one| one.alone);
         [
-            self.share("named alone, diurnal and g terms", quick, of_quick),
-            self.share("named alone, warm-ups", warm_up, of_warm_ups),
+            self.share(
+                "no noise process in the set, diurnal and g terms",
+                quick,
+                of_quick,
+            ),
+            self.share(
+                "no noise process in the set, warm-ups",
+                warm_up,
+                of_warm_ups,
+            ),
         ]
     }
 
@@ -338,7 +346,10 @@ fn record(cell: &Cell, seed: u64) -> Result<Caused, EvaluationError> {
         .map(|finding| (holds(finding, id), 1 + finding.alternatives.len()))
         .collect();
     let in_set = sets.iter().any(|(holds, _)| *holds);
-    let alone = sets.iter().any(|(holds, size)| *holds && *size == 1);
+    let alone = found
+        .result
+        .causes()
+        .any(|finding| holds(finding, id) && !has_noise(finding));
     let [over_set, first, widths] = coefficients(&found, &simulation, &injected)?;
     let oracle = oracle(&found, &simulation, id)?;
     Ok(Caused {
@@ -360,6 +371,16 @@ fn holds(finding: &Finding, id: &str) -> bool {
     let mut others = finding.alternatives.iter();
     same_or_equivalent(&finding.effect, id)
         || others.any(|other| same_or_equivalent(&other.effect, id))
+}
+
+/// Whether a noise process is in a set.
+fn has_noise(finding: &Finding) -> bool {
+    let all = finding
+        .alternatives
+        .iter()
+        .map(|other| other.effect.as_str());
+    let is_walk = |id: &str| effect(id).is_some_and(|one| one.kind == EffectKind::RandomWalk);
+    all.chain([finding.effect.as_str()]).any(is_walk)
 }
 
 /// The same search without random walks: whether a set holds the cause, and the size of the first.
