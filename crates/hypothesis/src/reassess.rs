@@ -39,9 +39,7 @@ pub(crate) fn reassess<F: FittedModel>(
             }
             results.push(result);
         }
-        // A single effect has been compared with all others already.
         if let Some((index, other, _)) = better
-            && state.accepted.len() > 1
             && swaps < MOST_EFFECTS
             && !context.budget.is_spent(&state.stage.fitted)
         {

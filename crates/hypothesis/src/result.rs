@@ -22,6 +22,10 @@ use crate::signature::{Source, profiles, shape_derivative, signature};
 /// one was within 2.8 in 95 %, and within 3.4 in 97 %; `cargo figures naming` measures the coverage.
 pub const CONFIDENCE_SET_DEVIANCE: f64 = 3.5;
 
+/// Twice the log-likelihood by which two effects may differ and count as equally likely: another name is
+/// not worth a fit.
+const SAME_LIKELIHOOD: f64 = 0.5;
+
 /// One estimated parameter of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectEstimate {
@@ -43,7 +47,8 @@ pub struct EffectEstimate {
 pub struct Alternative {
     /// Its public id.
     pub effect: &'static str,
-    /// Log-likelihood of the named effect less its own, search penalties subtracted.
+    /// Log-likelihood of the named effect less its own, search penalties subtracted, and that of an effect
+    /// in which the named one is nested lowered by half of [`NESTED_MODEL_CHI2`]; never negative.
     pub log_likelihood_deficit: f64,
     /// The nominal parameters with it in the place of the named effect; `None` of a jump of states.
     pub nominal: Option<NominalEstimate>,
@@ -179,9 +184,12 @@ pub(crate) fn evaluate<F: FittedModel>(
     };
     let others = (0..hypotheses.len()).filter(|other| *other != own.hypothesis);
     let better = others
-        .map(|other| (other, scores.penalised(other) - penalised))
+        .map(|other| {
+            let margin = prior_margin(&hypotheses, own.hypothesis, other);
+            (other, scores.penalised(other) - penalised - margin)
+        })
         .max_by(|a, b| a.1.total_cmp(&b.1))
-        .filter(|(_, advantage)| *advantage > NESTED_MODEL_CHI2)
+        .filter(|(_, advantage)| *advantage > SAME_LIKELIHOOD)
         .and_then(|(other, advantage)| Some((scores.best[other]?, advantage)));
     let effect = set.hypotheses[own.hypothesis].effect;
     let ln_others = scores.ln_likelihood_of_all(own.hypothesis, penalised);
@@ -246,6 +254,20 @@ fn unmasked(
     hypotheses
 }
 
+/// What twice the log-likelihood of another effect must be larger by to be as likely as the named one: an
+/// effect that the named one is nested in must be significantly better.
+fn prior_margin(hypotheses: &[Hypothesis], named: usize, other: usize) -> f64 {
+    if hypotheses[other]
+        .effect
+        .nested
+        .contains(&hypotheses[named].id())
+    {
+        NESTED_MODEL_CHI2
+    } else {
+        0.0
+    }
+}
+
 fn alternatives(
     scores: &Scores<'_>,
     hypotheses: &[Hypothesis],
@@ -262,7 +284,9 @@ fn alternatives(
         .filter(|other| penalised - scores.penalised(*other) < CONFIDENCE_SET_DEVIANCE)
         .map(|other| Alternative {
             effect: hypotheses[other].id(),
-            log_likelihood_deficit: 0.5 * (penalised - scores.penalised(other)),
+            log_likelihood_deficit: 0.5
+                * (penalised - scores.penalised(other) + prior_margin(hypotheses, named, other))
+                    .max(0.0),
             nominal: variant(&scores.best[other], &hypotheses[other]).and_then(&estimates),
         })
         .collect();

@@ -25,7 +25,8 @@ pub struct Finding {
     pub rivals: Vec<Alternative>,
     /// The other members of the confidence set, nearest first.
     pub alternatives: Vec<Alternative>,
-    /// Probability that no effect of the catalogue is the cause; `None` where it was not estimated.
+    /// Probability that a cause outside of the catalogue leaves eight standard deviations or more beside
+    /// what is named, at prior odds of one to one; `None` where it was not estimated.
     pub none_of_these: Option<f64>,
     /// Exact equivalents: effects that no record can distinguish from it.
     pub equivalents: Vec<Equivalent>,
@@ -74,9 +75,8 @@ pub struct Parameter {
 pub struct Alternative {
     /// Id of the effect.
     pub effect: String,
-    /// Log-likelihood of the reported effect less that of this one, after both are penalised for
-    /// their searches; negative of an effect with more parameters of which the simpler one was
-    /// reported.
+    /// Log-likelihood of the reported effect less that of this one, after both are penalised for their
+    /// searches, and an effect in which the reported one is nested for its freedom; never negative.
     pub log_likelihood_deficit: f64,
 }
 
