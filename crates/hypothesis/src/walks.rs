@@ -168,11 +168,12 @@ pub(crate) fn compare<F: FittedModel>(
         if p_beside >= probability {
             return Ok(only(state));
         }
-        let mut state = state;
-        let Ok(fitted) = state.stage.fitted.with_rate_noise(&beside.noise) else {
+        let with_them = state.stage.fitted.with_rate_noise(&beside.noise);
+        let staged = with_them.and_then(|fitted| settled(context, fitted, &state.accepted));
+        let Ok(stage) = staged else {
             return Ok(only(state));
         };
-        state.stage = settled(context, fitted, &state.accepted)?;
+        let state = SearchState { stage, ..state };
         return with_walks(candidates, state, (p_beside, Vec::new()), ranking);
     }
     if advantage > BESIDE_WALKS {
@@ -194,18 +195,27 @@ pub(crate) fn compare<F: FittedModel>(
         });
     }
     let rivals = if advantage > 0.0 {
-        let lacking = state.accepted.iter().map(|own| own.hypothesis);
-        let lacking = lacking.filter(|own| {
-            let mut others = walking.accepted.iter();
-            !others.any(|other| other.hypothesis == *own)
-        });
-        let ids = lacking.map(|own| context.set.hypotheses[own].id());
-        let deficit = 0.5 * (BESIDE_WALKS - advantage);
-        alternatives(ids, deficit, &state.stage.fitted)
+        effects_in_place(context, &state, &walking, 0.5 * (BESIDE_WALKS - advantage))
     } else {
         Vec::new()
     };
     with_walks(candidates, walking, (p_value, rivals), ranking)
+}
+
+/// Effects without walks that stand in the sets of walks: those that do not stand beside them.
+fn effects_in_place<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &SearchState<F>,
+    walking: &SearchState<F>,
+    deficit: f64,
+) -> Vec<Alternative> {
+    let own = state.accepted.iter().map(|own| own.hypothesis);
+    let lacking = own.filter(|own| {
+        let mut others = walking.accepted.iter();
+        !others.any(|other| other.hypothesis == *own)
+    });
+    let ids = lacking.map(|own| context.set.hypotheses[own].id());
+    alternatives(ids, deficit, &state.stage.fitted)
 }
 
 /// The nominal model with walks, and the effects that stand beside them.

@@ -7,9 +7,10 @@ use std::path::Path;
 
 use gyrocal_record::{
     AveragedReport, AzimuthReport, Bench, CalibrationMethod, CalibrationReport, Coefficient,
-    EffectTest, Error, FitVerdict, GimbalLimits, Gravity, Input, Manifest, NoiseRatioReport,
-    NoiseReport, OtherAzimuth, Outputs, Prior, Record, RunReport, SCHEMA_VERSION, SiteReport,
-    SiteUncertainty, TurnOn, UndeterminedReport, write_json, write_whole,
+    EffectTest, Error, FitVerdict, FittedEffect, FittedEffects, FittedParameter, GimbalLimits,
+    Gravity, Input, Manifest, NoiseRatioReport, NoiseReport, OtherAzimuth, Outputs, Prior, Record,
+    RunReport, SCHEMA_VERSION, SiteReport, SiteUncertainty, TurnOn, UndeterminedReport, write_json,
+    write_whole,
 };
 
 fn record() -> Record {
@@ -208,6 +209,22 @@ fn report() -> CalibrationReport {
             bias_per_unit: vec![-0.3],
         }],
         first_record_sigmas: Some(vec![2e-5]),
+        with_effects: Some(FittedEffects {
+            effects: vec![FittedEffect {
+                effect: "gyro_x.warmup".to_owned(),
+                name: "warm-up of gyro x".to_owned(),
+                parameters: vec![FittedParameter {
+                    name: "time_constant_h".to_owned(),
+                    estimate: 3.5,
+                    sigma: None,
+                    interval: Some(vec![[2.0, 7.5]]),
+                    unit: "h".to_owned(),
+                }],
+            }],
+            gained_nats: 12.5,
+            coefficients: Vec::new(),
+            covariance: vec![vec![1e-8]],
+        }),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Findings of the tests as entries of the answer.
 
+use gyrocal::effect::EffectKind;
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_hypothesis::{self as hypothesis, EffectEstimate};
 
@@ -48,7 +49,10 @@ pub(super) fn of_cause(finding: &hypothesis::Finding, decision: &KeepDecision) -
         });
     Finding {
         parameters: parameters(&finding.parameters),
-        coverage: Some(CONFIDENCE_SET_COVERAGE),
+        // That of sets of random walks was not measured.
+        coverage: row(finding.effect)
+            .filter(|row| row.kind != EffectKind::RandomWalk)
+            .map(|_| CONFIDENCE_SET_COVERAGE),
         rivals: alternatives.clone(),
         alternatives,
         none_of_these: finding.none_of_these,

@@ -19,7 +19,7 @@ pub struct Finding {
     /// Family-wise p-value: probability of as large a statistic anywhere in the search by chance.
     pub p_value: f64,
     /// Coverage of the confidence set: probability that effect and alternatives together hold the
-    /// cause. `None` where it was not measured: of noise and of a filter.
+    /// cause. `None` where it was not measured: of noise, of random walks and of a filter.
     pub coverage: Option<f64>,
     /// The same as `alternatives`, under the name that schema version 1 gave it.
     pub rivals: Vec<Alternative>,
