@@ -100,7 +100,7 @@ const ROWS: [Row; 5] = [
         name: "clean, noise declared 0.5 to 2 times, AR(1) to 0.3, t₄: physical cause or unexplained",
         first_seed: 750_000,
         records: 2000,
-        small: 24,
+        small: 16,
         limit: 0.02,
     },
 ];

@@ -16,7 +16,7 @@ use crate::resumable;
 
 /// Seeds of the records, and their number in the small version.
 const SEEDS: [u64; 2] = [700_000, 1000];
-const SMALL: u64 = 40;
+const SMALL: u64 = 24;
 
 /// Sizes, in standard deviations of the effect's own bound.
 const STRENGTHS: [f64; 2] = [5.0, 500.0];
