@@ -193,11 +193,12 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     let options = arguments.options();
     let gyro_axes = inputs::gyro_axes(&arguments.gyro_axes, &measurements)?;
     let runs: Vec<Run<'_>> = measurements.iter().map(Measurement::run).collect();
+    // First, as it refuses effects that cannot be fitted.
+    let with_effects = with_effects(arguments, &runs)?;
     let calibration = calibrate(&runs, &gyro_axes, rows, &options, arguments.method())
         .map_err(|source| NotCalibrated::new(arguments, &runs, source))?;
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
     let effects = effects(arguments, &measurements);
-    let with_effects = with_effects(arguments, &runs)?;
     let found = CalibrationRun {
         method: arguments.method(),
         kind: arguments.kind(),

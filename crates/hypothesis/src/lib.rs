@@ -5,7 +5,9 @@
 //! [`search`] takes a [`FittedModel`] and a selection of the effects of its [`Plant`], adds those that
 //! the record shows to the model, one after the other, and returns them with estimates,
 //! family-wise p-values, confidence sets and exact equivalents. What no effect explains is
-//! returned as [`Unmodelled`]. [`signature`] is the one place that makes columns of an effect.
+//! returned as [`Unmodelled`], and each finding has the probability that a cause outside of the catalogue
+//! is beside it. [`fit_with`] fits effects that are given. [`signature`] is the one place that makes
+//! columns of an effect.
 //!
 //! # The equations
 //!
