@@ -14,8 +14,8 @@
 //!
 //! with s and J of equations (1) and (2). The prior of τ is that a cause outside of the catalogue leaves
 //! at least eight standard deviations beside what is named: along the direction that is seen best, τ²
-//! times the information is one of [`RATIOS`]. What leaves less cannot be told apart. B is the mean over these and
-//! over all blocks. With the effects h that could be named in the place of a, by (6),
+//! times the information is one of [`RATIOS`]. What leaves less cannot be told apart. B is the mean over
+//! these and over all blocks. With the effects h that could be named in the place of a, by (6),
 //!
 //! ```text
 //! P(none) = B / (B + Σ_h exp ½ [(l_h − q_h) − (l_a − q_a)])
@@ -44,8 +44,9 @@ const SMOOTH_KNOTS: f64 = 1.5;
 /// Squares of the standard deviations that a cause outside of the catalogue leaves: 8, 16 and 32.
 const RATIOS: [f64; 3] = [64.0, 256.0, 1024.0];
 
-/// Smallest eigenvalue of a correlation over its largest.
-const FLOOR: f64 = 1e-9;
+/// Least information along a direction, over the largest of a function of its block before anything was
+/// projected out: less is rounding.
+const VISIBLE: f64 = 1e-9;
 
 /// The rich alternative to what is in a fitted model.
 struct RichAlternative {
@@ -103,8 +104,10 @@ fn directions(bank: &ScoreBank, places: &[usize], is_smooth: bool) -> Vec<Direct
     let eigen = SymmetricEigen::new(0.5 * (&inner + inner.transpose()));
     let most = eigen.eigenvalues.max();
     let along = eigen.eigenvectors.tr_mul(&lower.tr_mul(&score));
+    let whole = places.iter().map(|place| bank.raw[*place]);
+    let least = VISIBLE * whole.fold(0.0, f64::max);
     let all = eigen.eigenvalues.iter().zip(along.iter());
-    all.filter(|(value, _)| **value > 0.0 && **value > FLOOR * most)
+    all.filter(|(value, _)| **value > least)
         .map(|(value, along)| Direction {
             share: value / most,
             statistic: along * along / value,
@@ -206,6 +209,18 @@ mod tests {
         let expected = ln_mean_exp(&RATIOS.map(of));
         let difference = ln_evidence(&directions(&bank, &[0], false)) - expected;
         assert!(difference.abs() < 1e-12, "{difference}");
+    }
+
+    #[test]
+    fn functions_that_the_model_takes_up_are_no_evidence() {
+        // All that is left of the function is rounding, whatever its score.
+        let bank = ScoreBank {
+            score: nalgebra::DVector::from_element(1, 1e-3),
+            information: DMatrix::from_element(1, 1, 1e-12),
+            raw: nalgebra::DVector::from_element(1, 1.0),
+        };
+        assert!(directions(&bank, &[0], false).is_empty());
+        assert!(ln_evidence(&[]).abs() < 1e-15);
     }
 
     #[test]
