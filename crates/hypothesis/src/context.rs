@@ -1,10 +1,10 @@
 //! Options and data of a search.
 
-use gyrocal_scalar::effect::Effect;
+use gyrocal_scalar::effect::{Effect, EffectKind};
 
 use crate::accepted::Accepted;
 use crate::budget::Budget;
-use crate::hypothesis::HypothesisSet;
+use crate::hypothesis::{HypothesisSet, Selection};
 use crate::model::{FittedModel, ModelExtension};
 use crate::pattern::Unmodelled;
 use crate::plant::Plant;
@@ -50,7 +50,29 @@ pub(crate) struct SearchContext<'t> {
     pub(crate) budget: Budget,
 }
 
-impl SearchContext<'_> {
+impl<'t> SearchContext<'t> {
+    /// Of a nominal model and the effects of a selection, without an end of its budget.
+    pub(crate) fn new<F: FittedModel>(
+        nominal: &F,
+        rows: Rows,
+        selection: &Selection,
+        options: &'t SearchOptions,
+    ) -> Self {
+        let plant = nominal.plant();
+        let effects = selection.effects.iter().copied();
+        Self {
+            plant,
+            set: HypothesisSet::new(plant, &rows, &selection.effects),
+            walks: effects
+                .filter(|effect| effect.kind == EffectKind::RandomWalk)
+                .collect(),
+            base: nominal.extension().clone(),
+            rows,
+            options,
+            budget: Budget::unlimited(),
+        }
+    }
+
     /// The model with these effects, fitted from another one.
     pub(crate) fn fitted<F: FittedModel>(
         &self,

@@ -4,9 +4,8 @@ use gyrocal_scalar::effect::{Effect, EffectKind};
 
 use crate::accepted::Accepted;
 use crate::bank::ScoreBank;
-use crate::budget::Budget;
 use crate::context::{SearchContext, SearchOptions};
-use crate::hypothesis::{Hypothesis, HypothesisSet, Selection};
+use crate::hypothesis::{Hypothesis, Selection};
 use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
@@ -39,17 +38,7 @@ pub fn fit_with<F: FittedModel>(
     selection: &Selection,
     options: &SearchOptions,
 ) -> Result<FittedWith<F>, F::Error> {
-    let plant = nominal.plant();
-    let is_walk = |effect: &&&'static Effect| effect.kind == EffectKind::RandomWalk;
-    let context = SearchContext {
-        walks: selection.effects.iter().filter(is_walk).copied().collect(),
-        set: HypothesisSet::new(plant, &rows, &selection.effects),
-        plant,
-        base: nominal.extension().clone(),
-        rows,
-        options,
-        budget: Budget::unlimited(),
-    };
+    let context = SearchContext::new(&nominal, rows, selection, options);
     let nominal = settled(&context, nominal, &[])?;
     let mut own = nominal.clone();
     let mut accepted: Vec<Accepted> = Vec::new();

@@ -1,13 +1,11 @@
 //! The first detection tests of a search, without the search.
 
-use gyrocal_scalar::effect::EffectKind;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::accepted::{Accepted, value_places};
-use crate::budget::Budget;
 use crate::context::{SearchContext, SearchOptions};
 use crate::forward::WORTH_FITTING;
-use crate::hypothesis::{Hypothesis, HypothesisSet, Selection};
+use crate::hypothesis::{Hypothesis, Selection};
 use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
@@ -52,19 +50,7 @@ pub fn screen<F: FittedModel>(
     selection: &Selection,
     options: &SearchOptions,
 ) -> Result<Screened, F::Error> {
-    let plant = nominal.plant();
-    let walks = selection.effects.iter().copied();
-    let context = SearchContext {
-        walks: walks
-            .filter(|effect| effect.kind == EffectKind::RandomWalk)
-            .collect(),
-        set: HypothesisSet::new(plant, &rows, &selection.effects),
-        plant,
-        base: nominal.extension().clone(),
-        rows,
-        options,
-        budget: Budget::unlimited(),
-    };
+    let context = SearchContext::new(&nominal, rows, selection, options);
     let nominal = settled(&context, nominal, &[])?;
     let effect = of_effects(&context, &nominal)?;
     let walk = of_walks(&context, &nominal)?;

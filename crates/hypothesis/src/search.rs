@@ -1,9 +1,8 @@
 //! The search and its result.
 
-use gyrocal_scalar::effect::{Effect, EffectKind};
+use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::Accepted;
-use crate::budget::Budget;
 use crate::context::{SearchContext, SearchOptions, extension};
 use crate::forward::{Beside, FirstRound, forward};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
@@ -73,20 +72,7 @@ pub fn search<F: FittedModel>(
     options: &SearchOptions,
 ) -> Result<Searched<F>, F::Error> {
     let plant = nominal.plant();
-    let context = SearchContext {
-        walks: selection
-            .effects
-            .iter()
-            .copied()
-            .filter(|effect| effect.kind == EffectKind::RandomWalk)
-            .collect(),
-        set: HypothesisSet::new(plant, &rows, &selection.effects),
-        plant,
-        base: nominal.extension().clone(),
-        rows,
-        options,
-        budget: Budget::unlimited(),
-    };
+    let context = SearchContext::new(&nominal, rows, selection, options);
     let mut draws = GaussianDraws::new(options.seed);
     let before = nominal.work();
     let nominal = settled(&context, nominal, &[])?;
