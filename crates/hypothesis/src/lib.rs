@@ -143,7 +143,7 @@ pub use null_distribution::DETECTION_PENALTY_FRACTION;
 pub use pattern::{ChannelIndex, Pattern, Unmodelled};
 pub use plant::{Plant, WeightInputs};
 pub use rate_noise::{RateNoise, RateNoiseFit};
-pub use result::{Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, Finding};
+pub use result::{Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, ExactEquivalent, Finding};
 pub use rows::{Covariate, Rows};
 pub use score::{NESTED_MODEL_CHI2, Ranked};
 pub use screen::{Screened, screen};

@@ -54,6 +54,18 @@ pub struct Alternative {
     pub nominal: Option<NominalEstimate>,
 }
 
+/// An effect that no record tells from the named one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExactEquivalent {
+    /// Its public id.
+    pub effect: &'static str,
+    /// Its parameters.
+    pub parameters: Vec<EffectEstimate>,
+    /// The nominal parameters with it in the place of the named effect: equivalent effects differ by what
+    /// the nominal parameters take up.
+    pub nominal: Option<NominalEstimate>,
+}
+
 /// A detected effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
@@ -67,8 +79,8 @@ pub struct Finding {
     pub p_value: f64,
     /// The rest of the confidence set, nearest first.
     pub alternatives: Vec<Alternative>,
-    /// Exact equivalents with their estimates.
-    pub exact_equivalents: Vec<(&'static str, Vec<EffectEstimate>)>,
+    /// Exact equivalents.
+    pub exact_equivalents: Vec<ExactEquivalent>,
     /// Probability that nothing of the catalogue is the cause; `None` where it was not estimated.
     pub none_of_these: Option<f64>,
 }
@@ -208,7 +220,10 @@ pub(crate) fn evaluate<F: FittedModel>(
                     stage.products.estimates(&places.values, columns, count)
                 },
             ),
-            exact_equivalents: exact_equivalents(&stage.fitted, effect, &bank),
+            exact_equivalents: exact_equivalents(&stage.fitted, effect, &bank, |columns| {
+                let count = context.plant.nominal_parameters;
+                stage.products.estimates(&places.values, columns, count)
+            }),
             none_of_these: None,
         },
         ln_others,
@@ -307,21 +322,26 @@ fn exact_equivalents<F: FittedModel>(
     fitted: &F,
     effect: &Effect,
     bank: &ScoreBank,
-) -> Vec<(&'static str, Vec<EffectEstimate>)> {
+    estimates: impl Fn(&[usize]) -> Option<NominalEstimate>,
+) -> Vec<ExactEquivalent> {
     let equivalents = effect.equivalents.iter();
     equivalents
         .filter_map(|id| {
             let other = fitted.plant().effect(id)?;
             let columns: Vec<usize> = other.model_parameters().collect();
             let joint = bank.joint(&columns)?;
-            let estimates = other.sizes().enumerate().map(|(i, size)| EffectEstimate {
+            let sizes = other.sizes().enumerate().map(|(i, size)| EffectEstimate {
                 name: size.name,
                 estimate: joint.estimate[i],
                 sigma: Some(joint.covariance[(i, i)].sqrt()),
                 interval: None,
                 unit: size.unit,
             });
-            Some((other.id, estimates.collect()))
+            Some(ExactEquivalent {
+                effect: other.id,
+                parameters: sizes.collect(),
+                nominal: estimates(&columns),
+            })
         })
         .collect()
 }

@@ -147,13 +147,19 @@ impl Member<'_> {
 fn members<'f>(findings: &[&'f Finding]) -> Vec<Member<'f>> {
     let mut members: Vec<Member<'f>> = Vec::new();
     for (place, finding) in findings.iter().enumerate() {
-        for other in &finding.alternatives {
-            let Some(nominal) = &other.nominal else {
+        // No record prefers an exact equivalent to the effect that is named.
+        let equivalents = finding.exact_equivalents.iter();
+        let equivalents = equivalents.map(|other| (other.effect, 0.0, &other.nominal));
+        let alternatives = finding.alternatives.iter();
+        let alternatives =
+            alternatives.map(|other| (other.effect, other.log_likelihood_deficit, &other.nominal));
+        for (effect, deficit, nominal) in equivalents.chain(alternatives) {
+            let Some(nominal) = nominal else {
                 continue;
             };
             if let Some(same) = members.iter_mut().find(|one| one.nominal == nominal) {
-                if !same.effects.contains(&other.effect) {
-                    same.effects.push(other.effect);
+                if !same.effects.contains(&effect) {
+                    same.effects.push(effect);
                 }
                 if !same.places.contains(&place) {
                     same.places.push(place);
@@ -162,9 +168,8 @@ fn members<'f>(findings: &[&'f Finding]) -> Vec<Member<'f>> {
             }
             members.push(Member {
                 places: vec![place],
-                effects: vec![other.effect],
-                // None is likelier than the effect that is named.
-                weight: (-other.log_likelihood_deficit.max(0.0)).exp(),
+                effects: vec![effect],
+                weight: (-deficit).exp(),
                 nominal,
             });
         }

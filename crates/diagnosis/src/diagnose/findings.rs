@@ -40,13 +40,10 @@ pub(super) fn of_cause(finding: &hypothesis::Finding, decision: &KeepDecision) -
             log_likelihood_deficit: other.log_likelihood_deficit,
         })
         .collect();
-    let equivalents = finding
-        .exact_equivalents
-        .iter()
-        .map(|(effect, found)| Equivalent {
-            effect: (*effect).to_owned(),
-            parameters: parameters(found),
-        });
+    let equivalents = finding.exact_equivalents.iter().map(|other| Equivalent {
+        effect: other.effect.to_owned(),
+        parameters: parameters(&other.parameters),
+    });
     Finding {
         parameters: parameters(&finding.parameters),
         // That of sets of random walks was not measured.
