@@ -1,7 +1,7 @@
 //! Effects hidden in simulated records: each kind of search finds its own.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use gyrocal_diagnosis::result::{FindingKind, UnmodelledPattern};
+use gyrocal_diagnosis::result::{FindingKind, SetMember, UnmodelledPattern};
 use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
@@ -109,4 +109,40 @@ fn what_the_catalogue_does_not_hold_has_no_name_and_is_told() {
             other => panic!("{effect}: {other:?}"),
         }
     }
+}
+
+#[test]
+fn coefficients_hold_for_the_equivalent_that_is_the_cause() {
+    // On the unit sphere g_xx, g_yy and g_zz differ by a bias: one name stands for the two that the nominal
+    // model does not hold, and its bias is wrong by the whole size if the other is the cause.
+    let (record, bench) = record(7, "gyro_x.g_zz", &[("size", 0.02)]);
+    let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+    let found = found.result;
+    let cause = found.causes().next().unwrap();
+    let mut names = vec![cause.effect.clone()];
+    names.extend(cause.equivalents.iter().map(|e| e.effect.clone()));
+    assert!(names.contains(&"gyro_x.g_zz".to_owned()), "{names:?}");
+    let coefficients = found.coefficients.as_ref().unwrap();
+    for effect in &names {
+        let of_effect = |m: &&SetMember| m.effects.contains(effect);
+        let member = coefficients.members.iter().find(of_effect).unwrap();
+        assert!((member.weight - coefficients.members[0].weight).abs() < 1e-12);
+    }
+    let truth = Coefficients::PAPER_LIKE.named();
+    let mut outside_of_the_named = 0;
+    for (index, interval) in coefficients.over_set.as_ref().unwrap().iter().enumerate() {
+        let [low, high] = interval.interval;
+        // Three times the half width: a coefficient beyond is impossible in the mixture.
+        let margin = high - low;
+        let of_name = |(name, ..): &&(&str, f64, &str)| *name == interval.name;
+        let (_, truth, _) = *truth.iter().find(of_name).unwrap();
+        let held = (low - margin..=high + margin).contains(&truth);
+        assert!(held, "{}: {truth} in {low} to {high}", interval.name);
+        let named = &coefficients.extended.as_ref().unwrap()[index];
+        if (named.estimate - truth).abs() > 5.0 * named.sigma {
+            outside_of_the_named += 1;
+        }
+    }
+    // The named one alone is wrong whenever it is not the cause.
+    assert_eq!(outside_of_the_named > 0, cause.effect != "gyro_x.g_zz");
 }
