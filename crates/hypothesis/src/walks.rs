@@ -7,9 +7,11 @@
 use gyrocal_scalar::effect::Effect;
 use gyrocal_statistics::chi_square_tail;
 
+use crate::accepted::value_places;
 use crate::bank::NominalEstimate;
 use crate::context::SearchContext;
 use crate::forward::{Beside, FirstRound, forward};
+use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::rate_noise::RateNoiseFit;
@@ -156,7 +158,11 @@ pub(crate) fn compare<F: FittedModel>(
     let p_beside = candidates.p_value(2.0 * (beside.log_likelihood - own));
     let penalties = state.penalties(first.threshold, 0.0, 1);
     let alone = 2.0 * (own - candidates.fit.log_likelihood) - penalties;
-    if alone > WALK_SET_DEVIANCE && p_beside >= probability {
+    let stand_out = alone > WALK_SET_DEVIANCE
+        && p_beside >= probability
+        && least_advantage(candidates, &state, first.threshold, &context.set.hypotheses)?
+            > WALK_SET_DEVIANCE;
+    if stand_out {
         return Ok(only(state));
     }
     let Ok(walking) = walking(context, candidates, nominal, draws) else {
@@ -200,6 +206,31 @@ pub(crate) fn compare<F: FittedModel>(
         Vec::new()
     };
     with_walks(candidates, walking, (p_value, rivals), ranking)
+}
+
+/// Smallest advantage of the effects over walks in the place of one of them, the others beside the walks:
+/// a slow effect may stand for a walk however much the others explain. Infinite for a single effect, which
+/// walks alone stand against.
+fn least_advantage<F: FittedModel>(
+    candidates: &Candidates,
+    state: &SearchState<F>,
+    threshold: f64,
+    hypotheses: &[Hypothesis],
+) -> Result<f64, F::Error> {
+    let mut least = f64::INFINITY;
+    if state.accepted.len() < 2 {
+        return Ok(least);
+    }
+    let fitted = &state.stage.fitted;
+    let own = 2.0 * state.stage.noise.log_likelihood - state.penalties(threshold, 0.0, 1);
+    let all = state.penalties(threshold, BESIDE_WALKS, 0);
+    for accepted in &state.accepted {
+        let absent = value_places(fitted, &hypotheses[accepted.hypothesis]);
+        let walking = fitted.fit_rate_noise(&candidates.rates, &absent)?;
+        let others = all - (threshold + accepted.penalty + BESIDE_WALKS);
+        least = least.min(own - (2.0 * walking.log_likelihood - others));
+    }
+    Ok(least)
 }
 
 /// Effects without walks that stand in the sets of walks: those that do not stand beside them.
