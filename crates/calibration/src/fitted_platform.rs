@@ -29,6 +29,9 @@ use crate::uncertainty::Uncertainty;
 pub use prediction::{Estimates, Expectation, WalkEnd};
 pub use rate_noise::GYRO_NOISE_PRIOR_SIGMA;
 
+/// Axes of the platform.
+const AXES: usize = 3;
+
 /// Seconds in an hour.
 const S_PER_H: f64 = 3600.0;
 

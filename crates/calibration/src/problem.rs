@@ -200,6 +200,27 @@ where
         })
     }
 
+    /// Makes a pass over the first `rows` rows of a run.
+    pub(crate) fn with_first_rows<R>(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        rows: usize,
+        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, ExtraColumns, 3, 3>) -> R,
+    ) -> R {
+        let run = &self.runs[index];
+        let series = run.rows.first(rows);
+        let rows = rows.min(run.points.len());
+        self.with_run(index, parameters, |all| {
+            pass(&Linearisation {
+                series: &series,
+                points: &run.points[..rows],
+                walks: all.walks.over_first(rows),
+                ..*all
+            })
+        })
+    }
+
     /// Makes a pass over a run with the columns of the `active` parameters and `further` ones.
     pub(crate) fn with_active<R, C: Columns<3, 3>>(
         &self,

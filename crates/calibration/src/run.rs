@@ -105,7 +105,6 @@ impl<'a> WeightedRows<'a> {
             })
     }
 
-    /// Gives the values of some rows weight 0.
     /// Time from the first row to the last, s.
     pub(crate) fn duration_s(&self) -> f64 {
         let times = &self.record.time_s[..self.rows];
@@ -115,6 +114,17 @@ impl<'a> WeightedRows<'a> {
         }
     }
 
+    /// The first `rows` of these rows.
+    pub(crate) fn first(&self, rows: usize) -> Self {
+        let mut first = self.clone();
+        first.rows = rows.min(self.rows);
+        if let Some(weights) = &mut first.weights {
+            weights.truncate(first.rows);
+        }
+        first
+    }
+
+    /// Gives the values of some rows weight 0.
     pub(crate) fn exclude(&mut self, rows: core::ops::Range<usize>) {
         let count = self.rows;
         let weights = self.weights.get_or_insert_with(|| vec![[1.0; 3]; count]);

@@ -4,8 +4,10 @@
 use gyrocal::Catalogue;
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal::trajectory::rotation_between;
-use gyrocal_calibration::{Expectation, FittedPlatform, NoiseModel, Options, Run};
-use gyrocal_hypothesis::ModelExtension;
+use gyrocal_calibration::{
+    Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel, Options, Run,
+};
+use gyrocal_hypothesis::{ModelExtension, RateNoise};
 use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
 use nalgebra::DMatrix;
 
@@ -78,6 +80,61 @@ fn the_order_of_an_extension_does_not_matter() {
     let (one, other) = (evidence(vec![free, known]), evidence(vec![known, free]));
     // Both are converged to 1e-4 of a sigma, and rounding differs.
     assert!((one - other).abs() < 1e-3, "{one} {other}");
+}
+
+#[test]
+fn the_first_rows_are_a_record_without_the_others() {
+    let simulation = simulation();
+    let white = fitted(&simulation);
+    let walking = RateNoise {
+        white: vec![1.3, 0.8, 1.0],
+        walk: vec![0.0, 3e-4, 1e-3],
+    };
+    let walking = white.with_rate_noise(&walking).unwrap();
+    let rows = simulation.record.len();
+    for fit in [&white, &walking] {
+        for first in [rows / 3, rows] {
+            let own = fit.log_evidence_of_first(first, &fit.rate_noise()).unwrap();
+            let without = fit.log_evidence_without(first..rows).unwrap();
+            // Some thousand nats, added up in another order.
+            assert!((own - without).abs() < 1e-6, "{own} {without}");
+        }
+    }
+    // The estimate is where density and prior are largest together.
+    let penalised = |noise: &RateNoise| {
+        let off = noise.white[0].ln() / GYRO_NOISE_PRIOR_SIGMA;
+        walking.log_evidence_of_first(rows / 2, noise).unwrap() - 0.5 * off * off
+    };
+    let own = walking.fit_rate_noise_to_first(rows / 2).unwrap().noise;
+    let best = penalised(&own);
+    for factor in [0.3, 3.0] {
+        let mut other = own.clone();
+        other.white[0] *= factor;
+        let worse = penalised(&other);
+        assert!(worse < best, "{worse} {best}");
+    }
+}
+
+#[test]
+fn noise_of_the_first_rows_knows_nothing_of_later_ones() {
+    let simulation = simulation();
+    let rows = simulation.record.len();
+    let mut changed = simulation.clone();
+    for (row, accel_g) in changed.record.accel_g.iter_mut().enumerate().skip(rows / 2) {
+        // Ten times the declared noise, alternating.
+        let sign = if row % 2 == 0 { 1.0 } else { -1.0 };
+        for value in accel_g {
+            *value += 1e-4 * sign;
+        }
+    }
+    let [one, other] = [&simulation, &changed].map(|simulation| {
+        let fit = fitted(simulation);
+        fit.fit_rate_noise_to_first(rows / 2).unwrap().noise
+    });
+    for (one, other) in one.white.iter().zip(&other.white) {
+        // The scoring ends at 0.005 nats, a tenth of a sigma, which is some per cent; about another line.
+        assert!((one / other - 1.0).abs() < 0.01, "{one} {other}");
+    }
 }
 
 #[test]

@@ -264,7 +264,7 @@ fn model_gain(
         .map(|(finding, _)| finding.effect.to_owned());
     gain(
         [nominal, extended],
-        scores,
+        (scores, validated.prediction),
         run.record,
         noise_model,
         run.bench.accel_noise_g,

@@ -16,7 +16,7 @@ pub(crate) use cross_validation::{CrossValidated, KeepDecision, cross_validate};
 pub(crate) use later_record::predict;
 pub use later_record::{AttitudeErrors, LaterPrediction};
 
-use crate::result::{CoefficientShift, FreeRun, Gain};
+use crate::result::{CoefficientShift, FreeRun, Gain, Prediction};
 
 /// Gain of the second model over the first, the nominal one, on the record both were fitted to with
 /// the same noise, of which `accel_noise_g` is declared. `scores` are the log scores of its blocks
@@ -26,7 +26,7 @@ use crate::result::{CoefficientShift, FreeRun, Gain};
 /// As [`FittedPlatform::free_run_g`].
 pub(crate) fn gain(
     [nominal, extended]: [&FittedPlatform<'_>; 2],
-    [before, after]: [[f64; BLOCKS]; 2],
+    ([before, after], prediction): ([[f64; BLOCKS]; 2], Prediction),
     record: &Record,
     noise: &NoiseModel,
     accel_noise_g: f64,
@@ -37,6 +37,7 @@ pub(crate) fn gain(
     let squares = noise.accel_ratio.iter().map(|ratio| ratio * ratio);
     Ok(Gain {
         effects,
+        prediction,
         cross_validated_log_score_nats: block_log_score_nats.iter().sum(),
         block_log_score_nats,
         free_run_rms_g: FreeRun {

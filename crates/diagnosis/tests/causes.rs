@@ -1,7 +1,7 @@
 //! Effects hidden in simulated records: each kind of search finds its own.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use gyrocal_diagnosis::result::{FindingKind, SetMember, UnmodelledPattern};
+use gyrocal_diagnosis::result::{FindingKind, Prediction, SetMember, UnmodelledPattern};
 use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
@@ -75,6 +75,42 @@ fn a_random_walk_is_no_cause_with_a_law() {
     // Forty increments determine a variance to a fifth and its root to a tenth; the walk is
     // observable in some of them only: a factor of two.
     assert!((0.5..2.0).contains(&(found[0].1 / 0.001)), "{found:?}");
+}
+
+#[test]
+fn a_term_beside_a_random_walk_is_found_and_judged_forward() {
+    let simulation = simulate(&Scenario {
+        seed: 11,
+        coefficients: Coefficients::PAPER_LIKE,
+        initial: InitialAttitude::Random,
+        duration_s: 2.0 * 86_400.0,
+        hidden: vec![
+            Hidden::new("gyro_y.g_z", &[("size", 0.05)]).unwrap(),
+            Hidden::new("gyro_x.random_walk", &[("size", 0.001)]).unwrap(),
+        ],
+        ..Scenario::default()
+    })
+    .unwrap();
+    let found = diagnose(
+        &simulation.record,
+        &simulation.bench,
+        &DiagnoseOptions::default(),
+    );
+    let found = found.unwrap().result;
+    let names: Vec<&str> = found.causes().map(|f| f.effect.as_str()).collect();
+    assert_eq!(names, ["gyro_y.g_z", "gyro_x.random_walk"]);
+    let gain = found.gain.unwrap();
+    assert_eq!(gain.prediction, Prediction::Forward);
+    // The first block is predicted from nothing.
+    assert!(gain.block_log_score_nats[0].abs() < f64::EPSILON);
+    let term = &found.findings[0];
+    assert_eq!(term.accepted, Some(true));
+    let parameter = &term.parameters[0];
+    // One in sixteen thousand is farther off than four sigmas.
+    assert!((parameter.estimate - 0.05).abs() < 4.0 * parameter.sigma.unwrap());
+    // The sets of effects have a measured coverage, those of walks none.
+    assert!(term.coverage.is_some());
+    assert_eq!(found.findings[1].coverage, None);
 }
 
 #[test]

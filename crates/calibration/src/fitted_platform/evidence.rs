@@ -1,9 +1,10 @@
 //! Marginal likelihood of parts of a record.
 
 use gyrocal::estimation::batch::Linearisation;
+use gyrocal_hypothesis::RateNoise;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::FittedPlatform;
+use super::{AXES, FittedPlatform};
 use crate::error::CalibrationError;
 use crate::solve::add_gram;
 
@@ -31,13 +32,54 @@ impl FittedPlatform<'_> {
                 Linearisation { tape, ..*pass }.reduce(|_| ())
             })
             .map_err(|error| CalibrationError::pass(0, error))?;
+        self.log_evidence(&reduced.gram, reduced.log_variance, reduced.values)
+    }
+
+    /// Logarithm of the density of the first `rows` rows with this noise of the gyros, which walk where
+    /// they do in this fit; else as [`Self::log_evidence_without`].
+    ///
+    /// # Errors
+    /// As [`Self::log_evidence_without`].
+    pub fn log_evidence_of_first(
+        &self,
+        rows: usize,
+        noise: &RateNoise,
+    ) -> Result<f64, CalibrationError> {
+        let believed = self.rate_noise();
+        let mut factors = vec![1.0; AXES];
+        for of_kind in [
+            [&noise.white, &believed.white],
+            [&noise.walk, &believed.walk],
+        ] {
+            let pairs = of_kind[0].iter().zip(of_kind[1]);
+            let walking = pairs.filter(|(_, believed)| **believed > 0.0);
+            factors.extend(walking.map(|(size, believed)| (size / believed).powi(2)));
+        }
+        let score = self
+            .problem
+            .with_first_rows(0, &self.parameters(), rows, |pass| {
+                let tape = self.solution.tapes[0].as_deref();
+                Linearisation { tape, ..*pass }.noise_score_of_columns(&factors, usize::MAX)
+            })
+            .map_err(|error| CalibrationError::pass(0, error))?;
+        self.log_evidence(&score.gram, score.log_variance, score.values)
+    }
+
+    /// From the Gram matrix of a pass, the sum of the logarithms of its innovations' variances, and their
+    /// number.
+    fn log_evidence(
+        &self,
+        of_columns: &DMatrix<f64>,
+        log_variance: f64,
+        values: usize,
+    ) -> Result<f64, CalibrationError> {
         let unknowns = &self.problem.unknowns;
         let count = unknowns.len();
         // The pass has the parameters in the order of the model.
         let mut gram = DMatrix::zeros(count + 1, count + 1);
         add_gram(
             &mut gram,
-            &reduced.gram,
+            of_columns,
             &self.problem.runs[0].column_unknowns(),
         );
         let mut information = gram.view((1, 1), (count, count)).into_owned();
@@ -61,8 +103,8 @@ impl FittedPlatform<'_> {
         let determinant = 2.0 * cholesky.l().diagonal().iter().map(|x| x.ln()).sum::<f64>();
         Ok(-0.5
             * (gram[(0, 0)] + prior - gained
-                + reduced.log_variance
+                + log_variance
                 + determinant
-                + reduced.values as f64 * core::f64::consts::TAU.ln()))
+                + values as f64 * core::f64::consts::TAU.ln()))
     }
 }

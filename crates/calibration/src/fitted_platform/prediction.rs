@@ -7,13 +7,10 @@ use gyrocal::estimation::batch::{Linearisation, Walks};
 use gyrocal::trajectory::Orientation;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::FittedPlatform;
+use super::{AXES, FittedPlatform};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use gyrocal_hypothesis::ExtraColumns;
-
-/// Axes of the platform.
-const AXES: usize = 3;
 
 /// 1 deg/h in rad/s.
 const RAD_PER_S: f64 = core::f64::consts::PI / (180.0 * 3600.0);

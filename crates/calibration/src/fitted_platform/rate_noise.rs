@@ -8,16 +8,13 @@ use gyrocal_statistics::NORMAL_97_5;
 use likelihood::Likelihood;
 use nalgebra::Cholesky;
 
-use super::{FittedPlatform, walks};
+use super::{AXES, FittedPlatform, walks};
 use crate::error::CalibrationError;
 use crate::platform::PLATFORM;
 
 /// Standard deviation of the logarithm of a gyro's white noise over the declared one before the
 /// record: bench files are off by factors of two, seldom of four.
 pub const GYRO_NOISE_PRIOR_SIGMA: f64 = 0.7;
-
-/// Axes.
-const AXES: usize = 3;
 
 /// Density of a walk that counts as none, over that of the white noise over the square of the
 /// record's duration.
@@ -77,7 +74,7 @@ impl FittedPlatform<'_> {
         walking: &[usize],
         absent: &[usize],
     ) -> Result<RateNoiseFit, CalibrationError> {
-        self.fit_rate_noise_with(walking, absent, &[])
+        self.fit_rate_noise_with(walking, absent, &[], self.points().len())
     }
 
     /// The same with the noise of this fit's walks, and the white noise of some gyros `held` at the
@@ -86,7 +83,17 @@ impl FittedPlatform<'_> {
     /// # Errors
     /// As [`Self::fit_rate_noise`].
     pub fn fit_rate_noise_held(&self, held: &[usize]) -> Result<RateNoiseFit, CalibrationError> {
-        self.fit_rate_noise_with(&self.rate_noise().walking(), &[], held)
+        let rows = self.points().len();
+        self.fit_rate_noise_with(&self.rate_noise().walking(), &[], held, rows)
+    }
+
+    /// The noise of the gyros that walk in this fit, and the white noise of all, from the first `rows`
+    /// rows alone.
+    ///
+    /// # Errors
+    /// As [`Self::fit_rate_noise`].
+    pub fn fit_rate_noise_to_first(&self, rows: usize) -> Result<RateNoiseFit, CalibrationError> {
+        self.fit_rate_noise_with(&self.rate_noise().walking(), &[], &[], rows)
     }
 
     fn fit_rate_noise_with(
@@ -94,8 +101,10 @@ impl FittedPlatform<'_> {
         walking: &[usize],
         absent: &[usize],
         held: &[usize],
+        rows: usize,
     ) -> Result<RateNoiseFit, CalibrationError> {
         let (mut likelihood, unit) = self.likelihood(walking, absent, held);
+        likelihood.rows = rows;
         likelihood.start(unit)?;
         let (logarithms, at) = likelihood.maximise()?;
         likelihood.result(&logarithms, &at)
@@ -180,6 +189,7 @@ impl FittedPlatform<'_> {
             free,
             absent,
             held,
+            rows: self.points().len(),
             parameters: self.parameters(),
         };
         (likelihood, unit)

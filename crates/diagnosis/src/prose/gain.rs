@@ -1,6 +1,6 @@
 //! Gain of the extended model.
 
-use crate::result::{CoefficientShift, DiagnosisResult, Gain};
+use crate::result::{CoefficientShift, DiagnosisResult, Gain, Prediction};
 
 /// Coefficient changes that a paragraph names; the table shows all of them.
 const SHIFTS_SHOWN: usize = 3;
@@ -15,6 +15,10 @@ fn on_the_record(gain: &Gain) -> String {
     let nats = gain.cross_validated_log_score_nats;
     let folds = gain.block_log_score_nats.len();
     let effects = gain.effects.join(", ");
+    let how = match gain.prediction {
+        Prediction::CrossValidated => format!("{folds}-fold blocked cross-validation"),
+        Prediction::Forward => format!("Each of {folds} blocks predicted from those before it"),
+    };
     let validated = if nats > 0.0 {
         let improves = if gain.effects.len() == 1 {
             "improves"
@@ -22,12 +26,12 @@ fn on_the_record(gain: &Gain) -> String {
             "improve"
         };
         format!(
-            "{folds}-fold blocked cross-validation: {effects} {improves} the predictive log score \
+            "{how}: {effects} {improves} the predictive log score \
              by {nats:.1} nats."
         )
     } else {
         format!(
-            "{folds}-fold blocked cross-validation: no extended model, as {effects} would not \
+            "{how}: no extended model, as {effects} would not \
              improve the predictive log score ({nats:.1} nats). The following figures are of that \
              model."
         )

@@ -8,8 +8,11 @@ use serde::{Deserialize, Serialize};
 pub struct Gain {
     /// Effects in the model: the accepted ones; if none is, all significant causes.
     pub effects: Vec<String>,
-    /// Predictive log score of the blocks of the record, each given the others: extended less
-    /// nominal, sum over all blocks \[nats\].
+    /// Rows that a block is predicted from.
+    #[serde(default)]
+    pub prediction: Prediction,
+    /// Predictive log score of the blocks of the record: extended less nominal, sum over all blocks
+    /// \[nats\].
     pub cross_validated_log_score_nats: f64,
     /// The same block by block \[nats\].
     pub block_log_score_nats: Vec<f64>,
@@ -19,6 +22,19 @@ pub struct Gain {
     pub coefficient_shift: Vec<CoefficientShift>,
     /// Validation on a later record, if one was given and an effect is accepted.
     pub validation: Option<Validation>,
+}
+
+/// Rows that a block of a record is predicted from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Prediction {
+    /// All other blocks.
+    #[default]
+    CrossValidated,
+    /// The blocks before it, with the noise of the gyros that those tell: beside a random walk. The
+    /// first block has none.
+    Forward,
 }
 
 /// Root mean square of measured less simulated specific force, the simulation running from the

@@ -31,7 +31,7 @@ pub use audit::{Estimated, Gaps, NoiseAuditSummary, RecordSummary};
 pub use coefficients::{CoefficientEstimate, CoefficientInterval, Coefficients, SetMember};
 pub use filter::FilterTest;
 pub use finding::{Alternative, Equivalent, Finding, FindingKind, Parameter};
-pub use gain::{CoefficientShift, Compensation, FreeRun, Gain, Validation};
+pub use gain::{CoefficientShift, Compensation, FreeRun, Gain, Prediction, Validation};
 pub use limits::{
     Experiment, ExperimentKind, Indistinguishable, NotTested, NotTestedReason, Power, RankedEffect,
     Relation,

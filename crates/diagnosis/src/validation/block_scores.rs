@@ -24,20 +24,21 @@ pub(crate) fn block_log_scores(
 }
 
 /// Logarithm of the density of each block but the first given those before it, nats; zero for the
-/// first. A random walk joins a block that is left out from both sides, and no drift gains beside it.
+/// first. The noise of the gyros is that of the rows before the block. A random walk joins a block that is
+/// left out from both sides, and no drift gains beside it.
 ///
 /// # Errors
-/// As [`FittedPlatform::log_evidence_without`].
+/// As [`FittedPlatform::log_evidence_of_first`] and [`FittedPlatform::fit_rate_noise_to_first`].
 pub(crate) fn forward_log_scores(
     fit: &FittedPlatform<'_>,
 ) -> Result<[f64; BLOCKS], CalibrationError> {
     let rows = fit.points().len();
-    let mut before = fit.log_evidence_without(rows / BLOCKS..rows)?;
     let mut scores = [0.0; BLOCKS];
     for (block, score) in scores.iter_mut().enumerate().skip(1) {
-        let until = fit.log_evidence_without((block + 1) * rows / BLOCKS..rows)?;
-        *score = until - before;
-        before = until;
+        let [first, end] = [block, block + 1].map(|block| block * rows / BLOCKS);
+        let noise = fit.fit_rate_noise_to_first(first)?.noise;
+        let [before, until] = [first, end].map(|rows| fit.log_evidence_of_first(rows, &noise));
+        *score = until? - before?;
     }
     Ok(scores)
 }

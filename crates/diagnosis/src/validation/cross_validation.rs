@@ -6,6 +6,7 @@ use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use gyrocal_hypothesis::Searched;
 
 use super::block_scores::{BLOCKS, block_log_scores, forward_log_scores};
+use crate::result::Prediction;
 
 /// Decision of the cross-validation on one cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,8 @@ pub(crate) struct CrossValidated<'a> {
     /// Log scores of the blocks with the nominal model, and with the extended one or, if no cause
     /// gains, with all causes; `None` without causes.
     pub(crate) scores: Option<[[f64; BLOCKS]; 2]>,
+    /// Rows that the scores predict a block from.
+    pub(crate) prediction: Prediction,
     /// In the order of the findings.
     pub(crate) decisions: Vec<KeepDecision>,
 }
@@ -45,6 +48,7 @@ pub(crate) fn cross_validate<'a>(
         return Ok(CrossValidated {
             extended: None,
             scores: None,
+            prediction: Prediction::default(),
             decisions: Vec::new(),
         });
     }
@@ -54,11 +58,7 @@ pub(crate) fn cross_validate<'a>(
         }
         searched.fitted.refitted(&searched.extension_with(kept))
     };
-    let log_scores = if walks > 0 {
-        forward_log_scores
-    } else {
-        block_log_scores
-    };
+    let (prediction, log_scores) = scoring(walks > 0);
     let before = log_scores(nominal)?;
     let mut scored: Vec<(Vec<bool>, [f64; BLOCKS])> = Vec::new();
     if searched.unmodelled.is_empty() && walks == 0 {
@@ -105,8 +105,21 @@ pub(crate) fn cross_validate<'a>(
     Ok(CrossValidated {
         extended,
         scores: after.map(|after| [before, after]),
+        prediction,
         decisions,
     })
+}
+
+/// A log score of the blocks of a fit.
+type LogScores = fn(&FittedPlatform<'_>) -> Result<[f64; BLOCKS], CalibrationError>;
+
+/// The log score with or without walks in the model, and the rows that it predicts a block from.
+fn scoring(has_walks: bool) -> (Prediction, LogScores) {
+    if has_walks {
+        (Prediction::Forward, forward_log_scores)
+    } else {
+        (Prediction::CrossValidated, block_log_scores)
+    }
 }
 
 fn is_walk(effect: &str) -> bool {

@@ -90,7 +90,7 @@ where
             || of.parameters.len() != of.model.parameters()
             || of.active.iter().any(|index| *index >= of.parameters.len())
             || of.tape.is_some_and(|tape| {
-                tape.steps() + 1 != of.points.len() || tape.active() != of.active.len()
+                tape.steps() + 1 < of.points.len() || tape.active() != of.active.len()
             })
             || change.is_some_and(|change| change.len() != of.active.len() + further)
         {

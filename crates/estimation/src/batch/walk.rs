@@ -25,6 +25,16 @@ pub struct Walks<'a> {
 }
 
 impl Walks<'_> {
+    /// The same walks over the first `rows` rows of the trajectory.
+    #[must_use]
+    pub fn over_first(self, rows: usize) -> Self {
+        let count = (rows * self.walks.len()).min(self.changes.len());
+        Self {
+            changes: &self.changes[..count],
+            ..self
+        }
+    }
+
     /// The change of a walk at a row.
     pub(crate) fn change(&self, row: usize, walk: usize) -> f64 {
         let place = row * self.walks.len() + walk;

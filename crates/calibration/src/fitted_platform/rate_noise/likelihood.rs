@@ -5,10 +5,10 @@ use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
 use gyrocal_hypothesis::RateNoiseFit;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::{AXES, GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
+use super::{GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
-use crate::fitted_platform::{FittedPlatform, S_PER_H};
+use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
 use crate::platform::PLATFORM;
 use crate::solve::add_gram;
 
@@ -52,6 +52,8 @@ pub(super) struct Likelihood<'p, 'a> {
     pub(super) absent: &'p [usize],
     /// Gyros whose white noise is held at the declared one.
     pub(super) held: &'p [usize],
+    /// Number of rows that tell of the noise, from the first.
+    pub(super) rows: usize,
     pub(super) parameters: Vec<f64>,
 }
 
@@ -183,12 +185,13 @@ impl Likelihood<'_, '_> {
         };
         fitted
             .problem
-            .with_run(0, &self.parameters, |linearised| {
+            .with_first_rows(0, &self.parameters, self.rows, |linearised| {
                 let tape = fitted.solution.tapes[0].as_deref();
                 let walks = Walks {
                     walks: &self.walks,
                     changes,
-                };
+                }
+                .over_first(self.rows);
                 let linearised = Linearisation {
                     tape,
                     walks,

@@ -105,7 +105,14 @@ pub(super) fn gain(found: &DiagnosisRun<'_>, gain: &result::Gain) -> CrossValida
             gain.cross_validated_log_score_nats,
             blocks.len()
         ),
-        subtitle: format!("blocked cross-validation; {}", subtitle(found)),
+        subtitle: format!(
+            "{}; {}",
+            match gain.prediction {
+                result::Prediction::CrossValidated => "blocked cross-validation",
+                result::Prediction::Forward => "each block predicted from those before it",
+            },
+            subtitle(found)
+        ),
         block_gain_nats: blocks.clone(),
         prediction: compensation.map(|found| PredictionError {
             name: "Later record".to_owned(),
