@@ -28,7 +28,7 @@ pub(crate) fn block_log_scores(
 /// left out from both sides, and no drift gains beside it.
 ///
 /// # Errors
-/// As [`FittedPlatform::log_evidence_of_first`] and [`FittedPlatform::fit_rate_noise_to_first`].
+/// As [`FittedPlatform::log_evidence_of_first`].
 pub(crate) fn forward_log_scores(
     fit: &FittedPlatform<'_>,
 ) -> Result<[f64; BLOCKS], CalibrationError> {
@@ -36,7 +36,9 @@ pub(crate) fn forward_log_scores(
     let mut scores = [0.0; BLOCKS];
     for (block, score) in scores.iter_mut().enumerate().skip(1) {
         let [first, end] = [block, block + 1].map(|block| block * rows / BLOCKS);
-        let noise = fit.fit_rate_noise_to_first(first)?.noise;
+        // Rows that tell nothing of the noise leave what is believed of it.
+        let told = fit.fit_rate_noise_to_first(first);
+        let noise = told.map_or_else(|_| fit.rate_noise(), |told| told.noise);
         let [before, until] = [first, end].map(|rows| fit.log_evidence_of_first(rows, &noise));
         *score = until? - before?;
     }

@@ -74,7 +74,10 @@ impl Likelihood<'_, '_> {
             for place in &unknown {
                 self.walks[*place].density = start * unit;
             }
-            let value = self.value(&vec![0.0; AXES + self.free.len()])?;
+            // From where the numbers do not suffice nothing starts.
+            let Ok(value) = self.value(&vec![0.0; AXES + self.free.len()]) else {
+                continue;
+            };
             if value > best.0 {
                 best = (value, start);
             }
@@ -274,11 +277,15 @@ impl Likelihood<'_, '_> {
         let integrated = PARAMETERS + self.fitted.nuisances();
         let mut solution = DVector::zeros(count + 1);
         solution[0] = 1.0;
-        let present: Vec<usize> = (0..count).filter(|at| !self.absent.contains(at)).collect();
+        let weight = |place: usize| problem.unknowns[place].sigma.powi(-2);
+        // The rows may end before the onset of an effect.
+        let is_told = |place: usize| gram[(place + 1, place + 1)] + weight(place) > 0.0;
+        let present: Vec<usize> = (0..count)
+            .filter(|at| !self.absent.contains(at) && (*at < integrated || is_told(*at)))
+            .collect();
         for place in self.absent {
             solution[place + 1] = -problem.values[*place];
         }
-        let weight = |place: usize| problem.unknowns[place].sigma.powi(-2);
         let pull = &gram * &solution;
         let gradient = DVector::from_fn(present.len(), |i, _| {
             let place = present[i];
