@@ -128,6 +128,8 @@ mod signature;
 mod smooth_functions;
 mod state;
 mod unmodelled;
+mod walk_by_rate;
+mod walk_candidates;
 mod walks;
 
 pub use bank::{JointScore, NominalEstimate, ScoreBank};
@@ -149,4 +151,4 @@ pub use score::{NESTED_MODEL_CHI2, Ranked};
 pub use screen::{Screened, screen};
 pub use search::{Searched, search, select};
 pub use signature::{Source, scale, shape_derivative, signature};
-pub use walks::{BESIDE_WALKS, WALK_SET_DEVIANCE};
+pub use walk_candidates::{BESIDE_WALKS, WALK_SET_DEVIANCE};

@@ -8,7 +8,7 @@ use crate::null_distribution::GaussianDraws;
 use crate::result::{ConditionalResult, add_shape_intervals, evaluate};
 use crate::score::Best;
 use crate::state::{SearchState, stage};
-use crate::walks::Walks;
+use crate::walk_candidates::Rival;
 
 /// Swaps names and removes insignificant effects until nothing changes; the conditional result of
 /// each effect that remains.
@@ -16,7 +16,7 @@ pub(crate) fn reassess<F: FittedModel>(
     context: &SearchContext<'_>,
     state: &mut SearchState<F>,
     threshold: f64,
-    walks: &Walks,
+    rivals: &mut [Rival],
     draws: &mut GaussianDraws,
 ) -> Result<Vec<ConditionalResult>, F::Error> {
     let mut swaps = 0;
@@ -45,7 +45,12 @@ pub(crate) fn reassess<F: FittedModel>(
         {
             swaps += 1;
             // An effect stays if its successor cannot be fitted.
+            let own = state.accepted[index].hypothesis;
             if swap(context, state, index, &other).is_ok() {
+                let of = rivals.iter_mut().flat_map(|rival| &mut rival.of);
+                for of in of.filter(|of| **of == own) {
+                    *of = other.hypothesis;
+                }
                 continue;
             }
         }
@@ -74,8 +79,11 @@ pub(crate) fn reassess<F: FittedModel>(
                         draws,
                     )?;
                     let hypothesis = state.accepted[index].hypothesis;
-                    if !walks.beside.contains(&hypothesis) {
-                        finding.alternatives.extend(walks.rivals.iter().cloned());
+                    let own = rivals.iter().filter(|rival| rival.of.contains(&hypothesis));
+                    for rival in own {
+                        finding
+                            .alternatives
+                            .extend(rival.alternatives.iter().cloned());
                     }
                 }
                 return Ok(results);

@@ -14,7 +14,7 @@ use crate::result::FittedStage;
 use crate::rows::Rows;
 use crate::score::Scores;
 use crate::state::{settled, stage};
-use crate::walks::Candidates;
+use crate::walk_candidates::Candidates;
 
 /// Outcome of the first detection tests of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,7 +17,8 @@ use crate::result::Finding;
 use crate::rows::Rows;
 use crate::score::Ranked;
 use crate::state::{SearchState, settled};
-use crate::walks::{Candidates, Compared, compare};
+use crate::walk_candidates::Candidates;
+use crate::walks::{Compared, compare};
 
 /// Result of a search.
 pub struct Searched<F> {
@@ -96,7 +97,13 @@ pub fn search<F: FittedModel>(
     } = first;
     ranking.extend(ranked_walks);
     ranking.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
-    let mut effects = reassess(&context, &mut state, threshold, &walks, &mut draws)?;
+    let mut effects = reassess(
+        &context,
+        &mut state,
+        threshold,
+        &mut walks.rivals,
+        &mut draws,
+    )?;
     let model = (&state.stage, state.unmodelled.as_slice());
     add_none_of_these(&context, model, &mut effects, &mut walks.named)?;
     let effects = effects.into_iter().map(|effect| effect.finding);

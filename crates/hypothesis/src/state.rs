@@ -33,7 +33,33 @@ impl<F> SearchState<F> {
     /// Penalties of all effects and unmodelled terms for having been searched for, but for the first
     /// `free`: the threshold, the search penalty and a margin for each.
     pub(crate) fn penalties(&self, threshold: f64, margin: f64, free: usize) -> f64 {
-        let effects = self.accepted.iter().map(|accepted| accepted.penalty);
+        self.penalties_of(|_| true, threshold, margin, free)
+    }
+
+    /// The same of the effects that another model lacks.
+    pub(crate) fn penalties_beside(
+        &self,
+        other: &Self,
+        threshold: f64,
+        margin: f64,
+        free: usize,
+    ) -> f64 {
+        let lacks = |own: &Accepted| {
+            let mut others = other.accepted.iter();
+            !others.any(|other| other.hypothesis == own.hypothesis)
+        };
+        self.penalties_of(lacks, threshold, margin, free)
+    }
+
+    fn penalties_of(
+        &self,
+        counts: impl Fn(&Accepted) -> bool,
+        threshold: f64,
+        margin: f64,
+        free: usize,
+    ) -> f64 {
+        let effects = self.accepted.iter().filter(|accepted| counts(accepted));
+        let effects = effects.map(|accepted| accepted.penalty);
         let unmodelled = self.unmodelled.iter();
         let unmodelled = unmodelled.map(|found| found.statistic - found.equivalent());
         let each = effects.chain(unmodelled).skip(free);

@@ -5,41 +5,32 @@
 //! likelihoods are compared.
 
 use gyrocal_scalar::effect::Effect;
-use gyrocal_statistics::chi_square_tail;
 
 use crate::accepted::value_places;
-use crate::bank::NominalEstimate;
 use crate::context::SearchContext;
 use crate::forward::{Beside, FirstRound, forward};
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::rate_noise::RateNoiseFit;
 use crate::result::{Alternative, EffectEstimate, Finding, FittedStage};
 use crate::score::Ranked;
-use crate::state::{SearchState, settled};
+use crate::state::{SearchState, settled, stage};
+use crate::walk_by_rate::{ByRate, replaced};
+use crate::walk_candidates::{
+    BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, alternatives, needed,
+};
 
-/// Twice the log-likelihood that deterministic effects must be better by, penalties subtracted, to stand
-/// without walks in their set.
-pub const WALK_SET_DEVIANCE: f64 = 12.0;
-
-/// The same for an effect that is added beside walks, which absorb most of what is not named; and the
-/// advantage of walks in the order of a set.
-pub const BESIDE_WALKS: f64 = 6.0;
-
-/// Twice the log-likelihood that a walk of one rate gains, the others being there, from which on it is
-/// named: the 5 % point of a variance that may be zero, ½ χ²(1).
-const NAMED_WALK: f64 = 2.71;
+/// Advantage of effects over a walk in the place of one of them, the shapes of the others held, above
+/// which no full comparison is made: with shapes of their own walks gain some tens at most.
+const CLEAR_ADVANTAGE: f64 = 3.0 * WALK_SET_DEVIANCE;
 
 /// What a search says of walks.
 #[derive(Clone, Default)]
 pub(crate) struct Walks {
     /// Walks in the model, as findings.
     pub(crate) named: Vec<Finding>,
-    /// Walks that stand in the set of every effect of the model but for `beside`.
-    pub(crate) rivals: Vec<Alternative>,
-    /// Hypotheses that stand beside walks too.
-    pub(crate) beside: Vec<usize>,
+    /// Walks that stand in the sets of effects.
+    pub(crate) rivals: Vec<Rival>,
 }
 
 /// Result of the comparison.
@@ -61,71 +52,6 @@ impl<F> Compared<F> {
     }
 }
 
-/// The walks that a search may name, with the nominal model that has all of them.
-pub(crate) struct Candidates {
-    effects: Vec<&'static Effect>,
-    rates: Vec<usize>,
-    /// Noise of the nominal model with all walks.
-    fit: RateNoiseFit,
-}
-
-impl Candidates {
-    /// `None` if the search has no walk.
-    pub(crate) fn new<F: FittedModel>(
-        context: &SearchContext<'_>,
-        nominal: &FittedStage<F>,
-    ) -> Result<Option<Self>, F::Error> {
-        let walks = context.walks.iter();
-        let pairs = walks.filter_map(|effect| Some((*effect, effect.rate()?)));
-        let (effects, rates): (Vec<&'static Effect>, Vec<usize>) = pairs.unzip();
-        if rates.is_empty() {
-            return Ok(None);
-        }
-        let fit = nominal.fitted.fit_rate_noise(&rates, &[])?;
-        Ok(Some(Self {
-            effects,
-            rates,
-            fit,
-        }))
-    }
-
-    /// Twice the log-likelihood that the walks gain over the nominal model without them, and its
-    /// p-value.
-    pub(crate) fn test<F>(&self, nominal: &FittedStage<F>) -> (f64, f64) {
-        let gained = 2.0 * (self.fit.log_likelihood - nominal.noise.log_likelihood);
-        (gained, self.p_value(gained))
-    }
-
-    /// The effect of the largest walk.
-    pub(crate) fn largest(&self) -> Option<&'static str> {
-        let sizes = self.rates.iter().map(|rate| self.fit.noise.walk[*rate]);
-        let all = self.effects.iter().zip(sizes);
-        all.max_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(effect, _)| effect.id)
-    }
-
-    /// Log-likelihood of the nominal model with all walks.
-    pub(crate) fn log_likelihood(&self) -> f64 {
-        self.fit.log_likelihood
-    }
-
-    /// Probability that walks gain as much where there are none.
-    fn p_value(&self, gained: f64) -> f64 {
-        tail(gained, self.rates.len())
-    }
-
-    /// All walks have the statistic of the test, which is one for them together.
-    fn ranking(&self, gained: f64) -> Vec<Ranked> {
-        let effects = self.effects.iter();
-        effects
-            .map(|effect| Ranked {
-                effect: effect.id,
-                statistic: gained.max(0.0),
-            })
-            .collect()
-    }
-}
-
 /// Compares the best deterministic effects with walks.
 pub(crate) fn compare<F: FittedModel>(
     context: &SearchContext<'_>,
@@ -142,6 +68,12 @@ pub(crate) fn compare<F: FittedModel>(
         ranking: ranking.clone(),
         ..Compared::without_walks(state)
     };
+    let model = Chosen {
+        context,
+        candidates,
+        threshold: first.threshold,
+        ranking: &ranking,
+    };
     let has_effects = !(state.accepted.is_empty() && state.unmodelled.is_empty());
     if !has_effects {
         if p_value >= probability {
@@ -149,7 +81,7 @@ pub(crate) fn compare<F: FittedModel>(
         }
         // Walks that no fit converges with are not what the record has.
         return match walking(context, candidates, nominal, draws) {
-            Ok(walking) => with_walks(candidates, walking, (p_value, Vec::new()), ranking),
+            Ok(walking) => model.with_walks(walking, (p_value, Vec::new()), draws),
             Err(_) => Ok(only(state)),
         };
     }
@@ -158,18 +90,24 @@ pub(crate) fn compare<F: FittedModel>(
     let p_beside = candidates.p_value(2.0 * (beside.log_likelihood - own));
     let penalties = state.penalties(first.threshold, 0.0, 1);
     let alone = 2.0 * (own - candidates.fit.log_likelihood) - penalties;
-    let stand_out = alone > WALK_SET_DEVIANCE
-        && p_beside >= probability
-        && least_advantage(candidates, &state, first.threshold, &context.set.hypotheses)?
-            > WALK_SET_DEVIANCE;
-    if stand_out {
+    let weakest = least_advantage(candidates, &state, &context.set.hypotheses)
+        .filter(|(_, advantage)| *advantage <= CLEAR_ADVANTAGE);
+    if alone > WALK_SET_DEVIANCE && p_beside >= probability && weakest.is_none() {
         return Ok(only(state));
     }
-    let Ok(walking) = walking(context, candidates, nominal, draws) else {
+    // A walk that stands for several effects hides them, and one effect may stand for a walk.
+    let found = walking(context, candidates, nominal, draws);
+    let in_place = weakest.map(|(index, _)| in_place_of_effect(context, candidates, &state, index));
+    let both = [Some(found), in_place].into_iter().flatten().flatten();
+    let advantage = |walking: &SearchState<F>| {
+        2.0 * (own - walking.stage.noise.log_likelihood)
+            - state.penalties_beside(walking, first.threshold, 0.0, 1)
+            + walking.penalties_beside(&state, first.threshold, BESIDE_WALKS, 0)
+    };
+    let both = both.map(|walking| (advantage(&walking), walking));
+    let Some((advantage, walking)) = both.min_by(|a, b| a.0.total_cmp(&b.0)) else {
         return Ok(only(state));
     };
-    let advantage = 2.0 * (own - walking.stage.noise.log_likelihood) - penalties
-        + walking.penalties(first.threshold, BESIDE_WALKS, 0);
     if advantage > WALK_SET_DEVIANCE {
         if p_beside >= probability {
             return Ok(only(state));
@@ -180,21 +118,23 @@ pub(crate) fn compare<F: FittedModel>(
             return Ok(only(state));
         };
         let state = SearchState { stage, ..state };
-        return with_walks(candidates, state, (p_beside, Vec::new()), ranking);
+        return model.with_walks(state, (p_beside, Vec::new()), draws);
     }
     if advantage > BESIDE_WALKS {
         let deficit = 0.5 * (advantage - BESIDE_WALKS);
         return Ok(Compared {
             walks: Walks {
                 named: Vec::new(),
-                rivals: alternatives(
-                    needed(candidates, &walking)?
-                        .into_iter()
-                        .map(|(effect, ..)| effect.id),
-                    deficit,
-                    &walking.stage.fitted,
-                ),
-                beside: walking.accepted.iter().map(|own| own.hypothesis).collect(),
+                rivals: vec![Rival {
+                    alternatives: alternatives(
+                        needed(candidates, &walking)?
+                            .into_iter()
+                            .map(|walk| walk.effect.id),
+                        deficit,
+                        &walking.stage.fitted,
+                    ),
+                    of: lacking(&state, &walking),
+                }],
             },
             state,
             ranking,
@@ -205,32 +145,50 @@ pub(crate) fn compare<F: FittedModel>(
     } else {
         Vec::new()
     };
-    with_walks(candidates, walking, (p_value, rivals), ranking)
+    model.with_walks(walking, (p_value, rivals), draws)
 }
 
-/// Smallest advantage of the effects over walks in the place of one of them, the others beside the walks:
-/// a slow effect may stand for a walk however much the others explain. Infinite for a single effect, which
-/// walks alone stand against.
+/// The effect that walks could best stand in the place of, the others beside them, and twice the
+/// log-likelihood that is lost by it, with the shapes of the others held: a slow effect may stand for a
+/// walk however much the others explain. `None` for a single effect, which walks alone stand against.
 fn least_advantage<F: FittedModel>(
     candidates: &Candidates,
     state: &SearchState<F>,
-    threshold: f64,
     hypotheses: &[Hypothesis],
-) -> Result<f64, F::Error> {
-    let mut least = f64::INFINITY;
+) -> Option<(usize, f64)> {
     if state.accepted.len() < 2 {
-        return Ok(least);
+        return None;
     }
     let fitted = &state.stage.fitted;
-    let own = 2.0 * state.stage.noise.log_likelihood - state.penalties(threshold, 0.0, 1);
-    let all = state.penalties(threshold, BESIDE_WALKS, 0);
-    for accepted in &state.accepted {
+    let accepted = state.accepted.iter().enumerate();
+    let all = accepted.filter_map(|(index, accepted)| {
         let absent = value_places(fitted, &hypotheses[accepted.hypothesis]);
-        let walking = fitted.fit_rate_noise(&candidates.rates, &absent)?;
-        let others = all - (threshold + accepted.penalty + BESIDE_WALKS);
-        least = least.min(own - (2.0 * walking.log_likelihood - others));
-    }
-    Ok(least)
+        // Walks that cannot be fitted in its place do not stand there.
+        let walking = fitted.fit_rate_noise(&candidates.rates, &absent).ok()?;
+        let lost = 2.0 * (state.stage.noise.log_likelihood - walking.log_likelihood);
+        Some((index, lost))
+    });
+    all.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The model with walks in the place of an effect.
+fn in_place_of_effect<F: FittedModel>(
+    context: &SearchContext<'_>,
+    candidates: &Candidates,
+    state: &SearchState<F>,
+    index: usize,
+) -> Result<SearchState<F>, F::Error> {
+    let mut accepted = state.accepted.clone();
+    accepted.remove(index);
+    let fitted = context.fitted(&state.stage.fitted, &accepted, &state.unmodelled)?;
+    let noise = fitted.fit_rate_noise(&candidates.rates, &[])?.noise;
+    let fitted = fitted.with_rate_noise(&noise)?;
+    let stage = stage(context, &fitted, &mut accepted, &state.unmodelled)?;
+    Ok(SearchState {
+        stage,
+        accepted,
+        ..state.clone()
+    })
 }
 
 /// Effects without walks that stand in the sets of walks: those that do not stand beside them.
@@ -240,13 +198,19 @@ fn effects_in_place<F: FittedModel>(
     walking: &SearchState<F>,
     deficit: f64,
 ) -> Vec<Alternative> {
-    let own = state.accepted.iter().map(|own| own.hypothesis);
-    let lacking = own.filter(|own| {
-        let mut others = walking.accepted.iter();
-        !others.any(|other| other.hypothesis == *own)
-    });
+    let lacking = lacking(state, walking).into_iter();
     let ids = lacking.map(|own| context.set.hypotheses[own].id());
     alternatives(ids, deficit, &state.stage.fitted)
+}
+
+/// Effects of a model that another one lacks.
+fn lacking<F>(of: &SearchState<F>, other: &SearchState<F>) -> Vec<usize> {
+    let own = of.accepted.iter().map(|own| own.hypothesis);
+    own.filter(|own| {
+        let mut others = other.accepted.iter();
+        !others.any(|other| other.hypothesis == *own)
+    })
+    .collect()
 }
 
 /// The nominal model with walks, and the effects that stand beside them.
@@ -264,80 +228,43 @@ fn walking<F: FittedModel>(
     Ok(forward(context, state, beside, draws)?.0)
 }
 
-/// The result that a model with walks is chosen, with the rivals of all of them.
-fn with_walks<F: FittedModel>(
-    candidates: &Candidates,
-    state: SearchState<F>,
-    (p_value, rivals): (f64, Vec<Alternative>),
-    ranking: Vec<Ranked>,
-) -> Result<Compared<F>, F::Error> {
-    let mut named = named(candidates, &state, p_value)?;
-    for finding in &mut named {
-        finding.alternatives.clone_from(&rivals);
-    }
-    Ok(Compared {
-        state,
-        walks: Walks {
-            named,
-            ..Walks::default()
-        },
-        ranking,
-    })
+/// A search in which a model with walks is chosen.
+struct Chosen<'c, 'o> {
+    context: &'c SearchContext<'o>,
+    candidates: &'c Candidates,
+    threshold: f64,
+    ranking: &'c [Ranked],
 }
 
-/// Members of a set that are one model together.
-fn alternatives<F: FittedModel>(
-    ids: impl Iterator<Item = &'static str>,
-    deficit: f64,
-    fitted: &F,
-) -> Vec<Alternative> {
-    let nominal = NominalEstimate::of(fitted);
-    ids.map(|effect| Alternative {
-        effect,
-        log_likelihood_deficit: deficit,
-        nominal: Some(nominal.clone()),
-    })
-    .collect()
-}
-
-/// Probability that walks of so many rates gain as much where there are none: each variance is zero
-/// with a probability of one half (Self, Liang, J. Amer. Statist. Assoc. 82, 605, 1987).
-fn tail(gained: f64, rates: usize) -> f64 {
-    if gained <= 0.0 {
-        return 1.0;
+impl Chosen<'_, '_> {
+    /// The result, with the rivals of all walks together; each walk is held against effects.
+    fn with_walks<F: FittedModel>(
+        &self,
+        state: SearchState<F>,
+        (p_value, together): (f64, Vec<Alternative>),
+        draws: &mut GaussianDraws,
+    ) -> Result<Compared<F>, F::Error> {
+        let candidates = self.candidates;
+        let ByRate {
+            state,
+            rivals,
+            in_place_of,
+        } = replaced(self.context, candidates, state, self.threshold, draws)?;
+        let mut named = named(candidates, &state, p_value)?;
+        for (walk, finding) in &mut named {
+            let own = in_place_of.iter().find(|(rate, _)| *rate == walk.rate);
+            let own = own.map(|(_, effects)| effects);
+            finding.alternatives.clone_from(own.unwrap_or(&together));
+        }
+        Ok(Compared {
+            state,
+            walks: Walks {
+                named: named.into_iter().map(|(_, finding)| finding).collect(),
+                rivals,
+            },
+            ranking: self.ranking.to_vec(),
+        })
     }
-    let mut weight = 0.5_f64.powi(rates as i32);
-    let mut sum = 0.0;
-    for degrees in 1..=rates {
-        weight *= (rates + 1 - degrees) as f64 / degrees as f64;
-        sum += weight * chi_square_tail(gained, degrees as f64).unwrap_or(0.0);
-    }
-    sum
-}
-
-/// The walks that a model needs, with their rates and what each gains beside the others: each that the
-/// likelihood needs, the largest at least.
-fn needed<F: FittedModel>(
-    candidates: &Candidates,
-    state: &SearchState<F>,
-) -> Result<Vec<(&'static Effect, usize, f64)>, F::Error> {
-    let noise = &state.stage.noise;
-    let mut all = Vec::with_capacity(candidates.rates.len());
-    for (effect, rate) in candidates.effects.iter().zip(&candidates.rates) {
-        let others: Vec<usize> = candidates
-            .rates
-            .iter()
-            .copied()
-            .filter(|other| other != rate)
-            .collect();
-        let without = state.stage.fitted.fit_rate_noise(&others, &[])?;
-        let gain = 2.0 * (noise.log_likelihood - without.log_likelihood);
-        all.push((*effect, *rate, gain));
-    }
-    let gains = all.iter().map(|(.., gain)| *gain);
-    let least = NAMED_WALK.min(gains.fold(f64::NEG_INFINITY, f64::max));
-    all.retain(|(.., gain)| *gain >= least);
-    Ok(all)
 }
 
 /// The walks of a model that are named.
@@ -345,15 +272,23 @@ fn named<F: FittedModel>(
     candidates: &Candidates,
     state: &SearchState<F>,
     p_value: f64,
-) -> Result<Vec<Finding>, F::Error> {
+) -> Result<Vec<(Needed, Finding)>, F::Error> {
     let sizes = &state.stage.noise.noise.walk;
-    let needed = needed(candidates, state)?;
     let intervals = state.stage.fitted.walk_intervals()?;
-    let finding = |(effect, rate, gain): &(&'static Effect, usize, f64)| {
-        let interval = intervals.get(*rate).copied().flatten();
-        walk_finding(effect, sizes[*rate], interval, (*gain, p_value))
+    let finding = |walk: Needed| {
+        let interval = intervals.get(walk.rate).copied().flatten();
+        let finding = walk_finding(
+            walk.effect,
+            sizes[walk.rate],
+            interval,
+            (walk.gain, p_value),
+        );
+        (walk, finding)
     };
-    Ok(needed.iter().map(finding).collect())
+    Ok(needed(candidates, state)?
+        .into_iter()
+        .map(finding)
+        .collect())
 }
 
 fn walk_finding(
@@ -377,19 +312,5 @@ fn walk_finding(
         alternatives: Vec::new(),
         exact_equivalents: Vec::new(),
         none_of_these: None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::tail;
-
-    #[test]
-    fn the_tail_of_walks_is_that_of_the_mixture() {
-        // χ²(1) at 2.706 is 0.1, halved; three walks at 8.7: 3/8 of 0.003 18, 3/8 of 0.012 9, 1/8 of
-        // 0.033 6, by tables of χ².
-        assert!((tail(2.705_543, 1) - 0.05).abs() < 1e-6);
-        assert!((tail(8.7, 3) - 0.010_23).abs() < 2e-4, "{}", tail(8.7, 3));
-        assert!((tail(0.0, 3) - 1.0).abs() < 1e-15);
     }
 }

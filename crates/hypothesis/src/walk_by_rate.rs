@@ -1,0 +1,135 @@
+//! Each random walk of a model against effects in its place, the walks of the other rates staying.
+//!
+//! Walks of all rates together take up an effect of a rate that does not walk; effects without walks
+//! do not explain the others. Only with the walks of the others in the model is the question fair.
+
+use crate::bank::NominalEstimate;
+use crate::context::SearchContext;
+use crate::forward::{Beside, forward};
+use crate::model::FittedModel;
+use crate::null_distribution::GaussianDraws;
+use crate::result::Alternative;
+use crate::state::{SearchState, settled};
+use crate::walk_candidates::{
+    BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, alternatives, needed,
+};
+
+/// The model that is left, the walks that stand in sets of effects, and the effects that stand in sets of
+/// walks, by rates.
+pub(crate) struct ByRate<F> {
+    pub(crate) state: SearchState<F>,
+    pub(crate) rivals: Vec<Rival>,
+    pub(crate) in_place_of: Vec<(usize, Vec<Alternative>)>,
+}
+
+/// A model with effects in the place of one walk.
+struct InPlace<F> {
+    walk: Needed,
+    state: SearchState<F>,
+    /// Twice the log-likelihood that it is better by, penalties subtracted.
+    advantage: f64,
+}
+
+/// Replaces walks by effects as long as effects are better.
+pub(crate) fn replaced<F: FittedModel>(
+    context: &SearchContext<'_>,
+    candidates: &Candidates,
+    mut state: SearchState<F>,
+    threshold: f64,
+    draws: &mut GaussianDraws,
+) -> Result<ByRate<F>, F::Error> {
+    let mut rivals: Vec<Rival> = Vec::new();
+    loop {
+        let mut others = Vec::new();
+        for walk in needed(candidates, &state)? {
+            if context.budget.is_spent(&state.stage.fitted) {
+                break;
+            }
+            // What cannot be fitted does not stand in the place of a walk.
+            if let Ok(other) = in_place(context, &state, walk, threshold, draws) {
+                others.extend(other);
+            }
+        }
+        others.sort_by(|a, b| b.advantage.total_cmp(&a.advantage));
+        if others
+            .first()
+            .is_none_or(|best| best.advantage <= BESIDE_WALKS)
+        {
+            let in_place_of = others.iter().filter(|other| other.advantage > 0.0);
+            let in_place_of = in_place_of.map(|other| {
+                let deficit = 0.5 * (BESIDE_WALKS - other.advantage);
+                let added = &other.state.accepted[state.accepted.len()..];
+                let ids = added
+                    .iter()
+                    .map(|own| context.set.hypotheses[own.hypothesis].id());
+                let effects = alternatives(ids, deficit, &other.state.stage.fitted);
+                (other.walk.rate, effects)
+            });
+            return Ok(ByRate {
+                in_place_of: in_place_of.collect(),
+                state,
+                rivals,
+            });
+        }
+        let best = others.swap_remove(0);
+        if best.advantage <= WALK_SET_DEVIANCE {
+            let added = best.state.accepted[state.accepted.len()..].iter();
+            rivals.push(Rival {
+                alternatives: vec![Alternative {
+                    effect: best.walk.effect.id,
+                    log_likelihood_deficit: 0.5 * (best.advantage - BESIDE_WALKS),
+                    nominal: Some(NominalEstimate::of(&state.stage.fitted)),
+                }],
+                of: added.map(|own| own.hypothesis).collect(),
+            });
+        }
+        state = best.state;
+    }
+}
+
+/// The best effects in the place of a walk; `None` if there are none.
+fn in_place<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &SearchState<F>,
+    walk: Needed,
+    threshold: f64,
+    draws: &mut GaussianDraws,
+) -> Result<Option<InPlace<F>>, F::Error> {
+    let own = state.stage.noise.log_likelihood;
+    let mut noise = state.stage.noise.noise.clone();
+    noise.walk[walk.rate] = 0.0;
+    // Where no fit converges without the walk, nothing stands in its place.
+    let fitted = state.stage.fitted.with_rate_noise(&noise);
+    let Ok(stage) = fitted.and_then(|fitted| settled(context, fitted, &state.accepted)) else {
+        return Ok(None);
+    };
+    let without = SearchState {
+        stage,
+        seeks_unmodelled: false,
+        ..state.clone()
+    };
+    // Effects of both models are penalised alike, and the first in the place of the walk is free.
+    let before = state.penalties(threshold, 0.0, 1);
+    let first = if state.accepted.is_empty() {
+        0.0
+    } else {
+        threshold
+    };
+    let beside = Beside::WhiteNoise {
+        walks: Some(own - 0.5 * (before + first)),
+    };
+    let (mut with, _) = forward(context, without, beside, draws)?;
+    with.seeks_unmodelled = state.seeks_unmodelled;
+    let added = &with.accepted[state.accepted.len()..];
+    if added.is_empty() {
+        return Ok(None);
+    }
+    let further = added.iter().skip(1);
+    let penalties: f64 = further.map(|own| threshold + own.penalty).sum();
+    let advantage = 2.0 * (with.stage.noise.log_likelihood - own) - penalties;
+    Ok(Some(InPlace {
+        walk,
+        state: with,
+        advantage,
+    }))
+}
