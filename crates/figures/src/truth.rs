@@ -6,6 +6,7 @@ mod noise;
 mod outside;
 mod setup;
 mod shapes;
+mod together;
 
 use clap::ValueEnum;
 
@@ -45,6 +46,8 @@ pub(crate) enum Part {
     Causes,
     /// Noise other than declared.
     Noise,
+    /// A cause of the catalogue beside random walks.
+    Together,
     /// Causes outside of the catalogue.
     Outside,
 }
@@ -63,6 +66,7 @@ pub(crate) fn figures(extent: Extent, parts: &[Part]) -> Result<Vec<Figure>, Err
             Part::Shapes => shapes::figures(extent)?,
             Part::Causes => causes::figures(extent)?,
             Part::Noise => noise::figures(extent)?,
+            Part::Together => together::figures(extent)?,
             Part::Outside => outside::figures(extent)?,
         });
     }

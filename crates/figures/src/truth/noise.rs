@@ -20,11 +20,11 @@ const LEVELS: u64 = 42;
 const SERIES: u64 = 43;
 
 /// Random walks, deg/h/√h, and levels of flicker, deg/h.
-const WALKS: [f64; 2] = [3e-5, 2e-3];
+pub(super) const WALKS: [f64; 2] = [3e-5, 2e-3];
 const FLICKER: [f64; 2] = [1e-4, 2e-3];
 
 /// Ratio of the true standard deviation to the declared one.
-const MISDECLARED: [f64; 2] = [0.5, 2.0];
+pub(super) const MISDECLARED: [f64; 2] = [0.5, 2.0];
 
 /// Largest correlation of neighbouring samples.
 const CORRELATION: f64 = 0.3;
@@ -240,7 +240,7 @@ fn holds_size(found: &DiagnosisResult, id: &str, size: f64) -> Option<bool> {
 
 /// Causes of kinds other than noise without a random walk of their own gyro in the set; those that
 /// enter no gyro count without any walk in the set.
-fn false_causes(found: &DiagnosisResult) -> Vec<String> {
+pub(super) fn false_causes(found: &DiagnosisResult) -> Vec<String> {
     let effect = |id: &str| EFFECTS.iter().find(|effect| effect.id == id);
     let is_walk = |id: &str| effect(id).is_some_and(|e| e.kind == EffectKind::RandomWalk);
     found

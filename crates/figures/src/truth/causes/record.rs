@@ -3,7 +3,7 @@
 use gyrocal::Effect;
 use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run, rows};
-use gyrocal_diagnosis::result::Finding;
+use gyrocal_diagnosis::result::{Coefficients, DiagnosisResult, Finding};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, selection};
 use gyrocal_evaluation::{
     EvaluationError, InjectedEffect, draw_shape, inject_into, same_or_equivalent, scenario,
@@ -158,7 +158,8 @@ pub(super) fn record(cell: &Cell, seed: u64) -> Result<Caused, EvaluationError> 
     })
 }
 
-fn holds(finding: &Finding, id: &str) -> bool {
+/// Whether a set holds a cause or an exact equivalent of it.
+pub(in crate::truth) fn holds(finding: &Finding, id: &str) -> bool {
     let mut others = finding.alternatives.iter();
     same_or_equivalent(&finding.effect, id)
         || others.any(|other| same_or_equivalent(&other.effect, id))
@@ -228,25 +229,10 @@ fn coefficients(
     let mut extension = ModelExtension::default();
     set.add_to_model(plant, &rows, &mut extension, 0, injected.shape);
     let true_model = nominal.refitted(&extension)?;
-    let truth = simulation.truth.coefficients;
-    let truth: Vec<f64> = (0..3)
-        .flat_map(|gyro| {
-            [
-                truth.bias_deg_per_h[gyro],
-                truth.g_deg_per_h_per_g[gyro],
-                truth.gg_deg_per_h_per_g2[gyro],
-            ]
-        })
-        .collect();
+    let truth = true_coefficients(simulation);
     let mut answers: [Vec<f64>; 3] = Default::default();
     for (index, value) in truth.iter().enumerate().take(COEFFICIENTS) {
-        let best = stated.extended.as_ref().unwrap_or(&stated.nominal);
-        let own = NORMAL_97_5 * best[index].sigma;
-        let first = [best[index].estimate - own, best[index].estimate + own];
-        let interval = stated
-            .over_set
-            .as_ref()
-            .map_or(first, |all| all[index].interval);
+        let [interval, first] = intervals(stated, index);
         let held =
             |interval: [f64; 2]| f64::from(u8::from((interval[0]..=interval[1]).contains(value)));
         answers[0].push(held(interval));
@@ -255,4 +241,41 @@ fn coefficients(
         answers[2].push((interval[1] - interval[0]) / (2.0 * NORMAL_97_5 * sigma));
     }
     Ok(answers)
+}
+
+/// The nine coefficients, gyro by gyro.
+fn true_coefficients(simulation: &Simulation) -> Vec<f64> {
+    let truth = simulation.truth.coefficients;
+    (0..3)
+        .flat_map(|gyro| {
+            [
+                truth.bias_deg_per_h[gyro],
+                truth.g_deg_per_h_per_g[gyro],
+                truth.gg_deg_per_h_per_g2[gyro],
+            ]
+        })
+        .collect()
+}
+
+/// The 95 % intervals of a coefficient: over the sets, and with what is named first.
+fn intervals(stated: &Coefficients, index: usize) -> [[f64; 2]; 2] {
+    let best = stated.extended.as_ref().unwrap_or(&stated.nominal);
+    let own = NORMAL_97_5 * best[index].sigma;
+    let first = [best[index].estimate - own, best[index].estimate + own];
+    let over_set = stated.over_set.as_ref();
+    [over_set.map_or(first, |all| all[index].interval), first]
+}
+
+/// Whether the interval of each coefficient over the sets holds it.
+pub(in crate::truth) fn covered(found: &DiagnosisResult, simulation: &Simulation) -> Vec<bool> {
+    let Some(stated) = &found.coefficients else {
+        return Vec::new();
+    };
+    let truth = true_coefficients(simulation).into_iter().enumerate();
+    truth
+        .map(|(index, value)| {
+            let [[low, high], _] = intervals(stated, index);
+            (low..=high).contains(&value)
+        })
+        .collect()
 }
