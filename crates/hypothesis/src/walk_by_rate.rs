@@ -41,7 +41,12 @@ pub(crate) fn replaced<F: FittedModel>(
     let mut rivals: Vec<Rival> = Vec::new();
     loop {
         let mut others = Vec::new();
-        for walk in needed(candidates, &state)? {
+        let walks = if context.budget.is_spent(&state.stage.fitted) {
+            Vec::new()
+        } else {
+            needed(candidates, &state)?
+        };
+        for walk in walks {
             if context.budget.is_spent(&state.stage.fitted) {
                 break;
             }

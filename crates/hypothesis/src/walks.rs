@@ -9,7 +9,6 @@ use gyrocal_scalar::effect::Effect;
 use crate::accepted::value_places;
 use crate::context::SearchContext;
 use crate::forward::{Beside, FirstRound, forward};
-use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::result::{Alternative, EffectEstimate, Finding, FittedStage};
@@ -90,22 +89,14 @@ pub(crate) fn compare<F: FittedModel>(
     let p_beside = candidates.p_value(2.0 * (beside.log_likelihood - own));
     let penalties = state.penalties(first.threshold, 0.0, 1);
     let alone = 2.0 * (own - candidates.fit.log_likelihood) - penalties;
-    let weakest = least_advantage(candidates, &state, &context.set.hypotheses)
-        .filter(|(_, advantage)| *advantage <= CLEAR_ADVANTAGE);
+    let weakest = least_advantage(context, candidates, &state)
+        .filter(|(_, advantage)| *advantage <= CLEAR_ADVANTAGE)
+        .map(|(index, _)| index);
     if alone > WALK_SET_DEVIANCE && p_beside >= probability && weakest.is_none() {
         return Ok(only(state));
     }
-    // A walk that stands for several effects hides them, and one effect may stand for a walk.
-    let found = walking(context, candidates, nominal, draws);
-    let in_place = weakest.map(|(index, _)| in_place_of_effect(context, candidates, &state, index));
-    let both = [Some(found), in_place].into_iter().flatten().flatten();
-    let advantage = |walking: &SearchState<F>| {
-        2.0 * (own - walking.stage.noise.log_likelihood)
-            - state.penalties_beside(walking, first.threshold, 0.0, 1)
-            + walking.penalties_beside(&state, first.threshold, BESIDE_WALKS, 0)
-    };
-    let both = both.map(|walking| (advantage(&walking), walking));
-    let Some((advantage, walking)) = both.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+    let best = best_walking(&model, nominal, &state, weakest, draws);
+    let Some((advantage, walking)) = best else {
         return Ok(only(state));
     };
     if advantage > WALK_SET_DEVIANCE {
@@ -121,24 +112,16 @@ pub(crate) fn compare<F: FittedModel>(
         return model.with_walks(state, (p_beside, Vec::new()), draws);
     }
     if advantage > BESIDE_WALKS {
+        let walks = needed(candidates, &walking)?.into_iter();
+        let ids = walks.map(|walk| walk.effect.id);
         let deficit = 0.5 * (advantage - BESIDE_WALKS);
-        return Ok(Compared {
-            walks: Walks {
-                named: Vec::new(),
-                rivals: vec![Rival {
-                    alternatives: alternatives(
-                        needed(candidates, &walking)?
-                            .into_iter()
-                            .map(|walk| walk.effect.id),
-                        deficit,
-                        &walking.stage.fitted,
-                    ),
-                    of: lacking(&state, &walking),
-                }],
-            },
-            state,
-            ranking,
-        });
+        let rival = Rival {
+            alternatives: alternatives(ids, deficit, &walking.stage.fitted),
+            of: lacking(&state, &walking),
+        };
+        let mut compared = only(state);
+        compared.walks.rivals.push(rival);
+        return Ok(compared);
     }
     let rivals = if advantage > 0.0 {
         effects_in_place(context, &state, &walking, 0.5 * (BESIDE_WALKS - advantage))
@@ -148,17 +131,41 @@ pub(crate) fn compare<F: FittedModel>(
     model.with_walks(walking, (p_value, rivals), draws)
 }
 
+/// The model with walks that effects are least better than, and by how much: twice the log-likelihood,
+/// penalties subtracted. Walks that stand for several effects hide them, so that one may also stand in
+/// the place of the `weakest` effect alone.
+fn best_walking<F: FittedModel>(
+    model: &Chosen<'_, '_>,
+    nominal: &FittedStage<F>,
+    state: &SearchState<F>,
+    weakest: Option<usize>,
+    draws: &mut GaussianDraws,
+) -> Option<(f64, SearchState<F>)> {
+    let (context, candidates) = (model.context, model.candidates);
+    let found = walking(context, candidates, nominal, draws);
+    let in_place = weakest.map(|index| in_place_of_effect(context, candidates, state, index));
+    let both = [Some(found), in_place].into_iter().flatten().flatten();
+    let advantage = |walking: &SearchState<F>| {
+        2.0 * (state.stage.noise.log_likelihood - walking.stage.noise.log_likelihood)
+            - state.penalties_beside(walking, model.threshold, 0.0, 1)
+            + walking.penalties_beside(state, model.threshold, BESIDE_WALKS, 0)
+    };
+    let both = both.map(|walking| (advantage(&walking), walking));
+    both.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
 /// The effect that walks could best stand in the place of, the others beside them, and twice the
 /// log-likelihood that is lost by it, with the shapes of the others held: a slow effect may stand for a
 /// walk however much the others explain. `None` for a single effect, which walks alone stand against.
 fn least_advantage<F: FittedModel>(
+    context: &SearchContext<'_>,
     candidates: &Candidates,
     state: &SearchState<F>,
-    hypotheses: &[Hypothesis],
 ) -> Option<(usize, f64)> {
-    if state.accepted.len() < 2 {
+    if state.accepted.len() < 2 || context.budget.is_spent(&state.stage.fitted) {
         return None;
     }
+    let hypotheses = &context.set.hypotheses;
     let fitted = &state.stage.fitted;
     let accepted = state.accepted.iter().enumerate();
     let all = accepted.filter_map(|(index, accepted)| {
