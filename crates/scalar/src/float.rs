@@ -7,16 +7,19 @@
 //! SSE encoding, which stalls some processors between 256-bit instructions. Without the standard
 //! library it remains the only one.
 
-use crate::{Real, Scalar, erf_inv_f32, erf_inv_f64, exp_f32, exp_f64, sin_cos_f32, sin_cos_f64};
+use crate::single::hypot_f32;
+use crate::{
+    Real, Scalar, asin_f32, erf_inv_f32, erf_inv_f64, exp_f64, sin_cos_f32, sin_cos_f64, tan_f32,
+};
 
 /// Functions whose result is exact or correctly rounded in every library: of the standard library,
 /// where they are instructions of the target, or of `libm`.
 #[cfg(feature = "std")]
-mod exact {
+pub(crate) mod exact {
     macro_rules! of_std {
         ($($name:ident: $float:ident, $method:ident);*) => {$(
             #[inline(always)]
-            pub(super) fn $name(x: $float) -> $float {
+            pub(crate) fn $name(x: $float) -> $float {
                 x.$method()
             }
         )*};
@@ -25,8 +28,8 @@ mod exact {
             sqrtf: f32, sqrt; floorf: f32, floor; ceilf: f32, ceil);
 }
 #[cfg(not(feature = "std"))]
-mod exact {
-    pub(super) use libm::{ceil, ceilf, floor, floorf, sqrt, sqrtf};
+pub(crate) mod exact {
+    pub(crate) use libm::{ceil, ceilf, floor, floorf, sqrt, sqrtf};
 }
 
 /// Functions of `libm` with NaN outside of their domain.
@@ -141,13 +144,13 @@ impl_float!(f64, sin_cos_f64,
     atan2 => libm::atan2, powf => libm::pow, hypot => libm::hypot,
     fmod => libm::fmod, remainder => libm::remainder);
 impl_float!(f32, sin_cos_f32,
-    tan => libm::tanf, asin => libm::asinf, acos => libm::acosf, atan => libm::atanf,
+    tan => tan_f32, asin => asin_f32, acos => libm::acosf, atan => libm::atanf,
     sinh => libm::sinhf, cosh => libm::coshf, tanh => libm::tanhf,
     asinh => libm::asinhf, acosh => domain::acoshf, atanh => libm::atanhf,
-    exp => exp_f32, exp_m1 => libm::expm1f, ln => libm::logf, ln_1p => libm::log1pf,
+    exp => libm::expf, exp_m1 => libm::expm1f, ln => libm::logf, ln_1p => libm::log1pf,
     erf => libm::erff, erf_inv => erf_inv_f32,
     sqrt => exact::sqrtf, floor => exact::floorf, ceil => exact::ceilf;
-    atan2 => libm::atan2f, powf => libm::powf, hypot => libm::hypotf,
+    atan2 => libm::atan2f, powf => libm::powf, hypot => hypot_f32,
     fmod => libm::fmodf, remainder => libm::remainderf);
 
 #[cfg(test)]

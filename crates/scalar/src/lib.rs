@@ -6,7 +6,8 @@
 //!
 //! Nothing here allocates or needs the standard library. Sine, cosine and exponential are
 //! computed by this crate ([`sin_cos_f64`], [`exp_f64`]), so their bits do not depend on the
-//! machine.
+//! machine. Functions of `f32` compute in `f32` and integers: nothing needs software for `f64` on a
+//! processor with a single-precision unit.
 
 #![no_std]
 
@@ -20,11 +21,13 @@ mod float;
 mod lanes;
 mod model;
 mod scalar;
+mod single;
 mod trigonometry;
 
-pub use error_function::{erf_inv_f32, erf_inv_f64};
-pub use exponential::{exp_f32, exp_f64};
+pub use error_function::erf_inv_f64;
+pub use exponential::exp_f64;
 pub use lanes::Lanes;
 pub use model::{Element, Model, NamedInputs, RatesJacobian, Recentre};
 pub use scalar::{Real, Scalar};
-pub use trigonometry::{sin_cos_f32, sin_cos_f64};
+pub use single::{asin_f32, erf_inv_f32, sin_cos_f32, tan_f32};
+pub use trigonometry::sin_cos_f64;

@@ -44,14 +44,6 @@ pub fn sin_cos_f64(angle: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of `angle` in radians, computed in `f64` and rounded.
-#[inline(always)]
-#[must_use]
-pub fn sin_cos_f32(angle: f32) -> (f32, f32) {
-    let (sine, cosine) = sin_cos_f64(f64::from(angle));
-    (sine as f32, cosine as f32)
-}
-
 /// `a * b + c`, in one rounding where the feature `fused` and the target allow it.
 #[inline(always)]
 fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
