@@ -22,6 +22,27 @@ pub struct Chart<T, I = PlatformInputs<T>> {
 }
 
 impl<T: Real> Chart<T> {
+    /// A chart of no site, for a filter that has not started.
+    pub(crate) const fn unset() -> Self {
+        let zero = [T::ZERO; 3];
+        Self {
+            inputs: PlatformInputs {
+                omega_0: zero,
+                f_0: zero,
+            },
+            north: zero,
+            up: zero,
+            site: Site {
+                latitude_rad: T::ZERO,
+                earth_rate_rad_per_s: T::ZERO,
+                gravity_g: T::ZERO,
+            },
+            earth_rate: [T::ZERO; 2],
+            field_gauss: zero,
+            turns: 0,
+        }
+    }
+
     /// The chart East-North-Up at a site, for the nominal model.
     #[must_use]
     pub fn east_north_up(site: Site<T>) -> Self {
@@ -87,6 +108,17 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
     #[must_use]
     pub fn orientation(&self) -> [[T; 3]; 2] {
         [self.north, self.up]
+    }
+
+    /// Turns so far, on which the time of the next renormalisation depends.
+    pub(crate) fn turns(&self) -> u32 {
+        self.turns
+    }
+
+    /// Restores orientation and turns of a saved chart.
+    pub(crate) fn restore(&mut self, orientation: &[[T; 3]; 2], turns: u32) {
+        self.set_orientation(orientation);
+        self.turns = turns;
     }
 
     /// Sets the orientation of the chart: the components of North and Up, orthogonal unit vectors.

@@ -1,6 +1,5 @@
 use gyrocal_estimation::form::Form;
-use gyrocal_estimation::{ArrayStorage, Covariance, EstimationError, Factors, Filter, Innovation};
-use gyrocal_scalar::Real;
+use gyrocal_estimation::{ArrayStorage, EstimationError, Factors, Filter, Innovation, Precision};
 
 use crate::anchor::{Anchored, Chart};
 use crate::generated::platform::{Drift, Platform, reanchor};
@@ -16,25 +15,35 @@ type PlatformKernel<T, F> =
 
 /// Streaming filter of the nominal platform: feed it accelerometer samples, read coefficients.
 ///
-/// No call allocates. `F` is the form of the covariance: P itself for double precision, or its
-/// factors ([`FactorisedPlatformFilter`]) for single precision and wide priors. In
-/// single precision P itself soon stops with an error.
+/// No call allocates. `F` is the form of the covariance. The default is the one that suits the
+/// number type ([`Precision`]): P itself for `f64`; for `f32` its factors, because from the usual
+/// priors P itself soon stops with an error in single precision. [`FactorisedPlatformFilter`] names
+/// the factors for any number type.
+///
+/// | call | time | sample |
+/// |---|---|---|
+/// | [`step`](Self::step) | passes | at the end of the interval |
+/// | [`update`](Self::update) | stands | now: the first sample, or a second sensor's |
+/// | [`predict`](Self::predict) | passes | none: a gap in the data |
+///
+/// A call that fails may leave the filter unusable: each error says so. A controller that must go
+/// on has [`ControllerFilter`](crate::ControllerFilter) around it.
 #[derive(Clone, Debug)]
-pub struct PlatformFilter<T = f64, F = Covariance> {
+pub struct PlatformFilter<T: Precision = f64, F = <T as Precision>::Form> {
     kernel: PlatformKernel<T, F>,
     accel_variance_g2: [T; 3],
     drift_density: [T; 3],
     longest_step_s: T,
 }
 
-/// The streaming filter on the factors of the covariance: it cannot lose definiteness, so it is
-/// the one for controllers that compute in single precision.
+/// The streaming filter on the factors of the covariance, which cannot lose definiteness: the
+/// default for `f32`, and for wide priors in `f64`.
 ///
 /// ```
 /// use gyrocal::{FactorisedPlatformFilter, FilterSettings, InitialAttitude, Site};
 ///
 /// # fn main() -> Result<(), gyrocal::EstimationError> {
-/// let settings = FilterSettings::<f32>::at_site(Site::at_latitude_deg(39.1));
+/// let settings = FilterSettings::<f64>::at_site(Site::at_latitude_deg(39.1));
 /// let mut filter = FactorisedPlatformFilter::factorised(&settings, &InitialAttitude::aligned())?;
 /// filter.update(&[0.0, 0.0, 1.0])?;
 /// # Ok(())
@@ -42,11 +51,12 @@ pub struct PlatformFilter<T = f64, F = Covariance> {
 /// ```
 pub type FactorisedPlatformFilter<T = f32> = PlatformFilter<T, Factors>;
 
-impl<T: Real> PlatformFilter<T, Covariance> {
-    /// A filter at the first sample, which [`Self::update`] takes.
+impl<T: Precision> PlatformFilter<T> {
+    /// A filter at the first sample, which [`Self::update`] takes, in the form that suits its
+    /// numbers.
     ///
     /// # Errors
-    /// As [`Self::with_form`].
+    /// As [`Self::start`].
     pub fn new(
         settings: &FilterSettings<T>,
         attitude: &InitialAttitude<T>,
@@ -55,11 +65,12 @@ impl<T: Real> PlatformFilter<T, Covariance> {
     }
 }
 
-impl<T: Real> FactorisedPlatformFilter<T> {
-    /// A filter at the first sample, which [`Self::update`] takes.
+impl<T: Precision> FactorisedPlatformFilter<T> {
+    /// A filter at the first sample, which [`Self::update`] takes, on the factors of the
+    /// covariance.
     ///
     /// # Errors
-    /// As [`Self::with_form`].
+    /// As [`Self::start`].
     pub fn factorised(
         settings: &FilterSettings<T>,
         attitude: &InitialAttitude<T>,
@@ -68,17 +79,44 @@ impl<T: Real> FactorisedPlatformFilter<T> {
     }
 }
 
-impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
+impl<T: Precision, F: Form<T>> PlatformFilter<T, F> {
     /// A filter at the first sample, which [`Self::update`] takes, in the form `F`.
     ///
     /// # Errors
-    /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::InvalidArgument`] if a
-    /// sigma or noise is not positive.
+    /// As [`Self::start`].
     pub fn with_form(
         settings: &FilterSettings<T>,
         attitude: &InitialAttitude<T>,
     ) -> Result<Self, EstimationError> {
-        let (zero, noise) = (T::from_f64(0.0), settings.drift_noise_deg_per_h);
+        let mut filter = Self::unset();
+        filter.start(settings, attitude)?;
+        Ok(filter)
+    }
+
+    /// A filter that has not started: for `static` memory, where [`Self::start`] starts it without
+    /// a copy on the stack. Until then every step fails.
+    #[must_use]
+    pub const fn unset() -> Self {
+        Self {
+            kernel: Filter::unset(Anchored(Platform), Chart::unset(), ArrayStorage::new()),
+            accel_variance_g2: [T::ZERO; 3],
+            drift_density: [T::ZERO; 3],
+            longest_step_s: T::ZERO,
+        }
+    }
+
+    /// Starts in place, at the first sample, which [`Self::update`] takes; whatever the filter was
+    /// before is forgotten.
+    ///
+    /// # Errors
+    /// [`EstimationError::NotPositiveDefinite`] or [`EstimationError::InvalidArgument`] if a
+    /// sigma or noise is not positive; the filter has then not started.
+    pub fn start(
+        &mut self,
+        settings: &FilterSettings<T>,
+        attitude: &InitialAttitude<T>,
+    ) -> Result<(), EstimationError> {
+        let noise = settings.drift_noise_deg_per_h;
         if !(settings.accel_noise_g.is_positive()
             && noise.is_positive()
             && settings.discretisation.longest_step_s.is_positive())
@@ -88,28 +126,23 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
             });
         }
         let join = |moving: &[T; 3], parameters: [T; Platform::PARAMETERS]| {
-            let mut all = [zero; Platform::STATES];
+            let mut all = [T::ZERO; Platform::STATES];
             all[..3].copy_from_slice(moving);
             all[3..].copy_from_slice(&parameters);
             all
         };
-        let mut chart = Chart::east_north_up(settings.site);
-        let angles = attitude.place(&mut chart);
-        let kernel = Filter::with_form(
-            Anchored(Platform),
-            chart,
+        let chart = self.kernel.inputs_mut();
+        *chart = Chart::east_north_up(settings.site);
+        let angles = attitude.place(chart);
+        self.accel_variance_g2 = [settings.accel_noise_g * settings.accel_noise_g; 3];
+        self.drift_density = [settings.drift_noise_density(); 3];
+        self.longest_step_s = settings.discretisation.longest_step_s;
+        self.kernel.start(
             settings.discretisation.integration,
             settings.discretisation.recentring,
-            ArrayStorage::new(),
             &join(&angles.angles_rad, settings.drift.to_array()),
             &join(&angles.sigma_rad, settings.drift_sigma.to_array()),
-        )?;
-        Ok(Self {
-            kernel,
-            accel_variance_g2: [settings.accel_noise_g * settings.accel_noise_g; 3],
-            drift_density: [settings.drift_noise_density(); 3],
-            longest_step_s: settings.discretisation.longest_step_s,
-        })
+        )
     }
 
     /// Takes a sample at the time the filter is at. Components that are NaN are skipped.
@@ -148,16 +181,16 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
     /// than a million longest steps; other variants if the prediction is not finite.
     #[inline]
     pub fn predict(&mut self, interval_s: T) -> Result<(), EstimationError> {
-        let parts = (interval_s / self.longest_step_s).to_f64();
-        if parts > 1.0 && interval_s.is_finite() {
-            if parts > MOST_PARTS {
+        let parts = interval_s / self.longest_step_s;
+        if parts > T::from_f64(1.0) && interval_s.is_finite() {
+            if parts > T::from_f64(MOST_PARTS) {
                 return Err(EstimationError::InvalidArgument {
                     expected: "an interval of at most a million longest steps",
                 });
             }
-            let whole = parts as u64;
-            let count = whole + u64::from(parts > whole as f64);
-            let part_s = interval_s / T::from_f64(count as f64);
+            let whole = parts.to_u32();
+            let count = whole + u32::from(parts > T::from_u32(whole));
+            let part_s = interval_s / T::from_u32(count);
             for _ in 1..count {
                 self.kernel.predict(part_s, &self.drift_density)?;
             }
@@ -218,6 +251,11 @@ impl<T: Real, F: Form<T>> PlatformFilter<T, F> {
     #[must_use]
     pub fn angles_rad(&self) -> [T; 3] {
         angles(&self.platform_c_enu())
+    }
+
+    /// The filter underneath, to restore it.
+    pub(crate) fn kernel_mut(&mut self) -> &mut PlatformKernel<T, F> {
+        &mut self.kernel
     }
 
     /// The filter underneath, for what this type does not show.

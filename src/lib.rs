@@ -74,10 +74,13 @@
 
 mod anchor;
 mod chart_vectors;
+mod controller;
+mod controller_error;
 mod filter;
 pub mod generated;
 mod initial_attitude;
 mod rotation;
+mod saved;
 mod settings;
 mod site;
 
@@ -86,6 +89,8 @@ pub mod trajectory;
 
 pub use anchor::{Anchored, Chart};
 pub use chart_vectors::{ChartInputs, ChartVectors};
+pub use controller::{ControllerFilter, Limits};
+pub use controller_error::ControllerError;
 pub use filter::{FactorisedPlatformFilter, PlatformFilter};
 #[cfg(feature = "catalogue")]
 pub use generated::catalogue::{Catalogue, EFFECTS};
@@ -93,11 +98,12 @@ pub use generated::platform::{Drift, Platform};
 pub use generated::strapdown::Strapdown;
 pub use generated::surveyed::Surveyed;
 pub use gyrocal_estimation::{
-    self as estimation, EstimationError, Innovation, Integration, Recentring,
+    self as estimation, EstimationError, Innovation, Integration, Precision, Recentring,
 };
 pub use gyrocal_scalar::effect::{self, Effect};
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
 pub use initial_attitude::{ChartAngles, InitialAttitude};
+pub use saved::{SavedForm, SavedNumber};
 pub use settings::{Discretisation, FilterSettings};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};
 

@@ -15,13 +15,20 @@ pub struct Site<T> {
 }
 
 impl<T: Scalar> Site<T> {
-    /// A site at the given astronomic latitude whose data are in units of local gravity.
+    /// A site at the given astronomic latitude in rad whose data are in units of local gravity: for
+    /// a latitude that is known at run time where `f64` is slow.
     #[must_use]
-    pub fn at_latitude_deg(latitude_deg: f64) -> Self {
+    pub fn at_latitude_rad(latitude_rad: T) -> Self {
         Self {
-            latitude_rad: T::from_f64(latitude_deg.to_radians()),
+            latitude_rad,
             earth_rate_rad_per_s: T::from_f64(EARTH_RATE_RAD_PER_S),
             gravity_g: T::from_f64(1.0),
         }
+    }
+
+    /// A site at the given astronomic latitude whose data are in units of local gravity.
+    #[must_use]
+    pub fn at_latitude_deg(latitude_deg: f64) -> Self {
+        Self::at_latitude_rad(T::from_f64(latitude_deg.to_radians()))
     }
 }

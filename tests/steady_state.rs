@@ -9,10 +9,10 @@ use std::hint::black_box;
 use allocation_counter::measure;
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{ArrayStorage, Covariance, Factors, Filter, Storage, VecStorage};
-use gyrocal::scalar::{Real, Recentre};
+use gyrocal::scalar::Recentre;
 use gyrocal::{
     Anchored, Chart, Discretisation, FilterSettings, InitialAttitude, Integration, Platform,
-    PlatformFilter, Recentring, Site,
+    PlatformFilter, Precision, Recentring, Site,
 };
 use gyrocal_testkit::extended_platform::ExtendedPlatform;
 
@@ -114,7 +114,7 @@ fn no_step_allocates() {
 }
 
 /// Allocations of every call of the filter of a platform, in the number type `T`.
-fn calls_of<T: Real, F: Form<T>>(integration: Integration) -> u64 {
+fn calls_of<T: Precision, F: Form<T>>(integration: Integration) -> u64 {
     let settings = FilterSettings {
         discretisation: Discretisation {
             integration,

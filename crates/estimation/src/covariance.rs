@@ -58,6 +58,41 @@ impl<T: Real> Form<T> for Covariance {
         }
     }
 
+    #[inline]
+    fn save(matrix: &[T], pivots: &[T], mut put: impl FnMut(T)) {
+        let n = pivots.len().max(1);
+        for (i, row) in matrix.chunks_exact(n).enumerate() {
+            row.iter()
+                .skip(i)
+                .take(1)
+                .for_each(|variance| put(*variance));
+        }
+        for (i, row) in matrix.chunks_exact(n).enumerate() {
+            row.iter().skip(i + 1).for_each(|element| put(*element));
+        }
+    }
+
+    #[inline]
+    fn restore(numbers: &mut Numbers<'_, T>, mut get: impl FnMut() -> Option<T>) {
+        let n = numbers.pivots.len().max(1);
+        for (i, row) in numbers.matrix.chunks_exact_mut(n).enumerate() {
+            for place in row.iter_mut().skip(i).take(1) {
+                *place = get().unwrap_or(*place);
+            }
+        }
+        for i in 0..n {
+            for j in i + 1..n {
+                let Some(value) = get() else { return };
+                // Symmetric; where the lower half is not kept, nothing reads it.
+                for at in [i * n + j, j * n + i] {
+                    if let Some(place) = numbers.matrix.get_mut(at) {
+                        *place = value;
+                    }
+                }
+            }
+        }
+    }
+
     #[inline(always)]
     fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,

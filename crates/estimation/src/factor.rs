@@ -46,6 +46,31 @@ impl<T: Real> Form<T> for Factors {
         })
     }
 
+    #[inline]
+    fn save(matrix: &[T], pivots: &[T], mut put: impl FnMut(T)) {
+        pivots.iter().for_each(|pivot| put(*pivot));
+        for (j, column) in matrix.chunks_exact(pivots.len().max(1)).enumerate() {
+            column.iter().take(j).for_each(|element| put(*element));
+        }
+    }
+
+    #[inline]
+    fn restore(numbers: &mut Numbers<'_, T>, mut get: impl FnMut() -> Option<T>) {
+        let n = numbers.pivots.len().max(1);
+        for (place, value) in numbers.pivots.iter_mut().zip(core::iter::from_fn(&mut get)) {
+            *place = value;
+        }
+        for (j, column) in numbers.matrix.chunks_exact_mut(n).enumerate() {
+            for (i, place) in column.iter_mut().enumerate() {
+                if i < j {
+                    *place = get().unwrap_or(*place);
+                } else {
+                    *place = T::from_f64(if i == j { 1.0 } else { 0.0 });
+                }
+            }
+        }
+    }
+
     #[inline(always)]
     fn predict<const M: usize, const SPARSE: bool>(
         numbers: &mut Numbers<'_, T>,

@@ -1,10 +1,10 @@
 use core::marker::PhantomData;
 
-use gyrocal_scalar::{Real, Recentre};
+use gyrocal_scalar::Recentre;
 
-use crate::covariance::Covariance;
 use crate::error::EstimationError;
 use crate::form::{Form, Numbers, Transition};
+use crate::precision::Precision;
 use crate::recentring::Recentring;
 use crate::storage::{Storage, View};
 use crate::transition::Integration;
@@ -23,6 +23,7 @@ macro_rules! numbers {
 }
 
 mod predict;
+mod saved;
 mod update;
 
 /// Continuous-discrete extended Kalman filter on a generated model.
@@ -30,7 +31,10 @@ mod update;
 /// `M` moving states, `Y` outputs, and as many parameters as the model has. The state is
 /// `[moving, parameters]`; noise enters the rates, held over each step.
 #[derive(Clone, Debug)]
-pub struct Filter<T, D, I, S, const M: usize, const Y: usize, F = Covariance> {
+pub struct Filter<T, D, I, S, const M: usize, const Y: usize, F = <T as Precision>::Form>
+where
+    T: Precision,
+{
     model: D,
     inputs: I,
     integration: Integration,
@@ -41,13 +45,13 @@ pub struct Filter<T, D, I, S, const M: usize, const Y: usize, F = Covariance> {
     form: PhantomData<F>,
 }
 
-impl<T, D, S, const M: usize, const Y: usize> Filter<T, D, D::Inputs, S, M, Y, Covariance>
+impl<T, D, S, const M: usize, const Y: usize> Filter<T, D, D::Inputs, S, M, Y>
 where
-    T: Real,
+    T: Precision,
     D: Recentre<T, M, Y>,
     S: Storage<T>,
 {
-    /// A filter that carries P itself, see [`Self::with_form`].
+    /// A filter in the form that suits its numbers, see [`Self::with_form`].
     ///
     /// # Errors
     /// As [`Self::with_form`].
@@ -74,7 +78,7 @@ where
 
 impl<T, D, S, const M: usize, const Y: usize, F> Filter<T, D, D::Inputs, S, M, Y, F>
 where
-    T: Real,
+    T: Precision,
     D: Recentre<T, M, Y>,
     S: Storage<T>,
     F: Form<T>,
@@ -82,20 +86,52 @@ where
     /// A filter at `state` with independent prior errors of the given standard deviations.
     ///
     /// # Errors
-    /// [`EstimationError::InvalidArgument`] if lengths differ from the model's number of
-    /// states or `integration` has no sub-step; [`EstimationError::NotPositiveDefinite`] if a
-    /// sigma is not positive.
+    /// As [`Self::start`].
     pub fn with_form(
         model: D,
         inputs: D::Inputs,
         integration: Integration,
         recentring: Recentring<T>,
-        mut storage: S,
+        storage: S,
         state: &[T],
         sigma: &[T],
     ) -> Result<Self, EstimationError> {
-        let n = storage.states();
-        if M + model.parameters() != n || state.len() != n || sigma.len() != n {
+        let mut filter = Self::unset(model, inputs, storage);
+        filter.start(integration, recentring, state, sigma)?;
+        Ok(filter)
+    }
+
+    /// A filter that has not started: every step of it fails.
+    #[must_use]
+    pub const fn unset(model: D, inputs: D::Inputs, storage: S) -> Self {
+        Self {
+            model,
+            inputs,
+            integration: Integration::RK4,
+            recentring: Recentring::Never,
+            storage,
+            moving_transition: [[T::ZERO; M]; M],
+            map: None,
+            form: PhantomData,
+        }
+    }
+
+    /// Starts in place, at `state` with independent prior errors of the given standard deviations,
+    /// whatever the filter was before. The inputs stay.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidArgument`] if lengths differ from the model's number of
+    /// states or `integration` has no sub-step; [`EstimationError::NotPositiveDefinite`] if a
+    /// sigma is not positive. The filter is unchanged then.
+    pub fn start(
+        &mut self,
+        integration: Integration,
+        recentring: Recentring<T>,
+        state: &[T],
+        sigma: &[T],
+    ) -> Result<(), EstimationError> {
+        let n = self.storage.states();
+        if M + self.model.parameters() != n || state.len() != n || sigma.len() != n {
             return Err(EstimationError::InvalidArgument {
                 expected: "as many states, sigmas and places in the storage as the model has",
             });
@@ -105,32 +141,24 @@ where
                 expected: "at least one sub-step",
             });
         }
-        let buffers = storage.buffers();
-        buffers.state.copy_from_slice(state);
-        // A model writes structural nonzeros only.
-        buffers.stages.fill(T::from_f64(0.0));
-        buffers.output.fill(T::from_f64(0.0));
         for (j, sigma) in sigma.iter().enumerate() {
             if !(sigma.is_positive() && (*sigma * *sigma).is_finite()) {
                 return Err(EstimationError::NotPositiveDefinite { state: j });
             }
         }
+        let buffers = self.storage.buffers();
+        buffers.state.copy_from_slice(state);
+        // A model writes structural nonzeros only.
+        buffers.stages.fill(T::from_f64(0.0));
+        buffers.output.fill(T::from_f64(0.0));
         F::start(
             &mut numbers!(buffers),
             sigma.iter().map(|sigma| *sigma * *sigma),
         );
-        let mut filter = Self {
-            model,
-            inputs,
-            integration,
-            recentring,
-            storage,
-            moving_transition: [[T::from_f64(0.0); M]; M],
-            map: None,
-            form: PhantomData,
-        };
-        filter.recentre_at_start()?;
-        Ok(filter)
+        self.integration = integration;
+        self.recentring = recentring;
+        self.map = None;
+        self.recentre_at_start()
     }
 
     /// The prior is given in the coordinates of the first chart; carries it to a chart at the
@@ -221,8 +249,8 @@ where
 }
 
 #[inline(always)]
-fn to_array<T: Copy + Default, const M: usize>(slice: &[T]) -> [T; M] {
-    let mut array = [T::default(); M];
+fn to_array<T: Precision, const M: usize>(slice: &[T]) -> [T; M] {
+    let mut array = [T::ZERO; M];
     array.copy_from_slice(slice);
     array
 }

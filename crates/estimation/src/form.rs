@@ -20,6 +20,14 @@ pub trait Form<T: Real> {
     /// Element (i, j) of P, `moving` being the number of moving states.
     fn element(matrix: &[T], pivots: &[T], moving: usize, i: usize, j: usize) -> T;
 
+    /// The n (n + 1) / 2 numbers that determine P, those that must be positive first: `put` takes
+    /// one after the other.
+    fn save(matrix: &[T], pivots: &[T], put: impl FnMut(T));
+
+    /// Takes the numbers of [`Self::save`] back, in the same order. Where `get` has none left, the
+    /// rest stays as it is.
+    fn restore(numbers: &mut Numbers<'_, T>, get: impl FnMut() -> Option<T>);
+
     /// P ← W (Φ P Φᵀ + Γ diag(variance) Γᵀ) Wᵀ, W being the map on the moving states.
     ///
     /// `zeros` declares which products can be left out; with `SPARSE` there are enough of them among

@@ -8,11 +8,11 @@
 //! [`gyrocal_scalar::Model`], and uses this structure: the transition is non-trivial in the moving
 //! rows only.
 //!
-//! The covariance is carried in one of two forms ([`form`]). [`Covariance`], the default, is P
-//! itself: symmetric to the last bit by the order of operations, the moving block in Joseph form
+//! The covariance is carried in one of two forms ([`form`]); [`Precision`] says which one a number
+//! type has by default. [`Covariance`], that of `f64`, is P itself: symmetric to the last bit by the order of operations, the moving block in Joseph form
 //! where a measurement removes nearly all of a wide prior. [`Factors`] are U and D of
 //! P = U D Uᵀ (Bierman, *Factorization Methods for Discrete Sequential Estimation*, 1977), which
-//! rounding cannot make indefinite: the form for single precision and for wide priors.
+//! rounding cannot make indefinite: that of `f32`, and the one for wide priors.
 //! A variance that is not positive, digits that would cancel, or a number that is not finite is
 //! an [`EstimationError`]; nothing is ever repaired.
 //!
@@ -129,6 +129,7 @@ pub mod form;
 mod innovation;
 mod manifold;
 mod observe;
+mod precision;
 mod projection;
 mod recentring;
 mod storage;
@@ -142,6 +143,7 @@ pub use factor::Factors;
 pub use filter::Filter;
 pub use innovation::Innovation;
 pub use manifold::{Corrected, Manifold};
+pub use precision::Precision;
 pub use recentring::Recentring;
 #[cfg(feature = "alloc")]
 pub use storage::VecStorage;

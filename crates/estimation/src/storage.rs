@@ -1,5 +1,7 @@
 //! Storage of a filter: arrays for controllers, vectors for batch work.
 
+use gyrocal_scalar::Real;
+
 /// Everything a filter step reads and writes, as slices.
 ///
 /// Matrices over all n states are stored by columns with stride n, those over the n - M
@@ -67,17 +69,17 @@ pub struct ArrayStorage<T, const M: usize, const Y: usize, const N: usize> {
     cross: [[T; N]; M],
 }
 
-impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M, Y, N> {
-    /// All numbers at their default.
+impl<T: Real, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M, Y, N> {
+    /// All numbers zero.
     #[must_use]
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         const {
             assert!(
                 M <= N,
                 "a filter has at least as many states as moving states"
             )
         };
-        let zero = T::default();
+        let zero = T::ZERO;
         Self {
             state: [zero; N],
             matrix: [[zero; N]; N],
@@ -92,9 +94,7 @@ impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> ArraySto
     }
 }
 
-impl<T: Copy + Default, const M: usize, const Y: usize, const N: usize> Default
-    for ArrayStorage<T, M, Y, N>
-{
+impl<T: Real, const M: usize, const Y: usize, const N: usize> Default for ArrayStorage<T, M, Y, N> {
     fn default() -> Self {
         Self::new()
     }

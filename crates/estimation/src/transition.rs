@@ -2,7 +2,7 @@
 //! map: the variational equation Ṡ = F S + F_p under the same Runge-Kutta scheme, summed from the
 //! last stage back, so that each stage costs one product a column.
 
-use gyrocal_scalar::{Model, RatesJacobian, Scalar};
+use gyrocal_scalar::{Model, RatesJacobian, Real, Scalar};
 
 use crate::unrolled::{load, load_rows, mul_add, small_product, store};
 
@@ -61,7 +61,7 @@ pub(crate) struct Integrator<'a, T, D, I, const M: usize, const Y: usize> {
 
 impl<T, D, const M: usize, const Y: usize> Integrator<'_, T, D, D::Inputs, M, Y>
 where
-    T: Scalar,
+    T: Real,
     D: Model<T, M, Y>,
 {
     /// Integrates the moving states over `dt` and their derivatives with them.
@@ -76,7 +76,7 @@ where
         let h = if count == 1 {
             dt
         } else {
-            dt / T::from_f64(f64::from(count))
+            dt / T::from_u32(count)
         };
         match integration {
             Integration::Euler { .. } => {

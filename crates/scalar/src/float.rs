@@ -114,6 +114,15 @@ macro_rules! impl_float {
         }
 
         impl Real for $float {
+            const ZERO: Self = 0.0;
+            #[inline(always)]
+            fn from_u32(count: u32) -> Self {
+                count as $float
+            }
+            #[inline(always)]
+            fn to_u32(self) -> u32 {
+                self as u32
+            }
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 f64::from(self)

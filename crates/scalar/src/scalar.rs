@@ -129,6 +129,14 @@ pub trait Scalar:
 
 /// A real number with an order: what a filter needs beyond what generated code does.
 pub trait Real: Scalar + PartialOrd + Default + core::fmt::Debug {
+    /// Zero, as a constant: for filters in `static` memory.
+    const ZERO: Self;
+    /// The number nearest to `count`.
+    #[must_use]
+    fn from_u32(count: u32) -> Self;
+    /// The number without its fraction; 0 below zero and for NaN, `u32::MAX` beyond it.
+    #[must_use]
+    fn to_u32(self) -> u32;
     /// The number as `f64`.
     #[must_use]
     fn to_f64(self) -> f64;

@@ -1,15 +1,16 @@
-use gyrocal_scalar::{Real, Recentre};
+use gyrocal_scalar::Recentre;
 
 use super::{Filter, to_array};
 use crate::error::EstimationError;
 use crate::form::{Form, Numbers, Transition};
+use crate::precision::Precision;
 use crate::storage::Storage;
 use crate::transition::{Integration, Integrator};
 use crate::zeros::Known;
 
 impl<T, D, S, const M: usize, const Y: usize, F> Filter<T, D, D::Inputs, S, M, Y, F>
 where
-    T: Real,
+    T: Precision,
     D: Recentre<T, M, Y>,
     S: Storage<T>,
     F: Form<T>,

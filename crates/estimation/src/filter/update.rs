@@ -5,13 +5,14 @@ use crate::error::EstimationError;
 use crate::form::{Form, Numbers};
 use crate::innovation::Innovation;
 use crate::observe::{Sensor, check_noise};
+use crate::precision::Precision;
 use crate::recentring::Recentring;
 use crate::storage::Storage;
 use crate::zeros::Known;
 
 impl<T, D, S, const M: usize, const Y: usize, F> Filter<T, D, D::Inputs, S, M, Y, F>
 where
-    T: Real,
+    T: Precision,
     D: Recentre<T, M, Y>,
     S: Storage<T>,
     F: Form<T>,
