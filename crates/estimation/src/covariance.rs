@@ -104,6 +104,14 @@ impl<T: Real> Form<T> for Covariance {
     }
 
     #[inline(always)]
+    fn recentre<const M: usize>(
+        numbers: &mut Numbers<'_, T>,
+        map: &[[T; M]; M],
+    ) -> Result<(), EstimationError> {
+        predict::recentre(numbers.matrix, numbers.pivots.len(), map)
+    }
+
+    #[inline(always)]
     fn innovation<const M: usize, const Y: usize>(
         numbers: &mut Numbers<'_, T>,
         observation: &Observation<'_, T, M, Y>,

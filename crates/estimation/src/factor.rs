@@ -81,6 +81,15 @@ impl<T: Real> Form<T> for Factors {
     }
 
     #[inline(always)]
+    fn recentre<const M: usize>(
+        numbers: &mut Numbers<'_, T>,
+        map: &[[T; M]; M],
+    ) -> Result<(), EstimationError> {
+        let none = [T::from_f64(0.0); M];
+        predict::predict_corner(numbers.matrix, numbers.pivots, map, &[none; M], &none)
+    }
+
+    #[inline(always)]
     fn innovation<const M: usize, const Y: usize>(
         numbers: &mut Numbers<'_, T>,
         observation: &Observation<'_, T, M, Y>,

@@ -3,7 +3,7 @@ use core::marker::PhantomData;
 use gyrocal_scalar::Recentre;
 
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers, Transition};
+use crate::form::{Form, Numbers};
 use crate::precision::Precision;
 use crate::recentring::Recentring;
 use crate::storage::{Storage, View};
@@ -150,6 +150,7 @@ where
         buffers.state.copy_from_slice(state);
         // A model writes structural nonzeros only.
         buffers.stages.fill(T::from_f64(0.0));
+        buffers.transition.fill(T::from_f64(0.0));
         buffers.output.fill(T::from_f64(0.0));
         F::start(
             &mut numbers!(buffers),
@@ -164,7 +165,6 @@ where
     /// The prior is given in the coordinates of the first chart; carries it to a chart at the
     /// first state where the policy wants one.
     fn recentre_at_start(&mut self) -> Result<(), EstimationError> {
-        let n = self.storage.states();
         let buffers = self.storage.buffers();
         let mut moving = to_array(&buffers.state[..M]);
         if !self.recentring.wanted(&moving) {
@@ -174,16 +174,7 @@ where
             return Ok(());
         };
         buffers.state[..M].copy_from_slice(&moving);
-        let zero = [T::from_f64(0.0); M];
-        buffers.transition.fill(T::from_f64(0.0));
-        let transition = Transition {
-            moving: map,
-            parameters: &buffers.transition[..M * (n - M)],
-            noise: [zero; M],
-            variance: zero,
-            map: None,
-        };
-        F::predict::<M, false>(&mut numbers!(buffers), &transition, &())
+        F::recentre(&mut numbers!(buffers), &map)
     }
 
     /// True if the moving states are zero between calls.

@@ -41,6 +41,15 @@ pub trait Form<T: Real> {
         zeros: &impl Zeros,
     ) -> Result<(), EstimationError>;
 
+    /// P ← W P Wᵀ for independent errors, W being the map on the moving states.
+    ///
+    /// # Errors
+    /// As [`Self::predict`].
+    fn recentre<const M: usize>(
+        numbers: &mut Numbers<'_, T>,
+        map: &[[T; M]; M],
+    ) -> Result<(), EstimationError>;
+
     /// The innovation alone; nothing changes but workspace.
     ///
     /// # Errors

@@ -123,8 +123,27 @@ where
         mut moving: [T; M],
         mut transition: Derivatives<T, M>,
     ) -> ([T; M], Derivatives<T, M>) {
+        // Lengths that a caller has checked already; here the compiler learns them again, so that
+        // nothing that follows can panic.
+        let p = self.model.parameters();
+        let (stages, columns) = (&mut *self.stages, &mut *self.columns);
+        let (Some(parameters), Some(stages), Some(columns)) = (
+            self.parameters.get(..p),
+            stages.get_mut(..4 * M * p),
+            columns.get_mut(..M * p),
+        ) else {
+            return (moving, transition);
+        };
+        let mut own = Integrator {
+            model: self.model,
+            inputs: self.inputs,
+            parameters,
+            columns,
+            stages,
+            at_origin: self.at_origin,
+        };
         for _ in 0..count {
-            self.substep(false, nodes, weights, &mut moving, &mut transition);
+            own.substep(false, nodes, weights, &mut moving, &mut transition);
         }
         (moving, transition)
     }

@@ -147,3 +147,31 @@ fn added<T: Real, Z: Zeros, const M: usize, const SPARSE: bool>(
     }
     added
 }
+
+/// The moving block carried through a map, for independent errors: nothing else changes.
+#[inline(always)]
+pub(super) fn recentre<T: Real, const M: usize>(
+    p: &mut [T],
+    n: usize,
+    map: &[[T; M]; M],
+) -> Result<(), EstimationError> {
+    let old: [[T; M]; M] = load_rows(p, n, 0);
+    let mapped = product(map, |_, _| true, &old);
+    let mut corner = [[T::from_f64(0.0); M]; M];
+    for i in 0..M {
+        for j in 0..M {
+            if j <= i {
+                let mut sum = T::from_f64(0.0);
+                for k in 0..M {
+                    sum = mapped[i][k].mul_add(map[j][k], sum);
+                }
+                corner[i][j] = sum;
+                corner[j][i] = sum;
+            }
+        }
+    }
+    for (i, row) in corner.iter().enumerate() {
+        store(p, i * n, *row);
+    }
+    check_diagonal(p, n, M)
+}

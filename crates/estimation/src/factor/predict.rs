@@ -64,7 +64,7 @@ pub(super) fn predict<T: Real, const M: usize>(
 /// The M × M corner: weighted Gram-Schmidt on the rows of [Φ_mm U_mm, Γ] with the weights
 /// [D_m, variance].
 #[inline(always)]
-fn predict_corner<T: Real, const M: usize>(
+pub(super) fn predict_corner<T: Real, const M: usize>(
     factor: &mut [T],
     pivots: &mut [T],
     transition: &[[T; M]; M],
@@ -76,9 +76,12 @@ fn predict_corner<T: Real, const M: usize>(
     let mut rows = [[zero; M]; M];
     for i in 0..M {
         for j in 0..M {
-            rows[i][j] = (0..=j).fold(zero, |sum, k| {
-                transition[i][k].mul_add(factor[j * n + k], sum)
-            });
+            // A range up to `j` would be a function of its own, which could panic.
+            for k in 0..M {
+                if k <= j {
+                    rows[i][j] = transition[i][k].mul_add(factor[j * n + k], rows[i][j]);
+                }
+            }
         }
     }
     let mut noise = *noise;
