@@ -2,7 +2,8 @@ use gyrocal_scalar::{Model, RatesJacobian, Real, Recentre};
 
 use crate::chart_vectors::{ChartInputs, ChartVectors};
 use crate::generated::platform::{PlatformInputs, reanchor};
-use crate::rotation::{cross, dot, rotate, turned_by};
+use crate::orientation::{Numbers, Orientation};
+use crate::rotation::{cross, turned_by};
 use crate::site::Site;
 
 /// A chart fixed to the Earth: its orientation, and the inputs `I` of a generated model along its
@@ -10,15 +11,12 @@ use crate::site::Site;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chart<T, I = PlatformInputs<T>> {
     inputs: I,
-    /// Unit vectors along the chart axes.
-    north: [T; 3],
-    up: [T; 3],
+    orientation: Orientation<T>,
     site: Site<T>,
     /// Horizontal (north) and vertical component of Earth rate, rad/s.
     earth_rate: [T; 2],
     /// East, North and Up component of the magnetic field, gauss.
     field_gauss: [T; 3],
-    turns: u32,
 }
 
 impl<T: Real> Chart<T> {
@@ -30,8 +28,7 @@ impl<T: Real> Chart<T> {
                 omega_0: zero,
                 f_0: zero,
             },
-            north: zero,
-            up: zero,
+            orientation: Orientation::new(zero, zero),
             site: Site {
                 latitude_rad: T::ZERO,
                 earth_rate_rad_per_s: T::ZERO,
@@ -39,7 +36,6 @@ impl<T: Real> Chart<T> {
             },
             earth_rate: [T::ZERO; 2],
             field_gauss: zero,
-            turns: 0,
         }
     }
 
@@ -67,12 +63,10 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
         let rate = site.earth_rate_rad_per_s;
         let mut chart = Self {
             inputs: I::unset(),
-            north: [zero, one, zero],
-            up: [zero, zero, one],
+            orientation: Orientation::new([zero, one, zero], [zero, zero, one]),
             site,
             earth_rate: [rate * cosine, rate * sine],
             field_gauss: [zero; 3],
-            turns: 0,
         };
         chart.update_inputs();
         chart
@@ -100,44 +94,39 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
     /// Matrix that takes components along East, North, Up to components along the chart.
     #[must_use]
     pub fn chart_c_enu(&self) -> [[T; 3]; 3] {
-        let east = cross(&self.north, &self.up);
-        core::array::from_fn(|i| [east[i], self.north[i], self.up[i]])
+        let Orientation { north, up, .. } = &self.orientation;
+        let east = cross(north, up);
+        core::array::from_fn(|i| [east[i], north[i], up[i]])
     }
 
     /// Unit vectors North and Up along the chart axes.
     #[must_use]
     pub fn orientation(&self) -> [[T; 3]; 2] {
-        [self.north, self.up]
+        [self.orientation.north, self.orientation.up]
     }
 
-    /// Turns so far, on which the time of the next renormalisation depends.
-    pub(crate) fn turns(&self) -> u32 {
-        self.turns
+    /// Numbers of the orientation, and the turns so far, on which the time of the next
+    /// renormalisation depends.
+    pub(crate) fn saved(&self) -> (Numbers<T>, u32) {
+        self.orientation.saved()
     }
 
-    /// Restores orientation and turns of a saved chart.
-    pub(crate) fn restore(&mut self, orientation: &[[T; 3]; 2], turns: u32) {
-        self.set_orientation(orientation);
-        self.turns = turns;
+    /// Restores the orientation of a saved chart.
+    pub(crate) fn restore(&mut self, numbers: Numbers<T>, turns: u32) {
+        self.orientation.restore(numbers, turns);
+        self.update_inputs();
     }
 
     /// Sets the orientation of the chart: the components of North and Up, orthogonal unit vectors.
-    pub fn set_orientation(&mut self, [north, up]: &[[T; 3]; 2]) {
-        (self.north, self.up) = (*north, *up);
+    pub fn set_orientation(&mut self, north_and_up: &[[T; 3]; 2]) {
+        self.orientation.set(north_and_up);
         self.update_inputs();
     }
 
     /// Rotates the chart: `matrix` takes old components to new ones.
     #[inline(always)]
     fn rotate(&mut self, matrix: &[[T; 3]; 3]) {
-        self.north = rotate(matrix, &self.north);
-        self.up = rotate(matrix, &self.up);
-        self.turns = self.turns.wrapping_add(1);
-        // Rounding adds at most some units of the last place a turn; in f32 that would matter
-        // after a few thousand.
-        if self.turns & 63 == 0 {
-            self.orthonormalise();
-        }
+        self.orientation.turn(matrix);
         self.update_inputs();
     }
 
@@ -145,26 +134,12 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
     #[inline(always)]
     fn update_inputs(&mut self) {
         self.inputs.set_from_chart(&ChartVectors {
-            north: &self.north,
-            up: &self.up,
+            north: &self.orientation.north,
+            up: &self.orientation.up,
             earth_rate: &self.earth_rate,
             gravity_g: self.site.gravity_g,
             field_gauss: &self.field_gauss,
         });
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn orthonormalise(&mut self) {
-        let one = T::from_f64(1.0);
-        let scale = one / dot(&self.up, &self.up).sqrt();
-        self.up = self.up.map(|component| component * scale);
-        let along = dot(&self.up, &self.north);
-        for i in 0..3 {
-            self.north[i] = self.north[i] - along * self.up[i];
-        }
-        let scale = one / dot(&self.north, &self.north).sqrt();
-        self.north = self.north.map(|component| component * scale);
     }
 }
 

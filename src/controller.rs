@@ -140,8 +140,9 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     ) -> Result<Innovation<T, 3>, ControllerError> {
         self.check_interval(interval_s)?;
         self.check_sample(specific_force_g)?;
-        let result = self.filter.step(interval_s, specific_force_g);
-        self.stopped_by(result)
+        let result = self.filter.predict(interval_s);
+        self.stopped_by(result)?;
+        self.take(specific_force_g)
     }
 
     /// Takes a sample at the time the filter is at: the first one after a start.
@@ -153,8 +154,7 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
         specific_force_g: &[T; 3],
     ) -> Result<Innovation<T, 3>, ControllerError> {
         self.check_sample(specific_force_g)?;
-        let result = self.filter.update(specific_force_g);
-        self.stopped_by(result)
+        self.take(specific_force_g)
     }
 
     /// Time passes without a sample.
@@ -204,6 +204,13 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     #[must_use]
     pub fn filter(&self) -> &PlatformFilter<T, F> {
         &self.filter
+    }
+
+    /// One function for all calls, so that a firmware holds the update once.
+    #[inline(never)]
+    fn take(&mut self, specific_force_g: &[T; 3]) -> Result<Innovation<T, 3>, ControllerError> {
+        let result = self.filter.update(specific_force_g);
+        self.stopped_by(result)
     }
 
     #[inline(always)]

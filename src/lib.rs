@@ -79,6 +79,7 @@ mod controller_error;
 mod filter;
 pub mod generated;
 mod initial_attitude;
+mod orientation;
 mod rotation;
 mod saved;
 mod settings;

@@ -8,7 +8,7 @@
 //! | 1 | form of the covariance: 0 for P, 1 for its factors |
 //! | 4 | fingerprint of the model: names and order of its parameters |
 //! | 4 | turns of the chart |
-//! | 6 numbers | North and Up along the axes of the chart |
+//! | 12 numbers | North and Up along the axes of the chart, and what rounding left of them |
 //! | 90 numbers | state and covariance, as `Filter::save` gives them |
 //! | 4 | CRC-32 (IEEE 802.3) of all before |
 //!
@@ -26,11 +26,12 @@ const MAGIC: [u8; 4] = *b"GYRC";
 const VERSION: u16 = 1;
 const NUMBERS: usize = 2 * Platform::STATES + Platform::STATES * (Platform::STATES - 1) / 2;
 const HEAD: usize = 16;
+const CHART: usize = 12;
 const CHECKSUM: usize = 4;
 
 /// Bytes of a saved state of numbers of `number` bytes.
 pub(crate) const fn length(number: usize) -> usize {
-    HEAD + (6 + NUMBERS) * number + CHECKSUM
+    HEAD + (CHART + NUMBERS) * number + CHECKSUM
 }
 
 /// A form of the covariance that a saved state can hold.
@@ -86,10 +87,8 @@ pub(crate) fn save<T: SavedNumber, F: Form<T> + SavedForm>(
     }
     let kernel = filter.kernel();
     let (head, body) = place.split_at_mut_checked(HEAD).unwrap_or_default();
-    for (bytes, place) in header::<T, F>(kernel.inputs().turns())
-        .iter()
-        .zip(head.chunks_exact_mut(4))
-    {
+    let (chart, turns) = kernel.inputs().saved();
+    for (bytes, place) in header::<T, F>(turns).iter().zip(head.chunks_exact_mut(4)) {
         copy(bytes, place);
     }
     let mut places = body.chunks_exact_mut(T::BYTES);
@@ -98,8 +97,7 @@ pub(crate) fn save<T: SavedNumber, F: Form<T> + SavedForm>(
             number.write(place);
         }
     };
-    let [north, up] = kernel.inputs().orientation();
-    north.iter().chain(&up).for_each(|number| put(*number));
+    chart.as_flattened().iter().for_each(|number| put(*number));
     kernel.save(put);
     let (sealed, seal) = place
         .split_at_mut_checked(expected - CHECKSUM)
@@ -132,8 +130,11 @@ pub(crate) fn restore<T: SavedNumber, F: Form<T> + SavedForm>(
         return Err(ControllerError::SavedChecksum);
     }
     let number = |index: usize| body.chunks_exact(T::BYTES).nth(index).and_then(T::read);
-    let orientation = [0, 3].map(|at| [0, 1, 2].map(|axis| number(at + axis).unwrap_or(T::ZERO)));
-    if !is_rotation(&orientation) {
+    let mut chart = [[T::ZERO; 3]; 4];
+    for (index, place) in chart.as_flattened_mut().iter_mut().enumerate() {
+        *place = number(index).unwrap_or(T::ZERO);
+    }
+    if !is_rotation(&chart) {
         return Err(ControllerError::SavedNumbers);
     }
     let turns = head
@@ -142,23 +143,25 @@ pub(crate) fn restore<T: SavedNumber, F: Form<T> + SavedForm>(
         .and_then(|bytes| bytes.try_into().ok());
     let kernel = filter.kernel_mut();
     kernel
-        .restore(|index| number(6 + index))
+        .restore(|index| number(CHART + index))
         .map_err(|_| ControllerError::SavedNumbers)?;
     kernel
         .inputs_mut()
-        .restore(&orientation, u32::from_le_bytes(turns.unwrap_or_default()));
+        .restore(chart, u32::from_le_bytes(turns.unwrap_or_default()));
     Ok(())
 }
 
-/// North and Up are orthogonal unit vectors to a thousand roundings, more than a filter leaves.
-fn is_rotation<T: Precision>([north, up]: &[[T; 3]; 2]) -> bool {
+/// North and Up are orthogonal unit vectors to a thousand roundings, more than a filter leaves, and
+/// what rounding left of them is as small.
+fn is_rotation<T: Precision>([north, up, north_low, up_low]: &[[T; 3]; 4]) -> bool {
     let most = T::from_f64(1e3) * T::epsilon();
     let off = [
         dot(north, north) - T::from_f64(1.0),
         dot(up, up) - T::from_f64(1.0),
         dot(north, up),
     ];
-    off.iter().all(|off| off.abs() < most)
+    let mut all = off.iter().chain(north_low).chain(up_low);
+    all.all(|off| off.abs() < most)
 }
 
 fn header<T: SavedNumber, F: SavedForm>(turns: u32) -> [[u8; 4]; 4] {

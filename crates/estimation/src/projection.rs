@@ -5,7 +5,7 @@ use gyrocal_scalar::Real;
 use crate::error::EstimationError;
 use crate::form::{Observation, Zeros};
 use crate::innovation::Innovation;
-use crate::unrolled::{load, mul_add, store};
+use crate::unrolled::{load_rows, mul_add, store};
 
 /// Largest ratio of H P Hᵀ to R, output by output, up to which the moving block is updated by
 /// subtraction: that costs a variance at most two bits more than the binary logarithm of this.
@@ -182,14 +182,14 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
     /// The moving block after the update, `whitened` being the moving columns of V.
     #[inline(always)]
     pub(crate) fn update_corner(&self, p: &mut [T], n: usize, whitened: &[[T; M]; Y]) {
+        let mut rest: [[T; M]; M] = load_rows(p, n, 0);
         if self.is_wide() {
-            return self.update_corner_in_joseph_form(p, n);
-        }
-        let mut rest = [[T::from_f64(0.0); M]; M];
-        for i in 0..M {
-            rest[i] = load(p, i * n);
-            for k in 0..Y {
-                rest[i] = mul_add(whitened[k], -whitened[k][i], rest[i]);
+            self.corner_in_joseph_form(p, n, &mut rest);
+        } else {
+            for i in 0..M {
+                for k in 0..Y {
+                    rest[i] = mul_add(whitened[k], -whitened[k][i], rest[i]);
+                }
             }
         }
         for (i, row) in rest.iter().enumerate() {
@@ -197,10 +197,11 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
         }
     }
 
-    /// (I - K H) P (I - K H)ᵀ + K R Kᵀ.
+    /// (I - K H) P (I - K H)ᵀ + K R Kᵀ of the moving block, which `corner` is. Of `p` it iterates
+    /// over elements only, as an index could panic here, where the compiler knows no length.
     #[cold]
     #[inline(never)]
-    fn update_corner_in_joseph_form(&self, p: &mut [T], n: usize) {
+    fn corner_in_joseph_form(&self, p: &[T], n: usize, corner: &mut [[T; M]; M]) {
         let (observation, output) = (self.observation, self.observation.parameters);
         let q = output.len() / Y;
         let zero = T::from_f64(0.0);
@@ -214,9 +215,8 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
                 gain[k] = mul_add(gain[later], -self.lower[later][k], gain[k]);
             }
         }
-        let mut rest = [[zero; M]; M];
+        let mut rest = *corner;
         for i in 0..M {
-            rest[i] = load(p, i * n);
             for k in 0..Y {
                 rest[i] = mul_add(self.moving[k], -gain[k][i], rest[i]);
             }
@@ -229,8 +229,9 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
                 for j in 0..M {
                     sum = rest[i][j].mul_add(observation.moving[k][j], sum);
                 }
-                for j in 0..q {
-                    sum = p[i * n + M + j].mul_add(output[k * q + j], sum);
+                let cross = p.iter().skip(i * n + M).zip(output.iter().skip(k * q));
+                for (p, h) in cross.take(q) {
+                    sum = p.mul_add(*h, sum);
                 }
                 excess[k][i] = sum;
             }
@@ -241,8 +242,8 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
                 for k in 0..Y {
                     sum = sum - excess[k][i] * gain[k][j];
                 }
-                p[i * n + j] = sum;
-                p[j * n + i] = sum;
+                corner[i][j] = sum;
+                corner[j][i] = sum;
             }
         }
     }
@@ -308,6 +309,11 @@ pub(crate) fn check_diagonal<T: Real>(
     if bad == 0 && sum.is_finite() {
         return Ok(());
     }
-    let state = (0..count).find(|i| !is_variance(p[i * n + i])).unwrap_or(0);
-    Err(not_positive(p[state * n + state], state))
+    for state in 0..count {
+        if !is_variance(p[state * n + state]) {
+            return Err(not_positive(p[state * n + state], state));
+        }
+    }
+    // Each is finite, but not their sum.
+    Err(not_positive(T::from_f64(1.0), 0))
 }

@@ -103,7 +103,7 @@ fn saved_states(filter: &mut Filter) -> [bool; 4] {
     // The sign of the first variance, with a checksum that is right again.
     let number = size_of::<Number>();
     let mut negative = saved;
-    negative[16 + (6 + 12 + 1) * number - 1] ^= 0x80;
+    negative[16 + (12 + 12 + 1) * number - 1] ^= 0x80;
     seal(&mut negative);
     let definite = refused(&negative, ControllerError::SavedNumbers);
     [length, version, checksum, definite]

@@ -96,7 +96,7 @@ impl Filter {
     /// The numbers that the next steps depend on.
     #[inline(never)]
     pub fn numbers(&self, put: &mut dyn FnMut(Number)) {
-        self.0.filter().kernel().save(put);
+        self.0.filter().kernel().save(|number| put_one(put, number));
     }
 
     /// True between a start and a failure.
@@ -104,4 +104,10 @@ impl Filter {
     pub fn is_running(&self) -> bool {
         self.0.is_running()
     }
+}
+
+/// Out of line: the calls are many.
+#[inline(never)]
+fn put_one(put: &mut dyn FnMut(Number), number: Number) {
+    put(number);
 }

@@ -7,7 +7,7 @@ use gyrocal_board::{
     Argument, Counter, firmware, print, print_decimal, print_hexadecimal, used_by,
 };
 use gyrocal_firmware_test::{
-    CASES, Digest, Filter, INTERVAL_S, Number, Record, Report, answers, attitude, settings,
+    CASES, Digest, Filter, INTERVAL_S, Record, Report, answers, attitude, settings,
 };
 
 /// The filter, in memory that exists before the program: nothing of it is built on the stack.

@@ -153,7 +153,7 @@ impl<'a> Methods<'a> {
         let result = form.result(&call);
         let value = form.value();
         quote! {
-            #[inline]
+            #[inline(always)]
             fn #name(
                 &self,
                 #moving
