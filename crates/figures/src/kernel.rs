@@ -3,7 +3,7 @@
 
 mod accuracy;
 mod against_crates;
-mod instructions;
+pub(crate) mod instructions;
 mod scaling;
 mod speed;
 

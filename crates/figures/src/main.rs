@@ -5,6 +5,7 @@ mod calibration;
 mod comparison;
 mod cost;
 mod diagnosis_ground;
+mod embedded;
 mod error;
 mod figure;
 mod gain;
@@ -85,6 +86,8 @@ enum Topic {
     Kernel,
     /// Foundations of the diagnosis: the noise audit, and signatures against the simulation.
     DiagnosisGround,
+    /// The filter in a controller: an emulated Cortex-M4F, single precision.
+    Embedded,
     /// Operating characteristics of the diagnosis on records with injected effects and on clean ones.
     Naming,
     /// The diagnosis beside the usual tests and selection methods, on the same records.
@@ -108,6 +111,7 @@ fn main() -> ExitCode {
         Topic::Calibration => calibration::figures(arguments.small),
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
+        Topic::Embedded => embedded::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),
         Topic::Comparison => comparison::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),

@@ -95,6 +95,7 @@ fn run() {
             print("\n");
         }
     }
+    line("steps", rows as u32 - 1);
     counts.print();
     let mut saved = [0; Filter::SAVED_BYTES];
     stack("stack save", &mut || {

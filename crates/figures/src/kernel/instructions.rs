@@ -107,7 +107,7 @@ fn skipped(reason: &str) -> Figure {
     Figure::note("instructions not judged", reason.to_owned())
 }
 
-pub(super) fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
@@ -190,7 +190,7 @@ fn instructions(program: &Path, rule: &str, steps: u32) -> Result<f64, Error> {
 }
 
 /// Both outputs of a command that succeeds.
-pub(super) fn output(command: &mut Command) -> Result<String, Error> {
+pub(crate) fn output(command: &mut Command) -> Result<String, Error> {
     let output = command
         .output()
         .map_err(|error| format!("{command:?}: {error}"))?;

@@ -1,0 +1,117 @@
+use gyrocal::{Discretisation, Drift, FilterSettings, InitialAttitude, Integration, Limits, Site};
+
+use crate::status::{GYROCAL_NULL, GYROCAL_OK};
+
+/// Number of drift coefficients: bias, g and g² term of gyro x, then of y and z.
+pub const GYROCAL_COEFFICIENTS: usize = 9;
+
+/// Settings of a filter. gyrocal_default_settings fills them.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct GyrocalSettings {
+    /// Astronomic latitude, rad, north positive.
+    pub latitude_rad: f32,
+    /// Sidereal rotation rate of the Earth, rad/s.
+    pub earth_rate_rad_per_s: f32,
+    /// Local gravity in the unit of the samples.
+    pub gravity_g: f32,
+    /// Prior means of the coefficients: deg/h, deg/h/g, deg/h/g².
+    pub drift: [f32; 9],
+    /// Their standard deviations.
+    pub drift_sigma: [f32; 9],
+    /// Platform angles against East, North, Up at the first sample, about x, then y, then z, rad.
+    pub angles_rad: [f32; 3],
+    /// Their standard deviations, rad.
+    pub angles_sigma_rad: [f32; 3],
+    /// Standard deviation of one sample, g.
+    pub accel_noise_g: f32,
+    /// Standard deviation of the white drift noise held over one minute, deg/h.
+    pub drift_noise_deg_per_h: f32,
+    /// Longest interval that is integrated in one step, s; longer ones are divided.
+    pub longest_step_s: f32,
+    /// Explicit Euler instead of Runge-Kutta if not 0.
+    pub euler: u32,
+    /// Largest reading of an accelerometer, g.
+    pub largest_force_g: f32,
+    /// Longest interval of a call, s.
+    pub longest_interval_s: f32,
+}
+
+impl GyrocalSettings {
+    pub(crate) fn filter(&self) -> FilterSettings<f32> {
+        FilterSettings {
+            site: Site {
+                latitude_rad: self.latitude_rad,
+                earth_rate_rad_per_s: self.earth_rate_rad_per_s,
+                gravity_g: self.gravity_g,
+            },
+            drift: Drift::from_array(self.drift),
+            drift_sigma: Drift::from_array(self.drift_sigma),
+            accel_noise_g: self.accel_noise_g,
+            drift_noise_deg_per_h: self.drift_noise_deg_per_h,
+            discretisation: Discretisation {
+                integration: if self.euler == 0 {
+                    Integration::RK4
+                } else {
+                    Integration::EULER
+                },
+                longest_step_s: self.longest_step_s,
+                ..Discretisation::default()
+            },
+        }
+    }
+
+    pub(crate) fn attitude(&self) -> InitialAttitude<f32> {
+        InitialAttitude::Angles {
+            angles_rad: self.angles_rad,
+            sigma_rad: self.angles_sigma_rad,
+        }
+    }
+
+    pub(crate) fn limits(&self) -> Limits<f32> {
+        Limits {
+            largest_force_g: self.largest_force_g,
+            longest_interval_s: self.longest_interval_s,
+        }
+    }
+}
+
+/// Fills the settings of a platform that is aligned with East, North, Up to 0.01 deg at a latitude
+/// in rad: coefficients of zero known to 1 deg/h (per g, per g²), noise of 1e-5 g and 0.002 deg/h,
+/// samples to 2 g, intervals to an hour.
+///
+/// # Safety
+/// `settings` must be null or point to settings.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gyrocal_default_settings(
+    settings: *mut GyrocalSettings,
+    latitude_rad: f32,
+) -> i32 {
+    if settings.is_null() {
+        return GYROCAL_NULL;
+    }
+    let filter = FilterSettings::at_site(Site::at_latitude_rad(latitude_rad));
+    let limits = Limits::<f32>::default();
+    let aligned = match InitialAttitude::aligned() {
+        InitialAttitude::Angles { sigma_rad, .. }
+        | InitialAttitude::Orientation { sigma_rad, .. } => sigma_rad,
+    };
+    let defaults = GyrocalSettings {
+        latitude_rad,
+        earth_rate_rad_per_s: filter.site.earth_rate_rad_per_s,
+        gravity_g: filter.site.gravity_g,
+        drift: filter.drift.to_array(),
+        drift_sigma: filter.drift_sigma.to_array(),
+        angles_rad: [0.0; 3],
+        angles_sigma_rad: aligned,
+        accel_noise_g: filter.accel_noise_g,
+        drift_noise_deg_per_h: filter.drift_noise_deg_per_h,
+        longest_step_s: filter.discretisation.longest_step_s,
+        euler: 0,
+        largest_force_g: limits.largest_force_g,
+        longest_interval_s: limits.longest_interval_s,
+    };
+    // SAFETY: not null, and the caller vouches for the rest.
+    unsafe { settings.write(defaults) };
+    GYROCAL_OK
+}

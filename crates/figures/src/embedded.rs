@@ -1,0 +1,30 @@
+//! The filter in a controller: instructions, code, memory and stack on an emulated Cortex-M4F, bits
+//! equal to the host's, and single precision beside double.
+
+mod c_interface;
+mod firmware;
+mod precision;
+mod target;
+
+use crate::error::Error;
+use crate::figure::Figure;
+
+/// All figures. The small version replays a day in double precision instead of three, and fewer
+/// records.
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let mut figures = match target::Tools::find() {
+        Ok(tools) => {
+            let mut figures = firmware::figures(&tools, small)?;
+            figures.extend(c_interface::figures(Some(&tools))?);
+            figures
+        }
+        Err(missing) => {
+            eprintln!("NOTHING IS TESTED ON THE TARGET: {missing}");
+            let mut figures = vec![Figure::note("on the target: not judged", missing)];
+            figures.extend(c_interface::figures(None)?);
+            figures
+        }
+    };
+    figures.extend(precision::figures(small)?);
+    Ok(figures)
+}
