@@ -12,7 +12,7 @@ use crate::form::Form;
 /// and [`Covariance`] is the faster.
 pub trait Precision: Real {
     /// The form of a filter of such numbers.
-    type Form: Form<Self>;
+    type Form: Form<Self> + Copy + core::fmt::Debug;
 }
 
 impl Precision for f64 {

@@ -15,13 +15,13 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let mut figures = match target::Tools::find() {
         Ok(tools) => {
             let mut figures = firmware::figures(&tools, small)?;
-            figures.extend(c_interface::figures(Some(&tools))?);
+            figures.extend(c_interface::figures(Some(&tools), &firmware::on_host()?)?);
             figures
         }
         Err(missing) => {
             eprintln!("NOTHING IS TESTED ON THE TARGET: {missing}");
             let mut figures = vec![Figure::note("on the target: not judged", missing)];
-            figures.extend(c_interface::figures(None)?);
+            figures.extend(c_interface::figures(None, &firmware::on_host()?)?);
             figures
         }
     };

@@ -1,7 +1,8 @@
 use gyrocal::estimation::{ArrayStorage, Filter};
 use gyrocal::scalar::{Model, NamedInputs};
 use gyrocal::{
-    Anchored, Chart, EstimationError, FilterSettings, InitialAttitude, Innovation, Platform, Real,
+    Anchored, Chart, EstimationError, FilterSettings, InitialAttitude, Innovation, Platform,
+    Precision,
 };
 
 use crate::extended::{Extended, ExtendedInputs, START};
@@ -21,14 +22,14 @@ const DEG_PER_H: f64 = 3600.0 * 180.0 / core::f64::consts::PI;
 
 /// Estimates the drift from accelerometer samples, and computes the commands of the torquers.
 #[derive(Clone, Debug)]
-pub struct Controller<T> {
+pub struct Controller<T: Precision> {
     filter: ExtendedFilter<T>,
     accel_variance_g2: [T; 3],
     drift_density: [T; 3],
     time_s: T,
 }
 
-impl<T: Real + Default> Controller<T> {
+impl<T: Precision> Controller<T> {
     /// A controller at the first sample, which [`Self::take`] takes with an interval of zero. The
     /// parameters of the effects start at the values of the model file.
     ///

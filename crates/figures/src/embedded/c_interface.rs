@@ -1,9 +1,172 @@
-//! The C interface.
+//! The C interface: its header, and its example on the host and on the target.
 
-use super::target::Tools;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use gyrocal_record::Record;
+
+use super::target::{Tools, build_on_host};
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::kernel::instructions::{output, root};
 
-pub(super) fn figures(_tools: Option<&Tools>) -> Result<Vec<Figure>, Error> {
-    Ok(Vec::new())
+const PACKAGE: &str = "crates/c-api";
+const LIBRARY: &str = "libgyrocal_c.a";
+const RECORD: &str = "examples/data/three_days.csv";
+/// Set to make the header instead of comparing it.
+const WRITE: &str = "GYROCAL_WRITE_HEADER";
+const WARNINGS: [&str; 6] = [
+    "-std=c11",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-Wconversion",
+    "-O2",
+];
+
+/// Figures of the interface; `expected` are the lines that the Rust filter prints on the record.
+pub(super) fn figures(tools: Option<&Tools>, expected: &[String]) -> Result<Vec<Figure>, Error> {
+    let mut figures = vec![Figure::truth(
+        "C: the committed header is that of cbindgen",
+        header()?,
+    )];
+    let directory = root().join("target/firmware/c");
+    std::fs::create_dir_all(&directory)?;
+    write_record(&Record::read(&root().join(RECORD))?, &directory)?;
+    let library = build_on_host(PACKAGE, &["--release"])?.join(LIBRARY);
+    let host = on_host(&directory, &library)?;
+    figures.push(equal(
+        "C: all bits on the host are those of Rust",
+        &host,
+        expected,
+    ));
+    if let Some(tools) = tools {
+        let library = tools.build(PACKAGE, &[])?.join(LIBRARY);
+        let target = on_target(tools, &directory, &library)?;
+        figures.push(equal(
+            "C: all bits on the target are those of Rust",
+            &target,
+            expected,
+        ));
+    }
+    Ok(figures)
+}
+
+fn equal(name: &str, printed: &str, expected: &[String]) -> Figure {
+    let lines: Vec<&str> = printed.lines().collect();
+    Figure::truth(name, lines == expected && lines.len() > 19).over(1, RECORD)
+}
+
+/// Whether the committed header is what cbindgen makes of the package.
+fn header() -> Result<bool, Error> {
+    let package = root().join(PACKAGE);
+    let path = package.join("include/gyrocal.h");
+    let made = cbindgen::generate(&package).map_err(|error| error.to_string())?;
+    if std::env::var_os(WRITE).is_some() {
+        made.write_to_file(&path);
+    }
+    let mut text = Vec::new();
+    made.write(&mut text);
+    Ok(std::fs::read(&path)? == text)
+}
+
+/// The record as an array of C, in hexadecimal, so that no compiler rounds it.
+fn write_record(record: &Record, directory: &Path) -> Result<(), Error> {
+    let rows: Vec<String> = record
+        .accel_g
+        .iter()
+        .map(|row| {
+            let numbers = row.map(|number| hexadecimal(number as f32));
+            format!("    {{{}}},\n", numbers.join(", "))
+        })
+        .collect();
+    let text = format!(
+        "#include <stdint.h>\n#define RECORD_ROWS {}U\n\
+         static const float RECORD_G[RECORD_ROWS][3] = {{\n{}}};\n",
+        rows.len(),
+        rows.concat()
+    );
+    gyrocal_record::write_whole(&directory.join("record.h"), text.as_bytes())?;
+    Ok(())
+}
+
+/// A normal number or zero as a hexadecimal constant of C.
+fn hexadecimal(number: f32) -> String {
+    let bits = number.to_bits();
+    let sign = if bits >> 31 == 1 { "-" } else { "" };
+    let exponent = (bits >> 23 & 0xff) as i32 - 127;
+    if number == 0.0 {
+        return format!("{sign}0.0f");
+    }
+    format!("{sign}0x1.{:06x}p{exponent}f", (bits & 0x007f_ffff) << 1)
+}
+
+fn example(name: &str) -> PathBuf {
+    root().join(PACKAGE).join("examples").join(name)
+}
+
+/// Compiles, links and runs the example on the host.
+fn on_host(directory: &Path, library: &Path) -> Result<String, Error> {
+    let program = directory.join("host");
+    let compiler = std::env::var_os("CC").unwrap_or_else(|| "cc".into());
+    output(
+        Command::new(compiler)
+            .args(WARNINGS)
+            .arg("-I")
+            .arg(root().join(PACKAGE).join("include"))
+            .arg("-I")
+            .arg(directory)
+            .arg(example("replay.c"))
+            .arg(example("host.c"))
+            .arg(library)
+            .args(["-Wl,--gc-sections", "-o"])
+            .arg(&program),
+    )?;
+    output(&mut Command::new(&program))
+}
+
+/// Compiles, links and runs the example on the target.
+fn on_target(tools: &Tools, directory: &Path, library: &Path) -> Result<String, Error> {
+    let program = directory.join("target.elf");
+    output(
+        Command::new("arm-none-eabi-gcc")
+            .args(WARNINGS)
+            .args([
+                "-mcpu=cortex-m4",
+                "-mthumb",
+                "-mfloat-abi=hard",
+                "-mfpu=fpv4-sp-d16",
+            ])
+            .args([
+                "-ffreestanding",
+                "-nostdlib",
+                "-ffunction-sections",
+                "-fdata-sections",
+            ])
+            .arg("-I")
+            .arg(root().join(PACKAGE).join("include"))
+            .arg("-I")
+            .arg(directory)
+            .arg(example("replay.c"))
+            .arg(example("target.c"))
+            .arg(library)
+            .arg("-lgcc")
+            .arg("-T")
+            .arg(root().join("examples/controller/board/memory.x"))
+            .args(["-Wl,--gc-sections", "-o"])
+            .arg(&program),
+    )?;
+    tools.run(&program, "replay")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hexadecimal_constants_are_those_of_c() {
+        assert_eq!(hexadecimal(1.0), "0x1.000000p0f");
+        assert_eq!(hexadecimal(-0.15625), "-0x1.400000p-3f");
+        assert_eq!(hexadecimal(f32::from_bits(0x3f80_0001)), "0x1.000002p0f");
+    }
 }

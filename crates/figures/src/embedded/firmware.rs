@@ -54,6 +54,18 @@ pub(super) fn figures(tools: &Tools, small: bool) -> Result<Vec<Figure>, Error> 
     Ok(figures)
 }
 
+/// The lines of numbers that the Rust filter prints on the host in single precision, without bad
+/// input.
+pub(super) fn on_host() -> Result<Vec<String>, Error> {
+    let host = build_on_host(PACKAGE, &[])?.join(PROGRAM);
+    let lines = Lines(output(Command::new(host).arg("rk4"))?);
+    let numbers = lines.compared().into_iter();
+    Ok(numbers
+        .filter(|line| !line.starts_with("bad_input "))
+        .map(str::to_owned)
+        .collect())
+}
+
 /// What a firmware printed.
 struct Lines(String);
 

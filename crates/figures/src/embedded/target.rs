@@ -114,7 +114,12 @@ impl Tools {
 pub(super) fn build_on_host(package: &str, arguments: &[&str]) -> Result<PathBuf, Error> {
     let directory = root().join("target/firmware");
     output(cargo(package, &directory).arg("--locked").args(arguments))?;
-    Ok(directory.join("debug"))
+    let profile = if arguments.contains(&"--release") {
+        "release"
+    } else {
+        "debug"
+    };
+    Ok(directory.join(profile))
 }
 
 fn cargo(package: &str, directory: &Path) -> Command {
