@@ -1,5 +1,5 @@
 use gyrocal_estimation::form::Form;
-use gyrocal_estimation::{EstimationError, Innovation, Precision};
+use gyrocal_estimation::{EstimationError, Innovation, Precision, Recentring};
 
 use crate::controller_error::ControllerError;
 use crate::filter::PlatformFilter;
@@ -91,7 +91,8 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     /// before is forgotten.
     ///
     /// # Errors
-    /// [`ControllerError::Settings`]; the filter is then not running.
+    /// [`ControllerError::Settings`], also for a chart that does not move at every step; the filter
+    /// is then not running.
     pub fn start(
         &mut self,
         settings: &FilterSettings<T>,
@@ -104,6 +105,13 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
             return Err(ControllerError::Settings(
                 EstimationError::InvalidArgument {
                     expected: "positive limits",
+                },
+            ));
+        }
+        if settings.discretisation.recentring != Recentring::EveryStep {
+            return Err(ControllerError::Settings(
+                EstimationError::InvalidArgument {
+                    expected: "a chart that moves at every step",
                 },
             ));
         }
@@ -209,7 +217,7 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     /// One function for all calls, so that a firmware holds the update once.
     #[inline(never)]
     fn take(&mut self, specific_force_g: &[T; 3]) -> Result<Innovation<T, 3>, ControllerError> {
-        let result = self.filter.update(specific_force_g);
+        let result = self.filter.update_at_origin(specific_force_g);
         self.stopped_by(result)
     }
 

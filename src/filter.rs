@@ -160,6 +160,16 @@ impl<T: Precision, F: Form<T>> PlatformFilter<T, F> {
             .update(specific_force_g, &self.accel_variance_g2)
     }
 
+    /// As [`Self::update`], for a chart that moves at every step.
+    #[inline]
+    pub(crate) fn update_at_origin(
+        &mut self,
+        specific_force_g: &[T; 3],
+    ) -> Result<Innovation<T, 3>, EstimationError> {
+        self.kernel
+            .update_at_origin(specific_force_g, &self.accel_variance_g2)
+    }
+
     /// As [`Self::update`], but a sample whose NIS exceeds `largest_nis` is not used. Returns
     /// the innovation and whether the sample was used.
     ///

@@ -6,8 +6,6 @@
 #include "output.h"
 #include "record.h"
 
-#include <string.h>
-
 #define RADIANS_PER_DEGREE 0.017453292519943295
 #define INTERVAL_S 60.0f
 
@@ -15,9 +13,11 @@ static GyrocalFilter filter;
 
 static uint32_t bits_of(float number)
 {
-    uint32_t bits;
-    memcpy(&bits, &number, sizeof bits);
-    return bits;
+    union {
+        float number;
+        uint32_t bits;
+    } both = {.number = number};
+    return both.bits;
 }
 
 static uint64_t digest = 0xcbf29ce484222325U;
@@ -48,7 +48,8 @@ static int32_t reset(const GyrocalSettings *settings)
 {
     static uint8_t kept[GYROCAL_SAVED_SIZE];
     int32_t status = gyrocal_save(&filter, kept, sizeof kept);
-    memset(&filter, 0, sizeof filter);
+    const GyrocalFilter nothing = {{0}};
+    filter = nothing;
     if (status == GYROCAL_OK && gyrocal_coast(&filter, INTERVAL_S) != GYROCAL_NOT_RUNNING) {
         status = GYROCAL_FAILED;
     }

@@ -44,13 +44,6 @@ const _: () = {
     assert!(GYROCAL_SAVED_SIZE == ControllerFilter::<f32>::SAVED_BYTES);
 };
 
-/// What is copied into new memory, so that nothing is built on the stack.
-static UNSET: Inner = Inner {
-    mark: MARK,
-    nis: 0.0,
-    filter: ControllerFilter::unset(),
-};
-
 /// The filter in some memory, or the status why there is none.
 ///
 /// # Safety
@@ -82,8 +75,14 @@ pub unsafe extern "C" fn gyrocal_init(
     if filter.is_null() || settings.is_null() {
         return GYROCAL_NULL;
     }
-    // SAFETY: the memory is as large and as aligned as its contents; the source is a static.
-    unsafe { ptr::copy_nonoverlapping(&raw const UNSET, filter.cast::<Inner>(), 1) };
+    let unset = Inner {
+        mark: MARK,
+        nis: 0.0,
+        filter: ControllerFilter::unset(),
+    };
+    // SAFETY: the memory is as large and as aligned as its contents. The compiler writes there at
+    // once; `cargo figures embedded` prints the stack that this function takes.
+    unsafe { ptr::write(filter.cast::<Inner>(), unset) };
     // SAFETY: both are valid, as the caller vouches.
     let (inner, settings) = match (unsafe { inner(filter) }, unsafe { &*settings }) {
         (Ok(inner), settings) => (inner, settings),

@@ -36,6 +36,25 @@ where
         }
     }
 
+    /// As [`Self::update`], for a filter whose chart moves at every step: a program that calls only
+    /// this one does without the code for other charts.
+    ///
+    /// # Errors
+    /// As [`Self::update`]; [`EstimationError::InvalidArgument`] for a filter with another chart.
+    #[inline]
+    pub fn update_at_origin(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        if !self.at_origin() {
+            return Err(EstimationError::InvalidArgument {
+                expected: "a chart that moves at every step",
+            });
+        }
+        self.update_with::<true>(measured, noise_variance)
+    }
+
     /// A function of its own: the step from the origin is then not inlined together with it.
     #[inline(never)]
     fn update_elsewhere(
