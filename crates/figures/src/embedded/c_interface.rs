@@ -32,7 +32,8 @@ pub(super) fn figures(tools: Option<&Tools>, expected: &[String]) -> Result<Vec<
     )];
     let directory = root().join("target/firmware/c");
     std::fs::create_dir_all(&directory)?;
-    write_record(&Record::read(&root().join(RECORD))?, &directory)?;
+    let record = Record::read(&root().join(RECORD))?;
+    write_record(&record, &directory)?;
     let library = build_on_host(PACKAGE, &["--release"])?.join(LIBRARY);
     let host = on_host(&directory, &library)?;
     figures.push(equal(
@@ -42,12 +43,14 @@ pub(super) fn figures(tools: Option<&Tools>, expected: &[String]) -> Result<Vec<
     ));
     if let Some(tools) = tools {
         let library = tools.build(PACKAGE, &[])?.join(LIBRARY);
-        let target = on_target(tools, &directory, &library)?;
+        let program = built_for_target(&directory, &library)?;
+        let target = tools.run(&program, "replay")?;
         figures.push(equal(
             "C: all bits on the target are those of Rust",
             &target,
             expected,
         ));
+        figures.push(code(tools, &program, record.accel_g.len())?);
     }
     Ok(figures)
 }
@@ -125,8 +128,8 @@ fn on_host(directory: &Path, library: &Path) -> Result<String, Error> {
     output(&mut Command::new(&program))
 }
 
-/// Compiles, links and runs the example on the target.
-fn on_target(tools: &Tools, directory: &Path, library: &Path) -> Result<String, Error> {
+/// Compiles and links the example for the target; returns the firmware.
+fn built_for_target(directory: &Path, library: &Path) -> Result<PathBuf, Error> {
     let program = directory.join("target.elf");
     output(
         Command::new("arm-none-eabi-gcc")
@@ -156,7 +159,19 @@ fn on_target(tools: &Tools, directory: &Path, library: &Path) -> Result<String, 
             .args(["-Wl,--gc-sections", "-o"])
             .arg(&program),
     )?;
-    tools.run(&program, "replay")
+    Ok(program)
+}
+
+/// Code and constants of the firmware without its record: the whole interface, start-up and replay.
+fn code(tools: &Tools, firmware: &Path, rows: usize) -> Result<Figure, Error> {
+    let all = tools.section(firmware, ".text")? + tools.section(firmware, ".rodata")?;
+    let bytes = all as f64 - (12 * rows) as f64;
+    let name = "f32: code and constants of a firmware with all calls, in C";
+    Ok(Figure {
+        target: "<= 32000 bytes".to_owned(),
+        measured: format!("{bytes:.0} bytes"),
+        ..Figure::within(name, [0.0, 32_000.0], bytes)
+    })
 }
 
 #[cfg(test)]

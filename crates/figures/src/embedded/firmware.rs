@@ -28,7 +28,7 @@ pub(super) fn figures(tools: &Tools, small: bool) -> Result<Vec<Figure>, Error> 
         figures.push(equal("f32", rule, &lines, &host)?);
         if rule == "rk4" {
             figures.push(bad_input("f32", &lines));
-            figures.extend(memory(tools, &firmware, &lines)?);
+            figures.extend(memory(&lines)?);
         }
     }
     let double = ["--features", "double"];
@@ -64,6 +64,15 @@ pub(super) fn on_host() -> Result<Vec<String>, Error> {
         .filter(|line| !line.starts_with("bad_input "))
         .map(str::to_owned)
         .collect())
+}
+
+/// The firmware of `examples/controller`, which ends well only if its filter is healthy.
+pub(super) fn example(tools: &Tools) -> Result<Figure, Error> {
+    let firmware = tools.build("examples/controller", &[])?;
+    let text = tools.run(&firmware.join("gyrocal-controller"), "")?;
+    let name = "examples/controller: three days with a reset and a bad sample";
+    let figure = Figure::truth(name, text.contains("all minutes done, filter healthy"));
+    Ok(figure.over(1, "examples/data/three_days.csv"))
 }
 
 /// What a firmware printed.
@@ -153,11 +162,7 @@ fn bad_input(number: &str, lines: &Lines) -> Figure {
     .over(answers.len(), "cases")
 }
 
-fn memory(tools: &Tools, firmware: &Path, lines: &Lines) -> Result<Vec<Figure>, Error> {
-    // A record is no part of a filter.
-    let record = lines.number("size record")?;
-    let code =
-        (tools.section(firmware, ".text")? + tools.section(firmware, ".rodata")?) as f64 - record;
+fn memory(lines: &Lines) -> Result<Vec<Figure>, Error> {
     let kilobytes = |name: &str, limit: f64, bytes: f64| {
         let figure = Figure::within(name, [0.0, 1000.0 * limit], bytes);
         Figure {
@@ -169,10 +174,6 @@ fn memory(tools: &Tools, firmware: &Path, lines: &Lines) -> Result<Vec<Figure>, 
     let stack_of_a_step = lines.number("stack step")?;
     let start = lines.number("stack start")?;
     let mut figures = vec![
-        Figure::note(
-            "f32: code and constants of the whole test firmware",
-            format!("{code:.0} bytes"),
-        ),
         kilobytes("f32: filter state", 2.4, lines.number("size filter")?),
         kilobytes("f32 rk4: stack of a step", 1.3, stack_of_a_step),
         kilobytes("f32: stack of construction", 1.5, start),

@@ -79,7 +79,11 @@ impl Tools {
     /// An instruction takes 64 ns of the emulated time, of which the counter of the core counts
     /// ticks of 40 ns.
     pub(super) fn run(&self, firmware: &Path, words: &str) -> Result<String, Error> {
-        let semihosting = format!("enable=on,target=native,arg={words}");
+        let arguments = match words {
+            "" => String::new(),
+            words => format!(",arg={words}"),
+        };
+        let semihosting = format!("enable=on,target=native{arguments}");
         output(
             Command::new(EMULATOR)
                 .args(["-M", "mps2-an386", "-nographic", "-monitor", "none"])
