@@ -258,9 +258,13 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
 
     #[inline(always)]
     fn stopped_by<R>(&mut self, result: Result<R, EstimationError>) -> Result<R, ControllerError> {
-        result.map_err(|error| {
-            self.running = false;
-            ControllerError::Failed(error)
+        result.map_err(|error| match error {
+            // With limits that are no limits: more than a million parts, and nothing has changed.
+            EstimationError::InvalidArgument { .. } => ControllerError::IntervalTooLong,
+            error => {
+                self.running = false;
+                ControllerError::Failed(error)
+            }
         })
     }
 }

@@ -54,7 +54,7 @@ impl<T: Real> Orientation<T> {
     /// Rotates the axes: `matrix` takes old components to new ones.
     #[inline(always)]
     pub(crate) fn turn(&mut self, matrix: &[[T; 3]; 3]) {
-        if Self::is_single() {
+        if T::is_coarse() {
             self.turn_by_changes(matrix);
         } else {
             self.north = rotate(matrix, &self.north);
@@ -64,18 +64,12 @@ impl<T: Real> Orientation<T> {
         // Rounding adds at most some units of the last place a turn; in f32 that would matter
         // after a few thousand.
         if self.turns & 63 == 0 {
-            if Self::is_single() {
+            if T::is_coarse() {
                 self.orthonormalise_by_changes();
             } else {
                 self.orthonormalise();
             }
         }
-    }
-
-    /// A constant for each number type.
-    #[inline(always)]
-    fn is_single() -> bool {
-        T::epsilon() > T::from_f64(1e-10)
     }
 
     #[inline(never)]

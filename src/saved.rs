@@ -9,7 +9,7 @@
 //! | 4 | fingerprint of the model: names and order of its parameters |
 //! | 4 | turns of the chart |
 //! | 12 numbers | North and Up along the axes of the chart, and what rounding left of them |
-//! | 90 numbers | state and covariance, as `Filter::save` gives them |
+//! | 102 numbers | state, covariance and what rounding left, as `Filter::save` gives them |
 //! | 4 | CRC-32 (IEEE 802.3) of all before |
 //!
 //! Integers and numbers are little-endian.
@@ -24,7 +24,7 @@ use crate::rotation::dot;
 
 const MAGIC: [u8; 4] = *b"GYRC";
 const VERSION: u16 = 1;
-const NUMBERS: usize = 2 * Platform::STATES + Platform::STATES * (Platform::STATES - 1) / 2;
+const NUMBERS: usize = 3 * Platform::STATES + Platform::STATES * (Platform::STATES - 1) / 2;
 const HEAD: usize = 16;
 const CHART: usize = 12;
 const CHECKSUM: usize = 4;

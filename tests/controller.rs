@@ -129,6 +129,15 @@ fn refusals_leave_the_filter_as_it_was() {
     }
     filter.coast(60.0).unwrap();
     filter.step(60.0, &[0.0, 0.0, 1.0]).unwrap();
+    let unlimited = Limits {
+        longest_interval_s: f32::INFINITY,
+        ..Limits::default()
+    };
+    filter
+        .start(&settings(), &InitialAttitude::aligned(), unlimited)
+        .unwrap();
+    assert_eq!(filter.coast(1e30), Err(ControllerError::IntervalTooLong));
+    assert!(filter.is_running());
 }
 
 #[test]

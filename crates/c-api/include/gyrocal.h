@@ -14,16 +14,16 @@
 #include <stdint.h>
 
 // Words of 32 bits that a filter takes.
-#define GYROCAL_FILTER_WORDS 592
+#define GYROCAL_FILTER_WORDS 602
 
 // Bytes that a filter takes.
-#define GYROCAL_FILTER_SIZE 2368
+#define GYROCAL_FILTER_SIZE 2408
 
 // Alignment of a filter in bytes.
 #define GYROCAL_FILTER_ALIGNMENT 4
 
 // Bytes of a saved state.
-#define GYROCAL_SAVED_SIZE 428
+#define GYROCAL_SAVED_SIZE 476
 
 // Number of drift coefficients: bias, g and g² term of gyro x, then of y and z.
 #define GYROCAL_COEFFICIENTS 9
@@ -69,7 +69,7 @@
 
 // A filter. Its contents are private; memory of zeros is no filter, and is answered as such.
 typedef struct {
-  uint32_t words[592];
+  uint32_t words[602];
 } GyrocalFilter;
 
 // Settings of a filter. gyrocal_default_settings fills them.
@@ -105,9 +105,6 @@ typedef struct {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
-
-// Defined nowhere: a program that links holds no panic that can be reached.
-extern void gyrocal_a_panic_can_be_reached(void);
 
 // Initialises a filter at its first sample, which gyrocal_update takes. What the memory held
 // before is forgotten, so this is also the reset.

@@ -8,18 +8,18 @@ use crate::settings::GyrocalSettings;
 use crate::status::{self, GYROCAL_NOT_RUNNING, GYROCAL_NULL, GYROCAL_OK};
 
 /// Words of 32 bits that a filter takes.
-pub const GYROCAL_FILTER_WORDS: usize = 592;
+pub const GYROCAL_FILTER_WORDS: usize = 602;
 /// Bytes that a filter takes.
-pub const GYROCAL_FILTER_SIZE: usize = 2368;
+pub const GYROCAL_FILTER_SIZE: usize = 2408;
 /// Alignment of a filter in bytes.
 pub const GYROCAL_FILTER_ALIGNMENT: usize = 4;
 /// Bytes of a saved state.
-pub const GYROCAL_SAVED_SIZE: usize = 428;
+pub const GYROCAL_SAVED_SIZE: usize = 476;
 
 /// A filter. Its contents are private; memory of zeros is no filter, and is answered as such.
 #[repr(C)]
 pub struct GyrocalFilter {
-    words: [u32; 592],
+    words: [u32; 602],
 }
 
 /// The contents of the memory.

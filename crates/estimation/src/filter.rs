@@ -148,6 +148,7 @@ where
         }
         let buffers = self.storage.buffers();
         buffers.state.copy_from_slice(state);
+        buffers.remainder.fill(T::ZERO);
         // A model writes structural nonzeros only.
         buffers.stages.fill(T::from_f64(0.0));
         buffers.transition.fill(T::from_f64(0.0));

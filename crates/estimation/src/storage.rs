@@ -10,6 +10,8 @@ use gyrocal_scalar::Real;
 pub struct Buffers<'a, T> {
     /// The state: moving states, then parameters; n.
     pub state: &'a mut [T],
+    /// What rounding left of the state, where the number type is coarse; n.
+    pub remainder: &'a mut [T],
     /// P by rows (of the parameters' rows only the parameter columns), or U by columns; n × n.
     pub matrix: &'a mut [T],
     /// D of the factors; n.
@@ -34,6 +36,8 @@ pub struct Buffers<'a, T> {
 pub struct View<'a, T> {
     /// The state: moving states, then parameters.
     pub state: &'a [T],
+    /// What rounding left of the state, where the number type is coarse.
+    pub remainder: &'a [T],
     /// P by rows (of the parameters' rows only the parameter columns), or U by columns; n × n.
     pub matrix: &'a [T],
     /// D of the factors; n.
@@ -59,6 +63,7 @@ pub trait Storage<T> {
 #[derive(Clone, Debug)]
 pub struct ArrayStorage<T, const M: usize, const Y: usize, const N: usize> {
     state: [T; N],
+    remainder: [T; N],
     matrix: [[T; N]; N],
     pivots: [T; N],
     transition: [[T; N]; M],
@@ -82,6 +87,7 @@ impl<T: Real, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M,
         let zero = T::ZERO;
         Self {
             state: [zero; N],
+            remainder: [zero; N],
             matrix: [[zero; N]; N],
             pivots: [zero; N],
             transition: [[zero; N]; M],
@@ -110,6 +116,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
     fn buffers(&mut self) -> Buffers<'_, T> {
         Buffers {
             state: &mut self.state,
+            remainder: &mut self.remainder,
             matrix: self.matrix.as_flattened_mut(),
             pivots: &mut self.pivots,
             transition: self.transition.as_flattened_mut(),
@@ -125,6 +132,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
     fn view(&self) -> View<'_, T> {
         View {
             state: &self.state,
+            remainder: &self.remainder,
             matrix: self.matrix.as_flattened(),
             pivots: &self.pivots,
             transition: self.transition.as_flattened(),
@@ -138,7 +146,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
 #[derive(Clone, Debug)]
 pub struct VecStorage<T> {
     states: usize,
-    numbers: [alloc::vec::Vec<T>; 9],
+    numbers: [alloc::vec::Vec<T>; 10],
 }
 
 #[cfg(feature = "alloc")]
@@ -147,6 +155,7 @@ impl<T: Copy + Default> VecStorage<T> {
     #[must_use]
     pub fn new(states: usize, moving: usize, outputs: usize) -> Self {
         let lengths = [
+            states,
             states,
             states * states,
             states,
@@ -173,6 +182,7 @@ impl<T> Storage<T> for VecStorage<T> {
     fn buffers(&mut self) -> Buffers<'_, T> {
         let [
             state,
+            remainder,
             matrix,
             pivots,
             transition,
@@ -184,6 +194,7 @@ impl<T> Storage<T> for VecStorage<T> {
         ] = self.numbers.each_mut();
         Buffers {
             state,
+            remainder,
             matrix,
             pivots,
             transition,
@@ -196,9 +207,21 @@ impl<T> Storage<T> for VecStorage<T> {
     }
 
     fn view(&self) -> View<'_, T> {
-        let [state, matrix, pivots, transition, _, _, gain, _, _] = self.numbers.each_ref();
+        let [
+            state,
+            remainder,
+            matrix,
+            pivots,
+            transition,
+            _,
+            _,
+            gain,
+            _,
+            _,
+        ] = self.numbers.each_ref();
         View {
             state,
+            remainder,
             matrix,
             pivots,
             transition,

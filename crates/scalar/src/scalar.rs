@@ -143,6 +143,13 @@ pub trait Real: Scalar + PartialOrd + Default + core::fmt::Debug {
     /// Distance from 1 to the next larger number.
     #[must_use]
     fn epsilon() -> Self;
+    /// True for a type whose rounding is not small against what a filter adds in a step: its sums are
+    /// then carried with what rounding leaves. A constant for each type.
+    #[inline(always)]
+    #[must_use]
+    fn is_coarse() -> bool {
+        Self::epsilon() > Self::from_f64(1e-10)
+    }
     /// Greater than zero; not so for NaN.
     #[inline(always)]
     #[must_use]

@@ -14,17 +14,19 @@ where
     F: Form<T>,
 {
     /// The numbers that the next steps depend on, one after the other: n of the state, n that must
-    /// be positive, and n (n - 1) / 2 more of the covariance. The inputs, which carry the chart, are
+    /// be positive, n (n - 1) / 2 more of the covariance, and n that rounding left of the state. The inputs, which carry the chart, are
     /// not among them.
     pub fn save(&self, mut put: impl FnMut(T)) {
         let View {
             state,
+            remainder,
             matrix,
             pivots,
             ..
         } = self.storage.view();
         state.iter().for_each(|number| put(*number));
-        F::save(matrix, pivots, put);
+        F::save(matrix, pivots, &mut put);
+        remainder.iter().for_each(|number| put(*number));
     }
 
     /// Takes numbers of [`Self::save`] back: `number` gives the one at an index. Steps from there
@@ -36,7 +38,7 @@ where
     /// is unchanged.
     pub fn restore(&mut self, number: impl Fn(usize) -> Option<T>) -> Result<(), EstimationError> {
         let n = self.storage.states();
-        for index in 0..2 * n + n * n.saturating_sub(1) / 2 {
+        for index in 0..3 * n + n * n.saturating_sub(1) / 2 {
             let value = number(index).filter(|value| value.is_finite());
             let Some(value) = value else {
                 return Err(EstimationError::NotFinite {
@@ -56,7 +58,10 @@ where
         for place in buffers.state.iter_mut() {
             *place = next().unwrap_or(*place);
         }
-        F::restore(&mut numbers!(buffers), next);
+        F::restore(&mut numbers!(buffers), &mut next);
+        for place in buffers.remainder.iter_mut() {
+            *place = next().unwrap_or(*place);
+        }
         self.map = None;
         Ok(())
     }

@@ -88,16 +88,40 @@ where
             noise_variance,
         );
         let (model, inputs, recentring) = (&self.model, &mut self.inputs, self.recentring);
-        let innovation = F::update(
-            &mut numbers!(buffers),
-            parameters,
-            &observation,
-            &Known::<T, D, M, Y, AT_ORIGIN>::of(&self.model),
-            |correction| match recentring {
-                Recentring::EveryStep => model.correct(&mut moving, inputs, correction),
-                _ => moving = add(&moving, correction),
-            },
-        )?;
+        let known = Known::<T, D, M, Y, AT_ORIGIN>::of(&self.model);
+        let correct = |correction: &[T; M]| match recentring {
+            Recentring::EveryStep => model.correct(&mut moving, inputs, correction),
+            _ => moving = add(&moving, correction),
+        };
+        let innovation = if T::is_coarse() {
+            // The correction by itself, in workspace of a prediction, which no update uses.
+            let (cross, none) = buffers.cross.split_at_mut(parameters.len());
+            cross.fill(T::ZERO);
+            let mut numbers = Numbers {
+                matrix: buffers.matrix,
+                pivots: buffers.pivots,
+                gain: buffers.gain,
+                sweep: buffers.sweep,
+                cross: none,
+            };
+            let innovation = F::update(&mut numbers, cross, &observation, &known, correct)?;
+            let remainder = buffers.remainder.iter_mut().skip(M);
+            for ((number, left), change) in parameters.iter_mut().zip(remainder).zip(cross) {
+                let change = *left + *change;
+                let sum = *number + change;
+                *left = change - (sum - *number);
+                *number = sum;
+            }
+            innovation
+        } else {
+            F::update(
+                &mut numbers!(buffers),
+                parameters,
+                &observation,
+                &known,
+                correct,
+            )?
+        };
         moving_slice.copy_from_slice(&moving);
         Ok(innovation)
     }
