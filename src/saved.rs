@@ -129,7 +129,7 @@ pub(crate) fn restore<T: SavedNumber, F: Form<T> + SavedForm>(
     if seal != crc32(sealed).to_le_bytes() {
         return Err(ControllerError::SavedChecksum);
     }
-    let number = |index: usize| body.chunks_exact(T::BYTES).nth(index).and_then(T::read);
+    let number = |index: usize| number_at::<T>(body, index);
     let mut chart = [[T::ZERO; 3]; 4];
     for (index, place) in chart.as_flattened_mut().iter_mut().enumerate() {
         *place = number(index).unwrap_or(T::ZERO);
@@ -149,6 +149,12 @@ pub(crate) fn restore<T: SavedNumber, F: Form<T> + SavedForm>(
         .inputs_mut()
         .restore(chart, u32::from_le_bytes(turns.unwrap_or_default()));
     Ok(())
+}
+
+/// The number at an index; out of line, as a state is read number by number at several places.
+#[inline(never)]
+fn number_at<T: SavedNumber>(body: &[u8], index: usize) -> Option<T> {
+    body.chunks_exact(T::BYTES).nth(index).and_then(T::read)
 }
 
 /// North and Up are orthogonal unit vectors to a thousand roundings, more than a filter leaves, and

@@ -60,13 +60,16 @@ impl<T: Real> Form<T> for Factors {
         for (place, value) in numbers.pivots.iter_mut().zip(core::iter::from_fn(&mut get)) {
             *place = value;
         }
-        for (j, column) in numbers.matrix.chunks_exact_mut(n).enumerate() {
-            for (i, place) in column.iter_mut().enumerate() {
-                if i < j {
-                    *place = get().unwrap_or(*place);
-                } else {
-                    *place = T::from_f64(if i == j { 1.0 } else { 0.0 });
-                }
+        // Column by column; the diagonal and what is below it are the same since the start. One
+        // loop, which a compiler does not write out for every element as it does nested ones.
+        let (mut row, mut column) = (0, 1);
+        for _ in 0..n * (n - 1) / 2 {
+            if let (Some(place), Some(value)) = (numbers.matrix.get_mut(column * n + row), get()) {
+                *place = value;
+            }
+            row += 1;
+            if row == column {
+                (row, column) = (0, column + 1);
             }
         }
     }

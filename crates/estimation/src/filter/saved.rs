@@ -29,7 +29,7 @@ where
         remainder.iter().for_each(|number| put(*number));
     }
 
-    /// Takes numbers of [`Self::save`] back: `number` gives the one at an index. Steps from there
+    /// Takes numbers of [`Self::save`] back, in a filter that has started: `number` gives the one at an index. Steps from there
     /// have the bits that they would have had in the filter that was saved, if the inputs are the
     /// same.
     ///
