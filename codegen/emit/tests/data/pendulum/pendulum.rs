@@ -877,7 +877,7 @@ impl<T: Scalar> Model<T, 2, 2> for Pendulum {
         };
         swing_rates(moving, parameters, &inputs.field)
     }
-    #[inline]
+    #[inline(always)]
     fn rates_jacobian(
         &self,
         moving: &[T; 2],
@@ -901,7 +901,7 @@ impl<T: Scalar> Model<T, 2, 2> for Pendulum {
         d_parameters[3] = result.swing_dot_d_rod[1];
         result.swing_dot
     }
-    #[inline]
+    #[inline(always)]
     fn rates_jacobian_at_origin(
         &self,
         parameters: &[T],
