@@ -14,7 +14,14 @@ use gyrocal_codegen::ir::{Expressions, lower};
 use gyrocal_codegen::{Options, Program, emit_module, emit_module_with};
 use gyrocal_oracle::rounding::{ROUNDOFF_F32, ROUNDOFF_F64, RunningError};
 
-const DATA: &str = "tests/data/operations";
+/// The data, or those of `cargo figures generator`, which are more.
+fn data(file: &str) -> String {
+    let directory = std::env::var("GYROCAL_OPERATIONS_DATA");
+    format!(
+        "{}/{file}",
+        directory.as_deref().unwrap_or("tests/data/operations")
+    )
+}
 
 /// A line of the committed values: a function, its inputs, CasADi's outputs.
 struct Values {
@@ -25,7 +32,7 @@ struct Values {
 
 impl Values {
     fn of(program: &str) -> Vec<Self> {
-        let text = common::read(&format!("{DATA}/{program}.txt"));
+        let text = common::read(&data(&format!("{program}.txt")));
         let numbers = |text: &str| text.split_whitespace().map(hexadecimal).collect();
         let line = |line: &str| {
             let (left, right) = line.split_once(" -> ").unwrap();
@@ -201,9 +208,9 @@ const DIFFERENCES: [(&str, &str); 5] = [
 
 #[test]
 fn compiled_operations_are_those_of_casadi_and_of_the_interpreter() {
-    let operations = common::program(&format!("{DATA}/operations.json"));
-    let graphs = common::program(&format!("{DATA}/graphs.json"));
-    let calls = common::program(&format!("{DATA}/calls.json"));
+    let operations = common::program(&data("operations.json"));
+    let graphs = common::program(&data("graphs.json"));
+    let calls = common::program(&data("calls.json"));
     let of_calls = Values::of("calls");
     let of_operations = Values::of("operations");
     let of_graphs = Values::of("graphs");

@@ -9,6 +9,7 @@ mod embedded;
 mod error;
 mod figure;
 mod gain;
+mod generator;
 mod house;
 mod kernel;
 mod main_job;
@@ -84,6 +85,8 @@ enum Topic {
     Calibration,
     /// The structured kernel: speed, scaling, rounding errors, instructions.
     Kernel,
+    /// The generator of Rust against others: speed, instructions, operations, random graphs.
+    Generator,
     /// Foundations of the diagnosis: the noise audit, and signatures against the simulation.
     DiagnosisGround,
     /// The filter in a controller: an emulated Cortex-M4F, single precision.
@@ -110,6 +113,7 @@ fn main() -> ExitCode {
         Topic::MainJob => main_job::figures(arguments.small),
         Topic::Calibration => calibration::figures(arguments.small),
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
+        Topic::Generator => generator::figures(arguments.small),
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Embedded => embedded::figures(arguments.small),
         Topic::Naming => naming::figures(arguments.small),

@@ -24,6 +24,10 @@ const FEW_ARGUMENTS: usize = 7;
 /// already, which can take as long as the function.
 const FEW_SCALARS: usize = 16;
 
+/// Functions with such results are inlined up to this many operations: where they are not, their
+/// results are copied once more, which takes a noticeable part of the time of smaller ones only.
+const INLINED_OPERATIONS_OF_LARGE_RESULTS: usize = 512;
+
 pub(super) fn emit(
     program: &Program,
     function: &Function,
@@ -36,7 +40,12 @@ pub(super) fn emit(
     let name = items.claim(Namespace::Value, &function.name, &place)?;
     let count = Count::of(expressions);
     let doc = documentation(program, function, count);
-    let inline = if count.total() <= ALWAYS_INLINED_OPERATIONS {
+    let most = if output::scalars(function) > FEW_SCALARS {
+        INLINED_OPERATIONS_OF_LARGE_RESULTS
+    } else {
+        ALWAYS_INLINED_OPERATIONS
+    };
+    let inline = if count.total() <= most {
         quote!(#[inline(always)])
     } else {
         quote!(#[inline])

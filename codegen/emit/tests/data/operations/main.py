@@ -5,7 +5,8 @@ Derives `operations.json`, `graphs.json` and, for each, a text file of values; r
     python -I -B codegen/emit/exporter/run.py codegen/emit/tests/data/operations OUTPUT_DIRECTORY
 
 A line of the values is the name of a function, its inputs and its outputs, numbers in hexadecimal.
-The environment variable GRAPHS gives another number of random graphs.
+The environment variables GRAPHS and EDGES give other numbers of random graphs and of calls of
+operations, whose further arguments are drawn near the edges.
 """
 
 import os
@@ -39,6 +40,7 @@ EDGES = [sign * edge for edge in EDGES for sign in (1.0, -1.0)][:-1]
 PAIRS = [0.0, -0.0, 1e-310, -0.5, 1.0, 2.5, -3.0, 1e300, float("inf"), -float("inf"), float("nan")]
 
 SEED = 1
+EDGE_CALLS = int(os.environ.get("EDGES", "0"))
 GRAPHS = int(os.environ.get("GRAPHS", "120"))
 POINTS = 4
 
@@ -74,6 +76,12 @@ def graph(rng: random.Random) -> ca.SX:
     return ca.vertcat(*nodes[-3:])
 
 
+def near(rng: random.Random) -> float:
+    """A number near an edge, some ulps or a few percent away."""
+    edge = rng.choice(EDGES)
+    return edge * (1 + rng.choice([0, 1e-16, 1e-15, 1e-8, 0.03]) * rng.gauss(0, 1))
+
+
 def lines(function: Function, points: list[list[float]]) -> list[str]:
     compiled = function.casadi()
     result = []
@@ -92,14 +100,18 @@ def write(output: Path, program: Program, texts: list[str]) -> None:
 
 def derive(output: Path) -> None:
     functions, texts = [], []
+    rng = random.Random(SEED)
+    each = EDGE_CALLS // (2 * len(UNARY) + 2 * len(BINARY))
+    ones = [[edge] for edge in EDGES] + [[near(rng)] for _ in range(each)]
+    pairs = [[a, b] for a in PAIRS for b in PAIRS] + [[near(rng), near(rng)] for _ in range(each)]
     for name, operation in UNARY.items():
         for function in functions_of(name, operation(x.sx), x):
             functions.append(function)
-            texts += lines(function, [[edge] for edge in EDGES])
+            texts += lines(function, ones)
     for name, operation in BINARY.items():
         for function in functions_of(name, operation(xy.sx[0], xy.sx[1]), xy):
             functions.append(function)
-            texts += lines(function, [[a, b] for a in PAIRS for b in PAIRS])
+            texts += lines(function, pairs)
     write(output, Program("operations", "Every operation.", functions), texts)
 
     # `y` by hand, `x` by a function that itself is called by name.

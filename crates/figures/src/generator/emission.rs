@@ -1,0 +1,80 @@
+//! Time of reading, simplifying and emitting a large program.
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use gyrocal_codegen::{Header, Program, emit_module};
+
+use crate::error::Error;
+use crate::figure::Figure;
+
+const INSTRUCTIONS: usize = 37_000;
+const MOST_S: f64 = 2.0;
+
+/// Seconds for a program of one function with some constants, sums and products.
+pub(crate) fn figure() -> Result<Figure, Error> {
+    let text = program();
+    let begin = Instant::now();
+    let program = Program::from_json(&text, "large.json")?;
+    let header = Header {
+        rebuild_command: "none".into(),
+        source: "none".into(),
+        fingerprint: "none".into(),
+    };
+    let module = emit_module(&program, &header)?;
+    let seconds = begin.elapsed().as_secs_f64();
+    let name = format!(
+        "reading and emission of {INSTRUCTIONS} instructions, {} kB of Rust",
+        module.len() / 1000
+    );
+    Ok(Figure::at_most(&name, MOST_S, seconds, "s"))
+}
+
+/// A function of 20 inputs whose instructions each take two results before them.
+fn program() -> String {
+    let mut instructions = String::new();
+    let mut state = 1_u64;
+    let mut draw = |below: usize| {
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % below
+    };
+    let outputs = 200;
+    for place in 0..INSTRUCTIONS - outputs {
+        let _ = match place {
+            0..20 => write!(instructions, r#"["input",{place},0,{place}],"#),
+            _ if draw(20) == 0 => {
+                write!(instructions, r#"["const",{place},{}.37],"#, draw(1000))
+            }
+            _ => {
+                let name = ["add", "sub", "mul", "mul", "atan2"][draw(5)];
+                // Of the last hundred, so that little is dead.
+                let mut operand = || place - 1 - draw(place.min(100));
+                let (left, right) = (operand(), operand());
+                write!(instructions, r#"["{name}",{place},{left},{right}],"#)
+            }
+        };
+    }
+    for nonzero in 0..outputs {
+        let from = INSTRUCTIONS - outputs - 1 - nonzero;
+        let comma = if nonzero + 1 < outputs { "," } else { "" };
+        let _ = write!(instructions, r#"["output",0,{nonzero},{from}]{comma}"#);
+    }
+    let elements: Vec<String> = (0..20)
+        .map(|i| format!(r#"{{"name":"x{i}","unit":"1","doc":"element"}}"#))
+        .collect();
+    let nonzeros: Vec<String> = (0..outputs).map(|row| format!("[{row},0]")).collect();
+    format!(
+        r#"{{"schema_version":1,"name":"large","doc":"","casadi_version":"none",
+            "groups":[{{"name":"x","doc":"inputs","elements":[{}]}}],
+            "functions":[{{"name":"f","doc":"function","source":"","domain":"",
+                "inputs":[{{"group":"x"}}],
+                "outputs":[{{"name":"y","doc":"results","unit":"1","rows":{outputs},"columns":1,
+                    "row_names":[],"column_names":[],"nonzeros":[{}]}}],
+                "work_size":{INSTRUCTIONS},"instructions":[{instructions}]}}],
+            "model":null}}"#,
+        elements.join(","),
+        nonzeros.join(",")
+    )
+}
