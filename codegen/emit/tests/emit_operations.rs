@@ -188,22 +188,31 @@ fn ulps(found: f64, expected: f64) -> u64 {
     place(found).abs_diff(place(expected))
 }
 
-/// Where the emitted functions differ from CasADi on purpose, with the reason.
-const DIFFERENCES: [(&str, &str); 5] = [
+/// Where the emitted functions differ from CasADi by more than 2 ulp, with the most, and the reason.
+const DIFFERENCES: [(&str, u64, &str); 7] = [
     (
         "div_slope",
+        u64::MAX,
         "the reciprocal that quotients share overflows below 5.6e-309",
     ),
-    ("hypot_slope", "the same"),
+    ("hypot_slope", u64::MAX, "the same"),
     (
         "tanh_slope",
+        u64::MAX,
         "1 - tanh² cancels, and both tanh are good to an ulp",
     ),
+    ("tan_slope", 8, "the square of a cosine good to an ulp"),
+    ("pow_slope", 4, "products of powers good to an ulp"),
     (
         "erfinv_value",
-        "CasADi's inverse is good to 1e-8 only beyond 0.7",
+        u64::MAX,
+        "CasADi's is good to 1e-8 only beyond 0.7",
     ),
-    ("erfinv_slope", "the same, in the exponent of the slope"),
+    (
+        "erfinv_slope",
+        u64::MAX,
+        "the same, in the exponent of the slope",
+    ),
 ];
 
 #[test]
@@ -255,8 +264,11 @@ fn check_operations(values: &[Values], printed: &[Printed]) {
             }
         }
     }
-    let listed = |function: &str| DIFFERENCES.iter().any(|(name, _)| *name == function);
-    worst.retain(|function, _| !listed(function));
+    let listed = |function: &str, apart: u64| {
+        let mut all = DIFFERENCES.iter();
+        all.any(|&(name, most, _)| name == function && apart <= most)
+    };
+    worst.retain(|function, (apart, _)| !listed(function, *apart));
     assert!(worst.is_empty(), "ulps apart: {worst:#?}");
 }
 
