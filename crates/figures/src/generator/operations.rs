@@ -37,6 +37,8 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
         runs: 1,
         seeds: "1".to_owned(),
         holds: Some(holds),
+        too_few: false,
+        share: None,
     };
     let points = lines(&data.join("operations.txt"))?;
     let text = match &printed {
