@@ -2,15 +2,27 @@
 //!
 //! Up to 1/32, where the angles of a step of a few minutes are, both are Taylor polynomials of
 //! degree 7 and 8: what follows is below 2^-57 of the sine and 2^-71 of the cosine. Up to pi/4
-//! they are polynomials of degree 13 and 14; beyond, both come from `libm`, whose argument
-//! reduction is exact. Coefficients up to pi/4: minimax approximations on [0, (pi/4)²] published
-//! with FreeBSD's msun (`k_sin.c`, `k_cos.c`), error below 2^-57.
+//! they are polynomials of degree 13 and 14; up to 5/4 pi those of the angle less pi/2 or pi, with the
+//! bits of `libm`; beyond, both come from `libm`, whose argument reduction is exact. Coefficients up to
+//! pi/4: minimax approximations on [0, (pi/4)²] published with FreeBSD's msun (`k_sin.c`, `k_cos.c`),
+//! error below 2^-57.
 //!
 //! With the feature `fused` the polynomials use fused multiply-add where the target has it: faster,
 //! as good to an ulp, and with other last bits than elsewhere. Without it, all machines agree.
 
 const TINY: f64 = 1.0 / 32.0;
-const QUARTER_PI: f64 = core::f64::consts::FRAC_PI_4;
+/// pi/4, 3/4 pi and 5/4 pi, rounded up as FreeBSD's msun compares: by the upper 32 bits.
+const QUARTER_PI: f64 = f64::from_bits(0x3fe9_21fb_ffff_ffff);
+const THREE_QUARTERS_PI: f64 = f64::from_bits(0x4002_d97c_ffff_ffff);
+const FIVE_QUARTERS_PI: f64 = f64::from_bits(0x400f_6a7a_ffff_ffff);
+/// The bit of the sign.
+const SIGN: u64 = 1 << 63;
+/// Closer to a multiple of pi/2 the reduction to 85 bits is not enough.
+const NEAR: f64 = 1.0 / 1_048_576.0;
+/// pi/2, its leading 33 bits: products with integers of 20 bits are exact.
+const HALF_PI_HIGH: f64 = 1.570_796_326_734_125_6;
+/// The rest of pi/2.
+const HALF_PI_LOW: f64 = 6.077_100_506_506_192e-11;
 
 const SINE: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
@@ -85,18 +97,69 @@ fn small(x: f64) -> (f64, f64) {
     let sine = multiply_add(z * w, multiply_add(z, SINE[5], SINE[4]), low);
     let sine = multiply_add(z * x, multiply_add(z, sine, SINE[0]), x);
     let low = multiply_add(z, multiply_add(z, COSINE[2], COSINE[1]), COSINE[0]);
-    let high = multiply_add(z, multiply_add(z, COSINE[5], COSINE[4]), COSINE[3]);
-    let cosine = multiply_add(w * w, high, z * low);
+    // Of the opposite sign, so that both halves add: compilers then pair them in vectors.
+    let high = multiply_add(z, multiply_add(z, -COSINE[5], -COSINE[4]), -COSINE[3]);
+    let cosine = multiply_add(-(w * w), high, z * low);
     let half = 0.5 * z;
     let leading = 1.0 - half;
     let rest = multiply_add(z, cosine, (1.0 - leading) - half);
     (sine, leading + rest)
 }
 
-#[cold]
+/// Beyond pi/4, with the bits of `libm`. Up to 5/4 pi the nearest multiple of pi/2 is taken away as
+/// there (FreeBSD's msun, `e_rem_pio2.c`), to 85 bits; `libm` does the rest, and what is near pi/2 and pi.
 #[inline(never)]
 fn large(angle: f64) -> (f64, f64) {
+    let size = angle.abs();
+    if size <= THREE_QUARTERS_PI {
+        let (rest, tail) = without(size, HALF_PI_HIGH, HALF_PI_LOW);
+        if rest.abs() > NEAR {
+            let (sine, cosine) = reduced(rest, tail);
+            return (cosine.copysign(angle), -sine);
+        }
+    } else if size <= FIVE_QUARTERS_PI {
+        let (rest, tail) = without(size, 2.0 * HALF_PI_HIGH, 2.0 * HALF_PI_LOW);
+        if rest.abs() > NEAR {
+            let (sine, cosine) = reduced(rest, tail);
+            let signed = f64::from_bits(sine.to_bits() ^ !angle.to_bits() & SIGN);
+            return (signed, -cosine);
+        }
+    }
+    outside(angle)
+}
+
+#[cold]
+#[inline(never)]
+fn outside(angle: f64) -> (f64, f64) {
     libm::sincos(angle)
+}
+
+/// `size` less a number that is the sum of two, and what the rounding of the difference left.
+#[inline(always)]
+fn without(size: f64, high: f64, low: f64) -> (f64, f64) {
+    let difference = size - high;
+    let rest = difference - low;
+    (rest, (difference - rest) - low)
+}
+
+/// Sine and cosine of `x + tail` up to pi/4, where the tail is below an ulp of `x`.
+#[inline(always)]
+fn reduced(x: f64, tail: f64) -> (f64, f64) {
+    let z = x * x;
+    let w = z * z;
+    let v = z * x;
+    let low = multiply_add(z, multiply_add(z, SINE[3], SINE[2]), SINE[1]);
+    let sine = multiply_add(z * w, multiply_add(z, SINE[5], SINE[4]), low);
+    let sine = multiply_add(-v, sine, 0.5 * tail);
+    let sine = x - multiply_add(-v, SINE[0], multiply_add(z, sine, -tail));
+    let low = multiply_add(z, multiply_add(z, COSINE[2], COSINE[1]), COSINE[0]);
+    // Of the opposite sign, so that both halves add: compilers then pair them in vectors.
+    let high = multiply_add(z, multiply_add(z, -COSINE[5], -COSINE[4]), -COSINE[3]);
+    let cosine = multiply_add(-(w * w), high, z * low);
+    let half = 0.5 * z;
+    let leading = 1.0 - half;
+    let rest = ((1.0 - leading) - half) + multiply_add(z, cosine, -(x * tail));
+    (sine, leading + rest)
 }
 
 #[cfg(test)]
@@ -119,6 +182,27 @@ mod tests {
             assert!(ulps(sine, reference_sine) <= 1.0, "sin({angle})");
             assert!(ulps(cosine, reference_cosine) <= 1.0, "cos({angle})");
             angle += 1.000_1e-4;
+        }
+    }
+
+    /// Distances from multiples of pi/4 of all sizes, between them, and beyond.
+    #[cfg(not(feature = "fused"))]
+    #[test]
+    fn has_the_bits_of_libm_beyond_a_quarter_of_pi() {
+        let mut angles = std::vec![1e5, 1e300, f64::MAX];
+        for quarters in 1..12 {
+            let centre = f64::from(quarters) * QUARTER_PI;
+            for power in 0..60 {
+                let distance = 0.9 * 0.5_f64.powi(power);
+                angles.extend([centre - distance, centre + distance]);
+            }
+        }
+        angles.extend((0..100_000).map(|step| 0.7 + 1.7e-4 * f64::from(step)));
+        angles.retain(|angle| angle.abs() > QUARTER_PI);
+        for angle in angles.iter().flat_map(|angle| [*angle, -angle]) {
+            let (found, expected) = (sin_cos_f64(angle), libm::sincos(angle));
+            assert_eq!(found.0.to_bits(), expected.0.to_bits(), "sin({angle:e})");
+            assert_eq!(found.1.to_bits(), expected.1.to_bits(), "cos({angle:e})");
         }
     }
 
