@@ -1,25 +1,37 @@
 //! The generator against others: time and instructions of emitted functions, time of emission, edges
-//! of operations, random graphs.
+//! of operations, random graphs, a filter step, and what a new plant takes.
 
 mod emission;
 mod operations;
+mod plant;
 mod race;
+
+use gyrocal_testkit::timing;
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::kernel::instructions::root;
+use crate::kernel::speed;
+
+/// Rounds of the filter step.
+const ROUNDS: usize = 501;
 
 /// All figures of the topic. With `small`, nothing that builds packages or installs generators.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let mut figures = vec![
-        Figure::note("processor", gyrocal_testkit::timing::processor()),
-        emission::figure()?,
-    ];
+    let mut figures = vec![Figure::note("processor", timing::processor())];
     if small {
-        let reason = "full version only".to_owned();
-        figures.push(Figure::note("competitors, operations and graphs", reason));
+        figures.push(emission::figure()?);
+        figures.extend(plant::lines()?);
         return Ok(figures);
     }
-    figures.extend(race::figures()?);
-    figures.extend(operations::figures()?);
+    let directory = root().join("target/figures/generator");
+    figures.extend(race::figures(&directory)?);
+    figures.extend(speed::figures(ROUNDS)?);
+    figures.extend(speed::of_other_builds(ROUNDS)?);
+    figures.push(emission::figure()?);
+    figures.extend(emission::of_huge_programs()?);
+    figures.extend(operations::figures(&directory)?);
+    figures.extend(plant::lines()?);
+    figures.push(plant::clean_build()?);
     Ok(figures)
 }

@@ -5,7 +5,7 @@ mod accuracy;
 mod against_crates;
 pub(crate) mod instructions;
 mod scaling;
-mod speed;
+pub(crate) mod speed;
 
 use gyrocal::Integration;
 use gyrocal_testkit::timing;

@@ -14,6 +14,33 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+/// Declares the module of a generated file: the committed `generated/NAME.rs` beside the source file
+/// that says so, or, where the build script has derived it again, the one in its output directory.
+///
+/// ```ignore
+/// gyrocal_scalar::generated! {
+///     /// The model, with exact Jacobians.
+///     pub mod tank
+/// }
+/// ```
+///
+/// The build script sets the condition `rederived`: `gyrocal_codegen::build::main("derive")`.
+#[macro_export]
+macro_rules! generated {
+    ($(#[$attribute:meta])* $visibility:vis mod $name:ident) => {
+        #[cfg(not(rederived))]
+        $(#[$attribute])*
+        $visibility mod $name {
+            include!(concat!("generated/", stringify!($name), ".rs"));
+        }
+        #[cfg(rederived)]
+        $(#[$attribute])*
+        $visibility mod $name {
+            include!(concat!(env!("OUT_DIR"), "/", stringify!($name), ".rs"));
+        }
+    };
+}
+
 pub mod effect;
 mod error_function;
 mod exponential;

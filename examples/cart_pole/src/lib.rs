@@ -1,14 +1,8 @@
 //! A filter that finds the friction of a cart with a hanging pole. README.md shows the way here.
 
-/// The model, with exact Jacobians.
-#[cfg(not(rederived))]
-#[rustfmt::skip]
-#[path = "generated/cart_pole.rs"]
-pub mod cart_pole;
-/// The model, with exact Jacobians.
-#[cfg(rederived)]
-pub mod cart_pole {
-    include!(concat!(env!("OUT_DIR"), "/cart_pole.rs"));
+gyrocal_scalar::generated! {
+    /// The model, with exact Jacobians.
+    pub mod cart_pole
 }
 pub mod random;
 pub mod simulation;
@@ -25,7 +19,9 @@ pub type CartPoleFilter =
 pub const SENSORS: [f64; 2] = [1e-6, 4e-6];
 /// Spectral densities of force, N² s, and torque, N² m² s; there are no others.
 pub const GUSTS: [f64; 4] = [1e-4, 1e-8, 0.0, 0.0];
-/// Standard deviations of the prior about rest and about friction of 1 N s/m and 0.01 N m s.
+/// Mean of the prior: rest, and friction of 1 N s/m and 0.01 N m s.
+pub const MEAN: [f64; 6] = [0.0, 0.0, 0.0, 0.0, 1.0, 0.01];
+/// Its standard deviations.
 pub const PRIOR: [f64; 6] = [0.01, 0.02, 0.02, 0.05, 0.5, 0.005];
 
 /// A filter at rest.
@@ -34,14 +30,6 @@ pub const PRIOR: [f64; 6] = [0.01, 0.02, 0.02, 0.05, 0.5, 0.005];
 /// As [`Filter::new`].
 pub fn filter() -> Result<CartPoleFilter, EstimationError> {
     let (storage, inputs) = (ArrayStorage::new(), CartPoleInputs { drive: [0.0] });
-    let state = [0.0, 0.0, 0.0, 0.0, 1.0, 0.01];
-    Filter::new(
-        CartPole,
-        inputs,
-        Integration::RK4,
-        Recentring::Never,
-        storage,
-        &state,
-        &PRIOR,
-    )
+    let (rule, chart) = (Integration::RK4, Recentring::Never);
+    Filter::new(CartPole, inputs, rule, chart, storage, &MEAN, &PRIOR)
 }

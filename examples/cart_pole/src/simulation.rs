@@ -1,7 +1,7 @@
 //! A cart and pole of its own making: energy and momentum by hand, nothing of the generated code.
 
 use crate::random::Random;
-use crate::{GUSTS, PRIOR, SENSORS};
+use crate::{GUSTS, MEAN, PRIOR, SENSORS};
 
 /// Interval between samples, s.
 pub const STEP_S: f64 = 0.01;
@@ -21,8 +21,7 @@ impl CartAndPole {
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut random = Random::new(seed);
-        let mean = [0.0, 0.0, 0.0, 0.0, 1.0, 0.01];
-        let state = core::array::from_fn(|i| mean[i] + PRIOR[i] * random.normal());
+        let state = core::array::from_fn(|i| MEAN[i] + PRIOR[i] * random.normal());
         Self {
             state,
             random,

@@ -1,14 +1,8 @@
 //! A filter for the attitude of a quadrotor and the biases of its gyros. README.md shows the way here.
 
-/// The model, with exact Jacobians.
-#[cfg(not(rederived))]
-#[rustfmt::skip]
-#[path = "generated/quadrotor.rs"]
-pub mod quadrotor;
-/// The model, with exact Jacobians.
-#[cfg(rederived)]
-pub mod quadrotor {
-    include!(concat!(env!("OUT_DIR"), "/quadrotor.rs"));
+gyrocal_scalar::generated! {
+    /// The model, with exact Jacobians.
+    pub mod quadrotor
 }
 pub mod random;
 pub mod simulation;

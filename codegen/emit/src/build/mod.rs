@@ -28,20 +28,8 @@
 //! count) and a hash of their own text. A build script asks whether both hold:
 //!
 //! ```no_run
-//! use gyrocal_codegen::build::{Derivation, Error};
-//!
-//! fn run() -> Result<(), Error> {
-//!     let out_dir = std::env::var_os("OUT_DIR").unwrap_or_default();
-//!     let outcome = Derivation::open("derive")?.build(out_dir)?;
-//!     print!("{}", outcome.cargo_instructions("rederived"));
-//!     Ok(())
-//! }
-//!
-//! fn main() {
-//!     if let Err(error) = run() {
-//!         eprintln!("{error}");
-//!         std::process::exit(1);
-//!     }
+//! fn main() -> std::process::ExitCode {
+//!     gyrocal_codegen::build::main("derive")
 //! }
 //! ```
 //!
@@ -50,12 +38,10 @@
 //! the new one:
 //!
 //! ```ignore
-//! #[cfg(rederived)]
-//! pub mod pendulum { include!(concat!(env!("OUT_DIR"), "/pendulum.rs")); }
-//! #[cfg(not(rederived))]
-//! #[path = "generated/pendulum.rs"]
-//! pub mod pendulum;
+//! gyrocal_scalar::generated!(pub mod pendulum);
 //! ```
+//!
+//! [`Derivation::build`] does the same for build scripts that do more.
 //!
 //! # Variants
 //!
@@ -129,6 +115,9 @@ mod settings;
 mod sources;
 mod variant;
 
+use std::path::Path;
+use std::process::ExitCode;
+
 pub use committed::{Reason, Stale};
 pub use declaration::DECLARATION_FILE;
 pub use derivation::{Derivation, Written};
@@ -140,3 +129,20 @@ pub use settings::{
     WRITE_VARIABLE, target_directory,
 };
 pub use variant::Variant;
+
+/// The whole `main` of a build script: derives what is stale in a directory, tells cargo, and sets the
+/// condition `rederived` for `gyrocal_scalar::generated!`. An error is printed, and the code is 1.
+pub fn main(derivation: impl AsRef<Path>) -> ExitCode {
+    let out_dir = std::env::var_os("OUT_DIR").unwrap_or_default();
+    let outcome = Derivation::open(derivation).and_then(|derivation| derivation.build(out_dir));
+    match outcome {
+        Ok(outcome) => {
+            print!("{}", outcome.cargo_instructions("rederived"));
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}

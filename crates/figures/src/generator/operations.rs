@@ -1,23 +1,28 @@
-//! Operations at their edges and random graphs, many more of them than the tests of the generator
-//! have: the same test on larger data.
+//! Operations that CasADi's `SX` has, at their edges, and random graphs, many more of them than the
+//! tests of the generator have: the same test on larger data.
 
 use std::path::Path;
 use std::process::Command;
 
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::kernel::instructions::{output, root};
+use crate::kernel::instructions::{cargo, output, root};
 
+const SCRIPT: &str = include_str!("operations.py");
 const GRAPHS: usize = 1000;
 const EDGES: usize = 1_000_000;
+/// Nodes of the large expression: about 37 000 instructions.
+const NODES: usize = 30_500;
+/// Of the exporter alone; the emission has a figure of its own.
+const MOST_EXPORT_S: f64 = 1.0;
 
-pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
-    let directory = root().join("target/figures/generator");
+pub(crate) fn figures(directory: &Path) -> Result<Vec<Figure>, Error> {
     let python = directory.join("env/bin/python");
     if !python.is_file() {
         let reason = "CasADi cannot be had".to_owned();
         return Ok(vec![Figure::note("operations not compared", reason)]);
     }
+    let mut figures = of_the_exporter(directory, &python)?;
     let data = directory.join("operations");
     let exporter = root().join("codegen/emit/exporter/run.py");
     let source = root().join("codegen/emit/tests/data/operations");
@@ -28,48 +33,85 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
             .env("GRAPHS", GRAPHS.to_string())
             .env("EDGES", EDGES.to_string()),
     )?;
+    let points = std::fs::read_to_string(data.join("operations.txt"))?
+        .lines()
+        .count();
     let printed = tested(&data);
-    let holds = printed.is_ok();
-    let reason = |name: &str, text: String, holds: bool| Figure {
-        name: name.to_owned(),
-        target: "all".to_owned(),
-        measured: text,
-        runs: 1,
-        seeds: "1".to_owned(),
-        holds: Some(holds),
-        too_few: false,
-        share: None,
-    };
-    let points = lines(&data.join("operations.txt"))?;
-    let text = match &printed {
-        Ok(_) => format!("all of {points} calls but the differences that the manual lists"),
-        Err(error) => error.to_string(),
-    };
-    let graphs = match &printed {
-        Ok(_) => format!("{GRAPHS} of {GRAPHS}"),
-        Err(_) => "not all, see above".to_owned(),
-    };
-    Ok(vec![
-        reason(
-            "operations and slopes at their edges: equal to CasADi to 2 ulp",
-            text,
-            holds,
+    let listed: Vec<&str> = printed
+        .iter()
+        .flat_map(|text| text.lines())
+        .filter_map(|line| line.split_once("listed difference: ").map(|(_, rest)| rest))
+        .collect();
+    let (edges, graphs) = match &printed {
+        Ok(_) => (
+            "0 beyond those listed".to_owned(),
+            format!("{GRAPHS} of {GRAPHS}"),
         ),
-        reason(
-            "random graphs: equal to the interpreter, and to CasADi to rounding",
-            graphs,
-            holds,
-        ),
-        Figure::note(
-            "operations of SX supported, refused",
-            "44, 1 (printme: output)".to_owned(),
-        ),
-    ])
+        Err(error) => (error.to_string(), "not all, see above".to_owned()),
+    };
+    let figure = |name: &str, target: &str, measured: String, runs: usize| {
+        let mut figure = Figure::truth(name, printed.is_ok()).over(runs, "1");
+        (figure.target, figure.measured) = (target.to_owned(), measured);
+        figure
+    };
+    figures.push(figure(
+        "values and slopes of operations at their edges: beyond 2 ulp of CasADi",
+        "0 beyond those listed",
+        edges,
+        points,
+    ));
+    let what = "differences from CasADi that the manual lists, worst in ulp";
+    figures.push(Figure::note(what, listed.join("; ")).over(points, "1"));
+    figures.push(figure(
+        "random graphs: equal to the interpreter, and to CasADi to rounding",
+        "all",
+        graphs,
+        GRAPHS,
+    ));
+    Ok(figures)
+}
+
+/// Operations that the exporter takes, and the time of an export.
+fn of_the_exporter(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
+    let script = directory.join("operations.py");
+    std::fs::write(&script, SCRIPT)?;
+    let printed = output(
+        Command::new(python)
+            .arg(&script)
+            .arg(root().join("codegen/emit/exporter"))
+            .arg(directory.join("large.json"))
+            .arg(NODES.to_string()),
+    )?;
+    let of = |kind: &str| -> Vec<&str> {
+        let words = printed.lines().filter_map(|line| line.split_once(' '));
+        words
+            .filter(|(word, _)| *word == kind)
+            .map(|(_, rest)| rest)
+            .collect()
+    };
+    let (supported, refused) = (of("supported"), of("refused"));
+    let mut operations = Figure::truth(
+        "operations of SX: supported, refused with a reason",
+        refused == ["OP_PRINTME"],
+    );
+    operations.target = "all but I/O".to_owned();
+    operations.measured = format!(
+        "{}, {} ({})",
+        supported.len(),
+        refused.len(),
+        refused.join(", ")
+    );
+    let export = of("export");
+    let words = export.first().and_then(|line| line.split_once(' '));
+    let (seconds, count) = words.ok_or("the exporter printed no time")?;
+    let what = format!("export of {count} instructions from CasADi");
+    let time = Figure::at_most(&what, MOST_EXPORT_S, seconds.parse()?, "s");
+    Ok(vec![operations, time])
 }
 
 fn tested(data: &Path) -> Result<String, Error> {
     output(
-        Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        Command::new(cargo())
             .current_dir(root())
             .args([
                 "test",
@@ -78,11 +120,7 @@ fn tested(data: &Path) -> Result<String, Error> {
                 "--package",
                 "gyrocal-codegen",
             ])
-            .args(["--test", "emit_operations"])
+            .args(["--test", "emit_operations", "--", "--nocapture"])
             .env("GYROCAL_OPERATIONS_DATA", data),
     )
-}
-
-fn lines(path: &Path) -> Result<usize, Error> {
-    Ok(std::fs::read_to_string(path)?.lines().count())
 }

@@ -160,9 +160,8 @@ fn counts_of(example: &str) -> Result<[f64; 2], Error> {
 
 /// Builds an example; returns its path.
 fn built(example: &str) -> Result<PathBuf, Error> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let messages = output(
-        Command::new(cargo)
+        Command::new(cargo())
             .current_dir(root())
             .args(["build", "--release", "--quiet", "--package", "gyrocal"])
             .args(["--example", example, "--message-format", "json"]),
@@ -187,6 +186,11 @@ fn instructions(program: &Path, rule: &str, steps: u32) -> Result<f64, Error> {
         .find_map(|line| line.split_once("Collected :"));
     let (_, count) = collected.ok_or("callgrind printed no line `Collected :`")?;
     Ok(count.trim().parse()?)
+}
+
+/// The cargo that runs this program.
+pub(crate) fn cargo() -> std::ffi::OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
 /// Both outputs of a command that succeeds.

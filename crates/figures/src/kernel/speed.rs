@@ -8,7 +8,7 @@ use gyrocal_testkit::step_times::{StepTimes, step_times};
 use gyrocal_testkit::timing::is_x86_64_v3;
 
 use super::Error;
-use super::instructions::{output, root};
+use super::instructions::{cargo, output, root};
 use crate::figure::Figure;
 
 /// Targets of the processor for which the example `step_times` is built as well.
@@ -33,7 +33,7 @@ pub(crate) fn of_other_builds(rounds: usize) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for processor in PROCESSORS {
         let printed = output(
-            Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+            Command::new(cargo())
                 .current_dir(root())
                 .env_remove("CARGO_ENCODED_RUSTFLAGS")
                 .env("RUSTFLAGS", format!("-C target-cpu={processor}"))
@@ -108,13 +108,13 @@ fn target_directory(processor: &str) -> PathBuf {
 }
 
 #[cfg(target_arch = "x86_64")]
-fn has_x86_64_v3() -> bool {
+pub(crate) fn has_x86_64_v3() -> bool {
     std::arch::is_x86_feature_detected!("avx2")
         && std::arch::is_x86_feature_detected!("fma")
         && std::arch::is_x86_feature_detected!("bmi2")
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-fn has_x86_64_v3() -> bool {
+pub(crate) fn has_x86_64_v3() -> bool {
     false
 }
