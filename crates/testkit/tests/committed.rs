@@ -90,6 +90,9 @@ fn the_lock_file_pins_everything_by_hash_and_names_no_host() {
     let derive = workspace().join("codegen/derive");
     let lock = fs::read_to_string(derive.join("requirements.lock")).unwrap();
     let wanted = fs::read_to_string(derive.join("requirements.in")).unwrap();
+    let of_generator = workspace().join("codegen/emit/exporter/requirements.lock");
+    let default = fs::read_to_string(of_generator).unwrap();
+    assert_eq!(default, lock, "codegen/emit/exporter has another copy");
     let pin = wanted
         .lines()
         .find(|line| line.starts_with("casadi=="))

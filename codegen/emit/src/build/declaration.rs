@@ -10,6 +10,9 @@ use super::fingerprint::normalised;
 /// Name of the declaration inside a derivation directory.
 pub const DECLARATION_FILE: &str = "derivation.toml";
 
+/// Pinned wheels of CasADi, each with its hash.
+const REQUIREMENTS: &str = include_str!("../../exporter/requirements.lock");
+
 /// The declaration, as written. Paths are relative to the derivation directory.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -18,7 +21,8 @@ pub(super) struct Declaration {
     pub(super) source: String,
     /// The command that rewrites the committed files.
     pub(super) write_command: String,
-    /// Requirements on Python.
+    /// Requirements on Python; by default those of this crate, with its lock file.
+    #[serde(default)]
     pub(super) python: PythonDeclaration,
     /// The programs that become Rust modules.
     #[serde(rename = "module")]
@@ -48,8 +52,18 @@ pub(super) struct PythonDeclaration {
     pub(super) minimum: Minor,
     /// Newest minor version for which the lock file holds wheels.
     pub(super) newest: Minor,
-    /// The lock file.
-    pub(super) requirements: String,
+    /// The lock file; `None` is that of this crate.
+    pub(super) requirements: Option<String>,
+}
+
+impl Default for PythonDeclaration {
+    fn default() -> Self {
+        Self {
+            minimum: Minor(11),
+            newest: Minor(14),
+            requirements: None,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -129,7 +143,17 @@ pub(super) struct Lock {
 
 impl Lock {
     pub(super) fn read(path: &Path) -> Result<Self, Error> {
-        let text = normalised(&std::fs::read_to_string(path).map_err(at("read", path))?);
+        let text = std::fs::read_to_string(path).map_err(at("read", path))?;
+        Self::parse(path, &text)
+    }
+
+    /// The lock file of this crate, for derivations that declare none.
+    pub(super) fn of_this_crate() -> Result<Self, Error> {
+        Self::parse(Path::new("exporter/requirements.lock"), REQUIREMENTS)
+    }
+
+    fn parse(path: &Path, text: &str) -> Result<Self, Error> {
+        let text = normalised(text);
         let casadi = text
             .lines()
             .find_map(|line| line.strip_prefix("casadi=="))

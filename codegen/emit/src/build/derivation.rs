@@ -43,11 +43,22 @@ impl Derivation {
         let directory = directory.as_ref();
         let directory = directory.canonicalize().map_err(at("find", directory))?;
         let declaration = Declaration::read(&directory)?;
-        let lock_path = directory.join(&declaration.python.requirements);
-        let lock = Lock::read(&lock_path)?;
         let mut inputs: Vec<Input> = sources::inputs().collect();
         let mut files = python_files(&directory)?;
-        files.extend([directory.join(DECLARATION_FILE), lock_path]);
+        files.push(directory.join(DECLARATION_FILE));
+        let lock = match &declaration.python.requirements {
+            Some(requirements) => {
+                let path = directory.join(requirements);
+                let lock = Lock::read(&path)?;
+                files.push(path);
+                lock
+            }
+            None => {
+                let lock = Lock::of_this_crate()?;
+                inputs.push(Input::new("emit/exporter/requirements.lock", &lock.text));
+                lock
+            }
+        };
         for path in files {
             let text = std::fs::read_to_string(&path).map_err(at("read", &path))?;
             let name = path.strip_prefix(&directory).unwrap_or(&path);
