@@ -29,8 +29,8 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     figures.extend(speed::figures(ROUNDS)?);
     figures.extend(speed::of_other_builds(ROUNDS)?);
     figures.push(emission::figure()?);
-    figures.extend(emission::of_huge_programs()?);
     figures.extend(operations::figures(&directory)?);
+    figures.extend(emission::of_huge_programs()?);
     figures.extend(plant::lines()?);
     figures.push(plant::clean_build()?);
     Ok(figures)
