@@ -108,6 +108,7 @@ fn small(x: f64) -> (f64, f64) {
 
 /// Beyond pi/4, with the bits of `libm`. Up to 5/4 pi the nearest multiple of pi/2 is taken away as
 /// there (FreeBSD's msun, `e_rem_pio2.c`), to 85 bits; `libm` does the rest, and what is near pi/2 and pi.
+#[cold]
 #[inline(never)]
 fn large(angle: f64) -> (f64, f64) {
     let size = angle.abs();

@@ -1,4 +1,5 @@
-//! What a new plant takes: lines of Python and Rust of the examples, and a build of one from nothing.
+//! What a new plant takes: lines of Python and Rust of the examples, a build of one from nothing, and
+//! packages that build from their own files.
 
 use std::path::Path;
 use std::process::Command;
@@ -59,4 +60,26 @@ pub(crate) fn clean_build() -> Result<Figure, Error> {
     let seconds = begin.elapsed().as_secs_f64();
     let what = "cart_pole: build from nothing, packages downloaded before";
     Ok(Figure::note(what, format!("{seconds:.0} s")))
+}
+
+/// Every package of the workspace, packaged in the order of publication and built from its own files.
+pub(crate) fn packages() -> Figure {
+    let what = "every package builds from its own files: cargo publish --workspace --dry-run";
+    let begin = Instant::now();
+    let result = output(Command::new(cargo()).current_dir(root()).args([
+        "publish",
+        "--workspace",
+        "--dry-run",
+        "--allow-dirty",
+    ]));
+    let mut figure = Figure::truth(what, result.is_ok());
+    figure.measured = match result {
+        Ok(_) => format!("yes, {:.0} s", begin.elapsed().as_secs_f64()),
+        Err(error) => {
+            let text = error.to_string();
+            let line = text.lines().find(|line| line.contains("error"));
+            format!("no: {}", line.unwrap_or("no reason is told"))
+        }
+    };
+    figure
 }
