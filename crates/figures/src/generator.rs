@@ -13,6 +13,9 @@ use crate::figure::Figure;
 use crate::kernel::instructions::root;
 use crate::kernel::speed;
 
+/// How to read the page of the topic, and why targets are missed.
+pub(crate) const INTRODUCTION: &str = include_str!("generator/introduction.md");
+
 /// Rounds of the filter step.
 const ROUNDS: usize = 501;
 

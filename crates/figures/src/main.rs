@@ -181,6 +181,7 @@ fn written(arguments: &Arguments, figures: &[Figure]) -> Result<(), Error> {
     let own = (arguments.write && topic.writes_its_page()).then(|| topic_page::path(&topic.name()));
     let introduction = match topic {
         Topic::Comparison => comparison::side_by_side(figures),
+        Topic::Generator => generator::INTRODUCTION.trim_end().to_owned(),
         _ => String::new(),
     };
     let table = table(figures).to_string();
