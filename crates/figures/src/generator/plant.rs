@@ -77,7 +77,7 @@ pub(crate) fn packages() -> Figure {
         Ok(_) => format!("yes, {:.0} s", begin.elapsed().as_secs_f64()),
         Err(error) => {
             let text = error.to_string();
-            let line = text.lines().find(|line| line.contains("error"));
+            let line = text.lines().find(|line| line.starts_with("error"));
             format!("no: {}", line.unwrap_or("no reason is told"))
         }
     };
