@@ -36,6 +36,6 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     figures.extend(emission::of_huge_programs()?);
     figures.extend(plant::lines()?);
     figures.push(plant::clean_build()?);
-    figures.push(plant::packages());
+    figures.push(plant::packages()?);
     Ok(figures)
 }
