@@ -7,30 +7,11 @@
 //! SSE encoding, which stalls some processors between 256-bit instructions. Without the standard
 //! library it remains the only one.
 
+use crate::exact;
 use crate::single::hypot_f32;
 use crate::{
     Real, Scalar, asin_f32, erf_inv_f32, erf_inv_f64, exp_f64, sin_cos_f32, sin_cos_f64, tan_f32,
 };
-
-/// Functions whose result is exact or correctly rounded in every library: of the standard library,
-/// where they are instructions of the target, or of `libm`.
-#[cfg(feature = "std")]
-pub(crate) mod exact {
-    macro_rules! of_std {
-        ($($name:ident: $float:ident, $method:ident);*) => {$(
-            #[inline(always)]
-            pub(crate) fn $name(x: $float) -> $float {
-                x.$method()
-            }
-        )*};
-    }
-    of_std!(sqrt: f64, sqrt; floor: f64, floor; ceil: f64, ceil;
-            sqrtf: f32, sqrt; floorf: f32, floor; ceilf: f32, ceil);
-}
-#[cfg(not(feature = "std"))]
-pub(crate) mod exact {
-    pub(crate) use libm::{ceil, ceilf, floor, floorf, sqrt, sqrtf};
-}
 
 /// Functions of `libm` with NaN outside of their domain.
 mod domain {

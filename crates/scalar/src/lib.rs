@@ -43,6 +43,7 @@ macro_rules! generated {
 
 pub mod effect;
 mod error_function;
+mod exact;
 mod exponential;
 mod float;
 mod lanes;

@@ -1,6 +1,6 @@
 //! Inverse functions and the root of a sum of squares.
 
-use crate::float::exact::sqrtf;
+use crate::exact::sqrtf;
 
 /// Inverse sine in radians, without `f64`, to 0.8 ulp; NaN beyond ±1.
 ///
