@@ -3,10 +3,12 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use comfy_table::Cell;
 use gyrocal_instruments::{AllanColumn, AllanSettings, InstrumentError, ResultFile, allan_columns};
 use gyrocal_record::{SourceText, write_json};
+use gyrocal_statistics::allan::{AllanEstimator, NoiseFit};
+use gyrocal_statistics::format;
 use serde_json::json;
 
 use crate::Failure;
@@ -15,10 +17,12 @@ use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::tables::{right, table};
 
-/// Overlapping Allan deviation of columns of a log.
+/// Allan deviation of columns of a log, and the parts of their noise.
 ///
-/// Each column is a rate sampled at equal intervals. Confidence intervals are those of NIST SP
-/// 1065, with the degrees of freedom of the dominant noise type at each averaging time.
+/// Each column is a rate sampled at equal intervals. Confidence intervals of the deviations are those of
+/// NIST SP 1065, with the degrees of freedom of the dominant noise type at each averaging time. The
+/// coefficients are fitted with the covariances of the deviations over averaging times, with 95 %
+/// intervals and a test of fit.
 #[derive(Debug, Args)]
 pub(crate) struct AllanArguments {
     /// The log (CSV) with a header row.
@@ -38,9 +42,33 @@ pub(crate) struct AllanArguments {
     /// Confidence level of the intervals.
     #[arg(long, value_name = "P", default_value_t = 0.683, value_parser = probability)]
     confidence: f64,
-    /// Write the result for programs (JSON).
+    /// Estimator of the printed deviations; the coefficients are always fitted to the overlapping ones.
+    #[arg(long, value_name = "ESTIMATOR", default_value = "overlapping")]
+    estimator: Estimator,
+    /// Write the result for programs (JSON), with the fitted curve and its parts for a plot.
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+}
+
+/// Value of `--estimator`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Estimator {
+    /// Overlapping Allan deviation.
+    Overlapping,
+    /// Total deviation: more degrees of freedom at the longest averaging times.
+    Total,
+    /// Overlapping Hadamard deviation: a ramp of the rate does not enter it.
+    Hadamard,
+}
+
+impl Estimator {
+    fn of_library(self) -> AllanEstimator {
+        match self {
+            Self::Overlapping => AllanEstimator::Overlapping,
+            Self::Total => AllanEstimator::Total,
+            Self::Hadamard => AllanEstimator::Hadamard,
+        }
+    }
 }
 
 /// Runs the command; returns the text for stdout.
@@ -50,6 +78,7 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
         rate_hz: arguments.rate_hz,
         scale: arguments.scale,
         confidence: arguments.confidence,
+        estimator: arguments.estimator.of_library(),
     };
     let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
     let columns = SourceText::read(&arguments.log)
@@ -60,6 +89,7 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
         let result = json!({
             "unit": arguments.unit,
             "confidence": arguments.confidence,
+            "estimator": arguments.estimator.of_library().description(),
             "columns": columns,
         });
         write_json(
@@ -84,24 +114,63 @@ fn summary(arguments: &AllanArguments, columns: &[AllanColumn]) -> String {
                 Cell::new(point.noise),
             ]);
         }
-        let noise = &column.noise;
         let _ = writeln!(
             text,
-            "{}: overlapping Allan deviation [{}], confidence {}\n\n{}\n\nNoise coefficients: \
-             quantisation {:.3e} × s, random walk {:.3e} × √s, bias instability {:.3e},\nrate \
-             random walk {:.3e} / √s (0: not visible).\n",
+            "{}: {} [{}], confidence {}\n\n{}\n\n{}",
             column.name,
+            arguments.estimator.of_library().description(),
             arguments.unit,
             arguments.confidence,
             table.trim_fmt(),
-            noise.quantisation,
-            noise.random_walk,
-            noise.bias_instability,
-            noise.rate_random_walk,
+            parts(column.noise.as_ref(), &arguments.unit),
         );
     }
     if let Some(path) = &arguments.json {
         let _ = writeln!(text, "{}: the result for programs", path.display());
+    }
+    text
+}
+
+/// The coefficients with their intervals, and the test of fit.
+fn parts(noise: Option<&NoiseFit>, unit: &str) -> String {
+    let Some(noise) = noise else {
+        return "Parts of the noise: too few averaging times for a fit.\n".to_owned();
+    };
+    let mut table = table(["part", "coefficient", "95 % interval", "unit"]);
+    for coefficient in &noise.coefficients {
+        let part = coefficient.part;
+        let (estimate, interval) = match (coefficient.estimate, coefficient.interval) {
+            (Some(estimate), Some([low, high])) if low > 0.0 => (
+                format!("{estimate:.3e}"),
+                format!("{low:.3e} to {high:.3e}"),
+            ),
+            (Some(_), Some([_, high])) => ("not visible".to_owned(), format!("below {high:.3e}")),
+            _ => ("not determined".to_owned(), String::new()),
+        };
+        table.add_row([
+            Cell::new(part.description()),
+            right(estimate),
+            right(interval),
+            Cell::new(format!("{unit}{}", part.unit_suffix())),
+        ]);
+    }
+    let [from_s, to_s] = noise.range_s;
+    let mut text = format!(
+        "{}\n\nFitted from {from_s:.4} to {to_s:.4} s; test of fit: {}. The flat part of a bias \
+         instability B is 0.664 B.\n",
+        table.trim_fmt(),
+        format::p_value(noise.p_value),
+    );
+    if noise.correlated_samples {
+        text.push_str(
+            "The samples are correlated for a short time, as by a filter or dither: shorter averaging \
+             times are left\nout, and quantisation is not distinguishable from the filter.\n",
+        );
+    } else if !noise.is_described() {
+        text.push_str(
+            "The noise is no sum of these parts at any range of averaging times: no coefficient is \
+             determined. Look for\nvibration, jumps, or a change of temperature.\n",
+        );
     }
     text
 }

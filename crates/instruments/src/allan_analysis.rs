@@ -2,7 +2,8 @@
 
 use gyrocal_record::{InputErrorKind, SourceText};
 use gyrocal_statistics::allan::{
-    AllanPoint, NoiseCoefficients, allan_deviation, noise_coefficients, octaves,
+    AllanEstimator, AllanPoint, NoiseFit, allan_deviation, fit_noise, hadamard_deviation, octaves,
+    total_deviation,
 };
 use serde::Serialize;
 
@@ -18,6 +19,9 @@ pub struct AllanSettings {
     pub scale: f64,
     /// Confidence level of the intervals.
     pub confidence: f64,
+    /// Estimator of the printed deviations. The parts of the noise are always fitted to the overlapping
+    /// Allan deviations.
+    pub estimator: AllanEstimator,
 }
 
 /// Allan deviations of one column.
@@ -27,8 +31,8 @@ pub struct AllanColumn {
     pub name: String,
     /// Deviation at each averaging time.
     pub points: Vec<AllanColumnPoint>,
-    /// Noise coefficients by the slopes of the curve.
-    pub noise: NoiseCoefficients,
+    /// Parts of the noise; `None` with too few averaging times for a fit.
+    pub noise: Option<NoiseFit>,
 }
 
 /// Allan deviation at one averaging time.
@@ -36,7 +40,7 @@ pub struct AllanColumn {
 pub struct AllanColumnPoint {
     /// Averaging time \[s\].
     pub tau_s: f64,
-    /// Overlapping Allan deviation, in the unit of the scaled values.
+    /// The deviation, in the unit of the scaled values.
     pub deviation: f64,
     /// Lower end of its confidence interval.
     pub low: f64,
@@ -62,7 +66,7 @@ impl From<&AllanPoint> for AllanColumnPoint {
     }
 }
 
-/// Overlapping Allan deviations of columns of a log at octaves of the sampling interval.
+/// Deviations of columns of a log at octaves of the sampling interval, and the parts of their noise.
 ///
 /// # Errors
 /// As [`read_columns`]; [`InstrumentError`] for a column that never changes, and for values that
@@ -86,10 +90,26 @@ pub fn allan_columns(
                 return Err(overflow(name, settings.scale));
             }
             let averaging = octaves(values.len().max(3));
-            let points = allan_deviation(&values, interval_s, &averaging, settings.confidence)?;
+            let overlapping =
+                allan_deviation(&values, interval_s, &averaging, settings.confidence)?;
+            let confidence = settings.confidence;
+            let points = match settings.estimator {
+                AllanEstimator::Total => {
+                    total_deviation(&values, interval_s, &averaging, confidence)?
+                }
+                AllanEstimator::Hadamard => {
+                    let most = values.len() / 4;
+                    let shorter: Vec<usize> = averaging
+                        .into_iter()
+                        .filter(|count| *count <= most)
+                        .collect();
+                    hadamard_deviation(&values, interval_s, &shorter, confidence)?
+                }
+                _ => overlapping.clone(),
+            };
             Ok(AllanColumn {
                 name: (*name).to_owned(),
-                noise: noise_coefficients(&points),
+                noise: fit_noise(&overlapping, values.len()).ok(),
                 points: points.iter().map(AllanColumnPoint::from).collect(),
             })
         })

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 
 use gyrocal_instruments::{Description, InstrumentError, Log, Unfit};
-use gyrocal_statistics::allan::{allan_deviation, noise_coefficients, octaves};
+use gyrocal_statistics::allan::{NoisePart, allan_deviation, fit_noise, octaves};
 
 const DESCRIPTION: &str = r#"
 [time]
@@ -207,12 +207,19 @@ fn parts_of_a_noise_are_told_by_their_slopes() {
         .collect();
     let parts = |rate: &[f64]| {
         let points = allan_deviation(rate, 1.0, &octaves(3000), 0.683).unwrap();
-        noise_coefficients(&points)
+        fit_noise(&points, rate.len()).unwrap()
     };
+    let of = |rate: &[f64], part: NoisePart| *parts(rate).coefficient(part).unwrap();
     // Octaves up to a thousand seconds leave a hundred averages: five percent.
-    assert!((parts(&white).random_walk - 1.0).abs() < 0.05);
-    assert!(parts(&white).quantisation < 0.1);
-    let found = parts(&both);
-    assert!((found.quantisation / 10.0 - 1.0).abs() < 0.05, "{found:?}");
-    assert!((found.random_walk - 1.0).abs() < 0.2, "{found:?}");
+    let found = of(&white, NoisePart::RandomWalk);
+    assert!((found.estimate.unwrap() - 1.0).abs() < 0.05, "{found:?}");
+    let found = of(&white, NoisePart::Quantisation);
+    assert!(found.estimate.unwrap() < 0.1, "{found:?}");
+    let found = of(&both, NoisePart::Quantisation);
+    assert!(
+        (found.estimate.unwrap() / 10.0 - 1.0).abs() < 0.05,
+        "{found:?}"
+    );
+    let found = of(&both, NoisePart::RandomWalk);
+    assert!((found.estimate.unwrap() - 1.0).abs() < 0.2, "{found:?}");
 }

@@ -1,14 +1,22 @@
-//! Overlapping Allan deviation with confidence intervals.
+//! Allan deviations with confidence intervals, and the parts of a noise that they show.
 //!
 //! W. J. Riley, *Handbook of Frequency Stability Analysis*, NIST Special Publication 1065, 2008:
 //! sections 5.2.4 (deviation), 5.3 (confidence intervals), table 5 (degrees of freedom). In its
 //! words a gyro's rate is fractional frequency and its angle is phase.
 
-mod coefficients;
+mod covariance;
+mod draws;
+mod estimators;
+mod fit;
+mod intervals;
+mod least_squares;
 mod noise;
+mod parts;
 
-pub use coefficients::{NoiseCoefficients, noise_coefficients};
+pub use estimators::{AllanEstimator, hadamard_deviation, total_deviation};
+pub use fit::{COEFFICIENT_CONFIDENCE, Coefficient, FittedPoint, NoiseFit, fit_noise};
 pub use noise::NoiseType;
+pub use parts::NoisePart;
 
 use crate::error::StatisticsError;
 use crate::probability::chi_square_quantile;
@@ -74,23 +82,38 @@ pub fn allan_deviation(
             noise = NoiseType::RateRamp;
         }
         let degrees_of_freedom = noise.degrees_of_freedom(phase.len(), averaging);
-        let bound = |probability: f64| {
-            let quantile = chi_square_quantile(probability, degrees_of_freedom).unwrap_or(f64::NAN);
-            (variance * degrees_of_freedom / quantile).sqrt()
-        };
-        let tail = 0.5 * (1.0 - confidence);
-        let point = AllanPoint {
-            tau_s,
+        points.push(point(
+            [tau_s, variance, degrees_of_freedom],
             averaging,
-            deviation: variance.sqrt(),
-            interval: [bound(1.0 - tail), bound(tail)],
-            degrees_of_freedom,
             noise,
-        };
-        refuse_overflow(&point)?;
-        points.push(point);
+            confidence,
+        )?);
     }
     Ok(points)
+}
+
+/// A point of averaging time, variance and degrees of freedom, with its interval.
+fn point(
+    [tau_s, variance, degrees_of_freedom]: [f64; 3],
+    averaging: usize,
+    noise: NoiseType,
+    confidence: f64,
+) -> Result<AllanPoint, StatisticsError> {
+    let bound = |probability: f64| {
+        let quantile = chi_square_quantile(probability, degrees_of_freedom).unwrap_or(f64::NAN);
+        (variance * degrees_of_freedom / quantile).sqrt()
+    };
+    let tail = 0.5 * (1.0 - confidence);
+    let point = AllanPoint {
+        tau_s,
+        averaging,
+        deviation: variance.sqrt(),
+        interval: [bound(1.0 - tail), bound(tail)],
+        degrees_of_freedom,
+        noise,
+    };
+    refuse_overflow(&point)?;
+    Ok(point)
 }
 
 fn refuse_overflow(point: &AllanPoint) -> Result<(), StatisticsError> {

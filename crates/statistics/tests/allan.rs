@@ -3,10 +3,16 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 
 use gyrocal_statistics::StatisticsError;
-use gyrocal_statistics::allan::{NoiseType, allan_deviation, octaves};
+use gyrocal_statistics::allan::{
+    NoisePart, NoiseType, allan_deviation, fit_noise, hadamard_deviation, octaves, total_deviation,
+};
+use gyrocal_testkit::sensor_noise::{Filter, SensorNoise};
 
 /// Made by tests/data/allan_reference.py.
 const REFERENCE: &str = include_str!("data/allan_reference.csv");
+
+/// Made by tests/data/allan_estimators_reference.py.
+const ESTIMATORS: &str = include_str!("data/allan_estimators_reference.csv");
 
 const ONE_SIGMA: f64 = 0.682_689_492_137_085_9;
 
@@ -134,4 +140,134 @@ fn what_cannot_be_computed_is_refused() {
     }
     let gap = [0.0, f64::NAN, 1.0];
     assert_eq!(error(&gap, 1.0, &[1], 0.9), NotFinite { sample: 2 });
+}
+
+#[test]
+fn total_and_hadamard_deviations_are_those_of_the_other_library() {
+    let mut rows = 0;
+    for line in ESTIMATORS.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let number = |field: usize| fields[field].parse::<f64>().unwrap();
+        let averaging = [number(1) as usize];
+        let rate = series(fields[0]);
+        let total = total_deviation(&rate, 1.0, &averaging, ONE_SIGMA).unwrap()[0];
+        let hadamard = hadamard_deviation(&rate, 1.0, &averaging, ONE_SIGMA).unwrap()[0];
+        // A thousand sums of numbers of order one.
+        assert!((total.deviation / number(2) - 1.0).abs() < 1e-11, "{line}");
+        assert!(
+            (hadamard.deviation / number(4) - 1.0).abs() < 1e-11,
+            "{line}"
+        );
+        // Only where the noise of the series is the one identified.
+        let is = match fields[0] {
+            "white" => NoiseType::WhiteRate,
+            "difference" => NoiseType::WhiteAngle,
+            _ => NoiseType::RandomWalkRate,
+        };
+        if total.noise == is && !number(3).is_nan() {
+            assert!(
+                (total.degrees_of_freedom / number(3) - 1.0).abs() < 1e-12,
+                "{line}"
+            );
+        }
+        // The reference takes samples for a continuous record, which shows at short times.
+        if hadamard.noise == is && averaging[0] >= 32 {
+            let ratio = hadamard.degrees_of_freedom / number(5);
+            assert!((ratio - 1.0).abs() < 0.01, "{ratio} {line}");
+        }
+        // There it is the ratio of squared trace and trace of the square of the quadratic form.
+        let exact = match (fields[0], averaging[0]) {
+            ("white", 1) => 513.521_769_049,
+            ("white", 8) => 154.227_674_369,
+            _ => hadamard.degrees_of_freedom,
+        };
+        assert!(
+            (hadamard.degrees_of_freedom / exact - 1.0).abs() < 1e-9,
+            "{line}"
+        );
+        rows += 1;
+    }
+    assert_eq!(rows, 21);
+}
+
+#[test]
+fn coefficients_of_known_noise_are_in_their_intervals() {
+    let noise = SensorNoise {
+        quantisation: 2.0,
+        random_walk: 1.0,
+        bias_instability: 0.1,
+        rate_random_walk: 1e-3,
+        filter: Filter::None,
+    };
+    let fitted = |noise: SensorNoise, interval_s: f64| {
+        let rates = noise.rates(40_000, 3);
+        let points = allan_deviation(&rates, interval_s, &octaves(rates.len()), 0.95).unwrap();
+        fit_noise(&points, rates.len()).unwrap()
+    };
+    let fit = fitted(noise, 1.0);
+    let truth = [2.0, 1.0, 0.1, 1e-3];
+    for (part, truth) in NoisePart::ALL.into_iter().zip(truth) {
+        let found = fit.coefficient(part).unwrap();
+        let [low, high] = found.interval.unwrap();
+        assert!(low < truth && truth < high, "{found:?}");
+    }
+    assert!(fit.p_value > 0.05 && !fit.correlated_samples && fit.is_described());
+    // The parts of the curve add to it.
+    for point in &fit.curve {
+        let sum: f64 = point.parts.iter().map(|part| part * part.abs()).sum();
+        assert!((sum.sqrt() / point.deviation - 1.0).abs() < 1e-9);
+    }
+    // The same samples ten times a second: the units of time follow.
+    let faster = fitted(noise, 0.1);
+    let ratio = |part: NoisePart| {
+        let of = |fit: &gyrocal_statistics::allan::NoiseFit| {
+            fit.coefficient(part).unwrap().estimate.unwrap()
+        };
+        of(&faster) / of(&fit)
+    };
+    assert!((ratio(NoisePart::Quantisation) - 0.1).abs() < 1e-9);
+    assert!((ratio(NoisePart::RandomWalk) - 0.1_f64.sqrt()).abs() < 1e-9);
+    assert!((ratio(NoisePart::RateRandomWalk) - 10.0_f64.sqrt()).abs() < 1e-8);
+}
+
+#[test]
+fn a_filter_is_told_and_does_not_spoil_the_random_walk() {
+    let noise = SensorNoise {
+        quantisation: 0.0,
+        random_walk: 1.0,
+        bias_instability: 0.05,
+        rate_random_walk: 0.0,
+        filter: Filter::Lag(4.0),
+    };
+    let rates = noise.rates(40_000, 4);
+    let points = allan_deviation(&rates, 1.0, &octaves(rates.len()), 0.95).unwrap();
+    let fit = fit_noise(&points, rates.len()).unwrap();
+    assert!(fit.correlated_samples && fit.range_s[0] > 4.0, "{fit:?}");
+    let found = fit.coefficient(NoisePart::RandomWalk).unwrap();
+    let [low, high] = found.interval.unwrap();
+    assert!(low < 1.0 && 1.0 < high && high < 1.5, "{found:?}");
+    assert_eq!(
+        fit.coefficient(NoisePart::Quantisation).unwrap().estimate,
+        None
+    );
+}
+
+#[test]
+fn a_line_of_vibration_is_not_taken_for_quantisation() {
+    let noise = SensorNoise {
+        quantisation: 0.0,
+        random_walk: 1.0,
+        bias_instability: 0.0,
+        rate_random_walk: 0.0,
+        filter: Filter::None,
+    };
+    let mut rates = noise.rates(20_000, 5);
+    for (row, rate) in rates.iter_mut().enumerate() {
+        *rate += 3.0 * (0.7 * row as f64).sin();
+    }
+    let points = allan_deviation(&rates, 1.0, &octaves(rates.len()), 0.95).unwrap();
+    let fit = fit_noise(&points, rates.len()).unwrap();
+    // A line of vibration: it is left out with the shortest averaging times, or nothing is given.
+    assert!(fit.correlated_samples || fit.coefficients.iter().all(|c| c.estimate.is_none()));
+    assert!(fit_noise(&points[..4], rates.len()).is_err());
 }

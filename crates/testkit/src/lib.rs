@@ -7,6 +7,7 @@
 //! - `calibration`: dense least squares for short records, and signatures by finite differences of the
 //!   independent simulation.
 //! - `noise`: records with faulty noise.
+//! - `sensor-noise`: rates of a gyro at rest with noise of known parts.
 //! - `setups`: records with gross errors of the set-up.
 //! - `extended`: the controller of `examples/extended` against the catalogue.
 //!
@@ -40,6 +41,8 @@ mod own_terms;
 pub mod peer_filters;
 #[cfg(feature = "filters")]
 pub mod rounding_errors;
+#[cfg(feature = "sensor-noise")]
+pub mod sensor_noise;
 #[cfg(feature = "calibration")]
 pub mod signature_differences;
 #[cfg(feature = "filters")]
