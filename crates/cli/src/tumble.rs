@@ -1,16 +1,19 @@
 //! `gyrocal tumble`: multi-position test of gyros from a log with static stops in many attitudes.
 
+mod few;
 mod figures;
+mod sensors;
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use comfy_table::{Cell, Table};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_instruments::multi_position::{
-    Finding, MultiPositionReport, MultiPositionSettings, PreparedTest, SearchSettings,
-    multi_position_test, prepare,
+    FewPositionReport, Finding, MultiPositionReport, MultiPositionSettings, PreparedTest,
+    SearchSettings, few_position_test, fewest_stops, multi_position_test, prepare_logs,
 };
 use gyrocal_instruments::{
     Description, InstrumentError, Log, ResultFile, StopSettings, find_stops, given_stops,
@@ -32,22 +35,23 @@ use crate::tables::{right, table};
 /// gain of the extended law on held-out stops, and the findings in permuted stops.
 #[derive(Debug, Args)]
 pub(crate) struct TumbleArguments {
-    /// The log (CSV) with a header row.
-    log: PathBuf,
+    /// The log (CSV) with a header row; several logs of one unit are one or more positions each.
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
     /// Description of its columns (TOML); docs/measured-data.md has every key.
     #[arg(long, value_name = "LOG.toml")]
     log_description: PathBuf,
-    /// A stop, instead of those detected; may be repeated.
+    /// A stop of the log, instead of those detected; may be repeated.
     #[arg(long, value_name = "FROM_S:TO_S", value_parser = interval)]
     stop: Vec<[f64; 2]>,
     /// Shortest stop.
     #[arg(long, value_name = "S", default_value_t = StopSettings::default().shortest_s,
           value_parser = positive, conflicts_with = "stop")]
     shortest_stop_s: f64,
-    /// Threshold of a static window: variance over that of the quietest windows.
-    #[arg(long, value_name = "FACTOR", default_value_t = StopSettings::default().accel_factor,
-          value_parser = positive, conflicts_with = "stop")]
-    quiet_factor: f64,
+    /// Judge stops by the quietest windows of the log: largest variance over theirs. Default: in
+    /// physical units the tremor of a hand (2 deg/s, 0.03 g), in raw counts a factor of 6.
+    #[arg(long, value_name = "FACTOR", value_parser = positive, conflicts_with = "stop")]
+    quiet_factor: Option<f64>,
     /// Family-wise false-alarm probability, 1e-4 or more; below 0.01 the time grows with its
     /// inverse.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
@@ -65,30 +69,79 @@ pub(crate) struct TumbleArguments {
     json: Option<PathBuf>,
 }
 
+/// Result of a test with many or with few stops.
+#[derive(Debug)]
+enum Report {
+    Many(MultiPositionReport),
+    Few(FewPositionReport),
+}
+
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
-    let inputs = [&*arguments.log, &*arguments.log_description];
+    let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
+    inputs.push(&arguments.log_description);
     outputs::check(
         &inputs,
         arguments.json.as_deref(),
         arguments.figures.as_deref(),
     )?;
-    let (prepared, report) = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    if arguments.logs.len() > 1 && !arguments.stop.is_empty() {
+        return Err(Failure::Usage(
+            "--stop gives stops of one log; with several logs the stops of each are detected"
+                .to_owned(),
+        ));
+    }
+    let log = &arguments.logs[0];
+    let (prepared, report) = work(arguments)?;
     tracing::info!(?report, "tested");
     let mut outputs = Outputs::new();
-    let mut text = summary(arguments, &prepared, &report);
+    let mut text = format!(
+        "{}: {} static stops\n\n",
+        named(arguments),
+        prepared.stops.len()
+    );
+    text += &sensors::text(&prepared);
+    match &report {
+        Report::Many(report) => text += &summary(arguments, report),
+        Report::Few(report) => text += &few::text(report, arguments.false_alarm),
+    }
+    not_identifiable(&mut text, &prepared);
+    if let Some(path) = &arguments.json {
+        let _ = writeln!(text, "\n{}: the result for programs", path.display());
+    }
     // The folder of pictures first: the result for programs may go there too.
     if let Some(folder) = &arguments.figures {
-        let pictures = figures::pictures(&arguments.log, &prepared, &report);
-        text += &pictures::stage(&arguments.log, &pictures, folder, &mut outputs)?;
+        match &report {
+            Report::Many(report) => {
+                let pictures = figures::pictures(log, &prepared, report);
+                text += &pictures::stage(log, &pictures, folder, &mut outputs)?;
+            }
+            Report::Few(_) => text += "\nNo pictures: they are made of tests with many stops.\n",
+        }
     }
     if let Some(path) = &arguments.json {
         let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
-        let result = serde_json::json!({ "sensors": prepared.sensors(), "test": report });
+        let result = match &report {
+            Report::Many(report) => {
+                serde_json::json!({ "sensors": prepared.sensors(), "test": report })
+            }
+            Report::Few(report) => {
+                serde_json::json!({ "sensors": prepared.sensors(), "few_positions": report })
+            }
+        };
         outputs.stage_json(path, &ResultFile::new(manifest, result))?;
     }
     outputs.commit()?;
     Ok(text)
+}
+
+fn named(arguments: &TumbleArguments) -> String {
+    match &arguments.logs[..] {
+        [first, rest @ ..] if !rest.is_empty() => {
+            format!("{} and {} further logs", first.display(), rest.len())
+        }
+        logs => logs.iter().map(|log| log.display().to_string()).collect(),
+    }
 }
 
 fn false_alarm(text: &str) -> Result<f64, String> {
@@ -98,45 +151,68 @@ fn false_alarm(text: &str) -> Result<f64, String> {
         .map_err(|error| error.to_string())
 }
 
-fn work(
+fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, Report), Failure> {
+    let of_log = |log: &Path, error| unusable(log, error);
+    let first = &arguments.logs[0];
+    let description = Description::read(&arguments.log_description)
+        .map_err(|error| of_log(first, error.into()))?;
+    let mut logs = Vec::with_capacity(arguments.logs.len());
+    for path in &arguments.logs {
+        logs.push(log_with_stops(arguments, path, &description).map_err(|e| of_log(path, e))?);
+    }
+    tested(arguments, &logs, &description).map_err(|error| of_log(first, error))
+}
+
+fn log_with_stops(
     arguments: &TumbleArguments,
-) -> Result<(PreparedTest, MultiPositionReport), InstrumentError> {
-    let description = Description::read(&arguments.log_description)?;
-    let log = Log::read(&arguments.log, &description)?;
+    path: &Path,
+    description: &Description,
+) -> Result<(Log, Vec<Range<usize>>), InstrumentError> {
+    let log = Log::read(path, description)?;
     let stops = match &arguments.stop[..] {
-        [] => {
-            let default = StopSettings::default();
-            let settings = StopSettings {
-                shortest_s: arguments.shortest_stop_s,
-                accel_factor: arguments.quiet_factor,
-                gyro_factor: default.gyro_factor * arguments.quiet_factor / default.accel_factor,
-                ..default
-            };
-            find_stops(&log, &settings)?
-        }
+        [] => find_stops(&log, &stop_settings(arguments))?,
         given => given_stops(&log, given)?,
     };
-    let prepared = prepare(&log, &description, &stops)?;
+    Ok((log, stops))
+}
+
+fn stop_settings(arguments: &TumbleArguments) -> StopSettings {
+    let default = StopSettings {
+        shortest_s: arguments.shortest_stop_s,
+        ..StopSettings::default()
+    };
+    match arguments.quiet_factor {
+        None => default,
+        Some(factor) => StopSettings {
+            accel_factor: factor,
+            gyro_factor: default.gyro_factor * factor / default.accel_factor,
+            hand_held: None,
+            ..default
+        },
+    }
+}
+
+fn tested(
+    arguments: &TumbleArguments,
+    logs: &[(Log, Vec<Range<usize>>)],
+    description: &Description,
+) -> Result<(PreparedTest, Report), InstrumentError> {
+    let prepared = prepare_logs(logs, description)?;
+    if prepared.stops.len() < fewest_stops() {
+        let report = few_position_test(&prepared.positions, arguments.false_alarm)?;
+        return Ok((prepared, Report::Few(report)));
+    }
     let settings = MultiPositionSettings {
         search: SearchSettings::at(arguments.false_alarm, arguments.seed)?,
         left_out: arguments.left_out as usize,
         ..MultiPositionSettings::default()
     };
     let report = multi_position_test(&prepared.positions, &settings)?;
-    Ok((prepared, report))
+    Ok((prepared, Report::Many(report)))
 }
 
-fn summary(
-    arguments: &TumbleArguments,
-    prepared: &PreparedTest,
-    report: &MultiPositionReport,
-) -> String {
-    let mut text = format!(
-        "{}: {} static stops\n\n",
-        arguments.log.display(),
-        report.stops
-    );
-    sensors(&mut text, prepared);
+fn summary(arguments: &TumbleArguments, report: &MultiPositionReport) -> String {
+    let mut text = String::new();
     let _ = writeln!(text, "{}\n", laws(report).trim_fmt());
     for gyro in &report.gyros {
         let (nominal, extended) = (&gyro.nominal, &gyro.extended);
@@ -184,44 +260,7 @@ fn summary(
         describe(&mut text, finding);
     }
     held_out_gain(&mut text, arguments, report);
-    not_identifiable(&mut text, prepared);
-    if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "\n{}: the result for programs", path.display());
-    }
     text
-}
-
-fn sensors(text: &mut String, prepared: &PreparedTest) {
-    let sensors = prepared.sensors();
-    if let Some(outputs) = sensors.accel_outputs_per_g {
-        let [x, y, z] = outputs;
-        let _ = writeln!(
-            text,
-            "Accelerometers, from the magnitude at the stops: {x:.1}, {y:.1}, {z:.1} counts per g."
-        );
-    }
-    let _ = writeln!(
-        text,
-        "Magnitude of specific force: 1 g within {:.1e} g rms.",
-        sensors.norm_rms_g
-    );
-    if let (Some(outputs), Some(angles), Some(rms), Some(turns)) = (
-        sensors.gyro_outputs_per_rad_per_s,
-        sensors.gyro_misalignment_rad,
-        sensors.turn_rms_g,
-        &prepared.turns,
-    ) {
-        let [x, y, z] = outputs;
-        let [ax, ay, az] = angles;
-        let _ = writeln!(
-            text,
-            "Gyros, from {} turns between stops: {x:.5}, {y:.5}, {z:.5} outputs per rad/s, input \
-             axes {ax:.3}, {ay:.3}, {az:.3} rad\nfrom those of the accelerometers; gravity \
-             predicted over the turns within {rms:.1e} g rms.",
-            turns.turns,
-        );
-    }
-    text.push('\n');
 }
 
 fn laws(report: &MultiPositionReport) -> Table {

@@ -47,6 +47,7 @@
 //! clocks that jump, wrong units and left-handed axes are errors.
 
 mod accel_from_norm;
+mod accel_from_positions;
 mod allan_analysis;
 mod columns;
 pub mod description;
@@ -61,6 +62,7 @@ mod stops;
 pub mod strapdown;
 
 pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
+pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positions};
 pub use allan_analysis::{AllanColumn, AllanColumnPoint, AllanSettings, allan_columns};
 pub use columns::{Columns, read_columns};
 pub use description::Description;

@@ -7,6 +7,7 @@
 
 mod alternatives;
 mod cross_validation;
+mod few_positions;
 mod negative_controls;
 mod positions;
 mod prepare;
@@ -20,9 +21,10 @@ use gyrocal_statistics::{chi_square_tail, f_tail};
 
 pub use alternatives::Alternative;
 pub use cross_validation::{CrossValidation, cross_validate};
+pub use few_positions::{FewPositionFinding, FewPositionLaw, FewPositionReport, few_position_test};
 pub use negative_controls::{NegativeControls, negative_controls};
 pub use positions::{Instrument, Positions};
-pub use prepare::{PreparedTest, SensorReport, prepare};
+pub use prepare::{PreparedTest, SensorReport, StopReport, prepare, prepare_logs};
 pub use report::{CoefficientReport, FTest, Finding, GyroReport, LawReport, MultiPositionReport};
 pub use search::{LEAST_FALSE_ALARM, SearchSettings, SearchStep, search};
 pub use terms::Term;
@@ -55,6 +57,15 @@ impl Default for MultiPositionSettings {
     }
 }
 
+/// Stops beyond the number of terms that the scatter of stops is estimated from.
+const SPARE: usize = 3;
+
+/// Fewest stops of [`multi_position_test`]; [`few_position_test`] is for fewer.
+#[must_use]
+pub fn fewest_stops() -> usize {
+    Term::NOMINAL.len() + Term::catalogue(0).len() + SPARE
+}
+
 /// Fits the drift laws, searches for missing terms, and validates the extended laws.
 ///
 /// # Errors
@@ -66,13 +77,15 @@ pub fn multi_position_test(
     settings: &MultiPositionSettings,
 ) -> Result<MultiPositionReport, InstrumentError> {
     let stops = positions.time_s.len();
-    let largest = Term::NOMINAL.len() + Term::catalogue(0).len();
-    let fewest = largest + 3;
+    let fewest = fewest_stops();
     if stops < fewest {
         return Err(InstrumentError::unfit(
             Unfit::TooShort,
             format!("{stops} static stops"),
-            format!("at least {fewest} for the {largest} terms of the catalogue"),
+            format!(
+                "at least {fewest} for the {} terms of the catalogue",
+                fewest - SPARE
+            ),
             "stop in more attitudes",
         ));
     }

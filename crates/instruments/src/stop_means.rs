@@ -9,6 +9,10 @@ use crate::log::Log;
 pub struct StopMeans {
     /// Range of samples in the log.
     pub samples: Range<usize>,
+    /// Time of the first sample.
+    pub from_s: f64,
+    /// Time of the last sample.
+    pub to_s: f64,
     /// Middle of the stop.
     pub time_s: f64,
     /// Mean output of the gyros, in the unit of the log.
@@ -46,6 +50,8 @@ pub fn stop_means(log: &Log, stops: &[Range<usize>]) -> Vec<StopMeans> {
             let (accel, accel_sigma) = moments(&log.accel[samples.clone()], accel_inflation);
             StopMeans {
                 samples: samples.clone(),
+                from_s: times[0],
+                to_s: times[times.len() - 1],
                 time_s: 0.5 * (times[0] + times[times.len() - 1]),
                 gyro,
                 gyro_sigma,

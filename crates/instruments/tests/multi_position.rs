@@ -179,6 +179,8 @@ fn earth_rate_is_taken_off_where_latitude_is_known() {
         let earth = EARTH_DEG_PER_H * (up * sine + north * cosine);
         gyrocal_instruments::StopMeans {
             samples: 0..1,
+            from_s: 0.0,
+            to_s: 0.0,
             time_s: 0.0,
             gyro: earth.into(),
             gyro_sigma: [0.1; 3],

@@ -7,6 +7,7 @@
 //! - `calibration`: dense least squares for short records, and signatures by finite differences of the
 //!   independent simulation.
 //! - `noise`: records with faulty noise.
+//! - `positions`: logs of multi-position tests.
 //! - `sensor-noise`: rates of a gyro at rest with noise of known parts.
 //! - `setups`: records with gross errors of the set-up.
 //! - `extended`: the controller of `examples/extended` against the catalogue.
@@ -39,6 +40,8 @@ pub mod noise_faults;
 mod own_terms;
 #[cfg(feature = "filters")]
 pub mod peer_filters;
+#[cfg(feature = "positions")]
+pub mod position_test;
 #[cfg(feature = "filters")]
 pub mod rounding_errors;
 #[cfg(feature = "sensor-noise")]

@@ -11,7 +11,7 @@ use super::terms::Term;
 /// Findings in data without effects, or with other ones.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NegativeControls {
-    /// Number of data sets with specific forces permuted among the stops.
+    /// Number of data sets with specific forces and times permuted among the stops.
     pub shuffles: usize,
     /// Number of these with a finding.
     pub shuffles_with_findings: usize,
@@ -42,7 +42,9 @@ pub fn negative_controls(
     let mut with_findings = 0;
     for _ in 0..shuffles {
         shuffle(&mut order, &mut generator);
+        // Times go with the forces: a ramp is a term as well.
         let shuffled = Positions {
+            time_s: order.iter().map(|stop| positions.time_s[*stop]).collect(),
             force_g: order.iter().map(|stop| positions.force_g[*stop]).collect(),
             ..positions.clone()
         };

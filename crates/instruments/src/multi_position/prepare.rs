@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::positions::{Instrument, Positions};
 use crate::accel_from_norm::{accel_from_norm, refuse_wrong_norm};
+use crate::accel_from_positions::{AccelErrors, accel_from_positions};
 use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
 use crate::gyro_from_turns::{GyroCalibration, gyro_from_turns};
@@ -19,6 +20,8 @@ pub struct PreparedTest {
     pub stops: Vec<StopMeans>,
     /// Calibration constants of the sensors, and the site.
     pub instrument: Instrument,
+    /// Errors of accelerometers in physical units; `None` for those in raw counts, and for one stop.
+    pub accel_errors: Option<AccelErrors>,
     /// Calibration of the gyros from the turns between stops; `None` if their scale is given and the
     /// turns are too few to check it.
     pub turns: Option<GyroCalibration>,
@@ -26,17 +29,42 @@ pub struct PreparedTest {
     pub positions: Positions,
 }
 
+/// A stop, as it is serialised.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StopReport {
+    /// Time of its first sample.
+    pub from_s: f64,
+    /// Time of its last sample.
+    pub to_s: f64,
+    /// Number of samples.
+    pub samples: usize,
+    /// Mean specific force.
+    pub force_g: [f64; 3],
+    /// Mean rates, less the vertical part of Earth rate if the latitude is given.
+    pub rate_deg_per_h: [f64; 3],
+    /// Their standard errors.
+    pub sigma_deg_per_h: [f64; 3],
+}
+
 /// Calibration of the sensors, as it is serialised.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SensorReport {
-    /// Zero of the accelerometers, if estimated.
+    /// The stops, in the order of time.
+    pub stops: Vec<StopReport>,
+    /// Errors of accelerometers in physical units with their covariance.
+    pub accel_errors: Option<AccelErrors>,
+    /// Zero of the accelerometers in raw counts, if estimated.
     pub accel_zero: Option<[f64; 3]>,
-    /// Outputs of the accelerometers per g, if estimated.
+    /// Outputs of accelerometers in raw counts per g, if estimated.
     pub accel_outputs_per_g: Option<[f64; 3]>,
     /// Norm of specific force less 1 g, rms over the stops \[g\].
     pub norm_rms_g: f64,
     /// Outputs of the gyros per rad/s, from the turns.
     pub gyro_outputs_per_rad_per_s: Option<[f64; 3]>,
+    /// Rate \[rad/s\] from gyro outputs, in the axes of the accelerometers, from the turns.
+    pub gyro_matrix: Option<[[f64; 3]; 3]>,
+    /// Standard deviations of its elements.
+    pub gyro_matrix_sigma: Option<[[f64; 3]; 3]>,
     /// Angles between the input axes of the gyros and the axes of the accelerometers, from the turns.
     pub gyro_misalignment_rad: Option<[f64; 3]>,
     /// Rms difference, per component, between gravity rotated by the turns and measured gravity \[g\].
@@ -59,9 +87,77 @@ pub fn prepare(
     stops: &[Range<usize>],
 ) -> Result<PreparedTest, InstrumentError> {
     let stops = stop_means(log, stops);
-    let accel = match log.accel_in_counts {
-        true => Some(accel_from_norm(&stops)?),
-        false => None,
+    prepare_means(log, description, stops, true)
+}
+
+/// The same for several logs of one unit, one or more positions each. Nothing is known of the turns
+/// from one log to the next. Where the clocks of the logs start anew they are joined.
+///
+/// # Errors
+///
+/// As [`prepare`]; [`Unfit::TooShort`] without a log; [`Unfit::NoScale`] if the scale of the gyros is to
+/// come from turns.
+pub fn prepare_logs(
+    logs: &[(Log, Vec<Range<usize>>)],
+    description: &Description,
+) -> Result<PreparedTest, InstrumentError> {
+    let Some((first, stops)) = logs.first() else {
+        return Err(InstrumentError::unfit(
+            Unfit::TooShort,
+            "no log",
+            "one or more",
+            "give the logs of the positions",
+        ));
+    };
+    if logs.len() == 1 {
+        return prepare(first, description, stops);
+    }
+    if first.gyro_in_counts {
+        return Err(InstrumentError::unfit(
+            Unfit::NoScale,
+            "gyros in counts in several logs without the turns between them",
+            "their scale",
+            "give `counts_per_rad_per_s` as numbers",
+        ));
+    }
+    let mut means: Vec<StopMeans> = Vec::new();
+    let mut end_s = f64::NEG_INFINITY;
+    for (log, stops) in logs {
+        let (Some(from_s), Some(to_s)) = (log.time_s.first(), log.time_s.last()) else {
+            continue;
+        };
+        let later_s = match *from_s > end_s {
+            true => 0.0,
+            false => end_s - from_s + log.interval_s,
+        };
+        means.extend(stop_means(log, stops).into_iter().map(|stop| StopMeans {
+            from_s: stop.from_s + later_s,
+            to_s: stop.to_s + later_s,
+            time_s: stop.time_s + later_s,
+            ..stop
+        }));
+        end_s = to_s + later_s;
+    }
+    prepare_means(first, description, means, false)
+}
+
+/// Converts means of stops. `has_turns` if they are all of this log, with the turns between them.
+fn prepare_means(
+    log: &Log,
+    description: &Description,
+    stops: Vec<StopMeans>,
+    has_turns: bool,
+) -> Result<PreparedTest, InstrumentError> {
+    let (accel, accel_errors) = match log.accel_in_counts {
+        true => (Some(accel_from_norm(&stops)?), None),
+        false => {
+            refuse_wrong_norm(stops.iter().map(|stop| norm(&stop.accel)))?;
+            let errors = accel_from_positions(&stops).ok();
+            (
+                errors.as_ref().map(|errors| errors.calibration.clone()),
+                errors,
+            )
+        }
     };
     let forces_g: Vec<[f64; 3]> = stops
         .iter()
@@ -71,8 +167,12 @@ pub fn prepare(
         })
         .collect();
     refuse_wrong_norm(forces_g.iter().map(norm))?;
-    let turns = match gyro_from_turns(log, &stops, &forces_g) {
-        Ok(turns) => Some(turns),
+    let from_turns = match has_turns {
+        true => Some(gyro_from_turns(log, &stops, &forces_g)),
+        false => None,
+    };
+    let turns = match from_turns.transpose() {
+        Ok(turns) => turns,
         // A given scale needs no turns.
         Err(error) if !log.gyro_in_counts && has_too_few_turns(&error) => None,
         Err(error) => return Err(error),
@@ -94,6 +194,7 @@ pub fn prepare(
         positions: Positions::new(&stops, &instrument),
         stops,
         instrument,
+        accel_errors,
         turns,
     })
 }
@@ -103,20 +204,43 @@ impl PreparedTest {
     #[must_use]
     pub fn sensors(&self) -> SensorReport {
         let accel = self.instrument.accel.as_ref();
+        let in_counts = accel.filter(|_| self.accel_errors.is_none());
         let forces = &self.positions.force_g;
         let squares = forces.iter().map(|force| (norm(force) - 1.0).powi(2));
         let turns = self.turns.as_ref();
         SensorReport {
-            accel_zero: accel.map(|accel| accel.zero),
-            accel_outputs_per_g: accel
+            stops: self
+                .stops
+                .iter()
+                .enumerate()
+                .map(|stop| self.stop_report(stop))
+                .collect(),
+            accel_errors: self.accel_errors.clone(),
+            accel_zero: in_counts.map(|accel| accel.zero),
+            accel_outputs_per_g: in_counts
                 .map(|accel| core::array::from_fn(|axis| 1.0 / accel.matrix[axis][axis])),
             norm_rms_g: match accel {
                 Some(accel) => accel.norm_rms_g,
                 None => (squares.sum::<f64>() / forces.len() as f64).sqrt(),
             },
             gyro_outputs_per_rad_per_s: turns.map(|turns| turns.outputs_per_rad_per_s),
+            gyro_matrix: turns.map(|turns| turns.matrix),
+            gyro_matrix_sigma: turns.map(|turns| turns.sigma),
             gyro_misalignment_rad: turns.map(|turns| turns.misalignment_rad),
             turn_rms_g: turns.map(|turns| turns.gravity_rms_g),
+        }
+    }
+}
+
+impl PreparedTest {
+    fn stop_report(&self, (number, stop): (usize, &StopMeans)) -> StopReport {
+        StopReport {
+            from_s: stop.from_s,
+            to_s: stop.to_s,
+            samples: stop.samples.len(),
+            force_g: self.positions.force_g[number],
+            rate_deg_per_h: self.positions.rate_deg_per_h[number],
+            sigma_deg_per_h: self.positions.sigma_deg_per_h[number],
         }
     }
 }

@@ -133,6 +133,15 @@ impl Fit {
         if stops <= terms {
             return None;
         }
+        Self::exact(columns, rates)
+    }
+
+    /// The same for as many terms as stops, which leaves no degrees of freedom.
+    pub(crate) fn exact(columns: &DMatrix<f64>, rates: &DVector<f64>) -> Option<Self> {
+        let (stops, terms) = columns.shape();
+        if stops < terms {
+            return None;
+        }
         let lengths: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
         if lengths.contains(&0.0) {
             return None;

@@ -1,12 +1,14 @@
 //! Intervals of the variances of the parts of a noise: the values that a test does not reject.
 
+use nalgebra::DVector;
+
 use super::draws::Draws;
 use super::fit::{COEFFICIENT_CONFIDENCE, Fit, Scales};
 use super::least_squares::Conditions;
-use super::parts::PARTS;
+use super::parts::NoisePart;
 
-/// Probability of each tail.
-const TAIL: f64 = 0.5 * (1.0 - COEFFICIENT_CONFIDENCE);
+/// Size of the test.
+const SIZE: f64 = 1.0 - COEFFICIENT_CONFIDENCE;
 
 /// Halvings of the logarithm of a factor of two: a hundredth of it is enough.
 const HALVINGS: usize = 7;
@@ -17,52 +19,37 @@ const DOUBLINGS: usize = 60;
 /// Interval of the variance of one part; `None` if a fit on the way is not possible.
 pub(super) fn interval(scales: &Scales, part: usize, fit: &Fit, signed: bool) -> Option<[f64; 2]> {
     let estimate = fit.parts[part];
-    let test = |variance: f64| tails(scales, part, variance, signed);
+    let rejected = |variance: f64| Some(p_value(scales, part, variance, signed)? < SIZE);
     // The smallest variance that would show anywhere: a thousandth of the sum at its largest share.
     let least = scales
         .averaging
         .iter()
         .zip(scales.variances.iter())
-        .map(|(averaging, sum)| {
-            sum / super::parts::NoisePart::ALL[part].variance(*averaging as f64)
-        })
+        .map(|(averaging, sum)| sum / NoisePart::ALL[part].variance(*averaging as f64))
         .fold(f64::INFINITY, f64::min)
         * 1e-3;
-    let low = match test(0.0)? {
-        [above, _] if above >= TAIL => 0.0,
-        _ => {
-            // Rejected at `outside`, not at `inside`.
+    let low = match rejected(0.0)? {
+        false => 0.0,
+        true => {
             let mut inside = estimate.max(least);
             let mut outside = inside / 2.0;
-            let mut found = false;
-            for _ in 0..DOUBLINGS {
-                if test(outside)?[0] < TAIL {
-                    found = true;
-                    break;
-                }
+            while !rejected(outside)? && outside > least * 1e-3 {
                 inside = outside;
                 outside /= 2.0;
-                if inside < least * 1e-3 {
-                    break;
-                }
             }
-            if found {
-                bisect(outside, inside, |variance| Some(test(variance)?[0] < TAIL))?
-            } else {
-                0.0
-            }
+            bisect(outside, inside, rejected)?
         }
     };
     let mut inside = estimate.max(least);
     let mut outside = 2.0 * inside;
     for _ in 0..DOUBLINGS {
-        if test(outside)?[1] < TAIL {
+        if rejected(outside)? {
             break;
         }
         inside = outside;
         outside *= 2.0;
     }
-    let high = bisect(outside, inside, |variance| Some(test(variance)?[1] < TAIL))?;
+    let high = bisect(outside, inside, rejected)?;
     Some([low, high])
 }
 
@@ -83,9 +70,11 @@ fn bisect(
     Some((outside * inside).sqrt())
 }
 
-/// Probabilities of an estimate at least as large, and at most as large, as the one found, if the
-/// variance of the part is `variance` and the others are as fitted with it.
-fn tails(scales: &Scales, part: usize, variance: f64, signed: bool) -> Option<[f64; 2]> {
+/// Probability of a sum of squares that falls as much when the part is freed as it does here, if the
+/// variance of the part is `variance` and the others are as fitted with it. Where the part may not be
+/// negative this test keeps its size (G. J. Feldman and R. D. Cousins, Physical Review D 57, 1998); that of
+/// the estimate would have half of it.
+fn p_value(scales: &Scales, part: usize, variance: f64, signed: bool) -> Option<f64> {
     let free = Conditions {
         signed,
         fixed: None,
@@ -95,13 +84,15 @@ fn tails(scales: &Scales, part: usize, variance: f64, signed: bool) -> Option<[f
         ..free
     };
     let fit = scales.fit(fixed)?;
-    let estimate = |variances: &nalgebra::DVector<f64>| -> f64 {
-        let found: [f64; PARTS] = fit.weighted.solve(&fit.weighted.whiten(variances), free);
-        found[part]
+    let fall = |variances: &DVector<f64>| -> f64 {
+        let white = fit.weighted.whiten(variances);
+        let of = |conditions| {
+            let parts = fit.weighted.solve(&white, conditions);
+            fit.weighted.chi_square(&white, &parts)
+        };
+        of(fixed) - of(free)
     };
-    let found = estimate(&scales.variances);
+    let found = fall(&scales.variances);
     let draws = Draws::of(scales, &fit)?;
-    let above = draws.share(|drawn| estimate(drawn) >= found);
-    let below = draws.share(|drawn| estimate(drawn) <= found);
-    Some([above, below])
+    Some(draws.share(|drawn| fall(drawn) >= found))
 }

@@ -1,0 +1,197 @@
+//! Tests of two, six and twelve positions, and of stops in the hand, on logs whose errors are known.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
+
+use gyrocal_instruments::multi_position::{PreparedTest, few_position_test, prepare_logs};
+use gyrocal_instruments::{Description, Log, StopSettings, Unfit, find_stops};
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_testkit::position_test::{Samples, UnitErrors, hand_held, positions, stop};
+use nalgebra::{Matrix3, Vector3};
+
+const PER_DEG_PER_H: f64 = 4.848_136_811_095_36e-6;
+
+fn unit() -> UnitErrors {
+    UnitErrors {
+        gyro_bias: PER_DEG_PER_H * Vector3::new(2000.0, -800.0, 300.0),
+        gyro_g: PER_DEG_PER_H * Matrix3::from_diagonal(&Vector3::new(30.0, -20.0, 10.0)),
+        gyro_gg: Vector3::zeros(),
+        accel_bias: Vector3::new(0.01, -0.005, 0.003),
+        accel_matrix: Matrix3::new(1.004, 0.002, -0.001, 0.0, 0.997, 0.003, 0.0, 0.0, 1.001),
+        gyro_noise: 1e-3,
+        accel_noise: 1e-3,
+    }
+}
+
+fn log(samples: &Samples) -> Log {
+    Log {
+        time_s: (1..=samples.gyro.len())
+            .map(|sample| 0.01 * sample as f64)
+            .collect(),
+        gyro: samples.gyro.clone(),
+        accel: samples.accel.clone(),
+        gyro_in_counts: false,
+        accel_in_counts: false,
+        interval_s: 0.01,
+    }
+}
+
+fn description() -> Description {
+    let text = "[time]\nrate_hz = 100\n[gyro]\ncolumns = [\"a\", \"b\", \"c\"]\nunit = \"rad/s\"\n\
+                [accel]\ncolumns = [\"d\", \"e\", \"f\"]\nunit = \"g\"\n";
+    Description::parse(text, "log.toml").unwrap()
+}
+
+/// One log for each position.
+fn prepared(unit: &UnitErrors, forces: &[Vector3<f64>], draw: &mut Draw) -> PreparedTest {
+    let logs: Vec<_> = forces
+        .iter()
+        .map(|force| {
+            let samples = stop(unit, *force, 6000, [0.0; 2], draw);
+            (log(&samples), samples.stops)
+        })
+        .collect();
+    prepare_logs(&logs, &description()).unwrap()
+}
+
+#[test]
+fn twelve_positions_determine_all_errors_of_the_accelerometers() {
+    let mut draw = Draw::new(1, 1);
+    let forces = positions(12, &mut draw);
+    let test = prepared(&unit(), &forces, &mut draw);
+    let errors = test.accel_errors.unwrap();
+    let truth = [
+        0.01, -0.005, 0.003, 0.004, -0.003, 0.001, 0.002, -0.001, 0.003,
+    ];
+    for (index, (coefficient, truth)) in errors.coefficients.iter().zip(truth).enumerate() {
+        // The matrix multiplies scale and input axis: their product differs by 1e-5.
+        let difference = (coefficient.estimate - truth).abs();
+        assert!(coefficient.determined, "{coefficient:?}");
+        // The largest of nine normal deviates is below 4 with 99.9 %.
+        assert!(
+            difference < 4.0 * coefficient.sigma + 1e-5,
+            "{coefficient:?} {truth}"
+        );
+        assert!((errors.covariance[index][index].sqrt() / coefficient.sigma - 1.0).abs() < 1e-12);
+    }
+    assert_eq!(errors.degrees_of_freedom, 3);
+}
+
+#[test]
+fn six_positions_leave_misalignments_open_and_say_so() {
+    let mut draw = Draw::new(2, 1);
+    let forces = positions(6, &mut draw);
+    let test = prepared(&unit(), &forces, &mut draw);
+    let errors = test.accel_errors.clone().unwrap();
+    let open = errors.coefficients.iter().filter(|c| !c.determined);
+    let open: Vec<&str> = open.map(|c| &*c.name).collect();
+    assert!(
+        open.iter().all(|name| name.contains("misalignment")),
+        "{open:?}"
+    );
+    assert!(open.len() >= 2, "{open:?}");
+    let report = few_position_test(&test.positions, 0.01).unwrap();
+    assert!(report.findings.is_empty(), "{:?}", report.findings);
+    for (gyro, [bias, along]) in
+        report
+            .gyros
+            .iter()
+            .zip([[2000.0, 30.0], [-800.0, -20.0], [300.0, 10.0]])
+    {
+        let [first, second, third] = &gyro.coefficients[..] else {
+            panic!("{gyro:?}");
+        };
+        for (coefficient, truth) in [(first, bias), (second, along), (third, 0.0)] {
+            let error = coefficient.estimate - truth;
+            assert!(
+                error.abs() < 4.0 * coefficient.sigma,
+                "{coefficient:?} {truth}"
+            );
+        }
+        assert_eq!(gyro.degrees_of_freedom, 3);
+        let undetermined = &gyro.undetermined;
+        assert!(
+            undetermined.iter().any(|name| name.ends_with("xxx")
+                || name.ends_with("yyy")
+                || name.ends_with("zzz")),
+            "{undetermined:?}"
+        );
+    }
+}
+
+#[test]
+fn a_term_across_is_named_in_six_positions() {
+    let mut unit = unit();
+    // Standard error of a stop 0.001 / √6000 rad/s, 2.7 deg/h, so that 40 deg/h/g is 21 sigmas.
+    unit.gyro_g[(0, 2)] = 40.0 * PER_DEG_PER_H;
+    let mut draw = Draw::new(3, 1);
+    let forces = positions(6, &mut draw);
+    let test = prepared(&unit, &forces, &mut draw);
+    let report = few_position_test(&test.positions, 0.01).unwrap();
+    let [finding] = &report.findings[..] else {
+        panic!("{:?}", report.findings);
+    };
+    assert_eq!(finding.effect, "gyro_x.g_z");
+    assert!(
+        (finding.estimate - 40.0).abs() < 4.0 * finding.sigma,
+        "{finding:?}"
+    );
+}
+
+#[test]
+fn two_positions_determine_what_changes_between_them() {
+    let mut draw = Draw::new(4, 1);
+    let forces = [Vector3::z(), -Vector3::z()];
+    let test = prepared(&unit(), &forces, &mut draw);
+    let report = few_position_test(&test.positions, 0.01).unwrap();
+    let names = |gyro: usize| -> Vec<&str> {
+        report.gyros[gyro]
+            .coefficients
+            .iter()
+            .map(|c| &*c.name)
+            .collect()
+    };
+    assert_eq!(names(0)[0], "gyro_x.bias");
+    assert_eq!(names(2), ["gyro_z.bias", "gyro_z.g_z"]);
+    assert!(
+        report.gyros[2]
+            .undetermined
+            .contains(&"gyro_z.g_zz".to_owned())
+    );
+    let errors = test.accel_errors.unwrap();
+    let determined = errors.coefficients.iter().filter(|c| c.determined);
+    let determined: Vec<&str> = determined.map(|c| &*c.name).collect();
+    assert_eq!(determined, ["accel_z.bias", "accel_z.scale"]);
+    // Without a turn there is nothing to determine.
+    let same = prepared(&unit(), &[Vector3::z(), Vector3::z()], &mut draw);
+    let error = few_position_test(&same.positions, 0.01).unwrap_err();
+    assert_eq!(error.kind(), Some(Unfit::Undetermined), "{error}");
+}
+
+#[test]
+fn stops_in_the_hand_are_found() {
+    for seed in 0..5 {
+        let mut draw = Draw::new(seed, 2);
+        let mut unit = unit();
+        unit.gyro_bias = Vector3::new(0.02, -0.01, 0.015);
+        // Tremor of 1 deg/s rms about each axis, and a noise below it.
+        let samples = hand_held(&unit, 12, 100.0, 0.017, &mut draw);
+        let found = find_stops(&log(&samples), &StopSettings::default()).unwrap();
+        assert_eq!(
+            found.len(),
+            samples.stops.len(),
+            "{seed}: {found:?} {:?}",
+            samples.stops
+        );
+        for (found, truth) in found.iter().zip(&samples.stops) {
+            // Half a second is left out at both ends, and turns begin and end slowly.
+            assert!(
+                found.start + 30 >= truth.start && found.end <= truth.end + 30,
+                "{seed}"
+            );
+            assert!(
+                2 * found.len() > truth.len() - 100,
+                "{seed}: {found:?} {truth:?}"
+            );
+        }
+    }
+}
