@@ -256,6 +256,13 @@ fn summary(arguments: &TumbleArguments, report: &MultiPositionReport) -> String 
     } else {
         text.push_str("\nSignificant terms beyond the nominal law, in the order of finding:\n");
     }
+    if !report.not_confirmed.is_empty() {
+        let _ = writeln!(
+            text,
+            "Significant, but no gain on held-out stops, so not in the law: {}.",
+            report.not_confirmed.join(", ")
+        );
+    }
     for finding in &report.findings {
         describe(&mut text, finding);
     }

@@ -12,6 +12,7 @@ mod gain;
 mod generator;
 mod house;
 mod kernel;
+mod logs;
 mod main_job;
 mod measured;
 mod naming;
@@ -101,6 +102,8 @@ enum Topic {
     House,
     /// Two recordings of real gyros: docs/measured-data.md.
     Measured,
+    /// Instrument tests on simulated logs: noise, positions, stops.
+    Logs,
     /// Truth of the diagnosis outside of the population that its constants were tuned on.
     Truth,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
@@ -121,6 +124,7 @@ fn main() -> ExitCode {
         Topic::Gain => gain::figures(arguments.small),
         Topic::House => house::figures(arguments.small, arguments.write),
         Topic::Measured => measured::figures(arguments.write),
+        Topic::Logs => logs::figures(arguments.small),
         Topic::Truth => {
             let extent = truth::Extent {
                 small: arguments.small,

@@ -58,6 +58,21 @@ impl Log {
         Self::from_source(&SourceText::new(text, name)?, description)
     }
 
+    /// A log of samples at equal intervals \[s\] in rad/s and g.
+    #[must_use]
+    pub fn from_samples(interval_s: f64, gyro: Vec<[f64; 3]>, accel: Vec<[f64; 3]>) -> Self {
+        Self {
+            time_s: (1..=gyro.len())
+                .map(|sample| sample as f64 * interval_s)
+                .collect(),
+            gyro,
+            accel,
+            gyro_in_counts: false,
+            accel_in_counts: false,
+            interval_s,
+        }
+    }
+
     /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -90,7 +90,20 @@ pub fn multi_position_test(
         ));
     }
     let all: Vec<usize> = (0..stops).collect();
-    let steps = search(positions, &all, &settings.search);
+    let mut steps = search(positions, &all, &settings.search);
+    let cross_validation = match steps.is_empty() {
+        true => None,
+        false => cross_validate(positions, settings.left_out, &settings.search),
+    };
+    let mut not_confirmed = Vec::new();
+    if cross_validation
+        .as_ref()
+        .is_some_and(CrossValidation::shows_no_gain)
+    {
+        let names = steps.iter().map(|step| step.term.id(step.gyro).to_owned());
+        not_confirmed = names.collect();
+        steps.clear();
+    }
     let mut gyros = Vec::new();
     for gyro in 0..3 {
         gyros.push(gyro_report(
@@ -105,15 +118,12 @@ pub fn multi_position_test(
             finding(&data, step, &steps, &gyros[step.gyro], settings)
         })
         .collect();
-    let cross_validation = match steps.is_empty() {
-        true => None,
-        false => cross_validate(positions, settings.left_out, &settings.search),
-    };
     let controls = negative_controls(positions, &steps, settings.shuffles, &settings.search);
     Ok(MultiPositionReport {
         stops,
         gyros,
         findings,
+        not_confirmed,
         cross_validation,
         controls,
     })

@@ -29,6 +29,15 @@ pub struct CrossValidation {
     pub found_in_blocks: Vec<(String, usize)>,
 }
 
+impl CrossValidation {
+    /// `true` if the gain is no larger than its standard error: none at all, or none that held-out stops
+    /// show.
+    #[must_use]
+    pub fn shows_no_gain(&self) -> bool {
+        self.cross_validated_log_score_nats <= self.standard_error_nats
+    }
+}
+
 /// Holds out one block of stops after the other, searches and fits without it, and predicts it. `None`
 /// if the remaining stops do not determine the laws.
 #[must_use]

@@ -17,6 +17,9 @@ pub struct MultiPositionReport {
     pub gyros: Vec<GyroReport>,
     /// Terms that the nominal laws lack, in the order of the search.
     pub findings: Vec<Finding>,
+    /// Significant terms that do not enter the laws, since they predict held-out stops no better than the
+    /// nominal laws.
+    pub not_confirmed: Vec<String>,
     /// Cross-validation of the extended laws; `None` without findings, or with too few stops.
     #[serde(rename = "gain")]
     pub cross_validation: Option<CrossValidation>,

@@ -25,6 +25,9 @@ pub enum NoisePart {
 pub(super) const PARTS: usize = 4;
 
 impl NoisePart {
+    /// Flat Allan variance of a bias instability of one.
+    pub const FLAT_VARIANCE: f64 = 2.0 * LN_2 / PI;
+
     /// The parts, by falling exponent of their spectra.
     pub const ALL: [Self; PARTS] = [
         Self::Quantisation,
@@ -61,7 +64,7 @@ impl NoisePart {
         match self {
             Self::Quantisation => 3.0 / (averaging * averaging),
             Self::RandomWalk => 1.0 / averaging,
-            Self::BiasInstability => 2.0 * LN_2 / PI,
+            Self::BiasInstability => Self::FLAT_VARIANCE,
             Self::RateRandomWalk => averaging / 3.0,
         }
     }

@@ -1,0 +1,172 @@
+//! Coefficients of the noise of gyros at rest, from Allan deviations.
+
+use gyrocal_statistics::allan::{NoiseFit, NoisePart, allan_deviation, fit_noise, octaves};
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::{NORMAL_97_5, Proportion, StatisticsError, root_mean_square};
+use gyrocal_testkit::sensor_noise::{Filter, SensorNoise};
+use serde::{Deserialize, Serialize};
+
+use super::covered;
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::resumable;
+
+/// Purpose of the stream of draws.
+const LEVELS: u64 = 1801;
+
+const FIRST_SEED: u64 = 810_000;
+const RECORDS: u64 = 500;
+const SMALL: u64 = 12;
+
+/// Samples of a record.
+const SAMPLES: [f64; 2] = [3e3, 2e4];
+const SAMPLES_SMALL: [f64; 2] = [3e3, 5e3];
+
+/// Range of the rms of the differences between halves in their standard deviations.
+const HALVES: [f64; 2] = [0.9, 1.1];
+
+/// Result for one record.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Record {
+    filtered: bool,
+    correlated: bool,
+    /// Whether each part is told and its interval contains the truth.
+    covered: [Option<bool>; 4],
+    /// Difference of the halves of the record in standard deviations, for parts that all three show.
+    halves: [Option<f64>; 4],
+}
+
+pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let seeds = FIRST_SEED..FIRST_SEED + if small { SMALL } else { RECORDS };
+    let campaign = resumable::campaign("logs", "allan", seeds.clone(), small)?;
+    let samples = if small { SAMPLES_SMALL } else { SAMPLES };
+    let outcome = campaign.run(|seed| record(seed, samples), |_| ())?;
+    let records: Vec<&Record> = outcome.successes().map(|(_, record)| record).collect();
+    let seeds = format!("{seeds:?}");
+    let mut figures = Vec::new();
+    for (index, part) in NoisePart::ALL.into_iter().enumerate() {
+        let name = format!("Allan, {}: coverage of 95 % intervals", part.description());
+        let hits = records.iter().filter_map(|record| record.covered[index]);
+        figures.push(covered(&name, hits, &seeds, small));
+    }
+    for filtered in [false, true] {
+        let kind = if filtered { "filtered" } else { "not filtered" };
+        let name = format!("Allan, all parts, records {kind}: coverage of 95 % intervals");
+        let of_kind = records.iter().filter(|record| record.filtered == filtered);
+        let hits = of_kind.flat_map(|record| record.covered.iter().flatten().copied());
+        figures.push(covered(&name, hits, &seeds, small));
+    }
+    let halves: Vec<f64> = records
+        .iter()
+        .flat_map(|r| r.halves.iter().flatten().copied())
+        .collect();
+    let rms = root_mean_square(halves.iter().copied());
+    let name = "Allan, between halves of one record: rms z of parts that both show";
+    let mut figure = Figure::within(name, HALVES, rms).over(halves.len(), seeds.as_str());
+    if small {
+        figure.holds = None;
+        figure.too_few = true;
+    }
+    figures.push(figure);
+    let of_kind = |filtered: bool| {
+        let of_kind = records
+            .iter()
+            .filter(move |record| record.filtered == filtered);
+        Proportion::of(of_kind.map(|record| record.correlated))
+    };
+    figures.push(Figure::note_share(
+        "Allan, filtered records whose samples are told to be correlated",
+        of_kind(true),
+        seeds.as_str(),
+    ));
+    figures.push(Figure::note_share(
+        "Allan, the same of records that are not filtered",
+        of_kind(false),
+        seeds.as_str(),
+    ));
+    let told = records.iter().map(|record| record.covered[1].is_some());
+    figures.push(Figure::note_share(
+        "Allan, records with coefficients: the others are told to be no sum of the parts",
+        Proportion::of(told),
+        seeds,
+    ));
+    Ok(figures)
+}
+
+/// A record of 1 Hz with an angle random walk of one. Crossovers of the parts are uniform in the logarithm
+/// of the averaging time, many of them beyond the record.
+fn record(seed: u64, samples: [f64; 2]) -> Result<Record, StatisticsError> {
+    let mut draw = Draw::new(seed, LEVELS);
+    let count = draw.log_uniform(samples);
+    let quantised = draw.log_uniform([0.3, 30.0]);
+    let quantisation = if draw.uniform() < 0.5 {
+        quantised / 3.0_f64.sqrt()
+    } else {
+        0.0
+    };
+    let flat = draw.log_uniform([10.0, 3.0 * count]);
+    let bias_instability = 1.0 / (NoisePart::FLAT_VARIANCE * flat).sqrt();
+    let walk = draw.log_uniform([30.0, 3.0 * count]);
+    let kind = draw.uniform();
+    let time = draw.log_uniform([1.0, 10.0]);
+    let filter = match kind {
+        kind if kind < 0.5 => Filter::None,
+        kind if kind < 0.67 => Filter::Lag(time),
+        kind if kind < 0.84 => Filter::TwoLags(time),
+        _ => Filter::MovingMean(2 + time as usize),
+    };
+    let noise = SensorNoise {
+        quantisation,
+        random_walk: 1.0,
+        bias_instability,
+        rate_random_walk: 3.0_f64.sqrt() / walk,
+        filter,
+    };
+    let rates = noise.rates(count as usize, seed);
+    let whole = fitted(&rates)?;
+    let middle = rates.len() / 2;
+    let [first, last] = [fitted(&rates[..middle])?, fitted(&rates[middle..])?];
+    let truth = [quantisation, 1.0, bias_instability, noise.rate_random_walk];
+    let covered = |part: usize| {
+        let [low, high] = whole.coefficients[part].interval?;
+        Some((low..=high).contains(&truth[part]))
+    };
+    Ok(Record {
+        filtered: filter != Filter::None,
+        correlated: whole.correlated_samples,
+        covered: core::array::from_fn(covered),
+        halves: core::array::from_fn(|part| {
+            shows(&whole, part)
+                .then(|| difference(&first, &last, part))
+                .flatten()
+        }),
+    })
+}
+
+fn fitted(rates: &[f64]) -> Result<NoiseFit, StatisticsError> {
+    let points = allan_deviation(rates, 1.0, &octaves(rates.len()), 0.95)?;
+    fit_noise(&points, rates.len())
+}
+
+fn shows(fit: &NoiseFit, part: usize) -> bool {
+    fit.coefficients[part]
+        .interval
+        .is_some_and(|[low, _]| low > 0.0)
+}
+
+/// Difference over the ends of the intervals that face each other.
+fn difference(first: &NoiseFit, last: &NoiseFit, part: usize) -> Option<f64> {
+    if !(shows(first, part) && shows(last, part)) {
+        return None;
+    }
+    let of = |fit: &NoiseFit| {
+        let coefficient = fit.coefficients[part];
+        Some((coefficient.estimate?, coefficient.interval?))
+    };
+    let ((one, [one_low, one_high]), (other, [other_low, other_high])) = (of(first)?, of(last)?);
+    let (a, b) = match one > other {
+        true => (one - one_low, other_high - other),
+        false => (one_high - one, other - other_low),
+    };
+    Some(NORMAL_97_5 * (one - other) / (a * a + b * b).sqrt())
+}

@@ -1,0 +1,195 @@
+//! Tests of six and of twelve positions.
+
+use gyrocal_instruments::multi_position::{few_position_test, prepare_logs};
+use gyrocal_instruments::{Description, InstrumentError, Log};
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::{NORMAL_97_5, Proportion};
+use gyrocal_testkit::position_test::{UnitErrors, positions, stop};
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::{at_least, covered};
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::resumable;
+
+/// Purpose of the stream of draws.
+const ERRORS: u64 = 1804;
+
+const RECORDS: u64 = 300;
+const SMALL: u64 = 30;
+const RATE_HZ: f64 = 50.0;
+const STOP_S: f64 = 60.0;
+
+const DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
+const EARTH_DEG_PER_H: f64 = 15.041_07;
+
+/// Sizes of a hidden term in its standard deviations.
+const SIZES: [f64; 2] = [8.0, 16.0];
+
+/// Result of one test.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Test {
+    /// Name of the hidden term, if there is one.
+    hidden: Option<String>,
+    /// Names that were found, each with its alternatives.
+    found: Vec<Vec<String>>,
+    /// Whether the intervals of the coefficients of gyros and of accelerometers contain the truth.
+    gyros: Vec<bool>,
+    accelerometers: Vec<bool>,
+}
+
+pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let mut figures = Vec::new();
+    for (count, first_seed) in [(6, 820_000), (12, 830_000)] {
+        let seeds = first_seed..first_seed + if small { SMALL } else { RECORDS };
+        let cell = format!("positions-{count}");
+        let campaign = resumable::campaign("logs", &cell, seeds.clone(), small)?;
+        let outcome = campaign.run(|seed| test(count, seed), |_| ())?;
+        let tests: Vec<&Test> = outcome.successes().map(|(_, test)| test).collect();
+        let seeds = format!("{seeds:?}");
+        let of = |name: &str| format!("{count} positions: {name}");
+        let hits = tests.iter().flat_map(|test| test.gyros.iter().copied());
+        let name = of("coverage of coefficients of the gyros");
+        figures.push(covered(&name, hits, &seeds, small));
+        let hits = tests
+            .iter()
+            .flat_map(|test| test.accelerometers.iter().copied());
+        let name = of("coverage of coefficients of the accelerometers");
+        figures.push(covered(&name, hits, &seeds, small));
+        let with = tests
+            .iter()
+            .filter_map(|test| Some((test, test.hidden.as_ref()?)));
+        let named = with
+            .clone()
+            .map(|(test, hidden)| test.found.iter().any(|names| names.contains(hidden)));
+        let name = of("g terms of d = 8 to 16 named, alone or in a set");
+        figures.push(at_least(&name, 0.95, named, &seeds, small));
+        let first = with.map(|(test, hidden)| {
+            test.found.first().and_then(|names| names.first()) == Some(hidden)
+        });
+        let share = Proportion::of(first);
+        figures.push(Figure::note_share(
+            &of("the same, the first name"),
+            share,
+            seeds.as_str(),
+        ));
+        let clean = tests.iter().filter(|test| test.hidden.is_none());
+        let clean = clean.map(|test| test.found.is_empty());
+        let name = of("clean tests without a finding");
+        figures.push(at_least(&name, 0.98, clean, &seeds, small));
+    }
+    Ok(figures)
+}
+
+/// A unit of ordinary errors in positions as somebody sets them, one log each, with a term across in
+/// every second test.
+fn test(count: usize, seed: u64) -> Result<Test, InstrumentError> {
+    let mut draw = Draw::new(seed, ERRORS);
+    let samples = (STOP_S * RATE_HZ) as usize;
+    let latitude_deg = 120.0 * draw.uniform() - 60.0;
+    let (sine, cosine) = latitude_deg.to_radians().sin_cos();
+    let noise = draw.log_uniform([2e-3, 1e-2]);
+    let unit = unit(noise, &mut draw);
+    let forces = positions(count, &mut draw);
+    let hidden = (draw.uniform() < 0.5).then(|| {
+        let gyro = (3.0 * draw.uniform()) as usize;
+        (gyro, (gyro + 1 + (2.0 * draw.uniform()) as usize) % 3)
+    });
+    let mut unit = unit;
+    if let Some((gyro, axis)) = hidden {
+        let of_noise = noise / DEG_PER_H / (samples as f64).sqrt();
+        // A random heading adds half of the squared horizontal Earth rate at most.
+        let of_heading = EARTH_DEG_PER_H * cosine;
+        let sigma = (of_noise * of_noise + 0.5 * of_heading * of_heading).sqrt();
+        let squares: f64 = forces.iter().map(|force| force[axis] * force[axis]).sum();
+        let size = SIZES[0] + (SIZES[1] - SIZES[0]) * draw.uniform();
+        unit.gyro_g[(gyro, axis)] = draw.sign() * size * sigma / squares.sqrt() * DEG_PER_H;
+    }
+    let earth = [sine, cosine].map(|part| part * EARTH_DEG_PER_H * DEG_PER_H);
+    let logs: Vec<_> = forces
+        .iter()
+        .map(|force| {
+            let made = stop(&unit, *force, samples, earth, &mut draw);
+            let log = Log::from_samples(1.0 / RATE_HZ, made.gyro, made.accel);
+            (log, made.stops)
+        })
+        .collect();
+    let text = format!(
+        "[time]\nrate_hz = {RATE_HZ}\n[gyro]\ncolumns = [\"a\", \"b\", \"c\"]\nunit = \"rad/s\"\n\
+         [accel]\ncolumns = [\"d\", \"e\", \"f\"]\nunit = \"g\"\n[site]\nlatitude_deg = {latitude_deg:?}\n"
+    );
+    let prepared = prepare_logs(&logs, &Description::parse(&text, "log.toml")?)?;
+    let report = few_position_test(&prepared.positions, 0.01)?;
+    let contains =
+        |truth: f64, estimate: f64, sigma: f64| (estimate - truth).abs() <= NORMAL_97_5 * sigma;
+    let of_gyros = report.gyros.iter().enumerate().flat_map(|(gyro, law)| {
+        let unit = &unit;
+        law.coefficients.iter().map(move |coefficient| {
+            let truth = of_gyro(unit, gyro, &coefficient.name) / DEG_PER_H;
+            contains(truth, coefficient.estimate, coefficient.sigma)
+        })
+    });
+    let truths = of_accelerometers(&unit);
+    let of_accelerometers = prepared.accel_errors.iter().flat_map(|errors| {
+        let all = errors.coefficients.iter().zip(&truths);
+        let all = all.filter(|(coefficient, _)| coefficient.determined);
+        all.map(|(coefficient, truth)| contains(*truth, coefficient.estimate, coefficient.sigma))
+    });
+    let name = |axis: usize| ["x", "y", "z"][axis];
+    let found = report.findings.iter().map(|finding| {
+        let names = core::iter::once(&finding.effect).chain(&finding.alternatives);
+        names.cloned().collect()
+    });
+    Ok(Test {
+        hidden: hidden.map(|(gyro, axis)| format!("gyro_{}.g_{}", name(gyro), name(axis))),
+        found: found.collect(),
+        gyros: of_gyros.collect(),
+        accelerometers: of_accelerometers.collect(),
+    })
+}
+
+fn unit(noise: f64, draw: &mut Draw) -> UnitErrors {
+    let mut vector = |size: f64| Vector3::new(draw.normal(), draw.normal(), draw.normal()) * size;
+    let (scale, misalignment) = (vector(0.005), vector(0.003));
+    let mut accel_matrix = Matrix3::from_diagonal(&(Vector3::repeat(1.0) + scale));
+    accel_matrix[(0, 1)] = misalignment.x * accel_matrix[(0, 0)];
+    accel_matrix[(0, 2)] = misalignment.y * accel_matrix[(0, 0)];
+    accel_matrix[(1, 2)] = misalignment.z * accel_matrix[(1, 1)];
+    UnitErrors {
+        // Half a degree a second.
+        gyro_bias: vector(0.5_f64.to_radians()),
+        gyro_g: Matrix3::from_diagonal(&vector(50.0 * DEG_PER_H)),
+        gyro_gg: vector(20.0 * DEG_PER_H),
+        accel_bias: vector(0.02),
+        accel_matrix,
+        gyro_noise: noise,
+        accel_noise: 1e-3,
+    }
+}
+
+/// True coefficient of a gyro \[rad/s and g\].
+fn of_gyro(unit: &UnitErrors, gyro: usize, name: &str) -> f64 {
+    let axes = name.rsplit('_').next().unwrap_or("");
+    let axis = |letter: char| "xyz".find(letter);
+    match axes.chars().filter_map(axis).collect::<Vec<usize>>()[..] {
+        _ if name.ends_with("bias") => unit.gyro_bias[gyro],
+        [axis] => unit.gyro_g[(gyro, axis)],
+        [one, other] if one == gyro && other == gyro => unit.gyro_gg[gyro],
+        _ => 0.0,
+    }
+}
+
+/// True errors of the accelerometers in the order of the result.
+fn of_accelerometers(unit: &UnitErrors) -> Vec<f64> {
+    let matrix = &unit.accel_matrix;
+    let scales = (0..3).map(|axis| matrix[(axis, axis)] - 1.0);
+    let across = [(0, 1), (0, 2), (1, 2)];
+    let misalignments = across.map(|(axis, other)| matrix[(axis, other)] / matrix[(axis, axis)]);
+    unit.accel_bias
+        .iter()
+        .copied()
+        .chain(scales)
+        .chain(misalignments)
+        .collect()
+}
