@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::columns::read_columns;
 use crate::error::{InstrumentError, Unfit};
+use crate::log::Log;
 
 /// Settings of the analysis of columns of a log.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,7 +78,6 @@ pub fn allan_columns(
     settings: &AllanSettings,
 ) -> Result<Vec<AllanColumn>, InstrumentError> {
     let columns = read_columns(source, names)?.values;
-    let interval_s = 1.0 / settings.rate_hz;
     names
         .iter()
         .zip(columns)
@@ -85,33 +85,72 @@ pub fn allan_columns(
             if values.len() > 1 && values.windows(2).all(|pair| pair[0] == pair[1]) {
                 return Err(constant(source, name));
             }
-            let values: Vec<f64> = values.iter().map(|value| value * settings.scale).collect();
-            if values.iter().any(|value| !value.is_finite()) {
-                return Err(overflow(name, settings.scale));
+            column(name, &values, settings)
+        })
+        .collect()
+}
+
+/// Deviations and parts of the values of one column.
+fn column(
+    name: &str,
+    values: &[f64],
+    settings: &AllanSettings,
+) -> Result<AllanColumn, InstrumentError> {
+    let interval_s = 1.0 / settings.rate_hz;
+    let values: Vec<f64> = values.iter().map(|value| value * settings.scale).collect();
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(overflow(name, settings.scale));
+    }
+    let averaging = octaves(values.len().max(3));
+    let overlapping = allan_deviation(&values, interval_s, &averaging, settings.confidence)?;
+    let confidence = settings.confidence;
+    let points = match settings.estimator {
+        AllanEstimator::Total => total_deviation(&values, interval_s, &averaging, confidence)?,
+        AllanEstimator::Hadamard => {
+            let most = values.len() / 4;
+            let shorter: Vec<usize> = averaging
+                .into_iter()
+                .filter(|count| *count <= most)
+                .collect();
+            hadamard_deviation(&values, interval_s, &shorter, confidence)?
+        }
+        _ => overlapping.clone(),
+    };
+    Ok(AllanColumn {
+        name: name.to_owned(),
+        noise: fit_noise(&overlapping, values.len()).ok(),
+        points: points.iter().map(AllanColumnPoint::from).collect(),
+    })
+}
+
+/// The same of the gyros of a log in the unit of its description, with its clock; `names` are those of its
+/// columns.
+///
+/// # Errors
+///
+/// As [`allan_columns`]; [`InstrumentError`] for gyros in counts without a scale.
+pub fn allan_log(
+    log: &Log,
+    names: [&str; 3],
+    settings: &AllanSettings,
+) -> Result<Vec<AllanColumn>, InstrumentError> {
+    let settings = AllanSettings {
+        rate_hz: 1.0 / log.interval_s,
+        ..*settings
+    };
+    (0..3)
+        .map(|axis| {
+            let values: Vec<f64> = log.gyro.iter().map(|rate| rate[axis]).collect();
+            let name = names[axis];
+            if values.windows(2).all(|pair| pair[0] == pair[1]) {
+                return Err(InstrumentError::unfit(
+                    Unfit::Setting,
+                    format!("a column `{name}` that never changes"),
+                    "samples of a rate, which has noise",
+                    "check the sensor and the logger",
+                ));
             }
-            let averaging = octaves(values.len().max(3));
-            let overlapping =
-                allan_deviation(&values, interval_s, &averaging, settings.confidence)?;
-            let confidence = settings.confidence;
-            let points = match settings.estimator {
-                AllanEstimator::Total => {
-                    total_deviation(&values, interval_s, &averaging, confidence)?
-                }
-                AllanEstimator::Hadamard => {
-                    let most = values.len() / 4;
-                    let shorter: Vec<usize> = averaging
-                        .into_iter()
-                        .filter(|count| *count <= most)
-                        .collect();
-                    hadamard_deviation(&values, interval_s, &shorter, confidence)?
-                }
-                _ => overlapping.clone(),
-            };
-            Ok(AllanColumn {
-                name: (*name).to_owned(),
-                noise: fit_noise(&overlapping, values.len()).ok(),
-                points: points.iter().map(AllanColumnPoint::from).collect(),
-            })
+            column(name, &values, &settings)
         })
         .collect()
 }

@@ -1,11 +1,16 @@
-//! Selected columns of a CSV file, by name.
+//! Selected columns of the file of a log, by name.
 
 use core::ops::Range;
+use std::path::Path;
 
-use gyrocal_record::fields::{Field, Line, Lines};
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 
-/// Columns of a CSV file.
+use crate::binary_file::read_binary;
+use crate::error::InstrumentError;
+use crate::file_format::{FileFormat, Only};
+use crate::log_lines::{LogLine, log_lines};
+
+/// Columns of a text file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns {
     /// The values of each column, all finite.
@@ -14,30 +19,56 @@ pub struct Columns {
     pub places: Vec<Range<usize>>,
 }
 
-/// Reads the columns `names`, in that order, from text with a header row.
+/// Most lines that are searched for a header behind a preamble.
+const LONGEST_PREAMBLE: usize = 500;
+
+/// Reads the columns `names`, in that order, from text with a header row, separated by commas.
+///
+/// # Errors
+///
+/// As [`read_described`].
+pub fn read_columns(source: &SourceText, names: &[&str]) -> Result<Columns, Error> {
+    read_described(source, &FileFormat::default(), names)
+}
+
+/// Reads the columns `names`, in that order, from text of a format. A preamble in front of the header is
+/// passed over.
 ///
 /// # Errors
 ///
 /// [`Error::Input`], at its place, for a column that is absent or double, a row with more or
 /// fewer fields than the header, a field that is not a finite number, or a file without rows.
-pub fn read_columns(source: &SourceText, names: &[&str]) -> Result<Columns, Error> {
-    let mut lines = Lines::of(source);
-    let header = lines.next_line()?.unwrap_or_default();
+pub fn read_described(
+    source: &SourceText,
+    format: &FileFormat,
+    names: &[&str],
+) -> Result<Columns, Error> {
+    let mut lines = log_lines(source, format).peekable();
+    let header = header(source, format, names, &mut lines);
+    let titles: Vec<&str> = match format.header {
+        true => header.fields.iter().map(|(_, text)| *text).collect(),
+        false => Vec::new(),
+    };
+    let index = |name: &str| match format.header {
+        true => index(source, &header, &titles, name),
+        false => number_of(source, &header, name),
+    };
     let indices = names
         .iter()
-        .map(|name| index(source, &header, name))
+        .map(|name| index(name))
         .collect::<Result<Vec<usize>, Error>>()?;
+    let filter = match &format.only {
+        Some(only) => Some((index(&only.column)?, only)),
+        None => None,
+    };
     let mut values = vec![Vec::new(); names.len()];
     let mut places: Vec<Range<usize>> = Vec::new();
-    while let Some(line) = lines.next_line()? {
+    for line in lines {
+        if filter.is_some_and(|(index, only)| !is_of_sensor(&line, index, only)) {
+            continue;
+        }
         if line.fields.len() != header.fields.len() {
-            return Err(source.error(
-                InputErrorKind::FieldCount,
-                line.span,
-                format!("{} fields", line.fields.len()),
-                format!("{} fields, as the header has", header.fields.len()),
-                "decimal numbers have a point, and fields are separated by commas",
-            ));
+            return Err(field_count(source, format, &line, &header));
         }
         for (column, &index) in values.iter_mut().zip(&indices) {
             column.push(number(source, &line.fields[index])?);
@@ -45,10 +76,17 @@ pub fn read_columns(source: &SourceText, names: &[&str]) -> Result<Columns, Erro
         places.push(line.span);
     }
     if places.is_empty() {
+        let found = match &format.only {
+            Some(only) => format!(
+                "no row with `{}` in the column `{}`",
+                only.equals, only.column
+            ),
+            None => "a header without rows".to_owned(),
+        };
         return Err(source.error(
             InputErrorKind::TooFewRows,
             header.span.start..header.span.start,
-            "a header without rows",
+            found,
             "samples",
             "check that the program that wrote the log had finished",
         ));
@@ -56,11 +94,116 @@ pub fn read_columns(source: &SourceText, names: &[&str]) -> Result<Columns, Erro
     Ok(Columns { values, places })
 }
 
+/// Columns of a file, with the text that errors can point into; binary files have none.
+#[derive(Debug)]
+pub(crate) struct FileColumns {
+    pub(crate) values: Vec<Vec<f64>>,
+    pub(crate) text: Option<(SourceText, Vec<Range<usize>>)>,
+}
+
+impl FileColumns {
+    /// Reads the columns `names` of a file of any format.
+    pub(crate) fn read(
+        path: &Path,
+        format: &FileFormat,
+        names: &[&str],
+    ) -> Result<Self, InstrumentError> {
+        match &format.binary {
+            Some(binary) => Ok(Self {
+                values: read_binary(path, binary, format.only.as_ref(), names)?,
+                text: None,
+            }),
+            None => Self::of_text(SourceText::read(path)?, format, names),
+        }
+    }
+
+    pub(crate) fn of_text(
+        source: SourceText,
+        format: &FileFormat,
+        names: &[&str],
+    ) -> Result<Self, InstrumentError> {
+        let Columns { values, places } = read_described(&source, format, names)?;
+        Ok(Self {
+            values,
+            text: Some((source, places)),
+        })
+    }
+}
+
+/// The header, or the first row of a file without one, which is not consumed.
+fn header<'a>(
+    source: &'a SourceText,
+    format: &'a FileFormat,
+    names: &[&str],
+    lines: &mut core::iter::Peekable<impl Iterator<Item = LogLine<'a>>>,
+) -> LogLine<'a> {
+    let empty = || LogLine {
+        span: 0..0,
+        fields: Vec::new(),
+    };
+    if !format.header {
+        // Peeking keeps the row; its fields are few.
+        return lines.peek().map_or_else(empty, |line| LogLine {
+            span: line.span.clone(),
+            fields: line.fields.clone(),
+        });
+    }
+    let has_all = |line: &LogLine<'_>| {
+        names
+            .iter()
+            .all(|name| line.fields.iter().any(|(_, text)| text == name))
+    };
+    let before = log_lines(source, format)
+        .take(LONGEST_PREAMBLE)
+        .position(|line| has_all(&line))
+        .unwrap_or(0);
+    lines.nth(before).unwrap_or_else(empty)
+}
+
+fn is_of_sensor(line: &LogLine<'_>, index: usize, only: &Only) -> bool {
+    let Some((_, text)) = line.fields.get(index) else {
+        return false;
+    };
+    let same_number = || {
+        let [found, expected] = [text.parse::<f64>().ok()?, only.equals.parse::<f64>().ok()?];
+        Some(found == expected)
+    };
+    *text == only.equals || same_number().unwrap_or(false)
+}
+
+fn field_count(
+    source: &SourceText,
+    format: &FileFormat,
+    line: &LogLine<'_>,
+    header: &LogLine<'_>,
+) -> Error {
+    let first = if format.header {
+        "the header"
+    } else {
+        "the first row"
+    };
+    source.error(
+        InputErrorKind::FieldCount,
+        line.span.clone(),
+        format!("{} fields", line.fields.len()),
+        format!("{} fields, as {first} has", header.fields.len()),
+        format!(
+            "decimal numbers have a point, and fields are separated by {}; `delimiter` in `[file]` \
+             names others",
+            format.delimiter.description()
+        ),
+    )
+}
+
 /// Index of the column of a name.
-fn index(source: &SourceText, header: &Line<'_>, name: &str) -> Result<usize, Error> {
-    let names: Vec<&str> = header.fields.iter().map(|field| field.text).collect();
-    let mut indices = (0..names.len()).filter(|index| names[*index] == name);
-    let advice = format!("the columns are {}", names.join(", "));
+fn index(
+    source: &SourceText,
+    header: &LogLine<'_>,
+    titles: &[&str],
+    name: &str,
+) -> Result<usize, Error> {
+    let mut indices = (0..titles.len()).filter(|index| titles[*index] == name);
+    let advice = format!("the columns are {}", titles.join(", "));
     let error = |found: String, expected: String| {
         let span = header.span.clone();
         source.error(InputErrorKind::Header, span, found, expected, &*advice)
@@ -78,13 +221,28 @@ fn index(source: &SourceText, header: &Line<'_>, name: &str) -> Result<usize, Er
     }
 }
 
-fn number(source: &SourceText, field: &Field<'_>) -> Result<f64, Error> {
-    let number = field.text.parse::<f64>().ok();
+/// Index of a column of a file without header, by its number from one.
+fn number_of(source: &SourceText, first: &LogLine<'_>, name: &str) -> Result<usize, Error> {
+    let count = first.fields.len();
+    match name.parse::<usize>() {
+        Ok(number) if (1..=count).contains(&number) => Ok(number - 1),
+        _ => Err(source.error(
+            InputErrorKind::Header,
+            first.span.clone(),
+            format!("{count} columns without a header"),
+            format!("a column `{name}`"),
+            format!("without a header columns are called \"1\" to \"{count}\""),
+        )),
+    }
+}
+
+fn number(source: &SourceText, (span, text): &(Range<usize>, &str)) -> Result<f64, Error> {
+    let number = text.parse::<f64>().ok();
     number.filter(|value| value.is_finite()).ok_or_else(|| {
         source.error(
             InputErrorKind::NotANumber,
-            field.span.clone(),
-            format!("`{}`", &source.text()[field.span.clone()]),
+            span.clone(),
+            format!("`{}`", &source.text()[span.clone()]),
             "a finite number",
             "cut the log before the first sample that is missing",
         )

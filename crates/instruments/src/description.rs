@@ -3,12 +3,18 @@
 use std::path::Path;
 
 use gyrocal_record::{Error, InputErrorKind, SourceText};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
-/// Columns, units and axes of a log.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+use crate::file_format::FileFormat;
+
+/// Columns, units and axes of a log: one description for all commands.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Description {
+    /// Format of the file.
+    #[serde(default)]
+    pub file: FileFormat,
     /// Times of the samples.
     pub time: Time,
     /// The three gyros.
@@ -21,7 +27,8 @@ pub struct Description {
 }
 
 /// Times of the samples: a column of time stamps, or a rate.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Time {
     /// The column of time stamps.
@@ -31,10 +38,30 @@ pub struct Time {
     pub unit_s: f64,
     /// Samples a second, on a clock that is exact; in place of a column.
     pub rate_hz: Option<f64>,
+    /// Meaning of time stamps that jitter.
+    #[serde(default)]
+    pub jitter: Jitter,
+}
+
+/// Meaning of time stamps that jitter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Jitter {
+    /// Stamps of a computer that received samples of a steady clock: equal intervals, if no sample is
+    /// missing.
+    #[default]
+    Steady,
+    /// Times of samples, used as they are.
+    Use,
+    /// Times of samples, which are interpolated at equal intervals.
+    Resample,
 }
 
 /// The three gyros.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Gyro {
     /// The columns of x, y, z, each the mean rate over the interval that ends at its time stamp.
@@ -53,7 +80,8 @@ pub struct Gyro {
 }
 
 /// The three accelerometers.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Accel {
     /// The columns of x, y, z: specific force, up positive.
@@ -71,7 +99,8 @@ pub struct Accel {
 }
 
 /// Site of the recording.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Site {
     /// Astronomic latitude, north positive.
@@ -81,7 +110,8 @@ pub struct Site {
 }
 
 /// Units of a rate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum GyroUnit {
     /// rad/s
@@ -99,7 +129,8 @@ pub enum GyroUnit {
 }
 
 /// Units of specific force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum AccelUnit {
     /// m/s²
@@ -114,7 +145,8 @@ pub enum AccelUnit {
 }
 
 /// Scale of raw counts.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum CountScale {
     /// Counts per unit, the same for all axes.
@@ -126,7 +158,8 @@ pub enum CountScale {
 }
 
 /// Source of an estimated scale.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Estimate {
     /// Turns between stops.
     #[serde(rename = "from-turns")]
@@ -137,7 +170,8 @@ pub enum Estimate {
 }
 
 /// Direction of a body axis: a column and its sign.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Direction {
     /// The first column.
     #[serde(rename = "x")]
@@ -193,6 +227,15 @@ impl Description {
     #[inline]
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
         Self::from_source(&SourceText::new(text, name)?)
+    }
+
+    /// Its schema (JSON Schema, draft 2020-12).
+    #[cfg(feature = "schema")]
+    #[must_use]
+    pub fn schema() -> schemars::Schema {
+        schemars::generate::SchemaSettings::draft2020_12()
+            .into_generator()
+            .into_root_schema_for::<Self>()
     }
 
     #[inline]

@@ -36,6 +36,8 @@ pub enum Unfit {
     Gap,
     /// The intervals between time stamps scatter too much.
     Jitter,
+    /// A binary file is not as its description says.
+    Binary,
     /// No interval is at rest.
     NeverStatic,
     /// The norm of specific force is not gravity.

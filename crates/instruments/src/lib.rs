@@ -49,12 +49,16 @@
 mod accel_from_norm;
 mod accel_from_positions;
 mod allan_analysis;
+mod binary_file;
+mod clock;
 mod columns;
 pub mod description;
 mod error;
+pub mod file_format;
 mod gyro_from_turns;
 mod least_squares;
 mod log;
+mod log_lines;
 pub mod multi_position;
 mod result_file;
 mod stop_means;
@@ -63,8 +67,9 @@ pub mod strapdown;
 
 pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
 pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positions};
-pub use allan_analysis::{AllanColumn, AllanColumnPoint, AllanSettings, allan_columns};
-pub use columns::{Columns, read_columns};
+pub use allan_analysis::{AllanColumn, AllanColumnPoint, AllanSettings, allan_columns, allan_log};
+pub use clock::Clock;
+pub use columns::{Columns, read_columns, read_described};
 pub use description::Description;
 pub use error::{InstrumentError, Unfit};
 pub use gyro_from_turns::{GyroCalibration, gyro_from_turns};

@@ -1,13 +1,13 @@
 //! Logs of three gyros and three accelerometers.
 
-use core::ops::Range;
 use std::path::Path;
 
-use gyrocal_record::{Error, InputErrorKind, SourceText};
+use gyrocal_record::{InputErrorKind, SourceText};
 use gyrocal_statistics::median_interval_s;
 
-use crate::columns::{Columns, read_columns};
-use crate::description::{AccelUnit, CountScale, Description, Direction, GyroUnit};
+use crate::clock::{Clock, resampled, steady_clock};
+use crate::columns::FileColumns;
+use crate::description::{AccelUnit, CountScale, Description, Direction, GyroUnit, Jitter};
 use crate::error::{InstrumentError, Unfit};
 
 /// Samples of six sensors; all vectors have the same length.
@@ -25,14 +25,19 @@ pub struct Log {
     pub accel_in_counts: bool,
     /// Median interval between samples.
     pub interval_s: f64,
+    /// Origin of the times.
+    pub clock: Clock,
 }
 
 /// Intervals longer than this many median ones are gaps.
 const GAP: f64 = 1.5;
 
-/// Largest relative scatter of the intervals: integration of a changing rate errs by this fraction of
-/// its change over an interval.
+/// Largest relative scatter of the intervals of a log whose stamps are taken as they are: integration of a
+/// changing rate errs by this fraction of its change over an interval.
 const JITTER: f64 = 0.05;
+
+/// Intervals longer than this many median ones are no jitter.
+const LONGEST_JITTER: f64 = 10.0;
 
 impl Log {
     /// Reads a log.
@@ -42,7 +47,9 @@ impl Log {
     /// [`InstrumentError::File`] at its place in the file; [`Unfit::Gap`], [`Unfit::Jitter`] and
     /// [`Unfit::NoScale`].
     pub fn read(path: &Path, description: &Description) -> Result<Self, InstrumentError> {
-        Self::from_source(&SourceText::read(path)?, description)
+        let names = names(description);
+        let file = FileColumns::read(path, &description.file, &names)?;
+        Self::from_columns(file, description)
     }
 
     /// Parses the text of a log; errors call it `name`.
@@ -55,7 +62,10 @@ impl Log {
         name: &str,
         description: &Description,
     ) -> Result<Self, InstrumentError> {
-        Self::from_source(&SourceText::new(text, name)?, description)
+        let source = SourceText::new(text, name)?;
+        let names = names(description);
+        let file = FileColumns::of_text(source, &description.file, &names)?;
+        Self::from_columns(file, description)
     }
 
     /// A log of samples at equal intervals \[s\] in rad/s and g.
@@ -70,6 +80,7 @@ impl Log {
             gyro_in_counts: false,
             accel_in_counts: false,
             interval_s,
+            clock: Clock::Rate,
         }
     }
 
@@ -85,35 +96,22 @@ impl Log {
         self.time_s.is_empty()
     }
 
-    fn from_source(
-        source: &SourceText,
-        description: &Description,
-    ) -> Result<Self, InstrumentError> {
+    fn from_columns(file: FileColumns, description: &Description) -> Result<Self, InstrumentError> {
         let gyro_scale = gyro_scale(description)?;
         let accel_scale = accel_scale(description)?;
-        let mut names: Vec<&str> = Vec::new();
-        let sensors = description
-            .gyro
-            .columns
-            .iter()
-            .chain(&description.accel.columns);
-        names.extend(sensors.map(String::as_str));
-        names.extend(description.time.column.as_deref());
-        let Columns {
-            values: columns,
-            places,
-        } = read_columns(source, &names)?;
-        let rows = places.len();
-        let time_s = match (&columns[6..], description.time.rate_hz) {
+        let columns = &file.values;
+        let rows = columns.first().map_or(0, Vec::len);
+        let (time_s, clock) = match (&columns[6..], description.time.rate_hz) {
             ([stamps], _) => {
                 let unit_s = description.time.unit_s;
                 let time_s: Vec<f64> = stamps.iter().map(|stamp| stamp * unit_s).collect();
-                refuse_backwards(source, &time_s, &places)?;
-                time_s
+                refuse_backwards(&file, &time_s)?;
+                (time_s, Clock::Stamps)
             }
             (_, rate_hz) => {
                 let interval_s = 1.0 / rate_hz.unwrap_or(1.0);
-                (1..=rows).map(|row| row as f64 * interval_s).collect()
+                let time_s = (1..=rows).map(|row| row as f64 * interval_s).collect();
+                (time_s, Clock::Rate)
             }
         };
         let body = |first: usize, zero: f64, scale: [f64; 3], axes: [Direction; 3]| {
@@ -142,55 +140,126 @@ impl Log {
             gyro_in_counts: gyro_scale.is_none(),
             accel_in_counts: accel_scale.is_none(),
             time_s,
+            clock,
         };
-        log.refuse_gaps()?;
-        log.refuse_jitter()?;
-        Ok(log)
+        if log.is_regular() {
+            return Ok(log);
+        }
+        match description.time.jitter {
+            Jitter::Steady => log.on_steady_clock(),
+            Jitter::Use => {
+                log.refuse_long_gaps()?;
+                Ok(log)
+            }
+            Jitter::Resample => {
+                log.refuse_long_gaps()?;
+                Ok(log.at_equal_intervals())
+            }
+        }
     }
 
-    fn refuse_gaps(&self) -> Result<(), InstrumentError> {
+    /// `true` if no interval is a gap and the intervals hardly scatter.
+    fn is_regular(&self) -> bool {
         let longest_s = GAP * self.interval_s;
-        let gaps: Vec<&[f64]> = self
+        let mut intervals = self.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+        intervals.all(|interval_s| interval_s <= longest_s) && self.scatter() <= JITTER
+    }
+
+    /// Rms deviation of the intervals from the usual one, relative to it.
+    fn scatter(&self) -> f64 {
+        let intervals = self.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+        let squares = intervals.map(|interval_s| (interval_s / self.interval_s - 1.0).powi(2));
+        (squares.sum::<f64>() / (self.len() - 1) as f64).sqrt()
+    }
+
+    /// The samples on the steady clock behind stamps that jitter.
+    fn on_steady_clock(self) -> Result<Self, InstrumentError> {
+        match steady_clock(&self.time_s) {
+            Ok(steady) => Ok(Self {
+                interval_s: median_interval_s(&steady.time_s),
+                time_s: steady.time_s,
+                clock: Clock::Steady {
+                    jitter_s: steady.jitter_s,
+                },
+                ..self
+            }),
+            Err(between) => Err(self.gap(between)),
+        }
+    }
+
+    /// The samples interpolated at equal intervals.
+    fn at_equal_intervals(self) -> Self {
+        let [first, last] = [self.time_s[0], self.time_s[self.len() - 1]];
+        let count = ((last - first) / self.interval_s) as usize + 1;
+        let at_s: Vec<f64> = (0..count)
+            .map(|sample| first + sample as f64 * self.interval_s)
+            .collect();
+        Self {
+            gyro: resampled(&self.time_s, &self.gyro, &at_s),
+            accel: resampled(&self.time_s, &self.accel, &at_s),
+            clock: Clock::Resampled {
+                jitter_s: self.scatter() * self.interval_s,
+            },
+            time_s: at_s,
+            ..self
+        }
+    }
+
+    /// Refuses stamps that repeat, and intervals that are no jitter.
+    fn refuse_long_gaps(&self) -> Result<(), InstrumentError> {
+        let longest_s = LONGEST_JITTER * self.interval_s;
+        if self.time_s.windows(2).any(|pair| pair[1] <= pair[0]) {
+            return Err(InstrumentError::unfit(
+                Unfit::Jitter,
+                "time stamps that repeat",
+                "times that rise",
+                "stamps of packets are no times of samples: leave out `jitter`, or give `rate_hz` in \
+                 place of the time column",
+            ));
+        }
+        match self
             .time_s
             .windows(2)
-            .filter(|pair| pair[1] - pair[0] > longest_s)
-            .collect();
-        let Some(first) = gaps.first() else {
-            return Ok(());
-        };
-        Err(InstrumentError::unfit(
+            .position(|pair| pair[1] - pair[0] > longest_s)
+        {
+            Some(at) => Err(self.gap([at, at + 1])),
+            None => Ok(()),
+        }
+    }
+
+    /// The error of missing samples among those between two numbers.
+    fn gap(&self, [from, to]: [usize; 2]) -> InstrumentError {
+        let interval_s = |at: &usize| self.time_s[at + 1] - self.time_s[*at];
+        let longer = |a: &usize, b: &usize| interval_s(a).total_cmp(&interval_s(b));
+        let first = (from..to).max_by(longer).unwrap_or(from);
+        let gaps = self
+            .time_s
+            .windows(2)
+            .filter(|pair| pair[1] - pair[0] > GAP * self.interval_s)
+            .count();
+        InstrumentError::unfit(
             Unfit::Gap,
             format!(
-                "{} gap(s) in the time stamps, the first of {:.4} s after {} s",
-                gaps.len(),
-                first[1] - first[0],
-                first[0]
+                "{gaps} long interval(s) between time stamps and missing samples, the first interval of \
+                 {:.4} s after {} s",
+                interval_s(&first),
+                self.time_s[first]
             ),
             format!("a sample every {:.4} s", self.interval_s),
             "cut the log at the gap, since rotation that was not recorded cannot be integrated; if \
-             the clock is wrong and not the samples, give `rate_hz` in place of the time column",
-        ))
+             the clock is wrong and not the samples, give `rate_hz` in place of the time column; if the \
+             sensor samples at such intervals, `jitter = \"use\"` or `\"resample\"`",
+        )
     }
+}
 
-    fn refuse_jitter(&self) -> Result<(), InstrumentError> {
-        let intervals = self.time_s.windows(2).map(|pair| pair[1] - pair[0]);
-        let squares = intervals.map(|interval_s| (interval_s / self.interval_s - 1.0).powi(2));
-        let scatter = (squares.sum::<f64>() / (self.len() - 1) as f64).sqrt();
-        if scatter <= JITTER {
-            return Ok(());
-        }
-        Err(InstrumentError::unfit(
-            Unfit::Jitter,
-            format!(
-                "intervals that scatter by {:.1} % of the usual {:.4} s",
-                100.0 * scatter,
-                self.interval_s
-            ),
-            format!("at most {} %", 100.0 * JITTER),
-            "if the sensor samples on its own steady clock and the stamps are those of the \
-             computer that received them, give `rate_hz` in place of the time column",
-        ))
-    }
+/// Columns of the description: gyros, accelerometers, time.
+fn names(description: &Description) -> Vec<&str> {
+    let sensors = description.gyro.columns.iter();
+    let sensors = sensors.chain(&description.accel.columns);
+    let mut names: Vec<&str> = sensors.map(String::as_str).collect();
+    names.extend(description.time.column.as_deref());
+    names
 }
 
 /// Factor from counts above zero to rad/s; `None` if turns are to determine it.
@@ -238,22 +307,31 @@ fn no_scale(table: &str, key: &str, estimate: &str) -> InstrumentError {
     )
 }
 
-fn refuse_backwards(
-    source: &SourceText,
-    time_s: &[f64],
-    places: &[Range<usize>],
-) -> Result<(), Error> {
-    let Some(row) = time_s.windows(2).position(|pair| pair[1] <= pair[0]) else {
+fn refuse_backwards(file: &FileColumns, time_s: &[f64]) -> Result<(), InstrumentError> {
+    let Some(row) = time_s.windows(2).position(|pair| pair[1] < pair[0]) else {
         return Ok(());
     };
-    Err(source.error(
-        InputErrorKind::Time,
-        places[row + 1].clone(),
-        format!("time {} s after {} s", time_s[row + 1], time_s[row]),
-        "times that rise",
-        "cut the log where the clock was set back; if only the stamps are wrong, give `rate_hz` \
-         in place of the time column",
-    ))
+    let found = format!("time {} s after {} s", time_s[row + 1], time_s[row]);
+    let expected = "times that rise";
+    let advice = "cut the log where the clock was set back; if only the stamps are wrong, give `rate_hz` \
+                  in place of the time column";
+    match &file.text {
+        Some((source, places)) => {
+            let place = places[row + 1].clone();
+            Err(source
+                .error(InputErrorKind::Time, place, found, expected, advice)
+                .into())
+        }
+        None => {
+            let found = format!("{found} in record {}", row + 2);
+            Err(InstrumentError::unfit(
+                Unfit::Jitter,
+                found,
+                expected,
+                advice,
+            ))
+        }
+    }
 }
 
 fn usual_interval_s(time_s: &[f64]) -> Result<f64, InstrumentError> {

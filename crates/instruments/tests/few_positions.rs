@@ -23,16 +23,7 @@ fn unit() -> UnitErrors {
 }
 
 fn log(samples: &Samples) -> Log {
-    Log {
-        time_s: (1..=samples.gyro.len())
-            .map(|sample| 0.01 * sample as f64)
-            .collect(),
-        gyro: samples.gyro.clone(),
-        accel: samples.accel.clone(),
-        gyro_in_counts: false,
-        accel_in_counts: false,
-        interval_s: 0.01,
-    }
+    Log::from_samples(0.01, samples.gyro.clone(), samples.accel.clone())
 }
 
 fn description() -> Description {

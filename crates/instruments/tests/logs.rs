@@ -68,14 +68,18 @@ fn a_rate_stands_for_a_clock() {
 }
 
 #[test]
-fn clocks_that_jump_or_jitter_are_refused() {
-    let gap = text(|row| regular(row) + if row > 120 { 35.0 } else { 0.0 });
-    let (kind, message) = refused(&gap, DESCRIPTION);
-    assert_eq!(kind, Some(Unfit::Gap));
-    assert!(message.contains("0.0450 s after 1.2 s"), "{message}");
-    assert!(message.contains("rate_hz"), "{message}");
-    let jitter = text(|row| regular(row) + if row % 2 == 0 { 0.0 } else { 1.0 });
-    assert_eq!(refused(&jitter, DESCRIPTION).0, Some(Unfit::Jitter));
+fn clocks_that_jump_or_go_back_are_refused() {
+    for jitter in ["", "jitter = \"use\"\n"] {
+        let description =
+            DESCRIPTION.replace("unit_s = 1e-3\n", &format!("unit_s = 1e-3\n{jitter}"));
+        let longer = if jitter.is_empty() { 35.0 } else { 135.0 };
+        let gap = text(|row| regular(row) + if row > 120 { longer } else { 0.0 });
+        let (kind, message) = refused(&gap, &description);
+        assert_eq!(kind, Some(Unfit::Gap));
+        let expected = format!("{:.4} s after 1.2 s", (10.0 + longer) * 1e-3);
+        assert!(message.contains(&expected), "{message}");
+        assert!(message.contains("rate_hz"), "{message}");
+    }
     let (kind, message) = refused(&text(|row| regular(row % 150)), DESCRIPTION);
     assert_eq!(kind, None);
     // The header is line 1, so row 150, counted from 0, is line 152.
@@ -86,6 +90,155 @@ fn clocks_that_jump_or_jitter_are_refused() {
     // As much jitter as the Xsens log has is borne.
     let slight = text(|row| regular(row) + if row % 5 == 0 { 0.4 } else { 0.0 });
     parse(&slight, DESCRIPTION).unwrap();
+}
+
+#[test]
+fn stamps_that_jitter_are_a_steady_clock_or_used_or_resampled() {
+    // Stamps of even samples are 4 ms late: intervals of 6 and 14 ms, and no sample is missing.
+    let jitter = text(|row| regular(row) + if row % 2 == 0 { 4.0 } else { 0.0 });
+    let log = parse(&jitter, DESCRIPTION).unwrap();
+    let steady: Vec<f64> = log
+        .time_s
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .collect();
+    // The line through alternating stamps is off by 6 of 200² in slope.
+    assert!(
+        steady
+            .iter()
+            .all(|interval_s| (interval_s - 0.01).abs() < 1e-5)
+    );
+    assert!(
+        log.clock.note().unwrap().contains("2.00 ms rms"),
+        "{:?}",
+        log.clock
+    );
+    let with = |jitter: &str| {
+        DESCRIPTION.replace(
+            "unit_s = 1e-3",
+            &format!("unit_s = 1e-3\njitter = \"{jitter}\""),
+        )
+    };
+    let used = parse(&jitter, &with("use")).unwrap();
+    assert!((used.time_s[1] - used.time_s[0] - 0.006).abs() < 1e-12);
+    assert_eq!(used.clock.note(), None);
+    let resampled = parse(&jitter, &with("resample")).unwrap();
+    assert_eq!(resampled.gyro[0], used.gyro[0]);
+    assert!(resampled.clock.note().unwrap().contains("interpolated"));
+    // Packets of four samples have one stamp, which is no time of a sample.
+    let packets = text(|row| regular(row - row % 4));
+    parse(&packets, DESCRIPTION).unwrap();
+    let (kind, message) = refused(&packets, &with("use"));
+    assert_eq!(kind, Some(Unfit::Jitter), "{message}");
+}
+
+#[test]
+fn preambles_comments_and_other_delimiters_are_read() {
+    let good = parse(&text(regular), DESCRIPTION).unwrap();
+    let with = |file: &str| format!("[file]\n{file}\n{DESCRIPTION}");
+    let preamble = format!(
+        "Logger 7, unit 3\nrange: 4 g, 2000 deg/s\n\n{}",
+        text(regular)
+    );
+    assert_eq!(parse(&preamble, DESCRIPTION).unwrap(), good);
+    let comments = text(regular).replace("\n4100,100,100,50,", "\n# a mark\n4100,100,100,50,");
+    assert_eq!(parse(&comments, &with("comment = \"#\"")).unwrap(), good);
+    for (delimiter, separator) in [("semicolon", ";"), ("tab", "\t"), ("space", "   ")] {
+        let other = text(regular).replace(',', separator);
+        let description = with(&format!("delimiter = \"{delimiter}\""));
+        assert_eq!(parse(&other, &description).unwrap(), good, "{delimiter}");
+        let (_, message) = refused(&other, DESCRIPTION);
+        assert!(message.contains("a header without it"), "{message}");
+    }
+    // The same without a header: columns are called by their numbers.
+    let bare: String = text(regular)
+        .lines()
+        .skip(1)
+        .map(|line| line.to_owned() + "\n")
+        .collect();
+    let mut numbered = with("header = false\nskip_lines = 1");
+    for (name, number) in [
+        ("ms", 4),
+        ("p", 5),
+        ("q", 6),
+        ("r", 7),
+        ("u", 3),
+        ("v", 2),
+        ("w", 1),
+    ] {
+        numbered = numbered.replace(&format!("\"{name}\""), &format!("\"{number}\""));
+    }
+    assert_eq!(
+        parse(&format!("a line of text\n{bare}"), &numbered).unwrap(),
+        good
+    );
+    let (_, message) = refused(&bare, &numbered.replace("\"7\"", "\"8\""));
+    assert!(message.contains("7 columns without a header"), "{message}");
+}
+
+#[test]
+fn one_sensor_of_several_is_read() {
+    let good = parse(&text(regular), DESCRIPTION).unwrap();
+    let mut rows = String::new();
+    for (number, line) in text(regular).lines().enumerate() {
+        let title = if number == 0 { "sensor" } else { "imu" };
+        rows += &format!("{title},{line}\n");
+        if number % 3 == 1 {
+            rows += "gps,34.2,108.9\n";
+        }
+    }
+    let only = |name: &str| {
+        format!("[file.only]\ncolumn = \"sensor\"\nequals = \"{name}\"\n{DESCRIPTION}")
+    };
+    assert_eq!(parse(&rows, &only("imu")).unwrap(), good);
+    let (_, message) = refused(&rows, &only("imu2"));
+    assert!(
+        message.contains("no row with `imu2` in the column `sensor`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn binary_records_are_read_and_refused() {
+    let good = parse(&text(regular), DESCRIPTION).unwrap();
+    let fields = r#"
+[file.binary]
+byte_order = "big"
+skip_bytes = 5
+fields = [
+    { name = "ms", type = "u32" },
+    { name = "p", type = "f32" }, { name = "q", type = "f64" }, { name = "r", type = "i16" },
+    { name = "u", type = "i16" }, { name = "v", type = "u16" }, { name = "w", type = "i32" },
+]
+"#;
+    let description = Description::parse(&format!("{fields}{DESCRIPTION}"), "log.toml").unwrap();
+    let mut bytes = b"magic".to_vec();
+    for row in 0..200_u32 {
+        bytes.extend((10 * row).to_be_bytes());
+        bytes.extend(90_f32.to_be_bytes());
+        bytes.extend(180_f64.to_be_bytes());
+        bytes.extend((-90_i16).to_be_bytes());
+        bytes.extend(100_i16.to_be_bytes());
+        bytes.extend(100_u16.to_be_bytes());
+        bytes.extend(4100_i32.to_be_bytes());
+    }
+    let path = std::env::temp_dir().join(format!("gyrocal-binary-{}.log", std::process::id()));
+    let read = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        Log::read(&path, &description)
+    };
+    assert_eq!(read(&bytes).unwrap(), good);
+    let error = read(&bytes[..bytes.len() - 3]).unwrap_err();
+    assert_eq!(error.kind(), Some(Unfit::Binary), "{error}");
+    assert!(
+        error.to_string().contains("whole records of 26 bytes"),
+        "{error}"
+    );
+    // The mean of a rate that is not a number.
+    bytes[5 + 26 + 4..5 + 26 + 8].copy_from_slice(&f32::NAN.to_be_bytes());
+    let error = read(&bytes).unwrap_err().to_string();
+    assert!(error.contains("NaN as `p` of record 2"), "{error}");
+    std::fs::remove_file(&path).unwrap();
 }
 
 #[test]

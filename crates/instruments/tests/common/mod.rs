@@ -31,16 +31,9 @@ impl Noise {
 
 /// A log of samples at equal intervals, rad/s and g.
 pub(crate) fn log(interval_s: f64, samples: &[(Vector3<f64>, Vector3<f64>)]) -> Log {
-    Log {
-        time_s: (1..=samples.len())
-            .map(|sample| sample as f64 * interval_s)
-            .collect(),
-        gyro: samples.iter().map(|(rate, _)| (*rate).into()).collect(),
-        accel: samples.iter().map(|(_, force)| (*force).into()).collect(),
-        gyro_in_counts: false,
-        accel_in_counts: false,
-        interval_s,
-    }
+    let gyro = samples.iter().map(|(rate, _)| (*rate).into());
+    let accel = samples.iter().map(|(_, force)| (*force).into());
+    Log::from_samples(interval_s, gyro.collect(), accel.collect())
 }
 
 /// Errors of a unit, by which true rates and forces become a log.

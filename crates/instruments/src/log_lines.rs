@@ -1,0 +1,75 @@
+//! Lines of the text of a log, split into fields with their places.
+
+use core::ops::Range;
+
+use gyrocal_record::SourceText;
+
+use crate::file_format::{Delimiter, FileFormat};
+
+/// A line.
+#[derive(Debug)]
+pub(crate) struct LogLine<'a> {
+    /// Place in the text, without surrounding white space.
+    pub(crate) span: Range<usize>,
+    /// Fields of the line: place and text without quotation marks.
+    pub(crate) fields: Vec<(Range<usize>, &'a str)>,
+}
+
+/// Lines with content, after those that the format skips.
+pub(crate) fn log_lines<'a>(
+    source: &'a SourceText,
+    format: &'a FileFormat,
+) -> impl Iterator<Item = LogLine<'a>> {
+    let text = source.text();
+    let mut at = 0;
+    let lines = text.split_inclusive(['\n', '\r']).map(move |line| {
+        let start = at;
+        at += line.len();
+        (start, line)
+    });
+    // A carriage return before a line feed ends no line of its own.
+    let ends_line = |line: &str| !line.ends_with('\r');
+    let mut skipped = 0;
+    lines
+        .filter(move |(start, line)| {
+            let is_end = ends_line(line) || !text[start + line.len()..].starts_with('\n');
+            let skip = skipped < format.skip_lines;
+            skipped += usize::from(skip && is_end);
+            !skip
+        })
+        .filter(|(_, line)| !line.trim().is_empty())
+        .filter(|(_, line)| {
+            let comment = format.comment.as_deref().unwrap_or("");
+            comment.is_empty() || !line.trim_start().starts_with(comment)
+        })
+        .map(|(start, line)| {
+            let from = start + line.len() - line.trim_start().len();
+            let bare = line.trim();
+            LogLine {
+                span: from..from + bare.len(),
+                fields: fields(bare, from, format.delimiter),
+            }
+        })
+}
+
+fn fields(line: &str, start: usize, delimiter: Delimiter) -> Vec<(Range<usize>, &str)> {
+    let place = |piece: &str| {
+        let offset = piece.as_ptr() as usize - line.as_ptr() as usize;
+        let from = start + offset + (piece.len() - piece.trim_start().len());
+        from..from + piece.trim().len()
+    };
+    let one = |piece| (place(piece), unquoted(piece));
+    match delimiter {
+        Delimiter::Comma => line.split(',').map(one).collect(),
+        Delimiter::Semicolon => line.split(';').map(one).collect(),
+        Delimiter::Tab => line.split('\t').map(one).collect(),
+        Delimiter::Space => line.split_whitespace().map(one).collect(),
+    }
+}
+
+fn unquoted(piece: &str) -> &str {
+    let bare = piece.trim();
+    bare.strip_prefix('"')
+        .and_then(|rest| rest.strip_suffix('"'))
+        .map_or(bare, str::trim)
+}
