@@ -5,7 +5,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use comfy_table::Cell;
-use gyrocal_instruments::{AllanColumn, AllanSettings, InstrumentError, ResultFile, allan_columns};
+use gyrocal_instruments::{
+    AllanColumn, AllanSettings, Description, InstrumentError, Log, ResultFile, allan_columns,
+    allan_log,
+};
 use gyrocal_record::{SourceText, write_json};
 use gyrocal_statistics::allan::{AllanEstimator, NoiseFit};
 use gyrocal_statistics::format;
@@ -25,14 +28,28 @@ use crate::tables::{right, table};
 /// intervals and a test of fit.
 #[derive(Debug, Args)]
 pub(crate) struct AllanArguments {
-    /// The log (CSV) with a header row.
+    /// The log (CSV) with a header row, or as its description says.
     log: PathBuf,
+    /// Description of the log (TOML): its three gyros on its clock, in deg/h; docs/measured-data.md has
+    /// every key.
+    #[arg(long, value_name = "LOG.toml", conflicts_with_all = ["columns", "rate_hz", "scale", "unit"])]
+    log_description: Option<PathBuf>,
     /// The columns.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        required_unless_present = "log_description"
+    )]
     columns: Vec<String>,
     /// Samples per second.
-    #[arg(long, value_name = "HZ", value_parser = positive)]
-    rate_hz: f64,
+    #[arg(
+        long,
+        value_name = "HZ",
+        value_parser = positive,
+        required_unless_present = "log_description"
+    )]
+    rate_hz: Option<f64>,
     /// Factor of the values, for example 206264.8 for deg/h from rad/s.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
     scale: f64,
@@ -73,36 +90,66 @@ impl Estimator {
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
-    outputs::check(&[&arguments.log], arguments.json.as_deref(), None)?;
-    let settings = AllanSettings {
-        rate_hz: arguments.rate_hz,
-        scale: arguments.scale,
+    let mut inputs = vec![&*arguments.log];
+    inputs.extend(arguments.log_description.as_deref());
+    outputs::check(&inputs, arguments.json.as_deref(), None)?;
+    let analysed = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    if let Some(path) = &arguments.json {
+        let result = json!({
+            "unit": analysed.unit,
+            "confidence": arguments.confidence,
+            "estimator": arguments.estimator.of_library().description(),
+            "columns": analysed.columns,
+        });
+        write_json(path, &ResultFile::new(manifest("", 0, &inputs)?, result))?;
+    }
+    Ok(summary(arguments, &analysed))
+}
+
+/// Analysed columns with their unit, and what there is to tell of the clock.
+struct Analysed {
+    columns: Vec<AllanColumn>,
+    unit: String,
+    clock: Option<String>,
+}
+
+fn analysed(arguments: &AllanArguments) -> Result<Analysed, InstrumentError> {
+    let settings = |rate_hz: f64, scale: f64| AllanSettings {
+        rate_hz,
+        scale,
         confidence: arguments.confidence,
         estimator: arguments.estimator.of_library(),
     };
-    let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
-    let columns = SourceText::read(&arguments.log)
-        .map_err(InstrumentError::from)
-        .and_then(|source| allan_columns(&source, &names, &settings))
-        .map_err(|error| unusable(&arguments.log, error))?;
-    if let Some(path) = &arguments.json {
-        let result = json!({
-            "unit": arguments.unit,
-            "confidence": arguments.confidence,
-            "estimator": arguments.estimator.of_library().description(),
-            "columns": columns,
+    let Some(path) = &arguments.log_description else {
+        let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
+        let source = SourceText::read(&arguments.log)?;
+        // Required without a description.
+        let settings = settings(arguments.rate_hz.unwrap_or(1.0), arguments.scale);
+        return Ok(Analysed {
+            columns: allan_columns(&source, &names, &settings)?,
+            unit: arguments.unit.clone(),
+            clock: None,
         });
-        write_json(
-            path,
-            &ResultFile::new(manifest("", 0, &[&arguments.log])?, result),
-        )?;
-    }
-    Ok(summary(arguments, &columns))
+    };
+    let log = Log::read(&arguments.log, &Description::read(path)?)?;
+    let (scale, unit) = match log.gyro_in_counts {
+        true => (1.0, "counts"),
+        false => (3600.0 * 1.0_f64.to_degrees(), "deg/h"),
+    };
+    let settings = settings(1.0 / log.interval_s, scale);
+    Ok(Analysed {
+        columns: allan_log(&log, ["gyro_x", "gyro_y", "gyro_z"], &settings)?,
+        unit: unit.to_owned(),
+        clock: log.clock.note(),
+    })
 }
 
-fn summary(arguments: &AllanArguments, columns: &[AllanColumn]) -> String {
+fn summary(arguments: &AllanArguments, analysed: &Analysed) -> String {
     let mut text = String::new();
-    for column in columns {
+    if let Some(note) = &analysed.clock {
+        let _ = writeln!(text, "{note}\n");
+    }
+    for column in &analysed.columns {
         let mut table = table(["tau [s]", "deviation", "low", "high", "freedom", "noise"]);
         for point in &column.points {
             table.add_row([
@@ -119,10 +166,10 @@ fn summary(arguments: &AllanArguments, columns: &[AllanColumn]) -> String {
             "{}: {} [{}], confidence {}\n\n{}\n\n{}",
             column.name,
             arguments.estimator.of_library().description(),
-            arguments.unit,
+            analysed.unit,
             arguments.confidence,
             table.trim_fmt(),
-            parts(column.noise.as_ref(), &arguments.unit),
+            parts(column.noise.as_ref(), &analysed.unit),
         );
     }
     if let Some(path) = &arguments.json {

@@ -98,7 +98,7 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<String, Failure> {
             ("--json", arguments.json.as_deref()),
         ],
     )?;
-    let imported = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    let (imported, clock) = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
     let mut outputs = Outputs::new();
     outputs.stage(
         &arguments.out,
@@ -116,10 +116,11 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<String, Failure> {
         outputs.stage_json(path, &ResultFile::new(manifest, &imported.report))?;
     }
     outputs.commit()?;
-    Ok(summary(arguments, &imported.report))
+    let note = clock.map_or_else(String::new, |note| format!("{note}\n\n"));
+    Ok(note + &summary(arguments, &imported.report))
 }
 
-fn work(arguments: &StrapdownArguments) -> Result<Imported, InstrumentError> {
+fn work(arguments: &StrapdownArguments) -> Result<(Imported, Option<String>), InstrumentError> {
     let description = Description::read(&arguments.log_description)?;
     let log = Log::read(&arguments.log, &description)?;
     let settings = ImportSettings {
@@ -133,7 +134,7 @@ fn work(arguments: &StrapdownArguments) -> Result<Imported, InstrumentError> {
         bias_sigma_deg_per_h: arguments.bias_sigma_deg_per_h,
         level_sigma_deg: arguments.level_sigma_deg,
     };
-    import(&log, &description, &settings)
+    Ok((import(&log, &description, &settings)?, log.clock.note()))
 }
 
 fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {

@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
         ));
     }
     let log = &arguments.logs[0];
-    let (prepared, report) = work(arguments)?;
+    let (prepared, report, notes) = work(arguments)?;
     tracing::info!(?report, "tested");
     let mut outputs = Outputs::new();
     let mut text = format!(
@@ -100,6 +100,9 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
         named(arguments),
         prepared.stops.len()
     );
+    for note in &notes {
+        let _ = writeln!(text, "{note}\n");
+    }
     text += &sensors::text(&prepared);
     match &report {
         Report::Many(report) => text += &summary(arguments, report),
@@ -151,7 +154,8 @@ fn false_alarm(text: &str) -> Result<f64, String> {
         .map_err(|error| error.to_string())
 }
 
-fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, Report), Failure> {
+/// The test, and what there is to tell of the clocks.
+fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, Report, Vec<String>), Failure> {
     let of_log = |log: &Path, error| unusable(log, error);
     let first = &arguments.logs[0];
     let description = Description::read(&arguments.log_description)
@@ -160,7 +164,14 @@ fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, Report), Failure> 
     for path in &arguments.logs {
         logs.push(log_with_stops(arguments, path, &description).map_err(|e| of_log(path, e))?);
     }
-    tested(arguments, &logs, &description).map_err(|error| of_log(first, error))
+    let mut notes: Vec<String> = logs
+        .iter()
+        .filter_map(|(log, _)| log.clock.note())
+        .collect();
+    notes.dedup();
+    let (prepared, report) =
+        tested(arguments, &logs, &description).map_err(|error| of_log(first, error))?;
+    Ok((prepared, report, notes))
 }
 
 fn log_with_stops(

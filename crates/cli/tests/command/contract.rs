@@ -13,6 +13,7 @@ const WRITE: &str = "GYROCAL_WRITE_SCHEMAS";
 
 const DIAGNOSIS: &str = "docs/schema/diagnosis.schema.json";
 const PLAN: &str = "docs/schema/plan.schema.json";
+const LOG: &str = "docs/schema/log.schema.json";
 
 /// Checks that a result of a command conforms to a committed schema.
 #[track_caller]
@@ -45,6 +46,7 @@ fn schemas_that_are_committed_are_those_of_the_types() {
     let schemas = [
         (DIAGNOSIS, gyrocal_diagnosis::result::schema()),
         (PLAN, gyrocal_design::schema()),
+        (LOG, gyrocal_instruments::Description::schema()),
     ];
     for (path, schema) in schemas {
         let mut expected = serde_json::to_string_pretty(&schema).unwrap();
