@@ -204,18 +204,23 @@ const FAR_SIGMAS: f64 = 6.0;
 
 fn rates(text: &mut String, report: &ImportReport) {
     text.push_str("\nRate of gravity in the analytic platform [deg/h]:\n");
-    let lines = [
+    let vertical = report.expected_vertical_rate_deg_per_h;
+    let mut lines = vec![
         (
             "horizontal",
             report.horizontal_rate_deg_per_h,
             report.expected_horizontal_rate_deg_per_h,
         ),
-        (
-            "vertical",
-            report.vertical_rate_deg_per_h,
-            report.expected_vertical_rate_deg_per_h,
-        ),
+        ("vertical", report.vertical_rate_deg_per_h, vertical),
     ];
+    if let Some(projection) = report.vertical_projection_deg_per_h {
+        lines.push(("vertical, mean of the gyros", projection, vertical));
+        lines.push((
+            "vertical, both",
+            report.vertical_combined_deg_per_h,
+            vertical,
+        ));
+    }
     for (name, [rate, sigma], expected) in lines {
         let _ = writeln!(
             text,

@@ -23,6 +23,7 @@ mod earth_rate;
 mod gyro_noise;
 mod integrate;
 mod rotation_fit;
+mod vertical;
 mod windows;
 
 use gyrocal_record::{Bench, Record};
@@ -108,6 +109,11 @@ pub struct ImportReport {
     pub expected_horizontal_rate_deg_per_h: f64,
     /// Vertical part of the rotation rate, and its standard deviation \[deg/h\].
     pub vertical_rate_deg_per_h: [f64; 2],
+    /// Vertical part of the rate by projection of the gyros on specific force, and its standard deviation
+    /// \[deg/h\]; `None` if the rate is no stationary noise about a mean, as of a unit that rocks.
+    pub vertical_projection_deg_per_h: Option<[f64; 2]>,
+    /// Both weighted by what they know \[deg/h\].
+    pub vertical_combined_deg_per_h: [f64; 2],
     /// Vertical part of Earth rate \[deg/h\].
     pub expected_vertical_rate_deg_per_h: f64,
     /// Heading of body y at the first row, clockwise from north, from the gyros.
@@ -241,6 +247,9 @@ impl StaticFit {
         let with_noise =
             |[rate, sigma]: [f64; 2]| [deg_per_h(rate), deg_per_h(sigma).hypot(mean_noise)];
         let earth = earth_deg_per_h(self.latitude_deg);
+        let level_sigma_rad = settings.level_sigma_deg.to_radians();
+        let projection = vertical::projected(log, level_sigma_rad, earth[0]);
+        let vertical_rate = with_noise(self.rotation.vertical_rate);
         ImportReport {
             samples: log.len(),
             duration_s,
@@ -251,7 +260,9 @@ impl StaticFit {
             norm_g: self.norm_g,
             horizontal_rate_deg_per_h: with_noise(self.rotation.horizontal_rate),
             expected_horizontal_rate_deg_per_h: earth[0],
-            vertical_rate_deg_per_h: with_noise(self.rotation.vertical_rate),
+            vertical_rate_deg_per_h: vertical_rate,
+            vertical_projection_deg_per_h: projection,
+            vertical_combined_deg_per_h: vertical::combined(vertical_rate, projection),
             expected_vertical_rate_deg_per_h: earth[1],
             heading_deg: self.heading_deg,
             body_c_enu: self.rotation.platform_c_enu(),

@@ -114,6 +114,37 @@ fn any_constant_error_is_found_as_the_rate_beside_that_of_the_earth() {
 }
 
 #[test]
+fn the_vertical_error_is_that_of_the_mean_within_its_sigma() {
+    // White noise of 1 deg/h over a second: 0.017 deg/h over an hour; accelerometers of 1e-4 g, with which
+    // the path of gravity tells it ten times worse.
+    let error = Vector3::new(0.2, -0.3, 0.5) * DEG_PER_H;
+    let mut noise = common::Noise::of_seed(21);
+    let rate = body_c_enu() * earth_enu() + error;
+    let samples: Vec<_> = (0..3600)
+        .map(|_| {
+            let gyro = rate + DEG_PER_H * noise.vector();
+            (gyro, body_c_enu() * Vector3::z() + 1e-4 * noise.vector())
+        })
+        .collect();
+    let report = imported(&log(1.0, &samples)).unwrap().report;
+    let up = (body_c_enu().transpose() * error / DEG_PER_H).z;
+    let expected = report.expected_vertical_rate_deg_per_h + up;
+    let [mean, sigma] = report.vertical_projection_deg_per_h.unwrap();
+    assert!(
+        (mean - expected).abs() < 4.0 * sigma,
+        "{mean} {sigma} {expected}"
+    );
+    assert!((0.012..0.025).contains(&sigma), "{sigma}");
+    let [_, of_path] = report.vertical_rate_deg_per_h;
+    let [both, of_both] = report.vertical_combined_deg_per_h;
+    assert!(
+        of_path > 3.0 * sigma && of_both <= sigma,
+        "{of_path} {of_both}"
+    );
+    assert!((both - expected).abs() < 4.0 * of_both);
+}
+
+#[test]
 fn coning_is_no_rotation() {
     // A cone of 0.02 rad at 1.3 Hz sampled at 100 Hz. Sums of increments alone would take it for
     // a rate of 0.02² · 8.2 / 2 · (0.082)² / 6 rad/s, 0.37 deg/h, about its axis.

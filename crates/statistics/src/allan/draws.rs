@@ -49,6 +49,11 @@ impl Draws {
         Some(Self { variances })
     }
 
+    /// A function of each draw.
+    pub(super) fn map(&self, function: impl Fn(&DVector<f64>) -> f64) -> Vec<f64> {
+        self.variances.iter().map(function).collect()
+    }
+
     /// Share of the draws with a property.
     pub(super) fn share(&self, property: impl Fn(&DVector<f64>) -> bool) -> f64 {
         let with = self

@@ -19,7 +19,7 @@ const DOUBLINGS: usize = 60;
 /// Interval of the variance of one part; `None` if a fit on the way is not possible.
 pub(super) fn interval(scales: &Scales, part: usize, fit: &Fit, signed: bool) -> Option<[f64; 2]> {
     let estimate = fit.parts[part];
-    let rejected = |variance: f64| Some(p_value(scales, part, variance, signed)? < SIZE);
+    let rejected = |variance: f64| is_rejected(scales, part, variance, signed);
     // The smallest variance that would show anywhere: a thousandth of the sum at its largest share.
     let least = scales
         .averaging
@@ -70,11 +70,11 @@ fn bisect(
     Some((outside * inside).sqrt())
 }
 
-/// Probability of a sum of squares that falls as much when the part is freed as it does here, if the
-/// variance of the part is `variance` and the others are as fitted with it. Where the part may not be
-/// negative this test keeps its size (G. J. Feldman and R. D. Cousins, Physical Review D 57, 1998); that of
-/// the estimate would have half of it.
-fn p_value(scales: &Scales, part: usize, variance: f64, signed: bool) -> Option<f64> {
+/// `true` if a test of the size rejects a variance of the part, the others being as fitted with it: if the
+/// estimate is rarely as large, or rarely as small. Where an estimate of zero is not rare the lower tail can reject
+/// nothing, and the upper one has the whole size (as in the ordering of G. J. Feldman and R. D. Cousins,
+/// Physical Review D 57, 1998).
+fn is_rejected(scales: &Scales, part: usize, variance: f64, signed: bool) -> Option<bool> {
     let free = Conditions {
         signed,
         fixed: None,
@@ -84,15 +84,19 @@ fn p_value(scales: &Scales, part: usize, variance: f64, signed: bool) -> Option<
         ..free
     };
     let fit = scales.fit(fixed)?;
-    let fall = |variances: &DVector<f64>| -> f64 {
-        let white = fit.weighted.whiten(variances);
-        let of = |conditions| {
-            let parts = fit.weighted.solve(&white, conditions);
-            fit.weighted.chi_square(&white, &parts)
-        };
-        of(fixed) - of(free)
+    let estimate = |variances: &DVector<f64>| {
+        let parts = fit.weighted.solve(&fit.weighted.whiten(variances), free);
+        parts[part]
     };
-    let found = fall(&scales.variances);
-    let draws = Draws::of(scales, &fit)?;
-    Some(draws.share(|drawn| fall(drawn) >= found))
+    let found = estimate(&scales.variances);
+    let drawn = Draws::of(scales, &fit)?.map(estimate);
+    let share = |is: &dyn Fn(f64) -> bool| {
+        drawn.iter().filter(|value| is(**value)).count() as f64 / drawn.len() as f64
+    };
+    let above = share(&|value| value >= found);
+    if share(&|value| value <= 0.0) > 0.5 * SIZE {
+        return Some(above < SIZE);
+    }
+    let below = share(&|value| value <= found);
+    Some(above.min(below) < 0.5 * SIZE)
 }
