@@ -3,6 +3,7 @@
 mod allan;
 mod positions;
 mod stops;
+mod vertical;
 
 use gyrocal_statistics::Proportion;
 
@@ -20,6 +21,7 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let mut figures = allan::figures(small)?;
     figures.extend(positions::figures(small)?);
     figures.extend(stops::figures(small)?);
+    figures.extend(vertical::figures(small)?);
     Ok(figures)
 }
 

@@ -32,7 +32,8 @@ struct Record {
     correlated: bool,
     /// Whether each part is told and its interval contains the truth.
     covered: [Option<bool>; 4],
-    /// Difference of the halves of the record in standard deviations, for parts that all three show.
+    /// Difference of the halves of the record in standard deviations, for parts that the record tells within
+    /// a half.
     halves: [Option<f64>; 4],
 }
 
@@ -61,7 +62,7 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         .flat_map(|r| r.halves.iter().flatten().copied())
         .collect();
     let rms = root_mean_square(halves.iter().copied());
-    let name = "Allan, between halves of one record: rms z of parts that both show";
+    let name = "Allan, between halves of one record: rms z of parts told within a half";
     let mut figure = Figure::within(name, HALVES, rms).over(halves.len(), seeds.as_str());
     if small {
         figure.holds = None;
@@ -136,7 +137,7 @@ fn record(seed: u64, samples: [f64; 2]) -> Result<Record, StatisticsError> {
         correlated: whole.correlated_samples,
         covered: core::array::from_fn(covered),
         halves: core::array::from_fn(|part| {
-            shows(&whole, part)
+            is_told(&whole, part)
                 .then(|| difference(&first, &last, part))
                 .flatten()
         }),
@@ -148,17 +149,15 @@ fn fitted(rates: &[f64]) -> Result<NoiseFit, StatisticsError> {
     fit_noise(&points, rates.len())
 }
 
-fn shows(fit: &NoiseFit, part: usize) -> bool {
-    fit.coefficients[part]
-        .interval
-        .is_some_and(|[low, _]| low > 0.0)
+/// `true` if the interval begins above half of the estimate.
+fn is_told(fit: &NoiseFit, part: usize) -> bool {
+    let coefficient = fit.coefficients[part];
+    let ends = coefficient.estimate.zip(coefficient.interval);
+    ends.is_some_and(|(estimate, [low, _])| low > 0.5 * estimate)
 }
 
 /// Difference over the ends of the intervals that face each other.
 fn difference(first: &NoiseFit, last: &NoiseFit, part: usize) -> Option<f64> {
-    if !(shows(first, part) && shows(last, part)) {
-        return None;
-    }
     let of = |fit: &NoiseFit| {
         let coefficient = fit.coefficients[part];
         Some((coefficient.estimate?, coefficient.interval?))
