@@ -98,3 +98,55 @@ fn numbers_that_overflow_are_refused() {
         assert!(!said.contains("NaN") && !said.contains("inf"), "{said}");
     }
 }
+
+#[test]
+fn a_description_stands_for_columns_and_rate() {
+    let folder = Folder::new();
+    let mut rows = "recorded by nobody\nt;gx;gy;gz;ax;ay;az\n".to_owned();
+    let mut state = 1_u64;
+    for row in 0..2000 {
+        let mut number = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        // Stamps in whole milliseconds of a clock of 104 Hz.
+        let stamp = (f64::from(row) / 0.104).round();
+        rows += &format!("{stamp};{};{};{};0;0;1\n", number(), number(), number());
+    }
+    folder.put("l.txt", rows);
+    folder.put(
+        "log.toml",
+        "[file]\ndelimiter = \"semicolon\"\n[time]\ncolumn = \"t\"\nunit_s = 1e-3\n[gyro]\n\
+         columns = [\"gx\", \"gy\", \"gz\"]\nunit = \"deg/s\"\n[accel]\ncolumns = [\"ax\", \"ay\", \
+         \"az\"]\nunit = \"g\"\n",
+    );
+    let text = folder.succeed(&[
+        "allan",
+        "l.txt",
+        "--log-description",
+        "log.toml",
+        "--estimator",
+        "hadamard",
+        "--json",
+        "o.json",
+    ]);
+    assert!(text.contains("steady clock"), "{text}");
+    assert!(
+        text.contains("gyro_z: overlapping Hadamard deviation [deg/h]"),
+        "{text}"
+    );
+    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let noise = &json["columns"][0]["noise"];
+    let walk = &noise["coefficients"][1];
+    assert_eq!(walk["part"], "random_walk");
+    // White samples of a standard deviation of 3600 / √12 deg/h at 104 Hz.
+    let expected = 3600.0 / (12.0_f64 * 104.0).sqrt();
+    let estimate = walk["estimate"].as_f64().unwrap();
+    assert!(
+        (estimate / expected - 1.0).abs() < 0.1,
+        "{estimate} {expected}"
+    );
+    assert_eq!(noise["curve"][0]["parts"].as_array().unwrap().len(), 4);
+}

@@ -304,3 +304,73 @@ fn too_few_stops_to_leave_some_out_are_told() {
     assert!(text.contains(expected), "{text}");
     assert!(text.contains("Give a smaller --left-out"), "{text}");
 }
+
+/// A log of one position at 50 Hz for 20 s, of a unit whose gyro x drifts by 400 deg/h/g along z.
+fn position(force: [f64; 3], seed: u64) -> String {
+    let mut state = seed;
+    let mut noise = || {
+        // Sum of twelve uniform numbers.
+        let mut uniform = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    };
+    let mut text = "gx,gy,gz,ax,ay,az\n".to_owned();
+    let gyros = [0.3 + 400.0 / 3600.0 * force[2], -0.2, 0.1];
+    for _ in 0..1000 {
+        let [gx, gy, gz] = gyros.map(|rate| rate + 0.05 * noise());
+        let [ax, ay, az] = force.map(|force| 9.81 * (force + 0.01 + 1e-3 * noise()));
+        text += &format!("{gx},{gy},{gz},{ax},{ay},{az}\n");
+    }
+    text
+}
+
+const SIX: &str = "[time]\nrate_hz = 50\n[gyro]\ncolumns = [\"gx\", \"gy\", \"gz\"]\nunit = \
+                   \"deg/s\"\n[accel]\ncolumns = [\"ax\", \"ay\", \"az\"]\nunit = \"m/s2\"\n[site]\n\
+                   gravity_m_per_s2 = 9.81\n";
+
+#[test]
+fn six_logs_are_six_positions() {
+    let folder = Folder::new();
+    folder.put("log.toml", SIX);
+    let mut names = Vec::new();
+    for axis in 0..3 {
+        for sign in [1.0, -1.0] {
+            let mut force = [0.0; 3];
+            force[axis] = sign;
+            let name = format!("{}.csv", names.len());
+            folder.put(&name, position(force, names.len() as u64));
+            names.push(name);
+        }
+    }
+    let mut arguments = vec!["tumble"];
+    arguments.extend(names.iter().map(String::as_str));
+    arguments.extend(["--log-description", "log.toml", "--json", "o.json"]);
+    let text = folder.succeed(&arguments);
+    assert!(
+        text.contains("0.csv and 5 further logs: 6 static stops"),
+        "{text}"
+    );
+    assert!(text.contains("accel_x.bias"), "{text}");
+    assert!(
+        text.contains("Not determined by these positions: accel_x.misalignment_y"),
+        "{text}"
+    );
+    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let finding = &json["few_positions"]["findings"][0];
+    assert_eq!(finding["effect"], "gyro_x.g_z");
+    let [estimate, sigma] = ["estimate", "sigma"].map(|key| finding[key].as_f64().unwrap());
+    assert!((estimate - 400.0).abs() < 4.0 * sigma, "{estimate} {sigma}");
+    assert_eq!(json["sensors"]["stops"].as_array().unwrap().len(), 6);
+    let bias = &json["sensors"]["accel_errors"]["coefficients"][0];
+    assert!(
+        (bias["estimate"].as_f64().unwrap() - 0.01).abs() < 1e-3,
+        "{bias}"
+    );
+    // Positions that are one determine nothing more.
+    let errors = folder.fail(&["tumble", "0.csv", "0.csv", "--log-description", "log.toml"]);
+    assert!(errors.contains("all in one position"), "{errors}");
+}

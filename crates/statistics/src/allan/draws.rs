@@ -50,7 +50,7 @@ impl Draws {
     }
 
     /// A function of each draw.
-    pub(super) fn map(&self, function: impl Fn(&DVector<f64>) -> f64) -> Vec<f64> {
+    pub(super) fn map<T>(&self, function: impl Fn(&DVector<f64>) -> T) -> Vec<T> {
         self.variances.iter().map(function).collect()
     }
 

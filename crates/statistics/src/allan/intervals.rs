@@ -10,6 +10,9 @@ use super::parts::NoisePart;
 /// Size of the test.
 const SIZE: f64 = 1.0 - COEFFICIENT_CONFIDENCE;
 
+/// Probability of an estimate that is very rarely as small.
+const RARE: f64 = 0.01;
+
 /// Halvings of the logarithm of a factor of two: a hundredth of it is enough.
 const HALVINGS: usize = 7;
 
@@ -70,10 +73,10 @@ fn bisect(
     Some((outside * inside).sqrt())
 }
 
-/// `true` if a test of the size rejects a variance of the part, the others being as fitted with it: if the
-/// estimate is rarely as large, or rarely as small. Where an estimate of zero is not rare the lower tail can reject
-/// nothing, and the upper one has the whole size (as in the ordering of G. J. Feldman and R. D. Cousins,
-/// Physical Review D 57, 1998).
+/// `true` if a test rejects a variance of the part, the others being as fitted with it: if the sum of
+/// squares falls more than it rarely does when the part is freed. Where the part may not be negative this test
+/// keeps its size (G. J. Feldman and R. D. Cousins, Physical Review D 57, 1998). With few degrees of freedom the
+/// fall is bounded, so that it would reject no large variance: an estimate that is very rarely as small does.
 fn is_rejected(scales: &Scales, part: usize, variance: f64, signed: bool) -> Option<bool> {
     let free = Conditions {
         signed,
@@ -84,19 +87,18 @@ fn is_rejected(scales: &Scales, part: usize, variance: f64, signed: bool) -> Opt
         ..free
     };
     let fit = scales.fit(fixed)?;
-    let estimate = |variances: &DVector<f64>| {
-        let parts = fit.weighted.solve(&fit.weighted.whiten(variances), free);
-        parts[part]
+    // The fall, and the estimate.
+    let of = |variances: &DVector<f64>| {
+        let white = fit.weighted.whiten(variances);
+        let parts = fit.weighted.solve(&white, free);
+        let held = fit.weighted.solve(&white, fixed);
+        let fall = fit.weighted.chi_square(&white, &held) - fit.weighted.chi_square(&white, &parts);
+        [fall, parts[part]]
     };
-    let found = estimate(&scales.variances);
-    let drawn = Draws::of(scales, &fit)?.map(estimate);
-    let share = |is: &dyn Fn(f64) -> bool| {
-        drawn.iter().filter(|value| is(**value)).count() as f64 / drawn.len() as f64
+    let [fall, estimate] = of(&scales.variances);
+    let drawn = Draws::of(scales, &fit)?.map(of);
+    let share = |is: &dyn Fn(&[f64; 2]) -> bool| {
+        drawn.iter().filter(|values| is(values)).count() as f64 / drawn.len() as f64
     };
-    let above = share(&|value| value >= found);
-    if share(&|value| value <= 0.0) > 0.5 * SIZE {
-        return Some(above < SIZE);
-    }
-    let below = share(&|value| value <= found);
-    Some(above.min(below) < 0.5 * SIZE)
+    Some(share(&|values| values[0] >= fall) < SIZE || share(&|values| values[1] <= estimate) < RARE)
 }
