@@ -9,6 +9,7 @@ use gyrocal_statistics::Proportion;
 
 use crate::error::Error;
 use crate::figure::{Figure, coverage};
+use crate::truth::Extent;
 
 /// Range of a coverage of 95 %.
 const COVERAGE: [f64; 2] = [0.93, 0.97];
@@ -17,11 +18,11 @@ const COVERAGE: [f64; 2] = [0.93, 0.97];
 const LARGE_CELL: usize = 1000;
 
 /// All figures of the topic.
-pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let mut figures = allan::figures(small)?;
-    figures.extend(positions::figures(small)?);
-    figures.extend(stops::figures(small)?);
-    figures.extend(vertical::figures(small)?);
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let mut figures = allan::figures(extent)?;
+    figures.extend(positions::figures(extent)?);
+    figures.extend(stops::figures(extent)?);
+    figures.extend(vertical::figures(extent)?);
     Ok(figures)
 }
 

@@ -46,7 +46,7 @@ struct Arguments {
     /// Only these parts of the topic (truth).
     #[arg(long = "part", value_name = "PART")]
     parts: Vec<truth::Part>,
-    /// Most records of each population (truth): a part of the full version, which goes on from there.
+    /// Most records of each population (truth, logs): a part of the full version, which goes on from there.
     #[arg(long, value_name = "COUNT")]
     records: Option<u64>,
     /// Also write the table into this file, with the command that printed it.
@@ -112,6 +112,10 @@ enum Topic {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    let extent = truth::Extent {
+        small: arguments.small,
+        most: arguments.records,
+    };
     let figures = match arguments.topic {
         Topic::MainJob => main_job::figures(arguments.small),
         Topic::Calibration => calibration::figures(arguments.small),
@@ -124,14 +128,8 @@ fn main() -> ExitCode {
         Topic::Gain => gain::figures(arguments.small),
         Topic::House => house::figures(arguments.small, arguments.write),
         Topic::Measured => measured::figures(arguments.write),
-        Topic::Logs => logs::figures(arguments.small),
-        Topic::Truth => {
-            let extent = truth::Extent {
-                small: arguments.small,
-                most: arguments.records,
-            };
-            truth::figures(extent, &arguments.parts)
-        }
+        Topic::Logs => logs::figures(extent),
+        Topic::Truth => truth::figures(extent, &arguments.parts),
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {

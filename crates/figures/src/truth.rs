@@ -24,7 +24,7 @@ pub(crate) struct Extent {
 
 impl Extent {
     /// Number of records of a cell, from those of the full and of the small version.
-    fn records(self, full: u64, small: u64) -> u64 {
+    pub(crate) fn records(self, full: u64, small: u64) -> u64 {
         if self.small {
             small
         } else {

@@ -10,6 +10,7 @@ use super::covered;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
+use crate::truth::Extent;
 
 /// Purpose of the stream of draws.
 const LEVELS: u64 = 1801;
@@ -37,8 +38,9 @@ struct Record {
     halves: [Option<f64>; 4],
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let seeds = FIRST_SEED..FIRST_SEED + if small { SMALL } else { RECORDS };
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
+    let seeds = FIRST_SEED..FIRST_SEED + extent.records(RECORDS, SMALL);
     let campaign = resumable::campaign("logs", "allan", seeds.clone(), small)?;
     let samples = if small { SAMPLES_SMALL } else { SAMPLES };
     let outcome = campaign.run(|seed| record(seed, samples), |_| ())?;

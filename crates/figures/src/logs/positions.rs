@@ -12,6 +12,7 @@ use super::{at_least, covered};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
+use crate::truth::Extent;
 
 /// Purpose of the stream of draws.
 const ERRORS: u64 = 1804;
@@ -39,10 +40,11 @@ struct Test {
     accelerometers: Vec<bool>,
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
     let mut figures = Vec::new();
     for (count, first_seed) in [(6, 820_000), (12, 830_000)] {
-        let seeds = first_seed..first_seed + if small { SMALL } else { RECORDS };
+        let seeds = first_seed..first_seed + extent.records(RECORDS, SMALL);
         let cell = format!("positions-{count}");
         let campaign = resumable::campaign("logs", &cell, seeds.clone(), small)?;
         let outcome = campaign.run(|seed| test(count, seed), |_| ())?;

@@ -12,6 +12,7 @@ use super::at_least;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
+use crate::truth::Extent;
 
 /// Purpose of the stream of draws.
 const MOTION: u64 = 1805;
@@ -29,8 +30,9 @@ struct Found {
     false_stops: usize,
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let seeds = FIRST_SEED..FIRST_SEED + if small { SMALL } else { RECORDS };
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
+    let seeds = FIRST_SEED..FIRST_SEED + extent.records(RECORDS, SMALL);
     let campaign = resumable::campaign("logs", "stops", seeds.clone(), small)?;
     let outcome = campaign.run(test, |_| ())?;
     let seeds = format!("{seeds:?}");

@@ -12,6 +12,7 @@ use super::covered;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
+use crate::truth::Extent;
 
 /// Purpose of the stream of draws.
 const ERRORS: u64 = 1803;
@@ -32,8 +33,9 @@ struct Vertical {
     both: [f64; 2],
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let seeds = FIRST_SEED..FIRST_SEED + if small { SMALL } else { RECORDS };
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
+    let seeds = FIRST_SEED..FIRST_SEED + extent.records(RECORDS, SMALL);
     let campaign = resumable::campaign("logs", "vertical", seeds.clone(), small)?;
     let outcome = campaign.run(log, |_| ())?;
     let logs: Vec<&Vertical> = outcome.successes().map(|(_, log)| log).collect();
