@@ -240,8 +240,7 @@ impl Log {
         InstrumentError::unfit(
             Unfit::Gap,
             format!(
-                "{gaps} long interval(s) between time stamps and missing samples, the first interval of \
-                 {:.4} s after {} s",
+                "{gaps} gap(s) in the time stamps, the longest there of {:.4} s after {} s",
                 interval_s(&first),
                 self.time_s[first]
             ),

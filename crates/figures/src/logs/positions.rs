@@ -153,7 +153,8 @@ fn test(count: usize, seed: u64) -> Result<Test, InstrumentError> {
 
 fn unit(noise: f64, draw: &mut Draw) -> UnitErrors {
     let mut vector = |size: f64| Vector3::new(draw.normal(), draw.normal(), draw.normal()) * size;
-    let (scale, misalignment) = (vector(0.005), vector(0.003));
+    // Misalignments as large as the calibration expects them to be.
+    let (scale, misalignment) = (vector(0.005), vector(0.01));
     let mut accel_matrix = Matrix3::from_diagonal(&(Vector3::repeat(1.0) + scale));
     accel_matrix[(0, 1)] = misalignment.x * accel_matrix[(0, 0)];
     accel_matrix[(0, 2)] = misalignment.y * accel_matrix[(0, 0)];
