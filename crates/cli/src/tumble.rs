@@ -70,7 +70,7 @@ pub(crate) struct TumbleArguments {
 /// Result of a test with many or with few stops.
 #[derive(Debug)]
 enum Report {
-    Many(MultiPositionReport),
+    Many(Box<MultiPositionReport>),
     Few(FewPositionReport),
 }
 
@@ -217,7 +217,7 @@ fn tested(
         ..MultiPositionSettings::default()
     };
     let report = multi_position_test(&prepared.positions, &settings)?;
-    Ok((prepared, Report::Many(report)))
+    Ok((prepared, Report::Many(Box::new(report))))
 }
 
 fn not_identifiable(text: &mut String, prepared: &PreparedTest) {

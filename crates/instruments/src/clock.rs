@@ -47,6 +47,7 @@ impl Clock {
 }
 
 /// Times of a steady clock.
+#[derive(Debug)]
 pub(crate) struct SteadyClock {
     pub(crate) time_s: Vec<f64>,
     pub(crate) jitter_s: f64,
@@ -161,9 +162,7 @@ mod tests {
 
     #[test]
     fn jitter_is_no_gap_and_a_lost_sample_is_one() {
-        let steady = steady_clock(&stamps(None))
-            .ok()
-            .expect("no sample is missing");
+        let steady = steady_clock(&stamps(None)).expect("no sample is missing");
         let interval_s = steady.time_s[1] - steady.time_s[0];
         // A delay of 2.3 ms rms over the root of 2000 and over 19 s.
         assert!((interval_s * 104.0 - 1.0).abs() < 1e-4, "{interval_s}");
@@ -173,7 +172,7 @@ mod tests {
             steady.jitter_s
         );
         for lost in [300, 1000, 1031, 1701] {
-            let [from, to] = steady_clock(&stamps(Some(lost))).err().expect("a gap");
+            let [from, to] = steady_clock(&stamps(Some(lost))).expect_err("a gap");
             assert!(from <= lost && lost <= to, "{lost}: {from} to {to}");
         }
     }
@@ -182,7 +181,7 @@ mod tests {
     fn packets_are_no_gaps() {
         // Ten samples arrive together.
         let packets: Vec<f64> = (0..1000).map(|sample| 0.1 * (sample / 10) as f64).collect();
-        let steady = steady_clock(&packets).ok().expect("no sample is missing");
+        let steady = steady_clock(&packets).expect("no sample is missing");
         assert!((steady.time_s[999] - steady.time_s[0] - 9.99).abs() < 0.05);
     }
 

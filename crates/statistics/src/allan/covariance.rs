@@ -62,8 +62,8 @@ impl ScaleCovariance {
         covariance
     }
 
-    /// The same for the averaging times from number `first` on.
-    pub(super) fn from_scale(&self, first: usize) -> Self {
+    /// The same without the first averaging times.
+    pub(super) fn without_first(&self, first: usize) -> Self {
         let pairs = self.pairs.iter().map(|(p, q, matrix)| {
             let left = matrix.nrows() - first;
             (

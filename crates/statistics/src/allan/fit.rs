@@ -143,7 +143,7 @@ pub fn fit_noise(points: &[AllanPoint], samples: usize) -> Result<NoiseFit, Stat
     };
     let chosen = choose(&all).ok_or(too_short)?;
     let interval_s = first.tau_s / first.averaging as f64;
-    let scales = all.from_scale(chosen.first);
+    let scales = all.without_first(chosen.first);
     let coefficient = |(index, part): (usize, NoisePart)| {
         let unit = first.deviation * part.time_factor(interval_s);
         let told = match chosen.correlated {
@@ -212,19 +212,19 @@ fn choose(all: &Scales) -> Option<Chosen> {
 }
 
 impl Scales {
-    /// The same from averaging time number `first` on.
-    fn from_scale(&self, first: usize) -> Self {
+    /// The same without the first averaging times.
+    fn without_first(&self, first: usize) -> Self {
         let left = self.averaging.len() - first;
         Self {
             averaging: self.averaging[first..].to_vec(),
             variances: self.variances.rows(first, left).into_owned(),
-            covariance: self.covariance.from_scale(first),
+            covariance: self.covariance.without_first(first),
         }
     }
 
     /// Fit from averaging time number `first` on, with its test.
     fn judged(&self, first: usize, signed: bool) -> Option<Chosen> {
-        let scales = self.from_scale(first);
+        let scales = self.without_first(first);
         let conditions = Conditions {
             signed,
             fixed: None,
