@@ -28,6 +28,21 @@ const FEW_SCALARS: usize = 16;
 /// results are copied once more, which takes a noticeable part of the time of smaller ones only.
 const INLINED_OPERATIONS_OF_LARGE_RESULTS: usize = 512;
 
+/// Attributes for the inlining of a function.
+fn inlining(operations: usize, scalars: usize) -> TokenStream {
+    if operations <= ALWAYS_INLINED_OPERATIONS {
+        quote!(#[inline(always)])
+    } else if scalars > FEW_SCALARS && operations <= INLINED_OPERATIONS_OF_LARGE_RESULTS {
+        // Where there is no operating system code counts more than a copy.
+        quote! {
+            #[cfg_attr(target_os = "none", inline)]
+            #[cfg_attr(not(target_os = "none"), inline(always))]
+        }
+    } else {
+        quote!(#[inline])
+    }
+}
+
 pub(super) fn emit(
     program: &Program,
     function: &Function,
@@ -40,16 +55,7 @@ pub(super) fn emit(
     let name = items.claim(Namespace::Value, &function.name, &place)?;
     let count = Count::of(expressions);
     let doc = documentation(program, function, count);
-    let most = if output::scalars(function) > FEW_SCALARS {
-        INLINED_OPERATIONS_OF_LARGE_RESULTS
-    } else {
-        ALWAYS_INLINED_OPERATIONS
-    };
-    let inline = if count.total() <= most {
-        quote!(#[inline(always)])
-    } else {
-        quote!(#[inline])
-    };
+    let inline = inlining(count.total(), output::scalars(function));
     let allowances = allowances(function, expressions);
     let arguments: Vec<TokenStream> = program
         .inputs_of(function)
