@@ -114,6 +114,36 @@ fn a_term_beside_a_random_walk_is_found_and_judged_forward() {
 }
 
 #[test]
+fn a_ramp_of_one_gyro_is_no_walk_of_it_beside_walks_of_the_others() {
+    let hidden = [
+        ("gyro_x.ramp", &[("size", 0.02)][..]),
+        ("gyro_y.random_walk", &[("size", 0.003)]),
+        ("gyro_z.random_walk", &[("size", 0.01)]),
+    ];
+    let simulation = simulate(&Scenario {
+        seed: 12,
+        coefficients: Coefficients::PAPER_LIKE,
+        initial: InitialAttitude::Random,
+        duration_s: 2.5 * 86_400.0,
+        interval_s: 120.0,
+        hidden: hidden
+            .iter()
+            .map(|(effect, parameters)| Hidden::new(effect, parameters).unwrap())
+            .collect(),
+        ..Scenario::default()
+    })
+    .unwrap();
+    let found = diagnose(
+        &simulation.record,
+        &simulation.bench,
+        &DiagnoseOptions::default(),
+    );
+    let found = found.unwrap().result;
+    let names: Vec<&str> = found.causes().map(|f| f.effect.as_str()).collect();
+    assert_eq!(names, hidden.map(|(effect, _)| effect));
+}
+
+#[test]
 fn what_the_catalogue_does_not_hold_has_no_name_and_is_told() {
     type Case<'a> = (&'a str, &'a [(&'a str, f64)], &'a str, Option<&'a str>);
     let tone = |size| [("size", size), ("period_h", 5.3)];

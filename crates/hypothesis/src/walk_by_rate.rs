@@ -14,10 +14,11 @@ use crate::walk_candidates::{
     BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, alternatives, needed,
 };
 
-/// The model that is left, the walks that stand in sets of effects, and the effects that stand in sets of
-/// walks, by rates.
+/// The model that is left, the walks that it needs, the walks that stand in sets of effects, and the
+/// effects that stand in sets of walks, by rates.
 pub(crate) struct ByRate<F> {
     pub(crate) state: SearchState<F>,
+    pub(crate) walks: Vec<Needed>,
     pub(crate) rivals: Vec<Rival>,
     pub(crate) in_place_of: Vec<(usize, Vec<Alternative>)>,
 }
@@ -41,12 +42,11 @@ pub(crate) fn replaced<F: FittedModel>(
     let mut rivals: Vec<Rival> = Vec::new();
     loop {
         let mut others = Vec::new();
-        let walks = if context.budget.is_spent(&state.stage.fitted) {
-            Vec::new()
-        } else {
-            needed(candidates, &state)?
-        };
-        for walk in walks {
+        let walks = needed(candidates, &state)?;
+        // What an effect stands for is seldom the largest walk.
+        let mut by_gain = walks.clone();
+        by_gain.sort_by(|a, b| a.gain.total_cmp(&b.gain));
+        for walk in by_gain {
             if context.budget.is_spent(&state.stage.fitted) {
                 break;
             }
@@ -73,6 +73,7 @@ pub(crate) fn replaced<F: FittedModel>(
             return Ok(ByRate {
                 in_place_of: in_place_of.collect(),
                 state,
+                walks,
                 rivals,
             });
         }

@@ -251,13 +251,13 @@ impl Chosen<'_, '_> {
         (p_value, together): (f64, Vec<Alternative>),
         draws: &mut GaussianDraws,
     ) -> Result<Compared<F>, F::Error> {
-        let candidates = self.candidates;
         let ByRate {
             state,
+            walks,
             rivals,
             in_place_of,
-        } = replaced(self.context, candidates, state, self.threshold, draws)?;
-        let mut named = named(candidates, &state, p_value)?;
+        } = replaced(self.context, self.candidates, state, self.threshold, draws)?;
+        let mut named = named(&state, walks, p_value)?;
         for (walk, finding) in &mut named {
             let own = in_place_of.iter().find(|(rate, _)| *rate == walk.rate);
             let own = own.map(|(_, effects)| effects);
@@ -276,8 +276,8 @@ impl Chosen<'_, '_> {
 
 /// The walks of a model that are named.
 fn named<F: FittedModel>(
-    candidates: &Candidates,
     state: &SearchState<F>,
+    walks: Vec<Needed>,
     p_value: f64,
 ) -> Result<Vec<(Needed, Finding)>, F::Error> {
     let sizes = &state.stage.noise.noise.walk;
@@ -292,10 +292,7 @@ fn named<F: FittedModel>(
         );
         (walk, finding)
     };
-    Ok(needed(candidates, state)?
-        .into_iter()
-        .map(finding)
-        .collect())
+    Ok(walks.into_iter().map(finding).collect())
 }
 
 fn walk_finding(

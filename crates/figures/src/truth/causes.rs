@@ -160,9 +160,11 @@ impl Told<'_> {
     /// Sets without a noise process.
     fn alone(&self) -> [Figure; 2] {
         let kind = |one: &Caused| effect(&one.effect).map(|effect| effect.kind);
+        // Constants of a gyro that the search tests are the terms of specific force.
+        let of_gyro = |one: &Caused| effect(&one.effect).is_some_and(|one| one.rate().is_some());
         let is_quick = |one: &&Caused| {
             kind(one) == Some(EffectKind::Periodic)
-                || (kind(one) == Some(EffectKind::Constant) && one.effect.contains(".g_"))
+                || (kind(one) == Some(EffectKind::Constant) && of_gyro(one))
         };
         let is_warm_up = |one: &&Caused| kind(one) == Some(EffectKind::Exponential);
         let [quick, warm_up] = self.cell.least_alone;
