@@ -1,5 +1,7 @@
 //! Options and data of a search.
 
+use std::rc::Rc;
+
 use gyrocal_scalar::effect::{Effect, EffectKind};
 
 use crate::accepted::Accepted;
@@ -47,7 +49,7 @@ pub(crate) struct SearchContext<'t> {
     pub(crate) base: ModelExtension,
     pub(crate) rows: Rows,
     pub(crate) options: &'t SearchOptions,
-    pub(crate) budget: Budget,
+    pub(crate) budget: Rc<Budget>,
 }
 
 impl<'t> SearchContext<'t> {
@@ -69,7 +71,22 @@ impl<'t> SearchContext<'t> {
             base: nominal.extension().clone(),
             rows,
             options,
-            budget: Budget::unlimited(),
+            budget: Rc::new(Budget::unlimited()),
+        }
+    }
+
+    /// The same with the effects alone that can act like a random walk of a rate: those of the other rates
+    /// have no variant.
+    pub(crate) fn of_rate(&self, rate: usize) -> Self {
+        let is_own = |effect: &Effect| effect.rate().is_none_or(|own| own == rate);
+        Self {
+            plant: self.plant,
+            set: self.set.restricted(self.plant, is_own),
+            walks: self.walks.clone(),
+            base: self.base.clone(),
+            rows: self.rows.clone(),
+            options: self.options,
+            budget: Rc::clone(&self.budget),
         }
     }
 

@@ -33,8 +33,9 @@ const WORTH_FITTING_BESIDE_WALKS: f64 = 0.5;
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Beside {
     /// White noise. Effects are given up where walks, with this log-likelihood and no effect, are so much
-    /// better that the effects would lose even if every further one gained as the last has.
-    WhiteNoise { walks: Option<f64> },
+    /// better that the effects would lose even if gains went on to fall only as fast as the last two have.
+    /// The model has `most` effects at most.
+    WhiteNoise { walks: Option<f64>, most: usize },
     /// Random walks: an effect must gain so much more than the threshold, with the walks estimated with
     /// and without it.
     Walks { margin: f64 },
@@ -48,9 +49,10 @@ pub(crate) fn forward<F: FittedModel>(
     draws: &mut GaussianDraws,
 ) -> Result<(SearchState<F>, FirstRound), F::Error> {
     let mut first: Option<FirstRound> = None;
-    let margin = match beside {
-        Beside::WhiteNoise { .. } => None,
-        Beside::Walks { margin } => Some(margin),
+    let mut gains = Vec::new();
+    let (margin, most) = match beside {
+        Beside::WhiteNoise { most, .. } => (None, most),
+        Beside::Walks { margin } => (Some(margin), MOST_EFFECTS),
     };
     loop {
         let hypotheses = open_hypotheses(context, &state);
@@ -75,8 +77,7 @@ pub(crate) fn forward<F: FittedModel>(
         } else {
             WORTH_FITTING
         };
-        let significant =
-            scores.largest() > share * threshold && state.accepted.len() < MOST_EFFECTS;
+        let significant = scores.largest() > share * threshold && state.accepted.len() < most;
         if significant {
             scores.refine(&state.stage.fitted, context, &hypotheses, &[])?;
         }
@@ -108,16 +109,47 @@ pub(crate) fn forward<F: FittedModel>(
         };
         let candidate = (best, best.shape(&hypotheses));
         match try_effect(context, &mut state, candidate, (&null, threshold), beside) {
-            Outcome::Goes => {}
-            Outcome::Ends => return Ok((state, first.unwrap_or_default())),
+            Outcome::Inseparable => {}
+            Outcome::Gained(gained) => gains.push(gained),
+            Outcome::NotDetected => return Ok((state, first.unwrap_or_default())),
+        }
+        if is_hopeless(&state, &gains, threshold, beside) {
+            return Ok((state, first.unwrap_or_default()));
         }
     }
 }
 
-/// Whether the selection goes on.
+/// What became of an effect.
 enum Outcome {
-    Goes,
-    Ends,
+    /// It cannot be told apart from those in the model.
+    Inseparable,
+    /// It is in the model; twice the log-likelihood that it gained.
+    Gained(f64),
+    NotDetected,
+}
+
+/// Whether walks would stay better than the effects whatever were added to them.
+fn is_hopeless<F>(state: &SearchState<F>, gains: &[f64], threshold: f64, beside: Beside) -> bool {
+    let Beside::WhiteNoise {
+        walks: Some(walks),
+        most,
+    } = beside
+    else {
+        return false;
+    };
+    let Some((last, before)) = gains.split_last() else {
+        return false;
+    };
+    let fall = before.last().map_or(1.0, |before| (last / before).min(1.0));
+    let advantage =
+        2.0 * (state.stage.noise.log_likelihood - walks) - state.penalties(threshold, 0.0, 1);
+    let mut further = 0.0;
+    let mut gain = *last;
+    for _ in state.accepted.len()..most {
+        gain *= fall;
+        further += (gain - threshold).max(0.0);
+    }
+    advantage + further < 0.0
 }
 
 /// Adds the best effect to the model if it is detected: by the likelihood ratio, the noise estimated
@@ -140,7 +172,7 @@ fn try_effect<F: FittedModel>(
     };
     accept(context, state, accepted);
     if state.accepted.len() == before.accepted.len() {
-        return Outcome::Goes;
+        return Outcome::Inseparable;
     }
     let gained = 2.0 * (state.stage.noise.log_likelihood - before.stage.noise.log_likelihood);
     let tested = gained - best.searched - null.detection_penalties[best.hypothesis];
@@ -150,20 +182,12 @@ fn try_effect<F: FittedModel>(
     };
     if !is_detected {
         *state = before;
-        return Outcome::Ends;
+        return Outcome::NotDetected;
     }
     if let Some(own) = state.accepted.last_mut() {
         own.p_value = null.probability(tested);
     }
-    if let Beside::WhiteNoise { walks: Some(walks) } = beside {
-        let advantage =
-            2.0 * (state.stage.noise.log_likelihood - walks) - state.penalties(threshold, 0.0, 1);
-        let further = (MOST_EFFECTS - state.accepted.len()) as f64;
-        if advantage + further * (gained - threshold - penalty) < 0.0 {
-            return Outcome::Ends;
-        }
-    }
-    Outcome::Goes
+    Outcome::Gained(gained)
 }
 
 /// Hypotheses that are not in the model and can be distinguished from it.

@@ -180,6 +180,26 @@ impl HypothesisSet {
         });
     }
 
+    /// The same hypotheses with the columns of those that are `kept` alone: the others have no variant.
+    pub(crate) fn restricted(&self, plant: &Plant, kept: impl Fn(&'static Effect) -> bool) -> Self {
+        let first = plant.parameters.len();
+        let mut set = Self {
+            hypotheses: Vec::with_capacity(self.hypotheses.len()),
+            extra: Vec::new(),
+            onset_rows: self.onset_rows.clone(),
+        };
+        for hypothesis in &self.hypotheses {
+            let mut own = hypothesis.masked(!kept(hypothesis.effect));
+            let columns = own.variants.iter_mut().flat_map(|own| &mut own.columns);
+            for column in columns.filter(|column| **column >= first) {
+                set.extra.push(self.extra[*column - first].clone());
+                *column = first + set.extra.len() - 1;
+            }
+            set.hypotheses.push(own);
+        }
+        set
+    }
+
     /// Whether a hypothesis is an exact equivalent of one of some others.
     pub(crate) fn is_equivalent(&self, hypothesis: usize, others: &[usize]) -> bool {
         let id = self.hypotheses[hypothesis].id();

@@ -3,7 +3,7 @@
 use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::Accepted;
-use crate::context::{SearchContext, SearchOptions, extension};
+use crate::context::{MOST_EFFECTS, SearchContext, SearchOptions, extension};
 use crate::forward::{Beside, FirstRound, forward};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
@@ -81,7 +81,15 @@ pub fn search<F: FittedModel>(
     let state = SearchState::new(nominal.clone());
     let candidates = Candidates::new(&context, &nominal)?;
     let walks = candidates.as_ref().map(Candidates::log_likelihood);
-    let (state, first) = forward(&context, state, Beside::WhiteNoise { walks }, &mut draws)?;
+    let (state, first) = forward(
+        &context,
+        state,
+        Beside::WhiteNoise {
+            walks,
+            most: MOST_EFFECTS,
+        },
+        &mut draws,
+    )?;
     let compared = match &candidates {
         Some(candidates) => compare(&context, candidates, &nominal, state, &first, &mut draws)?,
         None => Compared::without_walks(state),

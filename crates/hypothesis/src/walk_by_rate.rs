@@ -4,15 +4,18 @@
 //! do not explain the others. Only with the walks of the others in the model is the question fair.
 
 use crate::bank::NominalEstimate;
-use crate::context::SearchContext;
+use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::forward::{Beside, forward};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::result::Alternative;
+use crate::result::{Alternative, FittedStage};
 use crate::state::{SearchState, settled};
 use crate::walk_candidates::{
     BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, alternatives, needed,
 };
+
+/// Most effects in the place of one walk: a slow one, and one whose onset it hides.
+const MOST_IN_PLACE: usize = 2;
 
 /// The model that is left, the walks that it needs, the walks that stand in sets of effects, and the
 /// effects that stand in sets of walks, by rates.
@@ -31,6 +34,19 @@ struct InPlace<F> {
     advantage: f64,
 }
 
+/// A walk that effects were tried in the place of, and by how much they were better.
+struct Tried {
+    walk: Needed,
+    advantage: f64,
+}
+
+impl Tried {
+    /// Whether effects could be better beside another model, where the walk gains less.
+    fn is_open(&self, walk: &Needed) -> bool {
+        self.advantage + (self.walk.gain - walk.gain).max(0.0) > 0.0
+    }
+}
+
 /// Replaces walks by effects as long as effects are better.
 pub(crate) fn replaced<F: FittedModel>(
     context: &SearchContext<'_>,
@@ -40,6 +56,7 @@ pub(crate) fn replaced<F: FittedModel>(
     draws: &mut GaussianDraws,
 ) -> Result<ByRate<F>, F::Error> {
     let mut rivals: Vec<Rival> = Vec::new();
+    let mut tried: Vec<Tried> = Vec::new();
     loop {
         let mut others = Vec::new();
         let walks = needed(candidates, &state)?;
@@ -47,13 +64,21 @@ pub(crate) fn replaced<F: FittedModel>(
         let mut by_gain = walks.clone();
         by_gain.sort_by(|a, b| a.gain.total_cmp(&b.gain));
         for walk in by_gain {
+            let mut same = tried.iter().filter(|one| one.walk.rate == walk.rate);
+            if same.any(|one| !one.is_open(&walk)) {
+                continue;
+            }
             if context.budget.is_spent(&state.stage.fitted) {
                 break;
             }
             // What cannot be fitted does not stand in the place of a walk.
-            if let Ok(other) = in_place(context, &state, walk, threshold, draws) {
-                others.extend(other);
-            }
+            let other = in_place(context, &state, walk, threshold, draws);
+            let other = other.ok().flatten();
+            let advantage = other
+                .as_ref()
+                .map_or(f64::NEG_INFINITY, |one| one.advantage);
+            tried.push(Tried { walk, advantage });
+            others.extend(other);
         }
         others.sort_by(|a, b| b.advantage.total_cmp(&a.advantage));
         if others
@@ -89,7 +114,14 @@ pub(crate) fn replaced<F: FittedModel>(
                 of: added.map(|own| own.hypothesis).collect(),
             });
         }
-        state = best.state;
+        // The signatures of all effects again.
+        let fitted = best.state.stage.fitted.clone();
+        let noise = best.state.stage.noise.clone();
+        let accepted = &best.state.accepted;
+        state = SearchState {
+            stage: FittedStage::new(fitted, noise, &context.set, &context.rows, accepted)?,
+            ..best.state
+        };
     }
 }
 
@@ -101,6 +133,7 @@ fn in_place<F: FittedModel>(
     threshold: f64,
     draws: &mut GaussianDraws,
 ) -> Result<Option<InPlace<F>>, F::Error> {
+    let context = &context.of_rate(walk.rate);
     let own = state.stage.noise.log_likelihood;
     let mut noise = state.stage.noise.noise.clone();
     noise.walk[walk.rate] = 0.0;
@@ -123,6 +156,7 @@ fn in_place<F: FittedModel>(
     };
     let beside = Beside::WhiteNoise {
         walks: Some(own - 0.5 * (before + first)),
+        most: MOST_EFFECTS.min(state.accepted.len() + MOST_IN_PLACE),
     };
     let (mut with, _) = forward(context, without, beside, draws)?;
     with.seeks_unmodelled = state.seeks_unmodelled;
