@@ -73,6 +73,17 @@ pub fn student_two_sided_p(t: f64, degrees_of_freedom: f64) -> Option<f64> {
     Some(2.0 * distribution.sf(t.abs()))
 }
 
+/// Probability that a variable of Student's distribution is below `t`; that of the normal distribution for
+/// infinite degrees of freedom, `None` if they are not positive.
+#[must_use]
+pub fn student_probability(t: f64, degrees_of_freedom: f64) -> Option<f64> {
+    if degrees_of_freedom == f64::INFINITY {
+        return Some(normal_probability(t));
+    }
+    let distribution = StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?;
+    Some(distribution.cdf(t))
+}
+
 /// Probability that a variable of Fisher's F distribution exceeds a value; `None` if the degrees of
 /// freedom, of numerator and denominator, are not positive.
 #[must_use]
@@ -170,6 +181,13 @@ mod tests {
     fn tails_of_ratios_are_those_of_tables() {
         // Two-sided 5 % point of t with 10 degrees of freedom, 5 % point of F(3, 20), 97.5 % and
         // 2.5 % points of chi-square with 100, as printed.
+        // Tables of Student's distribution: 97.5 % point 2.228 of ten degrees of freedom.
+        assert!((student_probability(2.228, 10.0).unwrap_or(0.0) - 0.975).abs() < 5e-5);
+        assert_eq!(
+            student_probability(1.0, f64::INFINITY),
+            Some(normal_probability(1.0))
+        );
+        assert_eq!(student_probability(1.0, 0.0), None);
         assert!((student_two_sided_p(-2.228, 10.0).unwrap_or(0.0) - 0.05).abs() < 1e-4);
         assert!((f_tail(3.098, [3.0, 20.0]).unwrap_or(0.0) - 0.05).abs() < 1e-4);
         for value in [129.561, 74.222] {

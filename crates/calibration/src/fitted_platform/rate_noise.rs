@@ -6,7 +6,7 @@ use gyrocal::estimation::batch::Walk;
 use gyrocal_hypothesis::{RateNoise, RateNoiseFit};
 use gyrocal_statistics::NORMAL_97_5;
 use likelihood::Likelihood;
-use nalgebra::Cholesky;
+use nalgebra::{Cholesky, DVector};
 
 use super::{AXES, FittedPlatform, walks};
 use crate::error::CalibrationError;
@@ -149,6 +149,32 @@ impl FittedPlatform<'_> {
             });
         }
         Ok(intervals)
+    }
+
+    /// Degrees of freedom of the variance of each estimate: the noise of the gyros that it rests on was
+    /// estimated from the record (Satterthwaite, Biometrics Bulletin 2, 110, 1946). An error over its
+    /// sigma has nearly Student's distribution with as many.
+    ///
+    /// # Errors
+    /// As [`Self::fit_rate_noise`].
+    pub fn degrees_of_freedom(&self) -> Result<Vec<f64>, CalibrationError> {
+        let (likelihood, _) = self.likelihood(&self.rate_noise().walking(), &[], &[]);
+        let (information, derivatives) = likelihood.at_fit()?;
+        let of_noise = Cholesky::new(information).ok_or(CalibrationError::NotPositiveDefinite)?;
+        let covariance = self.covariance();
+        let changes: Vec<_> = derivatives
+            .iter()
+            .map(|derivative| covariance * derivative * covariance)
+            .collect();
+        let degrees = |place: usize| {
+            let change = DVector::from_iterator(
+                changes.len(),
+                changes.iter().map(|change| change[(place, place)]),
+            );
+            let of_variance = of_noise.solve(&change).dot(&change);
+            2.0 * covariance[(place, place)].powi(2) / of_variance
+        };
+        Ok((0..covariance.nrows()).map(degrees).collect())
     }
 
     /// The likelihood of the noise about this fit, and the density of a walk that does over the record

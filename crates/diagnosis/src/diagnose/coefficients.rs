@@ -1,12 +1,13 @@
 //! The drift coefficients, over the members of the confidence sets.
 //!
 //! An estimate after a choice among models is a mixture: each member of a set has the weight of its
-//! penalised likelihood (Buckland, Burnham, Augustin, Biometrics 53, 603, 1997).
+//! penalised likelihood (Buckland, Burnham, Augustin, Biometrics 53, 603, 1997). Within a member errors have
+//! Student's distribution, since the noise of the gyros was estimated from the same record.
 
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_hypothesis::{Finding, NominalEstimate};
-use gyrocal_statistics::normal_probability;
+use gyrocal_statistics::{normal_probability, student_probability};
 
 use crate::result::{CoefficientEstimate, CoefficientInterval, Coefficients, SetMember};
 use crate::validation::CrossValidated;
@@ -56,6 +57,9 @@ pub(super) fn coefficients(
         covariance: covariance.clone(),
     };
     let models = extended.map(|_| models(base, &accepted));
+    // Where no pass succeeds, nothing is known of the noise: the normal distribution.
+    let degrees = fit.degrees_of_freedom();
+    let degrees = degrees.unwrap_or_else(|_| vec![f64::INFINITY; count]);
     let of = |values: &[f64], covariance: &[Vec<f64>]| -> Vec<CoefficientEstimate> {
         let all = DRIFT.iter().enumerate();
         all.map(|(index, element)| CoefficientEstimate {
@@ -82,7 +86,7 @@ pub(super) fn coefficients(
             let all = DRIFT.iter().enumerate();
             all.map(|(index, element)| CoefficientInterval {
                 name: element.id.to_owned(),
-                ..mixture(models, index, element.unit)
+                ..mixture(models, index, degrees[index], element.unit)
             })
             .collect()
         }),
@@ -200,7 +204,7 @@ fn replaced(model: &Model, base: &Model, member: &Member<'_>) -> Model {
 }
 
 /// Mean, standard deviation and 95 % interval of one coefficient.
-fn mixture(models: &[Model], index: usize, unit: &str) -> CoefficientInterval {
+fn mixture(models: &[Model], index: usize, degrees: f64, unit: &str) -> CoefficientInterval {
     let component = |model: &Model| {
         let sigma = model.covariance[index][index].sqrt();
         (model.weight, model.values[index], sigma)
@@ -215,13 +219,14 @@ fn mixture(models: &[Model], index: usize, unit: &str) -> CoefficientInterval {
         name: String::new(),
         estimate: mean,
         sigma: variance.sqrt(),
-        interval: [quantile(&all, TAIL), quantile(&all, 1.0 - TAIL)],
+        interval: [TAIL, 1.0 - TAIL].map(|tail| quantile(&all, degrees, tail)),
+        degrees_of_freedom: Some(degrees).filter(|degrees| degrees.is_finite()),
         unit: unit.to_owned(),
     }
 }
 
-/// Quantile of a mixture of normal distributions, by bisection.
-fn quantile(components: &[(f64, f64, f64)], probability: f64) -> f64 {
+/// Quantile of a mixture of Student's distributions, by bisection.
+fn quantile(components: &[(f64, f64, f64)], degrees: f64, probability: f64) -> f64 {
     let ends = |side: f64| {
         components
             .iter()
@@ -233,7 +238,11 @@ fn quantile(components: &[(f64, f64, f64)], probability: f64) -> f64 {
         let middle = 0.5 * (low + high);
         let below: f64 = components
             .iter()
-            .map(|(weight, mean, sigma)| weight * normal_probability((middle - mean) / sigma))
+            .map(|(weight, mean, sigma)| {
+                let deviate = (middle - mean) / sigma;
+                let below = student_probability(deviate, degrees);
+                weight * below.unwrap_or_else(|| normal_probability(deviate))
+            })
             .sum();
         if below < probability {
             low = middle;
@@ -246,12 +255,18 @@ fn quantile(components: &[(f64, f64, f64)], probability: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::quantile;
+    use super::quantile as student;
+
+    fn quantile(components: &[(f64, f64, f64)], probability: f64) -> f64 {
+        student(components, f64::INFINITY, probability)
+    }
 
     #[test]
     fn quantiles_of_a_mixture() {
         // One component: the normal distribution.
         assert!((quantile(&[(1.0, 3.0, 2.0)], 0.975) - (3.0 + 2.0 * 1.959_964)).abs() < 1e-5);
+        // Ten degrees of freedom: 2.228 from tables.
+        assert!((student(&[(1.0, 3.0, 2.0)], 10.0, 0.975) - (3.0 + 2.0 * 2.228_139)).abs() < 1e-5);
         // Two that are far apart with equal weight: the 5 % point of the upper one from above.
         let two = [(0.5, 0.0, 1.0), (0.5, 100.0, 1.0)];
         assert!((quantile(&two, 0.975) - (100.0 + 1.644_854)).abs() < 1e-5);

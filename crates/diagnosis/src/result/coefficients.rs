@@ -28,12 +28,15 @@ pub struct Coefficients {
 pub struct CoefficientInterval {
     /// Its id.
     pub name: String,
-    /// Mean of the mixture of the members' normal distributions, in `unit`.
+    /// Mean of the mixture of the members' distributions, in `unit`.
     pub estimate: f64,
     /// Standard deviation of the mixture, in `unit`.
     pub sigma: f64,
-    /// Its 2.5 % and 97.5 % quantiles, in `unit`.
+    /// Its 2.5 % and 97.5 % quantiles, in `unit`: of a mixture of Student's distributions.
     pub interval: [f64; 2],
+    /// Degrees of freedom of the noise that the sigma rests on; `None` where it was not estimated.
+    #[serde(default)]
+    pub degrees_of_freedom: Option<f64>,
     /// The unit.
     pub unit: String,
 }

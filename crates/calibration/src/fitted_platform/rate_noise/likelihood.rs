@@ -29,6 +29,9 @@ const LEAST_GAIN: f64 = 0.005;
 /// nothing of it.
 const DAMPING: f64 = 1e-3;
 
+/// Precision of the logarithm of the variance of a gyro's white noise before the record.
+const PRIOR_PRECISION: f64 = 0.25 / (GYRO_NOISE_PRIOR_SIGMA * GYRO_NOISE_PRIOR_SIGMA);
+
 /// Densities that an estimate starts from, over that of a walk that does over the record as much as
 /// the declared white noise.
 const STARTS: [f64; 3] = [3.0, 100.0, 3000.0];
@@ -214,17 +217,9 @@ impl Likelihood<'_, '_> {
     fn at(&self, logarithms: &DVector<f64>) -> Result<At, CalibrationError> {
         let score = self.pass(|score| score(&self.factors(logarithms.as_slice()), AXES))?;
         let (value, solution, inverse) = self.restricted(&score, logarithms.as_slice())?;
-        // After the noise of the outputs: inputs, walks.
-        let unknowns: Vec<usize> = (AXES..2 * AXES)
-            .chain(self.free.iter().map(|place| 2 * AXES + place))
-            .collect();
-        let prior = 0.25 * GYRO_NOISE_PRIOR_SIGMA.powi(-2);
+        let unknowns = self.unknowns();
         let believed = self.fitted.noise.gyro_ratio;
         let mut gradient = DVector::zeros(unknowns.len());
-        let stride = score.d_log_variance.len();
-        let mut information = DMatrix::from_fn(unknowns.len(), unknowns.len(), |i, j| {
-            score.information[unknowns[i] * stride + unknowns[j]]
-        });
         for (index, unknown) in unknowns.iter().enumerate() {
             let gram = self.gram(&score.d_gram[*unknown]);
             let squares = (&gram * &solution).dot(&solution);
@@ -236,23 +231,60 @@ impl Likelihood<'_, '_> {
             gradient[index] = -0.5 * (score.d_log_variance[*unknown] + squares + determinant);
             if index < AXES {
                 let off = logarithms[index] + 2.0 * believed[index].ln();
-                gradient[index] -= prior * off;
-                information[(index, index)] += prior;
-            } else {
-                information[(index, index)] += DAMPING;
+                gradient[index] -= PRIOR_PRECISION * off;
             }
         }
         for axis in self.held {
-            information.row_mut(*axis).fill(0.0);
-            information.column_mut(*axis).fill(0.0);
-            information[(*axis, *axis)] = 1.0;
             gradient[*axis] = 0.0;
         }
         Ok(At {
             value,
             gradient,
-            information,
+            information: self.information(&score),
         })
+    }
+
+    /// Places of the unknowns in a score, after the noise of the outputs: inputs, walks.
+    fn unknowns(&self) -> Vec<usize> {
+        (AXES..2 * AXES)
+            .chain(self.free.iter().map(|place| 2 * AXES + place))
+            .collect()
+    }
+
+    /// Fisher's information on the unknowns, with the prior.
+    fn information(&self, score: &NoiseScore) -> DMatrix<f64> {
+        let unknowns = self.unknowns();
+        let stride = score.d_log_variance.len();
+        let mut information = DMatrix::from_fn(unknowns.len(), unknowns.len(), |i, j| {
+            score.information[unknowns[i] * stride + unknowns[j]]
+        });
+        for index in 0..unknowns.len() {
+            information[(index, index)] += if index < AXES {
+                PRIOR_PRECISION
+            } else {
+                DAMPING
+            };
+        }
+        for axis in self.held {
+            information.row_mut(*axis).fill(0.0);
+            information.column_mut(*axis).fill(0.0);
+            information[(*axis, *axis)] = 1.0;
+        }
+        information
+    }
+
+    /// Information on the unknown noise at the noise of the fit, and the derivatives of the information on
+    /// the unknowns of the fit by each of its logarithms.
+    pub(super) fn at_fit(&self) -> Result<(DMatrix<f64>, Vec<DMatrix<f64>>), CalibrationError> {
+        let factors = self.factors(&vec![0.0; AXES + self.free.len()]);
+        let score = self.pass(|score| score(&factors, AXES))?;
+        let count = self.fitted.problem.unknowns.len();
+        let derivative = |unknown: &usize| {
+            let gram = self.gram(&score.d_gram[*unknown]);
+            gram.view((1, 1), (count, count)).into_owned()
+        };
+        let derivatives = self.unknowns().iter().map(derivative).collect();
+        Ok((self.information(&score), derivatives))
     }
 
     /// Gram matrix of the unknowns of the fit.
