@@ -3,6 +3,7 @@
 use core::ops::Range;
 use std::path::Path;
 
+use gyrocal_record::fields::{MOST_COLUMNS, too_many_columns};
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 
 use crate::binary_file::read_binary;
@@ -45,6 +46,10 @@ pub fn read_described(
 ) -> Result<Columns, Error> {
     let mut lines = log_lines(source, format).peekable();
     let header = header(source, format, names, &mut lines);
+    if header.fields.len() > MOST_COLUMNS {
+        let start = header.span.start;
+        return Err(too_many_columns(source, start..start, header.fields.len()));
+    }
     let titles: Vec<&str> = match format.header {
         true => header.fields.iter().map(|(_, text)| *text).collect(),
         false => Vec::new(),
@@ -182,6 +187,19 @@ fn field_count(
     } else {
         "the first row"
     };
+    if line.fields.len() < header.fields.len() && source.ends_within_line(&line.span) {
+        return source.error(
+            InputErrorKind::FieldCount,
+            line.span.clone(),
+            format!(
+                "a last line that is cut off, with {} fields",
+                line.fields.len()
+            ),
+            format!("{} fields, as {first} has", header.fields.len()),
+            "the file ends within this line, as if its writer or a copy was stopped: copy the file \
+             again, or delete this line",
+        );
+    }
     source.error(
         InputErrorKind::FieldCount,
         line.span.clone(),
@@ -210,6 +228,7 @@ fn index(
     };
     match (indices.next(), indices.next()) {
         (Some(index), None) => Ok(index),
+        (None, _) if let Some(swapped) = source.description_in_place_of_table() => Err(swapped),
         (None, _) => Err(error(
             "a header without it".to_owned(),
             format!("a column `{name}`"),

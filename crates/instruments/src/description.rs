@@ -241,6 +241,9 @@ impl Description {
     #[inline]
     fn from_source(source: &SourceText) -> Result<Self, Error> {
         let description: Self = toml::from_str(source.text()).map_err(|error| {
+            if let Some(swapped) = source.table_in_place_of_description() {
+                return swapped;
+            }
             let span = error.span().unwrap_or(0..0);
             let found = source.text().get(span.clone()).unwrap_or("").trim();
             let found = match found.lines().next() {

@@ -1,5 +1,6 @@
 //! The error of this crate.
 
+use gyrocal_record::printable_line;
 use gyrocal_statistics::StatisticsError;
 
 /// Failure of an instrument test.
@@ -13,7 +14,12 @@ pub enum InstrumentError {
     #[error(transparent)]
     Statistics(StatisticsError),
     /// The recording contradicts its description, or is not suitable for the test.
-    #[error("found {found}, expected {expected}; {advice}")]
+    #[error(
+        "found {}, expected {}; {}",
+        printable_line(found),
+        printable_line(expected),
+        printable_line(advice)
+    )]
     Unfit {
         /// Kind of the problem.
         kind: Unfit,

@@ -46,6 +46,9 @@ impl Document {
         interpret: impl FnOnce(&Table<'_>) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let root = DeTable::parse(self.source.text()).map_err(|error| {
+            if let Some(swapped) = self.source.table_in_place_of_description() {
+                return swapped;
+            }
             let span = error.span().unwrap_or(0..0);
             let there = self.source.text().get(span.clone()).unwrap_or("");
             self.source.error(

@@ -3,7 +3,10 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+use miette::{Diagnostic, LabeledSpan, SourceCode};
+
+use crate::excerpt::Excerpt;
+use crate::printable::{printable, printable_line, printable_path};
 
 /// Failure to read or write a file.
 #[derive(Debug, thiserror::Error)]
@@ -13,7 +16,7 @@ pub enum Error {
     #[error(transparent)]
     Input(Box<InputError>),
     /// An input file cannot be read at all.
-    #[error("{}: cannot be read: {reason}", path.display())]
+    #[error("{}: cannot be read: {reason}", printable_path(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -21,7 +24,7 @@ pub enum Error {
         reason: std::io::Error,
     },
     /// An output file cannot be written; nothing was left behind.
-    #[error("{}: cannot be written: {reason}", path.display())]
+    #[error("{}: cannot be written: {reason}", printable_path(path))]
     Unwritable {
         /// The file.
         path: PathBuf,
@@ -29,7 +32,12 @@ pub enum Error {
         reason: std::io::Error,
     },
     /// A value in memory cannot be written because no reader would accept it.
-    #[error("{}: not written: found {found}, expected {expected}", path.display())]
+    #[error(
+        "{}: not written: found {}, expected {}",
+        printable_path(path),
+        printable_line(found),
+        printable_line(expected)
+    )]
     InvalidValue {
         /// The file that was to be written.
         path: PathBuf,
@@ -40,8 +48,10 @@ pub enum Error {
     },
     /// The name of a model file gives no name of a Rust module.
     #[error(
-        "{}: not written: found the module name `{found}`, expected lower-case words joined by `_` \
-         before the first dot that are no Rust keyword", path.display()
+        "{}: not written: found the module name `{}`, expected lower-case words joined by `_` \
+         before the first dot that are no Rust keyword",
+        printable_path(path),
+        printable_line(found)
     )]
     ModuleName {
         /// The file that was to be written.
@@ -149,7 +159,8 @@ impl InputErrorKind {
 /// An error at one place of one file.
 ///
 /// `Display` is `file:line:column: found …, expected …`; [`Diagnostic`] adds the marked line
-/// and the advice.
+/// and the advice. Text of the file is shown with its control characters escaped, and long lines
+/// are cut to a window around the place; the fields hold what was found, cut if it is long.
 #[derive(Debug, Clone)]
 pub struct InputError {
     /// Kind of the fault.
@@ -164,15 +175,14 @@ pub struct InputError {
     pub expected: String,
     /// Advice to the user; empty if `expected` suffices.
     pub advice: String,
-    pub(crate) source: NamedSource<String>,
-    pub(crate) span: SourceSpan,
+    pub(crate) excerpt: Excerpt,
 }
 
 impl InputError {
     /// The name of the file as it was given.
     #[must_use]
     pub fn file(&self) -> &str {
-        self.source.name()
+        self.excerpt.name()
     }
 }
 
@@ -181,11 +191,11 @@ impl fmt::Display for InputError {
         write!(
             formatter,
             "{}:{}:{}: found {}, expected {}",
-            self.file(),
+            printable_line(self.file()),
             self.line,
             self.column,
-            self.found,
-            self.expected
+            printable_line(&self.found),
+            printable_line(&self.expected)
         )
     }
 }
@@ -198,15 +208,16 @@ impl Diagnostic for InputError {
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        (!self.advice.is_empty()).then(|| Box::new(&self.advice) as Box<dyn fmt::Display>)
+        (!self.advice.is_empty())
+            .then(|| Box::new(printable(&self.advice)) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.source)
+        Some(&self.excerpt)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = LabeledSpan::new_with_span(Some("here".to_owned()), self.span);
+        let label = LabeledSpan::new_with_span(Some("here".to_owned()), self.excerpt.span());
         Some(Box::new(core::iter::once(label)))
     }
 }

@@ -33,6 +33,9 @@ pub struct Field<'a> {
     pub text: &'a str,
 }
 
+/// Most columns of a file. The header of a file with more is refused before anything is made of it.
+pub const MOST_COLUMNS: usize = 10_000;
+
 impl<'a> Lines<'a> {
     /// The lines of a text, its header included.
     #[must_use]
@@ -54,9 +57,18 @@ impl<'a> Lines<'a> {
     /// The next line; `None` after the last.
     ///
     /// # Errors
-    /// [`Error::Input`] for text that the CSV reader refuses.
+    /// [`Error::Input`] for text that the CSV reader refuses, and for a line of more than
+    /// [`MOST_COLUMNS`] fields.
     pub fn next_line(&mut self) -> Result<Option<Line<'a>>, Error> {
         while self.read()? {
+            if self.fields.len() > MOST_COLUMNS {
+                let start = self.start();
+                return Err(too_many_columns(
+                    self.source,
+                    start..start,
+                    self.fields.len(),
+                ));
+            }
             let line = self.line();
             if !line.span.is_empty() {
                 return Ok(Some(line));
@@ -80,17 +92,23 @@ impl<'a> Lines<'a> {
             })
     }
 
-    fn line(&self) -> Line<'a> {
+    /// Where the line that was read begins.
+    fn start(&self) -> usize {
         let text = self.source.text();
         let position = self.fields.position().map_or(0, csv::Position::byte);
         let position = usize::try_from(position).unwrap_or(text.len());
         // The reader's position is before the end of the previous line if that is two
         // characters, and before empty lines.
         let ends = text[position..].bytes();
-        let start = position
+        position
             + ends
                 .take_while(|byte| matches!(byte, b'\r' | b'\n'))
-                .count();
+                .count()
+    }
+
+    fn line(&self) -> Line<'a> {
+        let text = self.source.text();
+        let start = self.start();
         let fields: Vec<Field<'a>> = (0..self.fields.len())
             .filter_map(|field| {
                 // One comma before each field but the first.
@@ -107,6 +125,18 @@ impl<'a> Lines<'a> {
         };
         Line { span, fields }
     }
+}
+
+/// The error of a line with more than [`MOST_COLUMNS`] fields.
+#[must_use]
+pub fn too_many_columns(source: &SourceText, place: Range<usize>, found: usize) -> Error {
+    source.error(
+        InputErrorKind::FieldCount,
+        place,
+        format!("{found} fields"),
+        format!("at most {MOST_COLUMNS} fields"),
+        "lines end with a line feed, and a row is a sample",
+    )
 }
 
 impl<'a> Field<'a> {

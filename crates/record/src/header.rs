@@ -35,6 +35,9 @@ pub(crate) struct Header {
 impl Header {
     /// Finds the columns in the header line.
     pub(crate) fn parse(source: &SourceText, line: &Line<'_>) -> Result<Self, Error> {
+        if let Some(swapped) = source.description_in_place_of_table() {
+            return Err(swapped);
+        }
         let names: Vec<&str> = line.fields.iter().map(|field| field.text).collect();
         refuse_other_separators(source, line)?;
         refuse_numbers(source, line)?;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::error::Error;
 use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, refuse_too_few};
+use crate::printable::printable_line;
 use crate::record::Record;
 use crate::rows::{Form, parse};
 use crate::setup::SetupProblem;
@@ -63,6 +64,32 @@ impl RecordFile {
     #[must_use]
     pub fn name(&self) -> &str {
         self.source.name()
+    }
+
+    /// A note on a last line that seems cut off within its last number: the file ends without a line
+    /// feed, and the last field is shorter than that of every other row. `None` otherwise.
+    #[must_use]
+    pub fn cut_note(&self) -> Option<String> {
+        const FEWEST_ROWS: usize = 20;
+        let (last, others) = self.places.split_last()?;
+        let text = self.source.text();
+        let length = |place: &Range<usize>| {
+            let line = &text[place.clone()];
+            line.rsplit(',')
+                .next()
+                .map_or(0, |field| field.trim().len())
+        };
+        let is_cut = others.len() >= FEWEST_ROWS
+            && self.source.ends_within_line(last)
+            && others.iter().all(|other| length(other) > length(last));
+        is_cut.then(|| {
+            let (line, _) = self.source.line_and_column(last.start);
+            format!(
+                "{}:{line}: the file ends without a line feed, and the last number is shorter than \
+                 those above it: it may be cut off. Copy the file again, or delete this line",
+                printable_line(self.name())
+            )
+        })
     }
 
     /// The line of a row, counted from 1; rows are counted from 0. `None` beyond the last row.

@@ -99,13 +99,23 @@ fn push_row(
     form: Form,
 ) -> Result<(), Error> {
     let fields = &line.fields;
-    if fields.len() != header.fields {
+    let is_cut = || source.ends_within_line(&line.span);
+    let ends_empty = || fields.last().is_some_and(|field| field.text.is_empty());
+    if fields.len() != header.fields || (ends_empty() && is_cut()) {
+        let (found, advice) = if fields.len() <= header.fields && is_cut() {
+            ("a last line that is cut off, with", CUT_ADVICE)
+        } else {
+            (
+                "",
+                "a missing accelerometer value is written `nan`; decimal numbers have a point",
+            )
+        };
         return Err(source.error(
             InputErrorKind::FieldCount,
             line.span.clone(),
-            format!("{} fields", fields.len()),
+            format!("{found} {} fields", fields.len()).trim_start(),
             format!("{} fields, as the header has", header.fields),
-            "a missing accelerometer value is written `nan`; decimal numbers have a point",
+            advice,
         ));
     }
     let number = |field: usize, expected: &str| {
@@ -141,6 +151,10 @@ fn push_row(
     Ok(())
 }
 
+/// Advice on a file that ends within a line.
+const CUT_ADVICE: &str = "the file ends within this line, as if its writer or a copy was stopped: \
+    copy the file again, or delete this line";
+
 /// Refuses a time that does not rise, or lies ages after the first.
 fn check_time(
     record: &Record,
@@ -173,5 +187,10 @@ fn check_time(
 fn not_a_number(source: &SourceText, field: &Field<'_>, expected: &str) -> Error {
     let found = quoted(field.text);
     let span = field.span.clone();
-    source.error(InputErrorKind::NotANumber, span, found, expected, "")
+    let advice = if source.ends_within_line(&span) {
+        CUT_ADVICE
+    } else {
+        ""
+    };
+    source.error(InputErrorKind::NotANumber, span, found, expected, advice)
 }

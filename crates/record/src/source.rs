@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::path::Path;
 
-use miette::NamedSource;
-
 use crate::error::{Error, InputError, InputErrorKind};
+use crate::excerpt::Excerpt;
+use crate::printable::bounded;
 
 /// The text of an input file with the name that errors give it.
 #[derive(Debug, Clone)]
@@ -92,6 +92,13 @@ impl SourceText {
         (line, column)
     }
 
+    /// Whether the text ends within a line: at most blanks follow the place, and no end of a line.
+    #[must_use]
+    pub fn ends_within_line(&self, place: &Range<usize>) -> bool {
+        let rest = self.text.get(place.end..).unwrap_or("\n");
+        !rest.contains(['\n', '\r']) && rest.trim().is_empty()
+    }
+
     /// An error at a byte range of this text.
     #[must_use]
     pub fn error(
@@ -107,11 +114,10 @@ impl SourceText {
             kind,
             line,
             column,
-            found: found.into(),
-            expected: expected.into(),
-            advice: advice.into(),
-            source: NamedSource::new(&self.name, self.text.clone()),
-            span: span.into(),
+            found: bounded(found.into()),
+            expected: bounded(expected.into()),
+            advice: bounded(advice.into()),
+            excerpt: Excerpt::new(&self.name, &self.text, span, (line, column)),
         }))
     }
 }
@@ -119,7 +125,16 @@ impl SourceText {
 /// Quotes a piece of a file for an error message, cut if it is long.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST_CHARS: usize = 60;
-    let one_line: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    // Enough of it to see that there is more.
+    let mut one_line = String::new();
+    for word in text.split_whitespace() {
+        let space = if one_line.is_empty() { "" } else { " " };
+        one_line.push_str(space);
+        one_line.extend(word.chars().take(LONGEST_CHARS + 1));
+        if one_line.len() > 4 * LONGEST_CHARS {
+            break;
+        }
+    }
     if one_line.chars().count() > LONGEST_CHARS {
         let head: String = one_line.chars().take(LONGEST_CHARS).collect();
         format!("`{head}…`")

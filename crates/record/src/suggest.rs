@@ -18,7 +18,7 @@ pub fn nearest_names<'a>(typed: &str, known: &[&'a str], count: usize) -> Vec<&'
 /// letters are edited.
 #[must_use]
 pub fn similar_names<'a>(typed: &str, known: &[&'a str], count: usize) -> Vec<&'a str> {
-    let typed_letters = typed.chars().count();
+    let typed_letters = typed.chars().take(COMPARED_CHARS).count();
     let is_slip = |edits: usize, name: &str| 3 * edits <= typed_letters.max(name.chars().count());
     let ranked = ranked(typed, known).into_iter().take(count);
     ranked
@@ -40,8 +40,13 @@ pub fn any_of(names: &[&str]) -> String {
     }
 }
 
+/// Letters of a typed name that are compared: the distance takes their number times that of a known
+/// name.
+const COMPARED_CHARS: usize = 64;
+
 /// All known names with their distance, the nearest first.
 fn ranked<'a>(typed: &str, known: &[&'a str]) -> Vec<(usize, &'a str)> {
+    let typed: String = typed.chars().take(COMPARED_CHARS).collect();
     let typed = typed.to_lowercase();
     let letters = sorted_letters(&typed);
     let mut ranked: Vec<(usize, bool, &str)> = known

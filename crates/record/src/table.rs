@@ -291,7 +291,7 @@ impl<'a> Table<'a> {
         Err(self.source.error(
             InputErrorKind::UnknownKey,
             name.span(),
-            format!("the unknown key `{}`{}", name.get_ref(), self.place()),
+            format!("the unknown key {}{}", quoted(name.get_ref()), self.place()),
             any_of(known),
             advice,
         ))

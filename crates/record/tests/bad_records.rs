@@ -344,7 +344,10 @@ fn the_marked_place_is_the_place_of_the_message() {
     let text = rows(&["0,0,0,1", "60,0,null,1"]);
     let error = refused(&text);
     let label = error.labels().unwrap().next().unwrap();
-    assert_eq!(&text[label.offset()..label.offset() + label.len()], "null");
+    let source = error.source_code().unwrap();
+    let marked = source.read_span(label.inner(), 0, 0).unwrap();
+    assert_eq!(marked.data(), b"null");
+    assert_eq!((marked.line(), marked.column()), (2, 5));
     assert_eq!(error.file(), "r.csv");
 }
 
