@@ -1,5 +1,7 @@
 //! `gyrocal allan`: Allan deviations with confidence intervals of columns of a log.
 
+mod screen;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -14,11 +16,11 @@ use gyrocal_statistics::allan::{AllanEstimator, NoiseFit};
 use gyrocal_statistics::format;
 use serde_json::json;
 
-use crate::Failure;
 use crate::measured::unusable;
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::tables::{right, table};
+use crate::{Answer, Failure};
 
 /// Allan deviation of columns of a log, and the parts of their noise.
 ///
@@ -89,7 +91,7 @@ impl Estimator {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &AllanArguments) -> Result<Answer, Failure> {
     let mut inputs = vec![&*arguments.log];
     inputs.extend(arguments.log_description.as_deref());
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
@@ -103,7 +105,11 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<String, Failure> {
         });
         write_json(path, &ResultFile::new(manifest("", 0, &inputs)?, result))?;
     }
-    Ok(summary(arguments, &analysed))
+    let mut answer = Answer::of(screen::first(&analysed), summary(arguments, &analysed));
+    if let Some(path) = &arguments.json {
+        answer.wrote(path, "the result for programs");
+    }
+    Ok(answer)
 }
 
 /// Analysed columns with their unit, and what there is to tell of the clock.
@@ -171,9 +177,6 @@ fn summary(arguments: &AllanArguments, analysed: &Analysed) -> String {
             table.trim_fmt(),
             parts(column.noise.as_ref(), &analysed.unit),
         );
-    }
-    if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "{}: the result for programs", path.display());
     }
     text
 }

@@ -4,6 +4,7 @@ mod failed;
 mod inputs;
 mod json;
 mod prose;
+mod screen;
 mod tables;
 
 use std::path::{Path, PathBuf};
@@ -24,7 +25,7 @@ use miette::miette;
 use crate::numbers::positive;
 use crate::outputs;
 use crate::progress::Progress;
-use crate::{Answer, Failure};
+use crate::{Answer, Failure, exit};
 use failed::{NotCalibrated, WrongSetup};
 use inputs::Measurement;
 
@@ -169,9 +170,6 @@ impl CalibrateArguments {
     }
 }
 
-/// Exit code of coefficients that mean nothing.
-const EXIT_MEANINGLESS: u8 = 1;
-
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     arguments.check()?;
@@ -212,15 +210,15 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     if let Some(path) = &arguments.json {
         write_json(path, &json::report(&found, &inputs)?)?;
     }
-    let mut text = prose::summary(&found);
+    let mut answer = Answer::of(screen::first(&found), prose::summary(&found));
     if let Some(path) = &arguments.json {
-        text.push_str(&format!("\n{}: the result for programs\n", path.display()));
+        answer.wrote(path, "the result for programs");
     }
-    let is_meaningless = found.calibration.fit.is_gross();
-    Ok(Answer {
-        text,
-        exit_code: if is_meaningless { EXIT_MEANINGLESS } else { 0 },
-    })
+    // Coefficients that mean nothing are no result.
+    if found.calibration.fit.is_gross() {
+        answer.exit_code = exit::FAILED;
+    }
+    Ok(answer)
 }
 
 /// Writes the result of records whose set-up is wrong; the failure that tells it.

@@ -1,5 +1,6 @@
 //! `gyrocal characterise`: operating characteristics of the diagnosis and of baseline methods.
 
+mod screen;
 mod sheet;
 
 use std::num::NonZeroUsize;
@@ -16,7 +17,7 @@ use miette::miette;
 
 use crate::monte_carlo::progress::SeedProgress;
 use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
-use crate::{Answer, Failure};
+use crate::{Answer, Failure, exit};
 
 /// Measure the operating characteristics of the diagnosis on simulated records with hidden effects.
 ///
@@ -68,9 +69,6 @@ enum Asked {
     None,
 }
 
-/// Exit code of `--exit-code` if a figure misses its target.
-const MISSED: u8 = 3;
-
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> {
     check_outputs(arguments)?;
@@ -89,15 +87,14 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> 
             reports.push(report(arguments, *cell, &methods)?);
         }
     }
-    let mut text = sheet::text(&reports);
-    let exit_code = match reports.iter().all(CellReport::holds) {
-        false if arguments.exit_code => MISSED,
-        _ => 0,
-    };
+    let mut answer = Answer::of(screen::first(&reports), sheet::text(&reports));
+    if arguments.exit_code && !reports.iter().all(CellReport::holds) {
+        answer.exit_code = exit::FOUND;
+    }
     let manifest = manifest(MODEL_HASH, arguments.seed, &[])?;
     if let Some(path) = &arguments.markdown {
         write_whole(path, sheet::page(&reports, &manifest.command).as_bytes())?;
-        text.push_str(&format!("{}: the tables as Markdown\n", path.display()));
+        answer.wrote(path, "the tables as Markdown");
     }
     if let Some(path) = &arguments.json {
         let report = CharacteriseReport {
@@ -106,9 +103,9 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> 
             cells: reports,
         };
         write_json(path, &report)?;
-        text.push_str(&format!("{}: the result for programs\n", path.display()));
+        answer.wrote(path, "the result for programs");
     }
-    Ok(Answer { text, exit_code })
+    Ok(answer)
 }
 
 fn check_outputs(arguments: &CharacteriseArguments) -> Result<(), Failure> {

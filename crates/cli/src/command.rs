@@ -1,33 +1,31 @@
 //! The command line.
 
-use clap::{ArgAction, Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use gyrocal_record::printable_line;
 
 use crate::allan::AllanArguments;
 use crate::calibrate::CalibrateArguments;
 use crate::characterise::CharacteriseArguments;
 use crate::diagnose::DiagnoseArguments;
+use crate::effects::EffectsArguments;
 use crate::extend::ExtendArguments;
+use crate::help;
 use crate::import::ImportArguments;
+use crate::manual::{CompletionsArguments, ManArguments};
 use crate::monte_carlo::MonteCarloArguments;
 use crate::plan::PlanArguments;
 use crate::simulate::SimulateArguments;
+use crate::terminal::{Color, Shown};
 use crate::tumble::TumbleArguments;
 
 /// Calibration and diagnosis of gyro drift of inertially stabilised platforms.
 #[derive(Debug, Parser)]
-#[command(
-    name = "gyrocal",
-    version,
-    about,
-    after_help = "Exit codes: 0 the result was written, 1 an input or the computation failed, \
-                  2 the command line is wrong."
-)]
+#[command(name = "gyrocal", version, about)]
 pub(crate) struct Cli {
-    /// More messages on stderr; -vv and -vvv for still more.
-    #[arg(short, long, action = ArgAction::Count, global = true)]
-    pub(crate) verbose: u8,
+    #[command(flatten)]
+    pub(crate) shown: Shown,
     #[command(subcommand)]
-    pub(crate) command: Command,
+    pub(crate) command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -35,11 +33,40 @@ pub(crate) enum Command {
     Allan(AllanArguments),
     Calibrate(CalibrateArguments),
     Characterise(CharacteriseArguments),
+    Completions(CompletionsArguments),
     Diagnose(DiagnoseArguments),
+    Effects(EffectsArguments),
     Extend(ExtendArguments),
     Import(ImportArguments),
+    Man(ManArguments),
     MonteCarlo(MonteCarloArguments),
     Plan(PlanArguments),
     Simulate(SimulateArguments),
     Tumble(TumbleArguments),
+}
+
+/// The definition of the command line, with examples and exit codes: that of its parser, its help, its
+/// completions and its manual pages.
+pub(crate) fn definition() -> clap::Command {
+    help::completed(Cli::command())
+}
+
+impl Cli {
+    /// Parses the arguments of the program. An error shows them with control characters escaped.
+    pub(crate) fn of_arguments() -> Result<Self, clap::Error> {
+        let definition = definition().color(Color::of_arguments().of_clap());
+        let parsed = |arguments: &mut dyn Iterator<Item = std::ffi::OsString>| {
+            let matches = definition.clone().try_get_matches_from(arguments)?;
+            Self::from_arg_matches(&matches)
+        };
+        parsed(&mut std::env::args_os()).map_err(|error| {
+            let escaped = std::env::args_os().map(|argument| {
+                printable_line(&argument.to_string_lossy())
+                    .into_owned()
+                    .into()
+            });
+            // The same arguments with other letters fail as they did.
+            parsed(&mut { escaped }).err().unwrap_or(error)
+        })
+    }
 }

@@ -12,7 +12,7 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
     Verdict, diagnose_gated, prose,
 };
-use gyrocal_record::{Bench, Outputs, RecordFile, write_json};
+use gyrocal_record::{Bench, Outputs, write_json};
 use gyrocal_setup::PlatformKind;
 
 use crate::layout::layout;
@@ -20,7 +20,7 @@ use crate::numbers::probability;
 use crate::outputs::{self, manifest, same_file};
 use crate::pictures;
 use crate::progress::Progress;
-use crate::{Answer, Failure};
+use crate::{Answer, Failure, exit, records};
 pub(crate) use failed::NotDiagnosed;
 
 /// Show what the model gets wrong about a record, and name the cause.
@@ -29,11 +29,6 @@ pub(crate) use failed::NotDiagnosed;
 /// of the catalogue explain it, which effects are indistinguishable and which experiment would
 /// distinguish them, the cross-validated gain, and the residual after them.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Exit codes: 0 the answer was written, whatever it is; 1 an input or the work \
-                        failed; 2 the command line is wrong. With --exit-code also 3 effects found, \
-                        4 the residuals are unexplained, 5 the set-up is wrong."
-)]
 pub(crate) struct DiagnoseArguments {
     /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c.
     #[arg(value_name = "RECORD.csv")]
@@ -69,9 +64,6 @@ pub(crate) struct DiagnoseArguments {
     exit_code: bool,
 }
 
-/// Exit code of a wrong set-up.
-const EXIT_SETUP: u8 = 5;
-
 /// A filter that can be tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Filter {
@@ -90,9 +82,9 @@ struct DiagnosisRun<'a> {
 pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     let inputs = checked_inputs(arguments)?;
     let bench = Bench::read(&arguments.bench)?;
-    let file = RecordFile::read(&arguments.record)?;
+    let file = records::read(&arguments.record)?;
     let later = match (&arguments.validate, &arguments.validate_bench) {
-        (Some(path), Some(bench)) => Some((path, RecordFile::read(path)?, Bench::read(bench)?)),
+        (Some(path), Some(bench)) => Some((path, records::read(path)?, Bench::read(bench)?)),
         _ => None,
     };
     let rows = file.record().len();
@@ -185,37 +177,41 @@ fn stopped(
     inputs: &[&Path],
 ) -> Result<Answer, Failure> {
     result.manifest = manifest(MODEL_HASH, result.manifest.seed, inputs)?;
-    let mut text = layout(&prose::diagnosis(&result));
+    let mut answer = Answer::of(
+        prose::first_screen(&result),
+        layout(&prose::diagnosis(&result)),
+    );
     if let Some(path) = &arguments.json {
         write_json(path, &result)?;
-        text.push_str(&format!("\n{}: the result for programs\n", path.display()));
+        answer.wrote(path, "the result for programs");
     }
-    Ok(Answer {
-        text,
-        exit_code: if arguments.exit_code { EXIT_SETUP } else { 0 },
-    })
+    if arguments.exit_code {
+        answer.exit_code = exit::SETUP;
+    }
+    Ok(answer)
 }
 
 /// Writes all outputs, and lays out the words.
 fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answer, Failure> {
     let result = &run.diagnosis.result;
-    let mut text = layout(&prose::diagnosis(result));
+    let mut answer = Answer::of(
+        prose::first_screen(result),
+        layout(&prose::diagnosis(result)),
+    );
     let mut outputs = Outputs::new();
     if let Some(folder) = &arguments.figures {
-        text.push_str(&figures::stage(run, folder, &mut outputs)?);
+        answer.wrote(folder, &figures::stage(run, folder, &mut outputs)?);
     }
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, result)?;
-        text.push_str(&format!("\n{}: the result for programs\n", path.display()));
+        answer.wrote(path, "the result for programs");
     }
     outputs.commit()?;
-    Ok(Answer {
-        text,
-        exit_code: match (arguments.exit_code, result.verdict) {
-            (true, Verdict::EffectsFound) => 3,
-            (true, Verdict::Unexplained) => 4,
-            (true, Verdict::Setup) => EXIT_SETUP,
-            _ => 0,
-        },
-    })
+    answer.exit_code = match (arguments.exit_code, result.verdict) {
+        (true, Verdict::EffectsFound) => exit::FOUND,
+        (true, Verdict::Unexplained) => exit::UNEXPLAINED,
+        (true, Verdict::Setup) => exit::SETUP,
+        _ => exit::DONE,
+    };
+    Ok(answer)
 }

@@ -8,6 +8,7 @@ use std::fmt::{self, Write as _};
 use std::io::IsTerminal as _;
 
 use anstyle::{AnsiColor, Style};
+use gyrocal_record::{printable, printable_line};
 use miette::{Diagnostic, LabeledSpan, ReportHandler, SourceCode, SpanContents};
 use unicode_width::{UnicodeWidthChar as _, UnicodeWidthStr as _};
 
@@ -101,9 +102,10 @@ impl ErrorReport {
         words: &str,
     ) -> fmt::Result {
         let room = |width: usize| width.saturating_sub(2 + first.width()).max(1);
+        let words = printable(words);
         let wrapped = match self.width.map(room) {
-            Some(width) => text::wrapped(width, words),
-            None => words.to_owned(),
+            Some(width) => text::wrapped(width, &words),
+            None => words.into_owned(),
         };
         for (index, line) in wrapped.trim_end_matches('\n').split('\n').enumerate() {
             let indent = if index == 0 { first } else { next };
@@ -169,7 +171,7 @@ impl ErrorReport {
         let lines = lines(context.as_ref());
         let digits = lines.last().map_or(1, |line| line.number.to_string().len());
         let margin = " ".repeat(digits + 2);
-        let name = place.name().unwrap_or_default();
+        let name = printable_line(place.name().unwrap_or_default());
         let (line, column) = (place.line() + 1, place.column() + 1);
         writeln!(
             out,
@@ -194,7 +196,8 @@ impl ErrorReport {
                 let before = " ".repeat(middle);
                 writeln!(
                     out,
-                    "{margin}{gap} {before}{MARK}{corner}{dash}{dash} {label}{MARK:#}"
+                    "{margin}{gap} {before}{MARK}{corner}{dash}{dash} {}{MARK:#}",
+                    printable_line(label)
                 )?;
             }
         }
@@ -286,8 +289,9 @@ fn lines(context: &dyn SpanContents<'_>) -> Vec<Line> {
         .collect()
 }
 
-/// A line with spaces for its tabulators.
+/// A line with spaces for its tabulators, and what would steer a terminal escaped.
 fn untabbed(line: &str) -> String {
+    let line = &printable(line);
     let mut text = String::with_capacity(line.len());
     let mut column = 0;
     for letter in line.chars() {

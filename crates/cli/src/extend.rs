@@ -2,17 +2,17 @@
 
 mod effects;
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_diagnosis::result;
 use gyrocal_record::{Manifest, Outputs, SCHEMA_VERSION};
 use serde::Serialize;
 
-use crate::Failure;
 use crate::outputs::{manifest, refuse_overlap};
+use crate::{Answer, Failure};
 use effects::{Extension, known, of_diagnosis, of_list, with_members};
 
 /// Write the model file of an extended filter.
@@ -62,7 +62,7 @@ struct LeftOut {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &ExtendArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
     let inputs: Vec<&Path> = arguments.diagnosis.iter().map(PathBuf::as_path).collect();
     refuse_overlap(
         &inputs,
@@ -105,22 +105,28 @@ fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Fa
     })
 }
 
-fn summary(arguments: &ExtendArguments, extension: &Extension) -> String {
+fn summary(arguments: &ExtendArguments, extension: &Extension) -> Answer {
     let model = &extension.model;
-    let mut text = format!(
-        "{}: the nine drift coefficients and {}\n",
-        arguments.out.display(),
-        model.effects.join(", ")
+    let mut screen = Screen::new(
+        Standing::Good,
+        "MODEL FILE",
+        format!(
+            "{}: the nine drift coefficients and {}",
+            arguments.out.display(),
+            model.effects.join(", ")
+        ),
     );
     for estimate in &model.estimates {
-        let _ = writeln!(
-            text,
-            "  {} starts at {:.3e} ± {:.1e}",
-            estimate.parameter, estimate.value, estimate.sigma
+        screen.fact(
+            "start value",
+            format!(
+                "{} starts at {:.3e} ± {:.1e}",
+                estimate.parameter, estimate.value, estimate.sigma
+            ),
         );
     }
     for (id, value) in &model.shapes {
-        let _ = writeln!(text, "  {id} is {value}");
+        screen.fact("built in", format!("{id} is {value}"));
     }
     let listed = known();
     let listed = listed
@@ -128,17 +134,28 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> String {
         .filter(|k| model.effects.iter().any(|id| id == k.id));
     for id in listed.flat_map(|effect| &effect.shapes) {
         if !model.shapes.iter().any(|(given, _)| given == id) {
-            let _ = writeln!(
-                text,
-                "  {id} is an input of the model; give it in [shapes] to build it in"
+            screen.fact(
+                "input",
+                format!("{id} is an input of the model; give it in [shapes] to build it in"),
             );
         }
     }
     for (id, others) in &extension.equivalents {
-        let _ = writeln!(text, "  exact equivalents of {id}: {}", others.join(", "));
+        screen.fact(
+            "may also be",
+            format!("exact equivalents of {id}: {}", others.join(", ")),
+        );
     }
     for (id, why) in &extension.left_out {
-        let _ = writeln!(text, "  left out: {id} {why}");
+        screen.fact("left out", format!("{id} {why}"));
     }
-    text
+    screen.fact(
+        "what to do",
+        "derive the filter in your package: docs/extending.md",
+    );
+    let mut answer = Answer::of(screen, String::new());
+    if let Some(path) = &arguments.json {
+        answer.wrote(path, "the result for programs");
+    }
+    answer
 }

@@ -1,6 +1,8 @@
 //! `gyrocal import strapdown`: record and bench description of an analytic platform from the log of
 //! a strapdown unit at rest.
 
+mod screen;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -9,10 +11,10 @@ use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, axe
 use gyrocal_instruments::{Description, InstrumentError, Log, ResultFile};
 use gyrocal_record::Outputs;
 
-use crate::Failure;
 use crate::measured::unusable;
 use crate::numbers::{angle_deg, angle_sigma_deg, positive};
 use crate::outputs::{manifest, refuse_overlap};
+use crate::{Answer, Failure};
 
 /// Make a record from a log of another kind of instrument.
 #[derive(Debug, Args)]
@@ -81,13 +83,13 @@ struct StrapdownArguments {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &ImportArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &ImportArguments) -> Result<Answer, Failure> {
     match &arguments.kind {
         Kind::Strapdown(arguments) => strapdown(arguments),
     }
 }
 
-fn strapdown(arguments: &StrapdownArguments) -> Result<String, Failure> {
+fn strapdown(arguments: &StrapdownArguments) -> Result<Answer, Failure> {
     let inputs = [&*arguments.log, &*arguments.log_description];
     refuse_overlap(
         &inputs,
@@ -117,7 +119,23 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<String, Failure> {
     }
     outputs.commit()?;
     let note = clock.map_or_else(String::new, |note| format!("{note}\n\n"));
-    Ok(note + &summary(arguments, &imported.report))
+    let report = &imported.report;
+    let mut answer = Answer::of(
+        screen::first(arguments, report),
+        note + &summary(arguments, report),
+    );
+    answer.wrote(&arguments.out, "the record");
+    let others = [
+        (&arguments.bench_out, "the bench description"),
+        (&arguments.axes_out, "the axes of the gyros"),
+        (&arguments.json, "the result for programs"),
+    ];
+    for (path, what) in others {
+        if let Some(path) = path {
+            answer.wrote(path, what);
+        }
+    }
+    Ok(answer)
 }
 
 fn work(arguments: &StrapdownArguments) -> Result<(Imported, Option<String>), InstrumentError> {
@@ -138,11 +156,7 @@ fn work(arguments: &StrapdownArguments) -> Result<(Imported, Option<String>), In
 }
 
 fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
-    let disturbed: f64 = report
-        .disturbed_s
-        .iter()
-        .map(|[from_s, to_s]| to_s - from_s)
-        .sum();
+    let disturbed = disturbed_s(report);
     let mut text = format!(
         "{}: {} samples over {:.1} s averaged to {} rows of {} s\n\n",
         arguments.log.display(),
@@ -186,17 +200,13 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
         report.accel_noise_g, report.accel_noise_correlation, report.gyro_noise_deg_per_h
     );
     determined(&mut text, report);
-    let _ = writeln!(text, "\n{}: the record", arguments.out.display());
-    if let Some(path) = &arguments.bench_out {
-        let _ = writeln!(text, "{}: the bench description", path.display());
-    }
-    if let Some(path) = &arguments.axes_out {
-        let _ = writeln!(text, "{}: the axes of the gyros", path.display());
-    }
-    if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "{}: the result for programs", path.display());
-    }
     text
+}
+
+/// Length of the disturbed windows together.
+fn disturbed_s(report: &ImportReport) -> f64 {
+    let windows = report.disturbed_s.iter();
+    windows.map(|[from_s, to_s]| to_s - from_s).sum()
 }
 
 /// Threshold of a difference from Earth rate beyond noise, in standard deviations.

@@ -33,7 +33,7 @@ fn block(block: &Block) -> String {
     }
 }
 
-fn drawn(content: &Table) -> String {
+pub(crate) fn drawn(content: &Table) -> String {
     let heads: Vec<&str> = content.columns.iter().map(|column| &*column.head).collect();
     let mut table = table(heads);
     for row in &content.rows {

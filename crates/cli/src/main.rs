@@ -4,18 +4,23 @@
 //! Each subcommand is a module: arguments, calls of the libraries, tables and text, JSON, pictures.
 //! Files are written whole or not at all. Statistics and estimation are in the libraries.
 //!
-//! Exit codes: 0 the result was written, 1 an input or the computation failed, 2 the command line
-//! is wrong.
+//! `exit.rs` has the exit codes. Text reaches the terminal in `terminal.rs` and errors in
+//! `error_report.rs`, without characters that would steer it.
 
 mod allan;
+mod answer;
 mod calibrate;
 mod characterise;
 mod command;
 mod diagnose;
+mod effects;
 mod error_report;
+mod exit;
 mod extend;
+mod help;
 mod import;
 mod layout;
+mod manual;
 mod measured;
 mod monte_carlo;
 mod noise;
@@ -24,74 +29,76 @@ mod outputs;
 mod pictures;
 mod plan;
 mod progress;
+mod records;
 mod simulate;
 mod tables;
+mod terminal;
 mod text;
 mod tumble;
 
-use std::io::{ErrorKind, IsTerminal as _, Write as _};
+use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
 
-use clap::Parser as _;
 use miette::Report;
 
-use crate::command::{Cli, Command};
+use crate::answer::Answer;
+use crate::command::{Cli, Command, definition};
 use crate::error_report::ErrorReport;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    start_logging(cli.verbose);
-    show_errors_plainly();
-    let outcome = match &cli.command {
-        Command::Allan(arguments) => allan::run(arguments).map(Answer::from),
-        Command::Calibrate(arguments) => calibrate::run(arguments),
-        Command::Characterise(arguments) => characterise::run(arguments),
-        Command::Diagnose(arguments) => diagnose::run(arguments),
-        Command::Extend(arguments) => extend::run(arguments).map(Answer::from),
-        Command::MonteCarlo(arguments) => monte_carlo::run(arguments).map(Answer::from),
-        Command::Import(arguments) => import::run(arguments).map(Answer::from),
-        Command::Plan(arguments) => plan::run(arguments).map(Answer::from),
-        Command::Simulate(arguments) => simulate::run(arguments).map(Answer::from),
-        Command::Tumble(arguments) => tumble::run(arguments).map(Answer::from),
+    let cli = match Cli::of_arguments() {
+        Ok(cli) => cli,
+        // Help and version are among them, and go to stdout.
+        Err(error) => error.exit(),
     };
-    match outcome {
+    cli.shown.apply();
+    start_logging(cli.shown.verbose);
+    show_errors_plainly();
+    match answer(cli.command.as_ref()) {
         Ok(answer) => {
-            let mut stdout = std::io::stdout();
-            let written = stdout.write_all(answer.text.as_bytes());
-            match written.and_then(|()| stdout.flush()) {
+            let text = answer.shown(terminal::columns(), cli.shown.verbose > 0);
+            let text = if cli.shown.quiet { "" } else { &text };
+            match terminal::print(text) {
                 // A closed pipe, as in `| head`, is not a failure.
                 Err(error) if error.kind() != ErrorKind::BrokenPipe => {
                     let _ = writeln!(std::io::stderr(), "stdout: cannot be written: {error}");
-                    ExitCode::from(1)
+                    ExitCode::from(exit::FAILED)
                 }
                 _ => ExitCode::from(answer.exit_code),
             }
         }
         Err(Failure::Usage(message)) => {
-            use clap::CommandFactory as _;
-            let error = Cli::command().error(clap::error::ErrorKind::ArgumentConflict, message);
+            let message = gyrocal_record::printable(&message).into_owned();
+            let error = definition().error(clap::error::ErrorKind::ArgumentConflict, message);
             let _ = error.print();
-            ExitCode::from(2)
+            ExitCode::from(exit::USAGE)
         }
         Err(Failure::Work(report)) => {
             let _ = writeln!(anstream::stderr(), "{report:?}");
-            ExitCode::from(1)
+            ExitCode::from(exit::FAILED)
         }
     }
 }
 
-/// Result of a command.
-#[derive(Debug)]
-struct Answer {
-    /// Text for stdout.
-    text: String,
-    /// 0 unless `--exit-code` asks for another one.
-    exit_code: u8,
-}
-
-impl From<String> for Answer {
-    fn from(text: String) -> Self {
-        Self { text, exit_code: 0 }
+/// The answer of a command; without one, what people do first.
+fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
+    let Some(command) = command else {
+        return Ok(help::WELCOME.to_owned().into());
+    };
+    match command {
+        Command::Allan(arguments) => allan::run(arguments),
+        Command::Calibrate(arguments) => calibrate::run(arguments),
+        Command::Characterise(arguments) => characterise::run(arguments),
+        Command::Completions(arguments) => Ok(manual::completions(arguments).into()),
+        Command::Diagnose(arguments) => diagnose::run(arguments),
+        Command::Effects(arguments) => effects::run(arguments),
+        Command::Extend(arguments) => extend::run(arguments),
+        Command::Import(arguments) => import::run(arguments),
+        Command::Man(arguments) => manual::pages(arguments),
+        Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
+        Command::Plan(arguments) => plan::run(arguments),
+        Command::Simulate(arguments) => simulate::run(arguments),
+        Command::Tumble(arguments) => tumble::run(arguments),
     }
 }
 
@@ -114,15 +121,15 @@ fn start_logging(verbose: u8) {
     use tracing::level_filters::LevelFilter;
 
     let level = match verbose {
-        0 => LevelFilter::WARN,
-        1 => LevelFilter::INFO,
-        2 => LevelFilter::DEBUG,
+        0 | 1 => LevelFilter::WARN,
+        2 => LevelFilter::INFO,
+        3 => LevelFilter::DEBUG,
         _ => LevelFilter::TRACE,
     };
     tracing_subscriber::fmt()
         .with_max_level(level)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
+        .with_writer(|| terminal::Messages)
+        .with_ansi(false)
         .init();
 }
 

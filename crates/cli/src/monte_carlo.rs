@@ -1,6 +1,7 @@
 //! `gyrocal monte-carlo`: consistency and accuracy of the calibration over many simulated records.
 
 pub(crate) mod progress;
+mod screen;
 mod summary;
 
 use std::num::NonZeroUsize;
@@ -17,8 +18,8 @@ use gyrocal_record::{SCHEMA_VERSION, write_json};
 use gyrocal_truth::{Population, Scenario};
 use miette::miette;
 
-use crate::Failure;
 use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
+use crate::{Answer, Failure};
 use progress::SeedProgress;
 
 /// Evaluate the calibration by Monte Carlo simulation.
@@ -57,7 +58,7 @@ pub(crate) struct MonteCarloArguments {
 const MAX_SEEDS: u64 = 10_000_000;
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Answer, Failure> {
     refuse_overlap(
         &[&arguments.scenario],
         &[
@@ -80,7 +81,13 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
             failure.message
         )));
     }
-    let text = summary::text(arguments, &summary);
+    let mut answer = Answer::of(
+        screen::first(arguments, &summary),
+        summary::text(arguments, &summary),
+    );
+    if let Some(path) = &arguments.results {
+        answer.wrote(path, "results of all runs");
+    }
     if let Some(path) = &arguments.json {
         let report = MonteCarloReport {
             schema_version: SCHEMA_VERSION,
@@ -90,8 +97,9 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<String, Failure> {
             summary,
         };
         write_json(path, &report)?;
+        answer.wrote(path, "the result for programs");
     }
-    Ok(text)
+    Ok(answer)
 }
 
 fn outcome(

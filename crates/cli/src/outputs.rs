@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gyrocal_record::{Error, Input, Manifest, Outputs};
+use gyrocal_record::{Error, Input, Manifest, Outputs, shell_quoted};
 
 use crate::{Failure, pictures};
 
@@ -108,16 +108,9 @@ fn identity(path: &Path) -> PathBuf {
 }
 
 /// The command line as typed, with `gyrocal` for the path of the program.
-fn command_line() -> String {
-    let arguments = std::env::args_os().skip(1).map(|argument| {
-        let argument = argument.to_string_lossy();
-        let plain = |letter: char| letter.is_alphanumeric() || "-_./=:,+@%".contains(letter);
-        if !argument.is_empty() && argument.chars().all(plain) {
-            argument.into_owned()
-        } else {
-            format!("'{}'", argument.replace('\'', r"'\''"))
-        }
-    });
+pub(crate) fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1);
+    let arguments = arguments.map(|argument| shell_quoted(&argument.to_string_lossy()));
     std::iter::once("gyrocal".to_owned())
         .chain(arguments)
         .collect::<Vec<_>>()

@@ -38,8 +38,8 @@ pub(crate) fn is_one(path: &Path) -> bool {
         .is_some_and(|form| form == "svg" || form == "png")
 }
 
-/// Stages the pictures of an input, to be committed with the other outputs; returns the text for
-/// stdout.
+/// Stages the pictures of an input, to be committed with the other outputs; returns what there is in
+/// the folder, for stdout.
 pub(crate) fn stage(
     of: &Path,
     pictures: &[Named],
@@ -77,9 +77,5 @@ pub(crate) fn stage(
         1 => "one picture".to_owned(),
         count => format!("{count} pictures"),
     };
-    Ok(format!(
-        "\n{}: {count}, {FORMS}: {}\n",
-        folder.display(),
-        names.join(", ")
-    ))
+    Ok(format!("{count}, {FORMS}: {}", names.join(", ")))
 }

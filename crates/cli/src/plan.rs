@@ -9,14 +9,14 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
-use gyrocal_design::{Aim, PlanOptions, plan, prose};
-use gyrocal_record::{Bench, Outputs, RecordFile};
+use gyrocal_design::{Aim, PlanOptions, first_screen, plan, prose};
+use gyrocal_record::{Bench, Outputs};
 
-use crate::Failure;
 use crate::layout::layout;
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::progress::Progress;
+use crate::{Answer, Failure, records};
 use failed::NotPlanned;
 use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 
@@ -26,10 +26,6 @@ use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 /// the findings most, or the sigmas of the coefficients, and predicts the joint result of record
 /// and run. The record is diagnosed first unless a diagnosis is given.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Exit codes: 0 the result was written, 1 an input or the computation failed, \
-                  2 the command line is wrong."
-)]
 pub(crate) struct PlanArguments {
     /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and optionally temperature_c.
     #[arg(value_name = "RECORD.csv")]
@@ -83,13 +79,13 @@ enum AimArgument {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
     inputs.extend(arguments.diagnosis.as_deref());
     refuse_repeated(&arguments.limits)?;
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let bench = Bench::read(&arguments.bench)?;
-    let file = RecordFile::read(&arguments.record)?;
+    let file = records::read(&arguments.record)?;
     let rows = file.record().len();
     tracing::info!(rows, "read");
     let progress = Progress::waiting("planning on", rows);
@@ -114,12 +110,12 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<String, Failure> {
     drop(progress);
     planned.setup.clone_from(&known.setup);
     planned.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
-    let mut text = layout(&prose(&planned));
+    let mut answer = Answer::of(first_screen(&planned), layout(&prose(&planned)));
     let mut outputs = Outputs::new();
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, &planned)?;
-        text.push_str(&format!("\n{}: the result for programs\n", path.display()));
+        answer.wrote(path, "the result for programs");
     }
     outputs.commit()?;
-    Ok(text)
+    Ok(answer)
 }

@@ -1,9 +1,10 @@
 //! Progress bar of long computations.
 
-use std::io::IsTerminal as _;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::terminal;
 
 /// Delay before the bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -30,7 +31,7 @@ impl Progress {
             started: Instant::now(),
             total,
             label,
-            wanted: std::io::stderr().is_terminal(),
+            wanted: terminal::shows_progress(),
             bar: None,
         }
     }

@@ -1,16 +1,16 @@
 //! `gyrocal simulate`: a record and its bench description from a scenario.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use gyrocal_record::{Outputs, SCHEMA_VERSION, SimulationReport, TrueCoefficient};
+use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_record::{Outputs, SCHEMA_VERSION, SimulationReport, TrueCoefficient, shell_quoted};
 use gyrocal_truth::{Hidden, HiddenReport, Scenario, Simulation, TruthReport, simulate_watched};
 use miette::miette;
 
-use crate::Failure;
 use crate::outputs::{manifest, refuse_overlap};
 use crate::progress::Progress;
+use crate::{Answer, Failure};
 
 /// Simulate a record from a scenario with known coefficients, bench and sampling.
 ///
@@ -41,7 +41,7 @@ pub(crate) struct SimulateArguments {
 const SEED_MAX: u64 = i64::MAX as u64;
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &SimulateArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &SimulateArguments) -> Result<Answer, Failure> {
     refuse_overlap(
         &[&arguments.scenario],
         &[
@@ -110,23 +110,38 @@ fn report(
     })
 }
 
-fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> String {
-    let mut text = format!(
-        "{}: {} rows over {:.2} days, seed {}\n",
-        arguments.out.display(),
-        simulation.record.len(),
-        simulation.record.duration_s() / 86_400.0,
-        scenario.seed
+fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> Answer {
+    let mut screen = Screen::new(
+        Standing::Neutral,
+        "SIMULATED",
+        format!(
+            "{}: {} rows over {:.2} days, seed {}",
+            arguments.out.display(),
+            simulation.record.len(),
+            simulation.record.duration_s() / 86_400.0,
+            scenario.seed
+        ),
     );
-    if !simulation.truth.hidden.is_empty() {
-        let ids: Vec<&str> = simulation.truth.hidden.iter().map(Hidden::id).collect();
-        let _ = writeln!(text, "hidden effects: {}", ids.join(", "));
+    let ids: Vec<&str> = simulation.truth.hidden.iter().map(Hidden::id).collect();
+    screen.fact("hidden effects", ids.join(", "));
+    if let Some(bench) = &arguments.bench_out {
+        let files = format!(
+            "{} --bench {}",
+            shell_quoted(&arguments.out.to_string_lossy()),
+            shell_quoted(&bench.to_string_lossy())
+        );
+        if ids.is_empty() {
+            screen.then(format!("gyrocal calibrate {files}"), "its coefficients");
+        } else {
+            screen.then(format!("gyrocal diagnose {files}"), "finds what is hidden");
+        }
     }
+    let mut answer = Answer::of(screen, String::new());
     if let Some(path) = &arguments.bench_out {
-        let _ = writeln!(text, "{}: bench description", path.display());
+        answer.wrote(path, "bench description");
     }
     if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "{}: the truth", path.display());
+        answer.wrote(path, "the truth");
     }
-    text
+    answer
 }

@@ -1,7 +1,8 @@
 //! Layout of tables.
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table, TableStyle};
-use terminal_size::{Width, terminal_size_of};
+
+use crate::terminal;
 
 /// A table with a rule below its head and no other lines.
 pub(crate) fn table(header: impl Into<Row>) -> Table {
@@ -11,8 +12,8 @@ pub(crate) fn table(header: impl Into<Row>) -> Table {
         .load_style(TableStyle::new().header_separator(rule))
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_header(header);
-    if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
-        table.set_width(columns);
+    if let Some(columns) = terminal::columns() {
+        table.set_width(u16::try_from(columns).unwrap_or(u16::MAX));
     }
     table
 }

@@ -2,7 +2,9 @@
 
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
-/// Characters per line.
+use crate::terminal;
+
+/// Longest lines of paragraphs.
 const LINE: usize = 100;
 
 /// Wrapped text with a line break at the end.
@@ -26,7 +28,10 @@ pub(crate) fn wrapped(width: usize, words: &str) -> String {
 }
 
 fn lines(first: &str, next: &str, words: &str) -> String {
-    let options = options(LINE).initial_indent(first).subsequent_indent(next);
+    let columns = terminal::columns().unwrap_or(LINE).clamp(40, LINE);
+    let options = options(columns)
+        .initial_indent(first)
+        .subsequent_indent(next);
     textwrap::fill(words, options) + "\n"
 }
 

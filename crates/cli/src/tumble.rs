@@ -3,6 +3,7 @@
 mod few;
 mod figures;
 mod many;
+mod screen;
 mod sensors;
 
 use std::fmt::Write as _;
@@ -20,11 +21,11 @@ use gyrocal_instruments::{
 };
 use gyrocal_record::Outputs;
 
-use crate::Failure;
 use crate::measured::{interval, unusable};
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::pictures;
+use crate::{Answer, Failure};
 
 /// Multi-position test: fit the drift law to static stops and find missing terms.
 ///
@@ -75,7 +76,7 @@ enum Report {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
     let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
     inputs.push(&arguments.log_description);
     outputs::check(
@@ -107,17 +108,21 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
         Report::Few(report) => text += &few::text(report, arguments.false_alarm),
     }
     not_identifiable(&mut text, &prepared);
-    if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "\n{}: the result for programs", path.display());
-    }
+    let mut answer = Answer::of(screen::first(arguments, &prepared, &report), text);
     // The folder of pictures first: the result for programs may go there too.
     if let Some(folder) = &arguments.figures {
         match &report {
             Report::Many(report) => {
                 let pictures = figures::pictures(log, &prepared, report);
-                text += &pictures::stage(log, &pictures, folder, &mut outputs)?;
+                answer.wrote(
+                    folder,
+                    &pictures::stage(log, &pictures, folder, &mut outputs)?,
+                );
             }
-            Report::Few(_) => text += "\nNo pictures: they are made of tests with many stops.\n",
+            Report::Few(_) => answer.wrote(
+                folder,
+                "no pictures: they are made of tests with many stops",
+            ),
         }
     }
     if let Some(path) = &arguments.json {
@@ -132,8 +137,11 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<String, Failure> {
         };
         outputs.stage_json(path, &ResultFile::new(manifest, result))?;
     }
+    if let Some(path) = &arguments.json {
+        answer.wrote(path, "the result for programs");
+    }
     outputs.commit()?;
-    Ok(text)
+    Ok(answer)
 }
 
 fn named(arguments: &TumbleArguments) -> String {

@@ -53,6 +53,7 @@ mod effect_columns;
 mod error;
 mod evaluator;
 mod expected_sets;
+mod first_screen;
 mod goal;
 mod joint_unknowns;
 mod named_cause;
@@ -69,6 +70,7 @@ mod walk_score;
 
 pub use compare::{Compared, ComparedMember, compare};
 pub use error::DesignError;
+pub use first_screen::first_screen;
 pub use goal::Goal;
 pub use named_cause::{NamedCause, noise_of};
 pub use options::PlanOptions;

@@ -57,7 +57,7 @@ fn durations(plan: &PlanResult) -> Vec<f64> {
 }
 
 /// Sets of more than one member.
-fn undecided(outlook: &Outlook) -> impl Iterator<Item = &SetForecast> {
+pub(crate) fn undecided(outlook: &Outlook) -> impl Iterator<Item = &SetForecast> {
     outlook.sets.iter().filter(|set| set.members.len() > 1)
 }
 
@@ -151,7 +151,7 @@ fn continuation(outlook: &Outlook) -> String {
     )
 }
 
-fn goal(plan: &PlanResult) -> Option<String> {
+pub(crate) fn goal(plan: &PlanResult) -> Option<String> {
     let goal = plan.goal.as_ref()?;
     let wish = &goal.wish;
     Some(match &goal.run {
@@ -280,7 +280,7 @@ fn members(plan: &PlanResult, later: &[(&str, &Outlook)]) -> Table {
 }
 
 /// Platform angles in words.
-fn attitude(run: &Proposal) -> String {
+pub(crate) fn attitude(run: &Proposal) -> String {
     match run.angles_deg {
         Some([x, y, z]) => format!("platform angles x {x:.0}°, y {y:.0}°, z {z:.0}°"),
         None => "the present attitude".to_owned(),
@@ -288,7 +288,7 @@ fn attitude(run: &Proposal) -> String {
 }
 
 /// A duration in hours.
-fn hours(duration_s: f64) -> String {
+pub(crate) fn hours(duration_s: f64) -> String {
     let hours = duration_s / 3600.0;
     if hours >= 10.0 {
         format!("{hours:.0} h")
@@ -298,7 +298,7 @@ fn hours(duration_s: f64) -> String {
 }
 
 /// A probability in percent, never 100 %.
-fn percent(p: f64) -> String {
+pub(crate) fn percent(p: f64) -> String {
     if p > 0.99 {
         "over 99 %".to_owned()
     } else {

@@ -43,6 +43,22 @@ pub fn estimate(estimate: f64, sigma: f64) -> [String; 2] {
     }
 }
 
+/// An estimate with its standard deviation, for a sentence: `12.3 ± 0.4`, and with a common power of
+/// ten where both are small or large: `(1.33 ± 0.08)e-3`.
+#[must_use]
+pub fn with_sigma(value: f64, sigma: f64) -> String {
+    let larger = value.abs().max(sigma);
+    let power = exponent(&format!("{larger:.3e}")).filter(|_| sigma > 0.0 && larger.is_finite());
+    match power {
+        Some(power) if !(-2..6).contains(&power) => {
+            let scale = 10_f64.powi(-power);
+            let [value, sigma] = estimate(value * scale, sigma * scale);
+            format!("({value} ± {sigma})e{power}")
+        }
+        _ => estimate(value, sigma).join(" ± "),
+    }
+}
+
 /// A number to some significant digits, those of a large integer kept: `0.00342`, `86400`,
 /// `3.1e-7`. Scientific below 0.001 and from a million on.
 #[must_use]
@@ -121,6 +137,21 @@ mod tests {
         ];
         for ((value, sigma), expected) in cases {
             assert_eq!(estimate(value, sigma), expected, "{value} {sigma}");
+        }
+    }
+
+    #[test]
+    fn small_and_large_values_have_a_common_power_of_ten() {
+        for ((value, sigma), expected) in [
+            ((0.001_329, 0.000_075), "(1.329 ± 0.075)e-3"),
+            ((-0.287, 0.099_6), "-0.29 ± 0.10"),
+            ((0.0, 0.000_2), "(0.0 ± 2.0)e-4"),
+            ((123.456, 34.56), "123 ± 35"),
+            ((12_345_678.0, 100_000.0), "(1.235 ± 0.010)e7"),
+            ((1.5, 0.0), "1.5e0 ± 0.0e0"),
+            ((f64::NAN, 1.0), "NaN ± 1.0"),
+        ] {
+            assert_eq!(with_sigma(value, sigma), expected, "{value} {sigma}");
         }
     }
 

@@ -8,11 +8,11 @@ use gyrocal_calibration::{
 };
 use gyrocal_diagnosis::Gate;
 use gyrocal_instruments::strapdown::read_axes;
-use gyrocal_record::{AveragedReport, Bench, Record, RecordFile, SetupProblem, SourceText};
+use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, SourceText};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 
-use crate::Failure;
+use crate::{Failure, records};
 
 /// One record with the bench that it was taken on.
 pub(super) struct Measurement {
@@ -63,7 +63,7 @@ pub(super) fn read(
     let mut measurements = Vec::with_capacity(records.len());
     for (index, path) in records.iter().enumerate() {
         let bench = if benches.len() == 1 { 0 } else { index };
-        let file = RecordFile::read(path)?;
+        let file = records::read(path)?;
         let found = Gate::of_file(kind, &file, &read[bench], &Options::default())?;
         measurements.push(Measurement {
             path: path.clone(),

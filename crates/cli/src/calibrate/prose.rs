@@ -7,8 +7,7 @@ use gyrocal_calibration::{
     AzimuthSearch, Calibration, ConsiderSensitivity, NoiseDifference, NoiseEstimate, NoiseRatio,
     RunResult, SIGNIFICANT_WALK_SHARE, SiteQuantity, times_overlap,
 };
-use gyrocal_record::{CalibrationMethod, FitVerdict, FittedEffects};
-use gyrocal_setup::PlatformKind;
+use gyrocal_record::{CalibrationMethod, FittedEffects};
 
 use super::inputs::Measurement;
 use super::{CalibrationRun, tables};
@@ -31,7 +30,6 @@ pub(super) fn summary(found: &CalibrationRun) -> String {
         )));
     }
     text.push_str(&paragraph(&found.verdict.text));
-    text.push_str(&next(found));
     if calibration.fit.is_gross() {
         return text;
     }
@@ -85,7 +83,7 @@ fn with_effects(calibration: &Calibration, with: &FittedEffects) -> String {
     format!("\n{}\n{coefficients}\n\n{effects}\n", paragraph(&title))
 }
 
-fn record_line(measurement: &Measurement) -> String {
+pub(super) fn record_line(measurement: &Measurement) -> String {
     let rows = measurement
         .averaged
         .map_or(measurement.record.len(), |averaged| {
@@ -118,26 +116,6 @@ fn record_line(measurement: &Measurement) -> String {
              interval, which the declared noise does not include: average over a shorter interval",
             100.0 * averaged.walk_share
         );
-    }
-    text
-}
-
-/// The commands to run next.
-fn next(found: &CalibrationRun) -> String {
-    if found.kind != PlatformKind::Stabilised {
-        return String::new();
-    }
-    let why = match found.verdict.verdict {
-        FitVerdict::Consistent => "tests for all else and says what could go undetected",
-        _ => "looks for the causes",
-    };
-    let mut text = String::new();
-    for measurement in &found.measurements {
-        text.push_str(&paragraph(&format!(
-            "Next: `gyrocal diagnose {} --bench {}` {why}.",
-            measurement.path.display(),
-            measurement.bench_path.display()
-        )));
     }
     text
 }

@@ -12,22 +12,12 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The coefficients with their sigmas.
 pub(super) fn coefficients(calibration: &Calibration) -> String {
-    let header = [
-        "coefficient",
-        "estimate",
-        "sigma",
-        "unit",
-        "determined",
-        "meaning",
-    ];
-    let mut table = table(header);
+    let mut table = table(["coefficient", "estimate", "determined", "meaning"]);
     for coefficient in calibration.coefficients() {
-        let [estimate, sigma] = format::estimate(coefficient.estimate, coefficient.sigma);
+        let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
         table.add_row([
             Cell::new(coefficient.id),
-            right(estimate),
-            right(sigma),
-            Cell::new(coefficient.unit),
+            Cell::new(format!("{estimate} {}", coefficient.unit)),
             Cell::new(if coefficient.determined { "yes" } else { "no" }),
             Cell::new(coefficient.meaning),
         ]);

@@ -218,7 +218,7 @@ fn holds(figure: &Characteristic) -> &'static str {
     }
 }
 
-fn target(figure: &Characteristic) -> String {
+pub(super) fn target(figure: &Characteristic) -> String {
     match figure.target {
         Some(Target::AtLeast(least)) => format!(">= {least}"),
         Some(Target::AtMost(most)) => format!("<= {most}"),

@@ -1,10 +1,11 @@
 //! The progress bar of a campaign.
 
-use std::io::IsTerminal as _;
 use std::time::Duration;
 
 use gyrocal_evaluation::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::terminal;
 
 /// A bar with the time left, if stderr is a terminal; it goes when it is dropped.
 #[derive(Debug)]
@@ -20,7 +21,7 @@ impl SeedProgress {
     }
 
     pub(crate) fn named(name: &str) -> Self {
-        let bar = if std::io::stderr().is_terminal() {
+        let bar = if terminal::shows_progress() {
             ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
         } else {
             ProgressBar::hidden()

@@ -64,12 +64,6 @@ pub(super) fn text(arguments: &MonteCarloArguments, summary: &CalibrationSummary
             measured_text(share, 100.0, 1)
         );
     }
-    if let Some(path) = &arguments.results {
-        let _ = writeln!(text, "{}: results of all runs", path.display());
-    }
-    if let Some(path) = &arguments.json {
-        let _ = writeln!(text, "{}: the result for programs", path.display());
-    }
     text
 }
 

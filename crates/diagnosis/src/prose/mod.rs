@@ -2,12 +2,14 @@
 //!
 //! Everything here is made from [`crate::result`] alone, so that a terminal, a report and a program
 //! in another language say the same words. [`diagnosis`] gives all of it in reading order; whoever
-//! shows it breaks lines and draws tables.
+//! shows it breaks lines and draws tables. [`first_screen`] gives what a person reads first.
 
 mod findings;
+mod first_screen;
 mod format;
 mod gain;
 mod limits;
+mod screen;
 mod tables;
 mod tests;
 mod verdict;
@@ -17,8 +19,10 @@ use serde::Serialize;
 use crate::result::{DiagnosisResult, Verdict};
 
 pub use findings::{likelihood, parameter_values};
+pub use first_screen::first_screen;
 pub use format::counted;
 pub use limits::{near_twins, not_tested, why_not_distinguished, would_distinguish};
+pub use screen::{Fact, NextStep, Screen, Standing, few, record_and_bench};
 pub use tests::residual_description;
 pub use verdict::setup;
 

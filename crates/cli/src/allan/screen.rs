@@ -1,0 +1,84 @@
+//! The first screen of `gyrocal allan`.
+
+use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_statistics::allan::NoiseFit;
+use gyrocal_statistics::format;
+
+use super::Analysed;
+
+/// Columns that are told one by one.
+const COLUMNS_SHOWN: usize = 4;
+
+/// The parts of the noise of each column, and whether they describe it.
+pub(super) fn first(analysed: &Analysed) -> Screen {
+    let columns = &analysed.columns;
+    let described = |noise: &Option<NoiseFit>| noise.as_ref().is_some_and(NoiseFit::is_described);
+    let good = columns
+        .iter()
+        .filter(|column| described(&column.noise))
+        .count();
+    let what = format!(
+        "of {good} of {} columns is a sum of white noise, flicker and walks",
+        columns.len()
+    );
+    let standing = if good == columns.len() {
+        Standing::Good
+    } else {
+        Standing::Doubtful
+    };
+    let mut screen = Screen::new(standing, "NOISE", what);
+    for column in columns.iter().take(COLUMNS_SHOWN) {
+        screen.fact(&column.name, parts(column.noise.as_ref(), &analysed.unit));
+    }
+    if columns.len() > COLUMNS_SHOWN {
+        let more = columns.len() - COLUMNS_SHOWN;
+        screen.fact("and", format!("{more} more columns: --verbose"));
+    }
+    if good < columns.len() {
+        screen.fact(
+            "may be",
+            "vibration, jumps, a change of temperature, or too short a log",
+        );
+    }
+    screen.fact(
+        "intervals",
+        "95 %; the flat part of a bias instability B is 0.664 B",
+    );
+    screen.fact("clock", analysed.clock.clone().unwrap_or_default());
+    screen
+}
+
+fn parts(noise: Option<&NoiseFit>, unit: &str) -> String {
+    let Some(noise) = noise else {
+        return "too few averaging times for a fit".to_owned();
+    };
+    let each = noise.coefficients.iter().filter_map(|coefficient| {
+        let part = coefficient.part;
+        let unit = format!("{unit}{}", part.unit_suffix());
+        let short = |value| format::short(value, 3);
+        match (coefficient.estimate, coefficient.interval) {
+            (Some(estimate), Some([low, high])) if low > 0.0 => Some(format!(
+                "{} {} ({} to {}) {unit}",
+                part.description(),
+                short(estimate),
+                short(low),
+                short(high)
+            )),
+            (Some(_), Some([_, high])) => Some(format!(
+                "{} below {} {unit}",
+                part.description(),
+                short(high)
+            )),
+            _ => None,
+        }
+    });
+    let mut each: Vec<String> = each.collect();
+    if each.is_empty() {
+        each.push("no part of the noise is determined".to_owned());
+    }
+    format!(
+        "{}; fit {}",
+        each.join(", "),
+        format::p_value(noise.p_value)
+    )
+}

@@ -1,0 +1,69 @@
+//! The answer of a command: a first screen, details, files that were written, and an exit code.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use gyrocal_diagnosis::prose::Screen;
+use gyrocal_record::{printable, printable_path};
+
+use crate::terminal;
+
+/// Result of a command.
+#[derive(Debug, Default)]
+pub(crate) struct Answer {
+    /// What a person reads first; `None` of a command whose answer is its text.
+    pub(crate) screen: Option<Screen>,
+    /// The details, or the whole answer without a screen.
+    pub(crate) text: String,
+    /// Files that were written, each with what it holds.
+    pub(crate) written: Vec<(String, String)>,
+    /// 0 unless `--exit-code` asks for another one.
+    pub(crate) exit_code: u8,
+}
+
+impl From<String> for Answer {
+    fn from(text: String) -> Self {
+        Self {
+            text,
+            ..Self::default()
+        }
+    }
+}
+
+impl Answer {
+    /// An answer with a first screen.
+    pub(crate) fn of(screen: Screen, text: String) -> Self {
+        Self {
+            screen: Some(screen),
+            text,
+            ..Self::default()
+        }
+    }
+
+    /// Tells of a file that was written.
+    pub(crate) fn wrote(&mut self, path: &Path, what: &str) {
+        self.written.push((printable_path(path), what.to_owned()));
+    }
+
+    /// The answer as text with styles: the first screen, files, and with `verbose` the details.
+    pub(crate) fn shown(&self, columns: Option<usize>, verbose: bool) -> String {
+        let mut out = String::new();
+        if let Some(screen) = &self.screen {
+            out.push_str(&terminal::laid_out(screen, columns));
+        }
+        let details = self.screen.is_none() || verbose;
+        if details && !self.text.is_empty() {
+            let space = if self.screen.is_some() { "\n" } else { "" };
+            let _ = write!(out, "{space}{}", printable(&self.text));
+        } else if self.screen.is_some() && !self.text.is_empty() {
+            let _ = writeln!(out, "{}", terminal::note("all tables and tests: --verbose"));
+        }
+        if details && !self.text.is_empty() && !self.written.is_empty() {
+            out.push('\n');
+        }
+        for (path, what) in &self.written {
+            let _ = writeln!(out, "{path}: {}", printable(what));
+        }
+        out
+    }
+}

@@ -1,0 +1,208 @@
+//! The first screen of `gyrocal calibrate`.
+
+use gyrocal_calibration::{NoiseRatio, RunResult, SiteQuantity};
+use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table, few};
+use gyrocal_record::{EffectTest, FitVerdict, shell_quoted};
+use gyrocal_setup::PlatformKind;
+use gyrocal_statistics::format::{self, p_value};
+
+use super::CalibrationRun;
+use super::inputs::Measurement;
+
+/// Records that are told one by one.
+const RECORDS_SHOWN: usize = 2;
+/// Names of a list that are shown.
+const NAMES_SHOWN: usize = 4;
+
+/// Verdict, how sure it is, the nine coefficients, and what to run next.
+pub(super) fn first(found: &CalibrationRun) -> Screen {
+    let mut screen = verdict(found);
+    let fit = &found.calibration.fit;
+    let shown: Vec<&EffectTest> = found.effects.iter().filter(|one| one.significant).collect();
+    for test in shown.iter().take(RECORDS_SHOWN) {
+        let largest = test.effect.as_deref().unwrap_or("an effect");
+        screen.fact(
+            "how large",
+            format!(
+                "{largest}, {:.1} sigma, search-corrected {}",
+                test.z,
+                p_value(test.p_value)
+            ),
+        );
+    }
+    let [low, high] = fit.nis_band();
+    let effects = match (shown.is_empty(), found.effects.is_empty()) {
+        (true, false) => "; no effect of the catalogue is significant",
+        _ => "",
+    };
+    screen.fact(
+        "how sure",
+        format!(
+            "mean NIS {:.3} (expected {low:.3} to {high:.3}){effects}",
+            fit.nis_mean()
+        ),
+    );
+    for problem in found.setup().take(RECORDS_SHOWN) {
+        screen.fact("set-up mended", &*problem.description);
+    }
+    if !fit.is_gross() {
+        results(found, &mut screen);
+    }
+    for measurement in found.measurements.iter().take(RECORDS_SHOWN) {
+        screen.fact("record", super::prose::record_line(measurement));
+    }
+    if found.measurements.len() > RECORDS_SHOWN {
+        let more = found.measurements.len() - RECORDS_SHOWN;
+        screen.fact("and", format!("{more} more records"));
+    }
+    if found.kind == PlatformKind::Stabilised {
+        let why = match found.verdict.verdict {
+            FitVerdict::Consistent => "all tests, and what could go undetected",
+            _ => "looks for the causes",
+        };
+        for measurement in found.measurements.iter().take(RECORDS_SHOWN) {
+            screen.then(diagnose(measurement), why);
+        }
+    }
+    screen
+}
+
+fn diagnose(measurement: &Measurement) -> String {
+    format!(
+        "gyrocal diagnose {} --bench {}",
+        shell_quoted(&measurement.path.to_string_lossy()),
+        shell_quoted(&measurement.bench_path.to_string_lossy())
+    )
+}
+
+fn verdict(found: &CalibrationRun) -> Screen {
+    let of = if found.has_several_records() {
+        "the records show"
+    } else {
+        "the record shows"
+    };
+    let fit = &found.calibration.fit;
+    let (standing, verdict, what) = match found.verdict.verdict {
+        _ if fit.is_gross() => (
+            Standing::Bad,
+            "NOT USABLE",
+            "the innovations are far larger than the declared noise: check units, axes, latitude"
+                .to_owned(),
+        ),
+        FitVerdict::EffectsFound => (
+            Standing::Bad,
+            "FAULT",
+            format!("{of} an effect that the model lacks: the coefficients may be biased"),
+        ),
+        FitVerdict::TooLarge => (
+            Standing::Doubtful,
+            "MISFIT",
+            "the innovations are larger than the declared noise: the sigmas are too small"
+                .to_owned(),
+        ),
+        FitVerdict::TooSmall => (
+            Standing::Doubtful,
+            "MISFIT",
+            "the innovations are smaller than the declared noise: the sigmas are too large"
+                .to_owned(),
+        ),
+        _ => (
+            Standing::Good,
+            "CALIBRATED",
+            "data, model and declared noise agree".to_owned(),
+        ),
+    };
+    Screen::new(standing, verdict, what)
+}
+
+fn results(found: &CalibrationRun, screen: &mut Screen) {
+    let coefficients = found.calibration.coefficients();
+    let open = coefficients.iter().filter(|one| !one.determined);
+    let open: Vec<&str> = open.map(|one| one.id).collect();
+    screen.fact("not determined", few(&open, NAMES_SHOWN));
+    let runs = found.measurements.iter().zip(&found.calibration.runs);
+    for (_, run) in runs.take(RECORDS_SHOWN) {
+        screen.fact("noise", noise(run));
+        if run
+            .azimuth
+            .as_ref()
+            .is_some_and(|search| search.is_ambiguous())
+        {
+            screen.fact(
+                "azimuth",
+                "ambiguous: give initial_angles_deg, or record for longer",
+            );
+        }
+    }
+    screen.fact("latitude", latitude(found));
+    screen.table = Some(table(found));
+}
+
+/// Estimated over declared noise.
+fn noise(run: &RunResult) -> String {
+    let Some(noise) = &run.noise else {
+        return String::new();
+    };
+    let list = |ratios: &[NoiseRatio; 3]| {
+        let each = ratios.map(|found| match found.is_observable() {
+            true => format::short(found.ratio, 3),
+            false => "?".to_owned(),
+        });
+        each.join(", ")
+    };
+    format!(
+        "of the declared one: accelerometers {}, gyros {} times",
+        list(&noise.accel),
+        list(&noise.gyro)
+    )
+}
+
+/// What an error of the latitude does.
+fn latitude(found: &CalibrationRun) -> String {
+    let calibration = &found.calibration;
+    let Some(latitude) = calibration.site_sensitivity(SiteQuantity::Latitude) else {
+        return String::new();
+    };
+    if latitude.declared_sigma.is_some() {
+        return "its declared sigma is in the sigmas".to_owned();
+    }
+    let largest = calibration.largest_bias(latitude);
+    let coefficient = calibration.coefficients()[largest.coefficient];
+    format!(
+        "taken as exact: 1 arcsec would shift {} by {:.2} sigma",
+        coefficient.id,
+        largest.in_sigmas.abs()
+    )
+}
+
+fn table(found: &CalibrationRun) -> Table {
+    let mut columns = vec![Column::words("coefficient"), Column::words("estimate")];
+    let with = found.with_effects.as_ref();
+    if with.is_some() {
+        columns.push(Column::words("with the effects"));
+    }
+    columns.push(Column::words(""));
+    let value = |estimate: f64, sigma: f64| format::estimate(estimate, sigma).join(" ± ");
+    let coefficients = found.calibration.coefficients();
+    let rows = coefficients.iter().enumerate().map(|(index, one)| {
+        let mut row = vec![
+            one.id.to_owned(),
+            format!("{} {}", value(one.estimate, one.sigma), one.unit),
+        ];
+        if let Some(with) = with.and_then(|with| with.coefficients.get(index)) {
+            row.push(value(with.estimate, with.sigma));
+        }
+        let meaning = one.meaning.split(':').next().unwrap_or_default();
+        row.push(match (one.determined, with) {
+            (false, _) => "not determined".to_owned(),
+            (true, None) => meaning.to_owned(),
+            (true, Some(_)) => String::new(),
+        });
+        row
+    });
+    Table {
+        title: String::new(),
+        columns,
+        rows: rows.collect(),
+    }
+}

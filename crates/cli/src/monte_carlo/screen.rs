@@ -1,0 +1,97 @@
+//! The first screen of `gyrocal monte-carlo`.
+
+use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table};
+use gyrocal_evaluation::{BandedMean, CalibrationSummary, MeasuredValue};
+use gyrocal_statistics::format::estimate;
+
+use super::MonteCarloArguments;
+
+/// Whether errors are as large as the sigmas say, and by how much they are not.
+pub(super) fn first(arguments: &MonteCarloArguments, summary: &CalibrationSummary) -> Screen {
+    let bands = [summary.nees_determined, summary.nis];
+    let holds = bands.iter().flatten().all(BandedMean::holds);
+    let runs = format!("{} runs, {} failed: ", summary.runs, summary.failures.len());
+    let mut screen = if holds {
+        Screen::new(
+            Standing::Good,
+            "CONSISTENT",
+            runs + "errors are as large as the sigmas say",
+        )
+    } else {
+        Screen::new(
+            Standing::Bad,
+            "INCONSISTENT",
+            runs + "errors are not as large as the sigmas say",
+        )
+    };
+    for (name, banded) in ["errors (NEES)", "innovations (NIS)"]
+        .into_iter()
+        .zip(bands)
+    {
+        screen.fact(
+            name,
+            banded.map_or_else(String::new, |banded| band(&banded)),
+        );
+    }
+    if let Some(share) = summary.consistent {
+        screen.fact(
+            "runs in their band",
+            format!("{} %", measured(share, 100.0, 1)),
+        );
+    }
+    for failure in summary.failures.iter().take(1) {
+        screen.fact(
+            "first failure",
+            format!("seed {}: {}", failure.seed, failure.message),
+        );
+    }
+    screen.fact("scenario", arguments.scenario.display().to_string());
+    screen.table = Some(table(summary));
+    screen
+}
+
+fn band(banded: &BandedMean) -> String {
+    let [low, high] = banded.band;
+    format!(
+        "mean {:.3}, expected {:.3} ({low:.3} to {high:.3}, 99.9 %): {}",
+        banded.mean,
+        banded.expected,
+        if banded.holds() { "inside" } else { "outside" }
+    )
+}
+
+fn measured(found: MeasuredValue, scale: f64, decimals: usize) -> String {
+    let [low, high] = found.interval.map(|bound| scale * bound);
+    let value = scale * found.value;
+    format!("{value:.decimals$} ({low:.decimals$} to {high:.decimals$})")
+}
+
+fn table(summary: &CalibrationSummary) -> Table {
+    let rows = summary.coefficients.iter().map(|one| {
+        let bias = match (one.bias, one.bias_standard_error) {
+            (Some(bias), Some(error)) => {
+                format!("{} {}", estimate(bias, error).join(" ± "), one.unit)
+            }
+            _ => String::new(),
+        };
+        let ratio = |found: Option<MeasuredValue>, scale: f64, decimals| {
+            found.map_or_else(String::new, |found| measured(found, scale, decimals))
+        };
+        vec![
+            one.name.clone(),
+            bias,
+            ratio(one.rmse_over_sigma, 1.0, 2),
+            ratio(one.coverage, 100.0, 0),
+        ]
+    });
+    Table {
+        title: String::new(),
+        columns: vec![
+            Column::words("coefficient"),
+            Column::words("bias"),
+            Column::words("RMSE / sigma"),
+            Column::words("in 95 % CI, %"),
+        ],
+        rows: rows.collect(),
+    }
+}

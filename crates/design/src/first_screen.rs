@@ -1,0 +1,132 @@
+//! The first screen of a plan.
+
+use gyrocal_diagnosis::prose::{Screen, Standing, counted, few, record_and_bench};
+
+use crate::prose::{attitude, hours, percent, undecided};
+use crate::result::{Aim, PlanResult, Proposal};
+
+/// Names of a list that are shown.
+const SHOWN: usize = 4;
+
+/// Durations that are told beside the first one.
+const DURATIONS_SHOWN: usize = 3;
+
+/// The first screen: the run to make, what it will tell, and how much more that is than going on.
+#[must_use]
+pub fn first_screen(plan: &PlanResult) -> Screen {
+    let mut screen = match plan.proposals.first() {
+        Some(best) => {
+            let run = format!("{} from {}", hours(best.duration_s), attitude(best));
+            Screen::new(Standing::Good, "NEXT RUN", run)
+        }
+        None => Screen::new(Standing::Doubtful, "NO RUN", "no attitude is better"),
+    };
+    screen.fact("why", question(plan));
+    if let Some(best) = plan.proposals.first() {
+        expectation(plan, best, &mut screen);
+    }
+    let mut durations: Vec<f64> = plan.proposals.iter().map(|run| run.duration_s).collect();
+    durations.dedup();
+    for duration_s in durations.into_iter().skip(1).take(DURATIONS_SHOWN) {
+        let run = plan
+            .proposals
+            .iter()
+            .find(|run| run.duration_s == duration_s);
+        screen.fact(
+            "or",
+            run.map_or_else(String::new, |run| {
+                format!(
+                    "{} from {}: {}",
+                    hours(duration_s),
+                    attitude(run),
+                    outlook(run)
+                )
+            }),
+        );
+    }
+    screen.fact("goal", crate::prose::goal(plan).unwrap_or_default());
+    if !plan.inseparable.is_empty() {
+        let classes: Vec<String> = plan.inseparable.iter().map(|ids| ids.join(" = ")).collect();
+        let classes: Vec<&str> = classes.iter().map(String::as_str).collect();
+        screen.fact(
+            "no run tells",
+            format!("{} (exact equivalents)", few(&classes, SHOWN)),
+        );
+    }
+    let path = plan.manifest.inputs.first();
+    screen.fact(
+        "record",
+        format!(
+            "{}: {} over {:.2} days",
+            path.map_or("record", |input| &input.path),
+            counted(plan.record.rows, "row"),
+            plan.record.duration_s / 86_400.0
+        ),
+    );
+    let files = record_and_bench(&plan.manifest.inputs);
+    screen.then(
+        format!("gyrocal plan {files} --verbose"),
+        "all runs, sigmas and alternatives",
+    );
+    screen
+}
+
+/// What the record leaves open.
+fn question(plan: &PlanResult) -> String {
+    let sets = undecided(&plan.now).map(|set| {
+        let others: Vec<&str> = set.members[1..].iter().map(|m| &*m.effect).collect();
+        format!("{} may also be {}", set.effect, few(&others, SHOWN))
+    });
+    let sets: Vec<String> = sets.collect();
+    match (sets.is_empty(), plan.aim) {
+        (false, _) => sets.join("; "),
+        (true, Aim::Set) => "every finding has one name".to_owned(),
+        (true, Aim::Sigmas) => "no cause is in doubt: the run reduces the sigmas most".to_owned(),
+    }
+}
+
+fn expectation(plan: &PlanResult, best: &Proposal, screen: &mut Screen) {
+    for set in undecided(&best.outlook) {
+        screen.fact(
+            "it decides",
+            format!(
+                "{}: one of {} left with a probability of {} ({:.2} on average)",
+                set.effect,
+                counted(set.members.len(), "cause"),
+                percent(set.one_left),
+                set.mean_size
+            ),
+        );
+    }
+    screen.fact(
+        "coefficients",
+        format!(
+            "sigmas fall to {:.2} of the present ones (geometric mean of the nine)",
+            best.outlook.sigma_ratio
+        ),
+    );
+    let mut going_on = plan.going_on.iter();
+    let going_on = going_on.find(|run| run.duration_s == best.duration_s);
+    screen.fact(
+        "going on",
+        going_on.map_or_else(String::new, |run| {
+            format!("as long in the present attitude: {}", outlook(run))
+        }),
+    );
+}
+
+/// What a run gives, in a few words.
+fn outlook(run: &Proposal) -> String {
+    let sets = undecided(&run.outlook).map(|set| {
+        format!(
+            "{:.2} of {} left, ",
+            set.mean_size,
+            counted(set.members.len(), "cause")
+        )
+    });
+    format!(
+        "{}sigmas {:.2}",
+        sets.collect::<String>(),
+        run.outlook.sigma_ratio
+    )
+}

@@ -1,0 +1,350 @@
+//! The first screen of a diagnosis.
+
+use gyrocal_statistics::format::{self, p_value, percent, with_sigma};
+
+use super::format::{counted, short};
+use super::screen::{Screen, Standing, few, record_and_bench};
+use super::verdict;
+use crate::result::{
+    DiagnosisResult, Finding, FindingKind, NotTestedReason, Parameter, Relation, ResidualVerdict,
+    Verdict,
+};
+
+/// Findings that are told one by one.
+const FINDINGS_SHOWN: usize = 4;
+/// Alternatives that are named.
+const ALTERNATIVES_SHOWN: usize = 4;
+/// Coefficients that are named with their change.
+const SHIFTS_SHOWN: usize = 3;
+/// Errors of a set-up that are told.
+const PROBLEMS_SHOWN: usize = 2;
+/// Probability of none of the catalogue from which on it is told.
+const TOLD: f64 = 0.2;
+
+/// The first screen: verdict, size, significance, alternatives, effect on the coefficients, next step.
+#[must_use]
+pub fn first_screen(result: &DiagnosisResult) -> Screen {
+    let mut screen = match result.verdict {
+        Verdict::EffectsFound => found(result),
+        Verdict::Unexplained => unexplained(result),
+        Verdict::Setup => wrong_setup(result),
+        Verdict::Clean => clean(result),
+    };
+    if result.verdict != Verdict::Setup {
+        let problems = result.setup.iter().take(PROBLEMS_SHOWN);
+        for problem in problems {
+            screen.fact("set-up mended", &*problem.description);
+        }
+        if !result.search_complete {
+            screen.fact(
+                "search",
+                "ended at its budget of work: the record contradicts the model in more ways",
+            );
+        }
+    }
+    screen.fact("record", verdict::record(result));
+    screen
+}
+
+fn found(result: &DiagnosisResult) -> Screen {
+    let what = match &result.findings[..] {
+        [one] => format!("{}, {}", one.effect, one.name),
+        several => {
+            let ids: Vec<&str> = several.iter().map(|one| &*one.effect).collect();
+            format!(
+                "{}: {}",
+                counted(several.len(), "effect"),
+                few(&ids, FINDINGS_SHOWN)
+            )
+        }
+    };
+    let mut screen = Screen::new(Standing::Bad, "FAULT", what);
+    for finding in result.findings.iter().take(FINDINGS_SHOWN) {
+        let label = match result.findings.len() {
+            1 => "how large",
+            _ => &*finding.effect,
+        };
+        screen.fact(label, size(finding));
+    }
+    screen.fact(
+        "how sure",
+        format!(
+            "{} of sound records would show any effect by chance",
+            percent(result.false_alarm_probability)
+        ),
+    );
+    screen.fact("may also be", others(result));
+    effect_on_fit(result, &mut screen);
+    screen.fact("left over", remainder(result));
+    next_of_found(result, &mut screen);
+    screen
+}
+
+/// Size and significance of a finding.
+fn size(finding: &Finding) -> String {
+    let parameters = finding.parameters.iter().map(|parameter| {
+        let value = value_with_unit(parameter);
+        match parameter.name.as_str() {
+            "size" => value,
+            name => format!("{name} {value}"),
+        }
+    });
+    let mut parts: Vec<String> = parameters.collect();
+    parts.push(format!("{:.1} sigma", finding.z));
+    parts.push(format!("search-corrected {}", p_value(finding.p_value)));
+    let left_out = match finding.accepted {
+        Some(false) => "; no predictive gain: not in the extended model",
+        _ => "",
+    };
+    parts.join(", ") + left_out
+}
+
+fn value_with_unit(parameter: &Parameter) -> String {
+    let value = match parameter.sigma {
+        Some(sigma) => with_sigma(parameter.estimate, sigma),
+        None => short(parameter.estimate),
+    };
+    match parameter.unit.as_str() {
+        "1" => value,
+        unit => format!("{value} {unit}"),
+    }
+}
+
+/// The other members of the confidence sets, exact equivalents and near twins, without repetition.
+fn others(result: &DiagnosisResult) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    let mut add = |name| {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    };
+    for finding in &result.findings {
+        for equivalent in &finding.equivalents {
+            add(equivalent.effect.as_str());
+        }
+        for alternative in &finding.alternatives {
+            add(alternative.effect.as_str());
+        }
+    }
+    let groups = result.cannot_tell.iter();
+    let twins = groups.filter(|group| group.relation == Relation::NearTwins);
+    for twin in twins.flat_map(|group| group.members.iter().skip(1)) {
+        add(twin.as_str());
+    }
+    let unlisted = result
+        .causes()
+        .filter_map(|finding| finding.none_of_these)
+        .fold(0.0, f64::max);
+    let unlisted = (unlisted >= TOLD).then(|| {
+        format!(
+            "a cause outside of the catalogue (probability {})",
+            percent(unlisted)
+        )
+    });
+    let listed = (!names.is_empty()).then(|| few(&names, ALTERNATIVES_SHOWN));
+    match (listed, unlisted) {
+        (None, None) if result.causes().next().is_some() => {
+            "nothing else of the catalogue, at 95 %".to_owned()
+        }
+        (listed, unlisted) => {
+            let all: Vec<String> = listed.into_iter().chain(unlisted).collect();
+            all.join("; ")
+        }
+    }
+}
+
+/// Error of the open-loop simulation, gain and changes of the coefficients.
+fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
+    let Some(gain) = &result.gain else {
+        return;
+    };
+    let micro = |g: f64| format::short(1e6 * g, 3);
+    let rms = gain.free_run_rms_g;
+    screen.fact(
+        "what it does",
+        format!(
+            "open-loop error {} → {} µg with it in the model (noise {}); {:+.1} nats on left-out \
+             blocks",
+            micro(rms.before),
+            micro(rms.after),
+            micro(rms.noise),
+            gain.cross_validated_log_score_nats
+        ),
+    );
+    let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
+    shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
+    let named: Vec<String> = shifts
+        .iter()
+        .take(SHIFTS_SHOWN)
+        .map(|shift| format!("{} {:+.1}", shift.coefficient, shift.in_sigmas))
+        .collect();
+    screen.fact(
+        "coefficients",
+        format!("change by {} sigma; the others less", named.join(", ")),
+    );
+}
+
+/// The residual with all causes in the model.
+fn remainder(result: &DiagnosisResult) -> String {
+    let test = &result.remainder;
+    match test.verdict {
+        ResidualVerdict::White => format!("nothing: innovations white ({})", p_value(test.p_value)),
+        ResidualVerdict::NotTested => format!("not tested for {}", test.description),
+        ResidualVerdict::Unexplained => test.description.clone(),
+    }
+}
+
+fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
+    let files = record_and_bench(&result.manifest.inputs);
+    let groups = !result.cannot_tell.is_empty();
+    let causes: Vec<&str> = result
+        .causes()
+        .filter(|finding| finding.accepted == Some(true))
+        .map(|finding| &*finding.effect)
+        .collect();
+    if groups {
+        screen.then(
+            format!("gyrocal plan {files}"),
+            "the run that would distinguish them",
+        );
+    }
+    if causes.is_empty() {
+        let filter = result
+            .of_kind(FindingKind::Filter)
+            .chain(result.of_kind(FindingKind::Noise))
+            .next();
+        if filter.is_some() {
+            screen.then(
+                format!("gyrocal diagnose {files} --verbose"),
+                "noise and filter in detail",
+            );
+        }
+    } else {
+        screen.then(
+            format!("gyrocal calibrate {files} --with {}", causes.join(",")),
+            "the coefficients with it in the model",
+        );
+    }
+}
+
+fn unexplained(result: &DiagnosisResult) -> Screen {
+    let mut screen = Screen::new(
+        Standing::Bad,
+        "UNEXPLAINED",
+        "the record contradicts the model, and no effect of the catalogue explains it",
+    );
+    let test = &result.remainder;
+    screen.fact("what is seen", &*test.description);
+    screen.fact(
+        "how sure",
+        format!(
+            "{}; {} of sound records would show any effect by chance",
+            p_value(test.p_value),
+            percent(result.false_alarm_probability)
+        ),
+    );
+    screen.fact(
+        "may also be",
+        "an effect that the catalogue lacks: docs/adding-a-term.md adds one",
+    );
+    screen.fact(
+        "coefficients",
+        "of the nominal model: they may be biased by more than their sigmas",
+    );
+    let files = record_and_bench(&result.manifest.inputs);
+    screen.then(
+        format!("gyrocal diagnose {files} --figures figures"),
+        "pictures of the residual",
+    );
+    screen
+}
+
+fn clean(result: &DiagnosisResult) -> Screen {
+    let mut screen = Screen::new(
+        Standing::Good,
+        "NO FAULT FOUND",
+        "the record fits the model and the declared noise",
+    );
+    screen.fact(
+        "how sure",
+        format!(
+            "{} tested, false-alarm rate {}; {}",
+            counted(result.ranking.len(), "effect"),
+            percent(result.false_alarm_probability),
+            remainder(result).replace("nothing: ", "")
+        ),
+    );
+    screen.fact("may still hide", undetected(result));
+    screen.fact("not tested", untested(result));
+    if let Some(nis) = result.residuals.as_ref().and_then(|shown| shown.nis) {
+        let [low, high] = nis.band;
+        screen.fact(
+            "innovations",
+            format!("mean NIS {:.3} (expected {low:.3} to {high:.3})", nis.mean),
+        );
+    }
+    let files = record_and_bench(&result.manifest.inputs);
+    screen.then(
+        format!("gyrocal calibrate {files}"),
+        "the nine coefficients with their sigmas",
+    );
+    screen.then(
+        format!("gyrocal plan {files}"),
+        "the run that reduces the sigmas most",
+    );
+    screen
+}
+
+/// Effects that would go undetected at their typical size.
+fn undetected(result: &DiagnosisResult) -> String {
+    let low = result.not_searched.iter();
+    let low: Vec<&str> = low
+        .filter(|effect| effect.reason == NotTestedReason::LowPower)
+        .map(|effect| &*effect.effect)
+        .collect();
+    match low.len() {
+        0 => "effects smaller than their typical size (gyrocal effects)".to_owned(),
+        count => format!(
+            "{count} of {} of typical size, as the record is short: {}",
+            counted(result.ranking.len(), "effect"),
+            few(&low, ALTERNATIVES_SHOWN)
+        ),
+    }
+}
+
+/// Effects that were not tested for.
+fn untested(result: &DiagnosisResult) -> String {
+    let others = result.not_searched.iter();
+    let others: Vec<&str> = others
+        .filter(|effect| effect.reason != NotTestedReason::LowPower)
+        .map(|effect| &*effect.effect)
+        .collect();
+    match others.len() {
+        0 => String::new(),
+        count => format!(
+            "{} (missing inputs, or on request): {}",
+            counted(count, "effect"),
+            few(&others, 2)
+        ),
+    }
+}
+
+fn wrong_setup(result: &DiagnosisResult) -> Screen {
+    let mut screen = Screen::new(
+        Standing::Bad,
+        "SET-UP WRONG",
+        "the record was not diagnosed",
+    );
+    for problem in result.setup.iter().take(PROBLEMS_SHOWN) {
+        screen.fact("what is wrong", problem.text());
+    }
+    if result.setup.len() > PROBLEMS_SHOWN {
+        let more = result.setup.len() - PROBLEMS_SHOWN;
+        screen.fact("and", format!("{more} more: --verbose lists them"));
+    }
+    screen.fact(
+        "what to do",
+        "mend the record or its bench file: docs/setup-checks.md lists what is checked",
+    );
+    screen
+}
