@@ -54,7 +54,7 @@ impl Answer {
         let details = self.screen.is_none() || verbose;
         if details && !self.text.is_empty() {
             let space = if self.screen.is_some() { "\n" } else { "" };
-            let _ = write!(out, "{space}{}", printable(&self.text));
+            let _ = write!(out, "{space}{}", terminal::fitted(&self.text, columns));
         } else if self.screen.is_some() && !self.text.is_empty() {
             let _ = writeln!(out, "{}", terminal::note("all tables and tests: --verbose"));
         }

@@ -20,7 +20,11 @@ use crate::tumble::TumbleArguments;
 
 /// Calibration and diagnosis of gyro drift of inertially stabilised platforms.
 #[derive(Debug, Parser)]
-#[command(name = "gyrocal", version, about)]
+#[command(
+    name = "gyrocal",
+    version,
+    about = "Calibration and diagnosis of gyro drift of inertially stabilised platforms"
+)]
 pub(crate) struct Cli {
     #[command(flatten)]
     pub(crate) shown: Shown,

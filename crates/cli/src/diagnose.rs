@@ -10,7 +10,7 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
-    Verdict, diagnose_gated, prose,
+    Verdict, diagnose_watched, prose,
 };
 use gyrocal_record::{Bench, Outputs, write_json};
 use gyrocal_setup::PlatformKind;
@@ -101,17 +101,18 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     if arguments.filter.is_some() && bench.initial_angles_deg.is_none() {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
-    let progress = Progress::waiting("diagnosing", rows);
+    let mut progress = Progress::waiting("diagnosing", rows);
     let gate =
         |file, bench| Gate::of_file(PlatformKind::Stabilised, file, bench, &options.calibration);
     let checked = gate(&file, &bench)?;
-    let mut diagnosis = match diagnose_gated(checked, &bench, &options) {
-        Err(DiagnosisError::Setup { result }) => {
-            drop(progress);
-            return stopped(arguments, *result, &inputs);
-        }
-        found => found.map_err(failed)?,
-    };
+    let mut diagnosis =
+        match diagnose_watched(checked, &bench, &options, |stage| progress.at(stage)) {
+            Err(DiagnosisError::Setup { result }) => {
+                drop(progress);
+                return stopped(arguments, *result, &inputs);
+            }
+            found => found.map_err(failed)?,
+        };
     diagnosis.result.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
     if let Some((path, later, later_bench)) = &later {
         let failed = |source| NotDiagnosed::new(path, later_bench, source);

@@ -7,6 +7,20 @@ use crate::exit;
 /// Heading of options that name files to write.
 const FILES: &str = "Files to write";
 
+/// Heading of options that name files to read.
+const READ: &str = "Files to read";
+
+/// Ids of options that name files to read.
+const INPUTS: [&str; 7] = [
+    "bench",
+    "benches",
+    "diagnosis",
+    "gyro_axes",
+    "log_description",
+    "validate",
+    "validate_bench",
+];
+
 /// Ids of options that name files to write.
 const WRITTEN: [&str; 8] = [
     "json",
@@ -196,7 +210,7 @@ pub(crate) fn completed(command: Command) -> Command {
     })
 }
 
-/// Options that name files to write under a heading of their own.
+/// Options that name files, under headings of their own.
 fn grouped(command: Command) -> Command {
     let nested: Vec<String> = command
         .get_subcommands()
@@ -206,10 +220,12 @@ fn grouped(command: Command) -> Command {
         command.mut_subcommand(&name, grouped)
     });
     command.mut_args(|argument| {
-        if WRITTEN.contains(&argument.get_id().as_str()) {
-            argument.help_heading(FILES)
-        } else {
-            argument
+        let id = argument.get_id().as_str().to_owned();
+        match () {
+            () if argument.is_positional() => argument,
+            () if WRITTEN.contains(&&*id) => argument.help_heading(FILES),
+            () if INPUTS.contains(&&*id) => argument.help_heading(READ),
+            () => argument,
         }
     })
 }

@@ -83,7 +83,10 @@ fn main() -> ExitCode {
 /// The answer of a command; without one, what people do first.
 fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
     let Some(command) = command else {
-        return Ok(help::WELCOME.to_owned().into());
+        return Ok(Answer {
+            exit_code: exit::USAGE,
+            ..Answer::from(help::WELCOME.to_owned())
+        });
     };
     match command {
         Command::Allan(arguments) => allan::run(arguments),

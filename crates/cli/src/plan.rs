@@ -78,6 +78,9 @@ enum AimArgument {
     Sigmas,
 }
 
+/// Share of the time of a plan that has passed after the diagnosis.
+const DIAGNOSED: f64 = 0.5;
+
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
@@ -88,8 +91,9 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     let file = records::read(&arguments.record)?;
     let rows = file.record().len();
     tracing::info!(rows, "read");
-    let progress = Progress::waiting("planning on", rows);
-    let known = found::known(arguments, &file, &bench)?;
+    let mut progress = Progress::waiting("planning", rows);
+    let known = found::known(arguments, &file, &bench, &mut progress)?;
+    progress.stage("comparing runs", DIAGNOSED);
     let run = Run {
         record: &known.record,
         bench: &bench,

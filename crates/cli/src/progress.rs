@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use gyrocal_diagnosis::Stage;
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
 use crate::terminal;
 
@@ -63,6 +64,30 @@ impl Progress {
         if let Some(bar) = &self.bar {
             bar.set_position(done as u64);
         }
+    }
+
+    /// Reports that a stage of a diagnosis begins.
+    pub(crate) fn at(&mut self, stage: Stage) {
+        self.stage(stage.name(), stage.share_before());
+    }
+
+    /// Reports that a stage begins when this share of the time has passed; shows the time left from then
+    /// on, if the work takes more than a second.
+    pub(crate) fn stage(&mut self, name: &str, share: f64) {
+        let elapsed = self.started.elapsed();
+        if !self.wanted || (self.bar.is_none() && elapsed < PATIENCE) {
+            return;
+        }
+        let label = self.label;
+        let bar = self.bar.get_or_insert_with(ProgressBar::new_spinner);
+        let left = match share {
+            share if share > 0.0 => {
+                let left = elapsed.mul_f64((1.0 - share) / share);
+                format!(", about {} left", HumanDuration(left))
+            }
+            _ => String::new(),
+        };
+        bar.set_message(format!("{label}: {name}{left}"));
     }
 
     fn visible(&self) -> ProgressBar {

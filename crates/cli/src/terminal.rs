@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 use clap::{Args, ValueEnum};
 use terminal_size::{Width, terminal_size_of};
 
-pub(crate) use screen::{laid_out, note};
+pub(crate) use screen::{fitted, laid_out, note};
 pub(crate) use stream::{Messages, print, warn};
 
 /// Columns of a terminal that does not tell.

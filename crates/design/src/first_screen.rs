@@ -63,10 +63,10 @@ pub fn first_screen(plan: &PlanResult) -> Screen {
             plan.record.duration_s / 86_400.0
         ),
     );
-    let files = record_and_bench(&plan.manifest.inputs);
+    let files = record_and_bench(&plan.manifest.inputs).replacen(" --", " next.csv --", 1);
     screen.then(
-        format!("gyrocal plan {files} --verbose"),
-        "all runs, sigmas and alternatives",
+        format!("gyrocal calibrate {files} --bench next.toml"),
+        "both runs, once the next is recorded",
     );
     screen
 }

@@ -31,6 +31,7 @@ use crate::residual_test::{decorrelated, residual_test, whitened};
 use crate::residuals::residuals;
 use crate::result::{DiagnosisResult, FalseAlarmShares, Gain};
 use crate::series::Innovations;
+use crate::stage::Stage;
 use crate::validation::{CrossValidated, LaterPrediction, cross_validate, gain};
 use answer::Evidence;
 pub use answer::{manifest, record_summary};
@@ -134,12 +135,26 @@ pub fn diagnose_gated<'a>(
     bench: &'a Bench,
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
+    diagnose_watched(found, bench, options, |_| ())
+}
+
+/// The same, telling which stage begins.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn diagnose_watched<'a>(
+    found: Gate<'a>,
+    bench: &'a Bench,
+    options: &DiagnoseOptions,
+    mut watch: impl FnMut(Stage),
+) -> Result<Diagnosis<'a>, DiagnosisError> {
     let (usable, setup) = found.sound(options)?;
     request::check(&options.also, &usable, bench)?;
+    let watch: &mut dyn FnMut(Stage) = &mut watch;
     match usable {
-        Cow::Borrowed(record) => diagnose_sound(record, bench, options, setup),
+        Cow::Borrowed(record) => diagnose_sound(record, bench, options, setup, watch),
         Cow::Owned(record) => {
-            diagnose_sound(&record, bench, options, setup).map(Diagnosis::into_owned)
+            diagnose_sound(&record, bench, options, setup, watch).map(Diagnosis::into_owned)
         }
     }
 }
@@ -150,7 +165,9 @@ fn diagnose_sound<'a>(
     bench: &'a Bench,
     options: &DiagnoseOptions,
     setup: Vec<SetupProblem>,
+    watch: &mut dyn FnMut(Stage),
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
+    watch(Stage::Audit);
     let run = Run { record, bench };
     let shares = shares(options.false_alarm_probability);
 
@@ -167,6 +184,7 @@ fn diagnose_sound<'a>(
     let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
     let selection = request::selection(record, bench, &also);
     let search = search_options(options, &shares);
+    watch(Stage::Search);
     let rows = rows(record, audited.nominal.covariates());
     let searched = gyrocal_hypothesis::search(audited.nominal, rows, &selection, &search)?;
     let nominal = searched.nominal.clone();
@@ -177,6 +195,7 @@ fn diagnose_sound<'a>(
     let gyro_noise =
         gyro_noise_findings(&searched.fitted, &searched.noise, &audit, shares.gyro_noise)?;
 
+    watch(Stage::Validation);
     let whitened = whitened(&searched.fitted, record)?;
     let (time_s, alpha) = (&record.time_s, shares.residual_test);
     let tested = decorrelated(&whitened, audit.cleaned.correlation);
@@ -185,6 +204,7 @@ fn diagnose_sound<'a>(
 
     let validated = cross_validate(&nominal, &searched)?;
     let gain = model_gain(&nominal, &searched, &validated, &run, &noise_model)?;
+    watch(Stage::Answer);
     let filter = options
         .filter
         .map(|filter| filter_test(record, bench, filter));

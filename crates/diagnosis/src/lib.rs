@@ -87,13 +87,14 @@ mod residual_test;
 mod residuals;
 pub mod result;
 mod series;
+mod stage;
 mod untested;
 mod validation;
 
 pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
 pub use diagnose::{
-    DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, fit_effects, manifest, predict_later,
-    record_summary, screen_record,
+    DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, diagnose_watched, fit_effects, manifest,
+    predict_later, record_summary, screen_record,
 };
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};
@@ -108,6 +109,7 @@ pub use plot_data::{ChannelCorrelation, ChannelSpectrum, ModelVersion, OpenLoopS
 pub use request::{missing_input, selection};
 pub use result::{DiagnosisResult, Verdict};
 pub use series::Innovations;
+pub use stage::Stage;
 pub use validation::{AttitudeErrors, LaterPrediction};
 
 /// Number of drift coefficients of the nominal model.

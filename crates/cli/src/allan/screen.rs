@@ -1,6 +1,6 @@
 //! The first screen of `gyrocal allan`.
 
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_diagnosis::prose::{Screen, Standing, counted};
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
 
@@ -17,16 +17,19 @@ pub(super) fn first(analysed: &Analysed) -> Screen {
         .iter()
         .filter(|column| described(&column.noise))
         .count();
-    let what = format!(
-        "of {good} of {} columns is a sum of white noise, flicker and walks",
-        columns.len()
-    );
-    let standing = if good == columns.len() {
-        Standing::Good
+    let all = columns.len();
+    let parts_of = "white noise, flicker and random walks";
+    let mut screen = if good == all {
+        let what = format!("by {parts_of}, in all of {}", counted(all, "column"));
+        Screen::new(Standing::Good, "NOISE EXPLAINED", what)
     } else {
-        Standing::Doubtful
+        let what = format!(
+            "by {parts_of}, in {} of {}",
+            all - good,
+            counted(all, "column")
+        );
+        Screen::new(Standing::Doubtful, "NOISE NOT EXPLAINED", what)
     };
-    let mut screen = Screen::new(standing, "NOISE", what);
     for column in columns.iter().take(COLUMNS_SHOWN) {
         screen.fact(&column.name, parts(column.noise.as_ref(), &analysed.unit));
     }

@@ -45,7 +45,12 @@ pub(super) fn first(found: &CalibrationRun) -> Screen {
     for problem in found.setup().take(RECORDS_SHOWN) {
         screen.fact("set-up mended", &*problem.description);
     }
-    if !fit.is_gross() {
+    if fit.is_gross() {
+        screen.fact(
+            "what to do",
+            "check the units of [noise] and time, that up is positive, latitude and initial angles",
+        );
+    } else {
         results(found, &mut screen);
     }
     for measurement in found.measurements.iter().take(RECORDS_SHOWN) {
@@ -86,7 +91,7 @@ fn verdict(found: &CalibrationRun) -> Screen {
         _ if fit.is_gross() => (
             Standing::Bad,
             "NOT USABLE",
-            "the innovations are far larger than the declared noise: check units, axes, latitude"
+            "the innovations are far larger than the noise: the coefficients are not usable"
                 .to_owned(),
         ),
         FitVerdict::EffectsFound => (
@@ -145,7 +150,7 @@ fn noise(run: &RunResult) -> String {
     };
     let list = |ratios: &[NoiseRatio; 3]| {
         let each = ratios.map(|found| match found.is_observable() {
-            true => format::short(found.ratio, 3),
+            true => format!("{:.2}", found.ratio),
             false => "?".to_owned(),
         });
         each.join(", ")

@@ -2,7 +2,7 @@
 
 use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table};
 use gyrocal_evaluation::{BandedMean, CalibrationSummary, MeasuredValue};
-use gyrocal_statistics::format::estimate;
+use gyrocal_statistics::format::with_sigma;
 
 use super::MonteCarloArguments;
 
@@ -70,18 +70,17 @@ fn table(summary: &CalibrationSummary) -> Table {
     let rows = summary.coefficients.iter().map(|one| {
         let bias = match (one.bias, one.bias_standard_error) {
             (Some(bias), Some(error)) => {
-                format!("{} {}", estimate(bias, error).join(" ± "), one.unit)
+                format!("{} {}", with_sigma(bias, error), one.unit)
             }
             _ => String::new(),
         };
-        let ratio = |found: Option<MeasuredValue>, scale: f64, decimals| {
-            found.map_or_else(String::new, |found| measured(found, scale, decimals))
-        };
+        let ratio = one.rmse_over_sigma;
         vec![
             one.name.clone(),
             bias,
-            ratio(one.rmse_over_sigma, 1.0, 2),
-            ratio(one.coverage, 100.0, 0),
+            ratio.map_or_else(String::new, |found| measured(found, 1.0, 2)),
+            one.coverage
+                .map_or_else(String::new, |found| format!("{:.0} %", 100.0 * found.value)),
         ]
     });
     Table {
@@ -90,7 +89,7 @@ fn table(summary: &CalibrationSummary) -> Table {
             Column::words("coefficient"),
             Column::words("bias"),
             Column::words("RMSE / sigma"),
-            Column::words("in 95 % CI, %"),
+            Column::words("in 95 % CI"),
         ],
         rows: rows.collect(),
     }

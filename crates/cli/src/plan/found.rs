@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
 use gyrocal_design::{NamedCause, noise_of};
-use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_gated, result};
+use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_watched, result};
 use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem};
 use gyrocal_setup::PlatformKind;
 
@@ -13,6 +13,7 @@ use super::PlanArguments;
 use super::failed::{NotPlanned, OtherInput};
 use crate::Failure;
 use crate::diagnose::NotDiagnosed;
+use crate::progress::Progress;
 
 /// Starting point of a plan.
 pub(super) struct Known<'a> {
@@ -29,12 +30,13 @@ pub(super) fn known<'a>(
     arguments: &PlanArguments,
     file: &'a RecordFile,
     bench: &'a Bench,
+    progress: &mut Progress,
 ) -> Result<Known<'a>, Failure> {
     let kind = PlatformKind::Stabilised;
     let checked = Gate::of_file(kind, file, bench, &Options::default())?;
     match &arguments.diagnosis {
         Some(path) => written(path, arguments, checked, bench),
-        None => made(arguments, checked, bench),
+        None => made(arguments, checked, bench, progress),
     }
 }
 
@@ -42,13 +44,14 @@ fn made<'a>(
     arguments: &PlanArguments,
     checked: Gate<'a>,
     bench: &'a Bench,
+    progress: &mut Progress,
 ) -> Result<Known<'a>, Failure> {
     let options = DiagnoseOptions {
         false_alarm_probability: arguments.false_alarm,
         also: arguments.effects.clone(),
         ..DiagnoseOptions::default()
     };
-    let found = diagnose_gated(checked, bench, &options)
+    let found = diagnose_watched(checked, bench, &options, |stage| progress.at(stage))
         .map_err(|source| NotDiagnosed::new(&arguments.record, bench, source))?;
     Ok(Known {
         named: NamedCause::all(&found.result),

@@ -1,7 +1,9 @@
 //! Layout of a first screen.
 
+use std::fmt::Write as _;
+
 use anstyle::{AnsiColor, Style};
-use gyrocal_diagnosis::prose::{Fact, Screen, Standing};
+use gyrocal_diagnosis::prose::{Fact, NextStep, Screen, Standing};
 use gyrocal_record::{printable, printable_line};
 
 use crate::layout::drawn;
@@ -39,18 +41,83 @@ pub(crate) fn laid_out(screen: &Screen, columns: Option<usize>) -> String {
         out.push_str(&format!("{}\n", printable(&drawn(table))));
     }
     for step in &screen.next {
-        // A command line is never broken: it is there to be copied.
-        let command = printable(&step.command);
-        out.push_str(&format!("{DIM}{:width$}{DIM:#}  {command}\n", "next"));
-        let why = printable(&step.why);
-        let used = width + 2 + command.chars().count();
-        let room = columns.is_none_or(|columns| used + why.chars().count() + 5 <= columns);
-        if room {
-            out.truncate(out.len() - 1);
-            out.push_str(&format!("   {DIM}# {why}{DIM:#}\n"));
-        } else {
-            out.push_str(&format!("{:width$}  {DIM}# {why}{DIM:#}\n", ""));
+        next_step(&mut out, step, width, columns);
+    }
+    out
+}
+
+/// A command to run next. Where it is too long it goes on in another line, as a shell reads it.
+fn next_step(out: &mut String, step: &NextStep, width: usize, columns: Option<usize>) {
+    let (command, why) = (printable_line(&step.command), printable_line(&step.why));
+    let indent = width + 2;
+    let mut lines = vec![command.clone().into_owned()];
+    if let Some(columns) = columns {
+        // Two columns for ` \`.
+        let room = columns.saturating_sub(indent + 2).max(20);
+        let words = options_together(&command);
+        lines = vec![String::new()];
+        for word in words {
+            let line = lines.last_mut().map_or(0, |line| line.chars().count());
+            if line > 0 && line + 1 + word.chars().count() > room {
+                lines.push(format!("  {word}"));
+            } else if let Some(line) = lines.last_mut() {
+                let space = if line.is_empty() { "" } else { " " };
+                line.push_str(space);
+                line.push_str(&word);
+            }
         }
+    }
+    let end = lines.last().map_or(0, |line| line.chars().count());
+    let command = lines.join(&format!(" \\\n{:indent$}", ""));
+    let _ = write!(out, "{DIM}{:width$}{DIM:#}  {command}", "next");
+    let fits = columns.is_none_or(|columns| indent + end + 5 + why.chars().count() <= columns);
+    let gap = match fits {
+        true => "   ".to_owned(),
+        false => format!("\n{:indent$}", ""),
+    };
+    let _ = writeln!(out, "{gap}{DIM}# {why}{DIM:#}");
+}
+
+/// The words of a command line, an option with its value as one.
+fn options_together(command: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for word in command.split(' ') {
+        match words.last_mut() {
+            Some(option) if option.starts_with("--") && !option.contains(' ') => {
+                option.push(' ');
+                option.push_str(word);
+            }
+            Some(program) if program == "gyrocal" => {
+                program.push(' ');
+                program.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
+/// Lines of a text that are wider than the terminal broken, behind their own indent. Tables fit already.
+pub(crate) fn fitted(text: &str, columns: Option<usize>) -> String {
+    let text = printable(text);
+    let Some(columns) = columns else {
+        return text.into_owned();
+    };
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        if line.chars().count() <= columns {
+            out.push_str(line);
+        } else {
+            let indent = line.len() - line.trim_start().len();
+            let room = columns.saturating_sub(indent).max(20);
+            let broken = text::wrapped(room, line.trim_start());
+            let lines: Vec<String> = broken
+                .lines()
+                .map(|line| format!("{:indent$}{line}", ""))
+                .collect();
+            out.push_str(&lines.join("\n"));
+        }
+        out.push('\n');
     }
     out
 }
@@ -121,7 +188,9 @@ mod tests {
             narrow.lines().all(|line| line.chars().count() <= 46),
             "{narrow}"
         );
-        assert!(narrow.contains("\n           deg/h/g"), "{narrow}");
+        assert!(narrow.contains("\n           0.0013 ±"), "{narrow}");
+        let command = "gyrocal plan r.csv \\\n             --bench b.toml\n";
+        assert!(narrow.contains(command), "{narrow}");
         let pipe = plain(&laid_out(&screen(), None));
         assert_eq!(pipe.lines().count(), 4, "{pipe}");
         assert!(pipe.contains("\nnext       gyrocal plan r.csv --bench b.toml   # the next run\n"));

@@ -53,8 +53,9 @@ fn the_record_that_ships_gives_the_coefficients_of_its_scenario() {
         );
         assert!(found.determined, "{name}");
     }
+    assert!(said.starts_with("CALIBRATED  "), "{said}");
     assert!(
-        said.starts_with("r.csv: 4321 rows over 3.00 days\n"),
+        said.contains("\nr.csv: 4321 rows over 3.00 days\n"),
         "{said}"
     );
     assert!(
@@ -73,18 +74,20 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
     let said = folder.succeed(&JSON);
     let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
     for coefficient in report.coefficients {
+        // The table of the first screen comes before that of the details.
         let row = said
             .lines()
-            .find(|line| line.starts_with(&format!(" {} ", coefficient.name)))
+            .rfind(|line| line.starts_with(&format!(" {} ", coefficient.name)))
             .unwrap_or_else(|| panic!("no {} in {said}", coefficient.name));
         let cells: Vec<&str> = row.split_whitespace().collect();
-        let [estimate, sigma] = [cells[1], cells[2]].map(|cell| cell.parse::<f64>().unwrap());
+        let [estimate, sigma] = [cells[1], cells[3]].map(|cell| cell.parse::<f64>().unwrap());
         // Half a unit of the second digit of sigma is at most a twentieth of it.
         let tolerance = 0.051 * coefficient.sigma;
         assert!((estimate - coefficient.estimate).abs() < tolerance, "{row}");
         assert!((sigma - coefficient.sigma).abs() < tolerance, "{row}");
-        assert_eq!(cells[2].trim_start_matches(['0', '.']).len(), 2, "{row}");
-        assert_eq!(cells[3..5], [&coefficient.unit[..], "yes"], "{row}");
+        assert_eq!(cells[3].trim_start_matches(['0', '.']).len(), 2, "{row}");
+        assert_eq!(cells[2], "±", "{row}");
+        assert_eq!(cells[4..6], [&coefficient.unit[..], "yes"], "{row}");
         assert!(row.contains(" of gyro "), "{row}");
     }
 }
@@ -92,7 +95,7 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
 #[test]
 fn the_json_has_every_field_of_its_contract() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed_as_is(&JSON);
     let json: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(json["schema_version"], 1);
     assert_eq!(json["method"], "batch");
@@ -261,16 +264,26 @@ fn missing_values_and_other_priors_are_honoured() {
 }
 
 #[test]
-fn verbose_tells_more_on_stderr_only() {
+fn verbose_tells_more() {
     let folder = folder();
-    let quiet = folder.run(&PLAIN);
-    let mut arguments = PLAIN.to_vec();
-    arguments.push("-v");
-    let verbose = folder.run(&arguments);
-    assert!(quiet.stderr.is_empty());
-    let said = String::from_utf8(verbose.stderr).unwrap();
-    assert!(said.contains("calibrated"), "{said}");
-    assert_eq!(quiet.stdout, verbose.stdout);
+    let [plain, detailed, reporting] = ["--color=auto", "-v", "-vv"].map(|more| {
+        let output = folder.run(&[&PLAIN[..], &[more]].concat());
+        let errors = String::from_utf8(output.stderr).unwrap();
+        (String::from_utf8(output.stdout).unwrap(), errors)
+    });
+    assert_eq!((&*plain.1, &*detailed.1), ("", ""));
+    assert!(reporting.1.contains("calibrated"), "{}", reporting.1);
+    assert_eq!(detailed.0, reporting.0);
+    let (screen, _) = plain
+        .0
+        .split_once("all tables and tests: --verbose")
+        .unwrap();
+    assert!(detailed.0.starts_with(screen), "{}", detailed.0);
+    assert!(
+        detailed.0.contains("Sensitivity to site errors"),
+        "{}",
+        detailed.0
+    );
 }
 
 #[test]

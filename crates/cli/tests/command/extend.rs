@@ -87,8 +87,8 @@ fn terms_that_were_found_are_in_the_model_and_the_rest_is_explained() {
          \"gyro_x.warmup\" = { value = 0.1, sigma = 0.0001 }\n"
     );
     assert_says(&said, "gyro_y.g_z starts at 5.000e-2 ± 1.0e-4");
-    assert_says(&said, "left out: accel_x.noise is noise and not a term");
-    assert_says(&said, "left out: platform.knock concerns the attitude");
+    assert_says(&said, "left out     accel_x.noise is noise and not a term");
+    assert_says(&said, "left out     platform.knock concerns the attitude");
     let report: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(report["effects"], json!(["gyro_y.g_z", "gyro_x.warmup"]));
     assert_eq!(report["left_out"][1]["effect"], "platform.knock");

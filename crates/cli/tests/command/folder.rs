@@ -87,8 +87,26 @@ impl Folder {
             .unwrap()
     }
 
-    /// Runs a command that must succeed; returns stdout.
+    /// Runs a command as on a terminal of 80 columns.
+    pub(crate) fn run_on_a_terminal(&self, arguments: &[&str]) -> Output {
+        Command::cargo_bin("gyrocal")
+            .unwrap()
+            .current_dir(self.folder.path())
+            .env("COLUMNS", "80")
+            .args(arguments)
+            .output()
+            .unwrap()
+    }
+
+    /// Runs a command that must succeed with all details; returns stdout.
     pub(crate) fn succeed(&self, arguments: &[&str]) -> String {
+        let mut detailed = arguments.to_vec();
+        detailed.push("--verbose");
+        self.succeed_as_is(&detailed)
+    }
+
+    /// Runs a command that must succeed; returns stdout.
+    pub(crate) fn succeed_as_is(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(0), "{errors}");

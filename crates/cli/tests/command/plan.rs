@@ -157,7 +157,9 @@ fn the_example_of_the_page_is_what_its_commands_print() {
     for line in block("sh").lines() {
         let line = line.replace("examples/data/", "").replace("target/", "");
         let words: Vec<&str> = line.split_whitespace().skip(1).collect();
-        said = folder.succeed(&words);
+        let output = folder.run_on_a_terminal(&words);
+        assert_eq!(output.status.code(), Some(0));
+        said = String::from_utf8(output.stdout).unwrap();
     }
     let shown = block("text").replace("target/", "");
     let (words, numbers) = with_numbers(&shown);

@@ -23,7 +23,7 @@ fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
         "{said}"
     );
     assert!(!said.contains("Consistency test passed"), "{said}");
-    let next = "Next: `gyrocal diagnose r.csv --bench b.toml` looks for the causes.";
+    let next = "next gyrocal diagnose r.csv --bench b.toml # looks for the causes";
     assert!(said.contains(next), "{said}");
     let found = report(&folder);
     assert_eq!(found.verdict, FitVerdict::EffectsFound);
@@ -49,7 +49,7 @@ fn a_record_that_fits_is_told_as_such_with_what_to_run_next() {
         "{said}"
     );
     assert!(
-        said.contains("Next: `gyrocal diagnose r.csv --bench b.toml` tests"),
+        said.contains("next gyrocal diagnose r.csv --bench b.toml # all tests"),
         "{said}"
     );
     let found = report(&folder);
