@@ -261,7 +261,7 @@ fn effects(arguments: &CalibrateArguments, measurements: &[Measurement]) -> Vec<
         return Vec::new();
     }
     let tests = measurements.iter().filter_map(|measurement| {
-        let path = measurement.path.display().to_string();
+        let path = measurement.path.to_string_lossy().into_owned();
         screen_record(&measurement.run(), &DiagnoseOptions::default())
             .inspect_err(|error| tracing::warn!(%error, path, "not tested for effects"))
             .ok()

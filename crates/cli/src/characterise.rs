@@ -12,7 +12,7 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_evaluation::{
     BaselineMethod, CellReport, CharacteriseReport, PopulationCell, cell_campaign, cell_report,
 };
-use gyrocal_record::{SCHEMA_VERSION, write_json, write_whole};
+use gyrocal_record::{SCHEMA_VERSION, printable_path, write_json, write_whole};
 use miette::miette;
 
 use crate::monte_carlo::progress::SeedProgress;
@@ -162,7 +162,7 @@ fn report(
 fn unusable(folder: &Path, reason: &std::io::Error) -> Failure {
     Failure::Work(miette!(
         "{}: the results cannot be kept there: {reason}",
-        folder.display()
+        printable_path(&folder)
     ))
 }
 

@@ -12,7 +12,7 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
     Verdict, diagnose_watched, prose,
 };
-use gyrocal_record::{Bench, Outputs, write_json};
+use gyrocal_record::{Bench, Outputs, printable_path, write_json};
 use gyrocal_setup::PlatformKind;
 
 use crate::layout::layout;
@@ -159,7 +159,7 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
     {
         return Err(Failure::Usage(format!(
             "--validate {} is the record itself: a later one has had no part in the models",
-            later.display()
+            printable_path(&later)
         )));
     }
     if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {

@@ -8,7 +8,7 @@ use gyrocal::effect::{Continuation, EffectKind, Experiment, Need, NoiseProperty}
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_record::{any_of, nearest_names, printable_line};
-use gyrocal_statistics::format::short;
+use gyrocal_statistics::format;
 use miette::miette;
 
 use crate::Failure;
@@ -114,8 +114,8 @@ fn typical(effect: &Effect) -> String {
     let unit = effect.parameters.first().map_or("", |first| first.unit);
     match unit {
         "" => String::new(),
-        "1" => short(effect.typical_size, 3),
-        unit => format!("{} {unit}", short(effect.typical_size, 3)),
+        "1" => format::short(effect.typical_size, 3),
+        unit => format!("{} {unit}", format::short(effect.typical_size, 3)),
     }
 }
 
@@ -133,7 +133,7 @@ fn tested(effect: &Effect) -> &'static str {
 fn explained(effect: &Effect) -> Screen {
     let mut screen = Screen::new(Standing::Neutral, effect.id, effect.name);
     screen.fact("course in time", course(effect.kind));
-    screen.fact("term", effect.formula);
+    screen.fact("term", spaced(effect.formula));
     let parameters = effect.parameters.iter();
     let parameters: Vec<String> = parameters
         .map(|parameter| format!("{} [{}]", parameter.name, parameter.unit))
@@ -163,6 +163,12 @@ fn explained(effect: &Effect) -> Screen {
         );
     }
     screen
+}
+
+/// A formula with blanks, at which a line may break.
+fn spaced(formula: &str) -> String {
+    let spaced = formula.replace('*', " * ").replace('/', " / ");
+    spaced.replace(',', ", ").replace(",  ", ", ")
 }
 
 fn standing(effect: &Effect) -> String {

@@ -8,7 +8,7 @@ use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_diagnosis::result;
-use gyrocal_record::{Manifest, Outputs, SCHEMA_VERSION};
+use gyrocal_record::{Manifest, Outputs, SCHEMA_VERSION, printable_path};
 use serde::Serialize;
 
 use crate::outputs::{manifest, refuse_overlap};
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
     )?;
     let extension = match &arguments.diagnosis {
         Some(path) => {
-            let name = path.display().to_string();
+            let name = printable_path(&path);
             let diagnosis = with_members(result::read(path)?, &arguments.member, &name);
             diagnosis.and_then(|diagnosis| of_diagnosis(&diagnosis, &name))
         }
@@ -112,7 +112,7 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> Answer {
         "MODEL FILE",
         format!(
             "{}: the nine drift coefficients and {}",
-            arguments.out.display(),
+            printable_path(&arguments.out),
             model.effects.join(", ")
         ),
     );

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, axes_csv, import};
 use gyrocal_instruments::{Description, InstrumentError, Log, ResultFile};
-use gyrocal_record::Outputs;
+use gyrocal_record::{Outputs, printable_path};
 
 use crate::measured::unusable;
 use crate::numbers::{angle_deg, angle_sigma_deg, positive};
@@ -159,7 +159,7 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
     let disturbed = disturbed_s(report);
     let mut text = format!(
         "{}: {} samples over {:.1} s averaged to {} rows of {} s\n\n",
-        arguments.log.display(),
+        printable_path(&arguments.log),
         report.samples,
         report.duration_s,
         report.rows,

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use gyrocal_instruments::InstrumentError;
+use gyrocal_record::printable_path;
 use miette::Diagnostic;
 
 use crate::Failure;
@@ -26,12 +27,12 @@ pub(crate) fn unusable(log: &Path, error: InstrumentError) -> Failure {
             }
             .into(),
         ),
-        other => Failure::Work(miette::miette!("{}: {other}", log.display())),
+        other => Failure::Work(miette::miette!("{}: {other}", printable_path(&log))),
     }
 }
 
 #[derive(Debug, thiserror::Error)]
-#[error("{}: found {found}, expected {expected}", log.display())]
+#[error("{}: found {found}, expected {expected}", printable_path(&log))]
 struct Unusable {
     log: PathBuf,
     found: String,

@@ -14,7 +14,7 @@ use gyrocal_calibration::Options;
 use gyrocal_evaluation::{
     CalibrationSummary, CalibrationTrial, Campaign, Fingerprint, MonteCarloReport, Outcome, program,
 };
-use gyrocal_record::{SCHEMA_VERSION, write_json};
+use gyrocal_record::{SCHEMA_VERSION, printable_path, write_json};
 use gyrocal_truth::{Population, Scenario};
 use miette::miette;
 
@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Answer, Failure> {
     if let (0, Some(failure)) = (summary.runs, summary.failures.first()) {
         return Err(Failure::Work(miette!(
             "{}: no run gave a calibration; seed {}: {}",
-            arguments.scenario.display(),
+            printable_path(&arguments.scenario),
             failure.seed,
             failure.message
         )));

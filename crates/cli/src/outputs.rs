@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gyrocal_record::{Error, Input, Manifest, Outputs, shell_quoted};
+use gyrocal_record::{Error, Input, Manifest, Outputs, printable_path, shell_quoted};
 
 use crate::{Failure, pictures};
 
@@ -28,7 +28,12 @@ pub(crate) fn refuse_overlap(
 ) -> Result<(), Failure> {
     let mut taken: Vec<(String, PathBuf)> = inputs
         .iter()
-        .map(|path| (format!("the input {}", path.display()), identity(path)))
+        .map(|path| {
+            (
+                format!("the input {}", printable_path(&path)),
+                identity(path),
+            )
+        })
         .collect();
     for (option, path) in outputs {
         let Some(path) = path else { continue };
@@ -38,10 +43,10 @@ pub(crate) fn refuse_overlap(
         if let Some((other, _)) = taken.iter().find(|(_, taken)| replaces && *taken == place) {
             return Err(Failure::Usage(format!(
                 "{option} {} would overwrite {other}",
-                path.display()
+                printable_path(&path)
             )));
         }
-        taken.push((format!("{option} {}", path.display()), place));
+        taken.push((format!("{option} {}", printable_path(&path)), place));
     }
     Ok(())
 }
@@ -59,8 +64,8 @@ pub(crate) fn check(
     {
         return Err(Failure::Usage(format!(
             "--json {} is among the pictures of --figures {}",
-            json.display(),
-            figures.display()
+            printable_path(&json),
+            printable_path(&figures)
         )));
     }
     refuse_unwritable(&[json], figures)

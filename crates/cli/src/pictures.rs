@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use gyrocal_record::Outputs;
+use gyrocal_record::{Outputs, printable_path};
 use gyrocal_report::Picture;
 use miette::miette;
 #[cfg(feature = "png")]
@@ -50,7 +50,7 @@ pub(crate) fn stage(
         Failure::Work(miette!(
             help = "give a folder, or a name that is free",
             "--figures {}: cannot be made: {reason}",
-            folder.display()
+            printable_path(&folder)
         ))
     })?;
     let mut names = Vec::new();
@@ -58,7 +58,7 @@ pub(crate) fn stage(
         let svg = match picture.to_svg() {
             Ok(svg) => svg,
             Err(reason) => {
-                tracing::warn!(%reason, "no picture {name} of {}", of.display());
+                tracing::warn!(%reason, "no picture {name} of {}", printable_path(&of));
                 continue;
             }
         };
@@ -68,7 +68,7 @@ pub(crate) fn stage(
         {
             let png = gyrocal_report::to_png(&svg, WIDTH_PX)
                 .into_diagnostic()
-                .wrap_err_with(|| format!("the picture {name} of {}", of.display()))
+                .wrap_err_with(|| format!("the picture {name} of {}", printable_path(&of)))
                 .map_err(Failure::Work)?;
             outputs.stage(&folder.join(name).with_extension("png"), &png)?;
         }

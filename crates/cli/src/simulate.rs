@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_record::{Outputs, SCHEMA_VERSION, SimulationReport, TrueCoefficient, shell_quoted};
+use gyrocal_record::{
+    Outputs, SCHEMA_VERSION, SimulationReport, TrueCoefficient, printable_path, shell_quoted,
+};
 use gyrocal_truth::{Hidden, HiddenReport, Scenario, Simulation, TruthReport, simulate_watched};
 use miette::miette;
 
@@ -56,8 +58,10 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Answer, Failure> {
     }
     tracing::debug!(?scenario, "read");
     let mut progress = Progress::new("simulating", scenario.grid_rows());
-    let simulation = simulate_watched(&scenario, &[], |rows| progress.reach(rows))
-        .map_err(|error| Failure::Work(miette!("{}: {error}", arguments.scenario.display())))?;
+    let simulation =
+        simulate_watched(&scenario, &[], |rows| progress.reach(rows)).map_err(|error| {
+            Failure::Work(miette!("{}: {error}", printable_path(&arguments.scenario)))
+        })?;
     drop(progress);
     tracing::info!(rows = simulation.record.len(), "simulated");
     write(arguments, &scenario, &simulation)?;
@@ -116,7 +120,7 @@ fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simu
         "SIMULATED",
         format!(
             "{}: {} rows over {:.2} days, seed {}",
-            arguments.out.display(),
+            printable_path(&arguments.out),
             simulation.record.len(),
             simulation.record.duration_s() / 86_400.0,
             scenario.seed

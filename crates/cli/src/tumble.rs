@@ -19,7 +19,7 @@ use gyrocal_instruments::multi_position::{
 use gyrocal_instruments::{
     Description, InstrumentError, Log, ResultFile, StopSettings, find_stops, given_stops,
 };
-use gyrocal_record::Outputs;
+use gyrocal_record::{Outputs, printable_path};
 
 use crate::measured::{interval, unusable};
 use crate::numbers::{positive, probability};
@@ -147,9 +147,9 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
 fn named(arguments: &TumbleArguments) -> String {
     match &arguments.logs[..] {
         [first, rest @ ..] if !rest.is_empty() => {
-            format!("{} and {} further logs", first.display(), rest.len())
+            format!("{} and {} further logs", printable_path(&first), rest.len())
         }
-        logs => logs.iter().map(|log| log.display().to_string()).collect(),
+        logs => logs.iter().map(|log| printable_path(&log)).collect(),
     }
 }
 

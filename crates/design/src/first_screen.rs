@@ -1,6 +1,7 @@
 //! The first screen of a plan.
 
 use gyrocal_diagnosis::prose::{Screen, Standing, counted, few, record_and_bench};
+use gyrocal_record::printable_line;
 
 use crate::prose::{attitude, hours, percent, undecided};
 use crate::result::{Aim, PlanResult, Proposal};
@@ -58,7 +59,7 @@ pub fn first_screen(plan: &PlanResult) -> Screen {
         "record",
         format!(
             "{}: {} over {:.2} days",
-            path.map_or("record", |input| &input.path),
+            path.map_or("record".into(), |input| printable_line(&input.path)),
             counted(plan.record.rows, "row"),
             plan.record.duration_s / 86_400.0
         ),

@@ -1,6 +1,8 @@
 //! The sentences and tables of a plan, made from its result alone.
 
 use crate::result::{Aim, Outlook, PlanResult, Proposal, SetForecast};
+use gyrocal_record::printable_line;
+
 use gyrocal_diagnosis::prose::{Block, Column, Table, counted, setup};
 
 /// Probability above which two causes count as distinguished.
@@ -16,7 +18,7 @@ pub fn prose(plan: &PlanResult) -> Vec<Block> {
     let mut blocks = vec![
         Block::Paragraph(format!(
             "{}: {} over {:.2} days",
-            path.map_or("record", |input| &input.path),
+            path.map_or("record".into(), |input| printable_line(&input.path)),
             counted(plan.record.rows, "row"),
             plan.record.duration_s / 86_400.0
         )),

@@ -2,7 +2,7 @@
 
 use gyrocal_calibration::{Consistency, FitStatistics};
 use gyrocal_hypothesis::Screened;
-use gyrocal_record::{EffectTest, FitVerdict};
+use gyrocal_record::{EffectTest, FitVerdict, printable_line};
 use gyrocal_statistics::format::p_value;
 
 /// A verdict with its sentences.
@@ -69,7 +69,7 @@ pub fn calibration_verdict(fit: &FitStatistics, effects: &[EffectTest]) -> Calib
 
 fn sentence(test: &EffectTest, several: bool) -> String {
     let of = if several {
-        format!("{} shows", test.record)
+        format!("{} shows", printable_line(&test.record))
     } else {
         "the record shows".to_owned()
     };

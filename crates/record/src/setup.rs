@@ -1,5 +1,6 @@
 //! Gross errors of a set-up, as results tell them.
 
+use crate::printable::printable_line;
 use serde::{Deserialize, Serialize};
 
 /// A gross error of the set-up: a wrong description or a wrong use of the instrument, which is no
@@ -52,9 +53,13 @@ impl SetupProblem {
     fn place(&self) -> String {
         match (&self.file, self.lines) {
             (None, _) => String::new(),
-            (Some(file), None) => format!("{file}: "),
-            (Some(file), Some([first, last])) if first == last => format!("{file}:{first}: "),
-            (Some(file), Some([first, last])) => format!("{file}:{first}-{last}: "),
+            (Some(file), None) => format!("{}: ", printable_line(file)),
+            (Some(file), Some([first, last])) if first == last => {
+                format!("{}:{first}: ", printable_line(file))
+            }
+            (Some(file), Some([first, last])) => {
+                format!("{}:{first}-{last}: ", printable_line(file))
+            }
         }
     }
 }

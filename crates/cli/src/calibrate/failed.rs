@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gyrocal::EstimationError;
 use gyrocal_calibration::{CalibrationError, Run, is_gyro_noise_implausible};
-use gyrocal_record::{CalibrationMethod, CalibrationReport};
+use gyrocal_record::{CalibrationMethod, CalibrationReport, printable_path};
 use miette::Diagnostic;
 
 use super::CalibrateArguments;
@@ -35,10 +35,7 @@ impl NotCalibrated {
             None => 0..arguments.records.len(),
         };
         let paths = arguments.records.get(failed.clone()).unwrap_or_default();
-        let names: Vec<String> = paths
-            .iter()
-            .map(|path| path.display().to_string())
-            .collect();
+        let names: Vec<String> = paths.iter().map(|path| printable_path(&path)).collect();
         let runs = runs.get(failed).unwrap_or_default();
         Self {
             records: names.join(", "),
@@ -105,7 +102,7 @@ pub(super) struct WrongSetup {
 impl WrongSetup {
     pub(super) fn new(report: &CalibrationReport, json: Option<&Path>) -> Self {
         let written = json.map_or_else(String::new, |path| {
-            format!("; {}: the result for programs", path.display())
+            format!("; {}: the result for programs", printable_path(&path))
         });
         Self {
             text: report.verdict_text.clone(),

@@ -8,7 +8,7 @@ use gyrocal_calibration::{
 };
 use gyrocal_diagnosis::Gate;
 use gyrocal_instruments::strapdown::read_axes;
-use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, SourceText};
+use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, SourceText, printable_path};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 
@@ -114,8 +114,8 @@ fn refuse_twins(records: &[PathBuf]) -> Result<(), Failure> {
         if let Some(first) = places[..index].iter().position(|other| other == place) {
             return Err(Failure::Usage(format!(
                 "{} and {} are the same file: a record counts once",
-                records[first].display(),
-                records[index].display()
+                printable_path(&records[first]),
+                printable_path(&records[index])
             )));
         }
     }
@@ -129,8 +129,8 @@ fn refuse_differing(paths: &[PathBuf], benches: &[Bench]) -> Result<(), Failure>
         Err(Failure::Work(miette!(
             help = advice,
             "{}: found {what} other than in {}, expected the same",
-            path.display(),
-            other.display(),
+            printable_path(&path),
+            printable_path(&other),
         )))
     };
     for (index, bench) in benches.iter().enumerate() {
@@ -159,9 +159,9 @@ fn refuse_shared_rows(one: &Measurement, other: &Measurement) -> Result<(), Fail
         help = "leave one of them out, or cut the rows that both have from one",
         "{}: found {} consecutive rows that {} has too, from row {} of the data (t = {} s) on, \
          expected rows of its own: they would count twice",
-        other.path.display(),
+        printable_path(&other.path),
         shared.rows,
-        one.path.display(),
+        printable_path(&one.path),
         shared.first + 1,
         other.record.time_s[shared.first],
     )))
@@ -172,7 +172,7 @@ fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Fail
         Failure::Work(miette!(
             help = "choose --average between these, or leave it out",
             "{}: {error}",
-            measurement.path.display()
+            printable_path(&measurement.path)
         ))
     })?;
     let bench = averaged.bench(&measurement.bench);

@@ -7,7 +7,7 @@ use gyrocal_calibration::{
     AzimuthSearch, Calibration, ConsiderSensitivity, NoiseDifference, NoiseEstimate, NoiseRatio,
     RunResult, SIGNIFICANT_WALK_SHARE, SiteQuantity, times_overlap,
 };
-use gyrocal_record::{CalibrationMethod, FittedEffects};
+use gyrocal_record::{CalibrationMethod, FittedEffects, printable_path};
 
 use super::inputs::Measurement;
 use super::{CalibrationRun, tables};
@@ -91,7 +91,7 @@ pub(super) fn record_line(measurement: &Measurement) -> String {
         });
     let mut text = format!(
         "{}: {rows} rows over {:.2} days",
-        measurement.path.display(),
+        printable_path(&measurement.path),
         measurement.record.duration_s() / 86_400.0,
     );
     let Some(averaged) = measurement.averaged else {
@@ -165,7 +165,7 @@ fn observability(found: &CalibrationRun) -> String {
 fn run_results(measurement: &Measurement, run: &RunResult, several: bool) -> String {
     let mut text = String::new();
     let of = if several {
-        format!(" of {}", measurement.path.display())
+        format!(" of {}", printable_path(&measurement.path))
     } else {
         String::new()
     };
@@ -323,8 +323,8 @@ fn overlapping_times(measurements: &[Measurement]) -> String {
                 text.push_str(&paragraph(&format!(
                     "The times of {} and {} overlap: they are treated as turn-ons with separate \
                      clocks.",
-                    one.path.display(),
-                    other.path.display()
+                    printable_path(&one.path),
+                    printable_path(&other.path)
                 )));
             }
         }

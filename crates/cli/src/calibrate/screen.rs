@@ -4,7 +4,7 @@ use gyrocal_calibration::{NoiseRatio, RunResult, SiteQuantity};
 use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table, few};
 use gyrocal_record::{EffectTest, FitVerdict, shell_quoted};
 use gyrocal_setup::PlatformKind;
-use gyrocal_statistics::format::{self, p_value};
+use gyrocal_statistics::format;
 
 use super::CalibrationRun;
 use super::inputs::Measurement;
@@ -26,7 +26,7 @@ pub(super) fn first(found: &CalibrationRun) -> Screen {
             format!(
                 "{largest}, {:.1} sigma, search-corrected {}",
                 test.z,
-                p_value(test.p_value)
+                format::p_value(test.p_value)
             ),
         );
     }
@@ -65,7 +65,7 @@ pub(super) fn first(found: &CalibrationRun) -> Screen {
             FitVerdict::Consistent => "all tests, and what could go undetected",
             _ => "looks for the causes",
         };
-        for measurement in found.measurements.iter().take(RECORDS_SHOWN) {
+        if let Some(measurement) = found.measurements.first() {
             screen.then(diagnose(measurement), why);
         }
     }
@@ -125,9 +125,11 @@ fn results(found: &CalibrationRun, screen: &mut Screen) {
     let open = coefficients.iter().filter(|one| !one.determined);
     let open: Vec<&str> = open.map(|one| one.id).collect();
     screen.fact("not determined", few(&open, NAMES_SHOWN));
-    let runs = found.measurements.iter().zip(&found.calibration.runs);
-    for (_, run) in runs.take(RECORDS_SHOWN) {
-        screen.fact("noise", noise(run));
+    for run in found.calibration.runs.iter().take(RECORDS_SHOWN) {
+        // Of several records the details have it.
+        if !found.has_several_records() {
+            screen.fact("noise", noise(run));
+        }
         if run
             .azimuth
             .as_ref()

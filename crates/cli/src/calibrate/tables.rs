@@ -2,7 +2,7 @@
 
 use comfy_table::Cell;
 use gyrocal_calibration::{BIASES, Calibration, ConsiderSensitivity, SiteQuantity};
-use gyrocal_record::FittedEffects;
+use gyrocal_record::{FittedEffects, printable_path};
 use gyrocal_statistics::format;
 
 use super::CalibrationRun;
@@ -122,7 +122,7 @@ pub(super) fn turn_ons(found: &CalibrationRun) -> Option<String> {
             let [estimate, sigma] = format::estimate(estimate, sigma);
             right(format!("{estimate} ± {sigma}"))
         });
-        let name = Cell::new(measurement.path.display());
+        let name = Cell::new(printable_path(&measurement.path));
         table.add_row([name].into_iter().chain(gyros));
     }
     (table.row_count() > 0).then(|| table.trim_fmt())

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gyrocal_calibration::{CalibrationError, is_gyro_noise_implausible};
 use gyrocal_diagnosis::DiagnosisError;
-use gyrocal_record::Bench;
+use gyrocal_record::{Bench, printable_path};
 use miette::Diagnostic;
 
 use crate::Failure;
@@ -23,7 +23,7 @@ pub(crate) struct NotDiagnosed {
 impl NotDiagnosed {
     pub(crate) fn new(record: &Path, bench: &Bench, source: DiagnosisError) -> Self {
         Self {
-            record: record.display().to_string(),
+            record: printable_path(&record),
             tiny_gyro_noise: is_gyro_noise_implausible(bench),
             source,
         }

@@ -2,7 +2,8 @@
 
 use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table};
 use gyrocal_evaluation::{BandedMean, CalibrationSummary, MeasuredValue};
-use gyrocal_statistics::format::with_sigma;
+use gyrocal_record::printable_path;
+use gyrocal_statistics::format;
 
 use super::MonteCarloArguments;
 
@@ -45,7 +46,7 @@ pub(super) fn first(arguments: &MonteCarloArguments, summary: &CalibrationSummar
             format!("seed {}: {}", failure.seed, failure.message),
         );
     }
-    screen.fact("scenario", arguments.scenario.display().to_string());
+    screen.fact("scenario", printable_path(&arguments.scenario));
     screen.table = Some(table(summary));
     screen
 }
@@ -70,7 +71,7 @@ fn table(summary: &CalibrationSummary) -> Table {
     let rows = summary.coefficients.iter().map(|one| {
         let bias = match (one.bias, one.bias_standard_error) {
             (Some(bias), Some(error)) => {
-                format!("{} {}", with_sigma(bias, error), one.unit)
+                format!("{} {}", format::with_sigma(bias, error), one.unit)
             }
             _ => String::new(),
         };

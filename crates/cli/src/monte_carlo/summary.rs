@@ -6,6 +6,7 @@ use comfy_table::{Cell, Table};
 use gyrocal_evaluation::{
     BandedMean, CalibrationSummary, CoefficientSummary, Failure, MeasuredValue,
 };
+use gyrocal_record::printable_path;
 use gyrocal_statistics::format;
 
 use super::MonteCarloArguments;
@@ -17,7 +18,7 @@ const FAILURES_SHOWN: usize = 5;
 pub(super) fn text(arguments: &MonteCarloArguments, summary: &CalibrationSummary) -> String {
     let mut text = format!(
         "{}: {} {} to {}, {} calibrated, {} failed\n",
-        arguments.scenario.display(),
+        printable_path(&arguments.scenario),
         if arguments.population {
             "scenarios of its population"
         } else {

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::path::Path;
 
 use gyrocal_design::DesignError;
+use gyrocal_record::printable_path;
 use miette::Diagnostic;
 
 use crate::Failure;
@@ -35,7 +36,7 @@ pub(super) struct OtherInput {
 impl NotPlanned {
     pub(super) fn new(record: &Path, source: DesignError) -> Self {
         Self {
-            record: record.display().to_string(),
+            record: printable_path(&record),
             source,
         }
     }

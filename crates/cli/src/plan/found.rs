@@ -6,7 +6,7 @@ use std::path::Path;
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
 use gyrocal_design::{NamedCause, noise_of};
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_watched, result};
-use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem};
+use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem, printable_path};
 use gyrocal_setup::PlatformKind;
 
 use super::PlanArguments;
@@ -109,9 +109,9 @@ fn check_inputs(
         let found = diagnosis.manifest.inputs.get(place);
         if found.is_none_or(|input| input.sha256 != expected) {
             return Err(OtherInput {
-                diagnosis: path.display().to_string(),
+                diagnosis: printable_path(&path),
                 other,
-                given: given.display().to_string(),
+                given: printable_path(&given),
                 found: found.map_or_else(|| "none".to_owned(), |input| input.sha256.clone()),
                 expected,
             }

@@ -2,7 +2,7 @@
 
 use gyrocal_diagnosis::prose::{Screen, Standing, counted, few};
 use gyrocal_instruments::multi_position::{FewPositionReport, MultiPositionReport, PreparedTest};
-use gyrocal_statistics::format::{p_value, short, with_sigma};
+use gyrocal_statistics::format;
 
 use super::{Report, TumbleArguments, named};
 use crate::outputs::command_line;
@@ -26,7 +26,7 @@ pub(super) fn first(
         "how sure",
         format!(
             "{} of sound instruments would show any term by chance",
-            gyrocal_statistics::format::percent(arguments.false_alarm)
+            format::percent(arguments.false_alarm)
         ),
     );
     screen.fact(
@@ -84,9 +84,9 @@ fn many(report: &MultiPositionReport) -> Screen {
             &finding.effect,
             format!(
                 "{} {}, {}; {others}",
-                with_sigma(finding.estimate, finding.sigma),
+                format::with_sigma(finding.estimate, finding.sigma),
                 finding.unit,
-                p_value(finding.p_value)
+                format::p_value(finding.p_value)
             ),
         );
     }
@@ -108,7 +108,7 @@ fn many(report: &MultiPositionReport) -> Screen {
     }
     let extended = report.gyros.iter().map(|gyro| {
         let law = &gyro.extended;
-        format!("{} {}", gyro.gyro, short(law.excess_deg_per_h, 2))
+        format!("{} {}", gyro.gyro, format::short(law.excess_deg_per_h, 2))
     });
     screen.fact(
         "left over",
@@ -140,9 +140,9 @@ fn few_positions(report: &FewPositionReport) -> Screen {
             &finding.effect,
             format!(
                 "{} {}, {}; {others}",
-                with_sigma(finding.estimate, finding.sigma),
+                format::with_sigma(finding.estimate, finding.sigma),
                 finding.unit,
-                p_value(finding.p_value)
+                format::p_value(finding.p_value)
             ),
         );
     }
@@ -150,7 +150,7 @@ fn few_positions(report: &FewPositionReport) -> Screen {
     for gyro in &report.gyros {
         let law = gyro.coefficients.iter().map(|one| {
             let name = one.name.rsplit('.').next().unwrap_or(&one.name);
-            format!("{name} {}", with_sigma(one.estimate, one.sigma))
+            format!("{name} {}", format::with_sigma(one.estimate, one.sigma))
         });
         screen.fact(
             &gyro.gyro,

@@ -77,7 +77,8 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
         // The table of the first screen comes before that of the details.
         let row = said
             .lines()
-            .rfind(|line| line.starts_with(&format!(" {} ", coefficient.name)))
+            .filter(|line| line.starts_with(&format!(" {} ", coefficient.name)))
+            .nth(1)
             .unwrap_or_else(|| panic!("no {} in {said}", coefficient.name));
         let cells: Vec<&str> = row.split_whitespace().collect();
         let [estimate, sigma] = [cells[1], cells[3]].map(|cell| cell.parse::<f64>().unwrap());

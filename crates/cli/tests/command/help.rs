@@ -38,7 +38,7 @@ fn every_command_has_examples_groups_and_the_exit_codes() {
     );
     assert!(said.contains("[default: 0.01]"), "{said}");
     // One list of exit codes, which the documentation has too.
-    let page = std::fs::read_to_string(repository("docs/formats.md")).unwrap();
+    let page = std::fs::read_to_string(repository("docs/command.md")).unwrap();
     for line in codes.trim().lines().filter(|line| line.starts_with("  ")) {
         let (code, meaning) = line.trim().split_once("  ").unwrap_or(("", ""));
         if !code.is_empty() {

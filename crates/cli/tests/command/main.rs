@@ -8,6 +8,7 @@ mod calibrate;
 mod characterise;
 mod contract;
 mod diagnose;
+mod documents;
 mod extend;
 mod first_screen;
 mod folder;

@@ -1,11 +1,10 @@
 //! `gyrocal plan` as a user runs it.
 
-use std::fs;
 
 use gyrocal_design::{Aim, PlanResult};
 
 use crate::contract::assert_plan;
-use crate::folder::{Folder, repository};
+use crate::folder::Folder;
 
 const RECORD: &str = "hidden_fault.csv";
 const BENCH: &str = "hidden_fault.bench.toml";
@@ -138,63 +137,4 @@ fn mistakes_are_told() {
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(errors.contains(message), "{errors}");
     }
-}
-
-#[test]
-fn the_example_of_the_page_is_what_its_commands_print() {
-    let page = fs::read_to_string(repository("docs/planning.md")).unwrap();
-    let block = |kind: &str| {
-        let (_, rest) = page.split_once(&format!("```{kind}\n")).unwrap();
-        rest.split_once("```").unwrap().0.replace("\\\n", "")
-    };
-    let folder = Folder::new();
-    let scenario = "examples/data/rivals.scenario.toml";
-    folder.put(
-        "rivals.scenario.toml",
-        fs::read(repository(scenario)).unwrap(),
-    );
-    let mut said = String::new();
-    for line in block("sh").lines() {
-        let line = line.replace("examples/data/", "").replace("target/", "");
-        let words: Vec<&str> = line.split_whitespace().skip(1).collect();
-        let output = folder.run_on_a_terminal(&words);
-        assert_eq!(output.status.code(), Some(0));
-        said = String::from_utf8(output.stdout).unwrap();
-    }
-    let shown = block("text").replace("target/", "");
-    let (words, numbers) = with_numbers(&shown);
-    let (printed, found) = with_numbers(&said);
-    assert!(printed.starts_with(&words), "{said}");
-    // The best attitude and the draws there change slightly with the rounding of arithmetic.
-    for (shown, found) in numbers.iter().zip(&found) {
-        assert!(
-            (shown - found).abs() <= 3.0_f64.min(0.1 * shown.abs()).max(0.02),
-            "{said}"
-        );
-    }
-}
-
-/// A text without its numbers, and the numbers.
-fn with_numbers(text: &str) -> (String, Vec<f64>) {
-    let (mut words, mut numbers, mut number) = (String::new(), Vec::new(), String::new());
-    for letter in text.chars().chain(['\n']) {
-        let first = number.is_empty();
-        if letter.is_ascii_digit() || (letter == '.' && !first) || (letter == '-' && first) {
-            number.push(letter);
-            continue;
-        }
-        match number.trim_end_matches('.').parse() {
-            Ok(value) => {
-                numbers.push(value);
-                words.push('#');
-            }
-            Err(_) => words.push_str(&number),
-        }
-        number.clear();
-        words.push(letter);
-    }
-    (
-        words.split_whitespace().collect::<Vec<_>>().join(" "),
-        numbers,
-    )
 }

@@ -1,5 +1,7 @@
 //! Gain of the extended model.
 
+use gyrocal_record::printable_line;
+
 use crate::result::{CoefficientShift, DiagnosisResult, Gain, Prediction};
 
 /// Coefficient changes that a paragraph names; the table shows all of them.
@@ -71,7 +73,7 @@ fn later(result: &DiagnosisResult) -> Option<String> {
     result.later_record.as_ref()?;
     let input = |place: usize, otherwise: &'static str| {
         let input = result.manifest.inputs.get(place);
-        input.map_or(otherwise, |input| input.path.as_str())
+        input.map_or(otherwise.into(), |input| printable_line(&input.path))
     };
     // The record, its bench file, the later record.
     let (first, later) = (input(0, "the first record"), input(2, "the later record"));

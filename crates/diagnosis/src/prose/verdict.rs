@@ -1,8 +1,9 @@
 //! The record and the verdict on it.
 
-use super::Block;
+use gyrocal_record::printable_line;
 use gyrocal_statistics::format::{p_value, percent};
 
+use super::Block;
 use super::format::counted;
 use crate::result::{
     DiagnosisResult, FindingKind, NotTestedReason, ResidualVerdict, SetupProblem, Verdict,
@@ -13,7 +14,7 @@ pub(super) fn record(result: &DiagnosisResult) -> String {
     let path = result.manifest.inputs.first();
     format!(
         "{}: {} over {:.2} days",
-        path.map_or("record", |input| &input.path),
+        path.map_or("record".into(), |input| printable_line(&input.path)),
         counted(result.record.rows, "row"),
         result.record.duration_s / 86_400.0
     )
