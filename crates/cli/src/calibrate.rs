@@ -170,6 +170,9 @@ impl CalibrateArguments {
     }
 }
 
+/// Share of the time of a calibration that has passed after the fit.
+const FITTED: f64 = 0.5;
+
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     arguments.check()?;
@@ -193,10 +196,17 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     let runs: Vec<Run<'_>> = measurements.iter().map(Measurement::run).collect();
     // First, as it refuses effects that cannot be fitted.
     let with_effects = with_effects(arguments, &runs)?;
-    let calibration = calibrate(&runs, &gyro_axes, rows, &options, arguments.method())
+    let mut progress = match arguments.method() {
+        // The number of passes is not known beforehand.
+        CalibrationMethod::Batch => Progress::waiting("calibrating", rows),
+        _ => Progress::new("calibrating", rows),
+    };
+    let calibration = calibrate(&runs, &gyro_axes, &options, &mut progress)
         .map_err(|source| NotCalibrated::new(arguments, &runs, source))?;
+    progress.stage("test for effects", FITTED);
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
     let effects = effects(arguments, &measurements);
+    drop(progress);
     let found = CalibrationRun {
         method: arguments.method(),
         kind: arguments.kind(),
@@ -302,26 +312,11 @@ impl CalibrationRun {
 fn calibrate(
     runs: &[Run<'_>],
     gyro_axes: &[GyroAxes],
-    rows: usize,
     options: &Options,
-    method: CalibrationMethod,
-) -> Result<Calibration, CalibrationError> {
-    if method == CalibrationMethod::Batch {
-        // The number of passes is not known beforehand.
-        let _progress = Progress::waiting("calibrating", rows);
-        return with_axes(runs, gyro_axes, options);
-    }
-    let mut progress = Progress::new("calibrating", rows);
-    calibrate_runs(runs, options, |row| progress.reach(row))
-}
-
-fn with_axes(
-    runs: &[Run<'_>],
-    gyro_axes: &[GyroAxes],
-    options: &Options,
+    progress: &mut Progress,
 ) -> Result<Calibration, CalibrationError> {
     match gyro_axes {
-        [] => calibrate_runs(runs, options, |_| ()),
+        [] => calibrate_runs(runs, options, |row| progress.reach(row)),
         axes => calibrate_strapdown(runs, axes, options, |_| ()),
     }
 }

@@ -1,9 +1,10 @@
 //! Progress bar of long computations.
 
+use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 use gyrocal_diagnosis::Stage;
-use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
 use crate::terminal;
 
@@ -23,6 +24,8 @@ pub(crate) struct Progress {
     total: usize,
     label: &'static str,
     wanted: bool,
+    /// Whether stages are reported and not rows.
+    of_stages: bool,
     bar: Option<ProgressBar>,
 }
 
@@ -33,6 +36,7 @@ impl Progress {
             total,
             label,
             wanted: terminal::shows_progress(),
+            of_stages: false,
             bar: None,
         }
     }
@@ -41,6 +45,7 @@ impl Progress {
     /// rows.
     pub(crate) fn waiting(label: &'static str, rows: usize) -> Self {
         let mut progress = Self::new(label, rows);
+        progress.of_stages = true;
         if progress.wanted && rows >= MANY_ROWS {
             let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
             let bar = ProgressBar::new_spinner()
@@ -55,7 +60,7 @@ impl Progress {
     /// Reports the number of rows done.
     pub(crate) fn reach(&mut self, done: usize) {
         // The clock is read every 256 rows only: a row takes a microsecond.
-        if !self.wanted || !done.is_multiple_of(256) {
+        if !self.wanted || self.of_stages || !done.is_multiple_of(256) {
             return;
         }
         if self.bar.is_none() && self.started.elapsed() >= PATIENCE {
@@ -68,6 +73,7 @@ impl Progress {
 
     /// Reports that a stage of a diagnosis begins.
     pub(crate) fn at(&mut self, stage: Stage) {
+        tracing::info!("{}", stage.name());
         self.stage(stage.name(), stage.share_before());
     }
 
@@ -78,16 +84,22 @@ impl Progress {
         if !self.wanted || (self.bar.is_none() && elapsed < PATIENCE) {
             return;
         }
-        let label = self.label;
         let bar = self.bar.get_or_insert_with(ProgressBar::new_spinner);
-        let left = match share {
-            share if share > 0.0 => {
-                let left = elapsed.mul_f64((1.0 - share) / share);
-                format!(", about {} left", HumanDuration(left))
-            }
-            _ => String::new(),
-        };
-        bar.set_message(format!("{label}: {name}{left}"));
+        bar.set_message(format!("{}: {name}", self.label));
+        if share > 0.0 {
+            let end = Instant::now() + elapsed.mul_f64((1.0 - share) / share);
+            let left = move |_: &ProgressState, out: &mut dyn Write| {
+                let left = end.saturating_duration_since(Instant::now());
+                let _ = match left.is_zero() {
+                    true => write!(out, "nearly done"),
+                    false => write!(out, "about {} left", HumanDuration(left)),
+                };
+            };
+            let style = ProgressStyle::with_template("{msg} {spinner} {left}");
+            let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
+            bar.set_style(style.with_key("left", left));
+        }
+        bar.enable_steady_tick(TICK);
     }
 
     fn visible(&self) -> ProgressBar {

@@ -33,9 +33,9 @@ impl Stage {
     pub fn share_before(self) -> f64 {
         match self {
             Self::Audit => 0.0,
-            Self::Search => 0.15,
-            Self::Validation => 0.65,
-            Self::Answer => 0.9,
+            Self::Search => 0.06,
+            Self::Validation => 0.82,
+            Self::Answer => 0.95,
         }
     }
 }

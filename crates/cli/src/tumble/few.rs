@@ -6,18 +6,16 @@ use comfy_table::Cell;
 use gyrocal_instruments::multi_position::FewPositionReport;
 use gyrocal_statistics::format;
 
-use crate::tables::{right, table};
+use crate::tables::table;
 
 /// Laws, what the positions do not determine, and significant terms.
 pub(super) fn text(report: &FewPositionReport, false_alarm: f64) -> String {
-    let mut table = table(["coefficient", "estimate", "sigma", "unit"]);
+    let mut table = table(["coefficient", "estimate"]);
     for coefficient in report.gyros.iter().flat_map(|gyro| &gyro.coefficients) {
-        let [estimate, sigma] = format::estimate(coefficient.estimate, coefficient.sigma);
+        let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
         table.add_row([
             Cell::new(&coefficient.name),
-            right(estimate),
-            right(sigma),
-            Cell::new(&coefficient.unit),
+            Cell::new(format!("{estimate} {}", coefficient.unit)),
         ]);
     }
     let mut text = format!(

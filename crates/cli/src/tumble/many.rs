@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 
 use comfy_table::{Cell, Table};
-use gyrocal_instruments::multi_position::{Finding, MultiPositionReport};
+use gyrocal_instruments::multi_position::{CoefficientReport, Finding, MultiPositionReport};
 use gyrocal_statistics::format;
 
 use super::TumbleArguments;
-use crate::tables::{right, table};
+use crate::tables::table;
 
 /// Laws, significant terms, gain and controls.
 pub(super) fn text(arguments: &TumbleArguments, report: &MultiPositionReport) -> String {
@@ -70,30 +70,19 @@ pub(super) fn text(arguments: &TumbleArguments, report: &MultiPositionReport) ->
 }
 
 fn laws(report: &MultiPositionReport) -> Table {
-    let mut table = table([
-        "coefficient",
-        "nominal",
-        "sigma",
-        "extended",
-        "sigma",
-        "unit",
-    ]);
+    let mut table = table(["coefficient", "nominal law", "extended law"]);
+    let value = |of: &CoefficientReport| {
+        let estimate = format::estimate(of.estimate, of.sigma).join(" ± ");
+        format!("{estimate} {}", of.unit)
+    };
     for gyro in &report.gyros {
         for coefficient in &gyro.extended.coefficients {
             let mut nominal = gyro.nominal.coefficients.iter();
-            let [before, before_sigma] = nominal
-                .find(|other| other.name == coefficient.name)
-                .map_or([const { String::new() }; 2], |other| {
-                    format::estimate(other.estimate, other.sigma)
-                });
-            let [estimate, sigma] = format::estimate(coefficient.estimate, coefficient.sigma);
+            let nominal = nominal.find(|other| other.name == coefficient.name);
             table.add_row([
                 Cell::new(&coefficient.name),
-                right(before),
-                right(before_sigma),
-                right(estimate),
-                right(sigma),
-                Cell::new(&coefficient.unit),
+                Cell::new(nominal.map_or_else(String::new, value)),
+                Cell::new(value(coefficient)),
             ]);
         }
     }

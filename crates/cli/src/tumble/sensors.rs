@@ -70,19 +70,12 @@ fn stops(sensors: &SensorReport) -> Table {
 }
 
 fn accelerometers(text: &mut String, errors: &AccelErrors) {
-    let mut table = table([
-        "accelerometers, from the magnitude",
-        "estimate",
-        "sigma",
-        "unit",
-    ]);
+    let mut table = table(["accelerometers, from the magnitude", "estimate"]);
     for coefficient in errors.coefficients.iter().filter(|other| other.determined) {
-        let [estimate, sigma] = format::estimate(coefficient.estimate, coefficient.sigma);
+        let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
         table.add_row([
             Cell::new(&coefficient.name),
-            right(estimate),
-            right(sigma),
-            Cell::new(coefficient.unit),
+            Cell::new(format!("{estimate} {}", coefficient.unit)),
         ]);
     }
     let _ = writeln!(text, "{}\n", table.trim_fmt());

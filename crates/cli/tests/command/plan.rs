@@ -1,6 +1,5 @@
 //! `gyrocal plan` as a user runs it.
 
-
 use gyrocal_design::{Aim, PlanResult};
 
 use crate::contract::assert_plan;

@@ -203,12 +203,24 @@ fn file_names_and_arguments_are_escaped() {
         &["completions", EVIL],
         &["man", &format!("r.csv/{EVIL}")],
         &["simulate", "b.toml", "--out", "o.csv", "--seed", EVIL],
-        &["-vvvv", "calibrate", &*evil, "--bench", "b.toml"],
     ] {
         let output = folder.run(arguments);
         let errors = assert_harmless(&output);
         assert!(errors.contains("\\u{1b}"), "{arguments:?}: {errors}");
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn reports_on_the_work_are_escaped() {
+    let folder = folder();
+    folder.put(EVIL, example("three_days.csv"));
+    assert_harmless(&folder.run(&["-vvvv", "diagnose", EVIL, "--bench", "b.toml"]));
+    let scenario = repository_argument("examples/data/three_days.scenario.toml");
+    let arguments = [
+        "-vvvv", "simulate", &*scenario, "--out", EVIL, "--json", "t.json",
+    ];
+    assert_harmless(&folder.run(&arguments));
 }
 
 /// A refusal within seconds, of a few hundred characters; the time has room for a build without

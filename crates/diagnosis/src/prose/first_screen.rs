@@ -303,7 +303,7 @@ fn undetected(result: &DiagnosisResult) -> String {
         .map(|effect| &*effect.effect)
         .collect();
     match low.len() {
-        0 => "effects smaller than their typical size (gyrocal effects)".to_owned(),
+        0 => "effects well below their typical size (gyrocal effects)".to_owned(),
         count => format!(
             "{count} of {} of typical size, as the record is short: {}",
             counted(result.ranking.len(), "effect"),
