@@ -162,7 +162,7 @@ fn report(
 fn unusable(folder: &Path, reason: &std::io::Error) -> Failure {
     Failure::Work(miette!(
         "{}: the results cannot be kept there: {reason}",
-        printable_path(&folder)
+        printable_path(folder)
     ))
 }
 

@@ -159,7 +159,7 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
     {
         return Err(Failure::Usage(format!(
             "--validate {} is the record itself: a later one has had no part in the models",
-            printable_path(&later)
+            printable_path(later)
         )));
     }
     if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {

@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
     )?;
     let extension = match &arguments.diagnosis {
         Some(path) => {
-            let name = printable_path(&path);
+            let name = printable_path(path);
             let diagnosis = with_members(result::read(path)?, &arguments.member, &name);
             diagnosis.and_then(|diagnosis| of_diagnosis(&diagnosis, &name))
         }

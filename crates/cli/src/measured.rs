@@ -27,12 +27,12 @@ pub(crate) fn unusable(log: &Path, error: InstrumentError) -> Failure {
             }
             .into(),
         ),
-        other => Failure::Work(miette::miette!("{}: {other}", printable_path(&log))),
+        other => Failure::Work(miette::miette!("{}: {other}", printable_path(log))),
     }
 }
 
 #[derive(Debug, thiserror::Error)]
-#[error("{}: found {found}, expected {expected}", printable_path(&log))]
+#[error("{}: found {found}, expected {expected}", printable_path(log))]
 struct Unusable {
     log: PathBuf,
     found: String,

@@ -30,7 +30,7 @@ pub(crate) fn refuse_overlap(
         .iter()
         .map(|path| {
             (
-                format!("the input {}", printable_path(&path)),
+                format!("the input {}", printable_path(path)),
                 identity(path),
             )
         })
@@ -43,10 +43,10 @@ pub(crate) fn refuse_overlap(
         if let Some((other, _)) = taken.iter().find(|(_, taken)| replaces && *taken == place) {
             return Err(Failure::Usage(format!(
                 "{option} {} would overwrite {other}",
-                printable_path(&path)
+                printable_path(path)
             )));
         }
-        taken.push((format!("{option} {}", printable_path(&path)), place));
+        taken.push((format!("{option} {}", printable_path(path)), place));
     }
     Ok(())
 }
@@ -64,8 +64,8 @@ pub(crate) fn check(
     {
         return Err(Failure::Usage(format!(
             "--json {} is among the pictures of --figures {}",
-            printable_path(&json),
-            printable_path(&figures)
+            printable_path(json),
+            printable_path(figures)
         )));
     }
     refuse_unwritable(&[json], figures)

@@ -50,7 +50,7 @@ pub(crate) fn stage(
         Failure::Work(miette!(
             help = "give a folder, or a name that is free",
             "--figures {}: cannot be made: {reason}",
-            printable_path(&folder)
+            printable_path(folder)
         ))
     })?;
     let mut names = Vec::new();
@@ -58,7 +58,7 @@ pub(crate) fn stage(
         let svg = match picture.to_svg() {
             Ok(svg) => svg,
             Err(reason) => {
-                tracing::warn!(%reason, "no picture {name} of {}", printable_path(&of));
+                tracing::warn!(%reason, "no picture {name} of {}", printable_path(of));
                 continue;
             }
         };

@@ -147,9 +147,9 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
 fn named(arguments: &TumbleArguments) -> String {
     match &arguments.logs[..] {
         [first, rest @ ..] if !rest.is_empty() => {
-            format!("{} and {} further logs", printable_path(&first), rest.len())
+            format!("{} and {} further logs", printable_path(first), rest.len())
         }
-        logs => logs.iter().map(|log| printable_path(&log)).collect(),
+        logs => logs.iter().map(|log| printable_path(log)).collect(),
     }
 }
 

@@ -35,7 +35,7 @@ impl NotCalibrated {
             None => 0..arguments.records.len(),
         };
         let paths = arguments.records.get(failed.clone()).unwrap_or_default();
-        let names: Vec<String> = paths.iter().map(|path| printable_path(&path)).collect();
+        let names: Vec<String> = paths.iter().map(|path| printable_path(path)).collect();
         let runs = runs.get(failed).unwrap_or_default();
         Self {
             records: names.join(", "),
@@ -102,7 +102,7 @@ pub(super) struct WrongSetup {
 impl WrongSetup {
     pub(super) fn new(report: &CalibrationReport, json: Option<&Path>) -> Self {
         let written = json.map_or_else(String::new, |path| {
-            format!("; {}: the result for programs", printable_path(&path))
+            format!("; {}: the result for programs", printable_path(path))
         });
         Self {
             text: report.verdict_text.clone(),

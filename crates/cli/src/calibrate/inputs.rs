@@ -129,8 +129,8 @@ fn refuse_differing(paths: &[PathBuf], benches: &[Bench]) -> Result<(), Failure>
         Err(Failure::Work(miette!(
             help = advice,
             "{}: found {what} other than in {}, expected the same",
-            printable_path(&path),
-            printable_path(&other),
+            printable_path(path),
+            printable_path(other),
         )))
     };
     for (index, bench) in benches.iter().enumerate() {

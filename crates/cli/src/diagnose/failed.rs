@@ -23,7 +23,7 @@ pub(crate) struct NotDiagnosed {
 impl NotDiagnosed {
     pub(crate) fn new(record: &Path, bench: &Bench, source: DiagnosisError) -> Self {
         Self {
-            record: printable_path(&record),
+            record: printable_path(record),
             tiny_gyro_noise: is_gyro_noise_implausible(bench),
             source,
         }

@@ -36,7 +36,7 @@ pub(super) struct OtherInput {
 impl NotPlanned {
     pub(super) fn new(record: &Path, source: DesignError) -> Self {
         Self {
-            record: printable_path(&record),
+            record: printable_path(record),
             source,
         }
     }

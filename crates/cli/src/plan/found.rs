@@ -109,9 +109,9 @@ fn check_inputs(
         let found = diagnosis.manifest.inputs.get(place);
         if found.is_none_or(|input| input.sha256 != expected) {
             return Err(OtherInput {
-                diagnosis: printable_path(&path),
+                diagnosis: printable_path(path),
                 other,
-                given: printable_path(&given),
+                given: printable_path(given),
                 found: found.map_or_else(|| "none".to_owned(), |input| input.sha256.clone()),
                 expected,
             }
