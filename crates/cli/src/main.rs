@@ -35,6 +35,7 @@ mod tables;
 mod terminal;
 mod text;
 mod tumble;
+mod width;
 
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
@@ -56,7 +57,7 @@ fn main() -> ExitCode {
     show_errors_plainly();
     match answer(cli.command.as_ref()) {
         Ok(answer) => {
-            let text = answer.shown(terminal::columns(), cli.shown.verbose > 0);
+            let text = answer.shown(width::columns(), cli.shown.verbose > 0);
             let text = if cli.shown.quiet { "" } else { &text };
             match terminal::print(text) {
                 // A closed pipe, as in `| head`, is not a failure.
@@ -92,12 +93,12 @@ fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
         Command::Allan(arguments) => allan::run(arguments),
         Command::Calibrate(arguments) => calibrate::run(arguments),
         Command::Characterise(arguments) => characterise::run(arguments),
-        Command::Completions(arguments) => Ok(manual::completions(arguments).into()),
+        Command::Completions(arguments) => Ok(manual::completions(arguments, definition()).into()),
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Effects(arguments) => effects::run(arguments),
         Command::Extend(arguments) => extend::run(arguments),
         Command::Import(arguments) => import::run(arguments),
-        Command::Man(arguments) => manual::pages(arguments),
+        Command::Man(arguments) => manual::pages(arguments, definition()),
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
         Command::Plan(arguments) => plan::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),

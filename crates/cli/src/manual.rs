@@ -12,7 +12,6 @@ use miette::miette;
 
 use crate::Failure;
 use crate::answer::Answer;
-use crate::command::definition;
 
 /// Print the completions of a shell.
 #[derive(Debug, Args)]
@@ -29,15 +28,15 @@ pub(crate) struct ManArguments {
     folder: PathBuf,
 }
 
-/// Runs `gyrocal completions`; returns the completions.
-pub(crate) fn completions(arguments: &CompletionsArguments) -> String {
+/// Runs `gyrocal completions` of a definition of the command line; returns the completions.
+pub(crate) fn completions(arguments: &CompletionsArguments, mut definition: Command) -> String {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut definition(), "gyrocal", &mut script);
+    clap_complete::generate(arguments.shell, &mut definition, "gyrocal", &mut script);
     String::from_utf8_lossy(&script).into_owned()
 }
 
 /// Runs `gyrocal man`: writes all pages or none.
-pub(crate) fn pages(arguments: &ManArguments) -> Result<Answer, Failure> {
+pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result<Answer, Failure> {
     let folder = &arguments.folder;
     let refused = |reason: std::io::Error| {
         Failure::Work(miette!(
@@ -47,7 +46,6 @@ pub(crate) fn pages(arguments: &ManArguments) -> Result<Answer, Failure> {
         ))
     };
     std::fs::create_dir_all(folder).map_err(refused)?;
-    let mut definition = definition();
     definition.build();
     let mut outputs = Outputs::new();
     let mut names = Vec::new();

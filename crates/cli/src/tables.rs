@@ -2,7 +2,7 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table, TableStyle};
 
-use crate::terminal;
+use crate::width;
 
 /// A table with a rule below its head and no other lines.
 pub(crate) fn table(header: impl Into<Row>) -> Table {
@@ -12,7 +12,7 @@ pub(crate) fn table(header: impl Into<Row>) -> Table {
         .load_style(TableStyle::new().header_separator(rule))
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_header(header);
-    if let Some(columns) = terminal::columns() {
+    if let Some(columns) = width::columns() {
         table.set_width(u16::try_from(columns).unwrap_or(u16::MAX));
     }
     table

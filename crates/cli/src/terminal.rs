@@ -8,13 +8,9 @@ use std::io::IsTerminal as _;
 use std::sync::OnceLock;
 
 use clap::{Args, ValueEnum};
-use terminal_size::{Width, terminal_size_of};
 
 pub(crate) use screen::{fitted, laid_out, note};
 pub(crate) use stream::{Messages, print, warn};
-
-/// Columns of a terminal that does not tell.
-const COLUMNS: usize = 80;
 
 /// Options of what is shown.
 #[derive(Debug, Clone, Args)]
@@ -90,14 +86,4 @@ impl Shown {
 /// Whether progress is shown: on a terminal, unless nothing but errors is wanted.
 pub(crate) fn shows_progress() -> bool {
     std::io::stderr().is_terminal() && !QUIET.get().copied().unwrap_or(false)
-}
-
-/// Columns of stdout: those of the terminal or of the variable COLUMNS; `None` for a pipe, in which
-/// lines are as long as they need.
-pub(crate) fn columns() -> Option<usize> {
-    match terminal_size_of(std::io::stdout()) {
-        Some((Width(columns), _)) => Some(columns.into()),
-        None if std::io::stdout().is_terminal() => Some(COLUMNS),
-        None => std::env::var("COLUMNS").ok()?.parse().ok(),
-    }
 }

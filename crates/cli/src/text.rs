@@ -2,7 +2,7 @@
 
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
-use crate::terminal;
+use crate::width;
 
 /// Longest lines of paragraphs.
 const LINE: usize = 100;
@@ -28,7 +28,7 @@ pub(crate) fn wrapped(width: usize, words: &str) -> String {
 }
 
 fn lines(first: &str, next: &str, words: &str) -> String {
-    let columns = terminal::columns().unwrap_or(LINE).clamp(40, LINE);
+    let columns = width::columns().unwrap_or(LINE).clamp(40, LINE);
     let options = options(columns)
         .initial_indent(first)
         .subsequent_indent(next);
