@@ -14,7 +14,7 @@ mod untestable_rows;
 use std::borrow::Cow;
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run, rows};
-use gyrocal_hypothesis::{FittedModel, SearchOptions, Searched};
+use gyrocal_hypothesis::{FittedModel, SearchOptions, Searched, Selection};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::allan_test;
@@ -181,8 +181,7 @@ fn diagnose_sound<'a>(
     let cleaned = audit.cleaned.apply(record);
     let magnitude = magnitude_test(&cleaned, bench, &accel_noise_g, shares.magnitude_test).ok();
 
-    let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
-    let selection = request::selection(record, bench, &also);
+    let selection = selection(record, bench, options);
     let search = search_options(options, &shares);
     watch(Stage::Search);
     let rows = rows(record, audited.nominal.covariates());
@@ -240,6 +239,11 @@ fn diagnose_sound<'a>(
         whitened,
         later: None,
     })
+}
+
+fn selection(record: &Record, bench: &Bench, options: &DiagnoseOptions) -> Selection {
+    let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
+    request::selection(record, bench, &also)
 }
 
 fn search_options(options: &DiagnoseOptions, shares: &FalseAlarmShares) -> SearchOptions {

@@ -52,6 +52,13 @@ pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Sc
             "check latitude, units and axes in the log description, and the gyros",
         );
     }
+    record(arguments, report, &mut screen);
+    next_step(arguments, &mut screen);
+    screen
+}
+
+/// Heading, disturbed rows, noise, and what a static log does not tell.
+fn record(arguments: &StrapdownArguments, report: &ImportReport, screen: &mut Screen) {
     screen.fact(
         "heading",
         format!("body y points {:.3} deg from north", report.heading_deg),
@@ -80,6 +87,10 @@ pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Sc
         "not told",
         "bias from terms in specific force; drift toward east from the heading",
     );
+}
+
+/// The calibration of what was written.
+fn next_step(arguments: &StrapdownArguments, screen: &mut Screen) {
     if let Some(bench) = &arguments.bench_out {
         let path = |path: &std::path::Path| shell_quoted(&path.to_string_lossy());
         let axes = arguments
@@ -95,5 +106,4 @@ pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Sc
             "errors of the gyros",
         );
     }
-    screen
 }
