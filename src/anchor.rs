@@ -130,6 +130,22 @@ impl<T: Real, I: ChartInputs<T>> Chart<T, I> {
         self.update_inputs();
     }
 
+    /// Vectors fixed to the Earth, where the chart stands otherwise: at the given orientation.
+    #[cfg(feature = "watch")]
+    pub(crate) fn vectors_along<'a>(
+        &'a self,
+        north: &'a [T; 3],
+        up: &'a [T; 3],
+    ) -> ChartVectors<'a, T> {
+        ChartVectors {
+            north,
+            up,
+            earth_rate: &self.earth_rate,
+            gravity_g: self.site.gravity_g,
+            field_gauss: &self.field_gauss,
+        }
+    }
+
     /// Computes the inputs of the model along the axes of the chart.
     #[inline(always)]
     fn update_inputs(&mut self) {

@@ -221,6 +221,41 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
         self.stopped_by(result)
     }
 
+    /// As [`PlatformFilter::predict`], in one part; for the watch.
+    #[cfg(feature = "watch")]
+    #[inline]
+    pub(crate) fn predict(&mut self, interval_s: T) -> Result<(), ControllerError> {
+        let result = self.filter.predict(interval_s);
+        self.stopped_by(result)
+    }
+
+    /// As [`Self::take`], clipped; for the watch.
+    #[cfg(feature = "watch")]
+    #[inline]
+    pub(crate) fn take_clipped(
+        &mut self,
+        specific_force_g: &[T; 3],
+        clip: T,
+    ) -> Result<Innovation<T, 3>, ControllerError> {
+        let result = self.filter.update_clipped(specific_force_g, clip);
+        self.stopped_by(result)
+    }
+
+    /// The state has moved along a direction; for the watch.
+    #[cfg(feature = "watch")]
+    #[inline]
+    pub(crate) fn displace(
+        &mut self,
+        direction: &[T; crate::generated::platform::Platform::STATES],
+        size: T,
+        variance: T,
+    ) -> Result<(), ControllerError> {
+        self.check_running()?;
+        let kernel = self.filter.kernel_mut();
+        let result = kernel.displace(direction, size, variance);
+        self.stopped_by(result)
+    }
+
     #[inline(always)]
     fn check_running(&self) -> Result<(), ControllerError> {
         if self.running {
@@ -231,7 +266,7 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     }
 
     #[inline(always)]
-    fn check_interval(&self, interval_s: T) -> Result<(), ControllerError> {
+    pub(crate) fn check_interval(&self, interval_s: T) -> Result<(), ControllerError> {
         self.check_running()?;
         if !interval_s.is_positive() {
             return Err(ControllerError::IntervalNotPositive);
@@ -243,7 +278,7 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     }
 
     #[inline(always)]
-    fn check_sample(&self, specific_force_g: &[T; 3]) -> Result<(), ControllerError> {
+    pub(crate) fn check_sample(&self, specific_force_g: &[T; 3]) -> Result<(), ControllerError> {
         self.check_running()?;
         for (axis, force) in specific_force_g.iter().enumerate() {
             if !force.is_finite() {

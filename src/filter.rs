@@ -170,6 +170,29 @@ impl<T: Precision, F: Form<T>> PlatformFilter<T, F> {
             .update_at_origin(specific_force_g, &self.accel_variance_g2)
     }
 
+    /// As [`Self::update`], for a chart that moves at every step, with clipped innovations.
+    #[cfg(feature = "watch")]
+    #[inline]
+    pub(crate) fn update_clipped(
+        &mut self,
+        specific_force_g: &[T; 3],
+        clip: T,
+    ) -> Result<Innovation<T, 3>, EstimationError> {
+        self.kernel
+            .update_clipped(specific_force_g, &self.accel_variance_g2, clip)
+    }
+
+    /// Number of parts that [`Self::predict`] divides an interval into.
+    #[cfg(feature = "watch")]
+    #[inline]
+    pub(crate) fn parts(&self, interval_s: T) -> u32 {
+        let parts = interval_s / self.longest_step_s;
+        let whole = parts.to_u32();
+        whole
+            .saturating_add(u32::from(parts > T::from_u32(whole)))
+            .clamp(1, MOST_PARTS as u32)
+    }
+
     /// As [`Self::update`], but a sample whose NIS exceeds `largest_nis` is not used. Returns
     /// the innovation and whether the sample was used.
     ///

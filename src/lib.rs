@@ -63,6 +63,7 @@
 //! - `std` (default): fused multiply-add where the target has it.
 //! - `batch`: attitudes as points of a trajectory, for estimation from whole records.
 //! - `catalogue`: the platform with every effect of the catalogue, and the table of effects.
+//! - `watch`: sequential diagnosis beside the filter (`watch::WatchedFilter`).
 //! - `oracle`: slow, exact functions for tests.
 //!
 //! # What it does not do
@@ -84,6 +85,8 @@ mod rotation;
 mod saved;
 mod settings;
 mod site;
+#[cfg(feature = "watch")]
+pub mod watch;
 
 #[cfg(feature = "batch")]
 pub mod trajectory;

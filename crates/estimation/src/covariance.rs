@@ -111,6 +111,17 @@ impl<T: Real> Form<T> for Covariance {
         predict::recentre(numbers.matrix, numbers.pivots.len(), map)
     }
 
+    #[inline]
+    fn diffuse(numbers: &mut Numbers<'_, T>, direction: &[T], variance: T) {
+        let rows = numbers.matrix.chunks_exact_mut(direction.len().max(1));
+        for (row, own) in rows.zip(direction) {
+            for (element, other) in row.iter_mut().zip(direction) {
+                // The product of both first: it is symmetric to the last bit.
+                *element = (*own * *other).mul_add(variance, *element);
+            }
+        }
+    }
+
     #[inline(always)]
     fn innovation<const M: usize, const Y: usize>(
         numbers: &mut Numbers<'_, T>,

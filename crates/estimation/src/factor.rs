@@ -9,6 +9,7 @@
 //!   sweep over U: what later outputs need of the earlier ones is known as soon as the rows
 //!   that enter the output are, so those rows go first and yield the coefficients for the rest.
 
+mod diffuse;
 mod innovation;
 mod predict;
 mod update;
@@ -90,6 +91,18 @@ impl<T: Real> Form<T> for Factors {
     ) -> Result<(), EstimationError> {
         let none = [T::from_f64(0.0); M];
         predict::predict_corner(numbers.matrix, numbers.pivots, map, &[none; M], &none)
+    }
+
+    #[inline]
+    fn diffuse(numbers: &mut Numbers<'_, T>, direction: &[T], variance: T) {
+        let Numbers {
+            matrix,
+            pivots,
+            cross,
+            ..
+        } = numbers;
+        let rest = cross.get_mut(..pivots.len()).unwrap_or_default();
+        diffuse::diffuse(matrix, pivots, rest, direction, variance);
     }
 
     #[inline(always)]

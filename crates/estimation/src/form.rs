@@ -59,6 +59,9 @@ pub trait Form<T: Real> {
         observation: &Observation<'_, T, M, Y>,
     ) -> Result<Innovation<T, Y>, EstimationError>;
 
+    /// P ← P + `variance` d dᵀ: the state has moved by itself, along a direction d.
+    fn diffuse(numbers: &mut Numbers<'_, T>, direction: &[T], variance: T);
+
     /// P ← (I - K H) P, and the correction of the state: parameters are corrected in place;
     /// `correct` is called with the moving states' correction as soon as it is known, so that
     /// what depends on it need not wait for P.
@@ -162,4 +165,7 @@ pub struct Observation<'a, T, const M: usize, const Y: usize> {
     pub residual: [T; Y],
     /// True for each output that was observed.
     pub observed: [bool; Y],
+    /// Largest standardised innovation that the correction takes: beyond it it takes this one, with
+    /// its sign. `None`: all as they are.
+    pub clip: Option<T>,
 }

@@ -11,7 +11,8 @@ pub struct Innovation<T, const Y: usize> {
     pub observed: [bool; Y],
     /// Normalised innovation squared over the observed outputs; its expectation is their number.
     pub nis: T,
-    /// Residual of each output given the earlier ones, over its variance.
+    /// Residual of each output given the earlier ones, over its variance; clipped where the update
+    /// was.
     pub(crate) weights: [T; Y],
     /// L of S = L diag(variance) Lᵀ.
     pub(crate) lower: [[T; Y]; Y],
@@ -28,6 +29,7 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         lower: [[T; Y]; Y],
         variance: [T; Y],
         reciprocal: &[T; Y],
+        clip: Option<T>,
     ) -> Self {
         let zero = T::from_f64(0.0);
         let mut own = residual;
@@ -41,6 +43,12 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
             }
             weights[k] = own[k] * reciprocal[k];
             nis = weights[k].mul_add(own[k], nis);
+        }
+        if let Some(clip) = clip {
+            for k in 0..Y {
+                let most = clip * variance[k].sqrt();
+                weights[k] = own[k].max(-most).min(most) * reciprocal[k];
+            }
         }
         Self {
             residual,
@@ -88,8 +96,40 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         self.observed.iter().filter(|observed| **observed).count()
     }
 
+    /// Factor that whitens: rows of L⁻¹ over the root of each variance, so that
+    /// [`Self::standardised`] is its product with the residuals where nothing was clipped.
+    #[inline]
+    #[must_use]
+    pub fn whitening(&self) -> [[T; Y]; Y] {
+        let one = T::from_f64(1.0);
+        let mut rows = [[T::ZERO; Y]; Y];
+        for k in 0..Y {
+            let mut row = [T::ZERO; Y];
+            row[k] = one;
+            for l in 0..Y {
+                if l < k {
+                    for j in 0..Y {
+                        row[j] = row[j] - self.lower[k][l] * rows[l][j];
+                    }
+                }
+            }
+            rows[k] = row;
+        }
+        for k in 0..Y {
+            let reciprocal = one / self.variance[k].sqrt();
+            rows[k] = rows[k].map(|element| element * reciprocal);
+        }
+        rows
+    }
+
+    /// Variance of each output given the earlier ones.
+    #[must_use]
+    pub fn conditional_variance(&self) -> &[T; Y] {
+        &self.variance
+    }
+
     /// Innovations made independent and of unit variance, output by output; zero where
-    /// nothing was observed.
+    /// nothing was observed. In a clipped update they are those that the update took.
     #[must_use]
     pub fn standardised(&self) -> [T; Y] {
         core::array::from_fn(|k| self.weights[k] * self.variance[k].sqrt())

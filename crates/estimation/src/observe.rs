@@ -56,6 +56,7 @@ impl<D, I: Copy> Sensor<'_, D, I> {
             variance,
             residual,
             observed,
+            clip: None,
         }
     }
 }

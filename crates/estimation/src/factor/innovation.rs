@@ -54,9 +54,13 @@ pub(super) fn innovation<T: Real, const M: usize, const Y: usize>(
     }
     let reciprocal = variance.map(|variance| T::from_f64(1.0) / variance);
     let Observation {
-        residual, observed, ..
+        residual,
+        observed,
+        clip,
+        ..
     } = *observation;
-    let innovation = Innovation::from_factors(residual, observed, lower, variance, &reciprocal);
+    let innovation =
+        Innovation::from_factors(residual, observed, lower, variance, &reciprocal, clip);
     innovation.check()?;
     Ok(innovation)
 }

@@ -208,6 +208,7 @@ impl<T: Real, const M: usize, const Y: usize> Head<T, M, Y> {
             lower,
             self.variance,
             &self.reciprocal,
+            observation.clip,
         );
         innovation.check()?;
         Ok(innovation)

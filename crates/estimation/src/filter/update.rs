@@ -2,7 +2,7 @@ use gyrocal_scalar::{Real, Recentre};
 
 use super::{Filter, to_array};
 use crate::error::EstimationError;
-use crate::form::{Form, Numbers};
+use crate::form::{Form, Numbers, Observation};
 use crate::innovation::Innovation;
 use crate::observe::{Sensor, check_noise};
 use crate::precision::Precision;
@@ -30,7 +30,7 @@ where
         noise_variance: &[T; Y],
     ) -> Result<Innovation<T, Y>, EstimationError> {
         if self.at_origin() {
-            self.update_with::<true>(measured, noise_variance)
+            self.update_with::<true>(measured, noise_variance, None)
         } else {
             self.update_elsewhere(measured, noise_variance)
         }
@@ -52,7 +52,76 @@ where
                 expected: "a chart that moves at every step",
             });
         }
-        self.update_with::<true>(measured, noise_variance)
+        self.update_with::<true>(measured, noise_variance, None)
+    }
+
+    /// As [`Self::update_at_origin`], but the correction takes standardised innovations up to `clip`
+    /// only, and larger ones as this one with their sign: what an outlier does is bounded. NIS and
+    /// covariance are as ever.
+    ///
+    /// # Errors
+    /// As [`Self::update_at_origin`].
+    #[inline]
+    pub fn update_clipped(
+        &mut self,
+        measured: &[T; Y],
+        noise_variance: &[T; Y],
+        clip: T,
+    ) -> Result<Innovation<T, Y>, EstimationError> {
+        if !self.at_origin() {
+            return Err(EstimationError::InvalidArgument {
+                expected: "a chart that moves at every step",
+            });
+        }
+        self.update_with::<true>(measured, noise_variance, Some(clip))
+    }
+
+    /// The state has moved along a direction, by a size of which an estimate and its variance are
+    /// known; a random walk moves a parameter by zero with the variance of its step. Errors of the
+    /// size must be independent of those of the state. Moving states are errors at the origin of the
+    /// chart, as a correction is.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidArgument`] for a direction of another length, or one or a size that
+    /// is not finite, or a variance that is negative; nothing has changed.
+    #[inline]
+    pub fn displace(
+        &mut self,
+        direction: &[T],
+        size: T,
+        variance: T,
+    ) -> Result<(), EstimationError> {
+        let finite = direction.iter().all(|element| element.is_finite())
+            && size.is_finite()
+            && variance.is_finite();
+        if direction.len() != self.storage.states() || !finite || variance < T::ZERO {
+            return Err(EstimationError::InvalidArgument {
+                expected: "a direction of as many finite numbers as states, and a variance",
+            });
+        }
+        let buffers = self.storage.buffers();
+        let (head, rest) = direction.split_at_checked(M).unwrap_or_default();
+        if size != T::ZERO {
+            let (moving_slice, parameters) = buffers.state.split_at_mut(M);
+            let mut moving = to_array(moving_slice);
+            let mut correction = [T::ZERO; M];
+            for (place, element) in correction.iter_mut().zip(head) {
+                *place = *element * size;
+            }
+            match self.recentring {
+                Recentring::EveryStep => {
+                    let inputs = &mut self.inputs;
+                    self.model.correct(&mut moving, inputs, &correction);
+                }
+                _ => moving = add(&moving, &correction),
+            }
+            moving_slice.copy_from_slice(&moving);
+            for (parameter, element) in parameters.iter_mut().zip(rest) {
+                *parameter = element.mul_add(size, *parameter);
+            }
+        }
+        F::diffuse(&mut numbers!(buffers), direction, variance);
+        Ok(())
     }
 
     /// A function of its own: the step from the origin is then not inlined together with it.
@@ -62,7 +131,7 @@ where
         measured: &[T; Y],
         noise_variance: &[T; Y],
     ) -> Result<Innovation<T, Y>, EstimationError> {
-        self.update_with::<false>(measured, noise_variance)
+        self.update_with::<false>(measured, noise_variance, None)
     }
 
     #[inline(always)]
@@ -70,6 +139,7 @@ where
         &mut self,
         measured: &[T; Y],
         noise_variance: &[T; Y],
+        clip: Option<T>,
     ) -> Result<Innovation<T, Y>, EstimationError> {
         check_noise(noise_variance)?;
         let buffers = self.storage.buffers();
@@ -80,13 +150,16 @@ where
             inputs: &self.inputs,
             at_origin: AT_ORIGIN,
         };
-        let observation = sensor.observe(
-            &moving,
-            parameters,
-            buffers.output,
-            measured,
-            noise_variance,
-        );
+        let observation = Observation {
+            clip,
+            ..sensor.observe(
+                &moving,
+                parameters,
+                buffers.output,
+                measured,
+                noise_variance,
+            )
+        };
         let (model, inputs, recentring) = (&self.model, &mut self.inputs, self.recentring);
         let known = Known::<T, D, M, Y, AT_ORIGIN>::of(&self.model);
         let correct = |correction: &[T; M]| match recentring {

@@ -1,0 +1,106 @@
+use gyrocal_estimation::Precision;
+use gyrocal_scalar::{Model, RatesJacobian};
+use gyrocal_watch::Course;
+
+use super::effects::{Channel, EffectCourse, WatchedEffect};
+use crate::anchor::Chart;
+use crate::chart_vectors::ChartInputs;
+use crate::generated::catalogue::{Catalogue, CatalogueInputs, OUTPUTS, RATES};
+use crate::generated::platform::Platform;
+use crate::rotation::turned_by;
+
+/// Parameters of the catalogue's model, and those of them that enter the output.
+const PARAMETERS: usize = Catalogue::PARAMETERS;
+const OF_OUTPUT: usize = 28;
+
+/// Courses of effects over the block to come, foretold from where the platform stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Courses<T, const E: usize>(pub [Course<T>; E]);
+
+impl<T: Precision, const E: usize> Courses<T, E> {
+    /// For a platform in a chart whose origin is its attitude, with the given coefficients.
+    ///
+    /// Values now are those of the catalogue's model, and values at the end of the block those at the
+    /// attitude that the platform has then at its present rate. Samples to come are not needed, which
+    /// the bound on false alarms rests on.
+    #[must_use]
+    pub fn ahead(
+        effects: &[WatchedEffect; E],
+        chart: &Chart<T>,
+        drift: &[T; Platform::PARAMETERS],
+        block_s: T,
+    ) -> Self {
+        let none = [T::ZERO; 3];
+        let rates = Platform.rates(&none, drift, chart.inputs());
+        let mut vectors = [[[T::ZERO; 3]; 2]; 2];
+        vectors[0] = chart.orientation();
+        let turn = turned_by(&rates.map(|rate| rate * block_s));
+        vectors[1] = vectors[0].map(|vector| crate::rotation::rotate(&turn, &vector));
+        let mut values = [[T::ZERO; E]; 2];
+        for (values, [north, up]) in values.iter_mut().zip(&vectors) {
+            let mut inputs = <CatalogueInputs<T> as ChartInputs<T>>::unset();
+            inputs.set_from_chart(&chart.vectors_along(north, up));
+            at(effects, &inputs, drift, values);
+        }
+        let days = block_s * T::from_f64(1.0 / 86_400.0);
+        let mut courses = [Course {
+            start: T::ZERO,
+            change: days,
+        }; E];
+        let [now, then] = values;
+        for (i, effect) in effects.iter().enumerate() {
+            if effect.course != EffectCourse::SinceOnset {
+                courses[i] = Course {
+                    start: now[i],
+                    change: then[i] - now[i],
+                };
+            }
+        }
+        Self(courses)
+    }
+}
+
+/// Values of the effects in their channels, per unit of size.
+#[inline(never)]
+fn at<T: Precision, const E: usize>(
+    effects: &[WatchedEffect; E],
+    inputs: &CatalogueInputs<T>,
+    drift: &[T; Platform::PARAMETERS],
+    values: &mut [T; E],
+) {
+    let mut parameters = [T::ZERO; PARAMETERS];
+    for (place, value) in parameters.iter_mut().zip(drift) {
+        *place = *value;
+    }
+    let mut rates = [T::ZERO; 3 * PARAMETERS];
+    let mut jacobian = RatesJacobian {
+        moving: [[T::ZERO; 3]; 3],
+        noise: [[T::ZERO; 3]; 3],
+        parameters: &mut rates,
+    };
+    let _ = Catalogue.rates_jacobian_at_origin(&parameters, inputs, &mut jacobian);
+    let mut moving = [[T::ZERO; 3]; 3];
+    let mut outputs = [T::ZERO; 3 * OF_OUTPUT];
+    let _ = Catalogue.output_jacobian_at_origin(&parameters, inputs, &mut moving, &mut outputs);
+    for (value, effect) in values.iter_mut().zip(effects) {
+        *value = match (effect.channel, effect.course) {
+            (_, EffectCourse::Constant | EffectCourse::SinceOnset) => T::from_f64(1.0),
+            (Channel::Rate(rate), EffectCourse::Parameter(index)) => {
+                let constant = RATES.get(rate).map_or(0, |channel| channel.constant);
+                let of = |index: usize| rates.get(rate * PARAMETERS + index).copied();
+                match (of(index), of(constant)) {
+                    (Some(size), Some(unit)) => size / unit,
+                    _ => T::ZERO,
+                }
+            }
+            (Channel::Output(output), EffectCourse::Parameter(index)) => {
+                let constant = OUTPUTS.get(output).map_or(0, |channel| channel.constant);
+                let of = |index: usize| outputs.get(output * OF_OUTPUT + index).copied();
+                match (of(index), of(constant)) {
+                    (Some(size), Some(unit)) => size / unit,
+                    _ => T::ZERO,
+                }
+            }
+        };
+    }
+}
