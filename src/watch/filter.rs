@@ -261,6 +261,13 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
         });
     }
 
+    /// An effect with its best onset, or, beyond the effects, a jump about an axis; `None` while
+    /// nothing is known of it.
+    #[must_use]
+    pub fn candidate(&self, effect: usize) -> Option<Candidate<T>> {
+        self.watch.candidate(effect)
+    }
+
     /// Adopts a cause: the filter is corrected by what the effect has left in it, and by the effect
     /// itself where it is a change of a coefficient, with the variance of the estimate. The watch goes
     /// on with new onsets. Returns false, and nothing has changed, for an effect that would go on and

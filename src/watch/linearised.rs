@@ -45,20 +45,20 @@ impl<T: Precision> Linearised<T> {
                 *place = *value;
             }
         }
-        let Some(map) = kernel.chart_map() else {
-            self.transition = plain;
-            return;
-        };
-        for i in 0..3 {
-            for j in 0..N {
-                let mut sum = map[i][0] * plain[0][j];
-                for l in 1..3 {
-                    sum = map[i][l].mul_add(plain[l][j], sum);
+        self.transition = plain;
+        if let Some(map) = kernel.chart_map() {
+            for i in 0..3 {
+                for j in 0..N {
+                    let mut sum = map[i][0] * plain[0][j];
+                    for l in 1..3 {
+                        sum = map[i][l].mul_add(plain[l][j], sum);
+                    }
+                    self.transition[i][j] = sum;
                 }
-                self.transition[i][j] = sum;
             }
         }
-        // Before the update, which moves the chart.
+        // Before the update, which moves the chart. The model writes structural nonzeros only.
+        self.observed.output = [[T::ZERO; 3]; 3];
         let _ = Platform.output_jacobian_at_origin(
             &[T::ZERO; Platform::PARAMETERS],
             kernel.inputs().inputs(),
