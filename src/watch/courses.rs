@@ -7,11 +7,13 @@ use crate::anchor::Chart;
 use crate::chart_vectors::ChartInputs;
 use crate::generated::catalogue::{Catalogue, CatalogueInputs, OUTPUTS, RATES};
 use crate::generated::platform::Platform;
-use crate::rotation::turned_by;
+use crate::rotation::{rotate, turned_by};
 
 /// Parameters of the catalogue's model, and those of them that enter the output.
 const PARAMETERS: usize = Catalogue::PARAMETERS;
 const OF_OUTPUT: usize = 28;
+/// Points of Gauss's rule with two points, in a block of one: 1/2 ∓ √3 / 6.
+const POINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// Courses of effects over the block to come, foretold from where the platform stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +22,9 @@ pub struct Courses<T, const E: usize>(pub [Course<T>; E]);
 impl<T: Precision, const E: usize> Courses<T, E> {
     /// For a platform in a chart whose origin is its attitude, with the given coefficients.
     ///
-    /// Values now are those of the catalogue's model, and values at the end of the block those at the
-    /// attitude that the platform has then at its present rate. Samples to come are not needed, which
-    /// the bound on false alarms rests on.
+    /// A course is the line through the values of the catalogue's model at the two points of Gauss's
+    /// rule, at the attitudes that the platform has then at its present rate: the best line for any
+    /// parabola. Samples to come are not needed, which the bound on false alarms rests on.
     #[must_use]
     pub fn ahead(
         effects: &[WatchedEffect; E],
@@ -32,12 +34,11 @@ impl<T: Precision, const E: usize> Courses<T, E> {
     ) -> Self {
         let none = [T::ZERO; 3];
         let rates = Platform.rates(&none, drift, chart.inputs());
-        let mut vectors = [[[T::ZERO; 3]; 2]; 2];
-        vectors[0] = chart.orientation();
-        let turn = turned_by(&rates.map(|rate| rate * block_s));
-        vectors[1] = vectors[0].map(|vector| crate::rotation::rotate(&turn, &vector));
         let mut values = [[T::ZERO; E]; 2];
-        for (values, [north, up]) in values.iter_mut().zip(&vectors) {
+        for (values, point) in values.iter_mut().zip(POINTS) {
+            let time_s = T::from_f64(point) * block_s;
+            let turn = turned_by(&rates.map(|rate| rate * time_s));
+            let [north, up] = &chart.orientation().map(|vector| rotate(&turn, &vector));
             let mut inputs = <CatalogueInputs<T> as ChartInputs<T>>::unset();
             inputs.set_from_chart(&chart.vectors_along(north, up));
             at(effects, &inputs, drift, values);
@@ -47,12 +48,15 @@ impl<T: Precision, const E: usize> Courses<T, E> {
             start: T::ZERO,
             change: days,
         }; E];
-        let [now, then] = values;
+        let [early, late] = values;
+        let [first, second] = POINTS;
+        let apart = T::from_f64(1.0 / (second - first));
         for (i, effect) in effects.iter().enumerate() {
             if effect.course != EffectCourse::SinceOnset {
+                let change = (late[i] - early[i]) * apart;
                 courses[i] = Course {
-                    start: now[i],
-                    change: then[i] - now[i],
+                    start: early[i] - change * T::from_f64(first),
+                    change,
                 };
             }
         }

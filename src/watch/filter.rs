@@ -17,10 +17,10 @@ use crate::settings::FilterSettings;
 const N: usize = Platform::STATES;
 /// Elements of the lower half of a matrix over the states.
 const L: usize = N * (N + 1) / 2;
-/// Onsets of effects that live at a time: the oldest is 21 days.
+/// Onsets of effects that live at a time: with blocks of two hours the oldest is 42 days.
 const ONSETS: usize = 10;
-/// Onsets of jumps that live at a time: 64 steps.
-const JUMPS: usize = 16;
+/// Onsets of jumps that live at a time: 48 steps.
+const JUMPS: usize = 12;
 
 /// A watched filter with the effects of [`EFFECTS_BY_DEFAULT`].
 pub type PlatformWatch<T = f32> = WatchedFilter<T, 18, 6>;
@@ -59,9 +59,9 @@ pub struct WatchedFilter<T: Precision, const E: usize, const D: usize> {
     effects: &'static [WatchedEffect; E],
     settings: WatchSettings<T>,
     linearised: Linearised<T>,
-    /// Time since each walk was last added, s, and the gyro that is next.
+    /// Time since each walk was last added, s, and the steps until the next.
     walked_s: [T; 3],
-    next_walk: usize,
+    next_walk: u32,
 }
 
 /// A step of a watched filter.
@@ -216,14 +216,18 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
         Ok((innovation, alarm))
     }
 
-    /// Adds the walk of one gyro, one after the other.
+    /// Adds the walk of one gyro, one after the other, every eighth step: it is slow.
     #[inline(always)]
     fn walk(&mut self, interval_s: T) -> Result<(), ControllerError> {
         for time in &mut self.walked_s {
             *time = *time + interval_s;
         }
-        let gyro = self.next_walk;
-        self.next_walk = if gyro >= 2 { 0 } else { gyro + 1 };
+        let turn = self.next_walk;
+        self.next_walk = if turn >= 23 { 0 } else { turn + 1 };
+        if !turn.is_multiple_of(8) {
+            return Ok(());
+        }
+        let gyro = turn as usize / 8;
         let walks = &self.settings.walk_deg_per_h_per_sqrt_h;
         if let (Some(walk), Some(time), Some(channel)) =
             (walks.get(gyro), self.walked_s.get_mut(gyro), RATES.get(gyro))

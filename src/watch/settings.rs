@@ -31,7 +31,7 @@ pub struct WatchSettings<T> {
 }
 
 impl<T: Precision> Default for WatchSettings<T> {
-    /// A false alarm in a hundred years, samples of a minute, blocks of an hour, a walk of
+    /// A false alarm in a hundred years, samples of a minute, blocks of two hours, a walk of
     /// 1e-5 deg/h/√h, innovations up to 3.
     fn default() -> Self {
         let number = T::from_f64;
@@ -39,7 +39,7 @@ impl<T: Precision> Default for WatchSettings<T> {
             false_alarms_per_year: number(0.01),
             for_ever: false,
             interval_s: number(60.0),
-            block_s: number(3600.0),
+            block_s: number(7200.0),
             walk_deg_per_h_per_sqrt_h: [number(1e-5); 3],
             clip: number(3.0),
             set_width: number(6.0),

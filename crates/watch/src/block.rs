@@ -3,18 +3,24 @@ use gyrocal_scalar::Real;
 use crate::step::{Observed, Step, Whitened};
 use crate::table::Driven;
 
+/// Columns that go through a step together: as many numbers of each row as registers hold.
+const TILE: usize = 6;
+
 /// Columns X and their Gram matrix M over the steps of a block. `L` = N (N + 1) / 2.
+///
+/// Row i of X has the deviations of state i, so that neighbouring numbers go through the same
+/// operations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Block<T, const N: usize, const D: usize, const L: usize> {
-    /// Deviation of the state now for a unit of each state at the beginning.
+    /// Deviations of the states now for a unit of each state at the beginning.
     pub(crate) unit: [[T; N]; N],
     /// The same for the driven columns, which begin at zero.
-    pub(crate) driven: [[T; N]; D],
+    pub(crate) driven: [[T; D]; N],
     /// Gram matrix of the unit columns, below and on its diagonal, by rows.
     pub(crate) gram: [T; L],
     /// Of driven columns with unit columns.
     pub(crate) mixed: [[T; N]; D],
-    /// Of driven columns.
+    /// Of driven columns, below and on the diagonal.
     pub(crate) among: [[T; D]; D],
     /// Part of the block that has passed.
     pub(crate) passed: T,
@@ -25,7 +31,7 @@ impl<T: Real, const N: usize, const D: usize, const L: usize> Block<T, N, D, L> 
         const { assert!(L == N * (N + 1) / 2, "L = N (N + 1) / 2") };
         Self {
             unit: [[T::ZERO; N]; N],
-            driven: [[T::ZERO; N]; D],
+            driven: [[T::ZERO; D]; N],
             gram: [T::ZERO; L],
             mixed: [[T::ZERO; N]; D],
             among: [[T::ZERO; D]; D],
@@ -35,11 +41,11 @@ impl<T: Real, const N: usize, const D: usize, const L: usize> Block<T, N, D, L> 
 
     #[inline]
     pub(crate) fn begin(&mut self) {
-        for (j, column) in self.unit.iter_mut().enumerate() {
-            *column = [T::ZERO; N];
-            column[j] = T::from_f64(1.0);
+        for (j, row) in self.unit.iter_mut().enumerate() {
+            *row = [T::ZERO; N];
+            row[j] = T::from_f64(1.0);
         }
-        self.driven = [[T::ZERO; N]; D];
+        self.driven = [[T::ZERO; D]; N];
         self.gram = [T::ZERO; L];
         self.mixed = [[T::ZERO; N]; D];
         self.among = [[T::ZERO; D]; D];
@@ -54,37 +60,29 @@ impl<T: Real, const N: usize, const D: usize, const L: usize> Block<T, N, D, L> 
         table: &[Driven; D],
     ) -> Whitened<T, Y, N, D> {
         let mut whitened = Whitened {
-            unit: [[T::ZERO; Y]; N],
-            driven: [[T::ZERO; Y]; D],
+            unit: [[T::ZERO; N]; Y],
+            driven: [[T::ZERO; D]; Y],
         };
         let passed = self.passed + step.part;
-        for (column, shown) in self.unit.iter_mut().zip(&mut whitened.unit) {
-            predict(column, step.transition);
-            if let Some(observed) = step.observed {
-                *shown = correct(column, observed, [T::ZERO; Y]);
-            }
-        }
-        let half = T::from_f64(0.5) * step.part;
-        let columns = self.driven.iter_mut().zip(&mut whitened.driven);
-        for ((column, shown), driven) in columns.zip(table) {
-            // A parameter that rises has its mean over the step.
-            raise(column, driven, half);
-            predict(column, step.transition);
-            raise(column, driven, half);
-            if let Some(observed) = step.observed {
+        if let Some(observed) = step.observed {
+            for (column, driven) in table.iter().enumerate() {
                 let (output, size) = match *driven {
-                    Driven::Slope(_) => (Y, T::ZERO),
+                    Driven::Slope(_) => continue,
                     Driven::Output(output) => (output, T::from_f64(1.0)),
                     Driven::OutputSlope(output) => (output, passed),
                 };
-                let mut direct = [T::ZERO; Y];
                 for k in 0..Y {
                     let element = observed.whitening[k].get(output).copied();
-                    direct[k] = size * element.unwrap_or(T::ZERO);
+                    whitened.driven[k][column] = size * element.unwrap_or(T::ZERO);
                 }
-                *shown = correct(column, observed, direct);
             }
         }
+        columns(&mut self.unit, step, &mut whitened.unit);
+        // A parameter that rises has its mean over the step.
+        let half = T::from_f64(0.5) * step.part;
+        self.raise(table, half);
+        columns(&mut self.driven, step, &mut whitened.driven);
+        self.raise(table, half);
         self.passed = passed;
         if step.observed.is_some() {
             self.add(&whitened);
@@ -92,45 +90,54 @@ impl<T: Real, const N: usize, const D: usize, const L: usize> Block<T, N, D, L> 
         whitened
     }
 
+    #[inline(always)]
+    fn raise(&mut self, table: &[Driven; D], by: T) {
+        for (column, driven) in table.iter().enumerate() {
+            if let Driven::Slope(state) = driven
+                && let Some(row) = self.driven.get_mut(*state)
+            {
+                row[column] = row[column] + by;
+            }
+        }
+    }
+
     /// Adds a step to the Gram matrix.
     #[inline(always)]
     fn add<const Y: usize>(&mut self, whitened: &Whitened<T, Y, N, D>) {
-        let mut place = self.gram.iter_mut();
+        let mut rest = self.gram.as_mut_slice();
         for i in 0..N {
-            for (j, place) in (0..N).take(i + 1).zip(&mut place) {
-                *place = add_dot(&whitened.unit[i], &whitened.unit[j], *place);
-            }
+            let Some((row, after)) = rest.split_at_mut_checked(i + 1) else {
+                return;
+            };
+            let own = column(&whitened.unit, i);
+            add_products(row, &own, &whitened.unit);
+            rest = after;
         }
-        for (d, shown) in whitened.driven.iter().enumerate() {
-            for j in 0..N {
-                self.mixed[d][j] = add_dot(shown, &whitened.unit[j], self.mixed[d][j]);
-            }
-            for other in 0..D {
-                if other <= d {
-                    let sum = self.among[d][other];
-                    self.among[d][other] = add_dot(shown, &whitened.driven[other], sum);
-                }
-            }
+        for d in 0..D {
+            let own = column(&whitened.driven, d);
+            add_products(&mut self.mixed[d], &own, &whitened.unit);
+            let (row, _) = self.among[d].split_at_mut_checked(d + 1).unwrap_or_default();
+            add_products(row, &own, &whitened.driven);
         }
     }
 
     /// δ at the end of what has passed, of a deviation and driven columns with their coefficients.
     #[inline(always)]
     pub(crate) fn carry(&self, unit: &[T; N], driven: &[(usize, T); 2]) -> [T; N] {
-        let mut sum = [T::ZERO; N];
-        for (column, size) in self.unit.iter().zip(unit) {
-            for i in 0..N {
-                sum[i] = column[i].mul_add(*size, sum[i]);
+        let mut sums = [T::ZERO; N];
+        for ((sum, row), beside) in sums.iter_mut().zip(&self.unit).zip(&self.driven) {
+            let mut total = T::ZERO;
+            for (element, v) in row.iter().zip(unit) {
+                total = element.mul_add(*v, total);
             }
-        }
-        for (index, size) in driven {
-            if let Some(column) = self.driven.get(*index) {
-                for i in 0..N {
-                    sum[i] = column[i].mul_add(*size, sum[i]);
+            for (index, size) in driven {
+                if let Some(element) = beside.get(*index) {
+                    total = element.mul_add(*size, total);
                 }
             }
+            *sum = total;
         }
-        sum
+        sums
     }
 
     /// vᵀ M v.
@@ -138,14 +145,20 @@ impl<T: Real, const N: usize, const D: usize, const L: usize> Block<T, N, D, L> 
     pub(crate) fn information(&self, unit: &[T; N], driven: &[(usize, T); 2]) -> T {
         let two = T::from_f64(2.0);
         let mut total = T::ZERO;
-        let mut elements = self.gram.iter();
-        for i in 0..N {
+        let mut rest = self.gram.as_slice();
+        for (i, v) in unit.iter().enumerate() {
+            let Some((row, after)) = rest.split_at_checked(i) else {
+                return total;
+            };
+            let Some((own, after)) = after.split_first() else {
+                return total;
+            };
             let mut beside = T::ZERO;
-            for (element, v) in (&mut elements).take(i).zip(unit) {
-                beside = element.mul_add(*v, beside);
+            for (element, other) in row.iter().zip(unit) {
+                beside = element.mul_add(*other, beside);
             }
-            let own = elements.next().copied().unwrap_or(T::ZERO) * unit[i];
-            total = unit[i].mul_add(two.mul_add(beside, own), total);
+            total = v.mul_add(two.mul_add(beside, *own * *v), total);
+            rest = after;
         }
         for (place, (index, size)) in driven.iter().enumerate() {
             let (Some(mixed), Some(among)) = (self.mixed.get(*index), self.among.get(*index))
@@ -170,54 +183,118 @@ impl<T: Real, const N: usize, const D: usize, const L: usize> Block<T, N, D, L> 
 }
 
 #[inline(always)]
-fn raise<T: Real, const N: usize>(column: &mut [T; N], driven: &Driven, by: T) {
-    if let Driven::Slope(state) = driven
-        && let Some(place) = column.get_mut(*state)
-    {
-        *place = *place + by;
-    }
-}
-
-#[inline(always)]
-fn predict<T: Real, const M: usize, const N: usize>(
-    column: &mut [T; N],
-    transition: &[[T; N]; M],
-) {
-    let mut moving = [T::ZERO; M];
-    for i in 0..M {
-        let mut sum = transition[i][0] * column[0];
-        for j in 1..N {
-            sum = transition[i][j].mul_add(column[j], sum);
-        }
-        moving[i] = sum;
-    }
-    for (place, value) in column.iter_mut().zip(moving) {
-        *place = value;
-    }
-}
-
-/// The whitened innovation of a column, `direct` being the part that does not come from the state,
-/// and the column after the correction.
-#[inline(always)]
-fn correct<T: Real, const M: usize, const Y: usize, const N: usize>(
-    column: &mut [T; N],
-    observed: &Observed<T, M, Y, N>,
-    direct: [T; Y],
-) -> [T; Y] {
-    let mut shown = direct;
+fn column<T: Real, const Y: usize, const C: usize>(rows: &[[T; C]; Y], at: usize) -> [T; Y] {
+    let mut own = [T::ZERO; Y];
     for k in 0..Y {
-        for i in 0..M {
-            shown[k] = observed.output[k][i].mul_add(column[i], shown[k]);
-        }
+        own[k] = rows[k][at];
     }
-    for j in 0..N {
-        let mut value = column[j];
+    own
+}
+
+/// Adds the products of a column with the columns of `rows` to `sums`, each of which is read and
+/// written once.
+#[inline(always)]
+fn add_products<T: Real, const Y: usize, const C: usize>(
+    sums: &mut [T],
+    own: &[T; Y],
+    rows: &[[T; C]; Y],
+) {
+    for (j, sum) in sums.iter_mut().enumerate().take(C) {
+        let mut total = *sum;
         for k in 0..Y {
-            value = value - observed.gain[k][j] * shown[k];
+            total = rows[k][j].mul_add(own[k], total);
         }
-        column[j] = value;
+        *sum = total;
     }
-    shown
+}
+
+/// Carries columns through a step. `shown` has the part of their whitened innovations that does not
+/// come from the state, and receives all of them.
+#[inline(always)]
+fn columns<T: Real, const M: usize, const Y: usize, const N: usize, const C: usize>(
+    rows: &mut [[T; C]; N],
+    step: &Step<'_, T, M, Y, N>,
+    shown: &mut [[T; C]; Y],
+) {
+    let mut at = 0;
+    while at + TILE <= C {
+        tile::<T, M, Y, N, C, TILE>(rows, step, shown, at);
+        at += TILE;
+    }
+    while at < C {
+        tile::<T, M, Y, N, C, 1>(rows, step, shown, at);
+        at += 1;
+    }
+}
+
+#[inline(always)]
+fn tile<
+    T: Real,
+    const M: usize,
+    const Y: usize,
+    const N: usize,
+    const C: usize,
+    const W: usize,
+>(
+    rows: &mut [[T; C]; N],
+    step: &Step<'_, T, M, Y, N>,
+    shown: &mut [[T; C]; Y],
+    at: usize,
+) {
+    let mut moving = [[T::ZERO; W]; M];
+    for (j, row) in rows.iter().enumerate() {
+        let values: [T; W] = load(row, at);
+        for i in 0..M {
+            multiply_add(&mut moving[i], &values, step.transition[i][j]);
+        }
+    }
+    let Some(Observed { output, gain, .. }) = step.observed else {
+        for (row, values) in rows.iter_mut().zip(&moving) {
+            store(row, at, values);
+        }
+        return;
+    };
+    let mut seen = [[T::ZERO; W]; Y];
+    for k in 0..Y {
+        seen[k] = load(&shown[k], at);
+        for i in 0..M {
+            multiply_add(&mut seen[k], &moving[i], output[k][i]);
+        }
+        store(&mut shown[k], at, &seen[k]);
+    }
+    for (j, row) in rows.iter_mut().enumerate() {
+        let mut values = match moving.get(j) {
+            Some(values) => *values,
+            None => load(row, at),
+        };
+        for k in 0..Y {
+            multiply_add(&mut values, &seen[k], -gain[k][j]);
+        }
+        store(row, at, &values);
+    }
+}
+
+#[inline(always)]
+fn load<T: Real, const C: usize, const W: usize>(row: &[T; C], at: usize) -> [T; W] {
+    match row.get(at..at + W).and_then(|part| part.first_chunk::<W>()) {
+        Some(values) => *values,
+        None => [T::ZERO; W],
+    }
+}
+
+#[inline(always)]
+fn store<T: Real, const C: usize, const W: usize>(row: &mut [T; C], at: usize, values: &[T; W]) {
+    if let Some(part) = row.get_mut(at..at + W) {
+        part.copy_from_slice(values);
+    }
+}
+
+/// `sum + values * factor`, number by number.
+#[inline(always)]
+fn multiply_add<T: Real, const W: usize>(sum: &mut [T; W], values: &[T; W], factor: T) {
+    for (sum, value) in sum.iter_mut().zip(values) {
+        *sum = value.mul_add(factor, *sum);
+    }
 }
 
 #[inline(always)]

@@ -24,7 +24,8 @@ impl<T: Real> Evidence<T> {
         let total = self.precision + information;
         let twice = score * score;
         // The exponent alone is above the logarithm.
-        if !(twice > T::from_f64(2.0 * LEAST) * total) {
+        let counts = twice > T::from_f64(2.0 * LEAST) * total;
+        if !counts {
             return None;
         }
         let half = T::from_f64(0.5);

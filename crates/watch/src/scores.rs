@@ -54,11 +54,13 @@ impl<T: Real, const N: usize, const D: usize, const E: usize, const O: usize>
         } else {
             (early, early_driven)
         };
-        for (sum, column) in unit.iter_mut().zip(&whitened.unit) {
-            *sum = add_dot(column, innovation, *sum);
-        }
-        for (sum, column) in driven.iter_mut().zip(&whitened.driven) {
-            *sum = add_dot(column, innovation, *sum);
+        for k in 0..Y {
+            for (sum, shown) in unit.iter_mut().zip(&whitened.unit[k]) {
+                *sum = shown.mul_add(innovation[k], *sum);
+            }
+            for (sum, shown) in driven.iter_mut().zip(&whitened.driven[k]) {
+                *sum = shown.mul_add(innovation[k], *sum);
+            }
         }
     }
 

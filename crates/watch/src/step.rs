@@ -22,11 +22,11 @@ pub struct Observed<T, const M: usize, const Y: usize, const N: usize> {
     pub gain: [[T; N]; Y],
 }
 
-/// Deviations of a step's whitened innovation, for each column.
+/// Deviations of the elements of a step's whitened innovation, for each column.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitened<T, const Y: usize, const N: usize, const D: usize> {
     /// For a unit of each state at the beginning of the block.
-    pub unit: [[T; Y]; N],
+    pub unit: [[T; N]; Y],
     /// For each driven column.
-    pub driven: [[T; Y]; D],
+    pub driven: [[T; D]; Y],
 }

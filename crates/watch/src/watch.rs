@@ -283,7 +283,7 @@ impl<
             self.effect = 0;
             self.slot += 1;
         }
-        if weight > T::ZERO
+        if weight.is_positive()
             && let Some(age) = self.age(slot)
             && let Some(direction) = self.signatures.direction(slot, effect, age)
             && let Some(precision) = self.settings.precision.get(effect).copied()
@@ -317,7 +317,7 @@ impl<
                 break;
             };
             self.jump_slot += 1;
-            if slot == newest || !(weight > T::ZERO) {
+            if slot == newest || !weight.is_positive() {
                 continue;
             }
             let scores = &mut self.jump_scores;
