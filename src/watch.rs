@@ -11,8 +11,10 @@ mod linearised;
 mod settings;
 
 pub use courses::Courses;
-pub use effects::{EFFECTS_BY_DEFAULT, WatchedEffect};
+pub use effects::{EFFECTS_BY_DEFAULT, WatchedEffect, columns};
 pub use filter::{PlatformWatch, WatchedFilter, WatchedStep};
-pub use gyrocal_watch::{Budget, Candidate, Course, Driven, Entry, Grid};
+pub use gyrocal_watch::{
+    Budget, Calendar, Candidate, Course, Driven, Entry, Evidence, Grid, Settings,
+};
 pub use linearised::Linearised;
 pub use settings::WatchSettings;

@@ -106,25 +106,30 @@ impl WatchedEffect {
     }
 
     /// Information on its size that a day of samples of a settled filter gives, by the declared noise;
-    /// a starting point for the sizes that are looked for. The factors are medians over attitudes
-    /// (`cargo figures watch` prints them): a factor of two in them costs little.
-    pub(crate) fn information_of_a_day<T: Precision>(&self, settings: &FilterSettings<T>) -> T {
+    /// a scale for the sizes that are looked for. The factors are medians over attitudes, measured by
+    /// the example `tune` of `gyrocal-watch-trials`: a factor of two in them costs little.
+    #[must_use]
+    pub fn information_of_a_day<T: Precision>(&self, settings: &FilterSettings<T>) -> T {
         let day = T::from_f64(86_400.0);
         let mean = settings.drift_noise_density() / day;
         let factor = match (self.channel, self.course) {
-            (Channel::Rate(_), EffectCourse::Constant) => 0.3,
-            (Channel::Rate(_), EffectCourse::Parameter(_)) => 0.1,
-            (Channel::Rate(_), EffectCourse::SinceOnset) => 0.1,
+            (Channel::Rate(_), EffectCourse::Constant) => 0.4,
+            (Channel::Rate(_), EffectCourse::Parameter(_)) => 0.16,
+            (Channel::Rate(_), EffectCourse::SinceOnset) => 0.13,
             (Channel::Output(_), _) => {
                 let noise = settings.accel_noise_g;
-                return T::from_f64(1.0) / (noise * noise);
+                return T::from_f64(450.0) / (noise * noise);
             }
         };
         T::from_f64(factor) / mean
     }
 
     /// Its entry in the table of a watch whose columns are [`columns`] of as many.
-    pub(crate) const fn entry(&self, columns: usize) -> Entry {
+    ///
+    /// # Panics
+    /// If it needs more columns.
+    #[must_use]
+    pub const fn entry(&self, columns: usize) -> Entry {
         let value = match self.channel {
             Channel::Rate(rate) => Value::State(Platform::MOVING + RATES[rate].constant),
             Channel::Output(output) => Value::Driven(3 + output),
@@ -147,7 +152,11 @@ impl WatchedEffect {
 }
 
 /// Columns of a watch: slopes of drifts, offsets of readings, and, with nine, slopes of readings.
-pub(crate) const fn columns<const D: usize>() -> [Driven; D] {
+///
+/// # Panics
+/// Unless there are six or nine.
+#[must_use]
+pub const fn columns<const D: usize>() -> [Driven; D] {
     assert!(D == 6 || D == 9, "a watch has six columns or nine");
     let mut columns = [Driven::Output(0); D];
     let mut i = 0;

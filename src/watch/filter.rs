@@ -148,7 +148,10 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
     /// # Errors
     /// As [`ControllerFilter::update`].
     pub fn update(&mut self, specific_force_g: &[T; 3]) -> Result<Innovation<T, 3>, ControllerError> {
-        self.filter.update(specific_force_g)
+        self.linearised.before_update(self.filter.filter());
+        let innovation = self.filter.update(specific_force_g)?;
+        self.linearised.updated(self.filter.filter(), &innovation);
+        Ok(innovation)
     }
 
     /// Time passes, and at its end a sample is taken, by the filter and by the watch.

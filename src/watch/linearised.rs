@@ -57,11 +57,17 @@ impl<T: Precision> Linearised<T> {
                 }
             }
         }
-        // Before the update, which moves the chart. The model writes structural nonzeros only.
+        self.before_update(filter);
+    }
+
+    /// Jacobian of the outputs, before the update, which moves the chart.
+    #[inline]
+    pub(crate) fn before_update(&mut self, filter: &PlatformFilter<T, Factors>) {
+        // The model writes structural nonzeros only.
         self.observed.output = [[T::ZERO; 3]; 3];
         let _ = Platform.output_jacobian_at_origin(
             &[T::ZERO; Platform::PARAMETERS],
-            kernel.inputs().inputs(),
+            filter.kernel().inputs().inputs(),
             &mut self.observed.output,
             &mut [],
         );

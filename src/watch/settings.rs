@@ -44,7 +44,7 @@ impl<T: Precision> Default for WatchSettings<T> {
             clip: number(3.0),
             set_width: number(6.0),
             sought_sigmas: number(4.0),
-            sought_jump_rad: number(3e-5),
+            sought_jump_rad: number(4e-5),
         }
     }
 }
@@ -70,8 +70,9 @@ impl<T: Precision> WatchSettings<T> {
                 .all(|walk| *walk >= T::ZERO && walk.is_finite())
     }
 
-    /// Those of the test. `information_of_a_day` is that on each size.
-    pub(crate) fn of_test<const E: usize>(
+    /// Settings of the test. `information_of_a_day` is that on each size.
+    #[must_use]
+    pub fn of_test<const E: usize>(
         &self,
         information_of_a_day: [T; E],
     ) -> Settings<T, E, 3> {

@@ -1,0 +1,57 @@
+use gyrocal::ControllerError;
+use serde::{Deserialize, Serialize};
+
+use crate::lane::Lane;
+use crate::noise::Noise;
+use crate::platform::Platform;
+
+/// Days of a year.
+const YEAR_DAYS: f64 = 365.25;
+
+/// Alarms among platforms without an effect.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Sound {
+    /// Platforms, each over the same time.
+    pub platforms: usize,
+    /// Those with an alarm.
+    pub alarms: usize,
+    /// Days until each alarm.
+    pub days: Vec<f64>,
+}
+
+/// Platforms of one number of the population, `lanes` for each noise, over `years`; `declared` is the
+/// walk that filter and watch expect, and each noise comes with the walk that there is, deg/h/√h.
+///
+/// # Errors
+/// If the filter fails.
+pub fn sound(
+    population: u64,
+    number: u64,
+    years: f64,
+    declared: f64,
+    noises: &[(Noise, f64)],
+    lanes: usize,
+) -> Result<Vec<Sound>, ControllerError> {
+    let steps = (years * YEAR_DAYS * 1440.0) as usize;
+    let platform = Platform::new(population, number, steps, declared)?;
+    let mut all: Vec<Lane> = Vec::new();
+    for (noise, walk) in noises {
+        for _ in 0..lanes {
+            let stream = all.len() as u64;
+            let seed = population.wrapping_mul(1_000_003).wrapping_add(number);
+            all.push(Lane::noisy(seed, stream, *noise, *walk));
+        }
+    }
+    platform.run(&mut all, |_, lanes| {
+        lanes.iter().all(|lane| lane.alarm.is_some())
+    })?;
+    let of_noise = |lanes: &[Lane]| Sound {
+        platforms: lanes.len(),
+        alarms: lanes.iter().filter(|lane| lane.alarm.is_some()).count(),
+        days: lanes
+            .iter()
+            .filter_map(|lane| Some(lane.alarm?.0 as f64 / 1440.0))
+            .collect(),
+    };
+    Ok(all.chunks(lanes.max(1)).map(of_noise).collect())
+}
