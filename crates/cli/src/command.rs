@@ -17,6 +17,7 @@ use crate::plan::PlanArguments;
 use crate::simulate::SimulateArguments;
 use crate::terminal::{Color, Shown};
 use crate::tumble::TumbleArguments;
+use crate::watch::WatchArguments;
 
 /// Calibration and diagnosis of gyro drift of inertially stabilised platforms.
 #[derive(Debug, Parser)]
@@ -47,6 +48,7 @@ pub(crate) enum Command {
     Plan(PlanArguments),
     Simulate(SimulateArguments),
     Tumble(TumbleArguments),
+    Watch(WatchArguments),
 }
 
 /// The definition of the command line, with examples and exit codes: that of its parser, its help, its

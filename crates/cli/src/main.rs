@@ -35,6 +35,7 @@ mod tables;
 mod terminal;
 mod text;
 mod tumble;
+mod watch;
 mod width;
 
 use std::io::{ErrorKind, Write as _};
@@ -103,6 +104,7 @@ fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
         Command::Plan(arguments) => plan::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Tumble(arguments) => tumble::run(arguments),
+        Command::Watch(arguments) => watch::run(arguments),
     }
 }
 

@@ -90,6 +90,7 @@ mod series;
 mod stage;
 mod untested;
 mod validation;
+mod watch;
 
 pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
 pub use diagnose::{
@@ -111,6 +112,7 @@ pub use result::{DiagnosisResult, Verdict};
 pub use series::Innovations;
 pub use stage::Stage;
 pub use validation::{AttitudeErrors, LaterPrediction};
+pub use watch::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, watch_record};
 
 /// Number of drift coefficients of the nominal model.
 const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;

@@ -19,7 +19,7 @@ fn main() {
                 let platforms: usize = all.iter().map(|s| s[k].platforms).sum();
                 let mut days: Vec<f64> = all.iter().flat_map(|s| s[k].days.clone()).collect();
                 days.sort_by(f64::total_cmp);
-                println!("declared {walk} {noise:?}: {alarms} of {platforms}; {:?}", &days[..days.len().min(12)]);
+                println!("declared {walk} {noise:?}: {alarms} of {platforms}, jumps {}; {:?}", all.iter().map(|s| s[k].by_jumps).sum::<usize>(), &days[..days.len().min(12)]);
             }
         }
         "delay" => {
@@ -34,7 +34,7 @@ fn main() {
                     t.push(Trial { effect: Injected::Cross(g, o), id: id(format!("gyro_{}.g_{}", l[g], l[o])), sigmas_a_day: z });
                     t.push(Trial { effect: Injected::Bias(g), id: id(format!("accel_{}.bias", l[g])), sigmas_a_day: z });
                 }
-                let d = delays(seed + 1, i, &t, lanes, 30).unwrap();
+                let d = delays(seed + 1, i, &t, lanes, 30, a[4].parse().unwrap()).unwrap();
                 (t, d)
             }).collect();
             for k in 0..12 {

@@ -17,7 +17,7 @@ fn main() {
     for (name, effect, id) in trials {
         let trial = Trial { effect, id, sigmas_a_day: 4.0 };
         let mut all: Vec<f64> = (0..24)
-            .filter_map(|number| delays(TUNED_ON, number, &[trial], 1, 1).ok())
+            .filter_map(|number| delays(TUNED_ON, number, &[trial], 1, 1, 1e-5).ok())
             .filter_map(|runs| Some(runs.first()?.first()?.information_of_a_day))
             .collect();
         all.sort_by(f64::total_cmp);

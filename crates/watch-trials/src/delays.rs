@@ -39,7 +39,8 @@ pub struct Delay {
     pub information_of_a_day: f64,
 }
 
-/// Runs of one platform with each trial, `lanes` of each, for at most `days` from the onset.
+/// Runs of one platform with each trial, `lanes` of each, for at most `days` from the onset. `walk` is
+/// declared and there, deg/h/√h.
 ///
 /// # Errors
 /// If the filter fails.
@@ -49,9 +50,9 @@ pub fn delays(
     trials: &[Trial],
     lanes: usize,
     days: usize,
+    walk: f64,
 ) -> Result<Vec<Vec<Delay>>, ControllerError> {
     let onset = SETTLED + (number as usize * 37) % 120;
-    let walk = 1e-5;
     // What a unit of each effect shows in a day.
     let mut units: Vec<Lane> = trials
         .iter()

@@ -49,9 +49,10 @@ impl Platform {
         let times: Vec<f64> = (0..=steps).map(|row| row as f64 * INTERVAL_S).collect();
         let forces = truth.specific_force_g(&times);
         let settings = FilterSettings::at_site(Site::at_latitude_deg(scenario.latitude_deg));
-        let angles = scenario.declared_angles_deg().map(f64::to_radians);
-        let attitude = InitialAttitude::Angles {
-            angles_rad: angles,
+        // Errors of its prior are those of the simulation: turns about the platform's axes.
+        let platform_c_enu = truth.initial_platform_c_enu.matrix();
+        let attitude = InitialAttitude::Orientation {
+            north_and_up: [1, 2].map(|column| platform_c_enu.map(|row| row[column])),
             sigma_rad: [0.01_f64.to_radians(); 3],
         };
         let watch = WatchSettings {

@@ -1,4 +1,5 @@
 use gyrocal::ControllerError;
+use gyrocal::watch::Grid;
 use serde::{Deserialize, Serialize};
 
 use crate::lane::Lane;
@@ -15,6 +16,8 @@ pub struct Sound {
     pub platforms: usize,
     /// Those with an alarm.
     pub alarms: usize,
+    /// Those whose first alarm was one of jumps.
+    pub by_jumps: usize,
     /// Days until each alarm.
     pub days: Vec<f64>,
 }
@@ -48,6 +51,10 @@ pub fn sound(
     let of_noise = |lanes: &[Lane]| Sound {
         platforms: lanes.len(),
         alarms: lanes.iter().filter(|lane| lane.alarm.is_some()).count(),
+        by_jumps: lanes
+            .iter()
+            .filter(|lane| lane.alarm.is_some_and(|(_, grid)| grid == Grid::Jumps))
+            .count(),
         days: lanes
             .iter()
             .filter_map(|lane| Some(lane.alarm?.0 as f64 / 1440.0))

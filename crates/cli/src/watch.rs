@@ -1,0 +1,117 @@
+//! `gyrocal watch`: a record replayed through the watch of a controller.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_diagnosis::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, watch_record};
+use gyrocal_record::{Bench, Record, write_json};
+use serde_json::json;
+
+use crate::Failure;
+use crate::diagnose::NotDiagnosed;
+use crate::numbers::{not_negative, probability};
+use crate::outputs::{self, manifest};
+use crate::tables::{right, table};
+
+/// Replay a record through the watch that runs on a controller beside the filter.
+///
+/// The watch tests at every sample for changes of the drift, ramps, cross-axis terms, biases of
+/// accelerometers and jumps of the attitude. False alarms are bounded for any stretch of time. At an
+/// alarm it names the effects that cannot be told apart, with size, sigma and onset, and again after
+/// twice the delay; then it goes on with new onsets.
+#[derive(Debug, Args)]
+pub(crate) struct WatchArguments {
+    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g.
+    #[arg(value_name = "RECORD.csv")]
+    record: PathBuf,
+    /// The bench description (TOML), with the attitude of the first row.
+    #[arg(long, value_name = "BENCH.toml")]
+    bench: PathBuf,
+    /// Probability of a false alarm in a year.
+    #[arg(long, value_name = "P", default_value_t = WatchOptions::default().false_alarms_per_year, value_parser = probability)]
+    false_alarm: f64,
+    /// Random walk of the drift of each gyro that is no alarm, deg/h/sqrt(h).
+    #[arg(long, value_name = "SIZE", default_value_t = WatchOptions::default().walk_deg_per_h_per_sqrt_h, value_parser = not_negative)]
+    walk: f64,
+    /// Compute in single precision, as a controller does.
+    #[arg(long)]
+    single: bool,
+    /// Write the result for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+}
+
+/// Runs the command; returns the text for stdout.
+pub(crate) fn run(arguments: &WatchArguments) -> Result<String, Failure> {
+    let inputs = [&*arguments.record, &*arguments.bench];
+    outputs::check(&inputs, arguments.json.as_deref(), None)?;
+    let record = Record::read(&arguments.record)?;
+    let bench = Bench::read(&arguments.bench)?;
+    let options = WatchOptions {
+        false_alarms_per_year: arguments.false_alarm,
+        walk_deg_per_h_per_sqrt_h: arguments.walk,
+        single: arguments.single,
+    };
+    let replay = watch_record(&record, &bench, &options)
+        .map_err(|source| NotDiagnosed::new(&arguments.record, &bench, source))?;
+    if let Some(path) = &arguments.json {
+        let result = json!({
+            "manifest": manifest(MODEL_HASH, 0, &inputs)?,
+            "watch": replay,
+        });
+        write_json(path, &result)?;
+    }
+    Ok(text(&replay))
+}
+
+fn text(replay: &WatchReplay) -> String {
+    let mut text = format!(
+        "{} rows, {} refused. False alarms: {} a year. Declared walk of the gyros: {:.0e} \
+         deg/h/sqrt(h).\n",
+        replay.rows,
+        replay.refused_rows,
+        replay.false_alarms_per_year,
+        replay.walk_deg_per_h_per_sqrt_h,
+    );
+    if replay.alarms.is_empty() {
+        text.push_str("No alarm.\n");
+    }
+    for alarm in &replay.alarms {
+        text.push_str(&told(alarm));
+    }
+    let [effects, jumps] = replay.evidence_at_end;
+    let _ = writeln!(
+        text,
+        "\nEvidence at the end over the threshold: {effects:.2e} for effects, {jumps:.2e} for jumps."
+    );
+    text
+}
+
+fn told(alarm: &WatchAlarm) -> String {
+    let what = if alarm.jump { "a jump" } else { "an effect" };
+    format!(
+        "\nAlarm at row {} ({:.0} s): {what}.\n\n{}\n\nAt row {}:\n\n{}\n",
+        alarm.row,
+        alarm.time_s,
+        causes(&alarm.at_alarm),
+        alarm.refined_row,
+        causes(&alarm.refined),
+    )
+}
+
+fn causes(causes: &[WatchCause]) -> String {
+    let mut table = table(["effect", "size", "sigma", "unit", "since [s]", "deviance"]);
+    for cause in causes {
+        table.add_row([
+            comfy_table::Cell::new(&cause.id),
+            right(format!("{:.3e}", cause.estimate)),
+            right(format!("{:.1e}", cause.sigma)),
+            comfy_table::Cell::new(cause.unit),
+            right(format!("{:.0}", cause.since_s)),
+            right(format!("{:.1}", cause.deviance)),
+        ]);
+    }
+    table.trim_fmt()
+}
