@@ -15,6 +15,7 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let mut figures = match target::Tools::find() {
         Ok(tools) => {
             let mut figures = firmware::figures(&tools, small)?;
+            figures.extend(firmware::watch(&tools)?);
             figures.push(firmware::example(&tools)?);
             figures.extend(c_interface::figures(Some(&tools), &firmware::on_host()?)?);
             figures

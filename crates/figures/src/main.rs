@@ -22,6 +22,7 @@ mod resumable;
 mod topic_page;
 mod truth;
 mod values;
+mod watch;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -106,6 +107,8 @@ enum Topic {
     Logs,
     /// Truth of the diagnosis outside of the population that its constants were tuned on.
     Truth,
+    /// The watch beside the filter: false alarms, delays, jumps, sets in simulated platform-years.
+    Watch,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
 }
@@ -130,6 +133,7 @@ fn main() -> ExitCode {
         Topic::Measured => measured::figures(arguments.write),
         Topic::Logs => logs::figures(extent),
         Topic::Truth => truth::figures(extent, &arguments.parts),
+        Topic::Watch => watch::figures(arguments.small),
         Topic::Paper => paper::figures(arguments.write),
     };
     match figures {

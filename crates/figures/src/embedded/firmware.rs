@@ -10,6 +10,7 @@ use crate::kernel::instructions::output;
 
 const PACKAGE: &str = "tests/firmware";
 const PROGRAM: &str = "gyrocal-firmware-test";
+const WATCH_PROGRAM: &str = "gyrocal-watch-test";
 /// Instructions of a step with Runge-Kutta and with Euler.
 const INSTRUCTIONS: [(&str, f64); 2] = [("rk4", 9000.0), ("euler", 6500.0)];
 
@@ -52,6 +53,42 @@ pub(super) fn figures(tools: &Tools, small: bool) -> Result<Vec<Figure>, Error> 
         }
     }
     Ok(figures)
+}
+
+/// The watch beside the filter: what it takes more than the filter alone.
+pub(super) fn watch(tools: &Tools) -> Result<Vec<Figure>, Error> {
+    let features = ["--features", "watch"];
+    let alone = Lines(tools.run(&tools.build(PACKAGE, &features)?.join(PROGRAM), "rk4")?);
+    let firmware = tools.build(PACKAGE, &features)?.join(WATCH_PROGRAM);
+    let lines = Lines(tools.run(&firmware, "")?);
+    let host = build_on_host(PACKAGE, &features)?.join(WATCH_PROGRAM);
+    let effects = lines.number("effects")?;
+    let more = |watched: &str, filter: &str| -> Result<f64, Error> {
+        Ok(lines.number(watched)? - alone.number(filter)?)
+    };
+    let count = |what: &str, limit: f64, measured: f64| {
+        let name = format!("f32: watch of {effects} effects alone: {what}");
+        Figure {
+            measured: format!("{measured:.0}"),
+            target: format!("<= {limit:.0}"),
+            ..Figure::within(&name, [0.0, limit], measured)
+        }
+    };
+    let on_host = Lines(output(&mut Command::new(host))?);
+    let (here, there) = (on_host.compared(), lines.compared());
+    let figures = [
+        count("instructions, mean", 12_000.0, more("instructions mean", "instructions mean")?),
+        count("instructions, worst step", 20_000.0, more("instructions most", "instructions mean")?),
+        count("RAM, bytes", 16_000.0, more("size watched", "size filter")?),
+        Figure::truth(
+            "f32: watch: all bits on the target are those of the host",
+            here == there && !here.is_empty(),
+        ),
+        soft_double(tools, &firmware)?,
+    ];
+    Ok(figures
+        .map(|figure| figure.over(lines.steps(), "examples/data/three_days.csv"))
+        .into())
 }
 
 /// The lines of numbers that the Rust filter prints on the host in single precision, without bad
