@@ -32,17 +32,40 @@ impl<T: Precision, const E: usize> Courses<T, E> {
         drift: &[T; Platform::PARAMETERS],
         block_s: T,
     ) -> Self {
-        let none = [T::ZERO; 3];
-        let rates = Platform.rates(&none, drift, chart.inputs());
-        let mut values = [[T::ZERO; E]; 2];
-        for (values, point) in values.iter_mut().zip(POINTS) {
-            let time_s = T::from_f64(point) * block_s;
-            let turn = turned_by(&rates.map(|rate| rate * time_s));
-            let [north, up] = &chart.orientation().map(|vector| rotate(&turn, &vector));
-            let mut inputs = <CatalogueInputs<T> as ChartInputs<T>>::unset();
-            inputs.set_from_chart(&chart.vectors_along(north, up));
-            at(effects, &inputs, drift, values);
-        }
+        let value = |point: f64| {
+            Self::values(effects, chart, drift, T::from_f64(point) * block_s)
+        };
+        let [first, second] = POINTS;
+        Self::through(effects, &[value(first), value(second)], block_s)
+    }
+
+    /// Time in a block to the first or the second value of [`Self::through`].
+    #[must_use]
+    pub fn time_s(second: bool, block_s: T) -> T {
+        T::from_f64(POINTS[usize::from(second)]) * block_s
+    }
+
+    /// Values of the effects in their channels, some time ahead.
+    #[must_use]
+    pub fn values(
+        effects: &[WatchedEffect; E],
+        chart: &Chart<T>,
+        drift: &[T; Platform::PARAMETERS],
+        time_s: T,
+    ) -> [T; E] {
+        let rates = Platform.rates(&[T::ZERO; 3], drift, chart.inputs());
+        let turn = turned_by(&rates.map(|rate| rate * time_s));
+        let [north, up] = &chart.orientation().map(|vector| rotate(&turn, &vector));
+        let mut inputs = <CatalogueInputs<T> as ChartInputs<T>>::unset();
+        inputs.set_from_chart(&chart.vectors_along(north, up));
+        let mut values = [T::ZERO; E];
+        at(effects, &inputs, drift, &mut values);
+        values
+    }
+
+    /// The lines through two values.
+    #[must_use]
+    pub fn through(effects: &[WatchedEffect; E], values: &[[T; E]; 2], block_s: T) -> Self {
         let days = block_s * T::from_f64(1.0 / 86_400.0);
         let mut courses = [Course {
             start: T::ZERO,

@@ -59,6 +59,8 @@ pub struct WatchedFilter<T: Precision, const E: usize, const D: usize> {
     effects: &'static [WatchedEffect; E],
     settings: WatchSettings<T>,
     linearised: Linearised<T>,
+    /// The first value of each course over the next block, at the end of a block.
+    early: [T; E],
     /// Time since each walk was last added, s, and the steps until the next.
     walked_s: [T; 3],
     next_walk: u32,
@@ -104,6 +106,7 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
                 sought_jump_rad: T::ZERO,
             },
             linearised: Linearised::unset(),
+            early: [T::ZERO; E],
             walked_s: [T::ZERO; 3],
             next_walk: 0,
         }
@@ -211,10 +214,7 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
                 None => [T::ZERO; 3],
             };
             alarm = self.watch.step(&step, &whitened).or(alarm);
-            if self.watch.block_is_over() {
-                let courses = self.courses();
-                self.watch.end_block(&courses.0);
-            }
+            self.look_ahead();
         }
         Ok((innovation, alarm))
     }
@@ -246,6 +246,28 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
             }
         }
         Ok(())
+    }
+
+    /// Foretells the courses of the next block, one value in the last step but one and one in the
+    /// last, so that no step has both.
+    #[inline(always)]
+    fn look_ahead(&mut self) {
+        let (interval_s, block_s) = (self.settings.interval_s, self.settings.block_s);
+        if self.watch.steps_to_go() == 1 {
+            let time_s = Courses::<T, E>::time_s(false, block_s) + interval_s;
+            self.early = self.values(time_s);
+        } else if self.watch.block_is_over() {
+            let late = self.values(Courses::<T, E>::time_s(true, block_s));
+            let courses = Courses::through(self.effects, &[self.early, late], block_s);
+            self.watch.end_block(&courses.0);
+        }
+    }
+
+    #[inline(never)]
+    fn values(&self, time_s: T) -> [T; E] {
+        let filter = self.filter.filter();
+        let (chart, drift) = (filter.kernel().inputs(), filter.drift().to_array());
+        Courses::values(self.effects, chart, &drift, time_s)
     }
 
     #[inline(never)]

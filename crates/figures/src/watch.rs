@@ -35,7 +35,7 @@ fn false_alarms(small: bool) -> Result<Vec<Figure>, Error> {
                 ("10 % larger", Noise::Larger(1.1), walk, 0.03),
                 ("10 % smaller", Noise::Larger(0.9), walk, 0.03),
                 ("AR(1) 0.1", Noise::Correlated(0.1), walk, 0.03),
-                ("Student t, 4 degrees", Noise::Student4, walk, 0.03),
+                ("Student t, 4 degrees, of accelerometers", Noise::Student4, walk, 0.03),
             ]);
         }
         let list: Vec<(Noise, f64)> = noises.iter().map(|row| (row.1, row.2)).collect();

@@ -10,8 +10,11 @@ pub enum Noise {
     Larger(f64),
     /// Autoregressive of first order with this coefficient, of the declared variance.
     Correlated(f64),
-    /// Student's with four degrees of freedom, of the declared variance.
+    /// That of accelerometers is Student's with four degrees of freedom, of the declared variance.
     Student4,
+    /// That of gyros is. Its outliers are jumps of the attitude: a sample of sixty sigma, of which
+    /// a year has some, turns the platform by as much as jumps that are looked for.
+    Student4Gyros,
 }
 
 /// Six noises a sample, and three steps of walks when they are asked for.
@@ -66,11 +69,12 @@ impl Source {
                     *before = *normal;
                 }
             }
-            Noise::Student4 => {
-                for normal in &mut normals {
+            Noise::Student4 | Noise::Student4Gyros => {
+                let first = if self.noise == Noise::Student4 { 3 } else { 0 };
+                for i in first..first + 3 {
                     // χ² with four degrees of freedom; the variance of the quotient is 2.
                     let chi_square = -2.0 * (self.uniform() * self.uniform()).ln();
-                    *normal *= (2.0 / chi_square).sqrt();
+                    normals[i] *= (2.0 / chi_square).sqrt();
                 }
             }
         }

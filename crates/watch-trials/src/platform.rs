@@ -18,7 +18,7 @@ const CALENDAR: Calendar = Calendar::of_slots(ONSETS);
 const INTERVAL_S: f64 = 60.0;
 const DRIFT_NOISE: f64 = 0.002;
 const ACCEL_NOISE_G: f64 = 1e-5;
-const SET_WIDTH: f64 = 6.0;
+const SET_WIDTH: f64 = 9.0;
 
 /// A platform with its filter, and the signatures of its watch.
 pub struct Platform {

@@ -239,6 +239,13 @@ impl<
         self.step >= self.settings.block_steps
     }
 
+    /// Steps to the end of the block.
+    #[inline]
+    #[must_use]
+    pub fn steps_to_go(&self) -> u32 {
+        self.settings.block_steps.saturating_sub(self.step)
+    }
+
     /// Ends a block, with the courses of the effects over the next one. They must not depend on
     /// samples that are still to come.
     pub fn end_block(&mut self, next: &[Course<T>; E]) {

@@ -19,3 +19,4 @@ mod plan;
 mod simulate;
 mod terminal_safety;
 mod tumble;
+mod watch;
