@@ -28,7 +28,9 @@ fn scenario(days: f64, noise: f64, hidden: Vec<Hidden>) -> Scenario {
 fn started<T: SavedNumber>(scenario: &Scenario) -> PlatformWatch<T> {
     let number = T::from_f64;
     let mut watched = PlatformWatch::default();
-    let angles_rad = scenario.declared_angles_deg().map(|angle| number(angle.to_radians()));
+    let angles_rad = scenario
+        .declared_angles_deg()
+        .map(|angle| number(angle.to_radians()));
     let attitude = InitialAttitude::Angles {
         angles_rad,
         sigma_rad: [number(0.01_f64.to_radians()); 3],
@@ -71,9 +73,21 @@ fn sizes_are_those_of_the_simulator() {
     let step = |size| Hidden::new("gyro_x.step", &[("size", size), ("onset_s", 345_600.0)]);
     let cases = [
         ("gyro_x.step", step(1e-3).unwrap(), 1e-3),
-        ("gyro_y.g_x", Hidden::new("gyro_y.g_x", &[("size", 3e-3)]).unwrap(), 3e-3),
-        ("gyro_z.ramp", Hidden::new("gyro_z.ramp", &[("size", 1e-3)]).unwrap(), 1e-3),
-        ("accel_y.bias", Hidden::new("accel_y.bias", &[("size", 2e-5)]).unwrap(), 2e-5),
+        (
+            "gyro_y.g_x",
+            Hidden::new("gyro_y.g_x", &[("size", 3e-3)]).unwrap(),
+            3e-3,
+        ),
+        (
+            "gyro_z.ramp",
+            Hidden::new("gyro_z.ramp", &[("size", 1e-3)]).unwrap(),
+            1e-3,
+        ),
+        (
+            "accel_y.bias",
+            Hidden::new("accel_y.bias", &[("size", 2e-5)]).unwrap(),
+            2e-5,
+        ),
     ];
     for (id, hidden, size) in cases {
         let plain = scenario(6.0, 0.0, vec![]);

@@ -32,9 +32,7 @@ impl<T: Precision, const E: usize> Courses<T, E> {
         drift: &[T; Platform::PARAMETERS],
         block_s: T,
     ) -> Self {
-        let value = |point: f64| {
-            Self::values(effects, chart, drift, T::from_f64(point) * block_s)
-        };
+        let value = |point: f64| Self::values(effects, chart, drift, T::from_f64(point) * block_s);
         let [first, second] = POINTS;
         Self::through(effects, &[value(first), value(second)], block_s)
     }

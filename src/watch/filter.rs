@@ -150,7 +150,10 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
     ///
     /// # Errors
     /// As [`ControllerFilter::update`].
-    pub fn update(&mut self, specific_force_g: &[T; 3]) -> Result<Innovation<T, 3>, ControllerError> {
+    pub fn update(
+        &mut self,
+        specific_force_g: &[T; 3],
+    ) -> Result<Innovation<T, 3>, ControllerError> {
         self.linearised.before_update(self.filter.filter());
         let innovation = self.filter.update(specific_force_g)?;
         self.linearised.updated(self.filter.filter(), &innovation);
@@ -232,9 +235,11 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
         }
         let gyro = turn as usize / 8;
         let walks = &self.settings.walk_deg_per_h_per_sqrt_h;
-        if let (Some(walk), Some(time), Some(channel)) =
-            (walks.get(gyro), self.walked_s.get_mut(gyro), RATES.get(gyro))
-        {
+        if let (Some(walk), Some(time), Some(channel)) = (
+            walks.get(gyro),
+            self.walked_s.get_mut(gyro),
+            RATES.get(gyro),
+        ) {
             let variance = *walk * *walk * *time * T::from_f64(1.0 / 3600.0);
             *time = T::ZERO;
             if variance.is_positive() {

@@ -72,10 +72,7 @@ impl<T: Precision> WatchSettings<T> {
 
     /// Settings of the test. `information_of_a_day` is that on each size.
     #[must_use]
-    pub fn of_test<const E: usize>(
-        &self,
-        information_of_a_day: [T; E],
-    ) -> Settings<T, E, 3> {
+    pub fn of_test<const E: usize>(&self, information_of_a_day: [T; E]) -> Settings<T, E, 3> {
         let block_steps = (self.block_s / self.interval_s + T::from_f64(0.5)).to_u32();
         let steps_per_year = T::from_f64(3600.0 * YEAR_H) / self.interval_s;
         let budget = |steps: u32| Budget {

@@ -1,9 +1,11 @@
 //! A record replayed through the watch of a controller.
 
-use gyrocal::watch::{Candidate, EFFECTS_BY_DEFAULT, Grid, PlatformWatch, WatchSettings, WatchedEffect};
+use gyrocal::watch::{
+    Candidate, EFFECTS_BY_DEFAULT, Grid, PlatformWatch, WatchSettings, WatchedEffect,
+};
 use gyrocal::{
-    ControllerError, Discretisation, Drift, FilterSettings, InitialAttitude, Limits, Real, SavedNumber,
-    Site,
+    ControllerError, Discretisation, Drift, FilterSettings, InitialAttitude, Limits, Real,
+    SavedNumber, Site,
 };
 use gyrocal_calibration::{CalibrationError, declared_attitude, filter_settings};
 use gyrocal_record::{Bench, Record};
@@ -136,7 +138,12 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
         };
         let mut watched = Box::new(PlatformWatch::<T>::default());
         watched
-            .start(&in_numbers(&settings), &attitude_in_numbers(&attitude), limits, &watch)
+            .start(
+                &in_numbers(&settings),
+                &attitude_in_numbers(&attitude),
+                limits,
+                &watch,
+            )
             .map_err(|error| stopped(record, 0, error))?;
         Ok(Self {
             record,
@@ -233,7 +240,11 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
             None => {
                 let axis = candidate.effect - EFFECTS_BY_DEFAULT.len();
                 let letter = ["x", "y", "z"].get(axis).copied().unwrap_or_default();
-                (format!("platform.knock about {letter}"), "deg", 1.0_f64.to_degrees())
+                (
+                    format!("platform.knock about {letter}"),
+                    "deg",
+                    1.0_f64.to_degrees(),
+                )
             }
         };
         WatchCause {

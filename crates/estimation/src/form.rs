@@ -166,6 +166,6 @@ pub struct Observation<'a, T, const M: usize, const Y: usize> {
     /// True for each output that was observed.
     pub observed: [bool; Y],
     /// Largest standardised innovation that the correction takes: beyond it it takes this one, with
-    /// its sign. `None`: all as they are.
+    /// its sign, if the state is at least as certain as the sample. `None`: all as they are.
     pub clip: Option<T>,
 }

@@ -21,7 +21,8 @@ pub struct Innovation<T, const Y: usize> {
 }
 
 impl<T: Real, const Y: usize> Innovation<T, Y> {
-    /// From L, α and 1 / α of S = L diag(α) Lᵀ; [`Self::check`] says whether it is finite.
+    /// From L, α and 1 / α of S = L diag(α) Lᵀ; [`Self::check`] says whether it is finite. `clip` is the
+    /// largest standardised innovation, with the noise of each output.
     #[inline(always)]
     pub(crate) fn from_factors(
         residual: [T; Y],
@@ -29,7 +30,7 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         lower: [[T; Y]; Y],
         variance: [T; Y],
         reciprocal: &[T; Y],
-        clip: Option<T>,
+        clip: Option<(T, [T; Y])>,
     ) -> Self {
         let zero = T::from_f64(0.0);
         let mut own = residual;
@@ -44,8 +45,13 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
             weights[k] = own[k] * reciprocal[k];
             nis = weights[k].mul_add(own[k], nis);
         }
-        if let Some(clip) = clip {
+        if let Some((clip, noise)) = clip {
             for k in 0..Y {
+                // Where the state is less certain than the sample, what the clip cuts off would stay
+                // in the state as an error that nothing accounts for.
+                if variance[k] > noise[k] + noise[k] {
+                    continue;
+                }
                 let most = clip * variance[k].sqrt();
                 weights[k] = own[k].max(-most).min(most) * reciprocal[k];
             }

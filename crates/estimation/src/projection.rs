@@ -164,7 +164,7 @@ impl<'a, T: Real, const M: usize, const Y: usize> Projection<'a, T, M, Y> {
             self.lower,
             self.variance,
             &self.reciprocal,
-            observation.clip,
+            observation.clip.map(|clip| (clip, observation.variance)),
         )
     }
 

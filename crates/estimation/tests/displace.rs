@@ -56,6 +56,9 @@ impl Recentre<f64, 1, 1> for Drift {
     }
 }
 
+/// Larger than what the state is uncertain by, so that a clip applies.
+const NOISE: f64 = 5.0;
+
 type Small<F> = Filter<f64, Drift, (), ArrayStorage<f64, 1, 1, 3>, 1, 1, F>;
 
 fn started<F: Form<f64>>() -> Small<F> {
@@ -82,7 +85,10 @@ fn variance_is_added_along_a_direction<F: Form<f64> + Clone>() {
             for j in 0..3 {
                 let expected = before.covariance(i, j) + 0.4 * direction[i] * direction[j];
                 // Some ten roundings.
-                assert!((filter.covariance(i, j) - expected).abs() < 1e-14, "{i} {j}");
+                assert!(
+                    (filter.covariance(i, j) - expected).abs() < 1e-14,
+                    "{i} {j}"
+                );
             }
         }
     }
@@ -100,14 +106,14 @@ fn both_forms_take_a_displacement() {
 fn outliers_are_clipped<F: Form<f64>>() {
     let sigma = {
         let mut filter = started::<F>();
-        let innovation = filter.update_clipped(&[0.0], &[0.5], 3.0).unwrap();
+        let innovation = filter.update_clipped(&[0.0], &[NOISE], 3.0).unwrap();
         innovation.residual[0] / innovation.standardised()[0]
     };
     let after = |measured: f64, clip: Option<f64>| {
         let mut filter = started::<F>();
         let innovation = match clip {
-            Some(clip) => filter.update_clipped(&[measured], &[0.5], clip).unwrap(),
-            None => filter.update_at_origin(&[measured], &[0.5]).unwrap(),
+            Some(clip) => filter.update_clipped(&[measured], &[NOISE], clip).unwrap(),
+            None => filter.update_at_origin(&[measured], &[NOISE]).unwrap(),
         };
         (filter.state().to_vec(), innovation)
     };

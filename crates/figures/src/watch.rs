@@ -1,9 +1,7 @@
 //! The watch: false alarms in platform-years, delays beside the e-process of one effect, jumps, sets.
 
 use gyrocal_statistics::Proportion;
-use gyrocal_watch_trials::{
-    Delay, Injected, Knocked, Noise, Sound, Trial, delays, knocks, sound,
-};
+use gyrocal_watch_trials::{Delay, Injected, Knocked, Noise, Sound, Trial, delays, knocks, sound};
 
 use crate::error::Error;
 use crate::figure::Figure;
@@ -35,7 +33,12 @@ fn false_alarms(small: bool) -> Result<Vec<Figure>, Error> {
                 ("10 % larger", Noise::Larger(1.1), walk, 0.03),
                 ("10 % smaller", Noise::Larger(0.9), walk, 0.03),
                 ("AR(1) 0.1", Noise::Correlated(0.1), walk, 0.03),
-                ("Student t, 4 degrees, of accelerometers", Noise::Student4, walk, 0.03),
+                (
+                    "Student t, 4 degrees, of accelerometers",
+                    Noise::Student4,
+                    walk,
+                    0.03,
+                ),
             ]);
         }
         let list: Vec<(Noise, f64)> = noises.iter().map(|row| (row.1, row.2)).collect();
@@ -107,7 +110,10 @@ fn of_delays(small: bool) -> Result<Vec<Figure>, Error> {
                 .cloned()
                 .collect();
             let kind = EFFECTS[place / sizes.len()].0;
-            let name = format!("{kind} of {} sigma a day, walk {walk:.0e}", trial.sigmas_a_day);
+            let name = format!(
+                "{kind} of {} sigma a day, walk {walk:.0e}",
+                trial.sigmas_a_day
+            );
             figures.push(
                 delay_figure(&name, &runs, small).over(runs.len(), format!("{DELAYS}, {seeds:?}")),
             );
@@ -128,14 +134,19 @@ fn of_delays(small: bool) -> Result<Vec<Figure>, Error> {
     figures.push(figure.over(at_alarm.len(), seeds.as_str()));
     let effects: usize = at_alarm.iter().map(|run| run.set).sum();
     let mean = effects as f64 / at_alarm.len().max(1) as f64;
-    figures.push(Figure::within("effects in the set, mean", [1.0, 3.0], mean).over(at_alarm.len(), seeds));
+    figures.push(
+        Figure::within("effects in the set, mean", [1.0, 3.0], mean).over(at_alarm.len(), seeds),
+    );
     Ok(figures)
 }
 
 /// Median delay over that of the e-process with this effect alone; runs without an alarm come last.
 fn delay_figure(name: &str, runs: &[Delay], small: bool) -> Figure {
     let median = |of: fn(&Delay) -> Option<f64>| {
-        let mut days: Vec<f64> = runs.iter().map(|run| of(run).unwrap_or(f64::INFINITY)).collect();
+        let mut days: Vec<f64> = runs
+            .iter()
+            .map(|run| of(run).unwrap_or(f64::INFINITY))
+            .collect();
         days.sort_by(f64::total_cmp);
         days.get(days.len() / 2).copied().unwrap_or(f64::INFINITY)
     };
@@ -149,7 +160,12 @@ fn delay_figure(name: &str, runs: &[Delay], small: bool) -> Figure {
         return Figure::note(&name, format!("{}, alone {}", told(days), told(alone)));
     }
     Figure {
-        measured: format!("{:.2} ({}, alone {})", days / alone, told(days), told(alone)),
+        measured: format!(
+            "{:.2} ({}, alone {})",
+            days / alone,
+            told(days),
+            told(alone)
+        ),
         ..Figure::within(&name, [0.0, 1.4], days / alone)
     }
 }
@@ -166,18 +182,26 @@ fn of_jumps(small: bool) -> Result<Vec<Figure>, Error> {
             .flat_map(|(_, runs): (_, &Vec<Knocked>)| runs.clone())
             .collect();
         let seeds = format!("{KNOCKS}, {seeds:?}");
-        let found = Proportion::of(runs.iter().map(|run| run.steps.is_some_and(|n| n <= within)));
+        let found = Proportion::of(
+            runs.iter()
+                .map(|run| run.steps.is_some_and(|n| n <= within)),
+        );
         let name = format!("attitude jumps of z = {z}: found within {within} steps");
-        let mut figure = Figure::within(&name, [share, f64::INFINITY], found.share()).of_share(found);
+        let mut figure =
+            Figure::within(&name, [share, f64::INFINITY], found.share()).of_share(found);
         if small {
             figure = figure.judged(found.at_least(share));
         }
         figures.push(figure.over(runs.len(), seeds.as_str()));
         if let Some(limit) = median {
-            let mut steps: Vec<usize> =
-                runs.iter().map(|run| run.steps.unwrap_or(usize::MAX)).collect();
+            let mut steps: Vec<usize> = runs
+                .iter()
+                .map(|run| run.steps.unwrap_or(usize::MAX))
+                .collect();
             steps.sort_unstable();
-            let middle = steps.get(steps.len() / 2).map_or(f64::NAN, |steps| *steps as f64);
+            let middle = steps
+                .get(steps.len() / 2)
+                .map_or(f64::NAN, |steps| *steps as f64);
             let name = format!("attitude jumps of z = {z}: median steps to the alarm");
             figures.push(Figure::within(&name, [0.0, limit], middle).over(runs.len(), seeds));
         }

@@ -15,13 +15,22 @@ fn main() {
         ("bias", Injected::Bias(2), "accel_z.bias"),
     ];
     for (name, effect, id) in trials {
-        let trial = Trial { effect, id, sigmas_a_day: 4.0 };
+        let trial = Trial {
+            effect,
+            id,
+            sigmas_a_day: 4.0,
+        };
         let mut all: Vec<f64> = (0..24)
             .filter_map(|number| delays(TUNED_ON, number, &[trial], 1, 1, 1e-5).ok())
             .filter_map(|runs| Some(runs.first()?.first()?.information_of_a_day))
             .collect();
         all.sort_by(f64::total_cmp);
-        println!("{name}: {:e} {:e} {:e}", all[3], all[all.len() / 2], all[20]);
+        println!(
+            "{name}: {:e} {:e} {:e}",
+            all[3],
+            all[all.len() / 2],
+            all[20]
+        );
     }
     let mut sizes: Vec<f64> = (0..12)
         .filter_map(|number| knocks(TUNED_ON, number, 10.0, 1).ok())

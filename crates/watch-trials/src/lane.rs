@@ -146,7 +146,16 @@ impl Lane {
                 self.information[1] += square;
             }
         }
-        self.take(at, innovation.map(|value| value.clamp(-self.clip, self.clip)))
+        let clipped = core::array::from_fn(|k| {
+            // As in the filter: only where the state is as certain as the sample.
+            let variance = at.observed.whitening[k][k].powi(-2);
+            if variance > 2.0 * sigmas.accel * sigmas.accel {
+                innovation[k]
+            } else {
+                innovation[k].clamp(-self.clip, self.clip)
+            }
+        });
+        self.take(at, clipped)
     }
 
     /// The first sample, which is taken as it is.

@@ -116,7 +116,9 @@ impl<T: Real, const N: usize, const D: usize, const L: usize> Block<T, N, D, L> 
         for d in 0..D {
             let own = column(&whitened.driven, d);
             add_products(&mut self.mixed[d], &own, &whitened.unit);
-            let (row, _) = self.among[d].split_at_mut_checked(d + 1).unwrap_or_default();
+            let (row, _) = self.among[d]
+                .split_at_mut_checked(d + 1)
+                .unwrap_or_default();
             add_products(row, &own, &whitened.driven);
         }
     }
@@ -228,14 +230,7 @@ fn columns<T: Real, const M: usize, const Y: usize, const N: usize, const C: usi
 }
 
 #[inline(always)]
-fn tile<
-    T: Real,
-    const M: usize,
-    const Y: usize,
-    const N: usize,
-    const C: usize,
-    const W: usize,
->(
+fn tile<T: Real, const M: usize, const Y: usize, const N: usize, const C: usize, const W: usize>(
     rows: &mut [[T; C]; N],
     step: &Step<'_, T, M, Y, N>,
     shown: &mut [[T; C]; Y],

@@ -241,10 +241,7 @@ impl<T: Real, const M: usize, const K: usize> JumpScores<T, M, K> {
         for j in 0..M {
             sum = sums[j].mul_add(deviation[j], sum);
         }
-        let cell = self
-            .cells
-            .get_mut(slot)
-            .and_then(|cell| cell.get_mut(jump));
+        let cell = self.cells.get_mut(slot).and_then(|cell| cell.get_mut(jump));
         if let Some(cell) = cell {
             *cell = *cell + sum;
         }

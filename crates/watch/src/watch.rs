@@ -149,9 +149,9 @@ impl<
         let right = numbers.all(|precision| precision.is_positive())
             && settings.block_steps > 1
             && settings.span_steps > 0
-            && budgets.iter().all(|budget| {
-                budget.alpha.is_positive() && budget.onsets_per_year.is_positive()
-            });
+            && budgets
+                .iter()
+                .all(|budget| budget.alpha.is_positive() && budget.onsets_per_year.is_positive());
         if !right {
             return false;
         }
@@ -377,7 +377,10 @@ impl<
         };
         if effect < E {
             for slot in 0..O {
-                let live = self.weights.get(slot).is_some_and(|weight| *weight > T::ZERO);
+                let live = self
+                    .weights
+                    .get(slot)
+                    .is_some_and(|weight| *weight > T::ZERO);
                 let (true, Some(age)) = (live, self.age(slot)) else {
                     continue;
                 };

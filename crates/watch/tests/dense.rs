@@ -4,7 +4,9 @@
 
 use chacha20::ChaCha12Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
-use gyrocal_watch::{Budget, Calendar, Course, Driven, Entry, Observed, Settings, Step, Value, Watch};
+use gyrocal_watch::{
+    Budget, Calendar, Course, Driven, Entry, Observed, Settings, Step, Value, Watch,
+};
 
 const BLOCK: usize = 20;
 const SPAN: usize = 2;
@@ -35,7 +37,13 @@ struct Direct {
 }
 
 impl Direct {
-    fn step(&mut self, row: usize, transition: &[f64; 3], at: &Observed<f64, 1, 2, 3>, nu: [f64; 2]) {
+    fn step(
+        &mut self,
+        row: usize,
+        transition: &[f64; 3],
+        at: &Observed<f64, 1, 2, 3>,
+        nu: [f64; 2],
+    ) {
         let since = (row - self.onset) as f64 / BLOCK as f64;
         let before = since - 1.0 / BLOCK as f64;
         // The effect as it enters: mean over the step, and at its end.
@@ -64,7 +72,11 @@ impl Direct {
 #[test]
 fn statistics_are_those_of_a_direct_computation() {
     let mut random = Random(ChaCha12Rng::seed_from_u64(20_261_122));
-    let entry = |value, slope, from_onset| Entry { value, slope, from_onset };
+    let entry = |value, slope, from_onset| Entry {
+        value,
+        slope,
+        from_onset,
+    };
     let entries = [
         entry(Value::State(1), 2, false),
         entry(Value::State(2), 0, true),
@@ -72,7 +84,11 @@ fn statistics_are_those_of_a_direct_computation() {
     ];
     let course = |start, change| Course { start, change };
     let courses = [course(1.0, 0.0), course(0.0, 0.3), course(1.0, 0.0)];
-    let budget = Budget { alpha: 0.01, onsets_per_year: 100.0, for_ever: false };
+    let budget = Budget {
+        alpha: 0.01,
+        onsets_per_year: 100.0,
+        for_ever: false,
+    };
     let settings = Settings {
         block_steps: BLOCK as u32,
         span_steps: SPAN as u32,
@@ -105,7 +121,10 @@ fn statistics_are_those_of_a_direct_computation() {
         let at = Observed {
             output: [[0.3 + 0.1 * random.number()], [0.2 * random.number()]],
             whitening: [[1.0, 0.0], random.array()],
-            gain: [random.array::<3>().map(|gain| 0.1 * gain), random.array::<3>().map(|gain| 0.1 * gain)],
+            gain: [
+                random.array::<3>().map(|gain| 0.1 * gain),
+                random.array::<3>().map(|gain| 0.1 * gain),
+            ],
         };
         // Innovations that an effect shifts, so that the evidence is large.
         let nu = random.array::<2>().map(|number| number + 0.5);
@@ -125,7 +144,10 @@ fn statistics_are_those_of_a_direct_computation() {
             let statistic = direct_statistic(&kept, calendar, block, &settings);
             let found = watch.statistics()[0] * threshold;
             // Sums in another order: some thousand roundings.
-            assert!((found - statistic).abs() <= 1e-9 * statistic.max(1.0), "{found} {statistic}");
+            assert!(
+                (found - statistic).abs() <= 1e-9 * statistic.max(1.0),
+                "{found} {statistic}"
+            );
         }
         if watch.block_is_over() {
             watch.end_block(&courses);
@@ -139,7 +161,12 @@ fn statistics_are_those_of_a_direct_computation() {
 /// Effect, onset, score and information at the end of a block.
 type Kept = Vec<(usize, usize, f64, f64)>;
 
-fn direct_statistic(kept: &Kept, calendar: Calendar, block: u32, settings: &Settings<f64, 3, 1>) -> f64 {
+fn direct_statistic(
+    kept: &Kept,
+    calendar: Calendar,
+    block: u32,
+    settings: &Settings<f64, 3, 1>,
+) -> f64 {
     let mut sum = 0.0;
     for slot in 0..ONSETS {
         let Some(onset) = calendar.latest(slot, block).filter(|onset| *onset < block) else {

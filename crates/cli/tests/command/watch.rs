@@ -7,7 +7,12 @@ use crate::folder::{Folder, repository};
 fn watch(folder: &Folder, record: &str, more: &[&str]) -> (String, Value) {
     let csv = repository(&format!("examples/data/{record}.csv"));
     let bench = repository(&format!("examples/data/{record}.bench.toml"));
-    let mut words = vec!["watch", csv.to_str().unwrap(), "--bench", bench.to_str().unwrap()];
+    let mut words = vec![
+        "watch",
+        csv.to_str().unwrap(),
+        "--bench",
+        bench.to_str().unwrap(),
+    ];
     words.extend(["--json", "o.json"]);
     words.extend(more);
     let text = folder.succeed(&words);
@@ -25,7 +30,10 @@ fn the_fault_is_named_and_a_sound_record_is_quiet() {
         let (text, answer) = watch(&folder, "hidden_fault", more);
         let alarm = &answer["alarms"][0];
         let causes = alarm["refined"].as_array().unwrap();
-        let truth = causes.iter().find(|cause| cause["id"] == "gyro_y.g_z").unwrap();
+        let truth = causes
+            .iter()
+            .find(|cause| cause["id"] == "gyro_y.g_z")
+            .unwrap();
         // The scenario's size, within four sigma of an estimate that was chosen for being large.
         let [estimate, sigma] = ["estimate", "sigma"].map(|key| truth[key].as_f64().unwrap());
         assert!((estimate - 1.2e-3).abs() < 4.0 * sigma, "{text}");
@@ -36,7 +44,10 @@ fn the_fault_is_named_and_a_sound_record_is_quiet() {
 #[test]
 fn a_missing_bench_is_told() {
     let folder = Folder::new();
-    folder.put("r.csv", "time_s,accel_x_g,accel_y_g,accel_z_g\n0,0,0,1\n60,0,0,1\n");
+    folder.put(
+        "r.csv",
+        "time_s,accel_x_g,accel_y_g,accel_z_g\n0,0,0,1\n60,0,0,1\n",
+    );
     let errors = folder.fail(&["watch", "r.csv", "--bench", "b.toml"]);
     assert!(errors.contains("b.toml"), "{errors}");
 }

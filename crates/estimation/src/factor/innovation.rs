@@ -57,8 +57,10 @@ pub(super) fn innovation<T: Real, const M: usize, const Y: usize>(
         residual,
         observed,
         clip,
+        variance: noise,
         ..
     } = *observation;
+    let clip = clip.map(|clip| (clip, noise));
     let innovation =
         Innovation::from_factors(residual, observed, lower, variance, &reciprocal, clip);
     innovation.check()?;

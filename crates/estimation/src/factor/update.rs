@@ -208,7 +208,7 @@ impl<T: Real, const M: usize, const Y: usize> Head<T, M, Y> {
             lower,
             self.variance,
             &self.reciprocal,
-            observation.clip,
+            observation.clip.map(|clip| (clip, observation.variance)),
         );
         innovation.check()?;
         Ok(innovation)

@@ -56,7 +56,8 @@ where
     }
 
     /// As [`Self::update_at_origin`], but the correction takes standardised innovations up to `clip`
-    /// only, and larger ones as this one with their sign: what an outlier does is bounded. NIS and
+    /// only, and larger ones as this one with their sign: what an outlier does is bounded. An output
+    /// that the state predicts worse than its own noise is not clipped, as after a start. NIS and
     /// covariance are as ever.
     ///
     /// # Errors

@@ -77,8 +77,16 @@ pub(super) fn watch(tools: &Tools) -> Result<Vec<Figure>, Error> {
     let on_host = Lines(output(&mut Command::new(host))?);
     let (here, there) = (on_host.compared(), lines.compared());
     let figures = [
-        count("instructions, mean", 12_000.0, more("instructions mean", "instructions mean")?),
-        count("instructions, worst step", 20_000.0, more("instructions most", "instructions mean")?),
+        count(
+            "instructions, mean",
+            12_000.0,
+            more("instructions mean", "instructions mean")?,
+        ),
+        count(
+            "instructions, worst step",
+            20_000.0,
+            more("instructions most", "instructions mean")?,
+        ),
         count("RAM, bytes", 16_000.0, more("size watched", "size filter")?),
         Figure::truth(
             "f32: watch: all bits on the target are those of the host",
