@@ -1,3 +1,8 @@
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over several matrices by one index read like the equations"
+)]
+
 use gyrocal_estimation::{Factors, Innovation, Precision};
 use gyrocal_scalar::Model;
 use gyrocal_watch::Observed;

@@ -104,10 +104,12 @@ fn both_forms_take_a_displacement() {
 }
 
 fn outliers_are_clipped<F: Form<f64>>() {
-    let sigma = {
+    // A filter whose chart moves takes the outputs at the origin.
+    let (sigma, predicted) = {
         let mut filter = started::<F>();
-        let innovation = filter.update_clipped(&[0.0], &[NOISE], 3.0).unwrap();
-        innovation.residual[0] / innovation.standardised()[0]
+        let innovation = filter.update_clipped(&[0.5], &[NOISE], 3.0).unwrap();
+        let residual = innovation.residual[0];
+        (residual / innovation.standardised()[0], 0.5 - residual)
     };
     let after = |measured: f64, clip: Option<f64>| {
         let mut filter = started::<F>();
@@ -117,7 +119,6 @@ fn outliers_are_clipped<F: Form<f64>>() {
         };
         (filter.state().to_vec(), innovation)
     };
-    let predicted = started::<F>().state()[0];
     // Inside of the clip nothing changes, not a bit.
     let inside = predicted + 2.9 * sigma;
     assert_eq!(after(inside, Some(3.0)).0, after(inside, None).0);
