@@ -9,11 +9,11 @@ use gyrocal_diagnosis::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, watch
 use gyrocal_record::{Bench, Record, write_json};
 use serde_json::json;
 
-use crate::Failure;
 use crate::diagnose::NotDiagnosed;
 use crate::numbers::{not_negative, probability};
 use crate::outputs::{self, manifest};
 use crate::tables::{right, table};
+use crate::{Answer, Failure};
 
 /// Replay a record through the watch that runs on a controller beside the filter.
 ///
@@ -44,7 +44,7 @@ pub(crate) struct WatchArguments {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &WatchArguments) -> Result<String, Failure> {
+pub(crate) fn run(arguments: &WatchArguments) -> Result<Answer, Failure> {
     let inputs = [&*arguments.record, &*arguments.bench];
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let record = Record::read(&arguments.record)?;
@@ -63,7 +63,11 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<String, Failure> {
         });
         write_json(path, &result)?;
     }
-    Ok(text(&replay))
+    let mut answer = Answer::from(text(&replay));
+    if let Some(path) = &arguments.json {
+        answer.wrote(path, "the result for programs");
+    }
+    Ok(answer)
 }
 
 fn text(replay: &WatchReplay) -> String {
