@@ -26,7 +26,8 @@ use crate::numbers::positive;
 use crate::outputs;
 use crate::progress::Progress;
 use crate::{Answer, Failure, exit};
-use failed::{NotCalibrated, WrongSetup};
+pub use failed::NotCalibrated;
+use failed::WrongSetup;
 use inputs::Measurement;
 
 /// Estimate the nine drift coefficients from one record or several.
@@ -201,8 +202,13 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         CalibrationMethod::Batch => Progress::waiting("calibrating", rows),
         _ => Progress::new("calibrating", rows),
     };
-    let calibration = calibrate(&runs, &gyro_axes, &options, &mut progress)
-        .map_err(|source| NotCalibrated::new(arguments, &runs, source))?;
+    let calibration =
+        calibrate(&runs, &gyro_axes, &options, &mut progress).map_err(|source| {
+            let names = arguments.records.iter().map(|path| printable_path(path));
+            let names: Vec<String> = names.collect();
+            let method = arguments.method();
+            NotCalibrated::new(&names, &runs, method, arguments.factorised, source)
+        })?;
     progress.stage("test for effects", FITTED);
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
     let effects = effects(arguments, &measurements);

@@ -1,5 +1,7 @@
 //! The command line.
 
+use std::ffi::OsString;
+
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use gyrocal_record::printable_line;
 
@@ -58,15 +60,15 @@ pub(crate) fn definition() -> clap::Command {
 }
 
 impl Cli {
-    /// Parses the arguments of the program. An error shows them with control characters escaped.
-    pub(crate) fn of_arguments() -> Result<Self, clap::Error> {
-        let definition = definition().color(Color::of_arguments().of_clap());
-        let parsed = |arguments: &mut dyn Iterator<Item = std::ffi::OsString>| {
+    /// Parses the arguments of the program, the first of which is its name. An error shows them with control characters escaped.
+    pub(crate) fn of_arguments(arguments: &[OsString]) -> Result<Self, clap::Error> {
+        let definition = definition().color(Color::of_arguments(arguments).of_clap());
+        let parsed = |arguments: &mut dyn Iterator<Item = OsString>| {
             let matches = definition.clone().try_get_matches_from(arguments)?;
             Self::from_arg_matches(&matches)
         };
-        parsed(&mut std::env::args_os()).map_err(|error| {
-            let escaped = std::env::args_os().map(|argument| {
+        parsed(&mut arguments.iter().cloned()).map_err(|error| {
+            let escaped = arguments.iter().map(|argument| {
                 printable_line(&argument.to_string_lossy())
                     .into_owned()
                     .into()

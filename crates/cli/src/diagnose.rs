@@ -21,7 +21,7 @@ use crate::outputs::{self, manifest, same_file};
 use crate::pictures;
 use crate::progress::Progress;
 use crate::{Answer, Failure, exit, records};
-pub(crate) use failed::NotDiagnosed;
+pub use failed::NotDiagnosed;
 
 /// Show what the model gets wrong about a record, and name the cause.
 ///

@@ -1,6 +1,8 @@
 //! Checks of the input and output files of a command, and the manifest.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::sync::{PoisonError, RwLock};
 
 use gyrocal_record::{Error, Input, Manifest, Outputs, printable_path, shell_quoted};
 
@@ -112,9 +114,20 @@ fn identity(path: &Path) -> PathBuf {
     }
 }
 
+/// Arguments of the command that runs, without the path of the program: the process may be another
+/// program's, whose own arguments differ.
+static ARGUMENTS: RwLock<Vec<OsString>> = RwLock::new(Vec::new());
+
+/// Keeps the arguments of a command, the first of which is the path of the program, for its manifest.
+pub(crate) fn remember(arguments: &[OsString]) {
+    let mut kept = ARGUMENTS.write().unwrap_or_else(PoisonError::into_inner);
+    *kept = arguments.get(1..).unwrap_or_default().to_vec();
+}
+
 /// The command line as typed, with `gyrocal` for the path of the program.
 pub(crate) fn command_line() -> String {
-    let arguments = std::env::args_os().skip(1);
+    let arguments = ARGUMENTS.read().unwrap_or_else(PoisonError::into_inner);
+    let arguments = arguments.iter();
     let arguments = arguments.map(|argument| shell_quoted(&argument.to_string_lossy()));
     std::iter::once("gyrocal".to_owned())
         .chain(arguments)

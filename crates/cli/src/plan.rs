@@ -17,7 +17,7 @@ use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::progress::Progress;
 use crate::{Answer, Failure, records};
-use failed::NotPlanned;
+pub use failed::NotPlanned;
 use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 
 /// Find the attitude and duration of the most informative next run.

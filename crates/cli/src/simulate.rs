@@ -1,13 +1,11 @@
 //! `gyrocal simulate`: a record and its bench description from a scenario.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_record::{
-    Outputs, SCHEMA_VERSION, SimulationReport, TrueCoefficient, printable_path, shell_quoted,
-};
-use gyrocal_truth::{Hidden, HiddenReport, Scenario, Simulation, TruthReport, simulate_watched};
+use gyrocal_record::{Outputs, printable_path, shell_quoted};
+use gyrocal_truth::{Hidden, Scenario, Simulation, TruthReport, simulate_watched};
 use miette::miette;
 
 use crate::outputs::{manifest, refuse_overlap};
@@ -81,37 +79,11 @@ fn write(
         outputs.stage(path, simulation.bench.to_toml(path)?.as_bytes())?;
     }
     if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &report(&arguments.scenario, scenario, simulation)?)?;
+        let manifest = manifest("", scenario.seed, &[&arguments.scenario])?;
+        outputs.stage_json(path, &TruthReport::new(simulation, manifest))?;
     }
     outputs.commit()?;
     Ok(())
-}
-
-fn report(
-    path: &Path,
-    scenario: &Scenario,
-    simulation: &Simulation,
-) -> Result<TruthReport, Failure> {
-    let truth = &simulation.truth;
-    let coefficients = truth.coefficients.named();
-    Ok(TruthReport {
-        simulation: SimulationReport {
-            schema_version: SCHEMA_VERSION,
-            manifest: manifest("", scenario.seed, &[path])?,
-            coefficients: coefficients
-                .into_iter()
-                .map(|(name, value, unit)| TrueCoefficient {
-                    name: name.to_owned(),
-                    value,
-                    unit: unit.to_owned(),
-                })
-                .collect(),
-            rows: simulation.record.len(),
-            initial_angles_deg: truth.platform_c_enu_first().angles_deg(),
-            final_angles_deg: truth.platform_c_enu_last().angles_deg(),
-        },
-        hidden: truth.hidden.iter().map(HiddenReport::from).collect(),
-    })
 }
 
 fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> Answer {

@@ -4,8 +4,9 @@
 mod screen;
 mod stream;
 
+use std::ffi::OsString;
 use std::io::IsTerminal as _;
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Args, ValueEnum};
 
@@ -36,12 +37,13 @@ pub(crate) enum Color {
     Never,
 }
 
-static QUIET: OnceLock<bool> = OnceLock::new();
+static QUIET: AtomicBool = AtomicBool::new(false);
 
 impl Color {
     /// The choice of a command line that is not parsed yet, for the messages of its parser.
-    pub(crate) fn of_arguments() -> Self {
-        let arguments: Vec<String> = std::env::args_os()
+    pub(crate) fn of_arguments(arguments: &[OsString]) -> Self {
+        let arguments: Vec<String> = arguments
+            .iter()
             .map(|argument| argument.to_string_lossy().into_owned())
             .collect();
         let value = |(place, argument): (usize, &String)| match argument.strip_prefix("--color") {
@@ -79,11 +81,11 @@ impl Shown {
     /// Makes these the settings of the program.
     pub(crate) fn apply(&self) {
         self.color.choose();
-        let _ = QUIET.set(self.quiet);
+        QUIET.store(self.quiet, Ordering::Relaxed);
     }
 }
 
 /// Whether progress is shown: on a terminal, unless nothing but errors is wanted.
 pub(crate) fn shows_progress() -> bool {
-    std::io::stderr().is_terminal() && !QUIET.get().copied().unwrap_or(false)
+    std::io::stderr().is_terminal() && !QUIET.load(Ordering::Relaxed)
 }

@@ -69,6 +69,7 @@
 //! It reads no records and prints nothing; [`result::read`] reads a written result. It tests effects
 //! of the catalogue, sinusoids and functions of specific force, on a static base only.
 
+mod calibration_report;
 mod calibration_verdict;
 mod diagnose;
 mod distinguishability;
@@ -92,6 +93,7 @@ mod untested;
 mod validation;
 mod watch;
 
+pub use calibration_report::{CalibratedRecord, CalibrationEvidence, calibration_report};
 pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
 pub use diagnose::{
     DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, diagnose_watched, fit_effects, manifest,

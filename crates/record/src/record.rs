@@ -56,6 +56,11 @@ impl Record {
     /// value is infinite.
     pub fn to_csv(&self, path: &Path) -> Result<String, Error> {
         self.check(path)?;
+        self.text(path)
+    }
+
+    /// The text of the record's file, whatever its values are.
+    pub(crate) fn text(&self, path: &Path) -> Result<String, Error> {
         self.format().map_err(|error| Error::Unwritable {
             path: path.to_owned(),
             reason: io::Error::other(error),

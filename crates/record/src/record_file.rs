@@ -54,6 +54,18 @@ impl RecordFile {
         })
     }
 
+    /// Takes a record in memory as if it stood in a file; errors call it `name`. Its rows have no lines;
+    /// those of errors are the lines that its rows would have after a header.
+    #[must_use]
+    pub fn of_record(record: Record, name: &str) -> Self {
+        Self {
+            record,
+            source: SourceText::of_memory(name),
+            places: Vec::new(),
+            header: 0..0,
+        }
+    }
+
     /// The record as it stands.
     #[must_use]
     pub fn record(&self) -> &Record {
@@ -118,6 +130,16 @@ impl RecordFile {
     ///
     /// [`Error::Input`].
     pub fn check(&self, usable: &Record, least: usize) -> Result<(), Error> {
+        let checked = self.check_rows(usable, least);
+        if checked.is_ok() || self.places.len() == self.record.len() {
+            return checked;
+        }
+        // A record in memory has places only where they are needed: in an error.
+        let path = Path::new(self.name());
+        Self::parse(&self.record.text(path)?, self.name())?.check_rows(usable, least)
+    }
+
+    fn check_rows(&self, usable: &Record, least: usize) -> Result<(), Error> {
         let Self { source, places, .. } = self;
         let last = places.last().unwrap_or(&self.header);
         refuse_too_few(usable, source, last, least)?;
@@ -148,6 +170,17 @@ mod tests {
         assert_eq!(lines, [Some(3), Some(4), Some(6), None]);
         let refused = RecordFile::parse(&format!("{HEADER}\n0,0,0,up\n"), "r.csv");
         assert!(refused.unwrap_err().to_string().contains("r.csv:2:7"));
+    }
+
+    #[test]
+    fn errors_of_a_record_in_memory_have_the_lines_of_its_text() {
+        let read = file("0,0,0,1\n60,0,0,9.81\n30,0,0,1\n180,nan,0,1\n");
+        let kept = RecordFile::of_record(read.record().clone(), "frame");
+        assert_eq!((kept.name(), kept.line(0)), ("frame", None));
+        let error = kept.check(kept.record(), 2).unwrap_err().to_string();
+        assert!(error.starts_with("frame:3:1: found a norm"), "{error}");
+        let sound = kept.record().without([[1, 2]]);
+        assert!(kept.check(&sound, 3).is_ok());
     }
 
     #[test]

@@ -65,6 +65,14 @@ impl SourceText {
         Ok(source)
     }
 
+    /// The name alone, of what has no text.
+    pub(crate) fn of_memory(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            text: String::new(),
+        }
+    }
+
     /// The name of the file as it was given.
     #[must_use]
     pub fn name(&self) -> &str {

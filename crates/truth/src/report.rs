@@ -1,9 +1,10 @@
 //! The truth of a record as a serialisable report.
 
-use gyrocal_record::SimulationReport;
+use gyrocal_record::{Manifest, SCHEMA_VERSION, SimulationReport, TrueCoefficient};
 use serde::Serialize;
 
 use crate::hidden::Hidden;
+use crate::simulation::Simulation;
 
 /// Truth of a simulated record, hidden effects included.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -13,6 +14,32 @@ pub struct TruthReport {
     pub simulation: SimulationReport,
     /// The hidden effects.
     pub hidden: Vec<HiddenReport>,
+}
+
+impl TruthReport {
+    /// The truth of a simulation.
+    #[must_use]
+    pub fn new(simulation: &Simulation, manifest: Manifest) -> Self {
+        let truth = &simulation.truth;
+        let coefficients = truth.coefficients.named().into_iter();
+        Self {
+            simulation: SimulationReport {
+                schema_version: SCHEMA_VERSION,
+                manifest,
+                coefficients: coefficients
+                    .map(|(name, value, unit)| TrueCoefficient {
+                        name: name.to_owned(),
+                        value,
+                        unit: unit.to_owned(),
+                    })
+                    .collect(),
+                rows: simulation.record.len(),
+                initial_angles_deg: truth.platform_c_enu_first().angles_deg(),
+                final_angles_deg: truth.platform_c_enu_last().angles_deg(),
+            },
+            hidden: truth.hidden.iter().map(HiddenReport::from).collect(),
+        }
+    }
 }
 
 /// One hidden effect.

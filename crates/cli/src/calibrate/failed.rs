@@ -8,14 +8,13 @@ use gyrocal_calibration::{CalibrationError, Run, is_gyro_noise_implausible};
 use gyrocal_record::{CalibrationMethod, CalibrationReport, printable_path};
 use miette::Diagnostic;
 
-use super::CalibrateArguments;
 use crate::Failure;
 use crate::noise::GYRO_ADVICE;
 
-/// The records could not be calibrated.
+/// The records could not be calibrated; its help is the advice.
 #[derive(Debug, thiserror::Error)]
 #[error("{records}: no calibration")]
-pub(super) struct NotCalibrated {
+pub struct NotCalibrated {
     records: String,
     method: CalibrationMethod,
     factorised: bool,
@@ -25,22 +24,24 @@ pub(super) struct NotCalibrated {
 }
 
 impl NotCalibrated {
-    pub(super) fn new(
-        arguments: &CalibrateArguments,
+    /// The failure of runs of these names, of which the source may tell one.
+    #[must_use]
+    pub fn new(
+        names: &[String],
         runs: &[Run<'_>],
+        method: CalibrationMethod,
+        factorised: bool,
         source: CalibrationError,
     ) -> Self {
         let failed = match place(&source) {
             Some(place) => place..place + 1,
-            None => 0..arguments.records.len(),
+            None => 0..names.len(),
         };
-        let paths = arguments.records.get(failed.clone()).unwrap_or_default();
-        let names: Vec<String> = paths.iter().map(|path| printable_path(path)).collect();
-        let runs = runs.get(failed).unwrap_or_default();
+        let runs = runs.get(failed.clone()).unwrap_or_default();
         Self {
-            records: names.join(", "),
-            method: arguments.method(),
-            factorised: arguments.factorised,
+            records: names.get(failed).unwrap_or_default().join(", "),
+            method,
+            factorised,
             tiny_gyro_noise: runs.iter().any(|run| is_gyro_noise_implausible(run.bench)),
             source,
         }

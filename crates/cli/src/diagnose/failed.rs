@@ -11,17 +11,19 @@ use miette::Diagnostic;
 use crate::Failure;
 use crate::noise::GYRO_ADVICE;
 
-/// The record could not be diagnosed.
+/// The record could not be diagnosed; its help is the advice.
 #[derive(Debug, thiserror::Error)]
 #[error("{record}: no diagnosis")]
-pub(crate) struct NotDiagnosed {
+pub struct NotDiagnosed {
     record: String,
     tiny_gyro_noise: bool,
     source: DiagnosisError,
 }
 
 impl NotDiagnosed {
-    pub(crate) fn new(record: &Path, bench: &Bench, source: DiagnosisError) -> Self {
+    /// The failure of a record.
+    #[must_use]
+    pub fn new(record: &Path, bench: &Bench, source: DiagnosisError) -> Self {
         Self {
             record: printable_path(record),
             tiny_gyro_noise: is_gyro_noise_implausible(bench),

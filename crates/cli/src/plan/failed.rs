@@ -11,10 +11,10 @@ use crate::Failure;
 
 const CODE: &str = "gyrocal::plan";
 
-/// No next run could be planned.
+/// No next run could be planned; its help is the advice.
 #[derive(Debug, thiserror::Error)]
 #[error("{record}: no plan")]
-pub(super) struct NotPlanned {
+pub struct NotPlanned {
     record: String,
     source: DesignError,
 }
@@ -34,7 +34,9 @@ pub(super) struct OtherInput {
 }
 
 impl NotPlanned {
-    pub(super) fn new(record: &Path, source: DesignError) -> Self {
+    /// The failure of a plan for a record.
+    #[must_use]
+    pub fn new(record: &Path, source: DesignError) -> Self {
         Self {
             record: printable_path(record),
             source,

@@ -1,0 +1,159 @@
+//! The command `gyrocal`: calibration and diagnosis of gyro drift from records of an inertially
+//! stabilised platform.
+//!
+//! Each subcommand is a module: arguments, calls of the libraries, tables and text, JSON, pictures.
+//! Files are written whole or not at all. Statistics and estimation are in the libraries.
+//!
+//! [`run`] is the whole command; the binary and the Python package call it.
+//!
+//! `exit.rs` has the exit codes. Text reaches the terminal in `terminal.rs` and errors in
+//! `error_report.rs`, without characters that would steer it.
+
+mod allan;
+mod answer;
+mod calibrate;
+mod characterise;
+mod command;
+mod diagnose;
+mod effects;
+mod error_report;
+mod exit;
+mod extend;
+mod help;
+mod import;
+mod layout;
+mod manual;
+mod measured;
+mod monte_carlo;
+mod noise;
+mod numbers;
+mod outputs;
+mod pictures;
+mod plan;
+mod progress;
+mod records;
+mod simulate;
+mod tables;
+mod terminal;
+mod text;
+mod tumble;
+mod watch;
+mod width;
+
+use std::ffi::OsString;
+use std::io::{ErrorKind, Write as _};
+
+use miette::Report;
+
+use crate::answer::Answer;
+pub use crate::calibrate::NotCalibrated;
+use crate::command::{Cli, Command, definition};
+pub use crate::diagnose::NotDiagnosed;
+use crate::error_report::ErrorReport;
+pub use crate::plan::NotPlanned;
+
+/// Runs the command with its arguments, the first of which is the name of the program: reads and
+/// writes files, stdout and stderr. Returns the exit code of the process.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    outputs::remember(&arguments);
+    let cli = match Cli::of_arguments(&arguments) {
+        Ok(cli) => cli,
+        // Help and version are among them, and go to stdout.
+        Err(error) => {
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(exit::USAGE);
+        }
+    };
+    cli.shown.apply();
+    start_logging(cli.shown.verbose);
+    show_errors_plainly();
+    match answer(cli.command.as_ref()) {
+        Ok(answer) => {
+            let text = answer.shown(width::columns(), cli.shown.verbose > 0);
+            let text = if cli.shown.quiet { "" } else { &text };
+            match terminal::print(text) {
+                // A closed pipe, as in `| head`, is not a failure.
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                    let _ = writeln!(std::io::stderr(), "stdout: cannot be written: {error}");
+                    exit::FAILED
+                }
+                _ => answer.exit_code,
+            }
+        }
+        Err(Failure::Usage(message)) => {
+            let message = gyrocal_record::printable(&message).into_owned();
+            let error = definition().error(clap::error::ErrorKind::ArgumentConflict, message);
+            let _ = error.print();
+            exit::USAGE
+        }
+        Err(Failure::Work(report)) => {
+            let _ = writeln!(anstream::stderr(), "{report:?}");
+            exit::FAILED
+        }
+    }
+}
+
+/// The answer of a command; without one, what people do first.
+fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
+    let Some(command) = command else {
+        return Ok(Answer {
+            exit_code: exit::USAGE,
+            ..Answer::from(help::WELCOME.to_owned())
+        });
+    };
+    match command {
+        Command::Allan(arguments) => allan::run(arguments),
+        Command::Calibrate(arguments) => calibrate::run(arguments),
+        Command::Characterise(arguments) => characterise::run(arguments),
+        Command::Completions(arguments) => Ok(manual::completions(arguments, definition()).into()),
+        Command::Diagnose(arguments) => diagnose::run(arguments),
+        Command::Effects(arguments) => effects::run(arguments),
+        Command::Extend(arguments) => extend::run(arguments),
+        Command::Import(arguments) => import::run(arguments),
+        Command::Man(arguments) => manual::pages(arguments, definition()),
+        Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
+        Command::Plan(arguments) => plan::run(arguments),
+        Command::Simulate(arguments) => simulate::run(arguments),
+        Command::Tumble(arguments) => tumble::run(arguments),
+        Command::Watch(arguments) => watch::run(arguments),
+    }
+}
+
+/// Failure of a command.
+#[derive(Debug)]
+enum Failure {
+    /// The command line is contradictory.
+    Usage(String),
+    /// An input is wrong or an output cannot be written.
+    Work(Report),
+}
+
+impl From<gyrocal_record::Error> for Failure {
+    fn from(error: gyrocal_record::Error) -> Self {
+        Self::Work(error.into())
+    }
+}
+
+fn start_logging(verbose: u8) {
+    use tracing::level_filters::LevelFilter;
+
+    let level = match verbose {
+        0 | 1 => LevelFilter::WARN,
+        2 => LevelFilter::INFO,
+        3 => LevelFilter::DEBUG,
+        _ => LevelFilter::TRACE,
+    };
+    // Fails if messages are collected already, by an earlier command of the process.
+    let _ = tracing_subscriber::fmt()
+        .with_max_level(level)
+        .with_writer(|| terminal::Messages)
+        .with_ansi(false)
+        .try_init();
+}
+
+/// Sets the form of errors.
+fn show_errors_plainly() {
+    // Fails if a handler is installed already, which is then used.
+    let _ = miette::set_hook(Box::new(|_| Box::new(ErrorReport::of_stderr())));
+}
