@@ -1,0 +1,276 @@
+"""The functions of the package."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Literal, Union
+
+from . import _gyrocal
+from ._errors import InputError, SetupError
+from ._record import Bench, BenchLike, Record, RecordLike, _json, as_bench, as_record
+from ._results import Calibration, Characteristics, Diagnosis, Plan, Simulation
+
+__all__ = ["calibrate", "characterise", "diagnose", "plan", "simulate"]
+
+ScenarioLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
+
+
+def simulate(scenario: ScenarioLike, *, seed: int | None = None) -> Simulation:
+    """Simulates a record from a scenario with known coefficients, bench and sampling.
+
+    The simulator is independent of the model of :func:`calibrate`. The same scenario and seed give the
+    same record, bit for bit.
+
+    Args:
+        scenario: A scenario file (TOML), or its tables.
+        seed: The seed; that of the scenario if it is not given.
+
+    Returns:
+        The truth, with ``record`` and ``bench``.
+
+    Raises:
+        InputError: The scenario makes no sense.
+    """
+    command = _call("simulate", scenario, seed=seed)
+    if isinstance(scenario, Mapping):
+        made = _gyrocal.simulate(None, _json(scenario, "<scenario>"), seed, "<simulation>", command)
+    else:
+        made = _gyrocal.simulate(os.fspath(scenario), None, seed, "<simulation>", command)
+    record, bench, truth = made
+    return Simulation(truth, Record._of(record), Bench._of(bench))
+
+
+def calibrate(
+    records: RecordLike | Sequence[RecordLike],
+    bench: BenchLike | Sequence[BenchLike],
+    *,
+    method: Literal["batch", "streaming", "paper"] = "batch",
+    effects: Iterable[str] = (),
+    average_s: float | None = None,
+    robust_sigmas: float | None = None,
+    noise: bool = True,
+    factorised: bool = False,
+) -> Calibration:
+    """Estimates the nine drift coefficients from one record or several turn-ons of one platform.
+
+    Args:
+        records: A record, or a list of them.
+        bench: The bench description, one for all records or a list of one for each.
+        method: ``batch`` estimates from whole records, ``streaming`` is the filter that a controller
+            embeds, ``paper`` the paper's.
+        effects: Effects of the catalogue that are estimated too; for one record.
+        average_s: Averages fast records over intervals of this length, s.
+        robust_sigmas: Reduces the weight of values whose residual exceeds this many sigmas.
+        noise: Whether the noise is estimated.
+        factorised: Carries the covariance of the filter as factors; for ``streaming`` and ``paper``.
+
+    Raises:
+        InputError: An argument, a record or a bench description is wrong.
+        SetupError: A gross error of the set-up leaves nothing sound; its ``result`` tells which.
+        ComputationError: The records could not be calibrated.
+    """
+    command = _call("calibrate", records, bench=bench, method=method, effects=tuple(effects))
+    given = [as_record(one) for one in _several(records)]
+    benches = [as_bench(one) for one in _several(bench)]
+    if len(benches) == 1:
+        benches *= len(given)
+    if not given or len(benches) != len(given):
+        raise InputError(
+            f"bench: found {len(benches)} descriptions for {len(given)} records, expected one for all, "
+            "or one for each",
+            found=str(len(benches)),
+            expected=str(len(given)),
+        )
+    _check_calibration(method, len(given), average_s, robust_sigmas, noise, factorised)
+    runs = [(one._held, other._held) for one, other in zip(given, benches)]
+    try:
+        text = _gyrocal.calibrate(
+            runs, method, factorised, noise, average_s, robust_sigmas, list(effects), command
+        )
+    except SetupError as error:
+        error.result = Calibration(error.result)
+        raise
+    return Calibration(text)
+
+
+def diagnose(
+    record: RecordLike,
+    bench: BenchLike,
+    *,
+    later: tuple[RecordLike, BenchLike] | None = None,
+    effects: Iterable[str] = (),
+    false_alarm: float = 0.01,
+    filter: Literal["euler"] | None = None,
+) -> Diagnosis:
+    """Shows what the model gets wrong about a record, and names the cause.
+
+    A gross error of the set-up that leaves nothing sound is an answer too: its ``verdict`` is
+    ``setup``.
+
+    Args:
+        record: The record.
+        bench: The bench description.
+        later: A later record of the same platform with its bench description, to be predicted with the
+            nominal and with the extended model.
+        effects: Effects to test that are not in the default set.
+        false_alarm: Family-wise probability of a false alarm.
+        filter: ``euler`` also tests the consistency of the paper's filter.
+
+    Raises:
+        InputError: An argument, the record or the bench description is wrong.
+        ComputationError: The record could not be diagnosed.
+    """
+    if filter not in (None, "euler"):
+        raise InputError(f"filter: found {filter!r}, expected 'euler' or None", expected="euler")
+    command = _call("diagnose", record, bench=bench, effects=tuple(effects), false_alarm=false_alarm)
+    other = None if later is None else (as_record(later[0])._held, as_bench(later[1])._held)
+    answer = _gyrocal.diagnose(
+        as_record(record)._held,
+        as_bench(bench)._held,
+        other,
+        list(effects),
+        false_alarm,
+        filter is not None,
+        command,
+    )
+    return Diagnosis(*answer)
+
+
+def plan(
+    record: RecordLike,
+    bench: BenchLike,
+    *,
+    diagnosis: Diagnosis | None = None,
+    hours: float | Iterable[float] = (),
+    limits_deg: Mapping[str, tuple[float, float]] | None = None,
+    aim: Literal["set", "sigmas"] | None = None,
+    sigmas: Mapping[str, float] | None = None,
+    one_name: bool = False,
+    effects: Iterable[str] = (),
+    false_alarm: float = 0.01,
+) -> Plan:
+    """Finds the attitude and duration of the most informative next run.
+
+    Args:
+        record: The record.
+        bench: The bench description.
+        diagnosis: Result of :func:`diagnose` for this record; without it the record is diagnosed.
+        hours: Durations of the next run; that of the record if none is given.
+        limits_deg: Limits of the platform angles ``x``, ``y``, ``z``; before those of the bench.
+        aim: Criterion of the ranking; ``set`` if a finding has alternatives.
+        sigmas: Also finds the shortest run after which coefficients have these sigmas.
+        one_name: Also finds the shortest run after which one effect stays in each confidence set.
+        effects: Effects that the diagnosis also tests.
+        false_alarm: Family-wise probability of a false alarm of the diagnosis.
+
+    Raises:
+        InputError: An argument, the record or the bench description is wrong.
+        ComputationError: No next run could be planned.
+    """
+    effects = list(effects)
+    if diagnosis is not None and (effects or false_alarm != 0.01):
+        raise InputError("plan: effects and false_alarm are those of the diagnosis that is given")
+    durations = [hours] if isinstance(hours, (int, float)) else list(hours)
+    answer = _gyrocal.plan(
+        as_record(record)._held,
+        as_bench(bench)._held,
+        None if diagnosis is None else diagnosis.to_json(),
+        [float(one) for one in durations],
+        [(axis, (float(low), float(high))) for axis, (low, high) in (limits_deg or {}).items()],
+        aim,
+        [(name, float(sigma)) for name, sigma in (sigmas or {}).items()],
+        one_name,
+        effects,
+        false_alarm,
+        _call("plan", record, bench=bench, hours=tuple(durations), aim=aim),
+    )
+    return Plan(*answer)
+
+
+def characterise(
+    cells: str | Iterable[str] = (),
+    *,
+    runs: int | None = None,
+    seed: int = 0,
+    methods: Iterable[str] | None = None,
+    results: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+) -> Characteristics:
+    """Measures the operating characteristics of the diagnosis on simulated records.
+
+    Args:
+        cells: Cells of the table, for example ``clean`` and ``d8``; all of them if none is given, which
+            takes hours.
+        runs: Records of each cell; 1000 (``clean``: 2000) if it is not given.
+        seed: First seed of each cell.
+        methods: Baseline methods, of ``nis``, ``ljung-box``, ``bic`` and ``stls``; all of them if it is
+            ``None``.
+        results: A folder that keeps each finished record; a later call goes on from there.
+        threads: Number of threads; one per core if it is not given.
+
+    Raises:
+        InputError: An argument is wrong.
+    """
+    asked = [cells] if isinstance(cells, str) else list(cells)
+    for name, value, least in (("runs", runs, 1), ("seed", seed, 0), ("threads", threads, 1)):
+        if value is not None and (not isinstance(value, int) or value < least):
+            raise InputError(f"{name}: found {value!r}, expected an integer of at least {least}")
+    text = _gyrocal.characterise(
+        asked,
+        runs,
+        seed,
+        results,
+        None if methods is None else list(methods),
+        threads,
+        _call("characterise", tuple(asked), runs=runs, seed=seed),
+    )
+    return Characteristics(text)
+
+
+def _several(value: Any) -> list[Any]:
+    return list(value) if isinstance(value, (list, tuple)) else [value]
+
+
+def _check_calibration(
+    method: str,
+    records: int,
+    average_s: float | None,
+    robust_sigmas: float | None,
+    noise: bool,
+    factorised: bool,
+) -> None:
+    for name, value in (("average_s", average_s), ("robust_sigmas", robust_sigmas)):
+        if value is not None and not 0.0 < value < float("inf"):
+            raise InputError(f"{name}: found {value!r}, expected a positive number", found=repr(value))
+    if method == "batch":
+        if factorised:
+            raise InputError(
+                "factorised: it is a form of the filter",
+                advice="give method='streaming' or 'paper', or leave it out",
+            )
+        return
+    if records > 1 or robust_sigmas is not None or not noise:
+        raise InputError(
+            f"method: `{method}` reads one record, without robust_sigmas, and estimates no noise",
+            advice="leave these out, or use the batch estimator",
+        )
+
+
+def _call(function: str, *arguments: Any, **options: Any) -> str:
+    """The call in words, for the manifest."""
+    shown = [_shown(argument) for argument in arguments]
+    shown += [f"{key}={_shown(value)}" for key, value in options.items() if value not in (None, ())]
+    return f"gyrocal.{function}({', '.join(shown)})"
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(_shown, value))}]"
+    if isinstance(value, os.PathLike):
+        return repr(os.fspath(value))
+    if isinstance(value, (str, int, float, bool)) or value is None:
+        return repr(value)
+    if isinstance(value, (Record, Bench)):
+        return value.name
+    return f"<{type(value).__name__}>"

@@ -1,0 +1,98 @@
+"""The extension module. Users call the functions of the package."""
+
+from os import PathLike
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+VERSION: str
+
+@final
+class Record:
+    @staticmethod
+    def read(path: str | PathLike[str]) -> Record: ...
+    @staticmethod
+    def of_columns(
+        name: str,
+        time_s: NDArray[np.float64],
+        accel_g: list[NDArray[np.float64]],
+        temperature_c: NDArray[np.float64] | None,
+    ) -> Record: ...
+    @staticmethod
+    def of_arrow(name: str, stream: object) -> Record: ...
+    def __len__(self) -> int: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def sha256(self) -> str: ...
+    @property
+    def time_s(self) -> NDArray[np.float64]: ...
+    @property
+    def accel_g(self) -> NDArray[np.float64]: ...
+    @property
+    def temperature_c(self) -> NDArray[np.float64] | None: ...
+    def to_csv(self) -> str: ...
+
+@final
+class Bench:
+    @staticmethod
+    def read(path: str | PathLike[str]) -> Bench: ...
+    @staticmethod
+    def of_text(text: str, name: str) -> Bench: ...
+    @staticmethod
+    def of_json(json: str, name: str) -> Bench: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def sha256(self) -> str: ...
+    @property
+    def latitude_deg(self) -> float: ...
+    def to_toml(self) -> str: ...
+
+def command(arguments: list[str]) -> int: ...
+def check_columns(names: list[str], frame: str) -> None: ...
+def simulate(
+    path: str | PathLike[str] | None, tables: str | None, seed: int | None, name: str, command: str
+) -> tuple[Record, Bench, str]: ...
+def calibrate(
+    runs: list[tuple[Record, Bench]],
+    method: str,
+    factorised: bool,
+    noise: bool,
+    average_s: float | None,
+    robust_sigmas: float | None,
+    effects: list[str],
+    command: str,
+) -> str: ...
+def diagnose(
+    record: Record,
+    bench: Bench,
+    later: tuple[Record, Bench] | None,
+    effects: list[str],
+    false_alarm: float,
+    euler_filter: bool,
+    command: str,
+) -> tuple[str, str]: ...
+def plan(
+    record: Record,
+    bench: Bench,
+    diagnosis: str | None,
+    hours: list[float],
+    limits_deg: list[tuple[str, tuple[float, float]]],
+    aim: str | None,
+    sigmas: list[tuple[str, float]],
+    one_name: bool,
+    effects: list[str],
+    false_alarm: float,
+    command: str,
+) -> tuple[str, str]: ...
+def characterise(
+    cells: list[str],
+    runs: int | None,
+    seed: int,
+    results: str | PathLike[str] | None,
+    methods: list[str] | None,
+    threads: int | None,
+    command: str,
+) -> str: ...

@@ -1,0 +1,334 @@
+"""Records and bench descriptions, and what they are made of."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _gyrocal
+from ._errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["COLUMNS", "Bench", "BenchLike", "Record", "RecordLike", "as_bench", "as_record"]
+
+#: The columns of a record; the last one is optional.
+COLUMNS = ("time_s", "accel_x_g", "accel_y_g", "accel_z_g", "temperature_c")
+
+
+class Record:
+    """Accelerometer samples of a platform that its gyros hold in inertial space.
+
+    Specific force is in units of local gravity, up positive: an accelerometer at rest with its axis up
+    reads +1. ``nan`` is a missing value. A record does not change.
+
+    Args:
+        time_s: Time of each row, s.
+        accel_g: Specific force, one row a sample, along platform axes x, y, z, g.
+        temperature_c: Temperature of each row, if it was logged.
+        name: The name that errors and results give the record.
+    """
+
+    __slots__ = ("_held",)
+    _held: _gyrocal.Record
+
+    def __init__(
+        self,
+        time_s: ArrayLike,
+        accel_g: ArrayLike,
+        temperature_c: ArrayLike | None = None,
+        *,
+        name: str = "<arrays>",
+    ) -> None:
+        samples = _numbers(accel_g, "accel_g", name)
+        if samples.ndim != 2 or samples.shape[1] != 3:
+            raise _refusal(
+                f"{name}, `accel_g`", f"the shape {samples.shape}", "(rows, 3)",
+                "give one row a sample: np.column_stack([x, y, z])",
+            )
+        self._held = _gyrocal.Record.of_columns(
+            name,
+            _column(time_s, "time_s", name),
+            [samples[:, axis] for axis in range(3)],
+            None if temperature_c is None else _column(temperature_c, "temperature_c", name),
+        )
+
+    @classmethod
+    def _of(cls, held: _gyrocal.Record) -> Record:
+        record = cls.__new__(cls)
+        record._held = held
+        return record
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Record:
+        """Reads a record from a file (CSV)."""
+        return cls._of(_gyrocal.Record.read(path))
+
+    @classmethod
+    def from_frame(cls, frame: Any, *, name: str | None = None) -> Record:
+        """Takes a record from a frame, a table or a mapping of columns.
+
+        The columns are :data:`COLUMNS`. An object with ``__arrow_c_stream__`` (Polars, PyArrow, DuckDB
+        and others) is read through Arrow's C stream interface; of a pandas frame or a mapping each
+        column is taken as a NumPy array.
+        """
+        if name is None:
+            name = f"<{type(frame).__name__}>"
+        if isinstance(frame, np.ndarray):
+            return cls._of(_of_structured(frame, name))
+        if isinstance(frame, Mapping):
+            return cls._of(_of_mapping(frame, name))
+        is_pandas = type(frame).__module__.partition(".")[0] == "pandas"
+        if not is_pandas and hasattr(frame, "__arrow_c_stream__"):
+            return cls._of(_gyrocal.Record.of_arrow(name, frame.__arrow_c_stream__()))
+        if hasattr(frame, "columns") and hasattr(frame, "__getitem__"):
+            names = [str(column) for column in frame.columns]
+            _gyrocal.check_columns(names, name)
+            return cls._of(_of_mapping({column: frame[column] for column in names}, name))
+        raise _refusal(
+            name, f"a {type(frame).__name__}",
+            "a path, a Record, a frame, an Arrow table or a mapping of columns",
+            "give {'time_s': ..., 'accel_x_g': ..., 'accel_y_g': ..., 'accel_z_g': ...}",
+        )
+
+    @property
+    def name(self) -> str:
+        """The name that errors and results give the record."""
+        return self._held.name
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the file or, of a record in memory, of its values."""
+        return self._held.sha256
+
+    @property
+    def time_s(self) -> NDArray[np.float64]:
+        """Time of each row, s; a view."""
+        return self._held.time_s
+
+    @property
+    def accel_g(self) -> NDArray[np.float64]:
+        """Specific force, one row a sample, g; a view."""
+        return self._held.accel_g
+
+    @property
+    def temperature_c(self) -> NDArray[np.float64] | None:
+        """Temperature of each row, if it was logged; a view."""
+        return self._held.temperature_c
+
+    def columns(self) -> dict[str, NDArray[np.float64]]:
+        """The columns by name, as views: what frames of any kind are made of."""
+        columns = {"time_s": self.time_s}
+        columns |= {name: self.accel_g[:, axis] for axis, name in enumerate(COLUMNS[1:4])}
+        if self.temperature_c is not None:
+            columns[COLUMNS[4]] = self.temperature_c
+        return columns
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The rows as a pandas frame."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns())
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Writes the record to a file, which reads as the same numbers."""
+        _write(path, self._held.to_csv())
+
+    def __len__(self) -> int:
+        return len(self._held)
+
+    def __repr__(self) -> str:
+        days = float(self.time_s[-1] - self.time_s[0]) / 86400.0 if len(self) else 0.0
+        return f"<gyrocal.Record {self.name}: {len(self)} rows over {days:.2f} days>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        arrays = (self.time_s, self.accel_g, self.temperature_c)
+        return _record_of_arrays, (*(np.array(a) if a is not None else None for a in arrays), self.name)
+
+
+def _record_of_arrays(time_s: Any, accel_g: Any, temperature_c: Any, name: str) -> Record:
+    return Record(time_s, accel_g, temperature_c, name=name)
+
+
+class Bench:
+    """Description of a bench: site, first attitude, noise and prior, as in a bench file.
+
+    Args:
+        tables: The tables of a bench file, for example ``{"site": {"latitude_deg": 39.1}, ...}``.
+        name: The name that errors and results give it.
+    """
+
+    __slots__ = ("_held",)
+    _held: _gyrocal.Bench
+
+    def __init__(self, tables: Mapping[str, Any], *, name: str = "<bench>") -> None:
+        self._held = _gyrocal.Bench.of_json(_json(tables, name), name)
+
+    @classmethod
+    def _of(cls, held: _gyrocal.Bench) -> Bench:
+        bench = cls.__new__(cls)
+        bench._held = held
+        return bench
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Bench:
+        """Reads a bench file (TOML)."""
+        return cls._of(_gyrocal.Bench.read(path))
+
+    @classmethod
+    def parse(cls, text: str, *, name: str = "<bench>") -> Bench:
+        """Takes the text of a bench file."""
+        return cls._of(_gyrocal.Bench.of_text(text, name))
+
+    @property
+    def name(self) -> str:
+        """The name that errors and results give it."""
+        return self._held.name
+
+    @property
+    def latitude_deg(self) -> float:
+        """Latitude, north positive."""
+        return self._held.latitude_deg
+
+    def to_dict(self) -> dict[str, Any]:
+        """The tables of a bench file."""
+        import tomllib
+
+        return tomllib.loads(self.to_toml())
+
+    def to_toml(self) -> str:
+        """The text of a bench file."""
+        return self._held.to_toml()
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes a bench file."""
+        _write(path, self.to_toml())
+
+    def __repr__(self) -> str:
+        return f"<gyrocal.Bench {self.name}: latitude {self.latitude_deg} deg>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _bench_of_text, (self.to_toml(), self.name)
+
+
+def _bench_of_text(text: str, name: str) -> Bench:
+    return Bench.parse(text, name=name)
+
+
+RecordLike = Union[Record, str, "os.PathLike[str]", Mapping[str, Any], Any]
+BenchLike = Union[Bench, str, "os.PathLike[str]", Mapping[str, Any]]
+
+
+def as_record(record: RecordLike) -> Record:
+    """The record itself, or what a path, frame, table or mapping gives."""
+    if isinstance(record, Record):
+        return record
+    if isinstance(record, (str, os.PathLike)):
+        return Record.read(record)
+    return Record.from_frame(record)
+
+
+def as_bench(bench: BenchLike) -> Bench:
+    """The bench description itself, or what a path or the tables of a bench file give."""
+    if isinstance(bench, Bench):
+        return bench
+    if isinstance(bench, (str, os.PathLike)):
+        return Bench.read(bench)
+    if isinstance(bench, Mapping):
+        return Bench(bench)
+    raise _refusal(
+        "bench", f"a {type(bench).__name__}", "a path, a Bench or the tables of a bench file",
+        "give {'site': {...}, 'platform': {...}, 'noise': {...}}",
+    )
+
+
+def _of_structured(array: NDArray[Any], name: str) -> _gyrocal.Record:
+    if array.dtype.names is None:
+        raise _refusal(
+            name, f"an array of {array.dtype} without names of columns", "named columns",
+            "give Record(time_s, accel_g), or a mapping of columns",
+        )
+    return _of_mapping({column: array[column] for column in array.dtype.names}, name)
+
+
+def _of_mapping(columns: Mapping[str, Any], name: str) -> _gyrocal.Record:
+    _gyrocal.check_columns([str(column) for column in columns], name)
+    arrays = {column: _column(values, column, name) for column, values in columns.items()}
+    return _gyrocal.Record.of_columns(
+        name,
+        arrays["time_s"],
+        [arrays[column] for column in COLUMNS[1:4]],
+        arrays.get(COLUMNS[4]),
+    )
+
+
+def _column(values: Any, column: str, name: str) -> NDArray[np.float64]:
+    array = _numbers(values, column, name)
+    if array.ndim != 1:
+        raise _refusal(
+            f"{name}, column `{column}`", f"{array.ndim} dimensions", "one", "give one column"
+        )
+    return array
+
+
+def _numbers(values: Any, column: str, name: str) -> NDArray[np.float64]:
+    """The values as float64: a view where they are that already."""
+    if hasattr(values, "to_numpy"):
+        kind = getattr(values, "dtype", None)
+        # Nullable columns of pandas: a missing value is a masked one.
+        nullable = hasattr(kind, "na_value") and getattr(kind, "kind", "O") in "iuf"
+        array = values.to_numpy(dtype=np.float64, na_value=np.nan) if nullable else values.to_numpy()
+    else:
+        array = np.asarray(values)
+    if array.dtype.kind in "iuf":
+        return array.astype(np.float64, copy=False)
+    advice = {
+        "M": f"give seconds: (t - t[0]) / np.timedelta64(1, 's'), as column `{column}`",
+        "m": "give seconds: t / np.timedelta64(1, 's')",
+        "O": "the column holds other things than numbers: pandas.to_numeric(column) shows which",
+        "b": "give numbers",
+    }.get(array.dtype.kind, "convert the column to float64")
+    raise _refusal(
+        f"{name}, column `{column}`", f"the type {array.dtype}", "float64", advice
+    )
+
+
+def _refusal(place: str, found: str, expected: str, advice: str) -> InputError:
+    return InputError(
+        f"{place}: found {found}, expected {expected}", found=found, expected=expected, advice=advice
+    )
+
+
+def _json(tables: Mapping[str, Any], name: str) -> str:
+    return json.dumps(_plain(tables, name, ""))
+
+
+def _plain(value: Any, name: str, place: str) -> Any:
+    """The value as JSON has it; `place` is its key, for errors."""
+    if isinstance(value, Mapping):
+        return {
+            str(key): _plain(inner, name, f"{place}.{key}".lstrip("."))
+            for key, inner in value.items()
+        }
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(inner, name, place) for inner in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        raise _refusal(f"{name}, `{place}`", f"{value}", "a finite number", "leave out what is not known")
+    if isinstance(value, (bool, int, float, str)):
+        return value
+    advice = "leave out what is not given" if value is None else "give numbers, strings, lists and tables"
+    found = "None" if value is None else f"a {type(value).__name__}"
+    raise _refusal(f"{name}, `{place}`", found, "a value of TOML", advice)
+
+
+def _write(path: str | os.PathLike[str], text: str) -> None:
+    with open(path, "w", encoding="utf-8", newline="\n") as file:
+        file.write(text)

@@ -1,0 +1,408 @@
+"""Results: attributes, plain data, frames and HTML."""
+
+from __future__ import annotations
+
+import html
+import json
+import textwrap
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from ._record import Bench, Record
+
+__all__ = [
+    "Calibration",
+    "Characteristics",
+    "Diagnosis",
+    "Fields",
+    "Plan",
+    "Result",
+    "Simulation",
+]
+
+#: Columns of a line of text.
+_WIDTH = 96
+
+
+class Fields:
+    """An object of the JSON contract; its keys are attributes."""
+
+    __slots__ = ("_fields",)
+    _fields: dict[str, Any]
+
+    def __init__(self, fields: dict[str, Any]) -> None:
+        object.__setattr__(self, "_fields", fields)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        try:
+            return _wrapped(self._fields[name])
+        except KeyError:
+            known = ", ".join(self._fields)
+            raise AttributeError(f"there is no `{name}`; there are {known}", name=name, obj=self) from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"`{name}` cannot be set: a result does not change")
+
+    def __getitem__(self, name: str) -> Any:
+        return _wrapped(self._fields[name])
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._fields
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._fields)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._fields]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Fields) and self._fields == other._fields
+
+    def __hash__(self) -> int:
+        return hash(json.dumps(self._fields, sort_keys=True))
+
+    def __repr__(self) -> str:
+        inside = ", ".join(f"{key}={value!r}" for key, value in self._fields.items())
+        return f"Fields({textwrap.shorten(inside, 200, placeholder=' …')})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as plain data: a copy."""
+        return json.loads(json.dumps(self._fields))
+
+
+def _wrapped(value: Any) -> Any:
+    if isinstance(value, dict):
+        return Fields(value)
+    if isinstance(value, list):
+        return [_wrapped(element) for element in value]
+    return value
+
+
+class Result(Fields):
+    """A result. Its keys, those of the JSON contract of the command, are attributes.
+
+    ``str`` gives the sentences and tables of the command; a notebook shows them.
+    """
+
+    __slots__ = ("_blocks", "_text")
+    _blocks: list[dict[str, Any]] | None
+    _text: str
+    schema_version: int
+    manifest: Fields
+
+    def __init__(self, text: str, blocks: str | None = None) -> None:
+        super().__init__(json.loads(text))
+        object.__setattr__(self, "_text", text)
+        object.__setattr__(self, "_blocks", None if blocks is None else json.loads(blocks))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        blocks = None if self._blocks is None else json.dumps(self._blocks)
+        return type(self), (self._text, blocks)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain data, equal to the JSON that the command writes."""
+        return json.loads(self._text)
+
+    def to_json(self) -> str:
+        """The result as JSON."""
+        return self._text
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The main table of the result as a pandas frame."""
+        import pandas as pd
+
+        return pd.DataFrame(self._rows())
+
+    def _rows(self) -> list[dict[str, Any]]:
+        raise NotImplementedError
+
+    def _shown(self) -> list[dict[str, Any]]:
+        """Sentences and tables."""
+        return self._blocks or []
+
+    def __str__(self) -> str:
+        return "\n\n".join(filter(None, map(_block_text, self._shown())))
+
+    def __repr__(self) -> str:
+        return f"<gyrocal.{type(self).__name__}>"
+
+    def _repr_html_(self) -> str:
+        return "\n".join(map(_block_html, self._shown()))
+
+
+class Diagnosis(Result):
+    """Result of :func:`gyrocal.diagnose`."""
+
+    __slots__ = ()
+    verdict: str
+    record: Fields
+    setup: list[Fields]
+    findings: list[Fields]
+    ranking: list[Fields]
+    cannot_tell: list[Fields]
+    gain: Fields | None
+    remainder: Fields
+    threshold: float | None
+    search_complete: bool
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """One row a finding; the parameters are columns."""
+        rows = []
+        for finding in self._fields["findings"]:
+            keys = ("effect", "name", "kind", "z", "p_value", "coverage", "gain_nats", "accepted")
+            row = {key: finding.get(key) for key in keys}
+            row["alternatives"] = [other["effect"] for other in finding.get("alternatives", [])]
+            for parameter in finding["parameters"]:
+                row[parameter["name"]] = parameter["estimate"]
+                row[parameter["name"] + "_sigma"] = parameter["sigma"]
+                row[parameter["name"] + "_unit"] = parameter["unit"]
+            rows.append(row)
+        return rows
+
+    def __repr__(self) -> str:
+        effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
+        return f"<gyrocal.Diagnosis {self.verdict}{': ' + effects if effects else ''}>"
+
+
+class Calibration(Result):
+    """Result of :func:`gyrocal.calibrate`."""
+
+    __slots__ = ()
+    verdict: str
+    verdict_text: str
+    coefficients: list[Fields]
+    nis_mean: float | None
+    nis_band: list[float] | None
+    rows: int
+    method: str
+    effects: list[Fields]
+    setup: list[Fields]
+    runs: list[Fields]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the coefficients, in the order of ``covariance``."""
+        return [coefficient["name"] for coefficient in self._fields["coefficients"]]
+
+    @property
+    def estimates(self) -> NDArray[np.float64]:
+        """The coefficients."""
+        return np.array([one["estimate"] for one in self._fields["coefficients"]])
+
+    @property
+    def sigmas(self) -> NDArray[np.float64]:
+        """Their standard deviations."""
+        return np.array([one["sigma"] for one in self._fields["coefficients"]])
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Their covariance."""
+        return np.array(self._fields["covariance"])
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """One row a coefficient."""
+        return self.to_dict()["coefficients"]
+
+    def _shown(self) -> list[dict[str, Any]]:
+        cells = [
+            [
+                one["name"],
+                f"{one['estimate']:.6f}",
+                f"{one['sigma']:.2g}",
+                one["unit"],
+                "yes" if one["determined"] else "no",
+            ]
+            for one in self._fields["coefficients"]
+        ]
+        heads = ["coefficient", "estimate", "sigma", "unit", "determined"]
+        columns = [{"head": head, "is_number": head in ("estimate", "sigma")} for head in heads]
+        table = {"title": "Drift coefficients:", "columns": columns, "rows": cells}
+        blocks: list[dict[str, Any]] = [{"paragraph": self.verdict_text}]
+        return [*blocks, {"table": table}] if cells else blocks
+
+    def __repr__(self) -> str:
+        return f"<gyrocal.Calibration {self.verdict}: {len(self.names)} coefficients>"
+
+
+class Plan(Result):
+    """Result of :func:`gyrocal.plan`."""
+
+    __slots__ = ()
+    aim: str
+    now: Fields
+    proposals: list[Fields]
+    going_on: list[Fields]
+    goal: Fields | None
+    setup: list[Fields]
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """One row a proposed run."""
+        rows = []
+        for run in self._fields["proposals"]:
+            angles = run["angles_deg"] or [None] * 3
+            row = dict(zip(("angle_x_deg", "angle_y_deg", "angle_z_deg"), angles))
+            row["hours"] = run["duration_s"] / 3600.0
+            row["sigma_ratio"] = run["outlook"]["sigma_ratio"]
+            for one in run["outlook"]["coefficients"]:
+                row[one["name"] + "_sigma"] = one["sigma"]
+            rows.append(row)
+        return rows
+
+    def __repr__(self) -> str:
+        return f"<gyrocal.Plan by {self.aim}: {len(self._fields['proposals'])} runs>"
+
+
+class Characteristics(Result):
+    """Result of :func:`gyrocal.characterise`."""
+
+    __slots__ = ()
+    cells: list[Fields]
+
+    @property
+    def holds(self) -> bool:
+        """Whether every figure that has a target meets it."""
+        return all(row["holds"] is not False for row in self._rows())
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """One row a figure."""
+        keys = ("cell", "figure", "target", "measured", "interval", "runs", "holds", "too_few")
+        figures = (one for cell in self._fields["cells"] for one in cell["characteristics"])
+        return [{key: one.get(key) for key in keys} for one in figures]
+
+    def _shown(self) -> list[dict[str, Any]]:
+        heads = ["cell", "figure", "measured", "runs", "holds"]
+        columns = [{"head": head, "is_number": head in ("measured", "runs")} for head in heads]
+        words = {True: "yes", False: "no", None: ""}
+        cells = [
+            [
+                str(row["cell"]),
+                str(row["figure"]),
+                "" if row["measured"] is None else f"{row['measured']:.4g}",
+                str(row["runs"]),
+                words[row["holds"]],
+            ]
+            for row in self._rows()
+        ]
+        return [{"table": {"title": "Operating characteristics:", "columns": columns, "rows": cells}}]
+
+    def __repr__(self) -> str:
+        return f"<gyrocal.Characteristics: {len(self._fields['cells'])} cells>"
+
+
+class Simulation(Result):
+    """Result of :func:`gyrocal.simulate`: the truth, and the record and bench description made of it."""
+
+    __slots__ = ("_bench", "_record")
+    _bench: Bench
+    _record: Record
+    coefficients: list[Fields]
+    hidden: list[Fields]
+    rows: int
+    #: Keys of the record of the simulation, which are no attributes of the truth.
+    _own: ClassVar[tuple[str, ...]] = ("record", "bench")
+
+    def __init__(self, text: str, record: Record, bench: Bench) -> None:
+        super().__init__(text)
+        object.__setattr__(self, "_record", record)
+        object.__setattr__(self, "_bench", bench)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._text, self._record, self._bench)
+
+    @property
+    def record(self) -> Record:
+        """The record."""
+        return self._record
+
+    @property
+    def bench(self) -> Bench:
+        """The bench description: what the operator knows."""
+        return self._bench
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """One row a true coefficient."""
+        return self.to_dict()["coefficients"]
+
+    def _shown(self) -> list[dict[str, Any]]:
+        hidden = [
+            f"{one['effect']} ("
+            + ", ".join(f"{p['name']} {p['value']:g} {p['unit']}" for p in one["parameters"])
+            + ")"
+            for one in self._fields["hidden"]
+        ]
+        blocks: list[dict[str, Any]] = [
+            {"paragraph": f"A simulated record of {self.rows} rows, seed {self.manifest.seed}."}
+        ]
+        if hidden:
+            blocks.append({"list": {"title": "Hidden effects:", "entries": hidden}})
+        return blocks
+
+    def __repr__(self) -> str:
+        return f"<gyrocal.Simulation: {self.rows} rows, seed {self.manifest.seed}>"
+
+
+def _wrap(text: str, first: str = "", rest: str = "") -> str:
+    return textwrap.fill(
+        text, _WIDTH, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False
+    )
+
+
+def _block_text(block: dict[str, Any]) -> str:
+    (kind, content), *_ = block.items()
+    if kind == "paragraph":
+        return _wrap(content)
+    if kind == "entry":
+        lines = [f"{content['number']}. {content['title']}"]
+        return "\n".join(lines + [_wrap(words, "   ", "   ") for words in content["paragraphs"]])
+    if kind == "list":
+        return "\n".join([content["title"]] + [_wrap(one, "- ", "  ") for one in content["entries"]])
+    if kind == "table":
+        return _table_text(content)
+    return ""
+
+
+def _table_text(table: dict[str, Any]) -> str:
+    heads = [column["head"] for column in table["columns"]]
+    rows = [heads, *table["rows"]]
+    widths = [max(len(row[index]) for row in rows) for index in range(len(heads))]
+    lines = []
+    for row in rows:
+        cells = [
+            cell.rjust(width) if column["is_number"] else cell.ljust(width)
+            for cell, width, column in zip(row, widths, table["columns"])
+        ]
+        lines.append("  ".join(cells).rstrip())
+    lines.insert(1, "  ".join("-" * width for width in widths))
+    return "\n".join([table["title"], *lines])
+
+
+def _block_html(block: dict[str, Any]) -> str:
+    (kind, content), *_ = block.items()
+    text = html.escape
+    if kind == "paragraph":
+        return f"<p>{text(content)}</p>"
+    if kind == "entry":
+        paragraphs = "".join(f"<p>{text(words)}</p>" for words in content["paragraphs"])
+        return f"<p><b>{content['number']}. {text(content['title'])}</b></p>{paragraphs}"
+    if kind == "list":
+        entries = "".join(f"<li>{text(entry)}</li>" for entry in content["entries"])
+        return f"<p>{text(content['title'])}</p><ul>{entries}</ul>"
+    if kind == "table":
+        heads = "".join(f"<th>{text(column['head'])}</th>" for column in content["columns"])
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in row) + "</tr>"
+            for row in content["rows"]
+        )
+        return (
+            f"<p>{text(content['title'])}</p>"
+            f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
+        )
+    return ""

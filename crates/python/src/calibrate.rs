@@ -1,0 +1,300 @@
+//! Calibration from records.
+
+use std::borrow::Cow;
+
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_calibration::{Options, Run, average_record, calibrate_runs, shared_rows};
+use gyrocal_cli::NotCalibrated;
+use gyrocal_diagnosis::{
+    CalibratedRecord, CalibrationEvidence, DiagnoseOptions, Gate, calibration_report,
+    calibration_verdict, effect_test, fit_effects, screen_record,
+};
+use gyrocal_record::{
+    AveragedReport, Bench, CalibrationMethod, CalibrationReport, EffectTest, FittedEffects,
+    Manifest, Record, SetupProblem,
+};
+use pyo3::prelude::*;
+
+use crate::bench::HeldBench;
+use crate::diagnose::Given;
+use crate::error::{Class, Failure, Outcome};
+use crate::origin::{json, manifest};
+use crate::record::HeldRecord;
+
+/// What is asked of a calibration.
+struct Request {
+    method: CalibrationMethod,
+    factorised: bool,
+    noise: bool,
+    average_s: Option<f64>,
+    robust_sigmas: Option<f64>,
+    effects: Vec<String>,
+}
+
+impl Request {
+    fn options(&self) -> Options {
+        let options = match self.method {
+            CalibrationMethod::Streaming => Options::streaming(),
+            CalibrationMethod::Paper => Options::paper_baseline(),
+            _ => Options::default(),
+        };
+        Options {
+            factorised: self.factorised,
+            noise: self.method == CalibrationMethod::Batch && self.noise,
+            outlier_bound: self.robust_sigmas,
+            ..options
+        }
+    }
+}
+
+/// Estimates the coefficients; the result (JSON).
+#[pyfunction]
+#[pyo3(signature = (runs, method, factorised, noise, average_s, robust_sigmas, effects, command))]
+#[expect(clippy::too_many_arguments, reason = "the module in Python calls it, with defaults")]
+pub(crate) fn calibrate(
+    py: Python<'_>,
+    runs: Vec<(Bound<'_, HeldRecord>, Bound<'_, HeldBench>)>,
+    method: &str,
+    factorised: bool,
+    noise: bool,
+    average_s: Option<f64>,
+    robust_sigmas: Option<f64>,
+    effects: Vec<String>,
+    command: &str,
+) -> PyResult<String> {
+    let given: Vec<Given<'_>> = runs
+        .iter()
+        .map(|(record, bench)| Given {
+            record: record.get(),
+            bench: bench.get(),
+        })
+        .collect();
+    let request = Request {
+        method: method_of(method)?,
+        factorised,
+        noise,
+        average_s,
+        robust_sigmas,
+        effects,
+    };
+    Ok(py.detach(|| json(&report(&given, &request, command)?))?)
+}
+
+fn method_of(name: &str) -> Outcome<CalibrationMethod> {
+    Ok(match name {
+        "batch" => CalibrationMethod::Batch,
+        "streaming" => CalibrationMethod::Streaming,
+        "paper" => CalibrationMethod::Paper,
+        other => {
+            let found = format!("`{other}`");
+            return Err(Failure::of_value("method", found, "batch, streaming or paper", ""));
+        }
+    })
+}
+
+/// A record without what gross errors of its set-up spoilt, averaged if that is asked for.
+struct Sound<'a> {
+    given: Given<'a>,
+    record: Cow<'a, Record>,
+    bench: Cow<'a, Bench>,
+    averaged: Option<AveragedReport>,
+    setup: Vec<SetupProblem>,
+}
+
+fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<CalibrationReport> {
+    refuse_differing(given)?;
+    let manifest = origin(given, command);
+    let sound = sound(given, request, &manifest)?;
+    let runs: Vec<Run<'_>> = sound.iter().map(Sound::run).collect();
+    let options = request.options();
+    let with_effects = with_effects(request, &runs)?;
+    let names: Vec<String> = given.iter().map(|one| one.record.input.path.clone()).collect();
+    let (method, factorised) = (request.method, request.factorised);
+    let calibration = calibrate_runs(&runs, &options, |_| ()).map_err(|source| {
+        Failure::of_work(&NotCalibrated::new(&names, &runs, method, factorised, source))
+    })?;
+    let effects = effects(&names, &runs);
+    let first = gyrocal_calibration::first_run_sigmas(&runs, &[], &options);
+    let evidence = CalibrationEvidence {
+        method,
+        records: sound.iter().map(Sound::calibrated).collect(),
+        calibration: &calibration,
+        effects: &effects,
+        with_effects: with_effects.as_ref(),
+        verdict: &calibration_verdict(&calibration.fit, &effects),
+        // A first record that cannot be calibrated alone is no failure of all together.
+        first_record_sigmas: first.unwrap_or(None),
+    };
+    Ok(calibration_report(evidence, manifest))
+}
+
+/// Inputs in the order of the command: all records, then each bench description once.
+fn origin(given: &[Given<'_>], command: &str) -> Manifest {
+    let mut inputs: Vec<_> = given.iter().map(|one| one.record.input.clone()).collect();
+    let one_bench = given.windows(2).all(|pair| pair[0].bench.input == pair[1].bench.input);
+    let benches = given.iter().map(|one| one.bench.input.clone());
+    inputs.extend(benches.take(if one_bench { 1 } else { given.len() }));
+    manifest(MODEL_HASH, 0, inputs, command)
+}
+
+impl<'a> Sound<'a> {
+    fn run(&self) -> Run<'_> {
+        Run {
+            record: &self.record,
+            bench: &self.bench,
+        }
+    }
+
+    fn calibrated(&self) -> CalibratedRecord<'_> {
+        CalibratedRecord {
+            name: self.given.record.input.path.clone(),
+            bench_name: self.given.bench.input.path.clone(),
+            rows: self.record.len(),
+            averaged: self.averaged,
+            setup: &self.setup,
+        }
+    }
+
+    /// Takes means over intervals.
+    fn average(self, interval_s: f64) -> Outcome<Self> {
+        let means = average_record(&self.record, interval_s).map_err(|error| Failure {
+            message: format!("{}: {error}", self.given.record.input.path),
+            advice: Some("choose average_s between these, or leave it out".to_owned()),
+            ..Failure::default()
+        })?;
+        Ok(Self {
+            averaged: Some(AveragedReport {
+                interval_s,
+                rows_read: self.record.len(),
+                left_out: means.left_out,
+                noise_ratio: means.noise_ratio,
+            }),
+            bench: Cow::Owned(means.bench(&self.bench)),
+            record: Cow::Owned(means.record),
+            ..self
+        })
+    }
+}
+
+/// The records without what gross errors of the set-ups spoilt.
+fn sound<'a>(
+    given: &[Given<'a>],
+    request: &Request,
+    manifest: &Manifest,
+) -> Outcome<Vec<Sound<'a>>> {
+    let mut problems = Vec::new();
+    let mut sound = Vec::with_capacity(given.len());
+    for one in given {
+        let gate: Gate<'a> = one.gate(&DiagnoseOptions::default())?;
+        problems.extend(gate.problems.iter().cloned());
+        if let Some(record) = gate.usable {
+            sound.push(Sound {
+                given: *one,
+                record,
+                bench: Cow::Borrowed(&one.bench.bench),
+                averaged: None,
+                setup: gate.problems,
+            });
+        }
+    }
+    if sound.len() < given.len() {
+        let manifest = manifest.clone();
+        let report = CalibrationReport::of_wrong_setup(manifest, request.method, problems);
+        return Err(Failure {
+            class: Class::Setup,
+            message: report.verdict_text.clone(),
+            code: Some("gyrocal::calibrate::setup".to_owned()),
+            advice: Some("mend the record or its bench description".to_owned()),
+            result: Some(json(&report)?),
+            ..Failure::default()
+        });
+    }
+    refuse_shared_rows(&sound)?;
+    match request.average_s {
+        Some(interval_s) => sound.into_iter().map(|one| one.average(interval_s)).collect(),
+        None => Ok(sound),
+    }
+}
+
+/// Refuses benches with different priors, as the coefficients are shared, and with different
+/// uncertainties of one site.
+fn refuse_differing(given: &[Given<'_>]) -> Outcome<()> {
+    for (index, one) in given.iter().enumerate() {
+        for earlier in &given[..index] {
+            let (bench, other) = (&one.bench.bench, &earlier.bench.bench);
+            let (name, other_name) = (&one.bench.input.path, &earlier.bench.input.path);
+            let same = format!("the same as in {other_name}");
+            if bench.prior != other.prior {
+                return Err(Failure::of_value(
+                    name,
+                    "another [prior]",
+                    same,
+                    "the coefficients are those of one platform: give [prior] the same values",
+                ));
+            }
+            let site = |bench: &Bench| (bench.latitude_deg, bench.gravity);
+            if site(bench) == site(other) && bench.uncertainty != other.uncertainty {
+                return Err(Failure::of_value(
+                    name,
+                    "other uncertainties of the same site",
+                    same,
+                    "both give the same latitude and gravity: give them the same sigmas",
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn refuse_shared_rows(sound: &[Sound<'_>]) -> Outcome<()> {
+    for (index, one) in sound.iter().enumerate() {
+        for earlier in &sound[..index] {
+            let Some(shared) = shared_rows(&earlier.record, &one.record) else {
+                continue;
+            };
+            let name = |sound: &Sound<'_>| sound.given.record.input.path.clone();
+            return Err(Failure::of_value(
+                &name(one),
+                format!(
+                    "{} consecutive rows that {} has too, from row {} on",
+                    shared.rows,
+                    name(earlier),
+                    shared.first
+                ),
+                "rows of its own: they would count twice",
+                "leave one of them out, or cut the rows that both have from one",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The coefficients of the first record with the effects asked for; `None` without such.
+fn with_effects(request: &Request, runs: &[Run<'_>]) -> Outcome<Option<FittedEffects>> {
+    let Some(run) = runs.first().filter(|_| !request.effects.is_empty()) else {
+        return Ok(None);
+    };
+    if runs.len() > 1 {
+        return Err(Failure::of_value(
+            "effects",
+            format!("{} records", runs.len()),
+            "one record",
+            "calibrate the records one by one",
+        ));
+    }
+    let fitted = fit_effects(run, &request.effects, &DiagnoseOptions::default());
+    fitted.map(Some).map_err(|error| Failure {
+        message: format!("effects: {error}"),
+        advice: Some("`diagnose` finds which effects the record shows".to_owned()),
+        ..Failure::default()
+    })
+}
+
+/// Tests of the records for effects that the model lacks.
+fn effects(names: &[String], runs: &[Run<'_>]) -> Vec<EffectTest> {
+    let tests = names.iter().zip(runs).filter_map(|(name, run)| {
+        let screened = screen_record(run, &DiagnoseOptions::default()).ok()?;
+        Some(effect_test(name, &screened))
+    });
+    tests.collect()
+}

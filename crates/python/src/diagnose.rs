@@ -1,0 +1,141 @@
+//! Diagnosis of a record.
+
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_calibration::{CalibrationError, Run};
+use gyrocal_cli::NotDiagnosed;
+use gyrocal_diagnosis::{
+    DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
+    diagnose_gated, prose,
+};
+use gyrocal_setup::PlatformKind;
+use pyo3::prelude::*;
+
+use crate::bench::HeldBench;
+use crate::error::{Failure, Outcome};
+use crate::origin::{json, manifest};
+use crate::record::HeldRecord;
+
+/// A record with its bench description.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a> {
+    pub(crate) record: &'a HeldRecord,
+    pub(crate) bench: &'a HeldBench,
+}
+
+impl<'a> Given<'a> {
+    pub(crate) fn run(&self) -> Run<'a> {
+        Run {
+            record: self.record.file.record(),
+            bench: &self.bench.bench,
+        }
+    }
+
+    /// The check of the set-up.
+    pub(crate) fn gate(&self, options: &DiagnoseOptions) -> Outcome<Gate<'a>> {
+        let kind = PlatformKind::Stabilised;
+        let bench = &self.bench.bench;
+        Ok(Gate::of_file(kind, &self.record.file, bench, &options.calibration)?)
+    }
+
+    pub(crate) fn no_diagnosis(&self, source: DiagnosisError) -> Failure {
+        let path = self.record.input.path.as_ref();
+        Failure::of_work(&NotDiagnosed::new(path, &self.bench.bench, source))
+    }
+}
+
+/// The result (JSON), and its sentences and tables (JSON).
+pub(crate) type Answer = (String, String);
+
+/// Diagnoses a record.
+#[pyfunction]
+#[pyo3(signature = (record, bench, later, effects, false_alarm, euler_filter, command))]
+#[expect(clippy::too_many_arguments, reason = "the module in Python calls it, with defaults")]
+pub(crate) fn diagnose(
+    py: Python<'_>,
+    record: &Bound<'_, HeldRecord>,
+    bench: &Bound<'_, HeldBench>,
+    later: Option<(Bound<'_, HeldRecord>, Bound<'_, HeldBench>)>,
+    effects: Vec<String>,
+    false_alarm: f64,
+    euler_filter: bool,
+    command: &str,
+) -> PyResult<Answer> {
+    let given = Given {
+        record: record.get(),
+        bench: bench.get(),
+    };
+    let later = later.as_ref().map(|(record, bench)| Given {
+        record: record.get(),
+        bench: bench.get(),
+    });
+    let options = options(effects, false_alarm, euler_filter)?;
+    Ok(py.detach(|| answer(given, later, &options, command))?)
+}
+
+/// Settings of a diagnosis.
+pub(crate) fn options(
+    effects: Vec<String>,
+    false_alarm: f64,
+    euler_filter: bool,
+) -> Outcome<DiagnoseOptions> {
+    if !(false_alarm > 0.0 && false_alarm < 1.0) {
+        return Err(Failure::of_value(
+            "false_alarm",
+            format!("{false_alarm}"),
+            "a probability between 0 and 1",
+            "",
+        ));
+    }
+    if effects.iter().any(|id| id == FILTER_EFFECT) {
+        return Err(Failure::of_value(
+            "effects",
+            format!("{FILTER_EFFECT}, an error of a filter and not of the record"),
+            "effects of the catalogue",
+            "give filter=\"euler\", which tests it",
+        ));
+    }
+    Ok(DiagnoseOptions {
+        false_alarm_probability: false_alarm,
+        also: effects,
+        filter: euler_filter.then_some(TestedFilter::Euler),
+        ..DiagnoseOptions::default()
+    })
+}
+
+fn answer(
+    given: Given<'_>,
+    later: Option<Given<'_>>,
+    options: &DiagnoseOptions,
+    command: &str,
+) -> Outcome<Answer> {
+    let mut result = result(given, later, options)?;
+    let inputs = [Some(given), later].into_iter().flatten();
+    let inputs = inputs.flat_map(|one| [one.record.input.clone(), one.bench.input.clone()]);
+    result.manifest = manifest(MODEL_HASH, options.seed, inputs.collect(), command);
+    Ok((json(&result)?, json(&prose::diagnosis(&result))?))
+}
+
+/// A gross error of the set-up is an answer too.
+fn result(
+    given: Given<'_>,
+    later: Option<Given<'_>>,
+    options: &DiagnoseOptions,
+) -> Outcome<DiagnosisResult> {
+    if options.filter.is_some() && given.bench.bench.initial_angles_deg.is_none() {
+        return Err(given.no_diagnosis(CalibrationError::NoAttitude.into()));
+    }
+    let diagnosed: Result<Diagnosis<'_>, _> =
+        diagnose_gated(given.gate(options)?, &given.bench.bench, options);
+    let mut diagnosis = match diagnosed {
+        Err(DiagnosisError::Setup { result }) => return Ok(*result),
+        found => found.map_err(|source| given.no_diagnosis(source))?,
+    };
+    if let Some(later) = later {
+        let gate = later.gate(options)?;
+        match diagnosis.validate_gated(&given.run(), gate, &later.bench.bench, options) {
+            Err(DiagnosisError::Setup { result }) => return Ok(*result),
+            validated => validated.map_err(|source| later.no_diagnosis(source))?,
+        }
+    }
+    Ok(diagnosis.result)
+}

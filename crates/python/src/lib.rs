@@ -1,0 +1,63 @@
+//! The extension module of the Python package `gyrocal`: records and bench descriptions in memory,
+//! and the computations on them. The package around it has the functions that users call.
+//!
+//! Numbers come in as views of NumPy arrays or of Arrow buffers and are copied once, into the rows of
+//! a record; they go out as views of those rows. Results go out as JSON, the same text that the command
+//! writes. The lock of the interpreter is released while anything is read or computed.
+
+mod arrow_stream;
+mod bench;
+mod calibrate;
+mod characterise;
+mod diagnose;
+mod error;
+mod names;
+mod origin;
+mod plan;
+mod record;
+mod simulate;
+
+use pyo3::prelude::*;
+
+/// The computations of the package.
+#[pymodule]
+mod _gyrocal {
+    use std::ffi::OsString;
+
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::bench::HeldBench;
+    #[pymodule_export]
+    use crate::calibrate::calibrate;
+    #[pymodule_export]
+    use crate::characterise::characterise;
+    #[pymodule_export]
+    use crate::diagnose::diagnose;
+    #[pymodule_export]
+    use crate::plan::plan;
+    #[pymodule_export]
+    use crate::record::HeldRecord;
+    #[pymodule_export]
+    use crate::simulate::simulate;
+
+    use crate::names::check_names;
+
+    /// The version of the package.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+    /// Runs the command `gyrocal` with its arguments, the first of which is the name of the program;
+    /// the exit code.
+    #[pyfunction]
+    fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+        py.detach(|| gyrocal_cli::run(arguments))
+    }
+
+    /// Refuses names that the columns of a record do not have.
+    #[pyfunction]
+    fn check_columns(names: Vec<String>, frame: &str) -> PyResult<()> {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Ok(check_names(&names, frame)?)
+    }
+}

@@ -1,0 +1,197 @@
+//! The next run for a record.
+
+use std::borrow::Cow;
+
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_cli::NotPlanned;
+use gyrocal_design::{Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design, prose};
+use gyrocal_diagnosis::{DiagnosisResult, diagnose_gated};
+use gyrocal_record::{GimbalLimits, Record, SetupProblem, SourceText};
+use pyo3::prelude::*;
+
+use crate::bench::HeldBench;
+use crate::diagnose::{Answer, Given, options};
+use crate::error::{Failure, Outcome};
+use crate::origin::{json, manifest};
+use crate::record::HeldRecord;
+
+/// What is asked of a plan.
+struct Request {
+    /// A diagnosis of the record (JSON).
+    diagnosis: Option<String>,
+    effects: Vec<String>,
+    false_alarm: f64,
+    options: PlanOptions,
+}
+
+/// Plans the next run.
+#[pyfunction]
+#[pyo3(signature = (record, bench, diagnosis, hours, limits_deg, aim, sigmas, one_name, effects, false_alarm, command))]
+#[expect(clippy::too_many_arguments, reason = "the module in Python calls it, with defaults")]
+pub(crate) fn plan(
+    py: Python<'_>,
+    record: &Bound<'_, HeldRecord>,
+    bench: &Bound<'_, HeldBench>,
+    diagnosis: Option<String>,
+    hours: Vec<f64>,
+    limits_deg: Vec<(String, [f64; 2])>,
+    aim: Option<&str>,
+    sigmas: Vec<(String, f64)>,
+    one_name: bool,
+    effects: Vec<String>,
+    false_alarm: f64,
+    command: &str,
+) -> PyResult<Answer> {
+    let given = Given {
+        record: record.get(),
+        bench: bench.get(),
+    };
+    let request = Request {
+        diagnosis,
+        effects,
+        false_alarm,
+        options: PlanOptions {
+            durations_s: durations_s(&hours)?,
+            limits: limits(&limits_deg, given.bench.bench.gimbal_limits)?,
+            aim: aim.map(aim_of).transpose()?,
+            goal: Goal { sigmas, one_name },
+            ..PlanOptions::default()
+        },
+    };
+    Ok(py.detach(|| answer(given, &request, command))?)
+}
+
+/// Starting point of a plan.
+struct Known<'a> {
+    record: Cow<'a, Record>,
+    setup: Vec<SetupProblem>,
+    fitted: FittedPlatform<'a>,
+    noise: NoiseModel,
+    named: Vec<NamedCause>,
+}
+
+fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Answer> {
+    let known = match &request.diagnosis {
+        Some(diagnosis) => written(given, diagnosis)?,
+        None => made(given, request)?,
+    };
+    let run = Run {
+        record: &known.record,
+        bench: &given.bench.bench,
+    };
+    let options = &request.options;
+    let mut planned = design(&known.fitted, &run, &known.noise, &known.named, options)
+        .map_err(|source| no_plan(given, source))?;
+    planned.setup.clone_from(&known.setup);
+    let inputs = vec![given.record.input.clone(), given.bench.input.clone()];
+    planned.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
+    Ok((json(&planned)?, json(&prose(&planned))?))
+}
+
+fn no_plan(given: Given<'_>, source: DesignError) -> Failure {
+    Failure::of_work(&NotPlanned::new(given.record.input.path.as_ref(), source))
+}
+
+/// Diagnoses the record.
+fn made<'a>(given: Given<'a>, request: &Request) -> Outcome<Known<'a>> {
+    let options = options(request.effects.clone(), request.false_alarm, false)?;
+    let found = diagnose_gated(given.gate(&options)?, &given.bench.bench, &options)
+        .map_err(|source| given.no_diagnosis(source))?;
+    Ok(Known {
+        named: NamedCause::all(&found.result),
+        noise: found.noise_model,
+        fitted: found.extended.unwrap_or(found.nominal),
+        record: found.record,
+        setup: found.result.setup,
+    })
+}
+
+/// Takes a diagnosis of the record.
+fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
+    let source = SourceText::new(diagnosis, "diagnosis")?;
+    let diagnosis = gyrocal_diagnosis::result::read_text(&source)?;
+    check_inputs(given, &diagnosis)?;
+    let named = NamedCause::all(&diagnosis);
+    let noise = noise_of(&diagnosis);
+    let options = options(Vec::new(), diagnosis.false_alarm_probability, false)?;
+    let sound = given.gate(&options)?.sound(&options);
+    let (record, setup) = sound.map_err(|source| given.no_diagnosis(source))?;
+    let fitted = {
+        let run = Run {
+            record: &record,
+            bench: &given.bench.bench,
+        };
+        let fitted = NamedCause::fitted(&named, &run, &noise, &Options::default());
+        fitted.map_err(|source| no_plan(given, source))?.into_owned()
+    };
+    Ok(Known {
+        record,
+        setup,
+        fitted,
+        noise,
+        named,
+    })
+}
+
+/// A diagnosis is of the record and the bench description that are given.
+fn check_inputs(given: Given<'_>, diagnosis: &DiagnosisResult) -> Outcome<()> {
+    let expected = [&given.record.input, &given.bench.input];
+    for (place, expected) in expected.into_iter().enumerate() {
+        let found = diagnosis.manifest.inputs.get(place);
+        if found.is_none_or(|found| found.sha256 != expected.sha256) {
+            return Err(Failure::of_value(
+                "diagnosis",
+                found.map_or("no input", |found| found.path.as_str()),
+                format!("{}, with SHA-256 {}", expected.path, expected.sha256),
+                "diagnose this record with this bench description, from a file or from memory as \
+                 here, or leave diagnosis out",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Each duration once, in the order given.
+fn durations_s(hours: &[f64]) -> Outcome<Vec<f64>> {
+    let mut durations_s: Vec<f64> = Vec::with_capacity(hours.len());
+    for hours in hours {
+        if !(*hours > 0.0 && hours.is_finite()) {
+            let found = format!("{hours}");
+            return Err(Failure::of_value("hours", found, "a positive number", ""));
+        }
+        let duration_s = 3600.0 * hours;
+        if !durations_s.contains(&duration_s) {
+            durations_s.push(duration_s);
+        }
+    }
+    Ok(durations_s)
+}
+
+/// Limits that are given, then those of the bench.
+fn limits(given: &[(String, [f64; 2])], of_bench: GimbalLimits) -> Outcome<GimbalLimits> {
+    let mut limits = of_bench;
+    for (axis, ends) in given {
+        let place = GimbalLimits::KEYS.iter().position(|key| key == axis);
+        match place.filter(|_| GimbalLimits::is_sound(*ends)) {
+            Some(place) => limits.deg[place] = Some(*ends),
+            None => {
+                return Err(Failure::of_value(
+                    "limits_deg",
+                    format!("{axis}: {ends:?}"),
+                    format!("x, y or z with {}", GimbalLimits::EXPECTED),
+                    "",
+                ));
+            }
+        }
+    }
+    Ok(limits)
+}
+
+fn aim_of(name: &str) -> Outcome<Aim> {
+    match name {
+        "set" => Ok(Aim::Set),
+        "sigmas" => Ok(Aim::Sigmas),
+        other => Err(Failure::of_value("aim", format!("`{other}`"), "set or sigmas", "")),
+    }
+}

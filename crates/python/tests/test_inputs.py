@@ -1,0 +1,277 @@
+"""Records from frames of every kind, and what is refused of them."""
+
+import pickle
+import threading
+import time
+
+import numpy as np
+import pandas as pd
+import polars as pl
+import pyarrow as pa
+import pytest
+
+import gyrocal
+
+
+def equal(record, other):
+    same_temperature = (record.temperature_c is None) == (other.temperature_c is None)
+    return (
+        same_temperature
+        and np.array_equal(record.time_s, other.time_s)
+        and np.array_equal(record.accel_g, other.accel_g, equal_nan=True)
+    )
+
+
+def frames(columns):
+    structured = np.zeros(len(columns["time_s"]), dtype=[(name, "f8") for name in columns])
+    for name, values in columns.items():
+        structured[name] = values
+    table = pa.table(columns)
+    half = table.num_rows // 2
+    return {
+        "mapping": dict(columns),
+        "structured": structured,
+        "pandas": pd.DataFrame(columns),
+        "pandas-arrow": pa.table(columns).to_pandas(types_mapper=pd.ArrowDtype),
+        "pandas-nullable": pd.DataFrame(columns).convert_dtypes(),
+        "polars": pl.DataFrame(columns),
+        "arrow": table,
+        "arrow-chunks": pa.concat_tables([table.slice(0, half), table.slice(half)]),
+        "arrow-batch": table.to_batches()[0],
+        "arrow-reader": table.to_reader(max_chunksize=7),
+    }
+
+
+KINDS = list(frames({"time_s": [0.0, 1.0]}))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_kinds_of_frames_give_the_same_record(simulated, kind):
+    columns = simulated.record.columns()
+    columns["temperature_c"] = np.linspace(20.0, 21.0, len(simulated.record))
+    record = gyrocal.Record.from_frame(frames(columns)[kind])
+    expected = gyrocal.Record(simulated.record.time_s, simulated.record.accel_g, columns["temperature_c"])
+    assert equal(record, expected)
+    assert record.sha256 == expected.sha256
+
+
+def test_order_of_columns_and_types_of_numbers_are_free():
+    columns = {
+        "accel_z_g": np.array([1, 1, 1], dtype=np.int32),
+        "time_s": np.array([0, 60, 120], dtype=np.int64),
+        "accel_x_g": np.zeros(3, dtype=np.float32),
+        "accel_y_g": np.array([0.0, np.nan, 0.0]),
+    }
+    expected = gyrocal.Record([0, 60, 120], [[0, 0, 1], [0, np.nan, 1], [0, 0, 1]])
+    for name, frame in frames(columns).items():
+        assert equal(gyrocal.Record.from_frame(frame), expected), name
+    with_nulls = pa.table({**columns, "accel_y_g": pa.array([0.0, None, 0.0])})
+    assert equal(gyrocal.Record.from_frame(with_nulls), expected)
+    assert equal(gyrocal.Record.from_frame(pl.from_arrow(with_nulls)), expected)
+
+
+def test_arrays_of_a_record_are_views_that_cannot_be_written_to(simulated):
+    record = simulated.record
+    assert np.shares_memory(record.accel_g, record.accel_g)
+    assert np.shares_memory(record.time_s, record.columns()["time_s"])
+    with pytest.raises(ValueError, match="read-only"):
+        record.accel_g[0, 0] = 1.0
+    kept = gyrocal.simulate("examples/data/three_days.scenario.toml").record.accel_g
+    assert kept.shape == (4321, 3) and np.all(np.isfinite(kept))
+
+
+def test_strided_columns_are_read(simulated):
+    samples = np.asfortranarray(simulated.record.accel_g)
+    assert equal(gyrocal.Record(simulated.record.time_s, samples), simulated.record)
+    backwards = simulated.record.time_s[::-1]
+    assert equal(gyrocal.Record(backwards[::-1], samples), simulated.record)
+
+
+def test_objects_can_be_pickled(simulated, diagnosed):
+    assert equal(pickle.loads(pickle.dumps(simulated.record)), simulated.record)
+    assert pickle.loads(pickle.dumps(simulated.bench)).to_dict() == simulated.bench.to_dict()
+    assert pickle.loads(pickle.dumps(diagnosed)) == diagnosed
+    assert pickle.loads(pickle.dumps(simulated)).record.sha256 == simulated.record.sha256
+    with pytest.raises(gyrocal.InputError) as caught:
+        gyrocal.Bench({"site": {"latitude_deg": 91.0}})
+    restored = pickle.loads(pickle.dumps(caught.value))
+    assert (str(restored), restored.line) == (str(caught.value), caught.value.line)
+
+
+def test_the_lock_of_the_interpreter_is_released(simulated):
+    beats = []
+    done = threading.Event()
+
+    def beat():
+        while not done.is_set():
+            beats.append(time.monotonic())
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=beat)
+    thread.start()
+    started = time.monotonic()
+    gyrocal.diagnose(simulated.record, simulated.bench)
+    ended = time.monotonic()
+    done.set()
+    thread.join()
+    within = sum(started < moment < ended for moment in beats)
+    # A thread that waits 5 ms beats some 200 times a second; with the lock held, once.
+    assert within > 10 * (ended - started)
+
+
+GOOD = {
+    "time_s": np.arange(20) * 60.0,
+    "accel_x_g": np.linspace(0.0, 0.02, 20),
+    "accel_y_g": np.linspace(0.0, 0.01, 20),
+    "accel_z_g": np.full(20, 0.9998),
+}
+
+
+def changed(**columns):
+    return {**GOOD, **columns}
+
+
+def bad(column, row, value):
+    values = GOOD[column].copy()
+    values[row] = value
+    return changed(**{column: values})
+
+
+def renamed(old, new):
+    return {new if name == old else name: values for name, values in GOOD.items()}
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        (renamed("accel_x_g", "accel_x_mg"), ["accel_x_mg", "did you mean `accel_x_g`"]),
+        (renamed("accel_x_g", "ax"), ["`ax`", "accel_x_g"]),
+        ({k: v for k, v in GOOD.items() if k != "accel_z_g"}, ["accel_z_g"]),
+        (changed(pressure=GOOD["time_s"]), ["pressure", "remove it"]),
+        (changed(accel_y_g=np.array(["0.1"] * 20, dtype=object)), ["accel_y_g", "object", "to_numeric"]),
+        (changed(accel_y_g=np.array(["0.1"] * 20)), ["accel_y_g", "convert"]),
+        (
+            changed(time_s=np.arange(20).astype("datetime64[m]")),
+            ["time_s", "datetime64", "seconds"],
+        ),
+        (bad("time_s", 4, np.nan), ["time_s", "row 4", "NaN", "leave the row out"]),
+        (bad("accel_z_g", 7, np.inf), ["accel_z_g", "row 7", "inf", "nan"]),
+        (changed(temperature_c=np.full(20, np.nan)), ["temperature_c", "row 0", "interpolate"]),
+        (changed(accel_x_g=np.zeros(19)), ["accel_x_g", "19 values", "20"]),
+        (changed(accel_x_g=np.zeros((20, 2))), ["accel_x_g", "2 dimensions"]),
+    ],
+)
+def test_frames_that_are_refused(columns, words):
+    with pytest.raises(gyrocal.InputError) as caught:
+        gyrocal.diagnose(columns, BENCH)
+    for word in words:
+        assert word in str(caught.value), str(caught.value)
+    assert caught.value.found and caught.value.expected
+
+
+@pytest.mark.parametrize("make", [pd.DataFrame, pl.DataFrame, pa.table])
+def test_each_kind_of_frame_names_the_column_that_is_wrong(make):
+    for columns, words in [
+        (renamed("accel_x_g", "accel_x_mg"), ["accel_x_mg", "accel_x_g"]),
+        (changed(accel_y_g=["0.1"] * 20), ["accel_y_g", "float64"]),
+        (bad("time_s", 4, np.nan), ["time_s", "row 4"]),
+    ]:
+        with pytest.raises(gyrocal.InputError) as caught:
+            gyrocal.diagnose(make(columns), BENCH)
+        text = str(caught.value)
+        assert all(word in text for word in words), text
+        assert caught.value.advice, text
+
+
+def test_units_in_the_metadata_of_arrow_are_checked():
+    fields = [pa.field(name, pa.float64()) for name in GOOD]
+    fields[1] = fields[1].with_metadata({"unit": "m/s^2"})
+    with pytest.raises(gyrocal.InputError, match="accel_x_g.*m/s\\^2"):
+        gyrocal.diagnose(pa.table(GOOD, schema=pa.schema(fields)), BENCH)
+    fields[1] = fields[1].with_metadata({"unit": "g"})
+    assert len(gyrocal.Record.from_frame(pa.table(GOOD, schema=pa.schema(fields)))) == 20
+
+
+def test_values_of_no_platform_are_refused_with_their_row(simulated):
+    columns = {name: values.copy() for name, values in simulated.record.columns().items()}
+    columns["accel_z_g"][10] = 7.5
+    with pytest.raises(gyrocal.InputError) as caught:
+        gyrocal.diagnose(columns, simulated.bench)
+    error = caught.value
+    # The line of row 10 in a file, whose first line is the header.
+    assert (error.line, error.file) == (12, "<dict>")
+    assert "row 11 after the header" in error.found and error.code == "gyrocal::input::norm"
+
+
+def test_other_units_are_told_as_an_error_of_the_set_up(simulated):
+    columns = simulated.record.columns()
+    for axis in "xyz":
+        columns[f"accel_{axis}_g"] = 9.80665 * columns[f"accel_{axis}_g"]
+    found = gyrocal.diagnose(columns, simulated.bench)
+    assert found.verdict == "setup" and found.setup[0].kind == "unit"
+    with pytest.raises(gyrocal.SetupError) as caught:
+        gyrocal.calibrate(columns, simulated.bench)
+    assert caught.value.result.verdict == "setup"
+    assert caught.value.result.setup[0].kind == "unit"
+
+
+def test_things_that_are_no_record_are_refused():
+    for wrong in (np.zeros((5, 4)), 7, [1, 2, 3], None):
+        with pytest.raises(gyrocal.InputError, match="expected"):
+            gyrocal.Record.from_frame(wrong)
+    with pytest.raises(gyrocal.InputError, match="cannot be read"):
+        gyrocal.diagnose("missing.csv", BENCH)
+
+
+BENCH = {
+    "site": {"latitude_deg": 39.1},
+    "platform": {
+        "initial_angles_deg": [12.0, -25.0, 40.0],
+        "initial_angles_sigma_deg": [0.01, 0.01, 0.01],
+    },
+    "noise": {"accel_g": 1e-5, "gyro_deg_per_h": 0.002},
+}
+
+
+@pytest.mark.parametrize(
+    ("bench", "words"),
+    [
+        ({**BENCH, "site": {"latitude_deg": 91.0}}, ["91", "-90"]),
+        ({**BENCH, "site": {"latitud_deg": 39.1}}, ["latitud_deg", "latitude_deg"]),
+        ({key: value for key, value in BENCH.items() if key != "noise"}, ["noise"]),
+        ({**BENCH, "noise": None}, ["None"]),
+        ({**BENCH, "site": {"latitude_deg": float("nan")}}, ["nan"]),
+        ({**BENCH, "site": {"latitude_deg": {1}}}, ["set"]),
+        (7, ["int", "a path"]),
+    ],
+)
+def test_bench_descriptions_that_are_refused(bench, words):
+    with pytest.raises(gyrocal.InputError) as caught:
+        gyrocal.diagnose(GOOD, bench)
+    for word in words:
+        assert word in str(caught.value), str(caught.value)
+
+
+def test_errors_of_files_have_their_place(tmp_path):
+    file = tmp_path / "record.csv"
+    file.write_text("time_s,accel_x_g,accel_y_g,accel_z_g\n0,0,0,1\n60,zero,0,1\n")
+    with pytest.raises(gyrocal.InputError) as caught:
+        gyrocal.diagnose(file, BENCH)
+    error = caught.value
+    assert (error.file, error.line, error.column) == (str(file), 3, 4)
+    assert error.found == "`zero`" and "finite number" in error.expected
+    assert error.code == "gyrocal::input::not_a_number"
+    assert isinstance(error, ValueError) and isinstance(error, gyrocal.GyrocalError)
+
+
+def test_work_that_fails_says_what_to_do(simulated):
+    with pytest.raises(gyrocal.ComputationError) as caught:
+        gyrocal.diagnose(simulated.record, simulated.bench, effects=["gyro_y.g_zz_"])
+    assert "there is no effect `gyro_y.g_zz_`" in str(caught.value)
+    assert caught.value.advice and "What to do" in str(caught.value)
+    with pytest.raises(gyrocal.InputError, match="false_alarm"):
+        gyrocal.diagnose(simulated.record, simulated.bench, false_alarm=2.0)
+    with pytest.raises(gyrocal.InputError, match="3 descriptions for 2 records"):
+        gyrocal.calibrate([GOOD, GOOD], [BENCH, BENCH, BENCH])
+    with pytest.raises(gyrocal.InputError, match="count twice"):
+        gyrocal.calibrate([simulated.record, simulated.record], simulated.bench)

@@ -1,0 +1,91 @@
+"""Results as attributes, plain data, frames and HTML; the command of the package."""
+
+import copy
+import importlib.metadata
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import gyrocal
+from conftest import ROOT
+
+
+def test_keys_are_attributes(diagnosed):
+    plain = diagnosed.to_dict()
+    assert diagnosed.verdict == plain["verdict"] == "effects-found"
+    assert diagnosed.findings[0].parameters[0].estimate == plain["findings"][0]["parameters"][0]["estimate"]
+    assert diagnosed.findings[0].to_dict() == plain["findings"][0]
+    assert "findings" in dir(diagnosed) and "findings" in diagnosed
+    with pytest.raises(AttributeError, match="there is no `finding`; there are"):
+        diagnosed.finding
+    with pytest.raises(AttributeError, match="does not change"):
+        diagnosed.verdict = "clean"
+    plain["verdict"] = "changed"
+    assert diagnosed.verdict == "effects-found"
+    assert copy.deepcopy(diagnosed) == diagnosed
+
+
+def test_a_hidden_cause_is_found_with_its_size(simulated, diagnosed):
+    size = next(one for one in simulated.hidden[0].parameters if one.name == "size")
+    found = diagnosed.findings[0]
+    assert found.effect == simulated.hidden[0].effect
+    parameter = found.parameters[0]
+    # Five standard deviations: by chance once in two million seeds.
+    assert abs(parameter.estimate - size.value) < 5 * parameter.sigma
+
+
+def test_frames(simulated, diagnosed):
+    findings = diagnosed.to_dataframe()
+    assert list(findings.effect) == [one.effect for one in diagnosed.findings]
+    assert findings["size"][0] == diagnosed.findings[0].parameters[0].estimate
+    calibrated = gyrocal.calibrate(simulated.record, simulated.bench)
+    coefficients = calibrated.to_dataframe().set_index("name")
+    assert coefficients.loc["gyro_x.bias", "estimate"] == calibrated.estimates[0]
+    assert list(simulated.record.to_dataframe().columns) == list(gyrocal.COLUMNS[:4])
+    assert list(simulated.to_dataframe().name) == calibrated.names
+
+
+def test_words_and_html_are_those_of_the_command(simulated, diagnosed):
+    words = " ".join(str(diagnosed).split())
+    assert diagnosed.findings[0].name in words
+    shown = diagnosed._repr_html_()
+    assert "<table>" in shown and "gyro_y.g_z" in shown and "<script" not in shown
+    assert shown.count("<table>") == shown.count("</table>")
+    record = gyrocal.Record(simulated.record.time_s, simulated.record.accel_g, name="<b>&")
+    shown = gyrocal.diagnose(record, simulated.bench)._repr_html_()
+    assert "<b>&" not in shown and "&lt;b&gt;&amp;" in shown
+    assert "gyro_y.g_z" in simulated._repr_html_()
+
+
+def test_the_command_of_the_package(tmp_path):
+    command = Path(sys.executable).parent / "gyrocal"
+    version = subprocess.run([command, "--version"], capture_output=True, text=True, check=True)
+    assert version.stdout == f"gyrocal {gyrocal.__version__}\n"
+    module = [sys.executable, "-m", "gyrocal"]
+    wrong = subprocess.run([*module, "diagnose"], capture_output=True, text=True)
+    assert wrong.returncode == 2 and "--bench" in wrong.stderr
+    missing = [*module, "diagnose", "none.csv", "--bench", "none.toml"]
+    failed = subprocess.run(missing, capture_output=True, text=True)
+    assert failed.returncode == 1 and "cannot be read" in failed.stderr
+    out = tmp_path / "truth.json"
+    scenario = ROOT / "examples" / "data" / "three_days.scenario.toml"
+    call = ["simulate", str(scenario), "--out", str(tmp_path / "r.csv"), "--json", str(out)]
+    subprocess.run([command, *call], check=True, capture_output=True)
+    # The manifest has the command line as it was typed, not that of the interpreter.
+    assert f'"gyrocal simulate {scenario}' in out.read_text()
+
+
+def test_the_package_is_typed_and_stubs_name_what_there_is():
+    files = importlib.metadata.files("gyrocal")
+    names = {file.name for file in files}
+    assert {"py.typed", "_gyrocal.pyi"} <= names
+    stub = (Path(gyrocal.__file__).parent / "_gyrocal.pyi").read_text()
+    from gyrocal import _gyrocal
+
+    for name in dir(_gyrocal):
+        if not name.startswith("__"):
+            assert f"def {name}(" in stub or f"class {name}:" in stub or f"{name}:" in stub, name
+    for name in gyrocal.__all__:
+        assert getattr(gyrocal, name).__doc__

@@ -1,0 +1,103 @@
+"""The package gives the numbers of the command, bit for bit."""
+
+import json
+
+import numpy as np
+import pytest
+
+import gyrocal
+from conftest import DATA, run_command, without_command_line
+
+FAULT = ["examples/data/hidden_fault.csv", "examples/data/hidden_fault.bench.toml"]
+THREE_DAYS = ["examples/data/three_days.csv", "examples/data/three_days.bench.toml"]
+
+
+def test_diagnosis(tmp_path):
+    by_command = run_command(["diagnose", FAULT[0], "--bench", FAULT[1]], tmp_path)
+    found = gyrocal.diagnose(*FAULT)
+    assert without_command_line(found.to_dict()) == without_command_line(by_command)
+    assert found.verdict == "effects-found"
+    assert found.findings[0].effect == "gyro_y.g_z"
+
+    # The values of a frame are those of the file; where they come from is another thing.
+    frame = gyrocal.Record.read(FAULT[0]).to_dataframe()
+    of_frame = gyrocal.diagnose(frame, FAULT[1]).to_dict()
+    for result in (of_frame, by_command):
+        del result["manifest"]
+    assert of_frame == by_command
+
+
+def test_calibration(tmp_path):
+    by_command = run_command(["calibrate", THREE_DAYS[0], "--bench", THREE_DAYS[1]], tmp_path)
+    found = gyrocal.calibrate(*THREE_DAYS)
+    assert without_command_line(found.to_dict()) == without_command_line(by_command)
+    assert found.estimates.shape == (9,) and found.covariance.shape == (9, 9)
+
+
+@pytest.mark.parametrize(
+    ("options", "arguments"),
+    [
+        ({"method": "streaming"}, ["--streaming"]),
+        ({"method": "paper", "factorised": True}, ["--paper", "--factorised"]),
+        ({"average_s": 600.0, "robust_sigmas": 3.0}, ["--average", "600", "--robust=3"]),
+        ({"effects": ["gyro_y.g_z"], "noise": False}, ["--with", "gyro_y.g_z", "--no-noise"]),
+    ],
+)
+def test_calibration_with_options(tmp_path, options, arguments):
+    call = ["calibrate", THREE_DAYS[0], "--bench", THREE_DAYS[1], *arguments]
+    by_command = run_command(call, tmp_path)
+    found = gyrocal.calibrate(*THREE_DAYS, **options)
+    assert without_command_line(found.to_dict()) == without_command_line(by_command)
+
+
+def test_several_records(tmp_path):
+    records = [THREE_DAYS[0], FAULT[0]]
+    call = ["calibrate", *records, "--bench", THREE_DAYS[1], "--bench", FAULT[1]]
+    by_command = run_command(call, tmp_path)
+    found = gyrocal.calibrate(records, [THREE_DAYS[1], FAULT[1]])
+    assert without_command_line(found.to_dict()) == without_command_line(by_command)
+    assert len(found.runs) == 2
+
+
+def test_simulation(tmp_path):
+    scenario = "examples/data/hidden_fault.scenario.toml"
+    out = tmp_path / "record.csv"
+    bench = tmp_path / "bench.toml"
+    call = ["simulate", scenario, "--seed", "7", "--out", out, "--bench-out", bench]
+    by_command = run_command(call, tmp_path)
+    made = gyrocal.simulate(scenario, seed=7)
+    assert without_command_line(made.to_dict()) == without_command_line(by_command)
+    made.record.to_csv(tmp_path / "python.csv")
+    assert (tmp_path / "python.csv").read_bytes() == out.read_bytes()
+    made.bench.write(tmp_path / "python.toml")
+    assert (tmp_path / "python.toml").read_bytes() == bench.read_bytes()
+    # The committed record is that of the committed seed.
+    committed = gyrocal.Record.read(DATA / "hidden_fault.csv")
+    assert np.array_equal(gyrocal.simulate(scenario).record.accel_g, committed.accel_g)
+
+
+def test_plan(tmp_path, simulated):
+    record, bench = tmp_path / "record.csv", tmp_path / "bench.toml"
+    simulated.record.to_csv(record)
+    simulated.bench.write(bench)
+    call = ["plan", record, "--bench", bench, "--hours", "12", "--limits", "x=-60..60"]
+    by_command = run_command(call, tmp_path)
+    options = {"hours": 12.0, "limits_deg": {"x": (-60.0, 60.0)}}
+    planned = gyrocal.plan(record, bench, **options)
+    assert without_command_line(planned.to_dict()) == without_command_line(by_command)
+
+    # From a diagnosis at hand, as the command from a file of it.
+    found = gyrocal.diagnose(record, bench)
+    file = tmp_path / "diagnosis.json"
+    file.write_text(json.dumps(found.to_dict()))
+    by_command = run_command([*call, "--diagnosis", file], tmp_path)
+    planned = gyrocal.plan(record, bench, diagnosis=found, **options)
+    del by_command["manifest"]
+    assert {k: v for k, v in planned.to_dict().items() if k != "manifest"} == by_command
+
+
+def test_characteristics(tmp_path):
+    call = ["characterise", "--cell", "clean", "--runs", "2", "--seed", "40", "--method", "none"]
+    by_command = run_command(call, tmp_path)
+    found = gyrocal.characterise("clean", runs=2, seed=40, methods=[])
+    assert without_command_line(found.to_dict()) == without_command_line(by_command)
