@@ -8,6 +8,7 @@ mod diagnosis_ground;
 mod embedded;
 mod error;
 mod figure;
+mod fleet;
 mod gain;
 mod generator;
 mod house;
@@ -111,6 +112,8 @@ enum Topic {
     Watch,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
+    /// The Python package: its wheel, a first diagnosis with it, fleets of records.
+    Fleet,
 }
 
 fn main() -> ExitCode {
@@ -135,6 +138,7 @@ fn main() -> ExitCode {
         Topic::Truth => truth::figures(extent, &arguments.parts),
         Topic::Watch => watch::figures(arguments.small),
         Topic::Paper => paper::figures(arguments.write),
+        Topic::Fleet => fleet::figures(arguments.small),
     };
     match figures {
         Ok(mut figures) => {

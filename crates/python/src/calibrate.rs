@@ -50,7 +50,10 @@ impl Request {
 /// Estimates the coefficients; the result (JSON).
 #[pyfunction]
 #[pyo3(signature = (runs, method, factorised, noise, average_s, robust_sigmas, effects, command))]
-#[expect(clippy::too_many_arguments, reason = "the module in Python calls it, with defaults")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the module in Python calls it, with defaults"
+)]
 pub(crate) fn calibrate(
     py: Python<'_>,
     runs: Vec<(Bound<'_, HeldRecord>, Bound<'_, HeldBench>)>,
@@ -87,7 +90,12 @@ fn method_of(name: &str) -> Outcome<CalibrationMethod> {
         "paper" => CalibrationMethod::Paper,
         other => {
             let found = format!("`{other}`");
-            return Err(Failure::of_value("method", found, "batch, streaming or paper", ""));
+            return Err(Failure::of_value(
+                "method",
+                found,
+                "batch, streaming or paper",
+                "",
+            ));
         }
     })
 }
@@ -108,10 +116,15 @@ fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<Cali
     let runs: Vec<Run<'_>> = sound.iter().map(Sound::run).collect();
     let options = request.options();
     let with_effects = with_effects(request, &runs)?;
-    let names: Vec<String> = given.iter().map(|one| one.record.input.path.clone()).collect();
+    let names: Vec<String> = given
+        .iter()
+        .map(|one| one.record.input.path.clone())
+        .collect();
     let (method, factorised) = (request.method, request.factorised);
     let calibration = calibrate_runs(&runs, &options, |_| ()).map_err(|source| {
-        Failure::of_work(&NotCalibrated::new(&names, &runs, method, factorised, source))
+        Failure::of_work(&NotCalibrated::new(
+            &names, &runs, method, factorised, source,
+        ))
     })?;
     let effects = effects(&names, &runs);
     let first = gyrocal_calibration::first_run_sigmas(&runs, &[], &options);
@@ -131,7 +144,9 @@ fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<Cali
 /// Inputs in the order of the command: all records, then each bench description once.
 fn origin(given: &[Given<'_>], command: &str) -> Manifest {
     let mut inputs: Vec<_> = given.iter().map(|one| one.record.input.clone()).collect();
-    let one_bench = given.windows(2).all(|pair| pair[0].bench.input == pair[1].bench.input);
+    let one_bench = given
+        .windows(2)
+        .all(|pair| pair[0].bench.input == pair[1].bench.input);
     let benches = given.iter().map(|one| one.bench.input.clone());
     inputs.extend(benches.take(if one_bench { 1 } else { given.len() }));
     manifest(MODEL_HASH, 0, inputs, command)
@@ -211,7 +226,10 @@ fn sound<'a>(
     }
     refuse_shared_rows(&sound)?;
     match request.average_s {
-        Some(interval_s) => sound.into_iter().map(|one| one.average(interval_s)).collect(),
+        Some(interval_s) => sound
+            .into_iter()
+            .map(|one| one.average(interval_s))
+            .collect(),
         None => Ok(sound),
     }
 }

@@ -25,7 +25,10 @@ struct Request {
 /// Measures the operating characteristics; the result (JSON).
 #[pyfunction]
 #[pyo3(signature = (cells, runs, seed, results, methods, threads, command))]
-#[expect(clippy::too_many_arguments, reason = "the module in Python calls it, with defaults")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the module in Python calls it, with defaults"
+)]
 pub(crate) fn characterise(
     py: Python<'_>,
     cells: Vec<String>,
@@ -82,7 +85,12 @@ fn methods_of(names: Option<Vec<String>>) -> Outcome<Vec<BaselineMethod>> {
     let known = BaselineMethod::ALL.map(BaselineMethod::name);
     if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
         let found = format!("`{name}`");
-        return Err(Failure::of_value("methods", found, format!("some of {}", known.join(", ")), ""));
+        return Err(Failure::of_value(
+            "methods",
+            found,
+            format!("some of {}", known.join(", ")),
+            "",
+        ));
     }
     let is_asked = |method: &BaselineMethod| names.iter().any(|name| name == method.name());
     Ok(BaselineMethod::ALL.into_iter().filter(is_asked).collect())
@@ -110,7 +118,10 @@ fn report(cell: PopulationCell, request: &Request) -> Outcome<CellReport> {
 /// File of the kept records of a cell.
 fn kept(folder: &Path, cell: PopulationCell) -> Outcome<PathBuf> {
     std::fs::create_dir_all(folder).map_err(|reason| Failure {
-        message: format!("{}: the results cannot be kept there: {reason}", folder.display()),
+        message: format!(
+            "{}: the results cannot be kept there: {reason}",
+            folder.display()
+        ),
         file: Some(folder.display().to_string()),
         ..Failure::default()
     })?;

@@ -34,7 +34,12 @@ impl<'a> Given<'a> {
     pub(crate) fn gate(&self, options: &DiagnoseOptions) -> Outcome<Gate<'a>> {
         let kind = PlatformKind::Stabilised;
         let bench = &self.bench.bench;
-        Ok(Gate::of_file(kind, &self.record.file, bench, &options.calibration)?)
+        Ok(Gate::of_file(
+            kind,
+            &self.record.file,
+            bench,
+            &options.calibration,
+        )?)
     }
 
     pub(crate) fn no_diagnosis(&self, source: DiagnosisError) -> Failure {
@@ -49,7 +54,10 @@ pub(crate) type Answer = (String, String);
 /// Diagnoses a record.
 #[pyfunction]
 #[pyo3(signature = (record, bench, later, effects, false_alarm, euler_filter, command))]
-#[expect(clippy::too_many_arguments, reason = "the module in Python calls it, with defaults")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the module in Python calls it, with defaults"
+)]
 pub(crate) fn diagnose(
     py: Python<'_>,
     record: &Bound<'_, HeldRecord>,

@@ -143,5 +143,7 @@ fn exception(py: Python<'_>, failure: Failure) -> PyResult<PyErr> {
     fields.set_item("column", failure.column)?;
     fields.set_item("causes", failure.causes)?;
     let class = py.import(EXCEPTIONS)?.getattr(class)?;
-    Ok(PyErr::from_value(class.call((failure.message,), Some(&fields))?))
+    Ok(PyErr::from_value(
+        class.call((failure.message,), Some(&fields))?,
+    ))
 }

@@ -5,6 +5,7 @@
 //! a record; they go out as views of those rows. Results go out as JSON, the same text that the command
 //! writes. The lock of the interpreter is released while anything is read or computed.
 
+mod arrow_abi;
 mod arrow_stream;
 mod bench;
 mod calibrate;
@@ -46,6 +47,10 @@ mod _gyrocal {
     /// The version of the package.
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+    /// Hash of the symbolic model.
+    #[pymodule_export]
+    const MODEL_HASH: &str = gyrocal::generated::MODEL_HASH;
 
     /// Runs the command `gyrocal` with its arguments, the first of which is the name of the program;
     /// the exit code.

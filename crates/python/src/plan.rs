@@ -5,7 +5,9 @@ use std::borrow::Cow;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
 use gyrocal_cli::NotPlanned;
-use gyrocal_design::{Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design, prose};
+use gyrocal_design::{
+    Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design, prose,
+};
 use gyrocal_diagnosis::{DiagnosisResult, diagnose_gated};
 use gyrocal_record::{GimbalLimits, Record, SetupProblem, SourceText};
 use pyo3::prelude::*;
@@ -28,7 +30,10 @@ struct Request {
 /// Plans the next run.
 #[pyfunction]
 #[pyo3(signature = (record, bench, diagnosis, hours, limits_deg, aim, sigmas, one_name, effects, false_alarm, command))]
-#[expect(clippy::too_many_arguments, reason = "the module in Python calls it, with defaults")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the module in Python calls it, with defaults"
+)]
 pub(crate) fn plan(
     py: Python<'_>,
     record: &Bound<'_, HeldRecord>,
@@ -123,7 +128,9 @@ fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
             bench: &given.bench.bench,
         };
         let fitted = NamedCause::fitted(&named, &run, &noise, &Options::default());
-        fitted.map_err(|source| no_plan(given, source))?.into_owned()
+        fitted
+            .map_err(|source| no_plan(given, source))?
+            .into_owned()
     };
     Ok(Known {
         record,
@@ -192,6 +199,11 @@ fn aim_of(name: &str) -> Outcome<Aim> {
     match name {
         "set" => Ok(Aim::Set),
         "sigmas" => Ok(Aim::Sigmas),
-        other => Err(Failure::of_value("aim", format!("`{other}`"), "set or sigmas", "")),
+        other => Err(Failure::of_value(
+            "aim",
+            format!("`{other}`"),
+            "set or sigmas",
+            "",
+        )),
     }
 }

@@ -8,6 +8,7 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
 use sha2::{Digest, Sha256};
 
+use crate::arrow_abi::Stream;
 use crate::arrow_stream;
 use crate::error::{Failure, Outcome};
 
@@ -88,8 +89,8 @@ impl HeldRecord {
     /// Takes the columns of an Arrow stream, the capsule `arrow_array_stream`.
     #[staticmethod]
     fn of_arrow(py: Python<'_>, name: &str, stream: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let reader = arrow_stream::reader(stream)?;
-        let read = || Self::of_memory(arrow_stream::read(reader, name)?, name);
+        let stream = Stream::of_capsule(stream)?;
+        let read = || Self::of_memory(arrow_stream::read(stream, name)?, name);
         Ok(py.detach(read)?)
     }
 
@@ -142,7 +143,10 @@ impl HeldRecord {
     }
 }
 
-fn view<'py>(owner: &Bound<'py, HeldRecord>, column: &[f64]) -> PyResult<Bound<'py, PyArray1<f64>>> {
+fn view<'py>(
+    owner: &Bound<'py, HeldRecord>,
+    column: &[f64],
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let column = ArrayView1::from(column);
     // SAFETY: as in `accel_g`.
     let array = unsafe { PyArray1::borrow_from_array(&column, owner.clone().into_any()) };
@@ -153,7 +157,9 @@ fn view<'py>(owner: &Bound<'py, HeldRecord>, column: &[f64]) -> PyResult<Bound<'
 fn read_only(array: &Bound<'_, PyAny>) -> PyResult<()> {
     let options = pyo3::types::PyDict::new(array.py());
     options.set_item("write", false)?;
-    array.call_method("setflags", (), Some(&options)).map(|_| ())
+    array
+        .call_method("setflags", (), Some(&options))
+        .map(|_| ())
 }
 
 fn check_length(name: &str, column: &str, found: usize, expected: usize) -> Outcome<()> {
@@ -180,7 +186,13 @@ fn check_values(record: &Record, name: &str) -> Outcome<()> {
     };
     if let Some(row) = record.time_s.iter().position(|time| !time.is_finite()) {
         let advice = "leave the row out: a sample without a time cannot be used";
-        return refuse(COLUMNS[0], row, record.time_s[row], "a finite number", advice);
+        return refuse(
+            COLUMNS[0],
+            row,
+            record.time_s[row],
+            "a finite number",
+            advice,
+        );
     }
     for (row, sample) in record.accel_g.iter().enumerate() {
         if let Some(axis) = sample.iter().position(|value| value.is_infinite()) {
@@ -192,7 +204,13 @@ fn check_values(record: &Record, name: &str) -> Outcome<()> {
     let temperatures = record.temperature_c.as_deref().unwrap_or_default();
     if let Some(row) = temperatures.iter().position(|value| !value.is_finite()) {
         let advice = "interpolate the temperature, or leave the column out";
-        return refuse(COLUMNS[4], row, temperatures[row], "a finite number", advice);
+        return refuse(
+            COLUMNS[4],
+            row,
+            temperatures[row],
+            "a finite number",
+            advice,
+        );
     }
     Ok(())
 }

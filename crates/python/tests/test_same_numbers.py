@@ -85,6 +85,7 @@ def test_plan(tmp_path, simulated):
     options = {"hours": 12.0, "limits_deg": {"x": (-60.0, 60.0)}}
     planned = gyrocal.plan(record, bench, **options)
     assert without_command_line(planned.to_dict()) == without_command_line(by_command)
+    assert list(planned.to_dataframe().hours) == [12.0] * len(planned.proposals)
 
     # From a diagnosis at hand, as the command from a file of it.
     found = gyrocal.diagnose(record, bench)

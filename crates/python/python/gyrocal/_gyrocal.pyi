@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 VERSION: str
+MODEL_HASH: str
 
 @final
 class Record:

@@ -247,7 +247,7 @@ class Plan(Result):
         """One row a proposed run."""
         rows = []
         for run in self._fields["proposals"]:
-            angles = run["angles_deg"] or [None] * 3
+            angles = run["initial_angles_deg"] or [None] * 3
             row = dict(zip(("angle_x_deg", "angle_y_deg", "angle_z_deg"), angles))
             row["hours"] = run["duration_s"] / 3600.0
             row["sigma_ratio"] = run["outlook"]["sigma_ratio"]

@@ -1,0 +1,334 @@
+"""Diagnoses of the records of a fleet, on any engine that maps batches of Arrow.
+
+A row of the input is one record, with the columns of :data:`INPUT`: lists of times and of specific force, and
+the text of the bench description. A row of the output is the result of one record, with the columns of
+:data:`OUTPUT`. :func:`diagnose_batches` maps an iterator of batches to an iterator of batches; a row depends
+on nothing but the row of its record, so that partitions, workers and order change no bit of it.
+:func:`diagnose_partitions` runs it over Parquet files, here or on a Dask cluster, and goes on where an
+earlier run ended.
+
+It needs PyArrow, and Dask for a cluster.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from . import _gyrocal
+from ._calls import diagnose
+from ._errors import GyrocalError, InputError
+from ._record import COLUMNS, Bench, Record, as_record
+from ._results import Diagnosis
+
+__all__ = [
+    "INPUT",
+    "OUTPUT",
+    "batch_of_records",
+    "diagnose_batches",
+    "diagnose_partitions",
+    "read_manifest",
+]
+
+_NUMBERS = pa.list_(pa.float64())
+
+#: Columns of the input; ``temperature_c`` may be null, or absent.
+INPUT = pa.schema(
+    [
+        pa.field("unit", pa.string()),
+        pa.field("record", pa.string()),
+        pa.field("bench", pa.string()),
+        *(pa.field(name, _NUMBERS) for name in COLUMNS),
+    ]
+)
+
+#: Columns of the output. ``status`` is ``done`` or ``failed``; ``result`` is the JSON of the diagnosis, and
+#: ``error`` and ``advice`` tell what is wrong with a record that could not be diagnosed.
+OUTPUT = pa.schema(
+    [
+        pa.field("unit", pa.string()),
+        pa.field("record", pa.string()),
+        pa.field("status", pa.string()),
+        pa.field("verdict", pa.string()),
+        pa.field("effects", pa.list_(pa.string())),
+        pa.field("z", pa.float64()),
+        pa.field("p_value", pa.float64()),
+        pa.field("result", pa.string()),
+        pa.field("error", pa.string()),
+        pa.field("advice", pa.string()),
+    ]
+)
+
+#: Records that are read, diagnosed and written at a time.
+BATCH_ROWS = 64
+
+_MANIFEST = "manifest.json"
+
+
+def batch_of_records(records: Iterable[tuple[str, str, Any, Any]]) -> pa.RecordBatch:
+    """A batch of the input from tuples of unit, name of the record, record and bench description."""
+    columns: dict[str, list[Any]] = {name: [] for name in INPUT.names}
+    for unit, name, record, bench in records:
+        held = as_record(record)
+        columns["unit"].append(unit)
+        columns["record"].append(name)
+        columns["bench"].append(bench.to_toml() if isinstance(bench, Bench) else bench)
+        given = held.columns()
+        for column in COLUMNS:
+            columns[column].append(given.get(column))
+    arrays = [pa.array(columns[field.name], field.type) for field in INPUT]
+    return pa.RecordBatch.from_arrays(arrays, schema=INPUT)
+
+
+def diagnose_batches(
+    batches: Iterable[pa.RecordBatch], *, false_alarm: float = 0.01
+) -> Iterator[pa.RecordBatch]:
+    """Diagnoses every record of every batch: a batch of the output for each batch of the input.
+
+    A record that is wrong gives a row with ``status`` ``failed`` that says what to do; the others go on.
+
+    Raises:
+        InputError: A batch lacks a column, or a column has another type.
+    """
+    for batch in batches:
+        rows = [_row(one, false_alarm) for one in _records(batch)]
+        columns = [pa.array([row[field.name] for row in rows], field.type) for field in OUTPUT]
+        yield pa.RecordBatch.from_arrays(columns, schema=OUTPUT)
+
+
+def diagnose_partitions(
+    source: str | os.PathLike[str],
+    out: str | os.PathLike[str],
+    *,
+    client: Any = None,
+    false_alarm: float = 0.01,
+) -> dict[str, Any]:
+    """Diagnoses the records of all Parquet files of a folder; results are files of the same names.
+
+    A result is written whole or not at all, and beside it a note of what was done. A later call with the
+    same settings repeats no partition that has one and whose input is the same.
+
+    Args:
+        source: The folder of the input.
+        out: The folder of the results, which is made. ``manifest.json`` in it tells what became of
+            each partition, what failed, and which names are there twice.
+        client: A ``distributed.Client``; without it the partitions are worked on here, one after the other.
+        false_alarm: Family-wise probability of a false alarm of each diagnosis.
+
+    Returns:
+        The manifest.
+
+    Raises:
+        InputError: There is no partition.
+    """
+    source, out = Path(source), Path(out)
+    partitions = sorted(source.glob("*.parquet"))
+    if not partitions:
+        raise InputError(
+            f"{source}: found no partition, expected files *.parquet",
+            file=str(source),
+            advice="write the records with pyarrow.parquet; fleet.INPUT has the columns",
+        )
+    out.mkdir(parents=True, exist_ok=True)
+    left = [path for path in partitions if not _is_done(path, out, false_alarm)]
+    if client is None:
+        for path in left:
+            _diagnose_partition(path, out, false_alarm)
+    else:
+        # Not pure: a result is a file, which the engine does not see. A worker that dies costs its
+        # partition, which another one begins anew.
+        tasks = client.map(
+            _diagnose_partition, left, out=out, false_alarm=false_alarm, pure=False, retries=100
+        )
+        client.gather(tasks)
+    # What workers that died had begun.
+    for unfinished in out.glob(".*.tmp"):
+        unfinished.unlink(missing_ok=True)
+    manifest = _manifest(partitions, out, repeated=len(left))
+    _write_whole(out / _MANIFEST, json.dumps(manifest, indent=2).encode())
+    return manifest
+
+
+def read_manifest(out: str | os.PathLike[str]) -> dict[str, Any]:
+    """The manifest of the last call of :func:`diagnose_partitions` with this folder."""
+    return json.loads((Path(out) / _MANIFEST).read_text())
+
+
+def _records(batch: pa.RecordBatch) -> Iterator[dict[str, Any]]:
+    """The records of a batch, their numbers as views of its buffers."""
+    names = batch.schema.names
+    for field in INPUT:
+        if field.name not in names and field.name != COLUMNS[4]:
+            raise InputError(
+                f"batch: found the columns {', '.join(names)}, expected `{field.name}` too",
+                expected=field.name,
+                advice="fleet.INPUT has the columns and their types",
+            )
+    columns = {field.name: _cast(batch, field) for field in INPUT if field.name in names}
+    for row in range(batch.num_rows):
+        yield {name: _cell(column, row) for name, column in columns.items()}
+
+
+def _cast(batch: pa.RecordBatch, field: pa.Field) -> pa.Array:
+    column = batch.column(field.name)
+    try:
+        return column if column.type == field.type else column.cast(field.type)
+    except pa.ArrowInvalid as error:
+        raise _other_type(column, field) from error
+    except pa.ArrowNotImplementedError as error:
+        raise _other_type(column, field) from error
+
+
+def _other_type(column: pa.Array, field: pa.Field) -> InputError:
+    return InputError(
+        f"batch, column `{field.name}`: found the type {column.type}, expected {field.type}",
+        found=str(column.type),
+        expected=str(field.type),
+        advice="fleet.INPUT has the columns and their types",
+    )
+
+
+def _cell(column: pa.Array, row: int) -> Any:
+    scalar = column[row]
+    if not scalar.is_valid:
+        return None
+    if pa.types.is_list(column.type):
+        return scalar.values.to_numpy(zero_copy_only=False)
+    return scalar.as_py()
+
+
+def _row(given: dict[str, Any], false_alarm: float) -> dict[str, Any]:
+    row = dict.fromkeys(OUTPUT.names)
+    row.update(unit=given["unit"], record=given["record"], status="failed")
+    try:
+        found = _diagnosis(given, false_alarm)
+    except GyrocalError as error:
+        row.update(error=": ".join([error.message, *error.causes]), advice=error.advice)
+        return row
+    findings = found.to_dict()["findings"]
+    row.update(
+        status="done",
+        verdict=found.verdict,
+        effects=[finding["effect"] for finding in findings],
+        result=found.to_json(),
+    )
+    if findings:
+        row.update(z=findings[0]["z"], p_value=findings[0]["p_value"])
+    return row
+
+
+def _diagnosis(given: dict[str, Any], false_alarm: float) -> Diagnosis:
+    name = f"{given['unit']}/{given['record']}"
+    required = ("unit", "record", "bench", *COLUMNS[:4])
+    missing = [column for column in required if given[column] is None]
+    if missing:
+        raise InputError(
+            f"{name}: found no `{missing[0]}`", advice="leave the record out, or give what is missing"
+        )
+    bench = Bench.parse(given["bench"], name=f"{name}: bench")
+    columns = {column: given[column] for column in COLUMNS if given.get(column) is not None}
+    lengths = {column: len(values) for column, values in columns.items()}
+    if len(set(lengths.values())) > 1:
+        raise InputError(
+            f"{name}: found columns of different lengths, {lengths}, expected one",
+            advice="give all columns of the same rows; a missing value is nan",
+        )
+    samples = np.column_stack([columns[column] for column in COLUMNS[1:4]])
+    record = Record(columns["time_s"], samples, columns.get(COLUMNS[4]), name=name)
+    return diagnose(record, bench, false_alarm=false_alarm)
+
+
+def _diagnose_partition(path: Path, out: Path, false_alarm: float) -> None:
+    """Diagnoses one partition, and writes its result and its note."""
+    note: dict[str, Any] = {"partition": path.name, "job": _job(path, false_alarm)}
+    temporary = out / f".{path.name}.{os.getpid()}.tmp"
+    counts = {"done": 0, "failed": 0}
+    names: list[list[str | None]] = []
+    failed: list[dict[str, Any]] = []
+    try:
+        with pq.ParquetFile(path) as file, pq.ParquetWriter(temporary, OUTPUT) as writer:
+            for batch in diagnose_batches(file.iter_batches(BATCH_ROWS), false_alarm=false_alarm):
+                writer.write_batch(batch)
+                for row in batch.select(["unit", "record", "status", "error"]).to_pylist():
+                    counts[row.pop("status")] += 1
+                    names.append([row["unit"], row["record"]])
+                    if row["error"] is not None:
+                        failed.append(row)
+        os.replace(temporary, out / path.name)
+        note |= {"status": "done", "records": counts, "names": names, "failed": failed}
+    except (OSError, pa.ArrowException, InputError) as error:
+        # The partition cannot be read: the fleet goes on, and a later call tries again.
+        note |= {"status": "unreadable", "error": str(error)}
+    finally:
+        temporary.unlink(missing_ok=True)
+    _write_whole(_note(path, out), json.dumps(note).encode())
+
+
+def _job(path: Path, false_alarm: float) -> dict[str, Any]:
+    """What a result depends on."""
+    digest = hashlib.sha256()
+    with open(path, "rb") as file:
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return {
+        "input_sha256": digest.hexdigest(),
+        "false_alarm": false_alarm,
+        "version": _gyrocal.VERSION,
+        "model_hash": _gyrocal.MODEL_HASH,
+    }
+
+
+def _note(path: Path, out: Path) -> Path:
+    return out / f"{path.stem}.done.json"
+
+
+def _is_done(path: Path, out: Path, false_alarm: float) -> bool:
+    try:
+        note = json.loads(_note(path, out).read_text())
+    except (OSError, ValueError):
+        return False
+    done = note.get("status") == "done" and (out / path.name).exists()
+    return done and note.get("job") == _job(path, false_alarm)
+
+
+def _manifest(partitions: list[Path], out: Path, repeated: int) -> dict[str, Any]:
+    notes = [json.loads(_note(path, out).read_text()) for path in partitions]
+    seen: set[tuple[str | None, ...]] = set()
+    twice: set[tuple[str | None, ...]] = set()
+    for note in notes:
+        for name in map(tuple, note.get("names", [])):
+            (twice if name in seen else seen).add(name)
+    read = [note for note in notes if note["status"] == "done"]
+    return {
+        "version": _gyrocal.VERSION,
+        "model_hash": _gyrocal.MODEL_HASH,
+        "partitions": [
+            {key: value for key, value in note.items() if key not in ("names", "failed")}
+            for note in notes
+        ],
+        "computed_partitions": repeated,
+        "done": sum(note["records"]["done"] for note in read),
+        "failed": [
+            {"partition": note["partition"], **row} for note in read for row in note["failed"]
+        ],
+        "unreadable": [
+            {"partition": note["partition"], "error": note["error"]}
+            for note in notes
+            if note["status"] != "done"
+        ],
+        "names_given_twice": sorted(list(name) for name in twice),
+    }
+
+
+def _write_whole(path: Path, content: bytes) -> None:
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    temporary.write_bytes(content)
+    os.replace(temporary, path)
