@@ -247,7 +247,12 @@ def _diagnosis(given: dict[str, Any], false_alarm: float) -> Diagnosis:
 
 
 def _diagnose_partition(path: Path, out: Path, false_alarm: float) -> None:
-    """Diagnoses one partition, and writes its result and its note."""
+    """Diagnoses one partition, and writes its result and its note.
+
+    An engine repeats a task whose worker dies after it: then there is nothing left to do.
+    """
+    if _is_done(path, out, false_alarm):
+        return
     note: dict[str, Any] = {"partition": path.name, "job": _job(path, false_alarm)}
     temporary = out / f".{path.name}.{os.getpid()}.tmp"
     counts = {"done": 0, "failed": 0}
