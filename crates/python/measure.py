@@ -54,7 +54,6 @@ def measure_fleet(count):
     from pathlib import Path
 
     import pyarrow as pa
-    import pyarrow.parquet as pq
 
     import gyrocal
     from gyrocal import fleet

@@ -14,7 +14,7 @@ import pytest
 import gyrocal
 from gyrocal import fleet
 
-RECORDS = 24
+RECORDS = 16
 FAULT_EVERY = 4
 
 
@@ -99,7 +99,7 @@ def test_wrong_records_are_rows_and_the_others_go_on(records, expected):
     rows = records.slice(0, 6).to_pylist()
     for column in ("accel_x_g", "accel_y_g", "accel_z_g"):
         rows[0][column] = [9.81 * value for value in rows[0][column]]
-    rows[1]["bench"] = "[site]\nlatitude_deg = 91.0\n"
+    rows[1]["bench"] = rows[1]["bench"].replace("39.1", "91.0")
     rows[2]["time_s"] = None
     rows[3]["accel_y_g"] = rows[3]["accel_y_g"][:-1]
     rows[4]["accel_z_g"][5] = float("inf")

@@ -1,7 +1,7 @@
 """The extension module. Users call the functions of the package."""
 
 from os import PathLike
-from typing import Any, final
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
