@@ -16,7 +16,7 @@ const RECORD: &str = "examples/data/hidden_fault.csv";
 const BENCH: &str = "examples/data/hidden_fault.bench.toml";
 
 /// Records of the fleet.
-const RECORDS: usize = 2000;
+const RECORDS: usize = 400;
 
 /// All figures. The small version repeats less and leaves the fleet to the tests of the package; without
 /// Python, or where its packages cannot be had, nothing is judged.
@@ -29,9 +29,9 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         return Ok(vec![Figure::note("the Python package: not judged", line)]);
     }
     let wheel = wheel()?;
-    let mut figures = vec![size(&wheel)?, import(if small { 5 } else { 15 })?];
+    let mut figures = vec![size(&wheel)?, import(if small { 3 } else { 15 })?];
     figures.push(first_diagnosis(&wheel)?);
-    figures.push(overhead(if small { 5 } else { 15 })?);
+    figures.push(overhead(if small { 3 } else { 15 })?);
     if !small {
         figures.extend(fleet(RECORDS)?);
     }
