@@ -4,8 +4,7 @@ use gyrocal_record::Record;
 
 use crate::arrow_abi::{Batch, Field, Stream};
 use crate::error::{Failure, Outcome};
-use crate::names::check_names;
-use crate::record::COLUMNS;
+use crate::names::{COLUMNS, check_names};
 
 /// Units that the metadata of a field may give each column.
 const UNITS: [&[&str]; 5] = [

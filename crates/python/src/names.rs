@@ -4,6 +4,15 @@ use gyrocal_record::RecordFile;
 
 use crate::error::{Failure, Outcome};
 
+/// The columns of a record, time first; the last one is optional.
+pub(crate) const COLUMNS: [&str; 5] = [
+    "time_s",
+    "accel_x_g",
+    "accel_y_g",
+    "accel_z_g",
+    "temperature_c",
+];
+
 /// Refuses names that a file of a record does not have: the rules, and the advice, are those of the
 /// header of such a file.
 pub(crate) fn check_names(names: &[&str], frame: &str) -> Outcome<()> {

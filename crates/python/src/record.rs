@@ -11,15 +11,7 @@ use sha2::{Digest, Sha256};
 use crate::arrow_abi::Stream;
 use crate::arrow_stream;
 use crate::error::{Failure, Outcome};
-
-/// The columns of a record, time first; the last one is optional.
-pub(crate) const COLUMNS: [&str; 5] = [
-    "time_s",
-    "accel_x_g",
-    "accel_y_g",
-    "accel_z_g",
-    "temperature_c",
-];
+use crate::names::COLUMNS;
 
 /// A record that calls of the library take.
 #[pyclass(frozen, name = "Record", module = "gyrocal._gyrocal")]
