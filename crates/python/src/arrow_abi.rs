@@ -265,12 +265,12 @@ numbers!(f64, f32, i8, i16, i32, i64, u8, u16, u32, u64);
 ///
 /// It is null, or a string that ends with zero.
 unsafe fn text(pointer: *const c_char) -> Option<String> {
+    if pointer.is_null() {
+        return None;
+    }
     // SAFETY: as the caller promises.
-    (!pointer.is_null()).then(|| {
-        unsafe { CStr::from_ptr(pointer) }
-            .to_string_lossy()
-            .into_owned()
-    })
+    let text = unsafe { CStr::from_ptr(pointer) };
+    Some(text.to_string_lossy().into_owned())
 }
 
 /// Keys and values of metadata.
