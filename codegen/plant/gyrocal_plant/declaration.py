@@ -1,0 +1,455 @@
+"""A plant as its user writes it down, and the program file that is made of it."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import casadi as ca
+import casadi_program
+from casadi_program import Element, ExportError, Group, Table
+
+from . import dependence, grammar, units
+
+
+def _equations():
+    """Class `Plant` of the exporter, by the place of its file: a user's script may be `plant.py` too."""
+    path = Path(casadi_program.__file__).with_name("plant.py")
+    spec = importlib.util.spec_from_file_location("gyrocal_exporter_plant", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module.Plant
+
+
+Equations = _equations()
+
+
+class PlantError(ExportError):
+    """A plant that cannot be diagnosed as it is written; the message says what to change."""
+
+
+@dataclass
+class _Symbol:
+    name: str
+    unit: str
+    doc: str
+    sx: ca.SX
+    facts: dict = field(default_factory=dict)
+
+
+@dataclass
+class _Effect:
+    id: str
+    name: str
+    formula: str
+    unit: str
+    # term, ramp, step or regressor.
+    kind: str
+    # rate, output or parameter.
+    place: str
+    index: int
+    # Size of a term; what it multiplies.
+    term: ca.SX | None = None
+    regressor: int = 0
+    own: bool = False
+    equivalents: list[str] = field(default_factory=list)
+
+
+class Plant:
+    """States, parameters, inputs, outputs and noise of a plant, with its equations.
+
+        plant = Plant("Duffing", "A driven oscillator.")
+        x, v = plant.state("x", "m"), plant.state("v", "m/s")
+        k = plant.parameter("k", "s^-2", 4.0)
+        u = plant.input("u", "m/s^2")
+        plant.rate("x", v)
+        plant.rate("v", u - k * x)
+        plant.output("y", "m", x, sigma=1e-3)
+        plant.write("duffing.json")
+    """
+
+    def __init__(self, name: str, doc: str):
+        self.name, self.doc = name, doc
+        self._states: list[_Symbol] = []
+        self._parameters: list[_Symbol] = []
+        self._inputs: list[_Symbol] = []
+        self._outputs: list[_Symbol] = []
+        self._regressors: list[str] = []
+        self._rates: dict[str, ca.SX] = {}
+        self._densities: dict[str, float] = {}
+        self._effects: list[_Effect] = []
+        self._dropped: list[tuple[str, str]] = []
+        self._grammar: bool | None = None
+
+    def state(self, name: str, unit: str = "", initial: float = 0.0, sigma: float | None = None,
+              typical: float | None = None, doc: str = "") -> ca.SX:
+        """A state that moves. `sigma` is the standard deviation of its initial value before a record
+        (nothing is known of it without); `typical` its size in use, which signs and dead zones need."""
+        return self._declare(self._states, name, unit, doc, initial=float(initial),
+                             sigma=_sigma(name, sigma), typical=typical)
+
+    def parameter(self, name: str, unit: str = "", value: float = 0.0, sigma: float | None = None,
+                  positive: bool = False, doc: str = "") -> ca.SX:
+        """A constant that a fit estimates, with its value before a record and the standard deviation
+        of that; nothing is known of it without."""
+        return self._declare(self._parameters, name, unit, doc, value=float(value),
+                             sigma=_sigma(name, sigma), positive=positive)
+
+    def input(self, name: str, unit: str = "", interpolate: bool = False,
+              typical: float | None = None, doc: str = "") -> ca.SX:
+        """A measured input: held from row to row, or interpolated."""
+        return self._declare(self._inputs, name, unit, doc, interpolate=interpolate, typical=typical)
+
+    def regressor(self, name: str) -> None:
+        """A logged quantity, such as a temperature, that rates and outputs may depend on."""
+        self._regressors.append(name)
+
+    def rate(self, state: str, expression: ca.SX, noise: float = 0.0) -> None:
+        """Rate of change of a state; `noise` is the root of the spectral density of white noise in it,
+        its unit times the root of a second."""
+        if state not in [one.name for one in self._states]:
+            raise PlantError(f"a rate is given for `{state}`, which is no state; declare "
+                             f"plant.state(\"{state}\") first")
+        if state in self._rates:
+            raise PlantError(f"the rate of `{state}` is given twice; leave one")
+        self._rates[state] = ca.SX(expression)
+        if noise < 0:
+            raise PlantError(f"the noise of the rate of `{state}` is {noise}, expected 0 or more")
+        self._densities[state] = float(noise)
+
+    def output(self, name: str, unit: str, expression: ca.SX, sigma: float,
+               saturates: tuple[float, float] | None = None, doc: str = "") -> None:
+        """What a sensor reads, with the standard deviation of its white noise. At the ends of
+        `saturates` it says nothing."""
+        if not sigma > 0:
+            raise PlantError(f"the noise of output `{name}` is {sigma}, expected a standard deviation "
+                             "above 0: a guess within a factor of two will do, it is estimated")
+        self._declare(self._outputs, name, unit, doc, expression=ca.SX(expression),
+                      sigma=float(sigma), saturates=saturates)
+
+    def effect(self, ident: str, term: ca.SX, rate: str = "", output: str = "", name: str = "",
+               unit: str = "") -> None:
+        """A term that a rate or an output may have, times a size that is to be found. With one such
+        term no catalogue is proposed; `plant.propose()` adds the proposed one to it."""
+        place, index = self._channel(ident, rate, output)
+        if any(other.id == ident for other in self._effects):
+            raise PlantError(f"effect `{ident}` is declared twice; rename one")
+        self._effects.append(_Effect(ident, name or ident, str(ca.SX(term)), unit or "1", "term",
+                                     place, index, ca.SX(term), own=True))
+        self._grammar = bool(self._grammar)
+
+    def propose(self) -> None:
+        """Proposes a catalogue beside the effects that are given."""
+        self._grammar = True
+
+    def write(self, path: str | Path | None = None) -> None:
+        """Writes the program file, by default beside the script."""
+        target = Path(path) if path else Path(sys.argv[0]).with_suffix(".json")
+        target.write_text(self.to_json(), encoding="utf-8", newline="\n")
+        used = [effect for effect in self._effects]
+        print(f"{target}: {len(used)} effects in the catalogue, {len(self._dropped)} left out")
+        for ident, why in self._dropped:
+            print(f"  {ident}: {why}")
+
+    def to_json(self) -> str:
+        """The program file."""
+        self._check()
+        if self._grammar is not False:
+            self._propose()
+        sizes = self._judged()
+        return self._program(sizes).to_json()
+
+    # --- declarations
+
+    def _declare(self, place: list[_Symbol], name: str, unit: str, doc: str, **facts) -> ca.SX:
+        every = [*self._states, *self._parameters, *self._inputs, *self._outputs]
+        if any(other.name == name for other in every):
+            raise PlantError(f"`{name}` is declared twice; rename one")
+        try:
+            units.parse(unit)
+        except ValueError as error:
+            raise PlantError(f"`{name}`: {error}") from error
+        symbol = _Symbol(name, unit, doc or name, ca.SX.sym(name), facts)
+        place.append(symbol)
+        return symbol.sx
+
+    def _channel(self, ident: str, rate: str, output: str) -> tuple[str, int]:
+        names = {"rate": [one.name for one in self._states], "output": [o.name for o in self._outputs]}
+        for place, name in (("rate", rate), ("output", output)):
+            if name in names[place]:
+                return place, names[place].index(name)
+        raise PlantError(f"effect `{ident}` names the rate `{rate}` and the output `{output}`, expected "
+                         f"rate= one of {names['rate']} or output= one of {names['output']}, which must "
+                         "be declared before")
+
+    # --- checks
+
+    def _check(self) -> None:
+        if not self._states or not self._outputs:
+            raise PlantError(f"plant `{self.name}` has {len(self._states)} states and "
+                             f"{len(self._outputs)} outputs, expected one of each at least")
+        for state in self._states:
+            if state.name not in self._rates:
+                raise PlantError(f"state `{state.name}` has no rate; add plant.rate(\"{state.name}\", …)")
+        known = [*self._states, *self._parameters, *self._inputs]
+        symbols = [one.sx for one in known]
+        every = [(f"the rate of `{n}`", e) for n, e in self._rates.items()]
+        every += [(f"output `{o.name}`", o.facts["expression"]) for o in self._outputs]
+        every += [(f"effect `{e.id}`", e.term) for e in self._effects if e.term is not None]
+        for what, expression in every:
+            if expression.numel() != 1:
+                raise PlantError(f"{what} has {expression.numel()} elements, expected one number")
+            free = [str(s) for s in ca.symvar(expression)
+                    if not any(ca.is_equal(s, one) for one in symbols)]
+            if free:
+                raise PlantError(f"{what} uses {', '.join(free)}, which the plant does not declare")
+        self._check_units(known)
+        # A state that moves no output, directly or through other states, cannot be estimated.
+        seen = ca.vertcat(*[o.facts["expression"] for o in self._outputs])
+        rates = {s.name: self._rates[s.name] for s in self._states}
+        reached = {s.name for s in self._states if ca.depends_on(seen, s.sx)}
+        while True:
+            more = {s.name for s in self._states if s.name not in reached
+                    and any(ca.depends_on(rates[name], s.sx) for name in reached)}
+            if not more:
+                break
+            reached |= more
+        for state in self._states:
+            if state.name not in reached:
+                raise PlantError(f"no output depends on state `{state.name}`, not even through other "
+                                 "states: no record says anything of it; add a sensor or leave it out")
+
+    def _check_units(self, known: list[_Symbol]) -> None:
+        symbols, names = [one.sx for one in known], [one.unit for one in known]
+        wanted = [(f"the rate of `{s.name}`", self._rates[s.name], s.unit and _per_s(s.unit))
+                  for s in self._states]
+        wanted += [(f"output `{o.name}`", o.facts["expression"], o.unit) for o in self._outputs]
+        for what, expression, unit in wanted:
+            try:
+                found = units.of(expression, symbols, names)
+            except units.Disagree as error:
+                raise PlantError(f"units of {what} disagree: {error} in {expression}; correct a unit or "
+                                 "the equation") from error
+            if unit and found is not None and found != units.parse(unit):
+                raise PlantError(f"units of {what} disagree: the expression is in "
+                                 f"`{units.written(found)}`, its declaration in "
+                                 f"`{units.written(units.parse(unit))}`; correct a unit or the equation")
+
+    # --- catalogue
+
+    def _kinematic(self, state: _Symbol) -> bool:
+        """A rate that is another state: a definition, which nothing can be added to."""
+        return any(ca.is_equal(self._rates[state.name], other.sx) for other in self._states)
+
+    def _moving(self) -> list[_Symbol]:
+        return [state for state in self._states if not self._kinematic(state)]
+
+    def _propose(self) -> None:
+        symbols = [(s.name, _plain(s.unit), s.sx, s.facts["typical"], True) for s in self._states]
+        symbols += [(i.name, _plain(i.unit), i.sx, i.facts["typical"], False) for i in self._inputs]
+        for index, state in enumerate(self._states):
+            if self._kinematic(state):
+                continue
+            own = _per_s(state.unit)
+            for ident, words, unit, expression in grammar.functions(symbols):
+                self._add(f"{state.name}_rate.{ident}", f"rate of {state.name}: {words}",
+                          _over(own, unit), "rate", index, expression)
+        rates = ca.vertcat(*[self._rates[s.name] for s in self._states])
+        states = ca.vertcat(*[s.sx for s in self._states])
+        for index, output in enumerate(self._outputs):
+            reading = output.facts["expression"]
+            fed = any(ca.depends_on(reading, i.sx) for i in self._inputs)
+            slope = None if fed else ca.jacobian(reading, states) @ rates
+            terms = grammar.of_output(output.name, _plain(output.unit), reading, slope)
+            for ident, words, unit, expression in terms:
+                self._add(f"{output.name}.{ident}", f"sensor: {words}",
+                          _over(output.unit or "1", unit), "output", index, expression)
+
+    def _add(self, ident, name, unit, place, index, term) -> None:
+        if any(other.id == ident for other in self._effects):
+            return
+        self._effects.append(_Effect(ident, name, str(term), unit, "term", place, index, term))
+
+    def _judged(self) -> list[_Symbol]:
+        """Sizes of all terms: biases of the channels first, then what the catalogue keeps."""
+        biases = [_Effect(f"{s.name}_rate.bias", f"rate of {s.name}: a constant", "1",
+                           _per_s(s.unit), "term", "rate", self._states.index(s), ca.SX(1))
+                  for s in self._moving()]
+        biases += [_Effect(f"{o.name}.bias", f"sensor: a constant in {o.name}", "1", o.unit or "1",
+                           "term", "output", index, ca.SX(1)) for index, o in enumerate(self._outputs)]
+        every = biases + self._effects
+        sizes = ca.SX.sym("size", len(every))
+        rates, output = self._with(every, sizes)
+        variables = [*self._states, *self._inputs]
+        scales = [one.facts["typical"] or 1.0 for one in variables]
+        found = dependence.judge(
+            rates, output, ca.vertcat(*[one.sx for one in variables]), scales,
+            ca.vertcat(*[p.sx for p in self._parameters]),
+            [p.facts["value"] for p in self._parameters], sizes)
+        kept, self._channels = [], {}
+        for index, (effect, judged) in enumerate(zip(every, found)):
+            why = self._reason(every, judged)
+            is_bias = index < len(biases)
+            if why and effect.own:
+                raise PlantError(f"effect `{effect.id}` {why}; leave it out")
+            if is_bias:
+                # Drifts, steps and regressors of a channel multiply it, whether it is an effect or not.
+                self._channels[(effect.place, effect.index)] = len(self._channels)
+            if why:
+                self._dropped.append((effect.id, why))
+            else:
+                kept.append(index)
+        names = {index: every[index].id for index in kept}
+        for index in kept:
+            every[index].equivalents = [names[o] for o in found[index].equivalents if o in names]
+        self._biases = biases
+        self._effects = [every[index] for index in kept]
+        if self._grammar is not False:
+            self._effects += self._of_time()
+        own = biases + [e for e in self._effects if e.term is not None and e not in biases]
+        return own
+
+    def _reason(self, every: list[_Effect], judged: dependence.Judgement) -> str:
+        if judged.is_zero:
+            return "is identically zero, or the same at all points as nothing"
+        if judged.copy_of is not None:
+            return f"is a copy of `{every[judged.copy_of].id}`"
+        if judged.covered_by is not None:
+            names = " and ".join(f"`{self._parameters[i].name}`" for i in judged.covered_by)
+            return f"does the same as a change of the nominal parameter {names}, which is fitted"
+        return ""
+
+    def _of_time(self) -> list[_Effect]:
+        found = []
+        for bias in self._biases:
+            channel = bias.id.removesuffix(".bias")
+            words = bias.name.removesuffix("a constant").rstrip(": ")
+            found.append(_Effect(f"{channel}.ramp", f"{words}: a drift in proportion to time",
+                                 "t", f"{bias.unit} per h", "ramp", bias.place, bias.index))
+            found.append(_Effect(f"{channel}.step", f"{words}: a step", "step(t - t0)", bias.unit,
+                                 "step", bias.place, bias.index))
+            for index, name in enumerate(self._regressors):
+                found.append(_Effect(f"{channel}.{name}", f"{words}: proportional to {name}", name,
+                                     f"{bias.unit} per unit of {name}", "regressor", bias.place,
+                                     bias.index, regressor=index))
+        rates = ca.vertcat(*self._rates.values())
+        for index, parameter in enumerate(self._parameters):
+            if ca.depends_on(rates, parameter.sx):
+                found.append(_Effect(f"{parameter.name}.step", f"a sudden change of {parameter.name}",
+                                     "step(t - t0)", parameter.unit or "1", "step", "parameter", index))
+        return found
+
+    # --- program
+
+    def _with(self, effects: list[_Effect], sizes: ca.SX) -> tuple[ca.SX, ca.SX]:
+        rates = [self._rates[s.name] for s in self._states]
+        output = [o.facts["expression"] for o in self._outputs]
+        for position, effect in enumerate(effects):
+            target = rates if effect.place == "rate" else output
+            target[effect.index] = target[effect.index] + sizes[position] * effect.term
+        return ca.vertcat(*rates), ca.vertcat(*output)
+
+    def _program(self, terms: list[_Effect]):
+        nominal = len(self._parameters)
+        elements = [_element(p.name, p.unit, p.doc, f"parameter_{i}")
+                    for i, p in enumerate(self._parameters)]
+        elements += [_element(e.id, e.unit, e.name, f"size_{i}") for i, e in enumerate(terms)]
+        parameters = Group("parameters", "Parameters, then sizes of effects.", elements)
+        states = Group("states", "States.", [_element(s.name, s.unit, s.doc, f"state_{i}")
+                                             for i, s in enumerate(self._states)])
+        inputs = Group("inputs", "Inputs.", [_element(i.name, i.unit, i.doc, f"input_{n}")
+                                             for n, i in enumerate(self._inputs)])
+        driven = [s for s in self._states if self._densities[s.name] > 0]
+        noise = Group("noise", "Noise of rates.", [
+            Element(f"noise_{i}", s.unit, f"noise of the rate of {s.name}") for i, s in enumerate(driven)])
+        rates, output = self._with(terms, parameters.sx[nominal:])
+        for i, state in enumerate(driven):
+            rates[self._states.index(state)] += noise.sx[i]
+        old = ca.vertcat(*[s.sx for s in [*self._states, *self._parameters, *self._inputs]])
+        new = ca.vertcat(states.sx, parameters.sx[:nominal], inputs.sx)
+        rates, output = (ca.substitute(e, old, new) for e in (rates, output))
+        program = Equations(
+            self.name, self.doc, states, rates, output,
+            [f"reading_{i}" for i in range(len(self._outputs))], "mixed",
+            parameters=parameters, inputs=[inputs] if self._inputs else [],
+            noise=noise if driven else None, source=f"equations of {self.name}",
+        ).program()
+        program.tables = self._tables(terms, driven)
+        return program
+
+    def _tables(self, terms: list[_Effect], driven: list[_Symbol]) -> list[Table]:
+        nominal = len(self._parameters)
+
+        def size_of(effect: _Effect) -> int:
+            if effect.term is not None:
+                return nominal + terms.index(effect)
+            if effect.place == "parameter":
+                return effect.index
+            return nominal + self._channels[(effect.place, effect.index)]
+
+        channels = [{"place": b.place, "index": b.index, "unit": b.unit, "name": b.id.removesuffix(".bias"),
+                     "constant": nominal + position} for position, b in enumerate(self._biases)]
+        outputs = []
+        for one in self._outputs:
+            low, high = one.facts["saturates"] or (0.0, 0.0)
+            outputs.append({"id": one.name, "unit": one.unit or "1", "sigma": one.facts["sigma"],
+                            "saturates": one.facts["saturates"] is not None, "low": low, "high": high})
+        tables = [
+            _table("plant_states", "PlantState", "States.", [
+                {"id": s.name, "unit": s.unit or "1", "initial": s.facts["initial"],
+                 "sigma": s.facts["sigma"]} for s in self._states]),
+            _table("plant_parameters", "PlantParameter", "Nominal parameters.", [
+                {"id": p.name, "unit": p.unit or "1", "value": p.facts["value"],
+                 "sigma": p.facts["sigma"], "positive": p.facts["positive"]}
+                for p in self._parameters]),
+            _table("plant_inputs", "PlantInput", "Inputs.", [
+                {"id": i.name, "unit": i.unit or "1", "interpolate": i.facts["interpolate"]}
+                for i in self._inputs]),
+            _table("plant_outputs", "PlantOutput", "Outputs.", outputs),
+            _table("plant_noises", "PlantNoise", "White noise of rates.", [
+                {"state": self._states.index(s), "density": self._densities[s.name]} for s in driven]),
+            _table("plant_regressors", "PlantRegressor", "Logged quantities.", [
+                {"id": name} for name in self._regressors]),
+            _table("plant_channels", "PlantChannel", "Rates and outputs that effects enter.", channels),
+            _table("plant_effects", "PlantEffect", "Catalogue of effects.", [
+                {"id": e.id, "name": e.name, "formula": e.formula, "unit": e.unit, "kind": e.kind,
+                 "place": e.place, "index": e.index, "size": size_of(e), "regressor": e.regressor,
+                 "equivalents": e.equivalents} for e in self._effects]),
+        ]
+        # A program has no empty tables.
+        return [table for table in tables if table.rows]
+
+
+def _sigma(name: str, sigma: float | None) -> float:
+    """Zero stands for a value of which nothing is known."""
+    if sigma is not None and not sigma > 0:
+        raise PlantError(f"the standard deviation of `{name}` is {sigma}, expected one above 0, or none "
+                         "if nothing is known of it")
+    return float(sigma or 0.0)
+
+
+def _plain(unit: str) -> str:
+    """The unit in base units, without `/`."""
+    return units.written(units.parse(unit))
+
+
+def _per_s(unit: str) -> str:
+    return _over(unit, "s")
+
+
+def _over(unit: str, by: str) -> str:
+    """The unit of a size: that of its channel over that of its term."""
+    dimension = units._product(units.parse(unit), units._power(units.parse(by), -1))
+    return units.written(dimension)
+
+
+def _element(ident: str, unit: str, doc: str, name: str) -> Element:
+    return Element(name, unit or "1", doc, ident)
+
+
+def _table(name: str, row: str, doc: str, rows: list[dict]) -> Table:
+    fields = {key: key for key in rows[0]} if rows else {"id": "id"}
+    return Table(name, row, doc, fields, rows)

@@ -1,0 +1,343 @@
+//! What a program file says of a plant beside its functions.
+
+use gyrocal_codegen::Program;
+use gyrocal_codegen::program::{Table, Value};
+
+use crate::error::PlantError;
+
+/// A state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Name.
+    pub id: String,
+    /// Unit.
+    pub unit: String,
+    /// Value at the first row before a record.
+    pub initial: f64,
+    /// Standard deviation of that; infinite if nothing is known.
+    pub sigma: f64,
+}
+
+/// A nominal parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name.
+    pub id: String,
+    /// Unit.
+    pub unit: String,
+    /// Value before a record.
+    pub value: f64,
+    /// Standard deviation of that; infinite if nothing is known.
+    pub sigma: f64,
+    /// Whether it is above zero.
+    pub positive: bool,
+}
+
+/// An input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// Name.
+    pub id: String,
+    /// Unit.
+    pub unit: String,
+    /// Whether it is interpolated between rows; it is held otherwise.
+    pub interpolate: bool,
+}
+
+/// An output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Name.
+    pub id: String,
+    /// Unit.
+    pub unit: String,
+    /// Declared standard deviation of its white noise.
+    pub sigma: f64,
+    /// Readings at or beyond these say nothing.
+    pub saturates: Option<[f64; 2]>,
+}
+
+/// White noise of a rate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Noise {
+    /// The state.
+    pub state: usize,
+    /// Root of its spectral density.
+    pub density: f64,
+}
+
+/// A rate or an output that effects enter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Whether it is an output.
+    pub is_output: bool,
+    /// The state or the output.
+    pub index: usize,
+    /// Unit.
+    pub unit: String,
+    /// Name.
+    pub name: String,
+    /// The parameter that adds a constant to it.
+    pub constant: usize,
+}
+
+/// How an effect depends on time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A term of the equations.
+    Term,
+    /// Proportional to time.
+    Ramp,
+    /// From an onset on.
+    Step,
+    /// Proportional to a logged quantity.
+    Regressor(usize),
+}
+
+/// Part of the model that an effect enters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The rate of a state.
+    Rate(usize),
+    /// An output.
+    Output(usize),
+    /// A nominal parameter, which it changes.
+    Parameter(usize),
+}
+
+/// An effect of the catalogue.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectEntry {
+    /// Public id.
+    pub id: String,
+    /// Meaning.
+    pub name: String,
+    /// The term that its size multiplies.
+    pub formula: String,
+    /// Unit of its size.
+    pub unit: String,
+    /// Dependence on time.
+    pub kind: Kind,
+    /// Part of the model.
+    pub place: Place,
+    /// The parameter that is its size, or that its function of time multiplies.
+    pub size: usize,
+    /// Ids of effects that no record tells from it.
+    pub equivalents: Vec<String>,
+}
+
+/// A plant, but for its functions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    /// Name.
+    pub name: String,
+    /// Meaning.
+    pub doc: String,
+    /// States.
+    pub states: Vec<State>,
+    /// Nominal parameters.
+    pub parameters: Vec<Parameter>,
+    /// Inputs.
+    pub inputs: Vec<Input>,
+    /// Outputs.
+    pub outputs: Vec<Output>,
+    /// White noises of the rates.
+    pub noises: Vec<Noise>,
+    /// Logged quantities.
+    pub regressors: Vec<String>,
+    /// Channels.
+    pub channels: Vec<Channel>,
+    /// Catalogue.
+    pub effects: Vec<EffectEntry>,
+}
+
+impl Description {
+    /// Reads the tables of a program.
+    ///
+    /// # Errors
+    /// [`PlantError::NoPlant`] if a table or a field is missing.
+    pub fn of(program: &Program) -> Result<Self, PlantError> {
+        let known = |sigma: f64| if sigma > 0.0 { sigma } else { f64::INFINITY };
+        let states = rows(program, "plant_states", |row| {
+            Ok(State {
+                id: row.text("id")?,
+                unit: row.text("unit")?,
+                initial: row.number("initial")?,
+                sigma: known(row.number("sigma")?),
+            })
+        })?;
+        let parameters = rows(program, "plant_parameters", |row| {
+            Ok(Parameter {
+                id: row.text("id")?,
+                unit: row.text("unit")?,
+                value: row.number("value")?,
+                sigma: known(row.number("sigma")?),
+                positive: row.truth("positive")?,
+            })
+        })?;
+        let inputs = rows(program, "plant_inputs", |row| {
+            Ok(Input {
+                id: row.text("id")?,
+                unit: row.text("unit")?,
+                interpolate: row.truth("interpolate")?,
+            })
+        })?;
+        let outputs = rows(program, "plant_outputs", |row| {
+            Ok(Output {
+                id: row.text("id")?,
+                unit: row.text("unit")?,
+                sigma: row.number("sigma")?,
+                saturates: if row.truth("saturates")? {
+                    Some([row.number("low")?, row.number("high")?])
+                } else {
+                    None
+                },
+            })
+        })?;
+        let noises = rows(program, "plant_noises", |row| {
+            Ok(Noise {
+                state: row.index("state")?,
+                density: row.number("density")?,
+            })
+        })?;
+        if states.is_empty() || outputs.is_empty() {
+            return Err(PlantError::NoPlant {
+                origin: program.origin.clone(),
+                problem: "the program has no table of states or none of outputs".to_owned(),
+            });
+        }
+        let (model_name, doc) = program
+            .model
+            .as_ref()
+            .map_or((&program.name, &program.doc), |model| {
+                (&model.name, &model.doc)
+            });
+        Ok(Self {
+            name: model_name.clone(),
+            doc: doc.clone(),
+            states,
+            parameters,
+            inputs,
+            outputs,
+            noises,
+            regressors: rows(program, "plant_regressors", |row| row.text("id"))?,
+            channels: rows(program, "plant_channels", channel)?,
+            effects: rows(program, "plant_effects", effect)?,
+        })
+    }
+}
+
+fn channel(row: &Row<'_>) -> Result<Channel, PlantError> {
+    Ok(Channel {
+        is_output: row.text("place")? == "output",
+        index: row.index("index")?,
+        unit: row.text("unit")?,
+        name: row.text("name")?,
+        constant: row.index("constant")?,
+    })
+}
+
+fn effect(row: &Row<'_>) -> Result<EffectEntry, PlantError> {
+    let index = row.index("index")?;
+    Ok(EffectEntry {
+        id: row.text("id")?,
+        name: row.text("name")?,
+        formula: row.text("formula")?,
+        unit: row.text("unit")?,
+        kind: match row.text("kind")?.as_str() {
+            "ramp" => Kind::Ramp,
+            "step" => Kind::Step,
+            "regressor" => Kind::Regressor(row.index("regressor")?),
+            "term" => Kind::Term,
+            other => return Err(row.refuse(&format!("an effect of the kind `{other}`"))),
+        },
+        place: match row.text("place")?.as_str() {
+            "rate" => Place::Rate(index),
+            "output" => Place::Output(index),
+            "parameter" => Place::Parameter(index),
+            other => return Err(row.refuse(&format!("an effect in the place `{other}`"))),
+        },
+        size: row.index("size")?,
+        equivalents: row.texts("equivalents")?,
+    })
+}
+
+/// A row of a table.
+struct Row<'a> {
+    program: &'a Program,
+    table: &'a Table,
+    values: &'a [Value],
+}
+
+fn rows<T>(
+    program: &Program,
+    name: &str,
+    read: impl Fn(&Row<'_>) -> Result<T, PlantError>,
+) -> Result<Vec<T>, PlantError> {
+    let found = program.tables.iter().find(|table| table.name == name);
+    // A program has no empty tables.
+    let Some(table) = found else {
+        return Ok(Vec::new());
+    };
+    let rows = table.rows.iter().map(|values| {
+        read(&Row {
+            program,
+            table,
+            values,
+        })
+    });
+    rows.collect()
+}
+
+impl Row<'_> {
+    fn refuse(&self, found: &str) -> PlantError {
+        PlantError::NoPlant {
+            origin: self.program.origin.clone(),
+            problem: format!("table `{}` has {found}", self.table.name),
+        }
+    }
+
+    fn value(&self, field: &str) -> Result<&Value, PlantError> {
+        let place = self.table.fields.iter().position(|one| one.name == field);
+        place
+            .and_then(|place| self.values.get(place))
+            .ok_or_else(|| self.refuse(&format!("no field `{field}`")))
+    }
+
+    fn text(&self, field: &str) -> Result<String, PlantError> {
+        match self.value(field)? {
+            Value::Text(text) => Ok(text.clone()),
+            _ => Err(self.refuse(&format!("no text in `{field}`"))),
+        }
+    }
+
+    fn number(&self, field: &str) -> Result<f64, PlantError> {
+        match self.value(field)? {
+            Value::Number(number) => Ok(*number),
+            _ => Err(self.refuse(&format!("no number in `{field}`"))),
+        }
+    }
+
+    fn truth(&self, field: &str) -> Result<bool, PlantError> {
+        match self.value(field)? {
+            Value::Truth(truth) => Ok(*truth),
+            _ => Err(self.refuse(&format!("neither true nor false in `{field}`"))),
+        }
+    }
+
+    fn index(&self, field: &str) -> Result<usize, PlantError> {
+        let number = self.number(field)?;
+        if number < 0.0 || number.fract() != 0.0 {
+            return Err(self.refuse(&format!("no index in `{field}`")));
+        }
+        Ok(number as usize)
+    }
+
+    fn texts(&self, field: &str) -> Result<Vec<String>, PlantError> {
+        match self.value(field)? {
+            Value::Texts(texts) => Ok(texts.clone()),
+            Value::List(list) if list.is_empty() => Ok(Vec::new()),
+            _ => Err(self.refuse(&format!("no list of texts in `{field}`"))),
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! Steps of a plant from row to row, with their exact derivatives.
+
+use crate::error::PlantError;
+use crate::functions::{OutputsAt, Point, RatesAt, Sizes, Workspace};
+use crate::lines::Course;
+use crate::loaded::LoadedPlant;
+use crate::record::PlantRecord;
+
+/// Shares of a step at which a classical Runge-Kutta rule takes the rates, and their weights.
+const STAGES: [(f64, f64); 4] = [
+    (0.0, 1.0 / 6.0),
+    (0.5, 1.0 / 3.0),
+    (0.5, 1.0 / 3.0),
+    (1.0, 1.0 / 6.0),
+];
+
+/// A model about a trajectory: all that passes need.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Linearised {
+    pub(crate) sizes: Option<Sizes>,
+    /// For each step the derivative of the next states by the states, by rows.
+    pub(crate) by_states: Vec<f64>,
+    /// By the parameters.
+    pub(crate) by_parameters: Vec<f64>,
+    /// By the noises, each held over the step.
+    pub(crate) by_noises: Vec<f64>,
+    /// Next states of the trajectory less those of the model.
+    pub(crate) defects: Vec<f64>,
+    /// For each row outputs less those of the model; NaN where one is missing.
+    pub(crate) residuals: Vec<f64>,
+    /// Derivative of the outputs by the states.
+    pub(crate) out_by_states: Vec<f64>,
+    /// By the parameters.
+    pub(crate) out_by_parameters: Vec<f64>,
+    /// Length of each step, s.
+    pub(crate) step_s: Vec<f64>,
+}
+
+/// Evaluation of a plant along a record.
+pub(crate) struct Dynamics<'a> {
+    plant: &'a LoadedPlant,
+    record: &'a PlantRecord,
+    /// Runge-Kutta steps between rows.
+    substeps: usize,
+    sizes: Sizes,
+    workspace: Workspace,
+    inputs: Vec<f64>,
+    interpolate: Vec<bool>,
+    parameters: Vec<f64>,
+}
+
+impl<'a> Dynamics<'a> {
+    pub(crate) fn new(plant: &'a LoadedPlant, record: &'a PlantRecord, substeps: usize) -> Self {
+        let sizes = plant.functions.sizes();
+        let inputs = plant.description.inputs.iter();
+        Self {
+            plant,
+            record,
+            substeps,
+            sizes,
+            workspace: plant.functions.workspace(),
+            inputs: vec![0.0; sizes.inputs],
+            interpolate: inputs.map(|input| input.interpolate).collect(),
+            parameters: vec![0.0; sizes.parameters],
+        }
+    }
+
+    fn set_inputs(&mut self, row: usize, share: f64) {
+        let count = self.sizes.inputs;
+        for index in 0..count {
+            let here = self.record.inputs[row * count + index];
+            let next = self.record.inputs.get((row + 1) * count + index);
+            self.inputs[index] = match next {
+                Some(next) if self.interpolate[index] => here + share * (next - here),
+                _ => here,
+            };
+        }
+    }
+
+    fn interval_s(&self, row: usize) -> f64 {
+        (self.record.time_s[row + 1] - self.record.time_s[row]) / self.substeps as f64
+    }
+
+    /// States at the next row.
+    pub(crate) fn next(&mut self, row: usize, course: &Course, states: &[f64]) -> Vec<f64> {
+        course.at(row, &mut self.parameters);
+        let (n, h) = (self.sizes.states, self.interval_s(row));
+        let mut here = states.to_vec();
+        let (mut stage, mut rates) = (vec![0.0; n], vec![0.0; n]);
+        for substep in 0..self.substeps {
+            let mut sum = vec![0.0; n];
+            rates.fill(0.0);
+            for (share, weight) in STAGES {
+                self.set_inputs(row, (substep as f64 + share) / self.substeps as f64);
+                for i in 0..n {
+                    stage[i] = here[i] + h * share * rates[i];
+                }
+                let at = Point {
+                    states: &stage,
+                    parameters: &self.parameters,
+                    inputs: &self.inputs,
+                };
+                self.plant
+                    .functions
+                    .rates(at, &mut self.workspace, &mut rates);
+                for i in 0..n {
+                    sum[i] += weight * rates[i];
+                }
+            }
+            for i in 0..n {
+                here[i] += h * sum[i];
+            }
+        }
+        course.add_jumps(row, &mut here);
+        here
+    }
+
+    /// Outputs at a row.
+    pub(crate) fn outputs(&mut self, row: usize, course: &Course, states: &[f64]) -> Vec<f64> {
+        course.at(row, &mut self.parameters);
+        self.set_inputs(row, 0.0);
+        let mut outputs = vec![0.0; self.sizes.outputs];
+        let at = Point {
+            states,
+            parameters: &self.parameters,
+            inputs: &self.inputs,
+        };
+        self.plant
+            .functions
+            .outputs(at, &mut self.workspace, &mut outputs);
+        course.add_to_outputs(row, &mut outputs);
+        outputs
+    }
+
+    /// States at all rows from those at the first, without noise.
+    pub(crate) fn simulate(&mut self, course: &Course, initial: &[f64]) -> Vec<f64> {
+        let mut points = initial.to_vec();
+        let mut here = initial.to_vec();
+        for row in 0..self.record.len().saturating_sub(1) {
+            here = self.next(row, course, &here);
+            points.extend_from_slice(&here);
+        }
+        points
+    }
+
+    /// Defects of a trajectory and residuals of its outputs, without derivatives.
+    pub(crate) fn differences(&mut self, course: &Course, points: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (n, y, rows) = (self.sizes.states, self.sizes.outputs, self.record.len());
+        let mut defects = Vec::with_capacity(rows * n);
+        let mut residuals = Vec::with_capacity(rows * y);
+        for row in 0..rows {
+            let here = &points[row * n..(row + 1) * n];
+            let outputs = self.outputs(row, course, here);
+            let measured = &self.record.outputs[row * y..(row + 1) * y];
+            residuals.extend(measured.iter().zip(&outputs).map(|(m, o)| m - o));
+            if row + 1 < rows {
+                let next = self.next(row, course, here);
+                let given = &points[(row + 1) * n..(row + 2) * n];
+                defects.extend(given.iter().zip(&next).map(|(given, next)| given - next));
+            }
+        }
+        (defects, residuals)
+    }
+
+    /// The model about a trajectory.
+    pub(crate) fn linearise(
+        &mut self,
+        course: &Course,
+        points: &[f64],
+    ) -> Result<Linearised, PlantError> {
+        let Sizes {
+            states: n,
+            parameters: p,
+            outputs: y,
+            noises: w,
+            ..
+        } = self.sizes;
+        let rows = self.record.len();
+        let mut lin = Linearised {
+            sizes: Some(self.sizes),
+            by_states: Vec::with_capacity(rows * n * n),
+            by_parameters: Vec::with_capacity(rows * n * p),
+            by_noises: Vec::with_capacity(rows * n * w),
+            defects: Vec::with_capacity(rows * n),
+            residuals: Vec::with_capacity(rows * y),
+            out_by_states: Vec::with_capacity(rows * y * n),
+            out_by_parameters: Vec::with_capacity(rows * y * p),
+            step_s: Vec::with_capacity(rows),
+        };
+        let mut out = OutputsAt::new(self.sizes);
+        let mut step = StepMemory::new(self.sizes);
+        for row in 0..rows {
+            let here = &points[row * n..(row + 1) * n];
+            course.at(row, &mut self.parameters);
+            self.set_inputs(row, 0.0);
+            let at = Point {
+                states: here,
+                parameters: &self.parameters,
+                inputs: &self.inputs,
+            };
+            self.plant
+                .functions
+                .outputs_with(at, &mut self.workspace, &mut out);
+            let first = lin.residuals.len();
+            let measured = &self.record.outputs[row * y..(row + 1) * y];
+            let mut predicted = out.values.clone();
+            course.add_to_outputs(row, &mut predicted);
+            lin.residuals
+                .extend(measured.iter().zip(&predicted).map(|(m, o)| m - o));
+            if !predicted.iter().all(|value| value.is_finite()) {
+                return Err(PlantError::NotFinite { row });
+            }
+            debug_assert_eq!(lin.residuals.len(), first + y);
+            lin.out_by_states.extend_from_slice(&out.by_states);
+            lin.out_by_parameters.extend_from_slice(&out.by_parameters);
+            if row + 1 == rows {
+                break;
+            }
+            self.step_with(row, here, &mut step);
+            let mut next = step.states.clone();
+            course.add_jumps(row, &mut next);
+            let given = &points[(row + 1) * n..(row + 2) * n];
+            lin.defects
+                .extend(given.iter().zip(&next).map(|(given, next)| given - next));
+            if !step.by_all.iter().all(|value| value.is_finite()) {
+                return Err(PlantError::NotFinite { row });
+            }
+            for by in step.by_all.chunks_exact(n + p + w) {
+                lin.by_states.extend_from_slice(&by[..n]);
+                lin.by_parameters.extend_from_slice(&by[n..n + p]);
+                lin.by_noises.extend_from_slice(&by[n + p..]);
+            }
+            let interval_s = self.record.time_s[row + 1] - self.record.time_s[row];
+            lin.step_s.push(interval_s);
+        }
+        Ok(lin)
+    }
+
+    /// A step with its derivatives: the variational equation by the same stages.
+    fn step_with(&mut self, row: usize, states: &[f64], step: &mut StepMemory) {
+        let Sizes {
+            states: n,
+            parameters: p,
+            noises: w,
+            ..
+        } = self.sizes;
+        let columns = n + p + w;
+        let h = self.interval_s(row);
+        step.states.copy_from_slice(states);
+        step.by_all.fill(0.0);
+        for i in 0..n {
+            step.by_all[i * columns + i] = 1.0;
+        }
+        for substep in 0..self.substeps {
+            step.sum.fill(0.0);
+            step.slope.fill(0.0);
+            step.rates.values.fill(0.0);
+            let mut sum = vec![0.0; n];
+            for (share, weight) in STAGES {
+                self.set_inputs(row, (substep as f64 + share) / self.substeps as f64);
+                for i in 0..n {
+                    step.stage[i] = step.states[i] + h * share * step.rates.values[i];
+                }
+                for (target, (by, slope)) in
+                    step.moved.iter_mut().zip(step.by_all.iter().zip(&step.slope))
+                {
+                    *target = by + h * share * slope;
+                }
+                let at = Point {
+                    states: &step.stage,
+                    parameters: &self.parameters,
+                    inputs: &self.inputs,
+                };
+                self.plant
+                    .functions
+                    .rates_with(at, &mut self.workspace, &mut step.rates);
+                step.set_slope(n, p, w);
+                for i in 0..n {
+                    sum[i] += weight * step.rates.values[i];
+                }
+                for (sum, slope) in step.sum.iter_mut().zip(&step.slope) {
+                    *sum += weight * slope;
+                }
+            }
+            for i in 0..n {
+                step.states[i] += h * sum[i];
+            }
+            for (by, sum) in step.by_all.iter_mut().zip(&step.sum) {
+                *by += h * sum;
+            }
+        }
+    }
+}
+
+/// Memory of a step with derivatives by states, parameters and noises.
+struct StepMemory {
+    states: Vec<f64>,
+    stage: Vec<f64>,
+    rates: RatesAt,
+    by_all: Vec<f64>,
+    moved: Vec<f64>,
+    slope: Vec<f64>,
+    sum: Vec<f64>,
+}
+
+impl StepMemory {
+    fn new(sizes: Sizes) -> Self {
+        let n = sizes.states;
+        let all = vec![0.0; n * (n + sizes.parameters + sizes.noises)];
+        Self {
+            states: vec![0.0; n],
+            stage: vec![0.0; n],
+            rates: RatesAt::new(sizes),
+            by_all: all.clone(),
+            moved: all.clone(),
+            slope: all.clone(),
+            sum: all,
+        }
+    }
+
+    /// Derivatives of the rates along the moved derivatives of the states.
+    fn set_slope(&mut self, n: usize, p: usize, w: usize) {
+        let columns = n + p + w;
+        for i in 0..n {
+            let slope = &mut self.slope[i * columns..(i + 1) * columns];
+            slope[..n].fill(0.0);
+            slope[n..n + p].copy_from_slice(&self.rates.by_parameters[i * p..(i + 1) * p]);
+            slope[n + p..].copy_from_slice(&self.rates.by_noises[i * w..(i + 1) * w]);
+            for j in 0..n {
+                let by = self.rates.by_states[i * n + j];
+                if by != 0.0 {
+                    let moved = &self.moved[j * columns..(j + 1) * columns];
+                    for (slope, moved) in slope.iter_mut().zip(moved) {
+                        *slope += by * moved;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! A plant at its best fit to a record.
+
+use std::sync::Arc;
+
+use gyrocal_hypothesis::{
+    Column, Covariate, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Rows,
+    StateJump,
+};
+use nalgebra::DMatrix;
+
+use crate::backward;
+use crate::error::PlantError;
+use crate::lines::{Line, of_parameters};
+use crate::loaded::LoadedPlant;
+use crate::noise::Restricted;
+use crate::pass::{Keep, Reduced, reduce};
+use crate::problem::Problem;
+use crate::record::PlantRecord;
+use crate::solve::{Iterate, Solution, Solver};
+use crate::starts::{self, Starts};
+
+/// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
+const LEAST_RANGE: f64 = 1e-6;
+
+/// Standard deviation of a held parameter before a record, over its size: it stays where it is declared.
+const HELD: f64 = 1e-6;
+
+/// A model of a plant, with effects of its catalogue, fitted to a record.
+#[derive(Clone, Debug)]
+pub struct FittedPlant {
+    pub(crate) problem: Arc<Problem>,
+    extension: ModelExtension,
+    /// Standard deviations of the noise over the declared ones: outputs, then noises of rates.
+    pub(crate) ratios: Vec<f64>,
+    pub(crate) solution: Arc<Solution>,
+    starts: Starts,
+}
+
+impl FittedPlant {
+    /// Fits the nominal model; `held` are nominal parameters that stay as declared.
+    ///
+    /// # Errors
+    /// [`PlantError::NoFit`], [`PlantError::NotFinite`], [`PlantError::Singular`].
+    pub fn nominal(
+        plant: &LoadedPlant,
+        record: PlantRecord,
+        held: &[usize],
+    ) -> Result<Self, PlantError> {
+        Self::nominal_from(plant, record, held, None)
+    }
+
+    /// The same from other parameters: differences of initial states and parameters from the declared
+    /// ones.
+    ///
+    /// # Errors
+    /// As [`Self::nominal`].
+    pub fn nominal_from(
+        plant: &LoadedPlant,
+        record: PlantRecord,
+        held: &[usize],
+        first: Option<&[f64]>,
+    ) -> Result<Self, PlantError> {
+        let mut problem = Problem::new(plant, Arc::new(record), 1);
+        let states = plant.description.states.len();
+        for index in held {
+            let size = plant.description.parameters[*index].value.abs();
+            let size = if size > 0.0 { size } else { 1.0 };
+            problem.prior_sigma[states + index] = HELD * size;
+        }
+        problem.substeps = starts::substeps(&problem, &vec![0.0; problem.nominal()]);
+        let ratios = vec![1.0; problem.noises()];
+        let (solution, starts) = starts::best(&problem, &ratios, first)?;
+        Ok(Self {
+            problem: Arc::new(problem),
+            extension: ModelExtension::default(),
+            ratios,
+            solution: Arc::new(solution),
+            starts,
+        })
+    }
+
+    /// The plant.
+    #[must_use]
+    pub fn loaded(&self) -> &LoadedPlant {
+        &self.problem.plant
+    }
+
+    /// The record.
+    #[must_use]
+    pub fn record(&self) -> &PlantRecord {
+        &self.problem.record
+    }
+
+    /// Starts that were tried for the nominal model.
+    #[must_use]
+    pub fn starts(&self) -> &Starts {
+        &self.starts
+    }
+
+    /// Standard deviations of the noise over the declared ones: outputs, then noises of rates.
+    #[must_use]
+    pub fn noise_ratios(&self) -> &[f64] {
+        &self.ratios
+    }
+
+    /// States at each row.
+    #[must_use]
+    pub fn points(&self) -> &[f64] {
+        &self.solution.at.points
+    }
+
+    /// Rows for a search, with states and inputs as covariates.
+    #[must_use]
+    pub fn rows(&self) -> Rows {
+        Rows {
+            covariates: self.covariates(),
+            ..(*self.problem.rows).clone()
+        }
+    }
+
+    /// Whitened innovations: row, output, value.
+    ///
+    /// # Errors
+    /// [`PlantError::Singular`].
+    pub fn whitened(&self) -> Result<Vec<(usize, usize, f64)>, PlantError> {
+        Ok(self.pass(&[], Keep::Innovations)?.whitened)
+    }
+
+    pub(crate) fn lines(&self) -> Vec<Line> {
+        self.problem.lines(&self.extension)
+    }
+
+    pub(crate) fn pass(&self, lines: &[Line], keep: Keep) -> Result<Reduced, PlantError> {
+        let noise = self.problem.variances(&self.ratios);
+        reduce(&self.solution.lin, &noise, lines, keep).ok_or(PlantError::Singular)
+    }
+
+    fn further(&self, columns: &[Column]) -> Vec<Line> {
+        let (states, steps) = self.problem.shape();
+        let lines = columns.iter();
+        lines.map(|column| Line::of(column, states, steps)).collect()
+    }
+
+    fn solved(
+        &self,
+        extension: &ModelExtension,
+        ratios: Vec<f64>,
+        start: Iterate,
+    ) -> Result<Self, PlantError> {
+        let solver = Solver::new(&self.problem, extension, self.problem.variances(&ratios));
+        Ok(Self {
+            problem: Arc::clone(&self.problem),
+            extension: extension.clone(),
+            ratios,
+            solution: Arc::new(solver.solve(start)?),
+            starts: self.starts.clone(),
+        })
+    }
+
+    /// Value of an unknown of another extension in this fit.
+    fn start_of(&self, extension: &ModelExtension) -> Iterate {
+        let (nominal, at) = (self.problem.nominal(), &self.solution.at);
+        let mut values = at.values[..nominal].to_vec();
+        let before = &self.extension;
+        for (parameter, _) in &extension.parameters {
+            let mut own = before.parameters.iter();
+            let known = own.position(|(other, _)| other == parameter);
+            values.push(known.map_or(0.0, |known| at.values[nominal + known]));
+        }
+        let first = nominal + before.parameters.len();
+        for column in extension.columns.columns() {
+            let mut own = before.columns.columns().iter();
+            let known = own.position(|other| other == column);
+            values.push(known.map_or(0.0, |known| at.values[first + known]));
+        }
+        Iterate {
+            points: at.points.clone(),
+            values,
+        }
+    }
+
+    /// White noise as the search knows it: entries of the rates stay one, those of outputs and of driven
+    /// rates follow.
+    fn as_rate_noise(&self, ratios: &[f64]) -> RateNoise {
+        let rates = self.plant().rates.len();
+        let mut white = vec![1.0; rates];
+        white.extend_from_slice(ratios);
+        RateNoise {
+            walk: vec![0.0; white.len()],
+            white,
+        }
+    }
+}
+
+impl FittedModel for FittedPlant {
+    type Error = PlantError;
+
+    fn plant(&self) -> &'static Plant {
+        self.problem.plant.tables()
+    }
+
+    fn extension(&self) -> &ModelExtension {
+        &self.extension
+    }
+
+    fn covariates(&self) -> Vec<Covariate> {
+        let description = &self.problem.plant.description;
+        let (n, u) = (description.states.len(), description.inputs.len());
+        let names = &self.problem.plant.catalogue.covariates;
+        let all = names.iter().enumerate().map(|(index, name)| {
+            let (from, place, count) = if index < n {
+                (self.points(), index, n)
+            } else {
+                (&self.problem.record.inputs[..], index - n, u)
+            };
+            let values: Vec<f64> = from.iter().skip(place).step_by(count).copied().collect();
+            let size = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            Covariate {
+                name,
+                least_range: LEAST_RANGE * size,
+                values,
+            }
+        });
+        all.collect()
+    }
+
+    fn values(&self) -> &[f64] {
+        &self.solution.at.values
+    }
+
+    fn covariance(&self) -> &DMatrix<f64> {
+        &self.solution.covariance
+    }
+
+    fn prior_sigma(&self) -> Vec<f64> {
+        self.problem.sigmas(&self.extension)
+    }
+
+    fn cost(&self) -> f64 {
+        self.solution.cost
+    }
+
+    fn refitted(&self, extension: &ModelExtension) -> Result<Self, PlantError> {
+        self.solved(extension, self.ratios.clone(), self.start_of(extension))
+    }
+
+    fn rate_noise(&self) -> RateNoise {
+        self.as_rate_noise(&self.ratios)
+    }
+
+    fn fit_rate_noise(
+        &self,
+        _walking: &[usize],
+        absent: &[usize],
+    ) -> Result<RateNoiseFit, PlantError> {
+        let (lines, sigmas) = (self.lines(), self.prior_sigma());
+        let restricted = Restricted::new(
+            &self.problem,
+            &self.solution.lin,
+            (&lines, &sigmas),
+            (&self.solution.at.values, absent),
+        )?;
+        let fit = restricted.maximise(&self.ratios)?;
+        let rates = self.plant().rates.len();
+        // Scores of different channels are compared as they are: see `RateNoiseFit::white_sigma`, whose
+        // degrees of freedom would correct those of rates alone.
+        let mut white_sigma = vec![f64::INFINITY; rates];
+        white_sigma.extend_from_slice(&fit.sigmas);
+        Ok(RateNoiseFit {
+            noise: self.as_rate_noise(&fit.ratios),
+            log_likelihood: fit.log_likelihood,
+            walk_sigma: vec![f64::INFINITY; white_sigma.len()],
+            white_sigma,
+        })
+    }
+
+    fn walk_intervals(&self) -> Result<Vec<Option<[f64; 2]>>, PlantError> {
+        Ok(Vec::new())
+    }
+
+    fn with_rate_noise(&self, noise: &RateNoise) -> Result<Self, PlantError> {
+        let rates = self.plant().rates.len();
+        let ratios = noise.white[rates..].to_vec();
+        self.solved(&self.extension, ratios, self.solution.at.clone())
+    }
+
+    fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, PlantError> {
+        let all: Vec<usize> = (0..self.plant().parameters.len()).collect();
+        let problem = &self.problem;
+        let mut lines = of_parameters(&problem.plant, &problem.rows, &self.extension, &all);
+        lines.extend(problem.columns(&self.extension));
+        lines.extend(self.further(further));
+        Ok(self.pass(&lines, Keep::Nothing)?.gram)
+    }
+
+    fn conditional_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, PlantError> {
+        let mut lines = self.lines();
+        lines.extend(self.further(further));
+        Ok(self.pass(&lines, Keep::Nothing)?.gram)
+    }
+
+    fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, PlantError> {
+        let reduced = self.pass(&self.lines(), Keep::All)?;
+        backward::jumps(
+            &self.solution.lin,
+            &reduced.kept,
+            &self.solution.covariance,
+        )
+        .ok_or(PlantError::Singular)
+    }
+}

@@ -1,0 +1,135 @@
+//! Columns of a linearised model, and what their amplitudes do to its parameters.
+
+use std::sync::Arc;
+
+use gyrocal_hypothesis::{Column, ModelExtension, Rows};
+
+use crate::loaded::LoadedPlant;
+
+/// One column.
+#[derive(Clone, Debug)]
+pub(crate) enum Line {
+    /// The initial value of a state.
+    Start(usize),
+    /// A parameter of the model.
+    Parameter(usize),
+    /// A parameter times a number for each step.
+    Profile(usize, Arc<[f64]>),
+    /// A sudden change of a state in the step after a row.
+    Jump(usize, usize),
+    /// A change of an output at each row.
+    Output(usize, Arc<[f64]>),
+}
+
+impl Line {
+    /// A column of the search.
+    pub(crate) fn of(column: &Column, states: usize, steps: usize) -> Self {
+        match column {
+            Column::InitialState { state } => Self::Start(*state),
+            Column::StateJump { row, state } => Self::Jump(*row, *state),
+            Column::Step { parameter, row } => {
+                let profile = (0..steps).map(|step| f64::from(u8::from(step >= *row)));
+                Self::Profile(parameter - states, profile.collect())
+            }
+            Column::TimeProfile { parameter, steps } => {
+                Self::Profile(parameter - states, Arc::clone(steps))
+            }
+            Column::Output { output, change } => Self::Output(*output, Arc::clone(change)),
+        }
+    }
+}
+
+/// The lines of all parameters of the tables of a plant, at the shapes of an extension.
+pub(crate) fn of_parameters(
+    plant: &LoadedPlant,
+    rows: &Rows,
+    extension: &ModelExtension,
+    wanted: &[usize],
+) -> Vec<Line> {
+    let tables = plant.tables();
+    let states = plant.description.states.len();
+    let sizes = plant.functions.sizes().parameters;
+    let shapes = extension.all_shapes(tables);
+    let line = |index: &usize| {
+        let Some(parameter) = index.checked_sub(states) else {
+            return Line::Start(*index);
+        };
+        let Some(own) = parameter.checked_sub(sizes) else {
+            return Line::Parameter(parameter);
+        };
+        let modulated = plant.catalogue.modulated[own];
+        match modulated.output {
+            Some(output) => Line::Output(output, rows.row_weights(tables, modulated.weight, &shapes)),
+            None => {
+                let steps = rows.step_weights(tables, modulated.weight, &shapes);
+                Line::Profile(modulated.of, steps)
+            }
+        }
+    };
+    wanted.iter().map(line).collect()
+}
+
+/// Parameters along a record: constant ones, and what changes them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Course {
+    pub(crate) constant: Vec<f64>,
+    /// Parameter, amplitude, number for each step.
+    profiles: Vec<(usize, f64, Arc<[f64]>)>,
+    /// Output, amplitude, number for each row.
+    outputs: Vec<(usize, f64, Arc<[f64]>)>,
+    /// Step, state, amplitude.
+    jumps: Vec<(usize, usize, f64)>,
+}
+
+impl Course {
+    /// The declared values of all parameters of a model.
+    pub(crate) fn declared(plant: &LoadedPlant) -> Self {
+        let declared = plant.description.parameters.iter().map(|one| one.value);
+        let mut constant: Vec<f64> = declared.collect();
+        constant.resize(plant.functions.sizes().parameters, 0.0);
+        Self {
+            constant,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a line with its amplitude.
+    pub(crate) fn add(&mut self, line: &Line, amplitude: f64) {
+        match line {
+            Line::Start(_) => {}
+            Line::Parameter(index) => self.constant[*index] += amplitude,
+            Line::Profile(index, steps) => {
+                self.profiles.push((*index, amplitude, Arc::clone(steps)));
+            }
+            Line::Jump(step, state) => self.jumps.push((*step, *state, amplitude)),
+            Line::Output(output, change) => {
+                self.outputs.push((*output, amplitude, Arc::clone(change)));
+            }
+        }
+    }
+
+    /// Parameters in the step after a row; of the last row those of the step before it.
+    pub(crate) fn at(&self, row: usize, parameters: &mut [f64]) {
+        parameters.copy_from_slice(&self.constant);
+        for (index, amplitude, steps) in &self.profiles {
+            let value = steps.get(row).or(steps.last()).copied().unwrap_or(0.0);
+            parameters[*index] += amplitude * value;
+        }
+    }
+
+    /// Adds what changes outputs at a row.
+    pub(crate) fn add_to_outputs(&self, row: usize, outputs: &mut [f64]) {
+        for (output, amplitude, change) in &self.outputs {
+            outputs[*output] += amplitude * change.get(row).copied().unwrap_or(0.0);
+        }
+    }
+
+    /// Adds the jumps in the step after a row.
+    pub(crate) fn add_jumps(&self, row: usize, states: &mut [f64]) {
+        for (step, state, amplitude) in &self.jumps {
+            if *step == row {
+                states[*state] += amplitude;
+            }
+        }
+    }
+}

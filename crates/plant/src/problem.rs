@@ -1,0 +1,131 @@
+//! A fit in the making: a plant, a record, and the unknowns of a model.
+
+use std::sync::Arc;
+
+use gyrocal_hypothesis::{ModelExtension, Rows};
+
+use crate::lines::{Course, Line, of_parameters};
+use crate::loaded::LoadedPlant;
+use crate::pass::Variances;
+use crate::record::PlantRecord;
+
+/// A plant and a record.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    pub(crate) plant: LoadedPlant,
+    pub(crate) record: Arc<PlantRecord>,
+    /// Rows in the time of the search.
+    pub(crate) rows: Arc<Rows>,
+    /// Runge-Kutta steps between rows.
+    pub(crate) substeps: usize,
+    /// Standard deviations of the nominal parameters and initial states before the record.
+    pub(crate) prior_sigma: Vec<f64>,
+}
+
+impl Problem {
+    pub(crate) fn new(plant: &LoadedPlant, record: Arc<PlantRecord>, substeps: usize) -> Self {
+        let (scale, first) = (
+            record.search_scale(),
+            record.time_s.first().copied().unwrap_or(0.0),
+        );
+        let time_s = record.time_s.iter().map(|time| (time - first) * scale);
+        let rows = Rows {
+            time_s: time_s.collect(),
+            regressors: record.regressors.clone(),
+            covariates: Vec::new(),
+        };
+        let description = &plant.description;
+        let states = description.states.iter().map(|state| state.sigma);
+        let parameters = description.parameters.iter().map(|one| one.sigma);
+        Self {
+            prior_sigma: states.chain(parameters).collect(),
+            plant: plant.clone(),
+            rows: Arc::new(rows),
+            record,
+            substeps,
+        }
+    }
+
+    /// Number of initial states and nominal parameters.
+    pub(crate) fn nominal(&self) -> usize {
+        self.prior_sigma.len()
+    }
+
+    /// The unknowns of a model as columns.
+    pub(crate) fn lines(&self, extension: &ModelExtension) -> Vec<Line> {
+        let own = extension.parameters.iter().map(|(parameter, _)| *parameter);
+        let wanted: Vec<usize> = (0..self.nominal()).chain(own).collect();
+        let mut lines = of_parameters(&self.plant, &self.rows, extension, &wanted);
+        lines.extend(self.columns(extension));
+        lines
+    }
+
+    /// The further columns of an extension.
+    pub(crate) fn columns(&self, extension: &ModelExtension) -> Vec<Line> {
+        let (states, steps) = self.shape();
+        let columns = extension.columns.columns().iter();
+        columns
+            .map(|column| Line::of(column, states, steps))
+            .collect()
+    }
+
+    /// Numbers of states and of steps.
+    pub(crate) fn shape(&self) -> (usize, usize) {
+        (
+            self.plant.description.states.len(),
+            self.record.len().saturating_sub(1),
+        )
+    }
+
+    /// Standard deviations of the unknowns of a model before the record.
+    pub(crate) fn sigmas(&self, extension: &ModelExtension) -> Vec<f64> {
+        let own = extension.parameters.iter().map(|(_, sigma)| *sigma);
+        let columns = extension.columns.sigmas().iter().copied();
+        self.prior_sigma
+            .iter()
+            .copied()
+            .chain(own)
+            .chain(columns)
+            .collect()
+    }
+
+    /// The parameters of a model along the record, from its unknowns.
+    pub(crate) fn course(&self, lines: &[Line], values: &[f64]) -> Course {
+        let mut course = Course::declared(&self.plant);
+        for (line, value) in lines.iter().zip(values) {
+            if *value != 0.0 {
+                course.add(line, *value);
+            }
+        }
+        course
+    }
+
+    /// States at the first row, from the unknowns.
+    pub(crate) fn initial(&self, values: &[f64]) -> Vec<f64> {
+        let declared = self.plant.description.states.iter();
+        let pairs = declared.zip(values);
+        pairs.map(|(state, value)| state.initial + value).collect()
+    }
+
+    /// Variances of the noise at ratios to the declared standard deviations: outputs, then noises.
+    pub(crate) fn variances(&self, ratios: &[f64]) -> Variances {
+        let description = &self.plant.description;
+        let (outputs, inputs) = ratios.split_at(description.outputs.len());
+        let outputs = description.outputs.iter().zip(outputs);
+        let inputs = description.noises.iter().zip(inputs);
+        Variances {
+            outputs: outputs
+                .map(|(one, ratio)| (one.sigma * ratio).powi(2))
+                .collect(),
+            inputs: inputs
+                .map(|(one, ratio)| (one.density * ratio).powi(2))
+                .collect(),
+            loose: None,
+        }
+    }
+
+    /// Number of noises.
+    pub(crate) fn noises(&self) -> usize {
+        self.plant.description.outputs.len() + self.plant.description.noises.len()
+    }
+}

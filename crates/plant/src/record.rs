@@ -1,0 +1,141 @@
+//! A record: inputs and outputs of a plant at rising times.
+
+use gyrocal_statistics::median_interval_s;
+
+use crate::description::Description;
+use crate::error::PlantError;
+
+/// Interval between rows, s, in the time that the search is given: its shapes and tests are made for
+/// records of days, and any record is one in some unit of time.
+const SEARCH_INTERVAL_S: f64 = 60.0;
+
+/// Rows of inputs, outputs and logged quantities.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlantRecord {
+    /// Time of each row, s.
+    pub time_s: Vec<f64>,
+    /// Inputs, by rows.
+    pub inputs: Vec<f64>,
+    /// Outputs, by rows; NaN where one is missing.
+    pub outputs: Vec<f64>,
+    /// Logged quantities, each over all rows.
+    pub regressors: Vec<Vec<f64>>,
+}
+
+impl PlantRecord {
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.time_s.len()
+    }
+
+    /// Whether there are no rows.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.time_s.is_empty()
+    }
+
+    /// Time from the first row to the last, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        match (self.time_s.first(), self.time_s.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        }
+    }
+
+    /// Time of the search over time.
+    pub(crate) fn search_scale(&self) -> f64 {
+        SEARCH_INTERVAL_S / median_interval_s(&self.time_s)
+    }
+
+    /// The record with outputs missing where they saturate, and regressors about their means.
+    ///
+    /// # Errors
+    /// [`PlantError::Input`] if a length is wrong, time does not rise, an input is not a number, or an
+    /// output has no value.
+    pub fn prepared(
+        mut self,
+        description: &Description,
+        origin: &str,
+    ) -> Result<Self, PlantError> {
+        let rows = self.len();
+        let (inputs, outputs) = (description.inputs.len(), description.outputs.len());
+        let refuse = |problem: String, advice: &str| PlantError::Input {
+            origin: origin.to_owned(),
+            problem,
+            advice: advice.to_owned(),
+        };
+        let sized = self.inputs.len() == rows * inputs
+            && self.outputs.len() == rows * outputs
+            && self.regressors.len() == description.regressors.len()
+            && self.regressors.iter().all(|one| one.len() == rows);
+        if !sized {
+            let advice = "give every row each input, output and regressor of the plant";
+            return Err(refuse("columns of different lengths".to_owned(), advice));
+        }
+        let unknowns = description.states.len() + description.parameters.len();
+        if rows < unknowns + 8 {
+            let advice = "a longer record is needed";
+            return Err(refuse(
+                format!("{rows} rows for {unknowns} unknowns"),
+                advice,
+            ));
+        }
+        if let Some(row) = (1..rows).find(|row| self.time_s[*row] <= self.time_s[row - 1]) {
+            let advice = "remove repeated rows and sort by time";
+            return Err(refuse(
+                format!("time does not rise at row {}", row + 1),
+                advice,
+            ));
+        }
+        if let Some(place) = self.inputs.iter().position(|value| !value.is_finite()) {
+            let name = &description.inputs[place % inputs].id;
+            let problem = format!("input `{name}` has no value in row {}", place / inputs + 1);
+            return Err(refuse(problem, "fill the gap, or cut the record there"));
+        }
+        for (index, output) in description.outputs.iter().enumerate() {
+            let own = self.outputs.iter_mut().skip(index).step_by(outputs);
+            let mut used = 0;
+            for value in own {
+                let is_beyond = output
+                    .saturates
+                    .is_some_and(|[low, high]| *value <= low || *value >= high);
+                if is_beyond || !value.is_finite() {
+                    *value = f64::NAN;
+                }
+                used += usize::from(!value.is_nan());
+            }
+            if used == 0 {
+                let problem = format!("output `{}` has no value that says anything", output.id);
+                return Err(refuse(problem, "check its column and its saturation"));
+            }
+        }
+        for regressor in &mut self.regressors {
+            let mean = regressor.iter().sum::<f64>() / rows as f64;
+            if !mean.is_finite() {
+                return Err(refuse(
+                    "a regressor has a missing value".to_owned(),
+                    "fill the gap",
+                ));
+            }
+            regressor.iter_mut().for_each(|value| *value -= mean);
+        }
+        Ok(self)
+    }
+
+    /// Ids of inputs that never move.
+    #[must_use]
+    pub fn still_inputs(&self, description: &Description) -> Vec<String> {
+        let count = description.inputs.len();
+        let moves = |index: usize| {
+            let mut own = self.inputs.iter().skip(index).step_by(count);
+            let first = own.next();
+            own.any(|value| Some(value) != first)
+        };
+        let all = description.inputs.iter().enumerate();
+        all.filter(|(index, _)| !moves(*index))
+            .map(|(_, input)| input.id.clone())
+            .collect()
+    }
+}

@@ -1,0 +1,263 @@
+//! The best fit of a model by Gauss-Newton steps on trajectory, parameters and initial states.
+//!
+//! Points of the trajectory are unknowns of their own ("multiple shooting"): a model that one start leads
+//! astray within a record, or that is unstable, is still led by its data at every row. What no noise
+//! explains of a step is a defect, which a penalty larger than its multiplier removes.
+
+use gyrocal_hypothesis::ModelExtension;
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::backward::smooth;
+use crate::dynamics::{Dynamics, Linearised};
+use crate::error::PlantError;
+use crate::lines::Line;
+use crate::pass::{Keep, Reduced, Variances, reduce};
+use crate::problem::Problem;
+
+/// Most Gauss-Newton steps.
+const MAX_STEPS: usize = 60;
+
+/// Most halvings of a step.
+const MAX_HALVINGS: usize = 12;
+
+/// Fall of the cost that a step promises below which it is not made: a score then differs from zero by less
+/// than a ten-thousandth of its standard deviation.
+const CONVERGED: f64 = 1e-8;
+
+/// A fall below which a search along a step that finds none ends the fit: rounding of a long record.
+const STALLED: f64 = 1e-3;
+
+/// A penalty over the largest multiplier of its defects.
+const PENALTY: f64 = 2.0;
+
+/// Trajectory and unknowns of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Iterate {
+    pub(crate) points: Vec<f64>,
+    pub(crate) values: Vec<f64>,
+}
+
+/// A best fit.
+#[derive(Clone, Debug)]
+pub(crate) struct Solution {
+    pub(crate) at: Iterate,
+    pub(crate) lin: Linearised,
+    /// Covariance of the unknowns.
+    pub(crate) covariance: DMatrix<f64>,
+    pub(crate) cost: f64,
+}
+
+/// A model to be fitted.
+pub(crate) struct Solver<'a> {
+    pub(crate) problem: &'a Problem,
+    pub(crate) lines: Vec<Line>,
+    pub(crate) sigmas: Vec<f64>,
+    pub(crate) noise: Variances,
+}
+
+/// A Gauss-Newton step.
+struct Step {
+    change: DVector<f64>,
+    /// Cost at the end of the step if the model were linear.
+    promised: f64,
+    covariance: DMatrix<f64>,
+    corrections: Vec<f64>,
+    penalties: Vec<f64>,
+}
+
+impl<'a> Solver<'a> {
+    pub(crate) fn new(problem: &'a Problem, extension: &ModelExtension, noise: Variances) -> Self {
+        Self {
+            problem,
+            lines: problem.lines(extension),
+            sigmas: problem.sigmas(extension),
+            noise,
+        }
+    }
+
+    /// Steps until none is promised to gain.
+    pub(crate) fn solve(&self, start: Iterate) -> Result<Solution, PlantError> {
+        let problem = self.problem;
+        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+        let mut at = start;
+        at.values.resize(self.lines.len(), 0.0);
+        for _ in 0..MAX_STEPS {
+            let course = problem.course(&self.lines, &at.values);
+            let lin = dynamics.linearise(&course, &at.points)?;
+            let reduced =
+                reduce(&lin, &self.noise, &self.lines, Keep::All).ok_or(PlantError::Singular)?;
+            let step = self.step(&lin, &reduced, &at.values)?;
+            let now = self.merit(&lin.defects, &lin.residuals, &lin, &at.values, &step.penalties);
+            let fall = now - 0.5 * step.promised;
+            if fall.is_finite() && fall.abs() < CONVERGED {
+                return Ok(Solution {
+                    covariance: step.covariance,
+                    cost: step.promised,
+                    lin,
+                    at,
+                });
+            }
+            match self.search(&mut dynamics, &lin, &at, &step, now) {
+                Some(next) => at = next,
+                None if fall.abs() < STALLED => {
+                    return Ok(Solution {
+                        covariance: step.covariance,
+                        cost: step.promised,
+                        lin,
+                        at,
+                    });
+                }
+                None => return Err(no_fit("no step lowers the residuals")),
+            }
+        }
+        Err(no_fit("the steps do not end"))
+    }
+
+    fn step(
+        &self,
+        lin: &Linearised,
+        reduced: &Reduced,
+        values: &[f64],
+    ) -> Result<Step, PlantError> {
+        let count = values.len();
+        let mut information = reduced.gram.view((1, 1), (count, count)).into_owned();
+        let mut gradient = DVector::from_fn(count, |i, _| -reduced.gram[(0, i + 1)]);
+        let mut cost = reduced.gram[(0, 0)];
+        for (i, (sigma, value)) in self.sigmas.iter().zip(values).enumerate() {
+            let weight = sigma.powi(-2);
+            information[(i, i)] += weight;
+            gradient[i] -= weight * value;
+            cost += weight * value * value;
+        }
+        let cholesky = Cholesky::new(information).ok_or(PlantError::Singular)?;
+        let change = cholesky.solve(&gradient);
+        let smoothed =
+            smooth(lin, &reduced.kept, change.as_slice()).ok_or(PlantError::Singular)?;
+        Ok(Step {
+            promised: cost - change.dot(&gradient),
+            covariance: cholesky.inverse(),
+            corrections: smoothed.corrections,
+            penalties: smoothed
+                .multipliers
+                .iter()
+                .map(|most| PENALTY * most)
+                .collect(),
+            change,
+        })
+    }
+
+    /// The next iterate: the longest part of a step that lowers the cost.
+    fn search(
+        &self,
+        dynamics: &mut Dynamics<'_>,
+        lin: &Linearised,
+        at: &Iterate,
+        step: &Step,
+        now: f64,
+    ) -> Option<Iterate> {
+        let is_free = self.noise.inputs.is_empty() && self.noise.loose.is_none();
+        let mut share = 1.0;
+        for _ in 0..MAX_HALVINGS {
+            let moved = |(old, change): (&f64, &f64)| old + share * change;
+            let values: Vec<f64> = at.values.iter().zip(step.change.iter()).map(moved).collect();
+            let points: Vec<f64> = at.points.iter().zip(&step.corrections).map(moved).collect();
+            let course = self.problem.course(&self.lines, &values);
+            let mut tried = vec![points];
+            if is_free {
+                // Without noise a simulation is the trajectory, where it stays near.
+                tried.push(dynamics.simulate(&course, &self.problem.initial(&values)));
+            }
+            let best = tried
+                .into_iter()
+                .map(|points| {
+                    let (defects, residuals) = dynamics.differences(&course, &points);
+                    let merit = self.merit(&defects, &residuals, lin, &values, &step.penalties);
+                    (merit, points)
+                })
+                .filter(|(merit, _)| merit.is_finite())
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((merit, points)) = best
+                && merit < now
+            {
+                return Some(Iterate { points, values });
+            }
+            share *= 0.5;
+        }
+        None
+    }
+
+    /// Half the cost of a trajectory, and the penalties of its defects.
+    fn merit(
+        &self,
+        defects: &[f64],
+        residuals: &[f64],
+        lin: &Linearised,
+        values: &[f64],
+        penalties: &[f64],
+    ) -> f64 {
+        let y = self.noise.outputs.len();
+        let outputs = residuals.chunks_exact(y).flat_map(|row| {
+            let pairs = row.iter().zip(&self.noise.outputs);
+            pairs.filter(|(residual, _)| !residual.is_nan())
+        });
+        let mut cost: f64 = outputs.map(|(residual, variance)| residual * residual / variance).sum();
+        // A missing output is NaN in the record; a model that leaves the numbers is caught by its states.
+        if !defects.iter().all(|defect| defect.is_finite()) {
+            return f64::INFINITY;
+        }
+        cost += values
+            .iter()
+            .zip(&self.sigmas)
+            .map(|(value, sigma)| (value / sigma).powi(2))
+            .sum::<f64>();
+        let n = penalties.len();
+        let mut penalty = 0.0;
+        for (row, defect) in defects.chunks_exact(n).enumerate() {
+            let (own, left) = self.explained(lin, row, defect);
+            cost += own;
+            penalty += left
+                .iter()
+                .zip(penalties)
+                .map(|(left, penalty)| left.abs() * penalty)
+                .sum::<f64>();
+        }
+        0.5 * cost + penalty
+    }
+
+    /// The cost of the noise that explains a defect best, and what it leaves.
+    fn explained(&self, lin: &Linearised, row: usize, defect: &[f64]) -> (f64, Vec<f64>) {
+        let (n, w) = (defect.len(), self.noise.inputs.len());
+        let by_noises = DMatrix::from_row_slice(n, w, &lin.by_noises[row * n * w..][..n * w]);
+        let defect = DVector::from_row_slice(defect);
+        if let Some(loose) = &self.noise.loose {
+            let mut covariance = DMatrix::from_diagonal(&DVector::from_row_slice(loose));
+            for k in 0..w {
+                let own = by_noises.column(k);
+                covariance.ger(self.noise.inputs[k] / lin.step_s[row], &own, &own, 1.0);
+            }
+            let cost = Cholesky::new(covariance)
+                .map_or(f64::INFINITY, |cholesky| cholesky.solve(&defect).dot(&defect));
+            return (cost, vec![0.0; n]);
+        }
+        if w == 0 {
+            return (0.0, defect.as_slice().to_vec());
+        }
+        let Some(cholesky) = Cholesky::new(by_noises.tr_mul(&by_noises)) else {
+            return (f64::INFINITY, vec![0.0; n]);
+        };
+        let noise = cholesky.solve(&by_noises.tr_mul(&defect));
+        let cost = noise
+            .iter()
+            .zip(&self.noise.inputs)
+            .map(|(noise, density)| noise * noise * lin.step_s[row] / density)
+            .sum();
+        let left = defect - by_noises * noise;
+        (cost, left.as_slice().to_vec())
+    }
+}
+
+fn no_fit(reason: &str) -> PlantError {
+    PlantError::NoFit {
+        reason: reason.to_owned(),
+    }
+}

@@ -1,0 +1,227 @@
+//! Where a fit starts.
+//!
+//! The usual start is a simulation with the declared values. Where the fit from there is poor, the fit is
+//! led to the data: with noise of all states in every step the trajectory follows the outputs, and the
+//! noise falls until none is left. This is repeated from random parameters until two starts end at the
+//! same best fit.
+
+use gyrocal_hypothesis::ModelExtension;
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::math::exp;
+
+use crate::dynamics::Dynamics;
+use crate::error::PlantError;
+use crate::problem::Problem;
+use crate::solve::{Iterate, Solution, Solver};
+
+/// Deviance a value above which other starts are tried: what an effect of fifty standard deviations
+/// leaves in a thousand values is less.
+const POOR: f64 = 4.0;
+
+/// Costs that differ by less are those of the same fit.
+const SAME: f64 = 0.5;
+
+/// Standard deviations of the noise of a step on the way, over the size of each state.
+const LEVELS: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
+
+/// Standard deviation of a parameter without a prior on the way, over its size.
+const LOOSE_PRIOR: f64 = 1.0;
+
+/// Most random starts.
+const MOST: usize = 8;
+
+/// Standard deviation of the logarithm of a random parameter over its declared value.
+const SPREAD: f64 = 0.5;
+
+/// Difference of simulations with one and two steps between rows, in standard deviations of the noise, that
+/// counts as none.
+const RESOLVED: f64 = 0.05;
+
+/// Most Runge-Kutta steps between rows.
+const MOST_SUBSTEPS: usize = 64;
+
+/// How the best fit was found.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Starts {
+    /// Starts that were tried.
+    pub tried: usize,
+    /// Starts that ended at the best fit.
+    pub agreeing: usize,
+}
+
+/// The best fit of the nominal model.
+pub(crate) fn best(
+    problem: &Problem,
+    ratios: &[f64],
+    first: Option<&[f64]>,
+) -> Result<(Solution, Starts), PlantError> {
+    let mut found: Vec<Solution> = Vec::new();
+    let mut reason = String::new();
+    let mut starts = Starts {
+        tried: 1,
+        agreeing: 0,
+    };
+    let declared = vec![0.0; problem.nominal()];
+    let values = first.unwrap_or(&declared);
+    match simulated(problem, ratios, values) {
+        Ok(solution) => found.push(solution),
+        Err(error) => reason = error.to_string(),
+    }
+    let count = problem.record.outputs.iter().filter(|value| !value.is_nan()).count();
+    let is_poor = |solution: &Solution| solution.cost > POOR * count as f64;
+    let mut draw = Draw::new(0, 0);
+    for index in 0..=MOST {
+        if found.first().is_some_and(|best| !is_poor(best)) {
+            break;
+        }
+        if found.len() >= 2 && found[1].cost - found[0].cost < SAME {
+            break;
+        }
+        let values = if index == 0 {
+            values.to_vec()
+        } else {
+            random(problem, &mut draw)
+        };
+        starts.tried += 1;
+        match led(problem, ratios, &values) {
+            Ok(solution) => found.push(solution),
+            Err(error) => reason = error.to_string(),
+        }
+        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    }
+    let least = found.first().map_or(f64::INFINITY, |best| best.cost);
+    starts.agreeing = found.iter().filter(|one| one.cost - least < SAME).count();
+    let best = found.into_iter().next();
+    best.map(|best| (best, starts))
+        .ok_or(PlantError::NoFit { reason })
+}
+
+/// From a simulation.
+fn simulated(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, PlantError> {
+    let extension = ModelExtension::default();
+    let solver = Solver::new(problem, &extension, problem.variances(ratios));
+    let course = problem.course(&solver.lines, values);
+    let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+    let points = dynamics.simulate(&course, &problem.initial(values));
+    if let Some(place) = points.iter().position(|value| !value.is_finite()) {
+        let row = place / problem.plant.description.states.len();
+        return Err(PlantError::NotFinite { row });
+    }
+    let values = values.to_vec();
+    solver.solve(Iterate { points, values })
+}
+
+/// Led to the data by noise that falls.
+fn led(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, PlantError> {
+    let extension = ModelExtension::default();
+    let sizes = state_sizes(problem, values);
+    let initial = problem.initial(values);
+    let mut at = Iterate {
+        points: initial.repeat(problem.record.len()),
+        values: values.to_vec(),
+    };
+    for level in LEVELS {
+        let mut solver = Solver::new(problem, &extension, problem.variances(ratios));
+        let loose = sizes.iter().map(|size| (level * size).powi(2));
+        solver.noise.loose = Some(loose.collect());
+        let parameters = problem.plant.description.parameters.iter();
+        let states = sizes.len();
+        for (sigma, own) in solver.sigmas[states..].iter_mut().zip(parameters) {
+            let size = if own.value == 0.0 { 1.0 } else { own.value.abs() };
+            *sigma = sigma.min(LOOSE_PRIOR * size);
+        }
+        // The next level starts from here all the same.
+        if let Ok(solution) = solver.solve(at.clone()) {
+            at = solution.at;
+        }
+    }
+    let solver = Solver::new(problem, &extension, problem.variances(ratios));
+    let own = solver.solve(at.clone());
+    // A trajectory that was led may be better as a simulation.
+    own.or_else(|_| simulated(problem, ratios, &at.values))
+}
+
+/// Sizes of the states: of a simulation, or before the record.
+fn state_sizes(problem: &Problem, values: &[f64]) -> Vec<f64> {
+    let solver = Solver::new(
+        problem,
+        &ModelExtension::default(),
+        problem.variances(&vec![1.0; problem.noises()]),
+    );
+    let course = problem.course(&solver.lines, values);
+    let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+    let points = dynamics.simulate(&course, &problem.initial(values));
+    let states = &problem.plant.description.states;
+    let (n, rows) = (states.len(), problem.record.len() as f64);
+    states
+        .iter()
+        .enumerate()
+        .map(|(i, state)| {
+            let own = points.iter().skip(i).step_by(n);
+            let root = (own.map(|value| value * value).sum::<f64>() / rows).sqrt();
+            let known = if state.sigma.is_finite() {
+                state.sigma
+            } else {
+                state.initial.abs()
+            };
+            match (root.is_finite() && root < 1e6 * known.max(1.0), known > 0.0) {
+                (true, _) if root > 0.0 => root.max(known),
+                (_, true) => known,
+                _ => 1.0,
+            }
+        })
+        .collect()
+}
+
+/// Random parameters about the declared ones; initial states as declared.
+fn random(problem: &Problem, draw: &mut Draw) -> Vec<f64> {
+    let states = problem.plant.description.states.len();
+    let mut values = vec![0.0; states];
+    values.extend(problem.plant.description.parameters.iter().map(|own| {
+        if own.value == 0.0 {
+            0.1 * draw.normal()
+        } else {
+            own.value * (exp(SPREAD * draw.normal()) - 1.0)
+        }
+    }));
+    values
+}
+
+/// Runge-Kutta steps between rows that resolve a simulation with these values.
+pub(crate) fn substeps(problem: &Problem, values: &[f64]) -> usize {
+    let extension = ModelExtension::default();
+    let lines = problem.lines(&extension);
+    let course = problem.course(&lines, values);
+    let initial = problem.initial(values);
+    let outputs = |substeps: usize| {
+        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, substeps);
+        let points = dynamics.simulate(&course, &initial);
+        let n = initial.len();
+        let rows = points.chunks_exact(n).enumerate();
+        rows.map(|(row, states)| dynamics.outputs(row, &course, states))
+            .collect::<Vec<_>>()
+    };
+    let sigmas = problem.plant.description.outputs.iter();
+    let sigmas: Vec<f64> = sigmas.map(|output| output.sigma).collect();
+    let mut count = 1;
+    let mut coarse = outputs(count);
+    while count < MOST_SUBSTEPS {
+        let fine = outputs(2 * count);
+        let pairs = coarse.iter().flatten().zip(fine.iter().flatten());
+        let errors = pairs.enumerate().map(|(place, (coarse, fine))| {
+            (coarse - fine).abs() / sigmas[place % sigmas.len()]
+        });
+        let worst = errors.fold(0.0, f64::max);
+        let is_finite = coarse.iter().chain(&fine).flatten().all(|one| one.is_finite());
+        if is_finite && worst < RESOLVED {
+            break;
+        }
+        if !is_finite && count >= 4 {
+            // The simulation runs away by itself: the model is unstable, and no step is too long for that.
+            return 1;
+        }
+        count *= 2;
+        coarse = fine;
+    }
+    count
+}
