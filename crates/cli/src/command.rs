@@ -16,6 +16,7 @@ use crate::import::ImportArguments;
 use crate::manual::{CompletionsArguments, ManArguments};
 use crate::monte_carlo::MonteCarloArguments;
 use crate::plan::PlanArguments;
+use crate::plant::PlantArguments;
 use crate::simulate::SimulateArguments;
 use crate::terminal::{Color, Shown};
 use crate::tumble::TumbleArguments;
@@ -48,6 +49,7 @@ pub(crate) enum Command {
     Man(ManArguments),
     MonteCarlo(MonteCarloArguments),
     Plan(PlanArguments),
+    Plant(PlantArguments),
     Simulate(SimulateArguments),
     Tumble(TumbleArguments),
     Watch(WatchArguments),

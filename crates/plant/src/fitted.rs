@@ -22,6 +22,10 @@ use crate::starts::{self, Starts};
 /// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
 const LEAST_RANGE: f64 = 1e-6;
 
+/// Standard deviation of a parameter that nothing is known of before a record, over its declared value: an
+/// estimate three times as large costs a deviance of 0.0004, and what no record determines stays finite.
+const UNKNOWN: f64 = 100.0;
+
 /// Standard deviation of a held parameter before a record, over its size: it stays where it is declared.
 const HELD: f64 = 1e-6;
 
@@ -62,6 +66,14 @@ impl FittedPlant {
     ) -> Result<Self, PlantError> {
         let mut problem = Problem::new(plant, Arc::new(record), 1);
         let states = plant.description.states.len();
+        for (sigma, own) in problem.prior_sigma[states..]
+            .iter_mut()
+            .zip(&plant.description.parameters)
+        {
+            if sigma.is_infinite() && own.value != 0.0 {
+                *sigma = UNKNOWN * own.value.abs();
+            }
+        }
         for index in held {
             let size = plant.description.parameters[*index].value.abs();
             let size = if size > 0.0 { size } else { 1.0 };

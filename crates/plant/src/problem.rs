@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gyrocal_hypothesis::{ModelExtension, Rows};
 
-use crate::lines::{Course, Line, of_parameters};
+use crate::lines::{Line, of_parameters};
 use crate::loaded::LoadedPlant;
 use crate::pass::Variances;
 use crate::record::PlantRecord;
@@ -87,17 +87,6 @@ impl Problem {
             .chain(own)
             .chain(columns)
             .collect()
-    }
-
-    /// The parameters of a model along the record, from its unknowns.
-    pub(crate) fn course(&self, lines: &[Line], values: &[f64]) -> Course {
-        let mut course = Course::declared(&self.plant);
-        for (line, value) in lines.iter().zip(values) {
-            if *value != 0.0 {
-                course.add(line, *value);
-            }
-        }
-        course
     }
 
     /// States at the first row, from the unknowns.

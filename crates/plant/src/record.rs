@@ -20,6 +20,8 @@ pub struct PlantRecord {
     pub outputs: Vec<f64>,
     /// Logged quantities, each over all rows.
     pub regressors: Vec<Vec<f64>>,
+    /// Their means, which [`Self::prepared`] takes from them.
+    pub regressor_means: Vec<f64>,
 }
 
 impl PlantRecord {
@@ -120,6 +122,7 @@ impl PlantRecord {
                 ));
             }
             regressor.iter_mut().for_each(|value| *value -= mean);
+            self.regressor_means.push(mean);
         }
         Ok(self)
     }

@@ -10,7 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use crate::backward::smooth;
 use crate::dynamics::{Dynamics, Linearised};
 use crate::error::PlantError;
-use crate::lines::Line;
+use crate::lines::{Course, Line};
 use crate::pass::{Keep, Reduced, Variances, reduce};
 use crate::problem::Problem;
 
@@ -53,6 +53,8 @@ pub(crate) struct Solver<'a> {
     pub(crate) lines: Vec<Line>,
     pub(crate) sigmas: Vec<f64>,
     pub(crate) noise: Variances,
+    /// Parameters that the unknowns are added to.
+    pub(crate) base: Course,
 }
 
 /// A Gauss-Newton step.
@@ -72,7 +74,19 @@ impl<'a> Solver<'a> {
             lines: problem.lines(extension),
             sigmas: problem.sigmas(extension),
             noise,
+            base: Course::declared(&problem.plant),
         }
+    }
+
+    /// The parameters along the record.
+    pub(crate) fn course(&self, values: &[f64]) -> Course {
+        let mut course = self.base.clone();
+        for (line, value) in self.lines.iter().zip(values) {
+            if *value != 0.0 {
+                course.add(line, *value);
+            }
+        }
+        course
     }
 
     /// Steps until none is promised to gain.
@@ -82,7 +96,7 @@ impl<'a> Solver<'a> {
         let mut at = start;
         at.values.resize(self.lines.len(), 0.0);
         for _ in 0..MAX_STEPS {
-            let course = problem.course(&self.lines, &at.values);
+            let course = self.course(&at.values);
             let lin = dynamics.linearise(&course, &at.points)?;
             let reduced =
                 reduce(&lin, &self.noise, &self.lines, Keep::All).ok_or(PlantError::Singular)?;
@@ -161,7 +175,7 @@ impl<'a> Solver<'a> {
             let moved = |(old, change): (&f64, &f64)| old + share * change;
             let values: Vec<f64> = at.values.iter().zip(step.change.iter()).map(moved).collect();
             let points: Vec<f64> = at.points.iter().zip(&step.corrections).map(moved).collect();
-            let course = self.problem.course(&self.lines, &values);
+            let course = self.course(&values);
             let mut tried = vec![points];
             if is_free {
                 // Without noise a simulation is the trajectory, where it stays near.

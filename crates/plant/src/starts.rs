@@ -11,6 +11,7 @@ use gyrocal_statistics::math::exp;
 
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
+use crate::pass::Variances;
 use crate::problem::Problem;
 use crate::solve::{Iterate, Solution, Solver};
 
@@ -100,7 +101,7 @@ pub(crate) fn best(
 fn simulated(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, PlantError> {
     let extension = ModelExtension::default();
     let solver = Solver::new(problem, &extension, problem.variances(ratios));
-    let course = problem.course(&solver.lines, values);
+    let course = solver.course(values);
     let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
     let points = dynamics.simulate(&course, &problem.initial(values));
     if let Some(place) = points.iter().position(|value| !value.is_finite()) {
@@ -141,6 +142,45 @@ fn led(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, Pl
     own.or_else(|_| simulated(problem, ratios, &at.values))
 }
 
+/// A model with known parameters led to the data, which its initial states alone are to fit.
+pub(crate) fn led_by(solver: &Solver<'_>, sizes: &[f64]) -> Result<Solution, PlantError> {
+    let problem = solver.problem;
+    let values = vec![0.0; solver.lines.len()];
+    let mut at = Iterate {
+        points: problem.initial(&values).repeat(problem.record.len()),
+        values,
+    };
+    for level in LEVELS {
+        let loose = sizes.iter().map(|size| (level * size).powi(2)).collect();
+        let own = Solver {
+            problem,
+            lines: solver.lines.clone(),
+            sigmas: solver.sigmas.clone(),
+            base: solver.base.clone(),
+            noise: Variances {
+                loose: Some(loose),
+                ..solver.noise.clone()
+            },
+        };
+        if let Ok(solution) = own.solve(at.clone()) {
+            at = solution.at;
+        }
+    }
+    solver.solve(at.clone()).or_else(|error| {
+        // A trajectory that was led may be better as a simulation.
+        let course = solver.course(&at.values);
+        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+        let points = dynamics.simulate(&course, &problem.initial(&at.values));
+        if !points.iter().all(|value| value.is_finite()) {
+            return Err(error);
+        }
+        solver.solve(Iterate {
+            points,
+            values: at.values,
+        })
+    })
+}
+
 /// Sizes of the states: of a simulation, or before the record.
 fn state_sizes(problem: &Problem, values: &[f64]) -> Vec<f64> {
     let solver = Solver::new(
@@ -148,7 +188,7 @@ fn state_sizes(problem: &Problem, values: &[f64]) -> Vec<f64> {
         &ModelExtension::default(),
         problem.variances(&vec![1.0; problem.noises()]),
     );
-    let course = problem.course(&solver.lines, values);
+    let course = solver.course(values);
     let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
     let points = dynamics.simulate(&course, &problem.initial(values));
     let states = &problem.plant.description.states;
@@ -189,9 +229,9 @@ fn random(problem: &Problem, draw: &mut Draw) -> Vec<f64> {
 
 /// Runge-Kutta steps between rows that resolve a simulation with these values.
 pub(crate) fn substeps(problem: &Problem, values: &[f64]) -> usize {
-    let extension = ModelExtension::default();
-    let lines = problem.lines(&extension);
-    let course = problem.course(&lines, values);
+    let noise = problem.variances(&vec![1.0; problem.noises()]);
+    let solver = Solver::new(problem, &ModelExtension::default(), noise);
+    let course = solver.course(values);
     let initial = problem.initial(values);
     let outputs = |substeps: usize| {
         let mut dynamics = Dynamics::new(&problem.plant, &problem.record, substeps);

@@ -1,0 +1,133 @@
+//! `gyrocal plant`: diagnosis of records of any plant.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use gyrocal_plant::answer::Diagnosis;
+use gyrocal_plant::{ColumnMap, LoadedPlant, PlantError, SearchOptions, diagnose};
+use gyrocal_record::write_json;
+use gyrocal_statistics::format::significant;
+use miette::Report;
+
+use crate::numbers::probability;
+use crate::progress::Progress;
+use crate::tables::{right, table};
+use crate::{Failure, outputs, text};
+
+/// Diagnose records of any plant that a program file describes.
+///
+/// docs/any-plant.md leads from an equation and a CSV file to a named cause and its gain.
+#[derive(Debug, Args)]
+pub(crate) struct PlantArguments {
+    #[command(subcommand)]
+    command: PlantCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum PlantCommand {
+    Diagnose(PlantDiagnoseArguments),
+}
+
+/// Find what the model of a plant lacks in a record.
+#[derive(Debug, Args)]
+struct PlantDiagnoseArguments {
+    /// The plant: the program file that its Python script writes.
+    #[arg(value_name = "PLANT.json")]
+    plant: PathBuf,
+    /// The record (CSV), with a header.
+    #[arg(value_name = "RECORD.csv")]
+    record: PathBuf,
+    /// Columns of the record for time, inputs and outputs (TOML).
+    #[arg(long, value_name = "MAP.toml")]
+    columns: PathBuf,
+    /// A later record of the same plant, to measure the gain of what is found.
+    #[arg(long, value_name = "LATER.csv")]
+    validate: Option<PathBuf>,
+    /// Columns of the later record, if they differ.
+    #[arg(long, value_name = "MAP.toml", requires = "validate")]
+    validate_columns: Option<PathBuf>,
+    /// Write the result for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+    /// Family-wise false-alarm probability.
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
+    false_alarm: f64,
+}
+
+impl From<PlantError> for Failure {
+    fn from(error: PlantError) -> Self {
+        Self::Work(Report::msg(error.to_string()))
+    }
+}
+
+/// Runs the command; returns the text for stdout.
+pub(crate) fn run(arguments: &PlantArguments) -> Result<String, Failure> {
+    match &arguments.command {
+        PlantCommand::Diagnose(arguments) => run_diagnose(arguments),
+    }
+}
+
+fn run_diagnose(arguments: &PlantDiagnoseArguments) -> Result<String, Failure> {
+    let mut inputs = vec![
+        arguments.plant.as_path(),
+        arguments.record.as_path(),
+        arguments.columns.as_path(),
+    ];
+    inputs.extend(arguments.validate.as_deref());
+    inputs.extend(arguments.validate_columns.as_deref());
+    outputs::check(&inputs, arguments.json.as_deref(), None)?;
+    let plant = LoadedPlant::read(&arguments.plant)?;
+    let columns = ColumnMap::read(&arguments.columns)?;
+    let record = columns.record(plant.description(), &arguments.record)?;
+    let later = match &arguments.validate {
+        Some(path) => {
+            let own = arguments.validate_columns.as_deref().map(ColumnMap::read);
+            let columns = own.transpose()?.unwrap_or(columns);
+            Some(columns.record(plant.description(), path)?)
+        }
+        None => None,
+    };
+    let options = SearchOptions {
+        false_alarm_probability: arguments.false_alarm,
+        ..SearchOptions::default()
+    };
+    let progress = Progress::waiting("diagnosing", record.len());
+    let diagnosed = diagnose(&plant, record, later, &options)?;
+    drop(progress);
+    if let Some(path) = &arguments.json {
+        write_json(path, &diagnosed.answer)?;
+    }
+    Ok(shown(&diagnosed.answer))
+}
+
+fn shown(answer: &Diagnosis) -> String {
+    let mut shown = String::new();
+    for sentence in answer.sentences() {
+        shown += &text::paragraph(&sentence);
+        shown.push('\n');
+    }
+    let mut parameters = table(vec!["", "unit", "declared", "nominal", "with findings", "sigma"]);
+    for one in &answer.parameters {
+        let number = |value: f64| right(significant(value, 5));
+        parameters.add_row(vec![
+            one.name.as_str().into(),
+            one.unit.as_str().into(),
+            number(one.declared),
+            number(one.nominal),
+            number(one.value),
+            right(significant(one.sigma, 2)),
+        ]);
+    }
+    shown += &format!("{parameters}\n\n");
+    let mut noise = table(vec!["noise", "over the declared one", "95 %"]);
+    for one in &answer.noise {
+        let [low, high] = one.interval.map(|end| significant(end, 3));
+        noise.add_row(vec![
+            one.of.as_str().into(),
+            right(significant(one.ratio, 3)),
+            right(format!("{low} to {high}")),
+        ]);
+    }
+    shown += &format!("{noise}\n");
+    shown
+}

@@ -1,0 +1,308 @@
+//! Directions of parameters and initial states that a record does not determine: gauges, which no record
+//! determines, and weak excitation.
+//!
+//! At the fit, directions of the information without priors that are null are told apart by other records
+//! of the same plant: simulated with random inputs and random initial states at the fitted parameters and
+//! at random ones. A gauge is null in all of them together. What is null in the record only is not excited
+//! there.
+
+use std::sync::Arc;
+
+use gyrocal_hypothesis::ModelExtension;
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::math::exp;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use crate::dynamics::Dynamics;
+use crate::error::PlantError;
+use crate::fitted::FittedPlant;
+use crate::pass::{Keep, reduce};
+use crate::problem::Problem;
+use crate::record::PlantRecord;
+use crate::solve::Solver;
+
+/// Share of the information of the best direction, columns of length one, below which one is null.
+const NULL: f64 = 1e-9;
+
+/// Random records at the fitted parameters.
+const RECORDS: u64 = 4;
+
+/// Rows of a random record.
+const ROWS: usize = 400;
+
+/// Rows over which a random input is held.
+const HELD_ROWS: usize = 7;
+
+/// Standard deviation of the logarithm of random initial states and inputs over their sizes.
+const SPREAD: f64 = 0.5;
+
+/// Least part of a direction that is named.
+const NAMED: f64 = 0.02;
+
+/// A direction that a record does not determine.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct NullDirection {
+    /// Whether no record determines it; this record does not otherwise.
+    pub is_gauge: bool,
+    /// Names with their changes: a share of a value that is not zero, in the unit otherwise.
+    pub parts: Vec<NullPart>,
+    /// The parameter that was held for it.
+    pub held: Option<String>,
+}
+
+/// One name of a direction.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct NullPart {
+    /// Parameter or initial state.
+    pub name: String,
+    /// Its change along the direction, the largest being one.
+    pub change: f64,
+    /// Whether the change is a share of its value.
+    pub is_share: bool,
+    /// Index of the nominal parameter; `None` of an initial state.
+    #[serde(skip)]
+    pub parameter: Option<usize>,
+}
+
+impl NullDirection {
+    /// One sentence without a full stop.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let part = |part: &NullPart| {
+            let sign = if part.change < 0.0 { "−" } else { "+" };
+            let size = part.change.abs();
+            if part.is_share {
+                format!("{sign}{size:.2} % of {}", part.name)
+            } else {
+                format!("{sign}{size:.2e} of {}", part.name)
+            }
+        };
+        let parts: Vec<String> = self.parts.iter().map(part).collect();
+        let held = self.held.as_ref().map_or_else(String::new, |held| {
+            format!("; {held} is held at its declared value")
+        });
+        if self.is_gauge {
+            format!(
+                "no record of this plant determines {} together{held}",
+                parts.join(", ")
+            )
+        } else {
+            format!(
+                "this record does not excite {}{held}: another input would",
+                parts.join(", ")
+            )
+        }
+    }
+}
+
+impl FittedPlant {
+    /// Directions of initial states and parameters that the record does not determine, priors aside.
+    ///
+    /// # Errors
+    /// [`PlantError::Singular`], [`PlantError::NotFinite`].
+    pub fn null_directions(&self) -> Result<Vec<NullDirection>, PlantError> {
+        let nominal = self.problem.nominal();
+        let lines = &self.lines()[..nominal];
+        let gram = self.pass(lines, Keep::Nothing)?.gram;
+        let information = gram.view((1, 1), (nominal, nominal)).into_owned();
+        let scales = scales(&information);
+        let null = null_space(&scaled(&information, &scales));
+        if null.is_empty() {
+            return Ok(Vec::new());
+        }
+        let others = self.random_information(&scales)?;
+        Ok(null
+            .iter()
+            .map(|direction| self.direction(direction, &scales, &others))
+            .collect())
+    }
+
+    /// Information on the parameters, scaled, of random records, their initial states free.
+    fn random_information(&self, scales: &DVector<f64>) -> Result<DMatrix<f64>, PlantError> {
+        let problem = &self.problem;
+        let (n, nominal) = (problem.plant.description.states.len(), problem.nominal());
+        let mut sum = DMatrix::zeros(nominal - n, nominal - n);
+        for seed in 0..RECORDS {
+            let mut draw = Draw::new(seed, 1);
+            let Some(information) = self.random_record(&mut draw)? else {
+                continue;
+            };
+            let own = scaled(&information, scales);
+            // Schur complement: initial states are unknowns of that record alone.
+            let states = own.view((0, 0), (n, n)).into_owned();
+            let cross = own.view((0, n), (n, nominal - n)).into_owned();
+            let eigen = SymmetricEigen::new(states);
+            let most = eigen.eigenvalues.max().max(f64::MIN_POSITIVE);
+            let mut left = own.view((n, n), (nominal - n, nominal - n)).into_owned();
+            for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+                if *value > NULL * most {
+                    let along = cross.tr_mul(&vector);
+                    left.ger(-value.recip(), &along, &along, 1.0);
+                }
+            }
+            sum += left;
+        }
+        Ok(sum)
+    }
+
+    /// Information of a simulated record with random inputs and initial states at the fitted parameters;
+    /// `None` where it leaves the numbers.
+    fn random_record(&self, draw: &mut Draw) -> Result<Option<DMatrix<f64>>, PlantError> {
+        let here = &self.problem;
+        let description = &here.plant.description;
+        let (n, u, y) = (
+            description.states.len(),
+            description.inputs.len(),
+            description.outputs.len(),
+        );
+        let rows = self.record().len().min(ROWS);
+        let size = |values: &[f64], place: usize, count: usize| {
+            let own = values.iter().skip(place).step_by(count);
+            let most = own.fold(0.0, |most: f64, value| most.max(value.abs()));
+            if most > 0.0 { most } else { 1.0 }
+        };
+        let mut inputs = vec![0.0; rows * u];
+        for index in 0..u {
+            let size = size(&self.record().inputs, index, u);
+            let mut held = 0.0;
+            for row in 0..rows {
+                if row % HELD_ROWS == 0 {
+                    held = size * draw.normal();
+                }
+                inputs[row * u + index] = held;
+            }
+        }
+        let record = PlantRecord {
+            time_s: self.record().time_s[..rows].to_vec(),
+            inputs,
+            outputs: vec![0.0; rows * y],
+            regressor_means: Vec::new(),
+            regressors: self
+                .record()
+                .regressors
+                .iter()
+                .map(|one| one[..rows].to_vec())
+                .collect(),
+        };
+        let problem = Problem::new(&here.plant, Arc::new(record), here.substeps);
+        let noise = problem.variances(&self.ratios);
+        let solver = Solver::new(&problem, &ModelExtension::default(), noise);
+        let mut values = self.solution.at.values[..problem.nominal()].to_vec();
+        for (index, state) in description.states.iter().enumerate() {
+            let somewhere = self.points()[(draw.uniform() * rows as f64) as usize * n + index];
+            values[index] = somewhere * exp(SPREAD * draw.normal()) - state.initial;
+        }
+        let course = solver.course(&values);
+        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+        let points = dynamics.simulate(&course, &problem.initial(&values));
+        if !points.iter().all(|value| value.is_finite()) {
+            return Ok(None);
+        }
+        let lin = dynamics.linearise(&course, &points)?;
+        let reduced = reduce(&lin, &solver.noise, &solver.lines, Keep::Nothing);
+        let count = solver.lines.len();
+        Ok(reduced.map(|reduced| reduced.gram.view((1, 1), (count, count)).into_owned()))
+    }
+
+    fn direction(
+        &self,
+        direction: &DVector<f64>,
+        scales: &DVector<f64>,
+        others: &DMatrix<f64>,
+    ) -> NullDirection {
+        let description = &self.problem.plant.description;
+        let n = description.states.len();
+        let own = direction.rows(n, direction.len() - n).into_owned();
+        let most = SymmetricEigen::new(others.clone()).eigenvalues.max();
+        // A direction of initial states alone that is null is one at every input.
+        let along = (others * &own).dot(&own);
+        let is_gauge = along <= NULL.sqrt() * most * own.norm_squared();
+        let states = description.states.iter();
+        let states = states.map(|state| (format!("the initial {}", state.id), 0.0, None));
+        let parameters = description.parameters.iter().enumerate();
+        let parameters = parameters.map(|(index, one)| {
+            let value = one.value + self.solution.at.values[n + index];
+            (one.id.clone(), value, Some(index))
+        });
+        let mut parts: Vec<NullPart> = states
+            .chain(parameters)
+            .zip(direction.iter().zip(scales.iter()))
+            .map(|((name, value, parameter), (part, scale))| {
+                let change = part * scale;
+                let is_share = value != 0.0;
+                NullPart {
+                    name,
+                    change: if is_share { change / value } else { change },
+                    is_share,
+                    parameter,
+                }
+            })
+            .collect();
+        let shares = parts.iter().filter(|part| part.is_share);
+        let largest = shares.map(|part| part.change.abs()).fold(0.0, f64::max);
+        let largest = if largest > 0.0 {
+            largest
+        } else {
+            parts.iter().map(|part| part.change.abs()).fold(0.0, f64::max)
+        };
+        // In percent of the largest.
+        for part in &mut parts {
+            part.change /= largest;
+        }
+        let mut index = 0;
+        parts.retain(|part| {
+            index += 1;
+            direction[index - 1].abs() > NAMED && part.change.abs() > NAMED
+        });
+        parts.sort_by(|a, b| b.change.abs().total_cmp(&a.change.abs()));
+        NullDirection {
+            is_gauge,
+            parts,
+            held: None,
+        }
+    }
+
+    /// Nominal parameters to hold, one for each null direction, with the directions.
+    ///
+    /// # Errors
+    /// As [`Self::null_directions`].
+    pub fn to_hold(&self) -> Result<(Vec<usize>, Vec<NullDirection>), PlantError> {
+        let mut directions = self.null_directions()?;
+        let mut held = Vec::new();
+        let parameters = &self.problem.plant.description.parameters;
+        for direction in &mut directions {
+            let free = direction.parts.iter().filter_map(|part| part.parameter);
+            // What has a prior needs no holding.
+            let known = free.clone().any(|index| parameters[index].sigma.is_finite());
+            let mut free = free.filter(|index| !held.contains(index));
+            if let Some(index) = free.next().filter(|_| !known) {
+                held.push(index);
+                direction.held = Some(parameters[index].id.clone());
+            }
+        }
+        Ok((held, directions))
+    }
+}
+
+/// One over the root of the diagonal; of a column that is zero, one.
+fn scales(information: &DMatrix<f64>) -> DVector<f64> {
+    information.diagonal().map(|own| {
+        if own > 0.0 { own.sqrt().recip() } else { 1.0 }
+    })
+}
+
+fn scaled(information: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(information.nrows(), information.ncols(), |i, j| {
+        information[(i, j)] * scales[i] * scales[j]
+    })
+}
+
+/// Directions without information.
+fn null_space(information: &DMatrix<f64>) -> Vec<DVector<f64>> {
+    let eigen = SymmetricEigen::new(information.clone());
+    let most = eigen.eigenvalues.max();
+    let all = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
+    all.filter(|(value, _)| **value <= NULL * most)
+        .map(|(_, vector)| vector.into_owned())
+        .collect()
+}

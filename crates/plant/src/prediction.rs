@@ -1,0 +1,236 @@
+//! A later record predicted by a fit: the density of its outputs with the uncertainty of all parameters, and
+//! errors of simulations over a horizon.
+
+use std::sync::Arc;
+
+use gyrocal_hypothesis::FittedModel as _;
+use gyrocal_statistics::math::ln;
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::description::Kind;
+use crate::dynamics::Dynamics;
+use crate::error::PlantError;
+use crate::fitted::FittedPlant;
+use crate::lines::{Course, Line};
+use crate::pass::{Keep, reduce};
+use crate::problem::Problem;
+use crate::record::PlantRecord;
+use crate::solve::{Iterate, Solver};
+use crate::starts::led_by;
+
+/// Rows of a simulation of a plant whose rates have noise; others are simulated over the whole record.
+const HORIZON_ROWS: usize = 50;
+
+/// Standard deviation of an initial state of which nothing is known, over its size.
+const WIDE: f64 = 100.0;
+
+/// Prediction of a later record.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Prediction {
+    /// Logarithm of the density of the outputs.
+    pub(crate) log_density: f64,
+    /// Root mean square error of each output over the horizon.
+    pub(crate) rms: Vec<f64>,
+}
+
+/// Rows that simulations go over.
+pub(crate) fn horizon_rows(plant: &crate::loaded::LoadedPlant, rows: usize) -> usize {
+    if plant.description.noises.is_empty() {
+        rows
+    } else {
+        HORIZON_ROWS.min(rows)
+    }
+}
+
+impl FittedPlant {
+    /// Root mean square errors of the outputs of this record in simulations over the horizon.
+    #[must_use]
+    pub fn simulation_rms(&self) -> Vec<f64> {
+        let solver = Solver::new(
+            &self.problem,
+            self.extension(),
+            self.problem.variances(&self.ratios),
+        );
+        let course = solver.course(self.values());
+        simulation_rms(&self.problem, &course, self.points())
+    }
+
+    /// The lines of effects and parameters in a later record, with their values, and the rows of this
+    /// fit's covariance that they have.
+    fn carried(&self, later: &PlantRecord) -> Vec<(Line, usize)> {
+        let plant = &self.problem.plant;
+        let (n, nominal) = (plant.description.states.len(), self.problem.nominal());
+        let mut lines: Vec<(Line, usize)> = (n..nominal)
+            .map(|place| (Line::Parameter(place - n), place))
+            .collect();
+        let sizes = plant.functions.sizes().parameters;
+        let own = self.extension().parameters.iter().enumerate();
+        for (index, (parameter, _)) in own {
+            let place = nominal + index;
+            let parameter = parameter - n;
+            if parameter < sizes {
+                lines.push((Line::Parameter(parameter), place));
+                continue;
+            }
+            let Some(line) = self.later_line(parameter - sizes, later) else {
+                continue;
+            };
+            lines.push((line, place));
+        }
+        lines
+    }
+
+    /// What a function of time is in a later record: a step stays, a drift stays where it was, and a
+    /// regressor goes on.
+    fn later_line(&self, modulated: usize, later: &PlantRecord) -> Option<Line> {
+        let plant = &self.problem.plant;
+        let own = plant.catalogue.modulated[modulated];
+        let effects = plant.description.effects.iter();
+        let mut of_time = effects.filter(|effect| effect.kind != Kind::Term);
+        let kind = of_time.nth(modulated)?.kind;
+        let rows = later.len();
+        let steps: Vec<f64> = match kind {
+            Kind::Ramp => {
+                let hours = self.problem.rows.duration_s() / 3600.0;
+                vec![hours; rows]
+            }
+            Kind::Regressor(index) => {
+                let means = (self.record().regressor_means.get(index), later.regressor_means.get(index));
+                let shift = match means {
+                    (Some(first), Some(second)) => second - first,
+                    _ => 0.0,
+                };
+                later.regressors[index].iter().map(|value| value + shift).collect()
+            }
+            Kind::Step | Kind::Term => vec![1.0; rows],
+        };
+        Some(match own.output {
+            Some(output) => Line::Output(output, steps.into()),
+            None => Line::Profile(own.of, steps.into()),
+        })
+    }
+
+    /// Prediction of a later record of the same plant, its initial states free.
+    ///
+    /// # Errors
+    /// Those of a fit of its initial states.
+    pub(crate) fn predict(&self, later: &Arc<PlantRecord>) -> Result<Prediction, PlantError> {
+        let plant = &self.problem.plant;
+        let n = plant.description.states.len();
+        let problem = Problem::new(plant, Arc::clone(later), self.problem.substeps);
+        let carried = self.carried(later);
+        let mut base = Course::declared(plant);
+        for (line, place) in &carried {
+            base.add(line, self.values()[*place]);
+        }
+        let starts: Vec<Line> = (0..n).map(Line::Start).collect();
+        let sigmas: Vec<f64> = problem.prior_sigma[..n]
+            .iter()
+            .zip(&plant.description.states)
+            .map(|(sigma, state)| sigma.min(WIDE * state.initial.abs().max(1.0)))
+            .collect();
+        let solver = Solver {
+            problem: &problem,
+            lines: starts.clone(),
+            sigmas: sigmas.clone(),
+            noise: problem.variances(&self.ratios),
+            base,
+        };
+        let solution = led_by(&solver, &self.state_sizes())?;
+        let course = solver.course(&solution.at.values);
+        let rms = simulation_rms(&problem, &course, &solution.at.points);
+        let lines: Vec<Line> = starts
+            .into_iter()
+            .chain(carried.iter().map(|(line, _)| line.clone()))
+            .collect();
+        let reduced = reduce(&solution.lin, &solver.noise, &lines, Keep::Nothing)
+            .ok_or(PlantError::Singular)?;
+        let places: Vec<usize> = carried.iter().map(|(_, place)| *place).collect();
+        let log_density = self
+            .log_density(&reduced.gram, &solution.at, &sigmas, &places)
+            .ok_or(PlantError::Singular)?
+            - 0.5
+                * (reduced.log_variance
+                    + reduced.values as f64 * ln(core::f64::consts::TAU));
+        Ok(Prediction { log_density, rms })
+    }
+
+    /// Sizes of the states in this record.
+    fn state_sizes(&self) -> Vec<f64> {
+        let n = self.problem.plant.description.states.len();
+        let root = |index: usize| {
+            let own = self.points().iter().skip(index).step_by(n);
+            let squares: f64 = own.map(|value| value * value).sum();
+            (squares / self.record().len() as f64).sqrt().max(1e-9)
+        };
+        (0..n).map(root).collect()
+    }
+
+    /// The part of a density that the Gram matrix gives, initial states and parameters integrated out.
+    fn log_density(
+        &self,
+        gram: &DMatrix<f64>,
+        at: &Iterate,
+        sigmas: &[f64],
+        places: &[usize],
+    ) -> Option<f64> {
+        let (n, count) = (sigmas.len(), gram.nrows() - 1);
+        // Unknowns are a factor of their covariance times standard normal ones.
+        let mut factor = DMatrix::zeros(count, count);
+        for (i, sigma) in sigmas.iter().enumerate() {
+            factor[(i, i)] = *sigma;
+        }
+        let own = DMatrix::from_fn(places.len(), places.len(), |i, j| {
+            self.covariance()[(places[i], places[j])]
+        });
+        let own = Cholesky::new(own)?.unpack();
+        factor.view_mut((n, n), (places.len(), places.len())).copy_from(&own);
+        let information = gram.view((1, 1), (count, count)).into_owned();
+        let mut inner = factor.tr_mul(&information) * &factor;
+        for i in 0..count {
+            inner[(i, i)] += 1.0;
+        }
+        let mut standard = DVector::zeros(count);
+        for (i, sigma) in sigmas.iter().enumerate() {
+            standard[i] = at.values[i] / sigma;
+        }
+        let score = DVector::from_fn(count, |i, _| -gram[(0, i + 1)]);
+        let gradient = factor.tr_mul(&score) - &standard;
+        let cholesky = Cholesky::new(inner)?;
+        let gained = cholesky.solve(&gradient).dot(&gradient);
+        let determinant: f64 = cholesky.l().diagonal().iter().map(|x| 2.0 * ln(*x)).sum();
+        let cost = gram[(0, 0)] + standard.norm_squared() - gained;
+        Some(-0.5 * (cost + determinant))
+    }
+}
+
+/// Errors of simulations from the trajectory over the horizon.
+fn simulation_rms(problem: &Problem, course: &Course, points: &[f64]) -> Vec<f64> {
+    let (n, y) = (
+        problem.plant.description.states.len(),
+        problem.plant.description.outputs.len(),
+    );
+    let rows = problem.record.len();
+    let horizon = horizon_rows(&problem.plant, rows);
+    let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+    let (mut squares, mut counts) = (vec![0.0; y], vec![0_usize; y]);
+    for first in (0..rows).step_by(horizon) {
+        let mut here = points[first * n..(first + 1) * n].to_vec();
+        for row in first..rows.min(first + horizon) {
+            let outputs = dynamics.outputs(row, course, &here);
+            let measured = &problem.record.outputs[row * y..(row + 1) * y];
+            for (output, (measured, predicted)) in measured.iter().zip(&outputs).enumerate() {
+                if !measured.is_nan() {
+                    squares[output] += (measured - predicted).powi(2);
+                    counts[output] += 1;
+                }
+            }
+            if row + 1 < rows {
+                here = dynamics.next(row, course, &here);
+            }
+        }
+    }
+    let each = squares.iter().zip(&counts);
+    each.map(|(squares, count)| (squares / (*count).max(1) as f64).sqrt())
+        .collect()
+}

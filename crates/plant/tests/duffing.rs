@@ -1,0 +1,108 @@
+//! The oscillator of `examples/duffing`: records of an independent simulator, effects hidden there.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use gyrocal_plant::{ColumnMap, LoadedPlant, PlantRecord, SearchOptions, diagnose};
+use gyrocal_plant_truth::duffing::{Hidden, Scenario, simulate};
+
+fn example(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../examples/duffing")
+        .join(file)
+}
+
+fn plant() -> LoadedPlant {
+    LoadedPlant::read(&example("plant.json")).unwrap()
+}
+
+/// The oscillator of the example: what is hidden is a spring that softens.
+fn scenario(seed: u64) -> Scenario {
+    Scenario {
+        stiffness: 4.6,
+        damping: 0.27,
+        gain: 1.1,
+        initial: [0.2, -0.4],
+        drive: 1.6,
+        hidden: Hidden::CubicSpring(-0.05),
+        ..Scenario::random(seed)
+    }
+}
+
+fn record(plant: &LoadedPlant, scenario: &Scenario) -> PlantRecord {
+    let run = simulate(scenario);
+    let record = PlantRecord {
+        time_s: run.time_s,
+        inputs: run.inputs.concat(),
+        outputs: run.outputs.concat(),
+        ..PlantRecord::default()
+    };
+    record.prepared(plant.description(), "simulated").unwrap()
+}
+
+#[test]
+fn the_records_of_the_example_are_those_of_the_simulator() {
+    let files = [("record.csv", 41), ("later.csv", 42)];
+    for (file, seed) in files {
+        let text = simulate(&scenario(seed)).csv(&["drive_n"], &["displacement_m"]);
+        if std::env::var_os("GYROCAL_WRITE_EXAMPLES").is_some() {
+            std::fs::write(example(file), &text).unwrap();
+        }
+        let committed = std::fs::read_to_string(example(file)).unwrap();
+        assert!(committed == text, "{file}: GYROCAL_WRITE_EXAMPLES=1 writes it anew");
+    }
+}
+
+#[test]
+fn the_example_names_its_hidden_effect_and_gains_on_the_later_record() {
+    let plant = plant();
+    let columns = ColumnMap::read(&example("columns.toml")).unwrap();
+    let read = |file| columns.record(plant.description(), &example(file)).unwrap();
+    let diagnosed = diagnose(
+        &plant,
+        read("record.csv"),
+        Some(read("later.csv")),
+        &SearchOptions::default(),
+    );
+    let answer = diagnosed.unwrap().answer;
+    assert_eq!(answer.findings.len(), 1, "{:?}", answer.sentences());
+    let found = &answer.findings[0];
+    let set = std::iter::once(&found.effect).chain(found.rivals.iter().map(|(id, _)| id));
+    assert!(set.into_iter().any(|id| id == "v_rate.x^3"), "{found:?}");
+    let size = &found.sizes[0];
+    // Four standard deviations.
+    assert!((size.value + 0.05).abs() < 4.0 * size.sigma.unwrap(), "{size:?}");
+    let later = answer.later_record.unwrap();
+    assert!(later.gain_nats > 3.0, "{later:?}");
+    // The noise of the sensor is left, 0.01 m, and with it at most a tenth more.
+    assert!(later.errors[0].extended < 0.011, "{later:?}");
+    assert!(later.errors[0].nominal > 1.5 * later.errors[0].extended, "{later:?}");
+}
+
+#[test]
+fn a_clean_record_with_misdeclared_noise_has_no_finding() {
+    let plant = plant();
+    for (seed, noise) in [(501, 0.5), (502, 2.0)] {
+        let scenario = Scenario {
+            noise,
+            hidden: Hidden::Nothing,
+            ..Scenario::random(seed)
+        };
+        let record = record(&plant, &scenario);
+        let answer = diagnose(&plant, record, None, &SearchOptions::default()).unwrap().answer;
+        assert!(answer.findings.is_empty(), "{:?}", answer.sentences());
+        assert!(answer.unexplained.is_empty(), "{:?}", answer.sentences());
+        let ratio = answer.noise[0].ratio;
+        // Four standard deviations of the noise of 800 values.
+        assert!((ratio / noise - 1.0).abs() < 0.1, "{ratio}");
+    }
+}
+
+#[test]
+fn a_sensor_gain_is_taken_up_by_the_gain_of_the_drive() {
+    let plant = plant();
+    let record = record(&plant, &scenario(7));
+    let answer = diagnose(&plant, record, None, &SearchOptions::default()).unwrap().answer;
+    let gain = answer.left_out.iter().find(|one| one.effect == "y.gain");
+    assert!(gain.is_some_and(|one| one.why.contains('g')), "{:?}", answer.left_out);
+}
