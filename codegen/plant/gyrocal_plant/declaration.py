@@ -307,8 +307,7 @@ class Plant:
             every[index].equivalents = [names[o] for o in found[index].equivalents if o in names]
         self._biases = biases
         self._effects = [every[index] for index in kept]
-        if self._grammar is not False:
-            self._effects += self._of_time()
+        self._effects += self._of_time()
         own = biases + [e for e in self._effects if e.term is not None and e not in biases]
         return own
 

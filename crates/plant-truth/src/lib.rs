@@ -3,16 +3,36 @@
 //! # What it is
 //!
 //! Each module simulates one plant of `examples/` from its physics, with effects that the nominal model
-//! lacks, and draws scenarios of a population. Nothing here knows a model, its program or its catalogue;
-//! the names of effects in the documentation are those that a diagnosis should find.
+//! lacks ([`simulate`]), and says how large they are ([`strength`]). Nothing here knows a model, its program
+//! or its diagnosis; effects have the names that a diagnosis should find.
 //!
 //! # What it does not do
 //!
 //! It has no estimator. The simulator of the gyros' platform is `gyrocal-truth`.
 
-pub mod duffing;
+mod cart_pole;
+mod duffing;
+mod quadrotor;
 mod random;
 mod run;
+mod servo;
+mod setting;
+mod strength;
+mod tanks;
 
 pub use random::Stream;
 pub use run::Run;
+pub use setting::{Facts, Kind, Setting};
+pub use strength::{strength, with_strength};
+
+/// The record of a setting. With `replayed` inputs nothing is fed back.
+#[must_use]
+pub fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
+    match setting.kind {
+        Kind::Duffing => duffing::simulate(setting, replayed),
+        Kind::Tanks => tanks::simulate(setting, replayed),
+        Kind::Servo => servo::simulate(setting, replayed),
+        Kind::CartPole => cart_pole::simulate(setting, replayed),
+        Kind::Quadrotor => quadrotor::simulate(setting, replayed),
+    }
+}

@@ -1,9 +1,10 @@
 //! A simulated record, and the integration that makes it.
 
 use crate::random::Stream;
+use crate::setting::Setting;
 
 /// Steps of the simulation between two rows: finer than those of any model.
-const FINE: usize = 12;
+const FINE: usize = 10;
 
 /// A simulated record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,46 +27,103 @@ impl Run {
         let mut text = names.join(",") + "\n";
         for row in 0..self.time_s.len() {
             let mut fields = vec![format!("{:.3}", self.time_s[row])];
-            fields.extend(self.inputs[row].iter().map(|value| format!("{value:.9}")));
-            fields.extend(self.outputs[row].iter().map(|value| format!("{value:.9}")));
+            fields.extend(self.inputs[row].iter().map(|value| format!("{value:.6}")));
+            fields.extend(self.outputs[row].iter().map(|value| format!("{value:.5}")));
             text += &(fields.join(",") + "\n");
         }
         text
     }
 }
 
-/// Moves a state over one step between rows: the mean of many midpoint steps, with an input that goes in a
-/// straight line or is held, and a random push on rates, held over the step.
-pub(crate) fn step<const N: usize>(
-    state: [f64; N],
-    (from_s, step_s): (f64, f64),
-    rates: impl Fn(f64, f64, &[f64; N]) -> [f64; N],
-) -> [f64; N] {
-    let h = step_s / FINE as f64;
-    let mut here = state;
-    let moved = |from: &[f64; N], by: &[f64; N], h: f64| -> [f64; N] {
-        core::array::from_fn(|i| from[i] + h * by[i])
-    };
-    for index in 0..FINE {
-        let share = index as f64 / FINE as f64;
-        let half = 0.5 / FINE as f64;
-        let time = from_s + step_s * share;
-        // Kutta's 3/8 rule.
-        let third = 2.0 * half / 3.0;
-        let k1 = rates(time, share, &here);
-        let k2 = rates(time + h / 3.0, share + third, &moved(&here, &k1, h / 3.0));
-        let mut at = moved(&here, &k2, h);
-        at = moved(&at, &k1, -h / 3.0);
-        let k3 = rates(time + 2.0 * h / 3.0, share + 2.0 * third, &at);
-        let mut at = moved(&here, &k1, h);
-        at = moved(&at, &k2, -h);
-        at = moved(&at, &k3, h);
-        let k4 = rates(time + h, share + 2.0 * half, &at);
-        here = core::array::from_fn(|i| {
-            here[i] + h / 8.0 * (k1[i] + 3.0 * (k2[i] + k3[i]) + k4[i])
-        });
+/// A moment of a simulation.
+pub(crate) struct Moment<'a, const N: usize> {
+    /// Share of the record that has passed.
+    pub(crate) share: f64,
+    pub(crate) state: &'a [f64; N],
+    pub(crate) input: &'a [f64],
+}
+
+/// A plant as a simulator.
+pub(crate) struct Simulator<'a, const N: usize> {
+    pub(crate) setting: &'a Setting,
+    pub(crate) step_s: f64,
+    /// Inputs between rows go in a straight line; they are held otherwise.
+    pub(crate) interpolate: bool,
+    pub(crate) rates: &'a dyn Fn(&Moment<'_, N>) -> [f64; N],
+    pub(crate) outputs: &'a dyn Fn(&Moment<'_, N>) -> Vec<f64>,
+}
+
+impl<const N: usize> Simulator<'_, N> {
+    /// The record; `input` gives the inputs of a row from its time and the readings of the row before.
+    /// With `replayed` inputs nothing is fed back.
+    pub(crate) fn run(
+        &self,
+        mut input: impl FnMut(f64, &[f64]) -> Vec<f64>,
+        replayed: Option<&[Vec<f64>]>,
+    ) -> Run {
+        let setting = self.setting;
+        let sigmas = setting.kind.facts().sigmas;
+        let mut noise = Stream::new(setting.seed, 2);
+        let mut state: [f64; N] = core::array::from_fn(|i| setting.initial[i]);
+        let mut run = Run::default();
+        let mut readings = vec![0.0; sigmas.len()];
+        let rows = setting.rows;
+        let mut given = |row: usize, readings: &[f64]| match replayed {
+            Some(inputs) => inputs[row.min(inputs.len() - 1)].clone(),
+            None => input(row as f64 * self.step_s, readings),
+        };
+        let mut here = given(0, &readings);
+        for row in 0..rows {
+            let share = row as f64 / (rows - 1) as f64;
+            let moment = Moment {
+                share,
+                state: &state,
+                input: &here,
+            };
+            readings = (self.outputs)(&moment);
+            for (reading, sigma) in readings.iter_mut().zip(sigmas) {
+                *reading += setting.noise * sigma * noise.normal();
+            }
+            run.time_s.push(row as f64 * self.step_s);
+            run.inputs.push(here.clone());
+            run.outputs.push(readings.clone());
+            let next = given(row + 1, &readings);
+            let end = if self.interpolate { &next } else { &here };
+            state = self.step(state, [share, 1.0 / (rows - 1) as f64], [&here, end]);
+            here = next;
+        }
+        run
     }
-    here
+
+    /// Moves the state over one step, by Kutta's 3/8 rule in many parts.
+    fn step(&self, state: [f64; N], [share, part]: [f64; 2], [from, to]: [&[f64]; 2]) -> [f64; N] {
+        let h = self.step_s / FINE as f64;
+        let mut here = state;
+        let rates = |place: f64, state: &[f64; N]| {
+            let input: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + place * (b - a)).collect();
+            (self.rates)(&Moment {
+                share: share + part * place,
+                state,
+                input: &input,
+            })
+        };
+        let sum = |terms: &[(f64, &[f64; N])], base: &[f64; N]| -> [f64; N] {
+            core::array::from_fn(|i| {
+                base[i] + h * terms.iter().map(|(factor, k)| factor * k[i]).sum::<f64>()
+            })
+        };
+        for index in 0..FINE {
+            let place = |part: f64| (index as f64 + part) / FINE as f64;
+            let k1 = rates(place(0.0), &here);
+            let k2 = rates(place(1.0 / 3.0), &sum(&[(1.0 / 3.0, &k1)], &here));
+            let k3 = rates(place(2.0 / 3.0), &sum(&[(-1.0 / 3.0, &k1), (1.0, &k2)], &here));
+            let k4 = rates(place(1.0), &sum(&[(1.0, &k1), (-1.0, &k2), (1.0, &k3)], &here));
+            let eighth = 1.0 / 8.0;
+            let all = [(eighth, &k1), (3.0 * eighth, &k2), (3.0 * eighth, &k3), (eighth, &k4)];
+            here = sum(&all, &here);
+        }
+        here
+    }
 }
 
 /// A sum of sines with random frequencies and phases.

@@ -11,6 +11,7 @@ use gyrocal_statistics::math::exp;
 
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
+use crate::lines::Course;
 use crate::pass::Variances;
 use crate::problem::Problem;
 use crate::solve::{Iterate, Solution, Solver};
@@ -37,6 +38,11 @@ const SPREAD: f64 = 0.5;
 /// Difference of simulations with one and two steps between rows, in standard deviations of the noise, that
 /// counts as none.
 const RESOLVED: f64 = 0.05;
+
+/// Relative difference of the derivatives of all steps with one and two steps between rows that counts as
+/// none, and the most steps for it.
+const SENSITIVE: f64 = 0.03;
+const MOST_SENSITIVE: usize = 4;
 
 /// Most Runge-Kutta steps between rows.
 const MOST_SUBSTEPS: usize = 64;
@@ -227,6 +233,41 @@ fn random(problem: &Problem, draw: &mut Draw) -> Vec<f64> {
     values
 }
 
+/// Runge-Kutta steps between rows that resolve the derivatives by all parameters: a sign among the terms of
+/// a catalogue changes within a step that the simulation itself does not need to divide.
+fn sensitive_substeps(problem: &Problem, course: &Course, initial: &[f64]) -> usize {
+    let columns = |substeps: usize| {
+        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, substeps);
+        let points = dynamics.simulate(course, initial);
+        let lin = dynamics.linearise(course, &points).ok()?;
+        Some(lin.by_parameters)
+    };
+    let sizes = problem.plant.functions.sizes();
+    let mut count = 1;
+    let Some(mut coarse) = columns(count) else {
+        return 1;
+    };
+    while count < MOST_SENSITIVE {
+        let Some(fine) = columns(2 * count) else {
+            return count;
+        };
+        let (mut off, mut whole) = (vec![0.0; sizes.parameters], vec![0.0; sizes.parameters]);
+        for (place, (coarse, fine)) in coarse.iter().zip(&fine).enumerate() {
+            off[place % sizes.parameters] += (coarse - fine).powi(2);
+            whole[place % sizes.parameters] += fine * fine;
+        }
+        let worst = off.iter().zip(&whole).map(|(off, whole)| {
+            if *whole > 0.0 { off / whole } else { 0.0 }
+        });
+        if worst.fold(0.0, f64::max) < SENSITIVE * SENSITIVE {
+            break;
+        }
+        count *= 2;
+        coarse = fine;
+    }
+    count
+}
+
 /// Runge-Kutta steps between rows that resolve a simulation with these values.
 pub(crate) fn substeps(problem: &Problem, values: &[f64]) -> usize {
     let noise = problem.variances(&vec![1.0; problem.noises()]);
@@ -243,7 +284,7 @@ pub(crate) fn substeps(problem: &Problem, values: &[f64]) -> usize {
     };
     let sigmas = problem.plant.description.outputs.iter();
     let sigmas: Vec<f64> = sigmas.map(|output| output.sigma).collect();
-    let mut count = 1;
+    let mut count = sensitive_substeps(problem, &course, &initial);
     let mut coarse = outputs(count);
     while count < MOST_SUBSTEPS {
         let fine = outputs(2 * count);

@@ -14,7 +14,7 @@ use crate::pass::Keep;
 const LEAST: f64 = 1e-6;
 
 /// Information along a direction of the nominal unknowns, over the largest, that counts as none.
-const NULL: f64 = 1e-12;
+const NULL: f64 = 1e-8;
 
 /// Least part of a combination that is named.
 const NAMED: f64 = 0.05;

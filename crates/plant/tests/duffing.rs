@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use gyrocal_plant::{ColumnMap, LoadedPlant, PlantRecord, SearchOptions, diagnose};
-use gyrocal_plant_truth::duffing::{Hidden, Scenario, simulate};
+use gyrocal_plant_truth::{Kind, Setting, simulate};
 
 fn example(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -17,20 +17,17 @@ fn plant() -> LoadedPlant {
 }
 
 /// The oscillator of the example: what is hidden is a spring that softens.
-fn scenario(seed: u64) -> Scenario {
-    Scenario {
-        stiffness: 4.6,
-        damping: 0.27,
-        gain: 1.1,
-        initial: [0.2, -0.4],
-        drive: 1.6,
-        hidden: Hidden::CubicSpring(-0.05),
-        ..Scenario::random(seed)
+fn setting(seed: u64) -> Setting {
+    Setting {
+        parameters: vec![4.6, 0.27, 1.1],
+        initial: vec![0.2, -0.4],
+        hidden: ("v_rate.x^3", -0.05),
+        ..Setting::random(Kind::Duffing, seed, 800)
     }
 }
 
-fn record(plant: &LoadedPlant, scenario: &Scenario) -> PlantRecord {
-    let run = simulate(scenario);
+fn record(plant: &LoadedPlant, setting: &Setting) -> PlantRecord {
+    let run = simulate(setting, None);
     let record = PlantRecord {
         time_s: run.time_s,
         inputs: run.inputs.concat(),
@@ -44,7 +41,7 @@ fn record(plant: &LoadedPlant, scenario: &Scenario) -> PlantRecord {
 fn the_records_of_the_example_are_those_of_the_simulator() {
     let files = [("record.csv", 41), ("later.csv", 42)];
     for (file, seed) in files {
-        let text = simulate(&scenario(seed)).csv(&["drive_n"], &["displacement_m"]);
+        let text = simulate(&setting(seed), None).csv(&["drive_n"], &["displacement_m"]);
         if std::env::var_os("GYROCAL_WRITE_EXAMPLES").is_some() {
             std::fs::write(example(file), &text).unwrap();
         }
@@ -83,12 +80,11 @@ fn the_example_names_its_hidden_effect_and_gains_on_the_later_record() {
 fn a_clean_record_with_misdeclared_noise_has_no_finding() {
     let plant = plant();
     for (seed, noise) in [(501, 0.5), (502, 2.0)] {
-        let scenario = Scenario {
+        let setting = Setting {
             noise,
-            hidden: Hidden::Nothing,
-            ..Scenario::random(seed)
+            ..Setting::random(Kind::Duffing, seed, 800)
         };
-        let record = record(&plant, &scenario);
+        let record = record(&plant, &setting);
         let answer = diagnose(&plant, record, None, &SearchOptions::default()).unwrap().answer;
         assert!(answer.findings.is_empty(), "{:?}", answer.sentences());
         assert!(answer.unexplained.is_empty(), "{:?}", answer.sentences());
@@ -101,7 +97,7 @@ fn a_clean_record_with_misdeclared_noise_has_no_finding() {
 #[test]
 fn a_sensor_gain_is_taken_up_by_the_gain_of_the_drive() {
     let plant = plant();
-    let record = record(&plant, &scenario(7));
+    let record = record(&plant, &setting(7));
     let answer = diagnose(&plant, record, None, &SearchOptions::default()).unwrap().answer;
     let gain = answer.left_out.iter().find(|one| one.effect == "y.gain");
     assert!(gain.is_some_and(|one| one.why.contains('g')), "{:?}", answer.left_out);

@@ -1,0 +1,83 @@
+//! Gauges, weak excitation, and inputs that are refused in words.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use gyrocal_plant::{ColumnMap, FittedPlant, LoadedPlant, PlantRecord};
+use gyrocal_plant_truth::{Kind, Setting, simulate};
+
+fn example(plant: &str, file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../examples")
+        .join(plant)
+        .join(file)
+}
+
+fn record(plant: &LoadedPlant, setting: &Setting) -> PlantRecord {
+    let run = simulate(setting, None);
+    let record = PlantRecord {
+        time_s: run.time_s,
+        inputs: run.inputs.concat(),
+        outputs: run.outputs.concat(),
+        ..PlantRecord::default()
+    };
+    record.prepared(plant.description(), "simulated").unwrap()
+}
+
+#[test]
+fn the_scale_of_the_unmeasured_tank_is_a_gauge() {
+    let plant = LoadedPlant::read(&example("tanks", "plant.json")).unwrap();
+    let setting = Setting::random(Kind::Tanks, 3, 300);
+    let fit = FittedPlant::nominal(&plant, record(&plant, &setting), &[]).unwrap();
+    let (held, directions) = fit.to_hold().unwrap();
+    assert_eq!(directions.len(), 1, "{directions:?}");
+    assert!(directions[0].is_gauge, "{directions:?}");
+    assert_eq!(held.len(), 1);
+    // Outflow of the upper tank, pump and inflow of the lower one take the scale of the level.
+    let names: Vec<&str> = directions[0].parts.iter().map(|part| part.name.as_str()).collect();
+    for name in ["k1", "k2", "k4"] {
+        assert!(names.contains(&name), "{names:?}");
+    }
+    assert!(directions[0].sentence().starts_with("no record"));
+}
+
+#[test]
+fn an_input_that_never_moves_is_weak_excitation_and_no_gauge() {
+    let plant = LoadedPlant::read(&example("duffing", "plant.json")).unwrap();
+    let mut still = record(&plant, &Setting::random(Kind::Duffing, 4, 300));
+    // A free oscillation: the drive is off.
+    let inputs = vec![vec![0.0]; still.len() + 1];
+    let run = simulate(&Setting::random(Kind::Duffing, 4, 300), Some(&inputs));
+    still.inputs.fill(0.0);
+    still.outputs = run.outputs.concat();
+    assert_eq!(still.still_inputs(plant.description()), ["u"]);
+    let fit = FittedPlant::nominal(&plant, still, &[]).unwrap();
+    let directions = fit.null_directions().unwrap();
+    assert_eq!(directions.len(), 1, "{directions:?}");
+    assert!(!directions[0].is_gauge, "{directions:?}");
+    assert_eq!(directions[0].parts[0].name, "g");
+}
+
+#[test]
+fn a_driven_oscillator_has_neither() {
+    let plant = LoadedPlant::read(&example("duffing", "plant.json")).unwrap();
+    let setting = Setting::random(Kind::Duffing, 5, 300);
+    let fit = FittedPlant::nominal(&plant, record(&plant, &setting), &[]).unwrap();
+    assert_eq!(fit.null_directions().unwrap(), []);
+}
+
+#[test]
+fn a_missing_column_is_told_with_those_that_are_there() {
+    let plant = LoadedPlant::read(&example("servo", "plant.json")).unwrap();
+    let directory = std::env::temp_dir().join(format!("gyrocal-plant-{}", std::process::id()));
+    std::fs::create_dir_all(&directory).unwrap();
+    let (map, data) = (directory.join("map.toml"), directory.join("data.csv"));
+    let text = "[time]\ncolumn = \"t\"\n[inputs]\ndrive = \"volt\"\n[outputs]\ny = \"angle\"\n";
+    std::fs::write(&map, text).unwrap();
+    std::fs::write(&data, "t,volts,angle\n0,1,2\n").unwrap();
+    let columns = ColumnMap::read(&map).unwrap();
+    let error = columns.record(plant.description(), &data).unwrap_err().to_string();
+    assert!(error.contains("the column `volt` for input `drive`"), "{error}");
+    assert!(error.contains("the file has t, volts, angle"), "{error}");
+    std::fs::remove_dir_all(&directory).unwrap();
+}

@@ -1,0 +1,69 @@
+//! Interpreted functions and generated Rust of one program: the same names and sets, and numbers that
+//! differ by rounding only.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use gyrocal_codegen::{Header, Program, emit_module};
+use gyrocal_plant::{ColumnMap, Generated, LoadedPlant, SearchOptions, diagnose};
+
+#[path = "generated/duffing.rs"]
+#[rustfmt::skip]
+#[allow(missing_docs, unreachable_pub, dead_code, clippy::all)]
+mod duffing;
+
+const COMMITTED: &str = "tests/generated/duffing.rs";
+
+fn path(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
+}
+
+fn example(file: &str) -> PathBuf {
+    path("../../examples/duffing").join(file)
+}
+
+#[test]
+fn the_generated_rust_is_that_of_the_program() {
+    let text = std::fs::read_to_string(example("plant.json")).unwrap();
+    let program = Program::from_json(&text, "plant.json").unwrap();
+    let header = Header {
+        rebuild_command: "GYROCAL_WRITE_EXAMPLES=1 cargo test -p gyrocal-plant --test generated".into(),
+        source: "examples/duffing/plant.json".into(),
+        fingerprint: "of the program".into(),
+    };
+    let module = emit_module(&program, &header).unwrap();
+    if std::env::var_os("GYROCAL_WRITE_EXAMPLES").is_some() {
+        std::fs::write(path(COMMITTED), &module).unwrap();
+    }
+    assert!(std::fs::read_to_string(path(COMMITTED)).unwrap() == module, "{COMMITTED} is stale");
+}
+
+#[test]
+fn both_diagnose_the_same() {
+    let interpreted = LoadedPlant::read(&example("plant.json")).unwrap();
+    let generated = Generated::new(duffing::Duffing, 0);
+    let generated = interpreted.with_functions(Arc::new(generated)).unwrap();
+    let columns = ColumnMap::read(&example("columns.toml")).unwrap();
+    let answers = [&interpreted, &generated].map(|plant| {
+        let record = columns.record(plant.description(), &example("record.csv")).unwrap();
+        diagnose(plant, record, None, &SearchOptions::default()).unwrap().answer
+    });
+    let [one, other] = &answers;
+    assert!(!one.findings.is_empty());
+    assert_eq!(one.findings.len(), other.findings.len());
+    for (one, other) in one.findings.iter().zip(&other.findings) {
+        assert_eq!(one.effect, other.effect);
+        let names = |found: &[(String, f64)]| -> Vec<String> {
+            found.iter().map(|(name, _)| name.clone()).collect()
+        };
+        assert_eq!(names(&one.rivals), names(&other.rivals));
+        for (one, other) in one.sizes.iter().zip(&other.sizes) {
+            let sigma = one.sigma.unwrap();
+            assert!((one.value - other.value).abs() < 1e-6 * sigma, "{one:?} {other:?}");
+        }
+    }
+    for (one, other) in one.parameters.iter().zip(&other.parameters) {
+        assert!((one.value - other.value).abs() < 1e-6 * one.sigma, "{one:?} {other:?}");
+    }
+}
