@@ -2,8 +2,8 @@
 //! determines, and weak excitation.
 //!
 //! At the fit, directions of the information without priors that are null are told apart by other records
-//! of the same plant: simulated with random inputs and random initial states at the fitted parameters and
-//! at random ones. A gauge is null in all of them together. What is null in the record only is not excited
+//! of the same plant: simulated at the fitted parameters with random inputs in the range of the record's and
+//! random initial states. A gauge is null in all of them together. What is null in the record only is not excited
 //! there.
 
 use std::sync::Arc;
@@ -33,8 +33,8 @@ const ROWS: usize = 400;
 /// Rows over which a random input is held.
 const HELD_ROWS: usize = 7;
 
-/// Standard deviation of the logarithm of random initial states and inputs over their sizes.
-const SPREAD: f64 = 0.5;
+/// Standard deviation of the logarithm of a random initial state over a state of the record.
+const SPREAD: f64 = 0.2;
 
 /// Least part of a direction that is named.
 const NAMED: f64 = 0.02;
@@ -156,18 +156,20 @@ impl FittedPlant {
             description.outputs.len(),
         );
         let rows = self.record().len().min(ROWS);
-        let size = |values: &[f64], place: usize, count: usize| {
-            let own = values.iter().skip(place).step_by(count);
-            let most = own.fold(0.0, |most: f64, value| most.max(value.abs()));
-            if most > 0.0 { most } else { 1.0 }
+        let range = |place: usize| {
+            let own = self.record().inputs.iter().skip(place).step_by(u);
+            let ends = [f64::INFINITY, f64::NEG_INFINITY];
+            let [low, high] = own.fold(ends, |[low, high], value| [low.min(*value), high.max(*value)]);
+            // One that never moves here may move elsewhere.
+            if high > low { [low, high] } else { [low - 1.0, low + 1.0] }
         };
         let mut inputs = vec![0.0; rows * u];
         for index in 0..u {
-            let size = size(&self.record().inputs, index, u);
+            let [low, high] = range(index);
             let mut held = 0.0;
             for row in 0..rows {
                 if row % HELD_ROWS == 0 {
-                    held = size * draw.normal();
+                    held = low + (high - low) * draw.uniform();
                 }
                 inputs[row * u + index] = held;
             }
