@@ -149,8 +149,7 @@ class Plant:
         """Writes the program file, by default beside the script."""
         target = Path(path) if path else Path(sys.argv[0]).with_suffix(".json")
         target.write_text(self.to_json(), encoding="utf-8", newline="\n")
-        used = [effect for effect in self._effects]
-        print(f"{target}: {len(used)} effects in the catalogue, {len(self._dropped)} left out")
+        print(f"{target}: {len(self._effects)} effects in the catalogue, {len(self._dropped)} left out")
         for ident, why in self._dropped:
             print(f"  {ident}: {why}")
 
@@ -224,7 +223,7 @@ class Plant:
 
     def _check_units(self, known: list[_Symbol]) -> None:
         symbols, names = [one.sx for one in known], [one.unit for one in known]
-        wanted = [(f"the rate of `{s.name}`", self._rates[s.name], s.unit and _per_s(s.unit))
+        wanted = [(f"the rate of `{s.name}`", self._rates[s.name], s.unit and units.per_s(s.unit))
                   for s in self._states]
         wanted += [(f"output `{o.name}`", o.facts["expression"], o.unit) for o in self._outputs]
         for what, expression, unit in wanted:
@@ -248,25 +247,25 @@ class Plant:
         return [state for state in self._states if not self._kinematic(state)]
 
     def _propose(self) -> None:
-        symbols = [(s.name, _plain(s.unit), s.sx, s.facts["typical"], True) for s in self._states]
-        symbols += [(i.name, _plain(i.unit), i.sx, i.facts["typical"], False) for i in self._inputs]
+        symbols = [(s.name, units.plain(s.unit), s.sx, s.facts["typical"], True) for s in self._states]
+        symbols += [(i.name, units.plain(i.unit), i.sx, i.facts["typical"], False) for i in self._inputs]
         for index, state in enumerate(self._states):
             if self._kinematic(state):
                 continue
-            own = _per_s(state.unit)
+            own = units.per_s(state.unit)
             for ident, words, unit, expression in grammar.functions(symbols):
                 self._add(f"{state.name}_rate.{ident}", f"rate of {state.name}: {words}",
-                          _over(own, unit), "rate", index, expression)
+                          units.over(own, unit), "rate", index, expression)
         rates = ca.vertcat(*[self._rates[s.name] for s in self._states])
         states = ca.vertcat(*[s.sx for s in self._states])
         for index, output in enumerate(self._outputs):
             reading = output.facts["expression"]
             fed = any(ca.depends_on(reading, i.sx) for i in self._inputs)
             slope = None if fed else ca.jacobian(reading, states) @ rates
-            terms = grammar.of_output(output.name, _plain(output.unit), reading, slope)
+            terms = grammar.of_output(output.name, units.plain(output.unit), reading, slope)
             for ident, words, unit, expression in terms:
                 self._add(f"{output.name}.{ident}", f"sensor: {words}",
-                          _over(output.unit or "1", unit), "output", index, expression)
+                          units.over(output.unit or "1", unit), "output", index, expression)
 
     def _add(self, ident, name, unit, place, index, term) -> None:
         if any(other.id == ident for other in self._effects):
@@ -276,7 +275,7 @@ class Plant:
     def _judged(self) -> list[_Symbol]:
         """Sizes of all terms: biases of the channels first, then what the catalogue keeps."""
         biases = [_Effect(f"{s.name}_rate.bias", f"rate of {s.name}: a constant", "1",
-                           _per_s(s.unit), "term", "rate", self._states.index(s), ca.SX(1))
+                           units.per_s(s.unit), "term", "rate", self._states.index(s), ca.SX(1))
                   for s in self._moving()]
         biases += [_Effect(f"{o.name}.bias", f"sensor: a constant in {o.name}", "1", o.unit or "1",
                            "term", "output", index, ca.SX(1)) for index, o in enumerate(self._outputs)]
@@ -428,21 +427,6 @@ def _sigma(name: str, sigma: float | None) -> float:
         raise PlantError(f"the standard deviation of `{name}` is {sigma}, expected one above 0, or none "
                          "if nothing is known of it")
     return float(sigma or 0.0)
-
-
-def _plain(unit: str) -> str:
-    """The unit in base units, without `/`."""
-    return units.written(units.parse(unit))
-
-
-def _per_s(unit: str) -> str:
-    return _over(unit, "s")
-
-
-def _over(unit: str, by: str) -> str:
-    """The unit of a size: that of its channel over that of its term."""
-    dimension = units._product(units.parse(unit), units._power(units.parse(by), -1))
-    return units.written(dimension)
 
 
 def _element(ident: str, unit: str, doc: str, name: str) -> Element:

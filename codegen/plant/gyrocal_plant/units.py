@@ -56,7 +56,6 @@ def parse(text: str) -> Dimension:
                              "`kg m/s^2`")
         exponent = Fraction(match.group(2) or 1) * sign
         dimension = _product(dimension, _power(_atom(match.group(1)), exponent))
-        # `N/m s` would be read in two ways.
     return dimension
 
 
@@ -65,6 +64,21 @@ def written(dimension: Dimension) -> str:
     parts = [name if power == 1 else f"{name}^{float(power):g}"
              for name, power in sorted(dimension.items())]
     return " ".join(parts) or "1"
+
+
+def plain(unit: str) -> str:
+    """The unit in base units, without `/`."""
+    return written(parse(unit))
+
+
+def over(unit: str, by: str) -> str:
+    """The unit of a size: that of its channel over that of its term."""
+    return written(_product(parse(unit), _power(parse(by), -1)))
+
+
+def per_s(unit: str) -> str:
+    """The unit of a rate."""
+    return over(unit, "s")
 
 
 class Disagree(Exception):

@@ -1,0 +1,77 @@
+"""Plants that are refused, and what the catalogue leaves out; all in words."""
+
+import json
+
+import casadi as ca
+import pytest
+from gyrocal_plant import Plant, PlantError, units
+
+
+def oscillator():
+    plant = Plant("Oscillator", "A mass on a spring.")
+    x = plant.state("x", "m", typical=1.0)
+    v = plant.state("v", "m/s", typical=1.0)
+    k = plant.parameter("k", "s^-2", 4.0)
+    plant.rate("x", v)
+    plant.rate("v", -k * x)
+    plant.output("y", "m", x, sigma=0.01)
+    return plant, x, v
+
+
+def test_units_that_disagree_are_refused():
+    plant = Plant("Wrong", "")
+    x, c = plant.state("x", "m"), plant.parameter("c", "kg")
+    plant.rate("x", -c * x)
+    plant.output("y", "m", x, sigma=1.0)
+    with pytest.raises(PlantError, match="units of the rate of `x` disagree"):
+        plant.to_json()
+
+
+def test_a_state_that_no_output_depends_on_is_refused():
+    plant, x, _ = oscillator()
+    hidden = plant.state("hidden")
+    plant.rate("hidden", -hidden)
+    with pytest.raises(PlantError, match="no output depends on state `hidden`"):
+        plant.to_json()
+
+
+@pytest.mark.parametrize("term, why", [
+    (lambda x, v: 0 * x, "is identically zero"),
+    (lambda x, v: 3 * x, "does the same as a change of the nominal parameter `k`"),
+])
+def test_terms_that_add_nothing_are_refused(term, why):
+    plant, x, v = oscillator()
+    plant.effect("mine", ca.SX(term(x, v)), rate="v")
+    with pytest.raises(PlantError, match=why):
+        plant.to_json()
+
+
+def test_a_copy_is_refused():
+    plant, x, v = oscillator()
+    plant.effect("one", x**3, rate="v")
+    plant.effect("other", 2 * x**3, rate="v")
+    with pytest.raises(PlantError, match="is a copy of `one`"):
+        plant.to_json()
+
+
+def test_terms_that_differ_by_a_nominal_one_are_equivalent():
+    plant, x, v = oscillator()
+    plant.effect("one", x**3, rate="v")
+    plant.effect("other", x**3 + x, rate="v")
+    tables = {table["name"]: table for table in json.loads(plant.to_json())["tables"]}
+    effects = {row[0]: row[-1] for row in tables["plant_effects"]["rows"]}
+    assert effects["one"] == ["other"] and effects["other"] == ["one"]
+
+
+def test_rates_by_definition_get_no_terms():
+    plant, *_ = oscillator()
+    tables = {table["name"]: table for table in json.loads(plant.to_json())["tables"]}
+    names = [row[0] for row in tables["plant_effects"]["rows"]]
+    assert "v_rate.x^3" in names and not any(name.startswith("x_rate") for name in names)
+
+
+def test_units_are_parsed():
+    assert units.parse("N s/m") == units.parse("kg s^-1")
+    assert units.parse("V") == units.parse("W/A")
+    with pytest.raises(ValueError, match="has `\\(m\\)`"):
+        units.parse("(m)")
