@@ -106,7 +106,14 @@ fn shown(answer: &Diagnosis) -> String {
         shown += &text::paragraph(&sentence);
         shown.push('\n');
     }
-    let mut parameters = table(vec!["", "unit", "declared", "nominal", "with findings", "sigma"]);
+    let mut parameters = table(vec![
+        "",
+        "unit",
+        "declared",
+        "nominal",
+        "with findings",
+        "sigma",
+    ]);
     for one in &answer.parameters {
         let number = |value: f64| right(significant(value, 5));
         parameters.add_row(vec![

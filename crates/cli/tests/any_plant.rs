@@ -29,7 +29,10 @@ fn the_page_shows_what_the_command_prints() {
         let lines = text.trim_end().lines().map(str::trim_end);
         lines.collect::<Vec<_>>().join("\n")
     };
-    assert!(without_ends(&page).contains(&without_ends(&printed)), "{printed}");
+    assert!(
+        without_ends(&page).contains(&without_ends(&printed)),
+        "{printed}"
+    );
 }
 
 #[test]

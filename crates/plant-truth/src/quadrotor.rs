@@ -42,7 +42,8 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
             p + turn * sp,
             cr * q - sr * r,
             turn,
-            (k[0] + setting.step("l.step", at.share)) * u[0] - k[3] * p + k[6] * q * r
+            (k[0] + setting.step("l.step", at.share)) * u[0] - k[3] * p
+                + k[6] * q * r
                 + size("roll.drag") * p * p.abs()
                 + size("roll.mixing") * u[1]
                 + size("p_rate.bias"),

@@ -100,7 +100,11 @@ impl<const N: usize> Simulator<'_, N> {
         let h = self.step_s / FINE as f64;
         let mut here = state;
         let rates = |place: f64, state: &[f64; N]| {
-            let input: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + place * (b - a)).collect();
+            let input: Vec<f64> = from
+                .iter()
+                .zip(to)
+                .map(|(a, b)| a + place * (b - a))
+                .collect();
             (self.rates)(&Moment {
                 share: share + part * place,
                 state,
@@ -116,10 +120,21 @@ impl<const N: usize> Simulator<'_, N> {
             let place = |part: f64| (index as f64 + part) / FINE as f64;
             let k1 = rates(place(0.0), &here);
             let k2 = rates(place(1.0 / 3.0), &sum(&[(1.0 / 3.0, &k1)], &here));
-            let k3 = rates(place(2.0 / 3.0), &sum(&[(-1.0 / 3.0, &k1), (1.0, &k2)], &here));
-            let k4 = rates(place(1.0), &sum(&[(1.0, &k1), (-1.0, &k2), (1.0, &k3)], &here));
+            let k3 = rates(
+                place(2.0 / 3.0),
+                &sum(&[(-1.0 / 3.0, &k1), (1.0, &k2)], &here),
+            );
+            let k4 = rates(
+                place(1.0),
+                &sum(&[(1.0, &k1), (-1.0, &k2), (1.0, &k3)], &here),
+            );
             let eighth = 1.0 / 8.0;
-            let all = [(eighth, &k1), (3.0 * eighth, &k2), (3.0 * eighth, &k3), (eighth, &k4)];
+            let all = [
+                (eighth, &k1),
+                (3.0 * eighth, &k2),
+                (3.0 * eighth, &k3),
+                (eighth, &k4),
+            ];
             here = sum(&all, &here);
         }
         here

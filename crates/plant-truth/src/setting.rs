@@ -108,11 +108,19 @@ impl Setting {
 
     /// Size of an effect in this record.
     pub(crate) fn size(&self, effect: &str) -> f64 {
-        if self.hidden.0 == effect { self.hidden.1 } else { 0.0 }
+        if self.hidden.0 == effect {
+            self.hidden.1
+        } else {
+            0.0
+        }
     }
 
     /// Size of a step at a share of the record.
     pub(crate) fn step(&self, effect: &str, share: f64) -> f64 {
-        if share >= self.onset { self.size(effect) } else { 0.0 }
+        if share >= self.onset {
+            self.size(effect)
+        } else {
+            0.0
+        }
     }
 }

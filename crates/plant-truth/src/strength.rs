@@ -36,7 +36,9 @@ pub fn strength(setting: &Setting) -> f64 {
             outputs(&other, &inputs)
         });
         let pairs = moved[0].iter().zip(&moved[1]);
-        pairs.map(|(a, b)| (a - b) / (2.0 * by)).collect::<Vec<f64>>()
+        pairs
+            .map(|(a, b)| (a - b) / (2.0 * by))
+            .collect::<Vec<f64>>()
     };
     let mut columns: Vec<Vec<f64>> = Vec::new();
     for index in 0..setting.parameters.len() {
@@ -83,7 +85,11 @@ pub fn with_strength(setting: &Setting, wanted: f64) -> Setting {
     for _ in 0..4 {
         let now = strength(&setting);
         // An effect with a threshold may not act at all at first.
-        let factor = if now > 0.0 { (wanted / now).clamp(0.1, 10.0) } else { 4.0 };
+        let factor = if now > 0.0 {
+            (wanted / now).clamp(0.1, 10.0)
+        } else {
+            4.0
+        };
         setting.hidden.1 *= factor;
     }
     setting

@@ -233,7 +233,10 @@ impl Diagnosis {
                 "Nothing is found that {} lacks: {tested} effects were tested on {rows} rows.",
                 self.plant
             ),
-            0 => format!("{} lacks something that its catalogue has no term for.", self.plant),
+            0 => format!(
+                "{} lacks something that its catalogue has no term for.",
+                self.plant
+            ),
             1 => format!("{} lacks one effect: {}.", self.plant, names[0]),
             count => format!("{} lacks {count} effects: {}.", self.plant, list(&names)),
         }
@@ -244,12 +247,18 @@ fn with_findings(error: &OutputError, has: bool) -> String {
     if !has {
         return String::new();
     }
-    format!(" and by {} {} with what was found", significant(error.extended, 3), error.unit)
+    format!(
+        " and by {} {} with what was found",
+        significant(error.extended, 3),
+        error.unit
+    )
 }
 
 fn sentence(words: &str) -> String {
     let mut letters = words.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase().to_string());
+    let first = letters
+        .next()
+        .map(|letter| letter.to_uppercase().to_string());
     first.unwrap_or_default() + letters.as_str() + "."
 }
 

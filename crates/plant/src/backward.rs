@@ -26,7 +26,10 @@ pub(crate) fn smooth(lin: &Linearised, kept: &Kept, change: &[f64]) -> Option<Sm
         multipliers: vec![0.0; n],
     };
     let whole = |values: &[f64]| -> f64 {
-        let moved = values[1..].iter().zip(change).map(|(by, change)| by * change);
+        let moved = values[1..]
+            .iter()
+            .zip(change)
+            .map(|(by, change)| by * change);
         values[0] + moved.sum::<f64>()
     };
     let mut adjoint = vec![0.0; n];

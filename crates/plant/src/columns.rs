@@ -114,7 +114,11 @@ impl ColumnMap {
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
         let csv_fault = |error: csv::Error| {
-            refuse(&origin, error.to_string(), "write a header and rows of as many fields")
+            refuse(
+                &origin,
+                error.to_string(),
+                "write a header and rows of as many fields",
+            )
         };
         let header = reader.headers().map_err(csv_fault)?.clone();
         let names: Vec<&str> = header.iter().collect();
@@ -192,7 +196,8 @@ impl Places {
             } = source.scaled();
             let found = names.iter().position(|name| *name == column);
             let place = found.ok_or_else(|| {
-                let problem = format!("the map names the column `{column}` for {what}, which is not there");
+                let problem =
+                    format!("the map names the column `{column}` for {what}, which is not there");
                 let advice = format!("the file has {}", names.join(", "));
                 refuse(origin, problem, advice)
             })?;
@@ -211,14 +216,26 @@ impl Places {
             let places = wanted.iter().map(|name| {
                 let source = given.get(*name).ok_or_else(|| {
                     let problem = format!("the map has no column for the {kind} `{name}`");
-                    refuse(origin, problem, format!("add `{name} = \"column\"` to [{kind}s]"))
+                    refuse(
+                        origin,
+                        problem,
+                        format!("add `{name} = \"column\"` to [{kind}s]"),
+                    )
                 })?;
                 place(&format!("{kind} `{name}`"), source)
             });
             places.collect::<Result<Vec<_>, PlantError>>()
         };
-        let inputs = description.inputs.iter().map(|one| one.id.as_str()).collect();
-        let outputs = description.outputs.iter().map(|one| one.id.as_str()).collect();
+        let inputs = description
+            .inputs
+            .iter()
+            .map(|one| one.id.as_str())
+            .collect();
+        let outputs = description
+            .outputs
+            .iter()
+            .map(|one| one.id.as_str())
+            .collect();
         let regressors = description.regressors.iter().map(String::as_str).collect();
         Ok(Self {
             time: place("time", &map.time)?,

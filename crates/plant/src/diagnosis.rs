@@ -63,10 +63,7 @@ pub fn diagnose(
 }
 
 /// Both models on a later record.
-fn compare(
-    searched: &Searched<FittedPlant>,
-    later: PlantRecord,
-) -> Result<Comparison, PlantError> {
+fn compare(searched: &Searched<FittedPlant>, later: PlantRecord) -> Result<Comparison, PlantError> {
     let plant = searched.fitted.loaded();
     let horizon = horizon_rows(plant, later.len());
     let last = later.time_s[horizon - 1];
@@ -144,7 +141,10 @@ fn found(plant: &LoadedPlant, finding: &Finding, scale: f64) -> Found {
         effects.find(|effect| effect.id == id)
     };
     let own = entry(finding.effect);
-    let sizes = finding.parameters.iter().map(|one| size(plant, finding.effect, one, scale));
+    let sizes = finding
+        .parameters
+        .iter()
+        .map(|one| size(plant, finding.effect, one, scale));
     Found {
         effect: finding.effect.to_owned(),
         name: own.map_or_else(String::new, |own| own.name.clone()),
@@ -169,9 +169,8 @@ fn found(plant: &LoadedPlant, finding: &Finding, scale: f64) -> Found {
 /// A size, or an onset, in units of the plant: the search has another unit of time.
 fn size(plant: &LoadedPlant, effect: &str, one: &EffectEstimate, scale: f64) -> Size {
     let mut effects = plant.description.effects.iter();
-    let is_ramp = effects.any(|entry| {
-        entry.id == effect && entry.kind == crate::description::Kind::Ramp
-    });
+    let is_ramp =
+        effects.any(|entry| entry.id == effect && entry.kind == crate::description::Kind::Ramp);
     let factor = if one.name == "onset_s" {
         scale.recip()
     } else if is_ramp {

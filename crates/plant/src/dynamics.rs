@@ -103,12 +103,12 @@ impl<'a> Dynamics<'a> {
                 self.plant
                     .functions
                     .rates(at, &mut self.workspace, &mut rates);
-                for i in 0..n {
-                    sum[i] += weight * rates[i];
+                for (sum, rate) in sum.iter_mut().zip(&rates) {
+                    *sum += weight * rate;
                 }
             }
-            for i in 0..n {
-                here[i] += h * sum[i];
+            for (here, sum) in here.iter_mut().zip(&sum) {
+                *here += h * sum;
             }
         }
         course.add_jumps(row, &mut here);
@@ -261,8 +261,10 @@ impl<'a> Dynamics<'a> {
                 for i in 0..n {
                     step.stage[i] = step.states[i] + h * share * step.rates.values[i];
                 }
-                for (target, (by, slope)) in
-                    step.moved.iter_mut().zip(step.by_all.iter().zip(&step.slope))
+                for (target, (by, slope)) in step
+                    .moved
+                    .iter_mut()
+                    .zip(step.by_all.iter().zip(&step.slope))
                 {
                     *target = by + h * share * slope;
                 }
@@ -275,15 +277,15 @@ impl<'a> Dynamics<'a> {
                     .functions
                     .rates_with(at, &mut self.workspace, &mut step.rates);
                 step.set_slope(n, p, w);
-                for i in 0..n {
-                    sum[i] += weight * step.rates.values[i];
+                for (sum, rate) in sum.iter_mut().zip(&step.rates.values) {
+                    *sum += weight * rate;
                 }
                 for (sum, slope) in step.sum.iter_mut().zip(&step.slope) {
                     *sum += weight * slope;
                 }
             }
-            for i in 0..n {
-                step.states[i] += h * sum[i];
+            for (state, sum) in step.states.iter_mut().zip(&sum) {
+                *state += h * sum;
             }
             for (by, sum) in step.by_all.iter_mut().zip(&step.sum) {
                 *by += h * sum;

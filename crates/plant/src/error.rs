@@ -38,17 +38,23 @@ pub enum PlantError {
         advice: String,
     },
     /// The model leaves the numbers.
-    #[error("the model gives no finite numbers from row {row} on; check the parameters and the inputs there")]
+    #[error(
+        "the model gives no finite numbers from row {row} on; check the parameters and the inputs there"
+    )]
     NotFinite {
         /// The row.
         row: usize,
     },
     /// The record does not determine all unknowns.
-    #[error("the record does not determine all parameters and initial states together; give priors, or hold some")]
+    #[error(
+        "the record does not determine all parameters and initial states together; give priors, or hold some"
+    )]
     Singular,
     /// No start leads to a fit.
-    #[error("the model cannot be fitted to the record from any start: {reason}; check units and signs of the \
-             columns, and the values of the parameters")]
+    #[error(
+        "the model cannot be fitted to the record from any start: {reason}; check units and signs of the \
+             columns, and the values of the parameters"
+    )]
     NoFit {
         /// The failure of the last start.
         reason: String,

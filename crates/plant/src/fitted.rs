@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use gyrocal_hypothesis::{
-    Column, Covariate, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Rows,
-    StateJump,
+    Column, Covariate, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Rows, StateJump,
 };
 use nalgebra::DMatrix;
 
@@ -150,7 +149,9 @@ impl FittedPlant {
     fn further(&self, columns: &[Column]) -> Vec<Line> {
         let (states, steps) = self.problem.shape();
         let lines = columns.iter();
-        lines.map(|column| Line::of(column, states, steps)).collect()
+        lines
+            .map(|column| Line::of(column, states, steps))
+            .collect()
     }
 
     fn solved(
@@ -226,7 +227,9 @@ impl FittedModel for FittedPlant {
                 (&self.problem.record.inputs[..], index - n, u)
             };
             let values: Vec<f64> = from.iter().skip(place).step_by(count).copied().collect();
-            let size = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            let size = values
+                .iter()
+                .fold(0.0, |most: f64, value| most.max(value.abs()));
             Covariate {
                 name,
                 least_range: LEAST_RANGE * size,
@@ -313,11 +316,7 @@ impl FittedModel for FittedPlant {
 
     fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, PlantError> {
         let reduced = self.pass(&self.lines(), Keep::All)?;
-        backward::jumps(
-            &self.solution.lin,
-            &reduced.kept,
-            &self.solution.covariance,
-        )
-        .ok_or(PlantError::Singular)
+        backward::jumps(&self.solution.lin, &reduced.kept, &self.solution.covariance)
+            .ok_or(PlantError::Singular)
     }
 }

@@ -134,7 +134,11 @@ impl FittedPlant {
             let eigen = SymmetricEigen::new(states);
             let most = eigen.eigenvalues.max().max(f64::MIN_POSITIVE);
             let mut left = own.view((n, n), (nominal - n, nominal - n)).into_owned();
-            for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            for (value, vector) in eigen
+                .eigenvalues
+                .iter()
+                .zip(eigen.eigenvectors.column_iter())
+            {
                 if *value > NULL * most {
                     let along = cross.tr_mul(&vector);
                     left.ger(-value.recip(), &along, &along, 1.0);
@@ -159,9 +163,15 @@ impl FittedPlant {
         let range = |place: usize| {
             let own = self.record().inputs.iter().skip(place).step_by(u);
             let ends = [f64::INFINITY, f64::NEG_INFINITY];
-            let [low, high] = own.fold(ends, |[low, high], value| [low.min(*value), high.max(*value)]);
+            let [low, high] = own.fold(ends, |[low, high], value| {
+                [low.min(*value), high.max(*value)]
+            });
             // One that never moves here may move elsewhere.
-            if high > low { [low, high] } else { [low - 1.0, low + 1.0] }
+            if high > low {
+                [low, high]
+            } else {
+                [low - 1.0, low + 1.0]
+            }
         };
         let mut inputs = vec![0.0; rows * u];
         for index in 0..u {
@@ -245,7 +255,10 @@ impl FittedPlant {
         let largest = if largest > 0.0 {
             largest
         } else {
-            parts.iter().map(|part| part.change.abs()).fold(0.0, f64::max)
+            parts
+                .iter()
+                .map(|part| part.change.abs())
+                .fold(0.0, f64::max)
         };
         // In percent of the largest.
         for part in &mut parts {
@@ -275,7 +288,9 @@ impl FittedPlant {
         for direction in &mut directions {
             let free = direction.parts.iter().filter_map(|part| part.parameter);
             // What has a prior needs no holding.
-            let known = free.clone().any(|index| parameters[index].sigma.is_finite());
+            let known = free
+                .clone()
+                .any(|index| parameters[index].sigma.is_finite());
             let mut free = free.filter(|index| !held.contains(index));
             if let Some(index) = free.next().filter(|_| !known) {
                 held.push(index);
@@ -288,9 +303,9 @@ impl FittedPlant {
 
 /// One over the root of the diagonal; of a column that is zero, one.
 fn scales(information: &DMatrix<f64>) -> DVector<f64> {
-    information.diagonal().map(|own| {
-        if own > 0.0 { own.sqrt().recip() } else { 1.0 }
-    })
+    information
+        .diagonal()
+        .map(|own| if own > 0.0 { own.sqrt().recip() } else { 1.0 })
 }
 
 fn scaled(information: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
@@ -303,7 +318,10 @@ fn scaled(information: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
 fn null_space(information: &DMatrix<f64>) -> Vec<DVector<f64>> {
     let eigen = SymmetricEigen::new(information.clone());
     let most = eigen.eigenvalues.max();
-    let all = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
+    let all = eigen
+        .eigenvalues
+        .iter()
+        .zip(eigen.eigenvectors.column_iter());
     all.filter(|(value, _)| **value <= NULL * most)
         .map(|(_, vector)| vector.into_owned())
         .collect()

@@ -1,5 +1,42 @@
-//! Fits any plant to its records.
-#![allow(missing_docs)]
+//! Fits any plant to its records and names what its model lacks.
+//!
+//! # What it is
+//!
+//! A plant is a program file: rates and outputs with exact derivatives, a description, and a catalogue of
+//! effects, written by the Python package `gyrocal_plant` (`docs/any-plant.md`). [`LoadedPlant`] interprets
+//! it, or takes generated Rust ([`Generated`]) for its functions. [`diagnose`] fits the nominal model to a
+//! [`PlantRecord`], searches for the effects of the catalogue and returns them with sets, sizes,
+//! significance and, with a later record, their gain.
+//!
+//! # How it works
+//!
+//! [`FittedPlant`] is a [`gyrocal_hypothesis::FittedModel`]; the search is that of `gyrocal-hypothesis`.
+//! A record is linearised about a trajectory. A Kalman filter on the states carries the derivatives by
+//! initial states, parameters and effects along as columns. Without noise of the rates it is a simulation.
+//! Gauss-Newton steps by multiple shooting lead to the fit; noise levels maximise the restricted likelihood.
+//!
+//! # Example
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
+//!
+//! let plant = LoadedPlant::read(Path::new("plant.json"))?;
+//! let columns = ColumnMap::read(Path::new("columns.toml"))?;
+//! let record = columns.record(plant.description(), Path::new("record.csv"))?;
+//! let diagnosed = diagnose(&plant, record, None, &SearchOptions::default())?;
+//! for sentence in diagnosed.answer.sentences() {
+//!     println!("{sentence}");
+//! }
+//! # Ok::<(), gyrocal_plant::PlantError>(())
+//! ```
+//!
+//! # What it does not do
+//!
+//! It draws nothing, and has no random walks, hysteresis or delays. Several records are not fitted
+//! together.
+
 pub mod answer;
 mod backward;
 mod catalogue;
@@ -29,9 +66,9 @@ pub use columns::ColumnMap;
 pub use diagnosis::{Diagnosed, diagnose};
 pub use error::PlantError;
 pub use fitted::FittedPlant;
-pub use gyrocal_hypothesis::SearchOptions;
 pub use functions::{Functions, OutputsAt, Point, RatesAt, Sizes, Workspace};
 pub use generated::Generated;
+pub use gyrocal_hypothesis::SearchOptions;
 pub use identifiability::{NullDirection, NullPart};
 pub use interpreted::Interpreted;
 pub use loaded::LoadedPlant;

@@ -59,7 +59,9 @@ pub(crate) fn of_parameters(
         };
         let modulated = plant.catalogue.modulated[own];
         match modulated.output {
-            Some(output) => Line::Output(output, rows.row_weights(tables, modulated.weight, &shapes)),
+            Some(output) => {
+                Line::Output(output, rows.row_weights(tables, modulated.weight, &shapes))
+            }
             None => {
                 let steps = rows.step_weights(tables, modulated.weight, &shapes);
                 Line::Profile(modulated.of, steps)

@@ -198,7 +198,10 @@ impl<'a> Restricted<'a> {
         cost -= cholesky.solve(&gradient).dot(&gradient);
         let own = Cholesky::new(own).ok_or(PlantError::Singular)?;
         let determinant: f64 = own.l().diagonal().iter().map(|x| 2.0 * ln(*x)).sum();
-        let of_noise: f64 = logarithms.iter().map(|one| (one / PRIOR_SIGMA).powi(2)).sum();
+        let of_noise: f64 = logarithms
+            .iter()
+            .map(|one| (one / PRIOR_SIGMA).powi(2))
+            .sum();
         Ok(-0.5 * (log_variance + determinant + cost + of_noise))
     }
 

@@ -151,12 +151,7 @@ pub(crate) fn reduce(
 }
 
 impl<'a> Filter<'a> {
-    fn new(
-        lin: &'a Linearised,
-        noise: &'a Variances,
-        lines: &'a [Line],
-        sizes: Sizes,
-    ) -> Self {
+    fn new(lin: &'a Linearised, noise: &'a Variances, lines: &'a [Line], sizes: Sizes) -> Self {
         let (n, width) = (sizes.states, 1 + lines.len());
         let mut deviations = vec![0.0; n * width];
         for (column, line) in lines.iter().enumerate() {
@@ -181,7 +176,13 @@ impl<'a> Filter<'a> {
     }
 
     /// Updates with an output; gives the variance of its innovation.
-    fn update(&mut self, row: usize, output: usize, innovation: &mut [f64], gain: &mut [f64]) -> f64 {
+    fn update(
+        &mut self,
+        row: usize,
+        output: usize,
+        innovation: &mut [f64],
+        gain: &mut [f64],
+    ) -> f64 {
         let (n, y, p) = (self.sizes.states, self.sizes.outputs, self.sizes.parameters);
         let width = innovation.len();
         let place = row * y + output;
@@ -218,21 +219,18 @@ impl<'a> Filter<'a> {
             gain.fill(0.0);
             return variance;
         }
-        let mut cross = vec![0.0; n];
-        for i in 0..n {
-            cross[i] = (0..n)
-                .map(|j| self.covariance[i * n + j] * by_states[j])
-                .sum();
-            variance += cross[i] * by_states[i];
-        }
+        let along = |row: &[f64]| -> f64 { row.iter().zip(by_states).map(|(a, b)| a * b).sum() };
+        let cross: Vec<f64> = self.covariance.chunks_exact(n).map(along).collect();
+        variance += along(&cross);
         for i in 0..n {
             gain[i] = cross[i] / variance;
             let deviations = &mut self.deviations[i * width..(i + 1) * width];
             for (deviation, value) in deviations.iter_mut().zip(&*innovation) {
                 *deviation += gain[i] * value;
             }
-            for j in 0..n {
-                self.covariance[i * n + j] -= gain[i] * cross[j];
+            let row = &mut self.covariance[i * n..(i + 1) * n];
+            for (own, cross) in row.iter_mut().zip(&cross) {
+                *own -= gain[i] * cross;
             }
         }
         variance

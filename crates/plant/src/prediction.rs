@@ -95,12 +95,18 @@ impl FittedPlant {
                 vec![hours; rows]
             }
             Kind::Regressor(index) => {
-                let means = (self.record().regressor_means.get(index), later.regressor_means.get(index));
+                let means = (
+                    self.record().regressor_means.get(index),
+                    later.regressor_means.get(index),
+                );
                 let shift = match means {
                     (Some(first), Some(second)) => second - first,
                     _ => 0.0,
                 };
-                later.regressors[index].iter().map(|value| value + shift).collect()
+                later.regressors[index]
+                    .iter()
+                    .map(|value| value + shift)
+                    .collect()
             }
             Kind::Step | Kind::Term => vec![1.0; rows],
         };
@@ -149,9 +155,7 @@ impl FittedPlant {
         let log_density = self
             .log_density(&reduced.gram, &solution.at, &sigmas, &places)
             .ok_or(PlantError::Singular)?
-            - 0.5
-                * (reduced.log_variance
-                    + reduced.values as f64 * ln(core::f64::consts::TAU));
+            - 0.5 * (reduced.log_variance + reduced.values as f64 * ln(core::f64::consts::TAU));
         Ok(Prediction { log_density, rms })
     }
 
@@ -184,7 +188,9 @@ impl FittedPlant {
             self.covariance()[(places[i], places[j])]
         });
         let own = Cholesky::new(own)?.unpack();
-        factor.view_mut((n, n), (places.len(), places.len())).copy_from(&own);
+        factor
+            .view_mut((n, n), (places.len(), places.len()))
+            .copy_from(&own);
         let information = gram.view((1, 1), (count, count)).into_owned();
         let mut inner = factor.tr_mul(&information) * &factor;
         for i in 0..count {

@@ -56,11 +56,7 @@ impl PlantRecord {
     /// # Errors
     /// [`PlantError::Input`] if a length is wrong, time does not rise, an input is not a number, or an
     /// output has no value.
-    pub fn prepared(
-        mut self,
-        description: &Description,
-        origin: &str,
-    ) -> Result<Self, PlantError> {
+    pub fn prepared(mut self, description: &Description, origin: &str) -> Result<Self, PlantError> {
         let rows = self.len();
         let (inputs, outputs) = (description.inputs.len(), description.outputs.len());
         let refuse = |problem: String, advice: &str| PlantError::Input {

@@ -101,7 +101,13 @@ impl<'a> Solver<'a> {
             let reduced =
                 reduce(&lin, &self.noise, &self.lines, Keep::All).ok_or(PlantError::Singular)?;
             let step = self.step(&lin, &reduced, &at.values)?;
-            let now = self.merit(&lin.defects, &lin.residuals, &lin, &at.values, &step.penalties);
+            let now = self.merit(
+                &lin.defects,
+                &lin.residuals,
+                &lin,
+                &at.values,
+                &step.penalties,
+            );
             let fall = now - 0.5 * step.promised;
             if fall.is_finite() && fall.abs() < CONVERGED {
                 return Ok(Solution {
@@ -145,8 +151,7 @@ impl<'a> Solver<'a> {
         }
         let cholesky = Cholesky::new(information).ok_or(PlantError::Singular)?;
         let change = cholesky.solve(&gradient);
-        let smoothed =
-            smooth(lin, &reduced.kept, change.as_slice()).ok_or(PlantError::Singular)?;
+        let smoothed = smooth(lin, &reduced.kept, change.as_slice()).ok_or(PlantError::Singular)?;
         Ok(Step {
             promised: cost - change.dot(&gradient),
             covariance: cholesky.inverse(),
@@ -173,7 +178,12 @@ impl<'a> Solver<'a> {
         let mut share = 1.0;
         for _ in 0..MAX_HALVINGS {
             let moved = |(old, change): (&f64, &f64)| old + share * change;
-            let values: Vec<f64> = at.values.iter().zip(step.change.iter()).map(moved).collect();
+            let values: Vec<f64> = at
+                .values
+                .iter()
+                .zip(step.change.iter())
+                .map(moved)
+                .collect();
             let points: Vec<f64> = at.points.iter().zip(&step.corrections).map(moved).collect();
             let course = self.course(&values);
             let mut tried = vec![points];
@@ -214,7 +224,9 @@ impl<'a> Solver<'a> {
             let pairs = row.iter().zip(&self.noise.outputs);
             pairs.filter(|(residual, _)| !residual.is_nan())
         });
-        let mut cost: f64 = outputs.map(|(residual, variance)| residual * residual / variance).sum();
+        let mut cost: f64 = outputs
+            .map(|(residual, variance)| residual * residual / variance)
+            .sum();
         // A missing output is NaN in the record; a model that leaves the numbers is caught by its states.
         if !defects.iter().all(|defect| defect.is_finite()) {
             return f64::INFINITY;
@@ -249,8 +261,9 @@ impl<'a> Solver<'a> {
                 let own = by_noises.column(k);
                 covariance.ger(self.noise.inputs[k] / lin.step_s[row], &own, &own, 1.0);
             }
-            let cost = Cholesky::new(covariance)
-                .map_or(f64::INFINITY, |cholesky| cholesky.solve(&defect).dot(&defect));
+            let cost = Cholesky::new(covariance).map_or(f64::INFINITY, |cholesky| {
+                cholesky.solve(&defect).dot(&defect)
+            });
             return (cost, vec![0.0; n]);
         }
         if w == 0 {

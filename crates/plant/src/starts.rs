@@ -74,7 +74,12 @@ pub(crate) fn best(
         Ok(solution) => found.push(solution),
         Err(error) => reason = error.to_string(),
     }
-    let count = problem.record.outputs.iter().filter(|value| !value.is_nan()).count();
+    let count = problem
+        .record
+        .outputs
+        .iter()
+        .filter(|value| !value.is_nan())
+        .count();
     let is_poor = |solution: &Solution| solution.cost > POOR * count as f64;
     let mut draw = Draw::new(0, 0);
     for index in 0..=MOST {
@@ -134,7 +139,11 @@ fn led(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, Pl
         let parameters = problem.plant.description.parameters.iter();
         let states = sizes.len();
         for (sigma, own) in solver.sigmas[states..].iter_mut().zip(parameters) {
-            let size = if own.value == 0.0 { 1.0 } else { own.value.abs() };
+            let size = if own.value == 0.0 {
+                1.0
+            } else {
+                own.value.abs()
+            };
             *sigma = sigma.min(LOOSE_PRIOR * size);
         }
         // The next level starts from here all the same.
@@ -256,9 +265,10 @@ fn sensitive_substeps(problem: &Problem, course: &Course, initial: &[f64]) -> us
             off[place % sizes.parameters] += (coarse - fine).powi(2);
             whole[place % sizes.parameters] += fine * fine;
         }
-        let worst = off.iter().zip(&whole).map(|(off, whole)| {
-            if *whole > 0.0 { off / whole } else { 0.0 }
-        });
+        let worst = off
+            .iter()
+            .zip(&whole)
+            .map(|(off, whole)| if *whole > 0.0 { off / whole } else { 0.0 });
         if worst.fold(0.0, f64::max) < SENSITIVE * SENSITIVE {
             break;
         }
@@ -289,11 +299,15 @@ pub(crate) fn substeps(problem: &Problem, values: &[f64]) -> usize {
     while count < MOST_SUBSTEPS {
         let fine = outputs(2 * count);
         let pairs = coarse.iter().flatten().zip(fine.iter().flatten());
-        let errors = pairs.enumerate().map(|(place, (coarse, fine))| {
-            (coarse - fine).abs() / sigmas[place % sigmas.len()]
-        });
+        let errors = pairs
+            .enumerate()
+            .map(|(place, (coarse, fine))| (coarse - fine).abs() / sigmas[place % sigmas.len()]);
         let worst = errors.fold(0.0, f64::max);
-        let is_finite = coarse.iter().chain(&fine).flatten().all(|one| one.is_finite());
+        let is_finite = coarse
+            .iter()
+            .chain(&fine)
+            .flatten()
+            .all(|one| one.is_finite());
         if is_finite && worst < RESOLVED {
             break;
         }

@@ -32,7 +32,10 @@ impl FittedPlant {
         let all: Vec<usize> = (0..tables.parameters.len()).collect();
         let lines = of_parameters(&problem.plant, &problem.rows, &Default::default(), &all);
         let gram = self.pass(&lines, Keep::Nothing)?.gram;
-        let names: Vec<&str> = tables.parameters[..nominal].iter().map(|one| one.id).collect();
+        let names: Vec<&str> = tables.parameters[..nominal]
+            .iter()
+            .map(|one| one.id)
+            .collect();
         let projection = Projection::new(gram, nominal);
         Ok(select(tables, &[], |effect| {
             if effect.kind == EffectKind::Step {
@@ -86,7 +89,7 @@ impl Projection {
             if *value > NULL * most {
                 let along = cross.dot(&vector);
                 left -= along * along / value;
-                factors += &vector * (along / value);
+                factors += vector * (along / value);
             }
         }
         if left > LEAST * raw {

@@ -46,7 +46,10 @@ fn the_records_of_the_example_are_those_of_the_simulator() {
             std::fs::write(example(file), &text).unwrap();
         }
         let committed = std::fs::read_to_string(example(file)).unwrap();
-        assert!(committed == text, "{file}: GYROCAL_WRITE_EXAMPLES=1 writes it anew");
+        assert!(
+            committed == text,
+            "{file}: GYROCAL_WRITE_EXAMPLES=1 writes it anew"
+        );
     }
 }
 
@@ -68,12 +71,18 @@ fn the_example_names_its_hidden_effect_and_gains_on_the_later_record() {
     assert!(set.into_iter().any(|id| id == "v_rate.x^3"), "{found:?}");
     let size = &found.sizes[0];
     // Four standard deviations.
-    assert!((size.value + 0.05).abs() < 4.0 * size.sigma.unwrap(), "{size:?}");
+    assert!(
+        (size.value + 0.05).abs() < 4.0 * size.sigma.unwrap(),
+        "{size:?}"
+    );
     let later = answer.later_record.unwrap();
     assert!(later.gain_nats > 3.0, "{later:?}");
     // The noise of the sensor is left, 0.01 m, and with it at most a tenth more.
     assert!(later.errors[0].extended < 0.011, "{later:?}");
-    assert!(later.errors[0].nominal > 1.5 * later.errors[0].extended, "{later:?}");
+    assert!(
+        later.errors[0].nominal > 1.5 * later.errors[0].extended,
+        "{later:?}"
+    );
 }
 
 #[test]
@@ -85,7 +94,9 @@ fn a_clean_record_with_misdeclared_noise_has_no_finding() {
             ..Setting::random(Kind::Duffing, seed, 800)
         };
         let record = record(&plant, &setting);
-        let answer = diagnose(&plant, record, None, &SearchOptions::default()).unwrap().answer;
+        let answer = diagnose(&plant, record, None, &SearchOptions::default())
+            .unwrap()
+            .answer;
         assert!(answer.findings.is_empty(), "{:?}", answer.sentences());
         assert!(answer.unexplained.is_empty(), "{:?}", answer.sentences());
         let ratio = answer.noise[0].ratio;
@@ -98,7 +109,13 @@ fn a_clean_record_with_misdeclared_noise_has_no_finding() {
 fn a_sensor_gain_is_taken_up_by_the_gain_of_the_drive() {
     let plant = plant();
     let record = record(&plant, &setting(7));
-    let answer = diagnose(&plant, record, None, &SearchOptions::default()).unwrap().answer;
+    let answer = diagnose(&plant, record, None, &SearchOptions::default())
+        .unwrap()
+        .answer;
     let gain = answer.left_out.iter().find(|one| one.effect == "y.gain");
-    assert!(gain.is_some_and(|one| one.why.contains('g')), "{:?}", answer.left_out);
+    assert!(
+        gain.is_some_and(|one| one.why.contains('g')),
+        "{:?}",
+        answer.left_out
+    );
 }

@@ -34,7 +34,11 @@ fn the_scale_of_the_unmeasured_tank_is_a_gauge() {
     assert!(directions[0].is_gauge, "{directions:?}");
     assert_eq!(held.len(), 1);
     // Outflow of the upper tank, pump and inflow of the lower one take the scale of the level.
-    let names: Vec<&str> = directions[0].parts.iter().map(|part| part.name.as_str()).collect();
+    let names: Vec<&str> = directions[0]
+        .parts
+        .iter()
+        .map(|part| part.name.as_str())
+        .collect();
     for name in ["k1", "k2", "k4"] {
         assert!(names.contains(&name), "{names:?}");
     }
@@ -76,8 +80,14 @@ fn a_missing_column_is_told_with_those_that_are_there() {
     std::fs::write(&map, text).unwrap();
     std::fs::write(&data, "t,volts,angle\n0,1,2\n").unwrap();
     let columns = ColumnMap::read(&map).unwrap();
-    let error = columns.record(plant.description(), &data).unwrap_err().to_string();
-    assert!(error.contains("the column `volt` for input `drive`"), "{error}");
+    let error = columns
+        .record(plant.description(), &data)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("the column `volt` for input `drive`"),
+        "{error}"
+    );
     assert!(error.contains("the file has t, volts, angle"), "{error}");
     std::fs::remove_dir_all(&directory).unwrap();
 }

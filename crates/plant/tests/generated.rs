@@ -28,7 +28,8 @@ fn the_generated_rust_is_that_of_the_program() {
     let text = std::fs::read_to_string(example("plant.json")).unwrap();
     let program = Program::from_json(&text, "plant.json").unwrap();
     let header = Header {
-        rebuild_command: "GYROCAL_WRITE_EXAMPLES=1 cargo test -p gyrocal-plant --test generated".into(),
+        rebuild_command: "GYROCAL_WRITE_EXAMPLES=1 cargo test -p gyrocal-plant --test generated"
+            .into(),
         source: "examples/duffing/plant.json".into(),
         fingerprint: "of the program".into(),
     };
@@ -36,7 +37,10 @@ fn the_generated_rust_is_that_of_the_program() {
     if std::env::var_os("GYROCAL_WRITE_EXAMPLES").is_some() {
         std::fs::write(path(COMMITTED), &module).unwrap();
     }
-    assert!(std::fs::read_to_string(path(COMMITTED)).unwrap() == module, "{COMMITTED} is stale");
+    assert!(
+        std::fs::read_to_string(path(COMMITTED)).unwrap() == module,
+        "{COMMITTED} is stale"
+    );
 }
 
 #[test]
@@ -46,8 +50,12 @@ fn both_diagnose_the_same() {
     let generated = interpreted.with_functions(Arc::new(generated)).unwrap();
     let columns = ColumnMap::read(&example("columns.toml")).unwrap();
     let answers = [&interpreted, &generated].map(|plant| {
-        let record = columns.record(plant.description(), &example("record.csv")).unwrap();
-        diagnose(plant, record, None, &SearchOptions::default()).unwrap().answer
+        let record = columns
+            .record(plant.description(), &example("record.csv"))
+            .unwrap();
+        diagnose(plant, record, None, &SearchOptions::default())
+            .unwrap()
+            .answer
     });
     let [one, other] = &answers;
     assert!(!one.findings.is_empty());
@@ -60,10 +68,16 @@ fn both_diagnose_the_same() {
         assert_eq!(names(&one.rivals), names(&other.rivals));
         for (one, other) in one.sizes.iter().zip(&other.sizes) {
             let sigma = one.sigma.unwrap();
-            assert!((one.value - other.value).abs() < 1e-6 * sigma, "{one:?} {other:?}");
+            assert!(
+                (one.value - other.value).abs() < 1e-6 * sigma,
+                "{one:?} {other:?}"
+            );
         }
     }
     for (one, other) in one.parameters.iter().zip(&other.parameters) {
-        assert!((one.value - other.value).abs() < 1e-6 * one.sigma, "{one:?} {other:?}");
+        assert!(
+            (one.value - other.value).abs() < 1e-6 * one.sigma,
+            "{one:?} {other:?}"
+        );
     }
 }

@@ -27,7 +27,9 @@ fn diagnosed(setting: &Setting) -> Diagnosis {
         ..PlantRecord::default()
     };
     let record = record.prepared(plant.description(), "simulated").unwrap();
-    diagnose(&plant, record, None, &SearchOptions::default()).unwrap().answer
+    diagnose(&plant, record, None, &SearchOptions::default())
+        .unwrap()
+        .answer
 }
 
 #[test]
