@@ -1,6 +1,7 @@
 //! `cargo figures TOPIC` measures the figures that the documentation claims and prints them with target,
 //! number of runs and seeds. The exit code is 1 if a figure does not hold.
 
+mod any_plant;
 mod calibration;
 mod comparison;
 mod cost;
@@ -48,7 +49,7 @@ struct Arguments {
     /// Only these parts of the topic (truth).
     #[arg(long = "part", value_name = "PART")]
     parts: Vec<truth::Part>,
-    /// Most records of each population (truth, logs): a part of the full version, which goes on from there.
+    /// Most records of each population (truth, logs, any-plant): a part of the full version, which goes on from there.
     #[arg(long, value_name = "COUNT")]
     records: Option<u64>,
     /// Also write the table into this file, with the command that printed it.
@@ -82,6 +83,8 @@ impl Arguments {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Topic {
+    /// Five simulated plants with hidden effects: alarms, sets, gain, starts, time.
+    AnyPlant,
     /// From symbols to nine drift coefficients.
     MainJob,
     /// The batch estimator: consistency over a population, exactness, cost.
@@ -123,6 +126,7 @@ fn main() -> ExitCode {
         most: arguments.records,
     };
     let figures = match arguments.topic {
+        Topic::AnyPlant => any_plant::figures(extent),
         Topic::MainJob => main_job::figures(arguments.small),
         Topic::Calibration => calibration::figures(arguments.small),
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),

@@ -114,6 +114,13 @@ impl FittedPlant {
         &self.ratios
     }
 
+    /// Twice the cost of the fit: squares of residuals, noises and distances from priors over their
+    /// variances.
+    #[must_use]
+    pub fn deviance(&self) -> f64 {
+        self.solution.cost
+    }
+
     /// States at each row.
     #[must_use]
     pub fn points(&self) -> &[f64] {

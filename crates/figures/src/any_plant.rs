@@ -1,0 +1,285 @@
+//! Diagnosis of any plant: five simulated plants with hidden effects.
+
+use std::time::Instant;
+
+use gyrocal_plant::answer::{Diagnosis, Found};
+use gyrocal_plant::{FittedPlant, LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
+use gyrocal_plant_truth::{Kind, Setting, Stream, simulate, strength, with_strength};
+use gyrocal_statistics::Proportion;
+use rayon::prelude::*;
+
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::truth::Extent;
+
+/// Seeds of clean records, of those with a hidden effect, and of starts; those that constants were tuned on
+/// are below.
+const CLEAN: u64 = 100_000;
+const HIDDEN: u64 = 200_000;
+const STARTS: u64 = 300_000;
+
+/// Rows of a record.
+const ROWS: usize = 600;
+
+/// Strengths of hidden effects, standard deviations.
+const STRENGTHS: [f64; 2] = [5.0, 50.0];
+
+/// Strength from which on an effect must be detected, and from which on it must predict.
+const DETECTABLE: f64 = 8.0;
+const PREDICTIVE: f64 = 12.0;
+
+/// Rows of the record that the time is measured on.
+const LONG: usize = 4096;
+
+/// Costs within this of the least are those of the best fit.
+const SAME_FIT: f64 = 1.0;
+
+/// A record with a hidden effect, diagnosed.
+struct Outcome {
+    kind: Kind,
+    strength: f64,
+    detected: bool,
+    holds: bool,
+    first: bool,
+    set: usize,
+    /// Whether the simulation of a second record is better with what was found, of a record whose effect
+    /// was named.
+    better: Option<bool>,
+}
+
+/// All figures of the topic.
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let plants: Vec<(Kind, LoadedPlant)> = Kind::ALL
+        .into_iter()
+        .map(|kind| Ok((kind, loaded(kind)?)))
+        .collect::<Result<_, PlantError>>()?;
+    let mut figures = clean(&plants, extent.records(400, 3));
+    figures.extend(hidden(&plants, extent.records(200, 4)));
+    figures.push(starts(&plants, extent.records(100, 3))?);
+    figures.push(duration(&plants)?);
+    Ok(figures)
+}
+
+fn loaded(kind: Kind) -> Result<LoadedPlant, PlantError> {
+    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
+    let file = format!("{examples}/{}/plant.json", kind.facts().name);
+    LoadedPlant::read(std::path::Path::new(&file))
+}
+
+fn record(plant: &LoadedPlant, setting: &Setting) -> Result<PlantRecord, PlantError> {
+    let run = simulate(setting, None);
+    let record = PlantRecord {
+        time_s: run.time_s,
+        inputs: run.inputs.concat(),
+        outputs: run.outputs.concat(),
+        ..PlantRecord::default()
+    };
+    record.prepared(plant.description(), "simulated")
+}
+
+/// False alarms on clean records; the noise of every second one is misdeclared. A record that cannot be
+/// fitted counts as an alarm.
+fn clean(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    let mut all = Proportion { hits: 0, trials: 0 };
+    let seeds = format!("{CLEAN} to {}", CLEAN + records - 1);
+    for (kind, plant) in plants {
+        let alarms: Vec<bool> = (CLEAN..CLEAN + records)
+            .into_par_iter()
+            .map(|seed| {
+                let mut setting = Setting::random(*kind, seed, ROWS);
+                if seed % 2 == 1 {
+                    setting.noise = Stream::new(seed, 9).log_between(0.5, 2.0);
+                }
+                let answer = record(plant, &setting)
+                    .and_then(|record| diagnose(plant, record, None, &SearchOptions::default()));
+                let is_silent = |answer: &Diagnosis| {
+                    answer.findings.is_empty() && answer.unexplained.is_empty()
+                };
+                !answer.is_ok_and(|diagnosed| is_silent(&diagnosed.answer))
+            })
+            .collect();
+        let own = Proportion::of(alarms);
+        all.hits += own.hits;
+        all.trials += own.trials;
+        let name = format!("any plant: false alarms, {kind:?}");
+        figures.push(Figure::note_share(&name, own, seeds.clone()));
+    }
+    let name = "any plant: false alarms of all five, noise of half misdeclared by 0.5 to 2";
+    let pooled = Figure::note_share(name, all, seeds);
+    let pooled = Figure {
+        target: "<= 0.02 at the upper 95 % bound".to_owned(),
+        ..pooled
+    };
+    figures.insert(0, pooled.judged(all.at_most(0.02)));
+    figures
+}
+
+fn one_hidden(kind: Kind, plant: &LoadedPlant, seed: u64) -> Result<Outcome, PlantError> {
+    let mut setting = Setting::random(kind, seed, ROWS);
+    let effects = kind.facts().effects;
+    setting.hidden = effects[seed as usize % effects.len()];
+    let wanted = Stream::new(seed, 9).log_between(STRENGTHS[0], STRENGTHS[1]);
+    let setting = with_strength(&setting, wanted);
+    // What began in the first record is there from the start of the second.
+    let later = Setting {
+        seed: seed + 10_000_000,
+        onset: -1.0,
+        initial: Setting::random(kind, seed + 10_000_000, ROWS).initial,
+        ..setting.clone()
+    };
+    let later = record(plant, &later)?;
+    let first = record(plant, &setting)?;
+    let answer = diagnose(plant, first, Some(later), &SearchOptions::default())?.answer;
+    let own = setting.hidden.0;
+    let is_in = |found: &Found| {
+        let rivals = found.rivals.iter().map(|(id, _)| id.as_str());
+        let mut set = rivals.chain(found.equivalents.iter().map(String::as_str));
+        found.effect == own || set.any(|id| id == own)
+    };
+    let named = answer.findings.iter().any(|found| found.effect == own);
+    let better = answer.later_record.as_ref().filter(|_| named).map(|later| {
+        let sum = |of: fn(&gyrocal_plant::answer::OutputError) -> f64| -> f64 {
+            later.errors.iter().map(of).sum()
+        };
+        sum(|error| error.extended / error.nominal) < later.errors.len() as f64
+    });
+    Ok(Outcome {
+        kind,
+        strength: strength(&setting),
+        detected: !(answer.findings.is_empty() && answer.unexplained.is_empty()),
+        holds: answer.findings.iter().any(is_in),
+        first: answer
+            .findings
+            .first()
+            .is_some_and(|found| found.effect == own),
+        set: answer
+            .findings
+            .first()
+            .map_or(0, |found| 1 + found.rivals.len()),
+        better,
+    })
+}
+
+/// Records with one hidden effect. One that cannot be diagnosed counts as missed.
+fn hidden(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
+    let seeds = format!("{HIDDEN} to {}", HIDDEN + records - 1);
+    let outcomes: Vec<Outcome> = plants
+        .iter()
+        .flat_map(|(kind, plant)| {
+            let all = (HIDDEN..HIDDEN + records).into_par_iter();
+            all.map(|seed| {
+                one_hidden(*kind, plant, seed).unwrap_or(Outcome {
+                    kind: *kind,
+                    strength: f64::INFINITY,
+                    detected: false,
+                    holds: false,
+                    first: false,
+                    set: 0,
+                    better: None,
+                })
+            })
+            .collect::<Vec<_>>()
+        })
+        .collect();
+    let strong = || outcomes.iter().filter(|one| one.strength >= DETECTABLE);
+    let at_least = |name: &str, share: Proportion, least: f64| {
+        let figure = Figure::note_share(name, share, seeds.clone());
+        let figure = Figure {
+            target: format!(">= {least}"),
+            ..figure
+        };
+        figure.judged(share.at_least(least))
+    };
+    let detected = Proportion::of(strong().map(|one| one.detected));
+    let holds = Proportion::of(strong().map(|one| one.holds));
+    let first = Proportion::of(strong().map(|one| one.first));
+    let better = outcomes.iter().filter(|one| one.strength >= PREDICTIVE);
+    let better = Proportion::of(better.filter_map(|one| one.better));
+    let mut figures = vec![
+        at_least("any plant: effect of d >= 8 detected", detected, 0.99),
+        at_least("any plant: set holds the effect of d >= 8", holds, 0.95),
+        Figure::note_share(
+            "any plant: first name of d >= 8 is the effect",
+            first,
+            seeds.clone(),
+        ),
+        at_least(
+            "any plant: named effect of d >= 12 lowers the error of a second record",
+            better,
+            0.95,
+        ),
+    ];
+    for kind in Kind::ALL {
+        let own = || strong().filter(move |one| one.kind == kind);
+        let holds = Proportion::of(own().map(|one| one.holds));
+        let size = own().map(|one| one.set as f64).sum::<f64>() / holds.trials.max(1) as f64;
+        let name = format!("any plant: set holds the effect, {kind:?}");
+        figures.push(Figure::note_share(&name, holds, seeds.clone()));
+        let name = format!("any plant: mean size of the set, {kind:?}");
+        let note = Figure::note(&name, format!("{size:.2}"));
+        figures.push(note.over(holds.trials as usize, seeds.clone()));
+    }
+    figures
+}
+
+/// Fits of oscillator and tanks from random parameters within a factor of three.
+fn starts(plants: &[(Kind, LoadedPlant)], records: u64) -> Result<Figure, Error> {
+    let mut reached = Vec::new();
+    for (kind, plant) in plants {
+        if !matches!(kind, Kind::Duffing | Kind::Tanks) {
+            continue;
+        }
+        let setting = Setting::random(*kind, STARTS, ROWS);
+        let record = record(plant, &setting)?;
+        let best = FittedPlant::nominal(plant, record.clone(), &[])?;
+        let held = best.to_hold()?.0;
+        let cost = |first: Option<&[f64]>| {
+            FittedPlant::nominal_from(plant, record.clone(), &held, first)
+                .map_or(f64::INFINITY, |fit| fit.deviance())
+        };
+        let all: Vec<f64> = (0..records)
+            .into_par_iter()
+            .map(|index| {
+                let mut random = Stream::new(STARTS + index, 3);
+                let states = plant.description().states.len();
+                let mut first = vec![0.0; states];
+                let parameters = plant.description().parameters.iter();
+                first.extend(
+                    parameters.map(|own| own.value * (random.log_between(1.0 / 3.0, 3.0) - 1.0)),
+                );
+                cost(Some(&first))
+            })
+            .collect();
+        let least = all.iter().copied().fold(cost(None), f64::min);
+        reached.extend(all.into_iter().map(|cost| cost - least < SAME_FIT));
+    }
+    let share = Proportion::of(reached);
+    let name =
+        "any plant: starts within a factor of 3 that reach the best fit, oscillator and tanks";
+    let figure = Figure {
+        target: ">= 0.98".to_owned(),
+        ..Figure::note_share(name, share, format!("{STARTS}"))
+    };
+    Ok(figure.judged(share.at_least(0.98)))
+}
+
+/// Time of one diagnosis of a long record.
+fn duration(plants: &[(Kind, LoadedPlant)]) -> Result<Figure, Error> {
+    let (kind, plant) = &plants[0];
+    let mut setting = Setting::random(*kind, HIDDEN, LONG);
+    setting.hidden = kind.facts().effects[0];
+    let record = record(plant, &setting)?;
+    let began = Instant::now();
+    diagnose(plant, record, None, &SearchOptions::default())?;
+    let name = format!(
+        "any plant: time of a diagnosis, {LONG} rows, 2 states, {} effects",
+        plant.tables().effects.len()
+    );
+    Ok(Figure::at_most(
+        &name,
+        1.0,
+        began.elapsed().as_secs_f64(),
+        "s",
+    ))
+}
