@@ -202,13 +202,12 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         CalibrationMethod::Batch => Progress::waiting("calibrating", rows),
         _ => Progress::new("calibrating", rows),
     };
-    let calibration =
-        calibrate(&runs, &gyro_axes, &options, &mut progress).map_err(|source| {
-            let names = arguments.records.iter().map(|path| printable_path(path));
-            let names: Vec<String> = names.collect();
-            let method = arguments.method();
-            NotCalibrated::new(&names, &runs, method, arguments.factorised, source)
-        })?;
+    let calibration = calibrate(&runs, &gyro_axes, &options, &mut progress).map_err(|source| {
+        let names = arguments.records.iter().map(|path| printable_path(path));
+        let names: Vec<String> = names.collect();
+        let method = arguments.method();
+        NotCalibrated::new(&names, &runs, method, arguments.factorised, source)
+    })?;
     progress.stage("test for effects", FITTED);
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
     let effects = effects(arguments, &measurements);

@@ -34,7 +34,7 @@ const WRITTEN: [&str; 8] = [
 ];
 
 /// Commands with their examples, each a command line with its meaning.
-const EXAMPLES: [(&str, &[[&str; 2]]); 13] = [
+const EXAMPLES: [(&str, &[[&str; 2]]); 15] = [
     (
         "allan",
         &[
@@ -153,6 +153,13 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 13] = [
         ],
     ),
     (
+        "plant",
+        &[[
+            "gyrocal plant diagnose plant.json record.csv --columns columns.toml --validate later.csv",
+            "what the model of any plant lacks, and the gain on a later record",
+        ]],
+    ),
+    (
         "simulate",
         &[[
             "gyrocal simulate scenario.toml --out record.csv --bench-out bench.toml",
@@ -171,6 +178,13 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 13] = [
                 "two positions, a log each",
             ],
         ],
+    ),
+    (
+        "watch",
+        &[[
+            "gyrocal watch record.csv --bench bench.toml",
+            "when the watch of a controller would have raised an alarm, and its name",
+        ]],
     ),
 ];
 

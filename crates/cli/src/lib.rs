@@ -30,6 +30,7 @@ mod numbers;
 mod outputs;
 mod pictures;
 mod plan;
+mod plant;
 mod progress;
 mod records;
 mod simulate;
@@ -114,6 +115,7 @@ fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
         Command::Man(arguments) => manual::pages(arguments, definition()),
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
         Command::Plan(arguments) => plan::run(arguments),
+        Command::Plant(arguments) => plant::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Tumble(arguments) => tumble::run(arguments),
         Command::Watch(arguments) => watch::run(arguments),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_plant::answer::Diagnosis;
 use gyrocal_plant::{ColumnMap, LoadedPlant, PlantError, SearchOptions, diagnose};
 use gyrocal_record::write_json;
@@ -12,7 +13,7 @@ use miette::Report;
 use crate::numbers::probability;
 use crate::progress::Progress;
 use crate::tables::{right, table};
-use crate::{Failure, outputs, text};
+use crate::{Answer, Failure, outputs};
 
 /// Diagnose records of any plant that a program file describes.
 ///
@@ -60,14 +61,14 @@ impl From<PlantError> for Failure {
     }
 }
 
-/// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &PlantArguments) -> Result<String, Failure> {
+/// Runs the command; returns its answer.
+pub(crate) fn run(arguments: &PlantArguments) -> Result<Answer, Failure> {
     match &arguments.command {
         PlantCommand::Diagnose(arguments) => run_diagnose(arguments),
     }
 }
 
-fn run_diagnose(arguments: &PlantDiagnoseArguments) -> Result<String, Failure> {
+fn run_diagnose(arguments: &PlantDiagnoseArguments) -> Result<Answer, Failure> {
     let mut inputs = vec![
         arguments.plant.as_path(),
         arguments.record.as_path(),
@@ -94,18 +95,29 @@ fn run_diagnose(arguments: &PlantDiagnoseArguments) -> Result<String, Failure> {
     let progress = Progress::waiting("diagnosing", record.len());
     let diagnosed = diagnose(&plant, record, later, &options)?;
     drop(progress);
+    let mut answer = Answer::of(screen(&diagnosed.answer), details(&diagnosed.answer));
     if let Some(path) = &arguments.json {
         write_json(path, &diagnosed.answer)?;
+        answer.wrote(path, "the result for programs");
     }
-    Ok(shown(&diagnosed.answer))
+    Ok(answer)
 }
 
-fn shown(answer: &Diagnosis) -> String {
-    let mut shown = String::new();
-    for sentence in answer.sentences() {
-        shown += &text::paragraph(&sentence);
-        shown.push('\n');
+fn screen(answer: &Diagnosis) -> Screen {
+    let (standing, verdict) = if answer.has_findings() {
+        (Standing::Bad, "MODEL LACKS SOMETHING")
+    } else {
+        (Standing::Good, "NOTHING FOUND")
+    };
+    let mut screen = Screen::new(standing, verdict, answer.verdict());
+    for (label, words) in answer.facts() {
+        screen.fact(label, words);
     }
+    screen
+}
+
+fn details(answer: &Diagnosis) -> String {
+    let mut shown = String::new();
     let mut parameters = table(vec![
         "",
         "unit",

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_diagnosis::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, watch_record};
 use gyrocal_record::{Bench, Record, write_json};
 use serde_json::json;
@@ -63,11 +64,44 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Answer, Failure> {
         });
         write_json(path, &result)?;
     }
-    let mut answer = Answer::from(text(&replay));
+    let mut answer = Answer::of(screen(&replay), text(&replay));
     if let Some(path) = &arguments.json {
         answer.wrote(path, "the result for programs");
     }
     Ok(answer)
+}
+
+fn screen(replay: &WatchReplay) -> Screen {
+    let watched = format!("{} rows, {} refused", replay.rows, replay.refused_rows);
+    let mut screen = match replay.alarms.len() {
+        0 => Screen::new(Standing::Good, "NO ALARM", watched),
+        1 => Screen::new(Standing::Bad, "ALARM", watched),
+        count => Screen::new(Standing::Bad, &format!("{count} ALARMS"), watched),
+    };
+    for alarm in &replay.alarms {
+        let causes: Vec<String> = alarm.refined.iter().map(cause).collect();
+        let words = format!(
+            "row {}, {:.0} s: {}",
+            alarm.row,
+            alarm.time_s,
+            causes.join("; or ")
+        );
+        screen.fact("alarm", words);
+    }
+    let rate = format!(
+        "{} a year, beside a walk of {:.0e} deg/h/sqrt(h)",
+        replay.false_alarms_per_year, replay.walk_deg_per_h_per_sqrt_h
+    );
+    screen.fact("false alarms", rate);
+    screen
+}
+
+/// A cause with its size and onset.
+fn cause(cause: &WatchCause) -> String {
+    format!(
+        "{} ({:.3e} ± {:.1e}) {} since {:.0} s",
+        cause.id, cause.estimate, cause.sigma, cause.unit, cause.since_s
+    )
 }
 
 fn text(replay: &WatchReplay) -> String {

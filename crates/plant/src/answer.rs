@@ -182,50 +182,68 @@ fn list(names: &[String]) -> String {
 }
 
 impl Diagnosis {
-    /// The answer in sentences, one a paragraph: what was found first.
+    /// The answer in sentences, the verdict first.
     #[must_use]
     pub fn sentences(&self) -> Vec<String> {
-        let mut all = vec![self.verdict()];
-        all.extend(self.findings.iter().map(Found::sentence));
-        all.extend(self.unexplained.iter().map(Unexplained::sentence));
+        let verdict = core::iter::once(self.verdict());
+        let facts = self.facts().into_iter().map(|(_, words)| words);
+        verdict.chain(facts).collect()
+    }
+
+    /// What the answer says after the verdict: sentences with what they are about.
+    #[must_use]
+    pub fn facts(&self) -> Vec<(&'static str, String)> {
+        let mut all = Vec::new();
+        let found = self.findings.iter();
+        all.extend(found.map(|one| ("effect", one.sentence())));
+        let unexplained = self.unexplained.iter();
+        all.extend(unexplained.map(|one| ("unexplained", one.sentence())));
         all.extend(self.errors.iter().map(|error| {
-            format!(
+            let words = format!(
                 "Simulated over {} s, output {} is off by {} {} rms with the nominal model{}.",
                 significant(self.horizon_s, 4),
                 error.output,
                 significant(error.nominal, 3),
                 error.unit,
                 with_findings(error, self.has_findings()),
-            )
+            );
+            ("open loop", words)
         }));
         if let Some(later) = &self.later_record {
-            all.push(later.sentence(self.has_findings()));
+            all.push(("later record", later.sentence(self.has_findings())));
         }
-        all.extend(self.remainder.iter().filter(|one| one.p_value < RARE).map(|one| {
-            format!(
+        let coloured = self.remainder.iter().filter(|one| one.p_value < RARE);
+        all.extend(coloured.map(|one| {
+            let words = format!(
                 "What is left of output {} is not white noise ({}): the model still lacks something, or \
                  the noise is coloured. Significances rest on white noise, take them as too good.",
                 one.output,
                 p_value(one.p_value)
-            )
+            );
+            ("remainder", words)
         }));
         let undetermined = self.undetermined.iter();
-        all.extend(undetermined.map(|one| sentence(&one.sentence())));
+        all.extend(undetermined.map(|one| ("undetermined", sentence(&one.sentence()))));
         if !self.still_inputs.is_empty() {
-            all.push(format!(
+            let words = format!(
                 "Input {} never moves in this record: nothing that depends on it can be told from a \
                  constant. Move it.",
                 list(&self.still_inputs)
-            ));
+            );
+            all.push(("inputs", words));
         }
         all
     }
 
-    fn has_findings(&self) -> bool {
+    /// Whether anything is found that the model lacks.
+    #[must_use]
+    pub fn has_findings(&self) -> bool {
         !(self.findings.is_empty() && self.unexplained.is_empty())
     }
 
-    fn verdict(&self) -> String {
+    /// The verdict, a sentence.
+    #[must_use]
+    pub fn verdict(&self) -> String {
         let (rows, tested) = (self.rows, self.tested);
         let names: Vec<String> = self.findings.iter().map(|one| one.effect.clone()).collect();
         match names.len() {
