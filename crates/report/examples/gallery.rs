@@ -4,6 +4,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use chacha20::ChaCha8Rng;
+use gyrocal_report::page::Tint;
 use gyrocal_report::{
     Bin, ComparedEstimate, ComparedQuantity, Comparison, Convergence, Correlation,
     CorrelationChannel, CovariatePanel, CrossValidation, EstimateHistory, MarkedFrequency, Omitted,
@@ -198,6 +199,7 @@ fn spectrum(noise: &mut Noise) -> Spectrum {
         name: name.to_owned(),
         power: power(line),
         samples: 20_160,
+        tint: Tint::Nominal,
         threshold,
     });
     let mark = |frequency: f64, label: &str| MarkedFrequency {
@@ -230,6 +232,7 @@ fn correlation(noise: &mut Noise) -> Correlation {
             .collect(),
         band,
         samples: 4320,
+        tint: Tint::Nominal,
     };
     Correlation {
         title: "The noise of z is autocorrelated".to_owned(),
@@ -396,6 +399,7 @@ fn comparison(noise: &mut Noise) -> Comparison {
         estimators: estimators.map(str::to_owned).into(),
         quantities,
         columns: 3,
+        tints: Vec::new(),
         reference_label: "true value".to_owned(),
     }
 }

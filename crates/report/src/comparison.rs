@@ -8,9 +8,10 @@ use crate::error::Error;
 use crate::figure::{Legend, figure};
 use crate::geometry::Rect;
 use crate::layout::Layout;
+use crate::page::Tint;
 use crate::picture::Picture;
 use crate::span::Span;
-use crate::style::{BLACK, DATA, SERIES, SMALL, THIN};
+use crate::style::{BLACK, Colour, DATA, SERIES, SMALL, THIN, colour};
 use crate::text;
 
 /// Dots with error bars: estimates of some quantities by several estimators, one panel a quantity.
@@ -22,6 +23,8 @@ pub struct Comparison {
     pub subtitle: String,
     /// Names of the estimators, from top to bottom in each panel.
     pub estimators: Vec<String>,
+    /// Colours of the estimators by their meaning; of others, where there are none, in their order.
+    pub tints: Vec<Tint>,
     /// The quantities, one panel each, row after row.
     pub quantities: Vec<ComparedQuantity>,
     /// Number of panels in a row.
@@ -105,7 +108,7 @@ impl Comparison {
     fn legend(&self) -> Vec<Legend> {
         let names = self.estimators.iter().enumerate();
         let mut legend: Vec<Legend> = names
-            .map(|(index, name)| Legend::dot(SERIES[index % SERIES.len()], name.as_str()))
+            .map(|(index, name)| Legend::dot(self.colour(index), name.as_str()))
             .collect();
         let bar = LineStyle::solid(BLACK, DATA);
         legend.push(Legend::line(bar, "±2σ (95%)"));
@@ -143,9 +146,16 @@ impl Comparison {
                 ordinate_title: false,
             };
             axes.draw(canvas, labels, has_data, |axes, canvas| {
-                quantity.draw(canvas, axes);
+                quantity.draw(canvas, axes, |row| self.colour(row));
             });
         }
+    }
+
+    fn colour(&self, estimator: usize) -> Colour {
+        let in_order = SERIES[estimator % SERIES.len()];
+        self.tints
+            .get(estimator)
+            .map_or(in_order, |tint| colour(*tint))
     }
 
     /// The names of the estimators left of a panel.
@@ -160,12 +170,12 @@ impl Comparison {
 }
 
 impl ComparedQuantity {
-    fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
+    fn draw(&self, canvas: &mut Canvas, axes: &Axes, colour: impl Fn(usize) -> Colour) {
         if let Some(reference) = self.reference {
             axes.vertical_line(canvas, reference, LineStyle::dashed(BLACK, THIN));
         }
         for (row, estimate) in self.estimates.iter().enumerate() {
-            let colour = SERIES[row % SERIES.len()];
+            let colour = colour(row);
             let y = ordinate(row, self.estimates.len());
             let [lower, upper] = estimate.ends();
             if lower < upper {

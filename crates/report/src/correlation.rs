@@ -5,13 +5,14 @@ use crate::axis::Axis;
 use crate::canvas::{Canvas, LineStyle};
 use crate::check;
 use crate::error::Error;
-use crate::figure::{Legend, figure};
+use crate::figure::{Legend, figure, model_legend};
 use crate::geometry::Rect;
 use crate::layout::Layout;
 use crate::number::{count, percent};
+use crate::page::Tint;
 use crate::picture::Picture;
 use crate::span::Span;
-use crate::style::{BAND_OPACITY, BLUE, LEGEND_LINE, SKY, THIN};
+use crate::style::{BAND_OPACITY, GREY, THIN, colour};
 
 /// Autocorrelations of some channels as stems, with the confidence band of white noise.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +38,8 @@ pub struct CorrelationChannel {
     pub band: f64,
     /// Number of samples.
     pub samples: usize,
+    /// The model that it is of.
+    pub tint: Tint,
 }
 
 impl Picture for Correlation {
@@ -49,10 +52,9 @@ impl Picture for Correlation {
         }
         let layout = Layout::new(1, self.channels.len(), 120.0);
         let band = format!("white noise, {} at each lag", percent(self.confidence));
-        let legend = [
-            Legend::line(LineStyle::solid(BLUE, LEGEND_LINE), "autocorrelation"),
-            Legend::area(SKY, BAND_OPACITY, band),
-        ];
+        let tints = self.channels.iter().map(|channel| channel.tint);
+        let mut legend = model_legend(tints, "autocorrelation");
+        legend.push(Legend::area(GREY, BAND_OPACITY, band));
         Ok(figure(
             &self.title,
             &self.subtitle,
@@ -98,7 +100,7 @@ impl Correlation {
 impl CorrelationChannel {
     /// The band of white noise and the stems.
     fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
-        axes.horizontal_band(canvas, (-self.band, self.band), SKY, BAND_OPACITY);
+        axes.horizontal_band(canvas, (-self.band, self.band), GREY, BAND_OPACITY);
         axes.zero_line(canvas);
         let apart = axes.frame.width() / self.correlation.len().max(1) as f64;
         for (index, &value) in self.correlation.iter().enumerate() {
@@ -107,10 +109,13 @@ impl CorrelationChannel {
             }
             let lag = index as f64 + 1.0;
             let (foot, tip) = (axes.point(lag, 0.0), axes.point(lag, value));
-            canvas.line(&[foot, tip], LineStyle::solid(BLUE, THIN.min(0.8 * apart)));
+            canvas.line(
+                &[foot, tip],
+                LineStyle::solid(colour(self.tint), THIN.min(0.8 * apart)),
+            );
             // No dots where they would touch.
             if apart > 5.0 {
-                canvas.disc(tip, 2.0, BLUE);
+                canvas.disc(tip, 2.0, colour(self.tint));
             }
         }
     }

@@ -56,6 +56,12 @@ pub enum Error {
         /// Message of the encoder.
         reason: String,
     },
+    /// A page could not be made from its templates.
+    #[error("the page could not be made: {reason}")]
+    Template {
+        /// Message of the template engine.
+        reason: String,
+    },
     /// The file could not be written; it is as it was before.
     #[error("the picture {} was not written", path.display())]
     Unwritable {

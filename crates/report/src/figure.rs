@@ -2,7 +2,8 @@
 
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::geometry::{Point, Rect};
-use crate::style::{BODY, Colour, INK, INNER_WIDTH, MARGIN, TITLE, WIDTH};
+use crate::page::Tint;
+use crate::style::{BODY, Colour, INK, INNER_WIDTH, LEGEND_LINE, MARGIN, TITLE, WIDTH, colour};
 use crate::text;
 
 /// Height of a line of the title, the subtitle and the legend, px.
@@ -118,4 +119,24 @@ fn legend_places(legend: &[Legend]) -> Vec<(f64, f64)> {
             place
         })
         .collect()
+}
+
+/// Legend of series of models: one entry for each model, after what the series are.
+pub(crate) fn model_legend(tints: impl Iterator<Item = Tint>, what: &str) -> Vec<Legend> {
+    let mut legend = Vec::new();
+    let mut shown = Vec::new();
+    for tint in tints {
+        if shown.contains(&tint) {
+            continue;
+        }
+        shown.push(tint);
+        let label = match tint {
+            Tint::Nominal => format!("{what}, nominal model"),
+            Tint::Extended => format!("{what}, extended model"),
+            _ => what.to_owned(),
+        };
+        let style = LineStyle::solid(colour(tint), LEGEND_LINE);
+        legend.push(Legend::line(style, label));
+    }
+    legend
 }

@@ -1,4 +1,6 @@
-//! Pictures of a calibration and a diagnosis: plain numbers in, SVG or PNG out.
+//! Pictures and pages of a calibration and a diagnosis: plain numbers in, SVG, PNG or HTML out.
+//!
+//! [`page`] makes a whole answer one HTML file; the rest is about pictures.
 //!
 //! Each picture is a structure of numbers and labels, documented with units, that implements
 //! [`Picture`]. Titles, names of channels and quantities, and units come from the caller; the
@@ -75,6 +77,7 @@ mod geometry;
 mod layout;
 mod number;
 mod open_loop;
+pub mod page;
 mod picture;
 #[cfg(feature = "png")]
 mod png;

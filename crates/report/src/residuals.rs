@@ -13,7 +13,7 @@ use crate::layout::Layout;
 use crate::number::{count, readable_unit, short};
 use crate::picture::Picture;
 use crate::scale::Scale;
-use crate::style::{BLACK, BLUE, Colour, LEGEND_LINE, THIN, VERMILION};
+use crate::style::{BLACK, EXTENDED, LEGEND_LINE, NOMINAL, THIN};
 
 /// Residuals of some channels against time, of one model or before and after a change of it, all
 /// on one scale, with the band of the noise.
@@ -82,8 +82,7 @@ impl Residuals {
     }
 
     fn legend(&self) -> Vec<Legend> {
-        let [before, after] =
-            [self.before_colour(), BLUE].map(|c| LineStyle::solid(c, LEGEND_LINE));
+        let [before, after] = [NOMINAL, EXTENDED].map(|c| LineStyle::solid(c, LEGEND_LINE));
         let mut legend = vec![Legend::line(before, self.before_label.as_str())];
         if self.has_after() {
             legend.push(Legend::line(after, self.after_label.as_str()));
@@ -97,16 +96,12 @@ impl Residuals {
         self.channels.iter().any(|channel| channel.after.is_some())
     }
 
-    fn before_colour(&self) -> Colour {
-        if self.has_after() { VERMILION } else { BLUE }
-    }
-
     fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect) {
         let columns = self.channels.iter().flat_map(ResidualChannel::columns);
         let sigmas = self.channels.iter().map(|channel| channel.sigma);
         let scale = Scale::about_zero(columns, 2.5 * sigmas.fold(0.0, f64::max));
         let (elapsed, span) = elapsed(&self.time_s);
-        let before = LineStyle::solid(self.before_colour(), THIN);
+        let before = LineStyle::solid(NOMINAL, THIN);
         for (index, channel) in self.channels.iter().enumerate() {
             let axes = Axes {
                 frame: layout.frame(body, index),
@@ -124,7 +119,7 @@ impl Residuals {
                 axes.zero_line(canvas);
                 axes.line(canvas, &elapsed, &channel.before, before);
                 if let Some(after) = &channel.after {
-                    axes.line(canvas, &elapsed, after, LineStyle::solid(BLUE, THIN));
+                    axes.line(canvas, &elapsed, after, LineStyle::solid(EXTENDED, THIN));
                 }
                 for level in [-2.0 * channel.sigma, 2.0 * channel.sigma] {
                     axes.horizontal_line(canvas, level, LineStyle::dashed(BLACK, THIN));

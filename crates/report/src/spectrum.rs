@@ -5,13 +5,14 @@ use crate::axis::Axis;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::check;
 use crate::error::Error;
-use crate::figure::{Legend, figure};
+use crate::figure::{Legend, figure, model_legend};
 use crate::geometry::Rect;
 use crate::layout::Layout;
 use crate::number::{count, percent};
+use crate::page::Tint;
 use crate::picture::Picture;
 use crate::span::Span;
-use crate::style::{BLUE, HAIR, INNER_WIDTH, LEGEND_LINE, PURPLE, SMALL, THIN, VERMILION};
+use crate::style::{BLACK, HAIR, INNER_WIDTH, PURPLE, SMALL, THIN, colour};
 use crate::text;
 
 /// Periodograms of some channels, on logarithmic scales, with thresholds and marked frequencies;
@@ -46,6 +47,8 @@ pub struct SpectrumChannel {
     pub power: Vec<f64>,
     /// Number of samples of the channel.
     pub samples: usize,
+    /// The model that it is of.
+    pub tint: Tint,
     /// Detection threshold of a line.
     pub threshold: Option<PowerThreshold>,
 }
@@ -118,14 +121,14 @@ impl Spectrum {
     }
 
     fn legend(&self) -> Vec<Legend> {
-        let power = LineStyle::solid(BLUE, LEGEND_LINE);
-        let mut legend = vec![Legend::line(power, "periodogram")];
+        let tints = self.channels.iter().map(|channel| channel.tint);
+        let mut legend = model_legend(tints, "periodogram");
         if let Some(threshold) = self.channels.iter().find_map(|channel| channel.threshold) {
             let label = format!(
                 "detection threshold (false-alarm probability {} per panel)",
                 percent(threshold.false_alarm_probability)
             );
-            legend.push(Legend::line(LineStyle::dashed(VERMILION, THIN), label));
+            legend.push(Legend::line(LineStyle::dashed(BLACK, THIN), label));
         }
         if !self.marks.is_empty() {
             let mark = LineStyle::dashed(PURPLE, THIN);
@@ -202,11 +205,11 @@ impl Spectrum {
             let style = LineStyle::dashed(PURPLE, HAIR);
             axes.vertical_line(canvas, mark.frequency, style);
         }
-        let style = LineStyle::solid(BLUE, THIN);
+        let style = LineStyle::solid(colour(channel.tint), THIN);
         let (frequency, power) = (&self.frequency, &channel.power);
         axes.line_bridging(canvas, frequency, power, style, f64::INFINITY);
         if let Some(threshold) = channel.threshold {
-            let style = LineStyle::dashed(VERMILION, THIN);
+            let style = LineStyle::dashed(BLACK, THIN);
             axes.horizontal_line(canvas, threshold.power, style);
         }
     }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::page::Tint;
+
 /// Width of a picture, px.
 pub(crate) const WIDTH: f64 = 960.0;
 /// Margin around a picture, px.
@@ -54,6 +56,22 @@ pub(crate) const INK: Colour = Colour(0x55, 0x55, 0x55);
 pub(crate) const GREY: Colour = Colour(0x99, 0x99, 0x99);
 pub(crate) const FAINT: Colour = Colour(0xE8, 0xE8, 0xE8);
 pub(crate) const WHITE: Colour = Colour(0xFF, 0xFF, 0xFF);
+
+/// The nominal model and the extended one have one colour each in every picture.
+pub(crate) const NOMINAL: Colour = VERMILION;
+pub(crate) const EXTENDED: Colour = BLUE;
+
+/// Colour of a series by its meaning.
+pub(crate) fn colour(tint: Tint) -> Colour {
+    match tint {
+        Tint::Nominal => NOMINAL,
+        Tint::Expected => BLACK,
+        Tint::Alternative => ORANGE,
+        Tint::Other => GREY,
+        Tint::Measured => SKY,
+        Tint::Extended => EXTENDED,
+    }
+}
 
 /// Colours of series, in this order, again from the start when there are more.
 pub(crate) const SERIES: [Colour; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK];

@@ -6,6 +6,7 @@
     reason = "a module of test binaries that use a part of it each"
 )]
 
+use gyrocal_report::page::Tint;
 use gyrocal_report::{
     Bin, ComparedEstimate, ComparedQuantity, Comparison, Convergence, Correlation,
     CorrelationChannel, CovariatePanel, CrossValidation, EstimateHistory, MarkedFrequency, Omitted,
@@ -88,6 +89,7 @@ pub fn all() -> Vec<Sample> {
                     correlation: wave(60, 0.1, 0.0),
                     band: 0.03,
                     samples: 4320,
+                    tint: Tint::Nominal,
                 }],
                 confidence: 0.95,
             }),
@@ -207,6 +209,7 @@ fn spectrum(n: usize) -> Spectrum {
             name: "x".to_owned(),
             power: wave(n, 1.0, 0.0).into_iter().map(f64::abs).collect(),
             samples: n,
+            tint: Tint::Extended,
             threshold: Some(PowerThreshold {
                 power: 12.0,
                 false_alarm_probability: 0.01,
@@ -263,6 +266,7 @@ fn comparison() -> Comparison {
             estimates: [0.030, 0.0312].map(estimate).into(),
         }],
         columns: 3,
+        tints: Vec::new(),
         reference_label: "truth".to_owned(),
     }
 }

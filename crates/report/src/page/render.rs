@@ -1,0 +1,291 @@
+//! From a page to HTML.
+
+use minijinja::{AutoEscape, Environment, context};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::chart::{Chart, Panel};
+use super::columns::Columns;
+use super::decimate::{MOST_ROWS, Row, rows};
+use super::model::{Item, Page, Part, Section};
+use super::printable::printable;
+use super::strips;
+use crate::error::Error;
+use crate::number::{count, readable_unit};
+
+/// The templates, all HTML: minijinja escapes by the name.
+const TEMPLATES: [(&str, &str); 3] = [
+    ("page.html", include_str!("../../assets/page.html")),
+    ("summary.html", include_str!("../../assets/summary.html")),
+    ("items.html", include_str!("../../assets/items.html")),
+];
+
+const STYLES: [&str; 2] = [
+    include_str!("../../assets/uplot/uPlot.min.css"),
+    include_str!("../../assets/page.css"),
+];
+
+const SCRIPTS: [&str; 4] = [
+    include_str!("../../assets/uplot/uPlot.iife.min.js"),
+    include_str!("../../assets/data.js"),
+    include_str!("../../assets/charts.js"),
+    include_str!("../../assets/page.js"),
+];
+
+impl Page {
+    /// The page as one HTML file that needs nothing else.
+    ///
+    /// # Errors
+    /// [`Error::UnequalLengths`], [`Error::Value`] and [`Error::Empty`] of a chart that cannot be drawn;
+    /// [`Error::Template`].
+    pub fn to_html(&self) -> Result<String, Error> {
+        let mut environment = Environment::new();
+        environment.set_auto_escape_callback(|_| AutoEscape::Html);
+        for (name, text) in TEMPLATES {
+            environment.add_template(name, text).map_err(template)?;
+        }
+        let mut drawing = Drawing::default();
+        let parts: Vec<Value> = self
+            .parts
+            .iter()
+            .enumerate()
+            .map(|(place, part)| drawing.part(place, part))
+            .collect::<Result<_, _>>()?;
+        let data = json!({ "columns": drawing.columns.finish(), "charts": drawing.charts });
+        let page = environment.get_template("page.html").map_err(template)?;
+        page.render(context! {
+            title => printable(&self.title),
+            parts => parts,
+            data => data,
+            styles => STYLES.concat(),
+            scripts => SCRIPTS,
+        })
+        .map_err(template)
+    }
+}
+
+fn template(reason: minijinja::Error) -> Error {
+    Error::Template {
+        reason: format!("{reason:#}"),
+    }
+}
+
+/// Charts and columns of a page.
+#[derive(Default)]
+struct Drawing {
+    columns: Columns,
+    charts: Vec<Value>,
+}
+
+impl Drawing {
+    fn part(&mut self, place: usize, part: &Part) -> Result<Value, Error> {
+        let sections: Vec<Value> = part
+            .sections
+            .iter()
+            .map(|section| self.section(place, section))
+            .collect::<Result<_, _>>()?;
+        Ok(json!({
+            "id": format!("part-{}", place + 1),
+            "name": printable(&part.name),
+            "size": printable(&part.size),
+            "sign": part.summary.tone.sign(),
+            "summary": shown(&part.summary),
+            "sections": sections,
+            "origin": shown(&part.origin),
+        }))
+    }
+
+    fn section(&mut self, place: usize, section: &Section) -> Result<Value, Error> {
+        let items: Vec<Value> = section
+            .items
+            .iter()
+            .map(|item| self.item(item))
+            .collect::<Result<_, _>>()?;
+        Ok(json!({
+            "id": format!("p{}-{}", place + 1, section.id),
+            "title": printable(&section.title),
+            "lead": printable(&section.lead),
+            "items": items,
+        }))
+    }
+
+    fn item(&mut self, item: &Item) -> Result<Value, Error> {
+        Ok(match item {
+            Item::Text(text) => json!({ "kind": "text", "text": printable(text) }),
+            Item::Command(text) => json!({ "kind": "command", "text": printable(text) }),
+            Item::List(list) => json!({ "kind": "list", "list": shown(list) }),
+            Item::Table(table) => json!({ "kind": "table", "table": shown(table) }),
+            Item::Bars(bars) => json!({ "kind": "bars", "bars": strips::bars(bars) }),
+            Item::Estimates(estimates) => {
+                json!({ "kind": "estimates", "estimates": strips::estimates(estimates) })
+            }
+            Item::Chart(chart) => {
+                chart.check()?;
+                json!({ "kind": "chart", "chart": self.chart(chart) })
+            }
+        })
+    }
+
+    /// What the template needs of a chart; what the script needs is stored.
+    fn chart(&mut self, chart: &Chart) -> Value {
+        let id = format!("chart-{}", self.charts.len() + 1);
+        let of_all = chart.panels.iter().map(Panel::largest).fold(0.0, f64::max);
+        let largest = |panel: &Panel| match panel.unit {
+            Some(_) => panel.largest(),
+            None => of_all,
+        };
+        let unit_of = |panel: &Panel| panel.unit.as_deref().unwrap_or(&chart.unit).to_owned();
+        let scaled = |panel: &Panel| match chart.logarithmic {
+            true => (1.0, unit_of(panel)),
+            false => readable_unit(&unit_of(panel), largest(panel)),
+        };
+        let panels: Vec<Value> = chart
+            .panels
+            .iter()
+            .map(|panel| {
+                let (factor, unit) = scaled(panel);
+                self.panel(panel, factor, &unit)
+            })
+            .collect();
+        self.charts.push(json!({
+            "id": &id,
+            "abscissa": axis(&chart.abscissa, &chart.abscissa_unit),
+            "quantity": chart.quantity,
+            "logX": chart.logarithmic_abscissa,
+            "logY": chart.logarithmic,
+            "sameScale": chart.same_scale,
+            "linked": !chart.unlinked,
+            "height": chart.height_px,
+            "panels": panels,
+        }));
+        let rows = chart.panels.iter().map(|panel| panel.abscissa.len());
+        let most = rows.max().unwrap_or(0);
+        json!({
+            "id": id,
+            "title": printable(&chart.title),
+            "caption": printable(&chart.caption),
+            "columns": chart.columns,
+            "height": chart.height_px,
+            "panels": chart.panels.iter().map(|panel| description(chart, panel)).collect::<Vec<_>>(),
+            "legend": legend(chart),
+            "decimated": (most > MOST_ROWS).then(|| count(most)),
+        })
+    }
+
+    fn panel(&mut self, panel: &Panel, factor: f64, unit: &str) -> Value {
+        let kept = rows(&panel.abscissa, panel.columns(), panel.no_gaps);
+        let mut column = |values: &[f64], factor: f64, broken: bool| {
+            self.columns.add(kept.iter().map(|row| match *row {
+                Row::Of(row) => factor * values[row],
+                Row::Break(at) if !broken => at,
+                Row::Break(_) => f64::NAN,
+            }))
+        };
+        let abscissa = column(&panel.abscissa, 1.0, false);
+        let bands: Vec<Value> = panel
+            .bands
+            .iter()
+            .map(|band| {
+                json!({
+                    "label": printable(&band.label),
+                    "tint": band.tint,
+                    "lower": column(&band.lower, factor, true),
+                    "upper": column(&band.upper, factor, true),
+                })
+            })
+            .collect();
+        let lines: Vec<Value> = panel
+            .lines
+            .iter()
+            .map(|line| {
+                json!({
+                    "label": printable(&line.label),
+                    "tint": line.tint,
+                    "kind": line.kind,
+                    "values": column(&line.values, factor, true),
+                })
+            })
+            .collect();
+        let levels = panel.levels.iter();
+        let marks = panel.marks.iter();
+        json!({
+            "name": printable(&panel.name),
+            "unit": printable(unit),
+            "abscissa": abscissa,
+            "bands": bands,
+            "lines": lines,
+            "levels": levels
+                .map(|one| json!({ "label": printable(&one.label), "value": factor * one.value }))
+                .collect::<Vec<_>>(),
+            "marks": marks
+                .map(|one| json!({ "label": printable(&one.label), "value": one.value }))
+                .collect::<Vec<_>>(),
+            "scaleFrom": panel.scale_from,
+        })
+    }
+}
+
+/// Name, note and the text for those who do not see the picture.
+fn description(chart: &Chart, panel: &Panel) -> Value {
+    let lines = panel.lines.iter().map(|line| printable(&line.label));
+    let shown: Vec<String> = lines.collect();
+    json!({
+        "name": printable(&panel.name),
+        "note": printable(&panel.note),
+        "label": format!(
+            "{}: {} against {}. {}. {}",
+            printable(&panel.name),
+            shown.join(", "),
+            axis(&chart.abscissa, &chart.abscissa_unit),
+            printable(&chart.title),
+            printable(&panel.note),
+        ),
+    })
+}
+
+/// The entries of the legend of a chart, each once.
+fn legend(chart: &Chart) -> Vec<Value> {
+    let mut entries: Vec<Value> = Vec::new();
+    for panel in &chart.panels {
+        let lines = panel.lines.iter();
+        let lines = lines.map(
+            |line| json!({ "label": printable(&line.label), "tint": line.tint, "kind": line.kind }),
+        );
+        let bands = panel.bands.iter();
+        let bands = bands.map(
+            |band| json!({ "label": printable(&band.label), "tint": band.tint, "kind": "band" }),
+        );
+        let levels = panel.levels.iter();
+        let levels = levels.map(|level| json!({ "label": printable(&level.label), "tint": "expected", "kind": "dashed" }));
+        for entry in lines.chain(bands).chain(levels) {
+            if entry["label"] != "" && !entries.contains(&entry) {
+                entries.push(entry);
+            }
+        }
+    }
+    entries
+}
+
+/// A quantity with its unit.
+fn axis(quantity: &str, unit: &str) -> String {
+    match unit {
+        "" => printable(quantity),
+        unit => printable(&format!("{quantity} [{unit}]")),
+    }
+}
+
+/// A structure for a template, all texts printable.
+fn shown(content: &impl Serialize) -> Value {
+    let mut value = serde_json::to_value(content).unwrap_or(Value::Null);
+    make_printable(&mut value);
+    value
+}
+
+fn make_printable(value: &mut Value) {
+    match value {
+        Value::String(text) => *text = printable(text),
+        Value::Array(values) => values.iter_mut().for_each(make_printable),
+        Value::Object(fields) => fields.values_mut().for_each(make_printable),
+        _ => (),
+    }
+}
