@@ -2,6 +2,7 @@
 
 mod evidence;
 mod hypothesis;
+mod open_loop;
 mod passes;
 mod prediction;
 mod rate_noise;
@@ -26,6 +27,7 @@ use crate::settings::filter_settings;
 use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
 
+pub use open_loop::SiteBias;
 pub use prediction::{Estimates, Expectation, WalkEnd};
 pub use rate_noise::GYRO_NOISE_PRIOR_SIGMA;
 

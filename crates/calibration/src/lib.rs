@@ -138,7 +138,7 @@ pub use cramer_rao::cramer_rao_bound;
 pub use error::CalibrationError;
 pub use fit::{Consistency, FitStatistics};
 pub use fitted_platform::{
-    Estimates, Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel, WalkEnd,
+    Estimates, Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel, SiteBias, WalkEnd,
 };
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;

@@ -105,9 +105,14 @@ impl<'a> WeightedRows<'a> {
             })
     }
 
+    /// Times of the rows, s.
+    pub(crate) fn times_s(&self) -> &[f64] {
+        &self.record.time_s[..self.rows]
+    }
+
     /// Time from the first row to the last, s.
     pub(crate) fn duration_s(&self) -> f64 {
-        let times = &self.record.time_s[..self.rows];
+        let times = self.times_s();
         match times {
             [first, .., last] => last - first,
             _ => 0.0,

@@ -29,7 +29,11 @@ pub struct OpenLoopSimulation {
 }
 
 impl OpenLoopSimulation {
-    fn new(fitted: &FittedPlatform<'_>, record: &Record) -> Result<Self, CalibrationError> {
+    /// Simulates a fitted model over its record.
+    ///
+    /// # Errors
+    /// As [`FittedPlatform::free_run_g`].
+    pub fn new(fitted: &FittedPlatform<'_>, record: &Record) -> Result<Self, CalibrationError> {
         let simulated_g = fitted.free_run_g()?;
         let residuals_g: [Vec<f64>; 3] = core::array::from_fn(|axis| {
             let rows = record.accel_g.iter().zip(&simulated_g);
