@@ -11,7 +11,8 @@ use gyrocal_instruments::{
     AllanColumn, AllanSettings, Description, InstrumentError, Log, ResultFile, allan_columns,
     allan_log,
 };
-use gyrocal_record::{SourceText, write_json};
+use gyrocal_pages::{AllanAnswer, of_allan};
+use gyrocal_record::{Outputs, SourceText};
 use gyrocal_statistics::allan::{AllanEstimator, NoiseFit};
 use gyrocal_statistics::format;
 use serde_json::json;
@@ -19,6 +20,7 @@ use serde_json::json;
 use crate::measured::unusable;
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
+use crate::page;
 use crate::tables::{right, table};
 use crate::{Answer, Failure};
 
@@ -67,6 +69,8 @@ pub(crate) struct AllanArguments {
     /// Write the result for programs (JSON), with the fitted curve and its parts for a plot.
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.html", help = page::HELP)]
+    report: Option<PathBuf>,
 }
 
 /// Value of `--estimator`.
@@ -95,7 +99,22 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<Answer, Failure> {
     let mut inputs = vec![&*arguments.log];
     inputs.extend(arguments.log_description.as_deref());
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
+    let json = ("--json", arguments.json.as_deref());
+    page::check(&inputs, &[json], arguments.report.as_deref(), None)?;
     let analysed = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    let mut answer = Answer::of(screen::first(&analysed), summary(arguments, &analysed));
+    let mut outputs = Outputs::new();
+    if let Some(path) = &arguments.report {
+        let shown = AllanAnswer {
+            manifest: &manifest("", 0, &inputs)?,
+            columns: &analysed.columns,
+            unit: &analysed.unit,
+            estimator: arguments.estimator.of_library().description(),
+            confidence: arguments.confidence,
+        };
+        page::stage(path, vec![of_allan(&shown)], &mut outputs)?;
+        answer.wrote(path, page::WHAT);
+    }
     if let Some(path) = &arguments.json {
         let result = json!({
             "unit": analysed.unit,
@@ -103,9 +122,10 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<Answer, Failure> {
             "estimator": arguments.estimator.of_library().description(),
             "columns": analysed.columns,
         });
-        write_json(path, &ResultFile::new(manifest("", 0, &inputs)?, result))?;
+        let result = ResultFile::new(manifest("", 0, &inputs)?, result);
+        outputs.stage_json(path, &result)?;
     }
-    let mut answer = Answer::of(screen::first(&analysed), summary(arguments, &analysed));
+    outputs.commit()?;
     if let Some(path) = &arguments.json {
         answer.wrote(path, "the result for programs");
     }

@@ -3,6 +3,7 @@
 mod failed;
 mod inputs;
 mod json;
+mod over_time;
 mod prose;
 mod screen;
 mod tables;
@@ -18,12 +19,16 @@ use gyrocal_diagnosis::{
     CalibrationVerdict, DiagnoseOptions, calibration_verdict, effect_test, fit_effects,
     screen_record,
 };
-use gyrocal_record::{CalibrationMethod, EffectTest, FittedEffects, SetupProblem, write_json};
+use gyrocal_pages::of_calibration;
+use gyrocal_record::{
+    CalibrationMethod, EffectTest, FittedEffects, Outputs, SetupProblem, printable_path,
+};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 
 use crate::numbers::positive;
 use crate::outputs;
+use crate::page;
 use crate::progress::Progress;
 use crate::{Answer, Failure, exit};
 pub use failed::NotCalibrated;
@@ -50,6 +55,8 @@ pub(crate) struct CalibrateArguments {
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.html", help = page::HELP)]
+    report: Option<PathBuf>,
     /// Average fast records over intervals of this length, 600 s at most: quicker, and without loss
     /// of information while the noise is white.
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
@@ -185,6 +192,8 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         .map(PathBuf::as_path)
         .collect();
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
+    let json_output = ("--json", arguments.json.as_deref());
+    page::check(&inputs, &[json_output], arguments.report.as_deref(), None)?;
     let (records, benches) = (&arguments.records, &arguments.benches);
     let measurements = inputs::read(records, benches, arguments.average, arguments.kind())?;
     if measurements.iter().any(|measurement| measurement.stops) {
@@ -222,10 +231,19 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         calibration,
         measurements,
     };
-    if let Some(path) = &arguments.json {
-        write_json(path, &json::report(&found, &inputs)?)?;
-    }
     let mut answer = Answer::of(screen::first(&found), prose::summary(&found));
+    let mut outputs = Outputs::new();
+    if arguments.json.is_some() || arguments.report.is_some() {
+        let report = json::report(&found, &inputs)?;
+        if let Some(path) = &arguments.report {
+            over_time::stage(path, &report, &found, &options, &mut outputs)?;
+            answer.wrote(path, page::WHAT);
+        }
+        if let Some(path) = &arguments.json {
+            outputs.stage_json(path, &report)?;
+        }
+    }
+    outputs.commit()?;
     if let Some(path) = &arguments.json {
         answer.wrote(path, "the result for programs");
     }
@@ -244,9 +262,15 @@ fn stopped(
 ) -> Result<WrongSetup, Failure> {
     let problems = measurements.iter().flat_map(|one| &one.setup);
     let report = json::of_wrong_setup(arguments.method(), problems.cloned().collect(), inputs)?;
-    if let Some(path) = &arguments.json {
-        write_json(path, &report)?;
+    let mut outputs = Outputs::new();
+    if let Some(path) = &arguments.report {
+        let part = page::part(&arguments.records[0], of_calibration(&report, &[]))?;
+        page::stage(path, vec![part], &mut outputs)?;
     }
+    if let Some(path) = &arguments.json {
+        outputs.stage_json(path, &report)?;
+    }
+    outputs.commit()?;
     Ok(WrongSetup::new(&report, arguments.json.as_deref()))
 }
 

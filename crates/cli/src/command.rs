@@ -17,6 +17,7 @@ use crate::manual::{CompletionsArguments, ManArguments};
 use crate::monte_carlo::MonteCarloArguments;
 use crate::plan::PlanArguments;
 use crate::plant::PlantArguments;
+use crate::report::ReportArguments;
 use crate::simulate::SimulateArguments;
 use crate::terminal::{Color, Shown};
 use crate::tumble::TumbleArguments;
@@ -50,6 +51,7 @@ pub(crate) enum Command {
     MonteCarlo(MonteCarloArguments),
     Plan(PlanArguments),
     Plant(PlantArguments),
+    Report(ReportArguments),
     Simulate(SimulateArguments),
     Tumble(TumbleArguments),
     Watch(WatchArguments),

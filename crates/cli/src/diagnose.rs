@@ -12,12 +12,14 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
     Verdict, diagnose_watched, prose,
 };
-use gyrocal_record::{Bench, Outputs, printable_path, write_json};
+use gyrocal_pages::{of_diagnosis, of_result};
+use gyrocal_record::{Bench, Outputs, printable_path};
 use gyrocal_setup::PlatformKind;
 
 use crate::layout::layout;
 use crate::numbers::probability;
 use crate::outputs::{self, manifest, same_file};
+use crate::page;
 use crate::pictures;
 use crate::progress::Progress;
 use crate::{Answer, Failure, exit, records};
@@ -48,6 +50,8 @@ pub(crate) struct DiagnoseArguments {
     validate_bench: Option<PathBuf>,
     #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.html", help = page::HELP)]
+    report: Option<PathBuf>,
     /// Also test these effects, which are not in the default set: gyro_xy.axis_misalignment,
     /// gyro_x.magnetic.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
@@ -154,6 +158,9 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
         arguments.json.as_deref(),
         arguments.figures.as_deref(),
     )?;
+    let json = ("--json", arguments.json.as_deref());
+    let (report, figures) = (arguments.report.as_deref(), arguments.figures.as_deref());
+    page::check(&inputs, &[json], report, figures)?;
     if let Some(later) = &arguments.validate
         && same_file(later, &arguments.record)
     {
@@ -182,10 +189,16 @@ fn stopped(
         prose::first_screen(&result),
         layout(&prose::diagnosis(&result)),
     );
+    let mut outputs = Outputs::new();
+    if let Some(path) = &arguments.report {
+        page::stage(path, vec![of_result(&result)], &mut outputs)?;
+        answer.wrote(path, page::WHAT);
+    }
     if let Some(path) = &arguments.json {
-        write_json(path, &result)?;
+        outputs.stage_json(path, &result)?;
         answer.wrote(path, "the result for programs");
     }
+    outputs.commit()?;
     if arguments.exit_code {
         answer.exit_code = exit::SETUP;
     }
@@ -202,6 +215,11 @@ fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answe
     let mut outputs = Outputs::new();
     if let Some(folder) = &arguments.figures {
         answer.wrote(folder, &figures::stage(run, folder, &mut outputs)?);
+    }
+    if let Some(path) = &arguments.report {
+        let part = page::part(run.path, of_diagnosis(&run.diagnosis, run.bench))?;
+        page::stage(path, vec![part], &mut outputs)?;
+        answer.wrote(path, page::WHAT);
     }
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, result)?;

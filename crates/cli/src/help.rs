@@ -34,7 +34,7 @@ const WRITTEN: [&str; 8] = [
 ];
 
 /// Commands with their examples, each a command line with its meaning.
-const EXAMPLES: [(&str, &[[&str; 2]]); 15] = [
+const EXAMPLES: [(&str, &[[&str; 2]]); 16] = [
     (
         "allan",
         &[
@@ -158,6 +158,19 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 15] = [
             "gyrocal plant diagnose plant.json record.csv --columns columns.toml --validate later.csv",
             "what the model of any plant lacks, and the gain on a later record",
         ]],
+    ),
+    (
+        "report",
+        &[
+            [
+                "gyrocal report record.csv --bench bench.toml --out report.html",
+                "a record, diagnosed, with all charts",
+            ],
+            [
+                "gyrocal report monday.json tuesday.json --out week.html",
+                "written results, with an overview",
+            ],
+        ],
     ),
     (
         "simulate",

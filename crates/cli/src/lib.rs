@@ -28,11 +28,13 @@ mod monte_carlo;
 mod noise;
 mod numbers;
 mod outputs;
+mod page;
 mod pictures;
 mod plan;
 mod plant;
 mod progress;
 mod records;
+mod report;
 mod simulate;
 mod tables;
 mod terminal;
@@ -116,6 +118,7 @@ fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
         Command::Plan(arguments) => plan::run(arguments),
         Command::Plant(arguments) => plant::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Tumble(arguments) => tumble::run(arguments),
         Command::Watch(arguments) => watch::run(arguments),

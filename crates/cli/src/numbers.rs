@@ -32,6 +32,14 @@ pub(crate) fn angle_sigma_deg(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number that is not negative.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number >= 0.0 => Ok(number),
+        _ => Err("expected a number that is not negative".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{angle_deg, angle_sigma_deg, positive, probability};
@@ -54,13 +62,5 @@ mod tests {
         for wrong in ["", "0", "-1", "nan", "inf", "180.1"] {
             assert!(angle_sigma_deg(wrong).is_err(), "{wrong}");
         }
-    }
-}
-
-/// A number that is not negative.
-pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() && number >= 0.0 => Ok(number),
-        _ => Err("expected a number that is not negative".to_owned()),
     }
 }

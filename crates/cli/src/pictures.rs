@@ -68,7 +68,7 @@ pub(crate) fn stage(
         {
             let png = gyrocal_report::to_png(&svg, WIDTH_PX)
                 .into_diagnostic()
-                .wrap_err_with(|| format!("the picture {name} of {}", printable_path(&of)))
+                .wrap_err_with(|| format!("the picture {name} of {}", printable_path(of)))
                 .map_err(Failure::Work)?;
             outputs.stage(&folder.join(name).with_extension("png"), &png)?;
         }

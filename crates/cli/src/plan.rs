@@ -10,11 +10,13 @@ use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
 use gyrocal_design::{Aim, PlanOptions, first_screen, plan, prose};
+use gyrocal_pages::of_plan;
 use gyrocal_record::{Bench, Outputs};
 
 use crate::layout::layout;
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
+use crate::page;
 use crate::progress::Progress;
 use crate::{Answer, Failure, records};
 pub use failed::NotPlanned;
@@ -39,6 +41,8 @@ pub(crate) struct PlanArguments {
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.html", help = page::HELP)]
+    report: Option<PathBuf>,
     /// Durations of the next run, h; default: that of the record.
     #[arg(long, value_name = "H,H", value_delimiter = ',', value_parser = positive)]
     hours: Vec<f64>,
@@ -87,6 +91,8 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     inputs.extend(arguments.diagnosis.as_deref());
     refuse_repeated(&arguments.limits)?;
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
+    let json = ("--json", arguments.json.as_deref());
+    page::check(&inputs, &[json], arguments.report.as_deref(), None)?;
     let bench = Bench::read(&arguments.bench)?;
     let file = records::read(&arguments.record)?;
     let rows = file.record().len();
@@ -116,6 +122,10 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     planned.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
     let mut answer = Answer::of(first_screen(&planned), layout(&prose(&planned)));
     let mut outputs = Outputs::new();
+    if let Some(path) = &arguments.report {
+        page::stage(path, vec![of_plan(&planned)], &mut outputs)?;
+        answer.wrote(path, page::WHAT);
+    }
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, &planned)?;
         answer.wrote(path, "the result for programs");

@@ -19,11 +19,13 @@ use gyrocal_instruments::multi_position::{
 use gyrocal_instruments::{
     Description, InstrumentError, Log, ResultFile, StopSettings, find_stops, given_stops,
 };
+use gyrocal_pages::of_tumble;
 use gyrocal_record::{Outputs, printable_path};
 
 use crate::measured::{interval, unusable};
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
+use crate::page;
 use crate::pictures;
 use crate::{Answer, Failure};
 
@@ -63,6 +65,8 @@ pub(crate) struct TumbleArguments {
     seed: u64,
     #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.html", help = page::HELP)]
+    report: Option<PathBuf>,
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -84,6 +88,9 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
         arguments.json.as_deref(),
         arguments.figures.as_deref(),
     )?;
+    let json = ("--json", arguments.json.as_deref());
+    let (page, figures) = (arguments.report.as_deref(), arguments.figures.as_deref());
+    page::check(&inputs, &[json], page, figures)?;
     if arguments.logs.len() > 1 && !arguments.stop.is_empty() {
         return Err(Failure::Usage(
             "--stop gives stops of one log; with several logs the stops of each are detected"
@@ -125,6 +132,10 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
             ),
         }
     }
+    if let Some(path) = &arguments.report {
+        let what = page_of(path, arguments, (&prepared, &report), &inputs, &mut outputs)?;
+        answer.wrote(path, what);
+    }
     if let Some(path) = &arguments.json {
         let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
         let result = match &report {
@@ -142,6 +153,22 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
     }
     outputs.commit()?;
     Ok(answer)
+}
+
+/// Stages the report; returns what the file holds. A test with few stops has none.
+fn page_of(
+    path: &Path,
+    arguments: &TumbleArguments,
+    (prepared, report): (&PreparedTest, &Report),
+    inputs: &[&Path],
+    outputs: &mut Outputs,
+) -> Result<&'static str, Failure> {
+    let Report::Many(report) = report else {
+        return Ok("no report: it is made of tests with many stops");
+    };
+    let manifest = manifest(MODEL_HASH, arguments.seed, inputs)?;
+    page::stage(path, vec![of_tumble(&manifest, prepared, report)], outputs)?;
+    Ok(page::WHAT)
 }
 
 fn named(arguments: &TumbleArguments) -> String {

@@ -20,6 +20,7 @@ mod measured;
 mod naming;
 mod page;
 mod paper;
+mod report;
 mod resumable;
 mod topic_page;
 mod truth;
@@ -109,6 +110,8 @@ enum Topic {
     Measured,
     /// Instrument tests on simulated logs: noise, positions, stops.
     Logs,
+    /// The report: its files, in a browser; pictures of it.
+    Report,
     /// Truth of the diagnosis outside of the population that its constants were tuned on.
     Truth,
     /// The watch beside the filter: false alarms, delays, jumps, sets in simulated platform-years.
@@ -139,6 +142,7 @@ fn main() -> ExitCode {
         Topic::House => house::figures(arguments.small, arguments.write),
         Topic::Measured => measured::figures(arguments.write),
         Topic::Logs => logs::figures(extent),
+        Topic::Report => report::figures(arguments.small, arguments.write),
         Topic::Truth => truth::figures(extent, &arguments.parts),
         Topic::Watch => watch::figures(arguments.small),
         Topic::Paper => paper::figures(arguments.write),

@@ -4,6 +4,7 @@
 //!   have them, for tests of the build, and interleaved timing.
 //! - `filters`: a platform with any number of states, rounding errors against 400-bit references,
 //!   Kalman filters of other packages, and times of a step.
+//! - `browser`: a headless browser for pages.
 //! - `calibration`: dense least squares for short records, and signatures by finite differences of the
 //!   independent simulation.
 //! - `noise`: records with faulty noise.
@@ -24,6 +25,8 @@
 
 #[cfg(feature = "setups")]
 pub mod broken_setups;
+#[cfg(feature = "browser")]
+pub mod browser;
 mod command;
 mod copy;
 #[cfg(feature = "calibration")]

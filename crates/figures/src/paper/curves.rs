@@ -175,6 +175,7 @@ fn estimates(judged: &[Judged]) -> Comparison {
             .into(),
         quantities: (0..9).map(quantity).collect(),
         columns: 3,
+        tints: Vec::new(),
         reference_label: "true value".to_owned(),
     }
 }

@@ -1,6 +1,7 @@
 //! Effects by test statistic, and the gain of the extended model.
 
 use gyrocal_diagnosis::{prose, result};
+use gyrocal_report::page::Tint;
 use gyrocal_report::{
     ComparedEstimate, ComparedQuantity, Comparison, CrossValidation, Omitted, PredictionError,
     RankedEffect, Ranking, RankingGroup, Role,
@@ -147,6 +148,7 @@ pub(super) fn coefficients(found: &DiagnosisRun<'_>) -> Option<Comparison> {
         ),
         subtitle: subtitle(found),
         estimators: vec!["nominal".to_owned(), "extended".to_owned()],
+        tints: vec![Tint::Nominal, Tint::Extended],
         quantities: coefficients
             .nominal
             .iter()

@@ -5,6 +5,7 @@ use gyrocal_diagnosis::{
     ChannelCorrelation, ChannelSpectrum, DiagnosisError, ModelVersion, OpenLoopSimulation,
     magnitude_channel,
 };
+use gyrocal_report::page::Tint;
 use gyrocal_report::{
     Bin, Correlation, CorrelationChannel, CovariatePanel, MarkedFrequency, OpenLoop,
     OpenLoopChannel, Picture, PowerThreshold, ResidualChannel, ResidualVsCovariate, Residuals,
@@ -200,6 +201,7 @@ pub(super) fn periodograms(found: &DiagnosisRun<'_>) -> Result<Box<dyn Picture>,
         name: name(spectrum),
         power: spectrum.periodogram.power.clone(),
         samples: spectrum.samples,
+        tint: tint(spectrum.model),
         threshold: Some(PowerThreshold {
             power: spectrum.periodogram.level,
             false_alarm_probability: probability,
@@ -237,6 +239,7 @@ pub(super) fn autocorrelations(
         correlation: channel.correlation.clone(),
         band: channel.band,
         samples: channel.samples,
+        tint: tint(channel.model),
     });
     Ok(Box::new(Correlation {
         title: format!(
@@ -253,6 +256,14 @@ fn label(model: ModelVersion) -> &'static str {
     match model {
         ModelVersion::Nominal => "nominal model",
         ModelVersion::Extended => "extended model",
+    }
+}
+
+/// Colour of a model in the pictures.
+fn tint(model: ModelVersion) -> Tint {
+    match model {
+        ModelVersion::Nominal => Tint::Nominal,
+        ModelVersion::Extended => Tint::Extended,
     }
 }
 

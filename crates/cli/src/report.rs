@@ -1,0 +1,152 @@
+//! `gyrocal report`: answers as one HTML file.
+
+use std::path::{Path, PathBuf};
+
+use clap::{ArgAction, Args};
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_design::PlanResult;
+use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, Gate, diagnose_gated, result};
+use gyrocal_pages::{Part, of_calibration, of_diagnosis, of_plan, of_result};
+use gyrocal_record::{Bench, CalibrationReport, Outputs, SourceText};
+use gyrocal_setup::PlatformKind;
+use miette::miette;
+use serde::de::DeserializeOwned;
+
+use crate::diagnose::NotDiagnosed;
+use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
+use crate::progress::Progress;
+use crate::{Answer, Failure, page, records};
+
+/// Make a report of records or results: one HTML file that opens in any browser, offline.
+///
+/// A record (CSV, with --bench) is diagnosed, and its report has all charts. A result (JSON of diagnose,
+/// calibrate or plan) needs no computation; its report has no charts over time, for which the record is
+/// needed.
+#[derive(Debug, Args)]
+pub(crate) struct ReportArguments {
+    /// Records (CSV) and results (JSON), in the order of the report.
+    #[arg(required = true, value_name = "RECORD.csv|RESULT.json")]
+    inputs: Vec<PathBuf>,
+    /// The bench description (TOML): one for all records, or one for each in their order.
+    #[arg(long = "bench", value_name = "BENCH.toml", action = ArgAction::Append)]
+    benches: Vec<PathBuf>,
+    /// The report to write (HTML).
+    #[arg(long, value_name = "OUT.html", default_value = "report.html")]
+    out: PathBuf,
+}
+
+/// Runs the command.
+pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
+    let records = arguments.inputs.iter().filter(|path| !is_result(path));
+    let records = records.count();
+    let benches = arguments.benches.len();
+    if benches != records && !(benches == 1 && records > 0) {
+        return Err(Failure::Usage(format!(
+            "{benches} of --bench for {records} of records: give --bench once for all records, or once \
+             for each in their order"
+        )));
+    }
+    let all = arguments.inputs.iter().chain(&arguments.benches);
+    let all: Vec<&Path> = all.map(PathBuf::as_path).collect();
+    refuse_overlap(&all, &[("--out", Some(&arguments.out))])?;
+    refuse_unwritable(&[Some(&arguments.out)], None)?;
+    let mut benches = arguments.benches.iter();
+    let mut parts = Vec::with_capacity(arguments.inputs.len());
+    for path in &arguments.inputs {
+        parts.push(if is_result(path) {
+            of_file(path)?
+        } else {
+            let bench = benches.next().or(arguments.benches.last());
+            of_record(path, bench.map_or(Path::new(""), PathBuf::as_path))?
+        });
+    }
+    let mut outputs = Outputs::new();
+    page::stage(&arguments.out, parts, &mut outputs)?;
+    outputs.commit()?;
+    let mut answer = Answer::default();
+    answer.wrote(&arguments.out, page::WHAT);
+    Ok(answer)
+}
+
+fn is_result(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|form| form.eq_ignore_ascii_case("json"))
+}
+
+fn of_record(path: &Path, bench_path: &Path) -> Result<Part, Failure> {
+    let bench = Bench::read(bench_path)?;
+    let file = records::read(path)?;
+    let options = DiagnoseOptions::default();
+    let origin = manifest(MODEL_HASH, options.seed, &[path, bench_path])?;
+    let _progress = Progress::waiting("diagnosing", file.record().len());
+    let gate = Gate::of_file(
+        PlatformKind::Stabilised,
+        &file,
+        &bench,
+        &options.calibration,
+    )?;
+    match diagnose_gated(gate, &bench, &options) {
+        Err(DiagnosisError::Setup { mut result }) => {
+            result.manifest = origin;
+            Ok(of_result(&result))
+        }
+        Err(source) => Err(NotDiagnosed::new(path, &bench, source).into()),
+        Ok(mut diagnosis) => {
+            diagnosis.result.manifest = origin;
+            page::part(path, of_diagnosis(&diagnosis, &bench))
+        }
+    }
+}
+
+/// The part of a written result of any command that has one.
+fn of_file(path: &Path) -> Result<Part, Failure> {
+    let source = SourceText::read(path)?;
+    let has = |key: &str| source.text().contains(&format!("\"{key}\""));
+    if has("findings") {
+        return Ok(of_result(&result::read_text(&source)?));
+    }
+    if has("proposals") {
+        let plan: PlanResult = read(path, &source, gyrocal_design::SCHEMA_VERSION)?;
+        return Ok(of_plan(&plan));
+    }
+    if has("verdict_text") {
+        let report: CalibrationReport = read(path, &source, gyrocal_record::SCHEMA_VERSION)?;
+        return page::part(path, of_calibration(&report, &[]));
+    }
+    Err(Failure::Work(miette!(
+        help =
+            "give the file that --json of one of these commands wrote, or the record with --bench",
+        "{}: not a result of diagnose, calibrate or plan",
+        path.display()
+    )))
+}
+
+/// The key that results of any version have.
+#[derive(serde::Deserialize)]
+struct Versioned {
+    schema_version: u32,
+}
+
+fn read<T: DeserializeOwned>(
+    path: &Path,
+    source: &SourceText,
+    expected: u32,
+) -> Result<T, Failure> {
+    let failed = |reason: serde_json::Error| {
+        Failure::Work(miette!(
+            help = "write it again with --json",
+            "{}: not a whole result: {reason}",
+            path.display()
+        ))
+    };
+    let found: Versioned = serde_json::from_str(source.text()).map_err(failed)?;
+    if found.schema_version != expected {
+        return Err(Failure::Work(miette!(
+            help = "write it again with this version of gyrocal",
+            "{}: schema_version {}, expected {expected}, the version of this program",
+            path.display(),
+            found.schema_version
+        )));
+    }
+    serde_json::from_str(source.text()).map_err(failed)
+}

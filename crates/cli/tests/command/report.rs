@@ -1,0 +1,159 @@
+//! `gyrocal report` and `--report` as a user runs them.
+
+use crate::folder::Folder;
+
+const RECORD: &str = "hidden_fault.csv";
+const BENCH: &str = "hidden_fault.bench.toml";
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    for name in [RECORD, BENCH] {
+        folder.put_example(name);
+    }
+    folder
+}
+
+/// Runs a command whose command line is wrong; returns stderr.
+fn wrong_usage(folder: &Folder, arguments: &[&str]) -> String {
+    let output = folder.run(arguments);
+    assert_eq!(output.status.code(), Some(2));
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// A page that needs nothing else: whole, and without a reference to another place.
+fn assert_page(folder: &Folder, name: &str, words: &[&str]) {
+    let html = folder.text(name);
+    assert!(
+        html.starts_with("<!DOCTYPE html>") && html.trim_end().ends_with("</html>"),
+        "{name}"
+    );
+    for reference in ["src=", "url(", "@import", "<link rel=\"stylesheet\""] {
+        assert!(
+            !html.contains(reference),
+            "{name} refers to another file: {reference}"
+        );
+    }
+    for word in words {
+        assert!(html.contains(word), "{name} lacks {word}");
+    }
+}
+
+#[test]
+fn reports_of_a_diagnosis_a_result_and_a_plan() {
+    let folder = folder();
+    let said = folder.succeed(&[
+        "diagnose", RECORD, "--bench", BENCH, "--report", "r.html", "--json", "d.json",
+    ]);
+    assert!(said.contains("r.html: the report"), "{said}");
+    let words = [
+        "Fault found: gyro_y.g_z",
+        "6f95ed38b7e3fa6c70e6801692d87e3f9055ab2afb8feafe2898256599469b0b",
+        "gyrocal diagnose hidden_fault.csv --bench hidden_fault.bench.toml --report r.html",
+        "gyrocal plan hidden_fault.csv --bench hidden_fault.bench.toml",
+        "Simulation against measurement",
+        "95 % band of a right model",
+        "Convergence of each coefficient",
+        "What cannot be told apart",
+        "detection threshold",
+        "latitude +1.000 arcsec",
+    ];
+    assert_page(&folder, "r.html", &words);
+
+    folder.succeed(&[
+        "plan",
+        RECORD,
+        "--bench",
+        BENCH,
+        "--diagnosis",
+        "d.json",
+        "--hours",
+        "24",
+        "--aim",
+        "sigmas",
+        "--json",
+        "p.json",
+        "--report",
+        "p.html",
+    ]);
+    assert_page(&folder, "p.html", &["Next run: platform angles"]);
+
+    folder.succeed(&["report", "d.json", "p.json", "--out", "both.html"]);
+    let words = [
+        "2 records",
+        "Fault found: gyro_y.g_z",
+        "Next run: platform angles",
+    ];
+    assert_page(&folder, "both.html", &words);
+}
+
+#[test]
+fn reports_of_a_calibration() {
+    let folder = folder();
+    folder.succeed(&[
+        "calibrate",
+        RECORD,
+        "--bench",
+        BENCH,
+        "--report",
+        "c.html",
+        "--json",
+        "c.json",
+    ]);
+    let words = [
+        "Simulation against measurement",
+        "Drift coefficients",
+        "hidden_fault.bench.toml",
+    ];
+    assert_page(&folder, "c.html", &words);
+    folder.succeed(&["report", "c.json"]);
+    assert_page(&folder, "report.html", &["Drift coefficients"]);
+}
+
+#[test]
+fn a_report_that_cannot_be_written_is_told_before_the_work() {
+    let folder = folder();
+    let refused = folder.fail(&[
+        "diagnose",
+        RECORD,
+        "--bench",
+        BENCH,
+        "--report",
+        "nowhere/r.html",
+    ]);
+    assert!(refused.contains("nowhere/r.html"), "{refused}");
+    assert!(!folder.path("nowhere").exists());
+    let refused = wrong_usage(
+        &folder,
+        &["report", RECORD, "--bench", BENCH, "--out", BENCH],
+    );
+    assert!(refused.contains("would overwrite the input"), "{refused}");
+    let refused = wrong_usage(&folder, &["report", RECORD]);
+    assert!(
+        refused.contains("0 of --bench for 1 of records"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn results_of_other_versions_and_other_files_are_refused() {
+    let folder = folder();
+    folder.put("old.json", r#"{"schema_version": 1, "findings": []}"#);
+    let refused = folder.fail(&["report", "old.json"]);
+    assert!(
+        refused.contains("schema_version 1") && refused.contains("2, the version"),
+        "{refused}"
+    );
+    folder.put("new.json", r#"{"schema_version": 99, "verdict_text": ""}"#);
+    let refused = folder.fail(&["report", "new.json"]);
+    assert!(
+        refused.contains("schema_version 99, expected 1"),
+        "{refused}"
+    );
+    folder.put("other.json", "{}");
+    let refused = folder.fail(&["report", "other.json"]);
+    assert!(
+        refused.contains("not a result of diagnose, calibrate or plan"),
+        "{refused}"
+    );
+    assert!(!folder.path("report.html").exists());
+}

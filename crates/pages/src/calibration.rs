@@ -1,0 +1,370 @@
+//! The page of a calibration.
+
+use gyrocal_calibration::FittedPlatform;
+use gyrocal_record::{
+    Bench, CalibrationReport, Coefficient, FitVerdict, NoiseReport, Record, RunReport,
+};
+use gyrocal_report::page::{
+    Card, Cell, Column, EstimateRow, Estimates, Item, List, Origin, Part, Section, Summary, Table,
+    Tint, Tone, ValueWithSigma,
+};
+use gyrocal_statistics::format;
+
+use crate::diagnosis::open_loop::{self, Simulated};
+use crate::diagnosis::{coefficients, section};
+use crate::error::PageError;
+use crate::origin::{argument, file_name, origin};
+use crate::words::listed;
+
+/// A calibrated record with the fit of the nominal model to it alone, for the charts over time.
+pub struct CalibratedRecord<'a, 'b> {
+    /// Its name.
+    pub name: String,
+    /// The record.
+    pub record: &'a Record,
+    /// Its bench description.
+    pub bench: &'a Bench,
+    /// The fit.
+    pub fit: &'a FittedPlatform<'b>,
+}
+
+/// The page of a calibration. Charts over time are of the records that are given.
+///
+/// # Errors
+/// [`PageError`] where a simulation fails.
+pub fn of_calibration(
+    report: &CalibrationReport,
+    records: &[CalibratedRecord<'_, '_>],
+) -> Result<Part, PageError> {
+    let mut sections = Vec::new();
+    for (place, one) in records.iter().enumerate() {
+        sections.extend(over_time(one, (records.len() > 1).then_some(place))?);
+    }
+    if !report.coefficients.is_empty() {
+        sections.push(estimates(report));
+    }
+    sections.extend(undetermined(report));
+    if let Some(first) = records.first() {
+        sections.push(coefficients::site(first.fit)?);
+    }
+    let runs: Vec<Item> = runs(report).into_iter().map(Item::Table).collect();
+    if !runs.is_empty() {
+        sections.push(section(
+            "records",
+            "Records",
+            "Attitude and noise of each record; noise is estimated by maximum likelihood.",
+            runs,
+        ));
+    }
+    Ok(Part {
+        name: match report.runs.len() {
+            0 | 1 => file_name(&report.manifest, 0, "record"),
+            count => format!(
+                "{} and {} further records",
+                file_name(&report.manifest, 0, "record"),
+                count - 1
+            ),
+        },
+        size: format!("{} rows used", report.rows),
+        summary: summary(report),
+        sections,
+        origin: origin(&report.manifest),
+    })
+}
+
+/// The sections over time of a record; of several with its number in their anchors.
+fn over_time(
+    one: &CalibratedRecord<'_, '_>,
+    place: Option<usize>,
+) -> Result<Vec<Section>, PageError> {
+    let mut sections: Vec<Section> = open_loop::sections(&Simulated {
+        record: one.record,
+        bench: one.bench,
+        nominal: one.fit,
+        extended: None,
+        effects: Vec::new(),
+    })?
+    .into();
+    if let Some(chart) = coefficients::convergence(one.record, (one.fit, None))? {
+        sections.push(section(
+            "convergence",
+            "Convergence",
+            "Estimates against the length of the record.",
+            vec![Item::Chart(chart)],
+        ));
+    }
+    if let Some(place) = place {
+        for section in &mut sections {
+            section.id = format!("{}-{}", section.id, place + 1);
+            section.title = format!("{}: {}", one.name, section.title);
+        }
+    }
+    Ok(sections)
+}
+
+/// The page of a record with a fit of the nominal model alone: its charts over time.
+///
+/// # Errors
+/// [`PageError`] where a simulation fails.
+pub fn of_open_loop(
+    name: &str,
+    record: &Record,
+    bench: &Bench,
+    fit: &FittedPlatform<'_>,
+) -> Result<Part, PageError> {
+    let one = CalibratedRecord {
+        name: name.to_owned(),
+        record,
+        bench,
+        fit,
+    };
+    let mut sections = over_time(&one, None)?;
+    sections.push(coefficients::site(fit)?);
+    Ok(Part {
+        name: name.to_owned(),
+        size: format!(
+            "{} rows over {:.2} days",
+            record.len(),
+            record.duration_s() / 86_400.0
+        ),
+        summary: Summary {
+            tone: Tone::Plain,
+            headline: "Open-loop simulation of the nominal model".to_owned(),
+            sentence: format!(
+                "Mean normalised innovation squared {:.3}, expected 3.",
+                fit.nis_mean()
+            ),
+            cards: Vec::new(),
+        },
+        sections,
+        origin: Origin::default(),
+    })
+}
+
+fn summary(report: &CalibrationReport) -> Summary {
+    let (tone, headline) = match report.verdict {
+        FitVerdict::Consistent => (Tone::Good, "The record fits the model".to_owned()),
+        FitVerdict::EffectsFound => {
+            let shown = report.effects.iter().filter(|test| test.significant);
+            let effects: Vec<&str> = shown.filter_map(|test| test.effect.as_deref()).collect();
+            let of = match &*effects {
+                [] => String::new(),
+                some => format!(": first sign {}", listed(some)),
+            };
+            (Tone::Found, format!("The model lacks an effect{of}"))
+        }
+        FitVerdict::TooLarge => (
+            Tone::Bad,
+            "Innovations larger than declared noise".to_owned(),
+        ),
+        FitVerdict::TooSmall => (
+            Tone::Found,
+            "Innovations smaller than declared noise".to_owned(),
+        ),
+        _ => (Tone::Bad, "Wrong set-up: nothing was estimated".to_owned()),
+    };
+    let mut cards = Vec::new();
+    if report.verdict == FitVerdict::Setup {
+        cards.push(Card {
+            title: "What is wrong with the set-up".to_owned(),
+            text: report.setup.iter().map(|problem| problem.text()).collect(),
+            columns: 12,
+            ..Card::default()
+        });
+    } else {
+        cards.push(Card {
+            title: "Drift coefficients".to_owned(),
+            table: Some(coefficient_table(&report.coefficients)),
+            columns: 7,
+            ..Card::default()
+        });
+        cards.push(next(report));
+    }
+    Summary {
+        tone,
+        headline,
+        sentence: report.verdict_text.clone(),
+        cards,
+    }
+}
+
+fn coefficient_table(all: &[Coefficient]) -> Table {
+    let column = |head: &str, is_number| Column {
+        head: head.to_owned(),
+        is_number,
+    };
+    let rows = all.iter().map(|one| {
+        let [estimate, sigma] = format::estimate(one.estimate, one.sigma);
+        vec![
+            Cell::from(one.name.clone()),
+            Cell::from(format!("{estimate} ± {sigma}")),
+            Cell::from(one.unit.clone()),
+            Cell {
+                text: if one.determined { "yes" } else { "no" }.to_owned(),
+                strong: !one.determined,
+            },
+        ]
+    });
+    Table {
+        title: String::new(),
+        columns: vec![
+            column("coefficient", false),
+            column("estimate ± σ", true),
+            column("unit", false),
+            column("determined", false),
+        ],
+        rows: rows.collect(),
+    }
+}
+
+/// What to do next, and what is not determined.
+fn next(report: &CalibrationReport) -> Card {
+    let mut text = Vec::new();
+    let open: Vec<&str> = report
+        .coefficients
+        .iter()
+        .filter(|one| !one.determined)
+        .map(|one| &*one.name)
+        .collect();
+    text.push(match &*open {
+        [] => "All nine coefficients are determined.".to_owned(),
+        some => format!("Not determined: {}.", listed(some)),
+    });
+    text.push(match report.verdict {
+        FitVerdict::Consistent => {
+            "The diagnosis tests for all else, and says what could go undetected.".to_owned()
+        }
+        _ => "The coefficients may be biased: the diagnosis looks for the causes.".to_owned(),
+    });
+    Card {
+        title: "Next step".to_owned(),
+        text,
+        command: format!(
+            "gyrocal diagnose {} --bench {}",
+            argument(&report.manifest, 0, "RECORD.csv"),
+            report.runs.first().map_or("BENCH.toml", |run| &run.bench)
+        ),
+        columns: 5,
+        ..Card::default()
+    }
+}
+
+fn estimates(report: &CalibrationReport) -> Section {
+    let with = report.with_effects.as_ref();
+    let value = |one: &Coefficient| ValueWithSigma {
+        value: one.estimate,
+        sigma: one.sigma,
+    };
+    let rows = report.coefficients.iter().enumerate().map(|(place, one)| {
+        let extended = with.and_then(|with| with.coefficients.get(place));
+        EstimateRow {
+            name: one.name.clone(),
+            unit: one.unit.clone(),
+            values: core::iter::once(one).chain(extended).map(value).collect(),
+            note: if one.determined { "yes" } else { "no" }.to_owned(),
+            strong: !one.determined,
+        }
+    });
+    let mut models = vec![("nominal model".to_owned(), Tint::Nominal)];
+    let effects = with.map(|with| {
+        let names: Vec<&str> = with.effects.iter().map(|one| &*one.effect).collect();
+        listed(&names)
+    });
+    models.extend(
+        effects
+            .as_ref()
+            .map(|names| (format!("with {names}"), Tint::Extended)),
+    );
+    section(
+        "coefficients",
+        "Coefficients",
+        "The nine drift coefficients with their standard deviations.",
+        vec![Item::Estimates(Estimates {
+            title: "Drift coefficients".to_owned(),
+            models,
+            rows: rows.collect(),
+            note_head: "determined".to_owned(),
+        })],
+    )
+}
+
+fn undetermined(report: &CalibrationReport) -> Option<Section> {
+    let entries = report.undetermined.iter().map(|one| {
+        let share = format::percent(one.share_of_prior);
+        format!(
+            "{}: its sigma is {share} of that before the record",
+            one.text
+        )
+    });
+    let entries: Vec<String> = entries.collect();
+    (!entries.is_empty()).then(|| {
+        section(
+            "limits",
+            "What cannot be told apart",
+            "Combinations of coefficients, each over its prior sigma, of which the record says little.",
+            vec![Item::List(List {
+                title: String::new(),
+                entries,
+            })],
+        )
+    })
+}
+
+fn runs(report: &CalibrationReport) -> Vec<Table> {
+    let column = |head: &str, is_number| Column {
+        head: head.to_owned(),
+        is_number,
+    };
+    let angles = |deg: [f64; 3]| {
+        deg.map(|angle| format!("{angle:.3}"))
+            .join(", ")
+            .replace('-', "−")
+    };
+    let mut attitudes = Vec::new();
+    let mut noises = Vec::new();
+    for run in &report.runs {
+        attitudes.push(vec![
+            Cell::from(run.record.clone()),
+            Cell::from(run.rows.to_string()),
+            Cell::from(angles(run.initial_angles_deg)),
+            Cell::from(angles(run.final_angles_deg)),
+        ]);
+        noises.extend(run.noise.as_ref().map(|noise| noise_row(run, noise)));
+    }
+    let mut tables = vec![Table {
+        title: "Attitude: angles about x, y, z".to_owned(),
+        columns: vec![
+            column("record", false),
+            column("rows", true),
+            column("first row, deg", true),
+            column("last row, deg", true),
+        ],
+        rows: attitudes,
+    }];
+    tables.push(Table {
+        title: "Estimated over declared noise: x, y, z".to_owned(),
+        columns: vec![
+            column("record", false),
+            column("accelerometers", true),
+            column("gyros", true),
+        ],
+        rows: noises,
+    });
+    tables.retain(|table| !table.rows.is_empty());
+    tables
+}
+
+fn noise_row(run: &RunReport, noise: &NoiseReport) -> Vec<Cell> {
+    let ratios = |of: &[gyrocal_record::NoiseRatioReport; 3]| {
+        let each = of.iter().map(|one| {
+            let [low, high] = one.interval;
+            format!("{:.3} ({low:.3} to {high:.3})", one.ratio)
+        });
+        Cell::from(each.collect::<Vec<_>>().join(", "))
+    };
+    vec![
+        Cell::from(run.record.clone()),
+        ratios(&noise.accel),
+        ratios(&noise.gyro),
+    ]
+}

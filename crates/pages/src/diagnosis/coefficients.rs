@@ -1,0 +1,209 @@
+//! The drift coefficients: nominal and extended, against record length, and against the site.
+
+use gyrocal::generated::platform::DRIFT;
+use gyrocal_calibration::{Estimates as Fitted, FittedPlatform, SiteBias, SiteQuantity};
+use gyrocal_diagnosis::DiagnosisResult;
+use gyrocal_diagnosis::result::CoefficientEstimate;
+use gyrocal_record::Record;
+use gyrocal_report::page::{
+    Band, Cell, Chart, Column, EstimateRow, Estimates, Item, Panel, Section, Table, TimeAxis, Tint,
+    ValueWithSigma,
+};
+
+use super::open_loop::line;
+use super::summary::change;
+use super::{accepted, section as titled};
+use crate::error::PageError;
+use crate::words::listed;
+
+/// Points of a curve, evenly over the record.
+const POINTS: usize = 240;
+/// Part of the record after which estimates set the scale of a panel.
+const SETTLED: f64 = 0.3;
+
+pub(super) fn section(result: &DiagnosisResult, convergence: Option<Chart>) -> Option<Section> {
+    let all = result.coefficients.as_ref()?;
+    let models = [Some(&all.nominal), all.extended.as_ref()];
+    let models: Vec<_> = models.into_iter().flatten().collect();
+    let labels = [
+        ("nominal model".to_owned(), Tint::Nominal),
+        ("extended model".to_owned(), Tint::Extended),
+    ];
+    let shifts = result.gain.as_ref().filter(|_| models.len() > 1);
+    let rows = all.nominal.iter().enumerate().map(|(place, one)| {
+        let note = shifts.map(|gain| change(&gain.coefficient_shift, &one.name));
+        let of = |model: &Vec<CoefficientEstimate>| {
+            let one = model.get(place);
+            ValueWithSigma {
+                value: one.map_or(f64::NAN, |one| one.estimate),
+                sigma: one.map_or(f64::NAN, |one| one.sigma),
+            }
+        };
+        EstimateRow {
+            name: one.name.clone(),
+            unit: one.unit.clone(),
+            values: models.iter().map(|model| of(model)).collect(),
+            note: note
+                .as_ref()
+                .map_or_else(String::new, |note| note.text.clone()),
+            strong: note.is_some_and(|note| note.strong),
+        }
+    });
+    let effects = accepted(result);
+    let mut items = vec![Item::Estimates(Estimates {
+        title: if effects.is_empty() {
+            "Drift coefficients of the nominal model".to_owned()
+        } else {
+            format!(
+                "Drift coefficients without and with {} in the model",
+                listed(&effects)
+            )
+        },
+        models: labels.into_iter().take(models.len()).collect(),
+        rows: rows.collect(),
+        note_head: shifts.map_or_else(String::new, |_| "change, σ of the nominal fit".to_owned()),
+    })];
+    items.extend(convergence.map(Item::Chart));
+    Some(titled(
+        "coefficients",
+        "Coefficients",
+        "The nine drift coefficients with their standard deviations.",
+        items,
+    ))
+}
+
+/// Estimates against record length; `None` of a record without a second row.
+pub(crate) fn convergence(
+    record: &Record,
+    (nominal, extended): (&FittedPlatform<'_>, Option<&FittedPlatform<'_>>),
+) -> Result<Option<Chart>, PageError> {
+    let all = record.len();
+    let rows = (1..=POINTS).map(|point| point * all.saturating_sub(1) / POINTS);
+    let mut rows: Vec<usize> = rows.collect();
+    rows.dedup();
+    if rows.len() < 2 {
+        return Ok(None);
+    }
+    let time = TimeAxis::of(&record.time_s);
+    let times: Vec<f64> = rows.iter().map(|row| time.values[*row]).collect();
+    let of = |fit: &FittedPlatform<'_>| fit.convergence(&rows);
+    let nominal = of(nominal)?;
+    let extended = extended.map(of).transpose()?;
+    let settled = times.last().map(|last| SETTLED * last);
+    let panels = DRIFT.iter().enumerate().map(|(index, element)| {
+        let mut panel = Panel {
+            name: element.id.to_owned(),
+            unit: Some(element.unit.to_owned()),
+            abscissa: times.clone(),
+            no_gaps: true,
+            scale_from: settled,
+            ..Panel::default()
+        };
+        add(
+            &mut panel,
+            ("nominal model", Tint::Nominal),
+            &nominal,
+            index,
+        );
+        if let Some(extended) = &extended {
+            add(
+                &mut panel,
+                ("extended model", Tint::Extended),
+                extended,
+                index,
+            );
+        }
+        panel
+    });
+    Ok(Some(Chart {
+        title: "Convergence of each coefficient".to_owned(),
+        caption:
+            "Estimate from the record up to each time, with a band of two standard deviations. \
+                  Early values may leave the panels; zoom in to see them."
+                .to_owned(),
+        abscissa: "length of the record".to_owned(),
+        abscissa_unit: time.unit.to_owned(),
+        panels: panels.collect(),
+        columns: 3,
+        height_px: 170,
+        ..Chart::default()
+    }))
+}
+
+/// Adds the course of a coefficient in a model.
+fn add(panel: &mut Panel, (label, tint): (&str, Tint), fitted: &[Option<Fitted>], index: usize) {
+    let of = |value: fn(&Fitted) -> &[f64; 9]| -> Vec<f64> {
+        let all = fitted.iter();
+        all.map(|one| one.as_ref().map_or(f64::NAN, |one| value(one)[index]))
+            .collect()
+    };
+    let (estimates, sigmas) = (of(|one| &one.coefficients), of(|one| &one.sigmas));
+    let edge = |sign: f64| {
+        let pairs = estimates.iter().zip(&sigmas);
+        pairs
+            .map(|(estimate, sigma)| estimate + sign * 2.0 * sigma)
+            .collect()
+    };
+    panel.bands.push(Band {
+        label: format!("{label}, ±2σ"),
+        tint,
+        lower: edge(-1.0),
+        upper: edge(1.0),
+    });
+    panel.lines.push(line(label, tint, estimates));
+}
+
+/// Sensitivity of the coefficients to the site.
+pub(crate) fn site(fit: &FittedPlatform<'_>) -> Result<Section, PageError> {
+    let biases = fit.site_biases()?;
+    let mut columns = vec![Column {
+        head: "coefficient".to_owned(),
+        is_number: false,
+    }];
+    for bias in &biases {
+        let number = |head: String| Column {
+            head,
+            is_number: true,
+        };
+        columns.extend([number(site_error(bias)), number("in σ".to_owned())]);
+    }
+    let rows = DRIFT.iter().enumerate().map(|(index, element)| {
+        let mut row = vec![Cell::from(format!("{} [{}]", element.id, element.unit))];
+        for bias in &biases {
+            let in_sigmas = bias.in_sigmas[index];
+            row.push(Cell::from(
+                format!("{:+.1e}", bias.biases[index]).replace('-', "−"),
+            ));
+            row.push(Cell {
+                text: format!("{in_sigmas:+.2}").replace('-', "−"),
+                strong: in_sigmas.abs() >= 1.0,
+            });
+        }
+        row
+    });
+    Ok(titled(
+        "site",
+        "Site",
+        "Sensitivity to the site: bias of each coefficient by an error of it, in its unit and in standard deviations of the \
+         estimate. Errors that the bench file declares count in those standard deviations already.",
+        vec![Item::Table(Table {
+            title: "Biases by errors of the site".to_owned(),
+            columns,
+            rows: rows.collect(),
+        })],
+    ))
+}
+
+/// Name and size of an error of the site.
+fn site_error(bias: &SiteBias) -> String {
+    let size = match bias.quantity {
+        SiteQuantity::Latitude => format!("latitude +{:.3} arcsec", 3600.0 * bias.error),
+        SiteQuantity::EarthRate => format!("Earth rate +{:.1e} of it", bias.error),
+        SiteQuantity::Gravity => format!("gravity +{:.1e} of it", bias.error),
+        _ => format!("+{:.1e}", bias.error),
+    };
+    match bias.is_declared {
+        true => format!("{size} (declared σ)"),
+        false => size,
+    }
+}

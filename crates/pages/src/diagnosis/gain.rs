@@ -1,0 +1,205 @@
+//! Gain of the extended model.
+
+use gyrocal_diagnosis::result::{Gain, Prediction};
+use gyrocal_diagnosis::{DiagnosisResult, LaterPrediction};
+use gyrocal_report::page::{
+    Cell, Chart, Column, Item, Line, LineKind, Panel, Section, Table, TimeAxis, Tint,
+};
+use gyrocal_statistics::format;
+
+use super::open_loop::line;
+use super::section as titled;
+use crate::words::{listed, micro_g};
+
+/// `None` without a cause.
+pub(super) fn section(
+    result: &DiagnosisResult,
+    later: Option<&LaterPrediction>,
+) -> Option<Section> {
+    let gain = result.gain.as_ref()?;
+    let mut items = vec![Item::Chart(blocks(gain))];
+    items.extend(later.map(|later| Item::Chart(drift(later))));
+    items.push(Item::Table(figures(gain)));
+    items.push(Item::Table(shifts(gain)));
+    Some(titled(
+        "gain",
+        "Gain",
+        "What the extended model predicts better than the nominal one, in data that it was not fitted to.",
+        items,
+    ))
+}
+
+fn blocks(gain: &Gain) -> Chart {
+    let nats = &gain.block_log_score_nats;
+    let better = nats.iter().filter(|nats| **nats > 0.0).count();
+    let part = |sign: f64| -> Vec<f64> {
+        let kept = nats
+            .iter()
+            .map(|nats| if nats * sign > 0.0 { *nats } else { f64::NAN });
+        kept.collect()
+    };
+    let bars = |label: &str, tint, values| Line {
+        label: label.to_owned(),
+        tint,
+        kind: LineKind::Bars,
+        values,
+    };
+    let effects: Vec<&str> = gain.effects.iter().map(String::as_str).collect();
+    let mut lines = vec![bars(
+        "extended model predicts better",
+        Tint::Extended,
+        part(1.0),
+    )];
+    if better < nats.len() {
+        lines.push(bars(
+            "nominal model predicts better",
+            Tint::Nominal,
+            part(-1.0),
+        ));
+    }
+    Chart {
+        title: format!(
+            "{}: {:+.1} nats of predictive log score, better in {better} of {} blocks",
+            listed(&effects),
+            gain.cross_validated_log_score_nats,
+            nats.len()
+        ),
+        caption: match gain.prediction {
+            Prediction::CrossValidated => "Each block of the record is predicted from all others.",
+            Prediction::Forward => "Each block of the record is predicted from those before it.",
+        }
+        .to_owned(),
+        abscissa: "held-out block, in order of time".to_owned(),
+        quantity: "gain".to_owned(),
+        unit: "nats".to_owned(),
+        panels: vec![Panel {
+            name: "cross-validation".to_owned(),
+            abscissa: (1..=nats.len()).map(|block| block as f64).collect(),
+            lines,
+            levels: vec![gyrocal_report::page::Level {
+                label: String::new(),
+                value: 0.0,
+            }],
+            no_gaps: true,
+            ..Panel::default()
+        }],
+        columns: 1,
+        height_px: 180,
+        ..Chart::default()
+    }
+}
+
+/// Error of the attitude in a later record.
+fn drift(later: &LaterPrediction) -> Chart {
+    let errors = &later.attitude;
+    let time = TimeAxis::of(&errors.time_s);
+    Chart {
+        title: "Attitude error under compensation in the later record".to_owned(),
+        caption:
+            "Predicted from the diagnosed record, and compared with the attitude that the later \
+                  record's own accelerometers determine."
+                .to_owned(),
+        abscissa: "time from the start of the prediction".to_owned(),
+        abscissa_unit: time.unit.to_owned(),
+        quantity: "attitude error".to_owned(),
+        unit: "arcmin".to_owned(),
+        panels: vec![Panel {
+            name: "later record".to_owned(),
+            abscissa: time.values,
+            lines: vec![
+                Line {
+                    kind: LineKind::Dashed,
+                    ..line("expected", Tint::Expected, errors.expected_arcmin.clone())
+                },
+                line(
+                    "nominal model",
+                    Tint::Nominal,
+                    errors.nominal_arcmin.clone(),
+                ),
+                line(
+                    "extended model",
+                    Tint::Extended,
+                    errors.extended_arcmin.clone(),
+                ),
+            ],
+            no_gaps: true,
+            ..Panel::default()
+        }],
+        columns: 1,
+        height_px: 220,
+        ..Chart::default()
+    }
+}
+
+fn column(head: &str, is_number: bool) -> Column {
+    Column {
+        head: head.to_owned(),
+        is_number,
+    }
+}
+
+fn figures(gain: &Gain) -> Table {
+    let rms = gain.free_run_rms_g;
+    let mut rows = vec![vec![
+        "open-loop error, rms".to_owned(),
+        micro_g(rms.before),
+        micro_g(rms.after),
+        format!("{} (accelerometer noise)", micro_g(rms.noise)),
+    ]];
+    if let Some(later) = &gain.validation {
+        let error = &later.compensation;
+        rows.push(vec![
+            format!(
+                "attitude error in the later record after {:.1} h",
+                error.after_h
+            ),
+            format!("{:.2} arcmin", error.nominal_arcmin),
+            format!("{:.2} arcmin", error.extended_arcmin),
+            format!("{:.2} arcmin", error.expected_arcmin),
+        ]);
+        rows.push(vec![
+            "predictive log score of the later record, extended less nominal".to_owned(),
+            String::new(),
+            format!("{:+.1} nats", later.log_score_nats),
+            String::new(),
+        ]);
+    }
+    Table {
+        title: "Nominal and extended model".to_owned(),
+        columns: vec![
+            column("figure", false),
+            column("nominal", true),
+            column("extended", true),
+            column("expected", true),
+        ],
+        rows: rows
+            .into_iter()
+            .map(|row| row.into_iter().map(Cell::from).collect())
+            .collect(),
+    }
+}
+
+fn shifts(gain: &Gain) -> Table {
+    let rows = gain.coefficient_shift.iter().map(|shift| {
+        let [low, high] = shift.in_sigmas_interval;
+        let [change, sigma] = format::estimate(shift.shift, shift.sigma);
+        vec![
+            Cell::from(shift.coefficient.clone()),
+            Cell::from(format!("{change} ± {sigma}").replace('-', "−")),
+            Cell::from(shift.unit.clone()),
+            super::summary::change(core::slice::from_ref(shift), &shift.coefficient),
+            Cell::from(format!("{low:+.1} to {high:+.1}").replace('-', "−")),
+        ]
+    });
+    Table {
+        title: "Changes of the coefficients".to_owned(),
+        columns: vec![
+            column("coefficient", false),
+            column("change", true),
+            column("unit", false),
+            column("in σ of the nominal fit", true),
+            column("95 % interval, σ", true),
+        ],
+        rows: rows.collect(),
+    }
+}

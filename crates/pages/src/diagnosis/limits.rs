@@ -1,0 +1,149 @@
+//! What a diagnosis cannot tell, and the next run.
+
+use gyrocal_diagnosis::{DiagnosisResult, Verdict};
+use gyrocal_report::page::{Card, Cell, Column, Item, List, Section, Table};
+use gyrocal_statistics::format;
+
+use super::section;
+use super::summary::shortened;
+use crate::origin::argument;
+use crate::words::listed;
+
+pub(super) fn cannot_tell(result: &DiagnosisResult) -> Section {
+    let mut items = Vec::new();
+    let groups = result.cannot_tell.iter().map(|group| {
+        Item::List(List {
+            title: group.members.join(", "),
+            entries: vec![
+                format!("Why: {}.", group.why),
+                format!("Experiment: {}.", group.would_separate),
+            ],
+        })
+    });
+    items.extend(groups);
+    if items.is_empty() {
+        items.push(Item::Text(
+            "No reported effect has an alternative in the catalogue.".to_owned(),
+        ));
+    }
+    items.extend(undetected(result).map(Item::Table));
+    section(
+        "limits",
+        "What cannot be told apart",
+        "Effects of one group explain this record equally well, or nearly so. Effects in the table were \
+         not tested, or would not show.",
+        items,
+    )
+}
+
+/// Effects that were not tested or would not be detected.
+fn undetected(result: &DiagnosisResult) -> Option<Table> {
+    let word = |head: &str| Column {
+        head: head.to_owned(),
+        is_number: false,
+    };
+    let rows = result.not_searched.iter().map(|effect| {
+        let mut power = result.power.iter();
+        let power = power.find(|power| power.effect == effect.effect);
+        let size = power.map_or_else(String::new, |power| {
+            format!("{} {}", format::short(power.typical_size, 3), power.unit)
+        });
+        let chance = power.and_then(|power| power.power);
+        vec![
+            Cell::from(effect.effect.clone()),
+            Cell::from(effect.why.clone()),
+            Cell::from(size),
+            Cell::from(chance.map_or_else(String::new, format::percent)),
+        ]
+    });
+    let rows: Vec<_> = rows.collect();
+    (!rows.is_empty()).then(|| Table {
+        title: "Not tested, or not detectable in this record".to_owned(),
+        columns: vec![
+            word("effect"),
+            word("reason"),
+            Column {
+                head: "typical size".to_owned(),
+                is_number: true,
+            },
+            Column {
+                head: "chance of detection".to_owned(),
+                is_number: true,
+            },
+        ],
+        rows,
+    })
+}
+
+/// The command that plans the next run.
+fn plan_command(result: &DiagnosisResult) -> String {
+    format!(
+        "gyrocal plan {} --bench {}",
+        argument(&result.manifest, 0, "RECORD.csv"),
+        argument(&result.manifest, 1, "BENCH.toml")
+    )
+}
+
+/// What to do next, in a sentence.
+fn advice(result: &DiagnosisResult) -> String {
+    let experiment = result
+        .cannot_tell
+        .first()
+        .map(|group| &group.would_separate);
+    match (result.verdict, experiment) {
+        (Verdict::Setup, _) => "Mend the set-up, and diagnose the record again.".to_owned(),
+        (Verdict::Unexplained, _) => {
+            "Look at the residuals below, and record again under other conditions.".to_owned()
+        }
+        (_, Some(experiment)) => format!("To tell what remains apart: {experiment}."),
+        (Verdict::Clean, None) => {
+            "Use the coefficients; the command finds the run that reduces their sigmas most."
+                .to_owned()
+        }
+        (_, None) => "The cause is unique. The command finds the run that reduces the sigmas most."
+            .to_owned(),
+    }
+}
+
+pub(super) fn next_card(result: &DiagnosisResult) -> Card {
+    Card {
+        title: "Next step".to_owned(),
+        text: vec![shortened(&advice(result))],
+        command: plan_command(result),
+        columns: if result.coefficients.is_some() { 4 } else { 12 },
+        ..Card::default()
+    }
+}
+
+pub(super) fn next_run(result: &DiagnosisResult) -> Section {
+    let mut items = vec![
+        Item::Text(advice(result)),
+        Item::Command(plan_command(result)),
+    ];
+    let effects: Vec<&str> = result.causes().map(|cause| &*cause.effect).collect();
+    if !effects.is_empty() {
+        items.push(Item::Text(format!(
+            "Coefficients with {} in the model:",
+            listed(&effects)
+        )));
+        items.push(Item::Command(format!(
+            "gyrocal calibrate {} --bench {} --with {}",
+            argument(&result.manifest, 0, "RECORD.csv"),
+            argument(&result.manifest, 1, "BENCH.toml"),
+            effects.join(",")
+        )));
+    }
+    if !result.search_complete {
+        items.push(Item::Text(
+            "The search ended at its budget of work: the record contradicts the model in more ways than \
+             the effects found explain."
+                .to_owned(),
+        ));
+    }
+    section(
+        "next",
+        "Next run",
+        "The run that tells most, within the limits of the gimbals.",
+        items,
+    )
+}

@@ -1,0 +1,112 @@
+//! The page of a diagnosis.
+
+pub(crate) mod coefficients;
+mod gain;
+mod limits;
+pub(crate) mod open_loop;
+mod ranking;
+mod residuals;
+mod summary;
+
+use gyrocal_diagnosis::result::FindingKind;
+use gyrocal_diagnosis::{Diagnosis, DiagnosisResult, Verdict, prose};
+use gyrocal_record::Bench;
+use gyrocal_report::page::{Item, Part, Section};
+
+use crate::blocks;
+use crate::error::PageError;
+use crate::origin::{file_name, origin};
+use open_loop::Simulated;
+
+/// The page of a diagnosis with its fits.
+///
+/// # Errors
+/// [`PageError`] where a simulation fails. A series for which the record is too short is left out.
+pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, PageError> {
+    let result = &diagnosis.result;
+    let simulated = Simulated {
+        record: &diagnosis.record,
+        bench,
+        nominal: &diagnosis.nominal,
+        extended: diagnosis.extended.as_ref(),
+        effects: accepted(result),
+    };
+    let mut sections: Vec<Section> = open_loop::sections(&simulated)?.into();
+    sections.extend(ranking::section(result));
+    let fits = (&diagnosis.nominal, diagnosis.extended.as_ref());
+    let convergence = coefficients::convergence(&diagnosis.record, fits)?;
+    sections.extend(coefficients::section(result, convergence));
+    sections.push(limits::cannot_tell(result));
+    sections.push(residuals::section(result, residuals::charts(diagnosis)));
+    sections.extend(gain::section(result, diagnosis.later.as_ref()));
+    let best = diagnosis.extended.as_ref().unwrap_or(&diagnosis.nominal);
+    sections.push(coefficients::site(best)?);
+    sections.push(limits::next_run(result));
+    sections.push(in_words(result));
+    Ok(part(result, sections))
+}
+
+/// The page of a written result: all but the charts over time, for which the record is needed.
+#[must_use]
+pub fn of_result(result: &DiagnosisResult) -> Part {
+    let mut sections = Vec::new();
+    if result.verdict != Verdict::Setup {
+        sections.extend(ranking::section(result));
+        sections.extend(coefficients::section(result, None));
+        sections.push(limits::cannot_tell(result));
+        sections.push(residuals::section(result, Vec::new()));
+        sections.extend(gain::section(result, None));
+        sections.push(limits::next_run(result));
+    }
+    sections.push(in_words(result));
+    part(result, sections)
+}
+
+fn part(result: &DiagnosisResult, sections: Vec<Section>) -> Part {
+    Part {
+        name: file_name(&result.manifest, 0, "record"),
+        size: format!(
+            "{} over {:.2} days",
+            prose::counted(result.record.rows, "row"),
+            result.record.duration_s / 86_400.0
+        ),
+        summary: summary::summary(result),
+        sections,
+        origin: origin(&result.manifest),
+    }
+}
+
+/// The whole answer as the command prints it.
+fn in_words(result: &DiagnosisResult) -> Section {
+    Section {
+        id: "words".to_owned(),
+        title: "In words".to_owned(),
+        lead: "The answer as the command prints it, with all its tables.".to_owned(),
+        items: blocks::items(&prose::diagnosis(result)),
+    }
+}
+
+/// Effects in the extended model.
+fn accepted(result: &DiagnosisResult) -> Vec<&str> {
+    let causes = result.causes();
+    let accepted = causes.filter(|cause| cause.accepted == Some(true));
+    accepted.map(|cause| &*cause.effect).collect()
+}
+
+/// All effects found, those of a filter aside: the page is about the record.
+fn found(result: &DiagnosisResult) -> Vec<&gyrocal_diagnosis::result::Finding> {
+    let findings = result.findings.iter();
+    findings
+        .filter(|finding| finding.kind != FindingKind::Filter)
+        .collect()
+}
+
+/// A section.
+pub(crate) fn section(id: &str, title: &str, lead: &str, items: Vec<Item>) -> Section {
+    Section {
+        id: id.to_owned(),
+        title: title.to_owned(),
+        lead: lead.to_owned(),
+        items,
+    }
+}

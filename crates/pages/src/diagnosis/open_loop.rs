@@ -1,0 +1,177 @@
+//! Measurement and simulation over time.
+
+use gyrocal_calibration::FittedPlatform;
+use gyrocal_diagnosis::OpenLoopSimulation;
+use gyrocal_record::{Bench, Record};
+use gyrocal_report::page::{Band, Chart, Item, Line, LineKind, Panel, Section, TimeAxis, Tint};
+use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
+
+use super::section;
+use crate::error::PageError;
+use crate::words::{AXES, listed, micro_g};
+
+/// The fits of a record whose simulations are shown.
+pub(crate) struct Simulated<'a, 'b> {
+    pub(crate) record: &'a Record,
+    pub(crate) bench: &'a Bench,
+    pub(crate) nominal: &'a FittedPlatform<'b>,
+    pub(crate) extended: Option<&'a FittedPlatform<'b>>,
+    /// Effects in the extended model.
+    pub(crate) effects: Vec<&'a str>,
+}
+
+/// The two sections over time: simulation against measurement, and their difference.
+pub(crate) fn sections(of: &Simulated<'_, '_>) -> Result<[Section; 2], PageError> {
+    let nominal = OpenLoopSimulation::new(of.nominal, of.record)?;
+    let extended = of
+        .extended
+        .map(|fit| OpenLoopSimulation::new(fit, of.record));
+    let extended = extended.transpose()?;
+    let time = TimeAxis::of(&of.record.time_s);
+    let best = extended.as_ref().unwrap_or(&nominal);
+    let fit = of.extended.unwrap_or(of.nominal);
+    let sigma_g = fit.free_run_sigma_g(&best.simulated_g)?;
+    let measured = columns(&of.record.accel_g);
+    let chart = simulations(&time, measured, &nominal, extended.as_ref());
+    Ok([
+        section(
+            "simulation",
+            "Simulation against measurement",
+            "The platform simulated from its first attitude on, without measurement updates, and what the \
+             accelerometers measured.",
+            vec![Item::Chart(chart)],
+        ),
+        section(
+            "residual",
+            "Open-loop residual",
+            "Measured less simulated. A right model stays within the band, which holds the noise of the \
+             accelerometers and what the noise of the gyros adds with time.",
+            vec![Item::Chart(residuals(
+                of,
+                (&time, &sigma_g),
+                &nominal,
+                extended.as_ref(),
+            ))],
+        ),
+    ])
+}
+
+fn simulations(
+    time: &TimeAxis,
+    measured: [Vec<f64>; 3],
+    nominal: &OpenLoopSimulation,
+    extended: Option<&OpenLoopSimulation>,
+) -> Chart {
+    let before = columns(&nominal.simulated_g);
+    let after = extended.map(|run| columns(&run.simulated_g));
+    let panels = measured.into_iter().enumerate().map(|(axis, measured)| {
+        let mut lines = vec![
+            line("measured", Tint::Measured, measured),
+            line("nominal model", Tint::Nominal, before[axis].clone()),
+        ];
+        let after = after.as_ref().map(|after| after[axis].clone());
+        lines.extend(after.map(|after| line("extended model", Tint::Extended, after)));
+        Panel {
+            name: format!("accelerometer {}", AXES[axis]),
+            abscissa: time.values.clone(),
+            lines,
+            ..Panel::default()
+        }
+    });
+    Chart {
+        title: "Specific force, measured and simulated".to_owned(),
+        caption: "Over days the lines coincide at this scale; drag over a part to see them apart. Values \
+                  below the pointer stand above each panel."
+            .to_owned(),
+        abscissa: "time from the first row".to_owned(),
+        abscissa_unit: time.unit.to_owned(),
+        quantity: "specific force".to_owned(),
+        unit: "g".to_owned(),
+        panels: panels.collect(),
+        columns: 3,
+        height_px: 240,
+        ..Chart::default()
+    }
+}
+
+fn residuals(
+    of: &Simulated<'_, '_>,
+    (time, sigma_g): (&TimeAxis, &[[f64; 3]]),
+    nominal: &OpenLoopSimulation,
+    extended: Option<&OpenLoopSimulation>,
+) -> Chart {
+    let panels = (0..3).map(|axis| {
+        let before = &nominal.residuals_g[axis];
+        let after = extended.map(|run| &run.residuals_g[axis]);
+        let mut lines = vec![line("nominal model", Tint::Nominal, before.clone())];
+        let shown = after.map(|after| line("extended model", Tint::Extended, after.clone()));
+        lines.extend(shown);
+        let edge = |sign: f64| {
+            sigma_g
+                .iter()
+                .map(move |row| sign * NORMAL_97_5 * row[axis])
+        };
+        let rms = |values: &[f64]| micro_g(rms_of_present(values).0);
+        Panel {
+            name: AXES[axis].to_owned(),
+            note: match after {
+                Some(after) => {
+                    let before = rms(before);
+                    format!("rms {} → {}", before.trim_end_matches(" µg"), rms(after))
+                }
+                None => format!("rms {}", rms(before)),
+            },
+            abscissa: time.values.clone(),
+            bands: vec![Band {
+                label: "95 % band of a right model: accelerometers and gyros".to_owned(),
+                tint: Tint::Expected,
+                lower: edge(-1.0).collect(),
+                upper: edge(1.0).collect(),
+            }],
+            lines,
+            ..Panel::default()
+        }
+    });
+    let noise = micro_g(of.bench.accel_noise_g);
+    Chart {
+        title: match extended {
+            Some(run) => format!(
+                "{} rms for the nominal model, {} with {}",
+                micro_g(nominal.rms_g),
+                micro_g(run.rms_g),
+                listed(&of.effects)
+            ),
+            None => format!(
+                "{} rms; accelerometer noise {noise}",
+                micro_g(nominal.rms_g)
+            ),
+        },
+        caption: format!(
+            "The band is of the residual of each row: noise of the accelerometers ({noise} declared), \
+             and attitude that the gyros' noise has turned since the first row, less what the fitted \
+             coefficients absorb of it."
+        ),
+        abscissa: "time from the first row".to_owned(),
+        abscissa_unit: time.unit.to_owned(),
+        quantity: "residual".to_owned(),
+        unit: "g".to_owned(),
+        same_scale: true,
+        panels: panels.collect(),
+        columns: 3,
+        height_px: 240,
+        ..Chart::default()
+    }
+}
+
+pub(super) fn line(label: &str, tint: Tint, values: Vec<f64>) -> Line {
+    Line {
+        label: label.to_owned(),
+        tint,
+        kind: LineKind::Solid,
+        values,
+    }
+}
+
+fn columns(rows: &[[f64; 3]]) -> [Vec<f64>; 3] {
+    core::array::from_fn(|axis| rows.iter().map(|row| row[axis]).collect())
+}

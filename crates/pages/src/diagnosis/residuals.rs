@@ -1,0 +1,295 @@
+//! Tests of the innovations: correlation over rows, and spectrum.
+
+use gyrocal_diagnosis::result::{ResidualTest, Residuals};
+use gyrocal_diagnosis::{
+    ChannelCorrelation, ChannelSpectrum, Diagnosis, DiagnosisResult, ModelVersion,
+};
+use gyrocal_report::page::{
+    Band, Cell, Chart, Column, Item, Level, Line, LineKind, Mark, Panel, Section, Table, Tint,
+};
+use gyrocal_statistics::format::{self, p_cell};
+
+use super::section as titled;
+use crate::words::AXES;
+
+/// Lags of the autocorrelation.
+const LAGS: usize = 40;
+/// Cycles a sidereal day, a day.
+const SIDEREAL_PER_DAY: f64 = 1.002_737_9;
+const SECONDS_PER_DAY: f64 = 86_400.0;
+/// Name of the test of correlation.
+const LJUNG_BOX: &str = "correlation over rows (Ljung-Box)";
+
+pub(super) fn section(result: &DiagnosisResult, charts: Vec<Chart>) -> Section {
+    let mut items = vec![Item::Table(tests(result))];
+    items.extend(charts.into_iter().map(Item::Chart));
+    titled(
+        "residuals",
+        "Innovations",
+        "One-step innovations of a right model are white: no correlation over rows, no line in the spectrum.",
+        items,
+    )
+}
+
+/// The charts that the record is long enough for.
+pub(super) fn charts(diagnosis: &Diagnosis<'_>) -> Vec<Chart> {
+    let correlations = diagnosis.autocorrelations(LAGS).map(correlation);
+    let spectra = diagnosis.spectra(&diagnosis.record);
+    let probability = diagnosis.result.false_alarm_probability;
+    let spectra = spectra.map(|found| spectrum(found, probability));
+    correlations.into_iter().chain(spectra).collect()
+}
+
+fn look(model: ModelVersion) -> (&'static str, Tint) {
+    match model {
+        ModelVersion::Nominal => ("nominal model", Tint::Nominal),
+        ModelVersion::Extended => ("extended model", Tint::Extended),
+    }
+}
+
+fn correlation(channels: Vec<ChannelCorrelation>) -> Chart {
+    let outside = |model: ModelVersion| -> usize {
+        let of = channels.iter().filter(|channel| channel.model == model);
+        of.map(|channel| channel.outside).sum()
+    };
+    let has_extended = channels
+        .iter()
+        .any(|one| one.model == ModelVersion::Extended);
+    let total = 3 * LAGS;
+    let nominal = outside(ModelVersion::Nominal);
+    let title = if has_extended {
+        let extended = outside(ModelVersion::Extended);
+        format!(
+            "{nominal} of {total} autocorrelations outside the 95 % band for the nominal model, \
+             {extended} for the extended one"
+        )
+    } else {
+        format!("{nominal} of {total} autocorrelations outside the 95 % band")
+    };
+    let panels = (0..3).map(|axis| {
+        let of_axis: Vec<_> = channels.iter().filter(|one| one.axis == axis).collect();
+        let lags = of_axis.first().map_or(0, |one| one.correlation.len());
+        let half = of_axis.first().map_or(f64::NAN, |one| one.band);
+        let lines = of_axis.iter().map(|channel| {
+            let (label, tint) = look(channel.model);
+            Line {
+                label: label.to_owned(),
+                tint,
+                kind: LineKind::Solid,
+                values: channel.correlation.clone(),
+            }
+        });
+        let notes = of_axis
+            .iter()
+            .map(|channel| format!("{} {:+.3}", look(channel.model).0, channel.largest));
+        Panel {
+            name: AXES[axis].to_owned(),
+            note: format!("largest: {}", notes.collect::<Vec<_>>().join(", ")).replace('-', "−"),
+            abscissa: (1..=lags).map(|lag| lag as f64).collect(),
+            bands: vec![Band {
+                label: "95 % band of white innovations".to_owned(),
+                tint: Tint::Expected,
+                lower: vec![-half; lags],
+                upper: vec![half; lags],
+            }],
+            lines: lines.collect(),
+            no_gaps: true,
+            ..Panel::default()
+        }
+    });
+    Chart {
+        title,
+        caption: format!(
+            "One in twenty is outside by chance: {} of {total}.",
+            total / 20
+        ),
+        abscissa: "lag".to_owned(),
+        abscissa_unit: "rows".to_owned(),
+        quantity: "correlation".to_owned(),
+        same_scale: true,
+        panels: panels.collect(),
+        columns: 3,
+        height_px: 190,
+        ..Chart::default()
+    }
+}
+
+/// The strongest line, and whether it remains in the extended model.
+fn spectrum_title(spectra: &[ChannelSpectrum]) -> String {
+    let over = |model: ModelVersion| {
+        let of = spectra.iter().filter(move |one| one.model == model);
+        of.map(|one| one.line_over_threshold).fold(0.0, f64::max)
+    };
+    let strongest = spectra
+        .iter()
+        .filter(|one| one.line_over_threshold > 1.0)
+        .max_by(|a, b| a.line_over_threshold.total_cmp(&b.line_over_threshold));
+    match strongest {
+        None => "No spectral line of the innovations exceeds the detection threshold".to_owned(),
+        Some(one) => {
+            let after = match over(ModelVersion::Extended) {
+                0.0 => "",
+                line if line <= 1.0 => "; none in the extended model",
+                _ => "; one remains in the extended model",
+            };
+            format!(
+                "Strongest spectral line: period {} h, axis {}, {}, {:.1} times the threshold{after}",
+                format::short(1.0 / (3600.0 * one.periodogram.line.frequency_hz), 3),
+                AXES[one.axis],
+                look(one.model).0,
+                one.line_over_threshold
+            )
+        }
+    }
+}
+
+fn spectrum(spectra: Vec<ChannelSpectrum>, probability: f64) -> Chart {
+    let title = spectrum_title(&spectra);
+    let panels = (0..3).map(|axis| {
+        let of_axis: Vec<_> = spectra.iter().filter(|one| one.axis == axis).collect();
+        let frequency = of_axis.first().map(|one| &one.periodogram.frequency_hz);
+        let lines = of_axis.iter().map(|one| {
+            let (label, tint) = look(one.model);
+            Line {
+                label: label.to_owned(),
+                tint,
+                kind: LineKind::Solid,
+                // A logarithmic scale has no place for nothing.
+                values: one
+                    .periodogram
+                    .power
+                    .iter()
+                    .map(|power| power.max(1e-3))
+                    .collect(),
+            }
+        });
+        let level = of_axis.first().map(|one| Level {
+            label: format!(
+                "detection threshold ({} of white innovations)",
+                format::percent(probability)
+            ),
+            value: one.periodogram.level,
+        });
+        Panel {
+            name: AXES[axis].to_owned(),
+            abscissa: frequency
+                .map(|all| all.iter().map(|hz| hz * SECONDS_PER_DAY).collect())
+                .unwrap_or_default(),
+            lines: lines.collect(),
+            levels: level.into_iter().collect(),
+            marks: vec![Mark {
+                label: "sidereal day".to_owned(),
+                value: SIDEREAL_PER_DAY,
+            }],
+            no_gaps: true,
+            ..Panel::default()
+        }
+    });
+    Chart {
+        title,
+        caption: "Power of white innovations is 1 in the mean at every frequency.".to_owned(),
+        abscissa: "frequency".to_owned(),
+        abscissa_unit: "cycles/day".to_owned(),
+        logarithmic_abscissa: true,
+        quantity: "power, of white noise 1".to_owned(),
+        logarithmic: true,
+        same_scale: true,
+        panels: panels.collect(),
+        columns: 3,
+        height_px: 210,
+        ..Chart::default()
+    }
+}
+
+/// A test: model, name, what was found, p-value.
+type Test = (&'static str, String, String, f64);
+
+/// The tests in a table.
+fn tests(result: &DiagnosisResult) -> Table {
+    let mut all = Vec::new();
+    if let Some(residuals) = &result.residuals {
+        all.extend(of_nominal(residuals));
+    }
+    all.extend(of_remainder(&result.remainder));
+    all.extend(result.norm.as_ref().map(|norm| {
+        let name = "magnitude of specific force (accelerometers alone)".to_owned();
+        ("none", name, String::new(), norm.p_value)
+    }));
+    let column = |head: &str, is_number| Column {
+        head: head.to_owned(),
+        is_number,
+    };
+    let rows = all.into_iter().map(|(model, name, found, p)| {
+        let cells = [model.to_owned(), name, found, p_cell(p)];
+        cells.map(Cell::from).to_vec()
+    });
+    Table {
+        title: "Tests, and probability of as much by chance".to_owned(),
+        columns: vec![
+            column("model", false),
+            column("test", false),
+            column("found", false),
+            column("p", true),
+        ],
+        rows: rows.collect(),
+    }
+}
+
+fn ljung_box(statistic: f64, degrees_of_freedom: usize) -> String {
+    format!("{statistic:.0} for {degrees_of_freedom} degrees of freedom")
+}
+
+fn line_of(period_h: f64, amplitude: f64) -> String {
+    format!(
+        "period {} h, amplitude {} σ",
+        format::short(period_h, 3),
+        format::short(amplitude, 2)
+    )
+}
+
+fn of_nominal(residuals: &Residuals) -> Vec<Test> {
+    let mut tests = Vec::new();
+    let mut add = |name: String, found, p| tests.push(("nominal", name, found, p));
+    if let Some(nis) = &residuals.nis {
+        let [low, high] = nis.band;
+        let found = format!("{:.3} (band {low:.3} to {high:.3})", nis.mean);
+        add(
+            "mean normalised innovation squared".to_owned(),
+            found,
+            nis.p_value,
+        );
+    }
+    if let Some(all) = &residuals.autocorrelation {
+        let found = ljung_box(all.ljung_box, all.degrees_of_freedom);
+        add(LJUNG_BOX.to_owned(), found, all.p_value);
+    }
+    for (line, axis) in residuals.lines.iter().flatten().zip(AXES) {
+        let found = line_of(line.period_h, line.amplitude);
+        add(
+            format!("largest spectral line, axis {axis}"),
+            found,
+            line.p_value,
+        );
+    }
+    tests
+}
+
+fn of_remainder(remainder: &ResidualTest) -> Vec<Test> {
+    let mut tests = Vec::new();
+    let mut add = |name: &str, found, p| tests.push(("with all causes", name.to_owned(), found, p));
+    if let Some(line) = &remainder.line {
+        let found = line_of(line.period_h, line.amplitude);
+        let found = format!("axis {}, {found}", line.channel);
+        add("largest spectral line", found, line.p_value);
+    }
+    if let Some(all) = &remainder.correlation {
+        let found = ljung_box(all.ljung_box, all.degrees_of_freedom);
+        add(LJUNG_BOX, found, all.p_value);
+    }
+    add(
+        "all residual tests together",
+        String::new(),
+        remainder.p_value,
+    );
+    tests
+}

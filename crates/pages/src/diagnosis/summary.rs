@@ -1,0 +1,361 @@
+//! The first screen of a diagnosis.
+
+use gyrocal_diagnosis::result::{CoefficientShift, Coefficients, Finding, Gain, Parameter};
+use gyrocal_diagnosis::{DiagnosisResult, Verdict, prose};
+use gyrocal_report::page::{Card, Cell, Column, Summary, Table, Tone};
+use gyrocal_statistics::format;
+
+use super::{found, limits};
+use crate::words::{capitalised, listed, micro_g};
+
+/// Alternatives named on the first screen.
+const ALTERNATIVES: usize = 3;
+/// A change of a coefficient from which on it is marked, in claimed sigmas.
+const NOTABLE: f64 = 2.0;
+/// Letters of an explanation on the first screen.
+const SHORT: usize = 150;
+
+pub(super) fn summary(result: &DiagnosisResult) -> Summary {
+    let blocks = prose::diagnosis(result);
+    let sentence = blocks.iter().find_map(|block| match block {
+        prose::Block::Paragraph(words) if !words.starts_with(&*first_words(result)) => {
+            Some(words.clone())
+        }
+        _ => None,
+    });
+    let (tone, headline) = verdict(result);
+    let mut cards = Vec::new();
+    if result.verdict == Verdict::Setup {
+        cards.push(setup(result));
+    } else {
+        cards.push(cause(result));
+        cards.push(alternatives(result));
+        cards.push(gain(result));
+        cards.extend(
+            result
+                .coefficients
+                .as_ref()
+                .map(|all| coefficients(result, all)),
+        );
+        cards.push(limits::next_card(result));
+    }
+    Summary {
+        tone,
+        headline,
+        sentence: sentence.unwrap_or_default(),
+        cards,
+    }
+}
+
+/// What the paragraph on the record starts with.
+fn first_words(result: &DiagnosisResult) -> String {
+    let input = result.manifest.inputs.first();
+    input.map_or("record:".to_owned(), |input| format!("{}:", input.path))
+}
+
+fn verdict(result: &DiagnosisResult) -> (Tone, String) {
+    match result.verdict {
+        Verdict::Clean => (Tone::Good, "No model mismatch detected".to_owned()),
+        Verdict::EffectsFound => {
+            let effects: Vec<&str> = found(result).iter().map(|one| &*one.effect).collect();
+            let headline = match &*effects {
+                [] => "The tested filter is not consistent".to_owned(),
+                [_, _, _, _, ..] => format!("Fault found: {} effects", effects.len()),
+                few => format!("Fault found: {}", listed(few)),
+            };
+            (Tone::Found, headline)
+        }
+        Verdict::Setup => (Tone::Bad, "Wrong set-up: not diagnosed".to_owned()),
+        _ => (
+            Tone::Bad,
+            "Unexplained: the model does not fit the record".to_owned(),
+        ),
+    }
+}
+
+fn setup(result: &DiagnosisResult) -> Card {
+    Card {
+        title: "What is wrong with the set-up".to_owned(),
+        text: result.setup.iter().map(|problem| problem.text()).collect(),
+        columns: 12,
+        ..Card::default()
+    }
+}
+
+fn cause(result: &DiagnosisResult) -> Card {
+    let found = found(result);
+    let columns = 5;
+    let Some(first) = found.first() else {
+        return nothing(result, columns);
+    };
+    let size = first.parameters.first();
+    let mut text = vec![format!(
+        "{:.1} sigma, {} after correction for the search{}",
+        first.z,
+        format::p_value(first.p_value),
+        further(first)
+    )];
+    if let [_, others @ ..] = &*found
+        && !others.is_empty()
+    {
+        let others = others.iter().map(|one| {
+            let size = one.parameters.first().map(value).unwrap_or_default();
+            format!("{} {size} ({:.1} sigma)", one.effect, one.z)
+        });
+        text.push(format!("Also: {}", others.collect::<Vec<_>>().join("; ")));
+    }
+    Card {
+        title: match found.len() {
+            1 => "Cause".to_owned(),
+            count => format!("Strongest of {count} causes"),
+        },
+        main: capitalised(&first.name),
+        number: size
+            .map(|size| format!("{} = {}", first.effect, value(size)))
+            .unwrap_or_default(),
+        text,
+        columns,
+        ..Card::default()
+    }
+}
+
+/// Parameters of a finding beside its size.
+fn further(finding: &Finding) -> String {
+    match finding.parameters.get(1..) {
+        Some(further) if !further.is_empty() => {
+            format!("; {}", prose::parameter_values(further))
+        }
+        _ => String::new(),
+    }
+}
+
+fn value(parameter: &Parameter) -> String {
+    let unnamed = Parameter {
+        name: String::new(),
+        ..parameter.clone()
+    };
+    prose::parameter_values(&[unnamed]).trim_start().to_owned()
+}
+
+/// The first tile without a named cause.
+fn nothing(result: &DiagnosisResult, columns: usize) -> Card {
+    let tested = prose::counted(result.ranking.len(), "effect");
+    let strongest = result
+        .ranking
+        .first()
+        .zip(result.threshold)
+        .map(|(first, threshold)| {
+            format!(
+                "The strongest is {}, statistic {:.1}; detection begins at {threshold:.1}.",
+                first.effect,
+                first.statistic.max(0.0)
+            )
+        });
+    let (title, main) = match result.verdict {
+        Verdict::Unexplained => (
+            "Cause",
+            "None of the catalogue explains the residual".to_owned(),
+        ),
+        _ => ("Tested", format!("None of {tested} is significant")),
+    };
+    let description = &result.remainder.description;
+    let mut text: Vec<String> = strongest.into_iter().collect();
+    if !description.is_empty() {
+        text.push(capitalised(description));
+    }
+    Card {
+        title: title.to_owned(),
+        main,
+        text,
+        columns,
+        ..Card::default()
+    }
+}
+
+fn alternatives(result: &DiagnosisResult) -> Card {
+    let mut text = Vec::new();
+    let mut main = String::new();
+    let mut title = "What else it might be";
+    let found = found(result);
+    match found.first() {
+        None => {
+            title = "What could go undetected";
+            main = match result.not_searched.len() {
+                0 => "Nothing of typical size".to_owned(),
+                count => prose::counted(count, "effect"),
+            };
+            text.push(match result.not_searched.len() {
+                0 => "Every effect of the catalogue would show.".to_owned(),
+                _ => {
+                    "Not tested, or not visible in this record at typical size: listed under What \
+                      cannot be told apart."
+                        .to_owned()
+                }
+            });
+        }
+        Some(first) => {
+            let others = first.alternatives.iter().take(ALTERNATIVES);
+            let others: Vec<String> = others
+                .map(|other| format!("{}: {}", other.effect, prose::likelihood(other)))
+                .collect();
+            let equal = first.equivalents.iter();
+            text.extend(equal.map(|equal| format!("{}: exact equivalent", equal.effect)));
+            let more = first.alternatives.len().saturating_sub(ALTERNATIVES);
+            text.extend(others);
+            if more > 0 {
+                text.push(format!("and {more} more"));
+            }
+            text.extend(first.none_of_these.map(|none| {
+                format!(
+                    "Outside of the catalogue: probability {} %",
+                    format::short(100.0 * none, 2)
+                )
+            }));
+            if first.alternatives.is_empty() && first.equivalents.is_empty() {
+                let sure = first.coverage.map_or_else(String::new, |coverage| {
+                    format!(" at {}", format::percent(coverage))
+                });
+                main = "No other tested effect".to_owned();
+                text.insert(
+                    0,
+                    format!("All alternatives that were tested are excluded{sure}."),
+                );
+            }
+            text.extend(near_twins(result, first));
+        }
+    }
+    Card {
+        title: title.to_owned(),
+        main,
+        text,
+        columns: 4,
+        ..Card::default()
+    }
+}
+
+/// Untested effects that look like the first finding.
+fn near_twins(result: &DiagnosisResult, first: &Finding) -> Option<String> {
+    use gyrocal_diagnosis::result::Relation;
+    let twins = result.cannot_tell.iter().find(|group| {
+        group.relation == Relation::NearTwins && group.members.first() == Some(&first.effect)
+    })?;
+    let others: Vec<&str> = twins.members.iter().skip(1).map(String::as_str).collect();
+    Some(format!("Looks like: {} (not tested).", listed(&others)))
+}
+
+fn gain(result: &DiagnosisResult) -> Card {
+    let mut card = Card {
+        title: "Gain".to_owned(),
+        columns: 3,
+        ..Card::default()
+    };
+    match &result.gain {
+        Some(gain) => with_gain(&mut card, gain),
+        None => {
+            card.title = "Open-loop error".to_owned();
+            if let Some(residuals) = &result.residuals {
+                let squares = residuals.free_run_rms_g.map(|rms| rms * rms);
+                let rms_g = (squares.iter().sum::<f64>() / 3.0).sqrt();
+                card.main = micro_g(rms_g);
+                card.text = vec!["rms of the simulation without measurement updates".to_owned()];
+            }
+        }
+    }
+    card
+}
+
+fn with_gain(card: &mut Card, gain: &Gain) {
+    let rms = gain.free_run_rms_g;
+    card.main = format!(
+        "{} → {}",
+        micro_g(rms.before).trim_end_matches(" µg"),
+        micro_g(rms.after)
+    );
+    card.number = "open-loop error".to_owned();
+    let better = gain.block_log_score_nats.iter().filter(|nats| **nats > 0.0);
+    card.text = vec![
+        format!("accelerometer noise {}", micro_g(rms.noise)),
+        format!(
+            "{:+.1} nats in cross-validation, better in {} of {} blocks",
+            gain.cross_validated_log_score_nats,
+            better.count(),
+            gain.block_log_score_nats.len()
+        ),
+    ];
+    card.text.extend(gain.validation.as_ref().map(|later| {
+        format!(
+            "later record: {:.2} → {:.2} arcmin after {:.0} h",
+            later.compensation.nominal_arcmin,
+            later.compensation.extended_arcmin,
+            later.compensation.after_h
+        )
+    }));
+}
+
+fn coefficients(result: &DiagnosisResult, all: &Coefficients) -> Card {
+    let number = |head: &str| Column {
+        head: head.to_owned(),
+        is_number: true,
+    };
+    let word = |head: &str| Column {
+        head: head.to_owned(),
+        is_number: false,
+    };
+    let cell = |estimate: f64, sigma: f64| {
+        let [estimate, sigma] = format::estimate(estimate, sigma);
+        Cell::from(format!("{estimate} ± {sigma}").replace('-', "−"))
+    };
+    let mut columns = vec![word("coefficient"), number("nominal model")];
+    let extended = all
+        .extended
+        .as_ref()
+        .filter(|one| one.len() == all.nominal.len());
+    if extended.is_some() {
+        columns.extend([number("extended model"), number("change, σ")]);
+    }
+    columns.push(word("unit"));
+    let shifts = result.gain.as_ref().map(|gain| &*gain.coefficient_shift);
+    let rows = all.nominal.iter().enumerate().map(|(place, nominal)| {
+        let mut row = vec![
+            Cell::from(nominal.name.clone()),
+            cell(nominal.estimate, nominal.sigma),
+        ];
+        if let Some(extended) = extended {
+            row.push(cell(extended[place].estimate, extended[place].sigma));
+            row.push(change(shifts.unwrap_or_default(), &nominal.name));
+        }
+        row.push(Cell::from(nominal.unit.clone()));
+        row
+    });
+    Card {
+        title: "Drift coefficients".to_owned(),
+        table: Some(Table {
+            title: String::new(),
+            rows: rows.collect(),
+            columns,
+        }),
+        columns: 8,
+        ..Card::default()
+    }
+}
+
+/// The change of a coefficient in claimed sigmas.
+pub(super) fn change(shifts: &[CoefficientShift], name: &str) -> Cell {
+    let shift = shifts.iter().find(|shift| shift.coefficient == name);
+    Cell {
+        text: shift.map_or_else(String::new, |shift| {
+            format!("{:+.1}", shift.in_sigmas).replace('-', "−")
+        }),
+        strong: shift.is_some_and(|shift| shift.in_sigmas.abs() >= NOTABLE),
+    }
+}
+
+/// The start of an explanation, cut at a mark of punctuation where it is long.
+pub(super) fn shortened(text: &str) -> String {
+    if text.chars().count() <= SHORT {
+        return text.to_owned();
+    }
+    let start: String = text.chars().take(SHORT).collect();
+    let end = start.rfind([';', ',', ':']).or_else(|| start.rfind(' '));
+    format!("{}…", &start[..end.unwrap_or(start.len())])
+}

@@ -1,0 +1,48 @@
+//! Content of the HTML pages of gyrocal's answers: the page of `gyrocal report` and of `--report`.
+//!
+//! Each function makes a [`Part`] of one answer: the summary for the first screen, sections with
+//! charts and tables, and the origin. [`page`] puts parts together, [`Page::to_html`] makes a file of
+//! them. Sentences are those of the libraries ([`gyrocal_diagnosis::prose`] and others); this crate
+//! chooses and arranges.
+//!
+//! | part | of |
+//! |---|---|
+//! | [`of_diagnosis`] | a diagnosis with its fits: with charts over time |
+//! | [`of_result`] | a written result of a diagnosis: what it tells without the record |
+//! | [`of_calibration`] | a calibration |
+//! | [`of_open_loop`] | a fit of the nominal model alone |
+//! | [`of_plan`] | a planned next run |
+//! | [`of_tumble`] | a multi-position test with many stops |
+//! | [`of_allan`] | Allan deviations of a log |
+//!
+//! # What it does not do
+//!
+//! It reads and writes no files, fits nothing, and knows nothing of HTML.
+
+mod allan;
+mod blocks;
+mod calibration;
+mod diagnosis;
+mod error;
+mod origin;
+mod plan;
+mod tumble;
+mod words;
+
+pub use allan::{AllanAnswer, of_allan};
+pub use calibration::{CalibratedRecord, of_calibration, of_open_loop};
+pub use diagnosis::{of_diagnosis, of_result};
+pub use error::PageError;
+pub use gyrocal_report::page::{Page, Part};
+pub use plan::of_plan;
+pub use tumble::of_tumble;
+
+/// A page of one answer or several.
+#[must_use]
+pub fn page(parts: Vec<Part>) -> Page {
+    let title = match &*parts {
+        [one] => format!("{}: {}", one.name, one.summary.headline),
+        several => format!("{} records", several.len()),
+    };
+    Page { title, parts }
+}

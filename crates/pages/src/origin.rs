@@ -1,0 +1,42 @@
+//! Origin of an answer.
+
+use gyrocal_record::Manifest;
+use gyrocal_report::page::{Origin, OriginFile};
+
+/// Program, command and files of a manifest.
+pub(crate) fn origin(manifest: &Manifest) -> Origin {
+    Origin {
+        program: format!("{} {}", manifest.program, manifest.version),
+        model_hash: manifest.model_hash.clone(),
+        seed: manifest.seed.to_string(),
+        command: manifest.command.clone(),
+        files: manifest
+            .inputs
+            .iter()
+            .map(|input| OriginFile {
+                path: input.path.clone(),
+                sha256: input.sha256.clone(),
+            })
+            .collect(),
+    }
+}
+
+/// Name of the file of an input, without its folders.
+pub(crate) fn file_name(manifest: &Manifest, place: usize, otherwise: &str) -> String {
+    let input = manifest.inputs.get(place);
+    let name = input.and_then(|input| input.path.rsplit(['/', '\\']).next());
+    name.unwrap_or(otherwise).to_owned()
+}
+
+/// An input as an argument of a shell.
+pub(crate) fn argument(manifest: &Manifest, place: usize, otherwise: &str) -> String {
+    let Some(input) = manifest.inputs.get(place) else {
+        return otherwise.to_owned();
+    };
+    let plain = |letter: char| letter.is_alphanumeric() || "-_./=:,+@%".contains(letter);
+    if !input.path.is_empty() && input.path.chars().all(plain) {
+        input.path.clone()
+    } else {
+        format!("'{}'", input.path.replace('\'', r"'\''"))
+    }
+}

@@ -1,0 +1,178 @@
+//! The page of a planned next run.
+
+use gyrocal_design::{Forecast, PlanResult, Proposal, prose};
+use gyrocal_diagnosis::prose::{Block, counted};
+use gyrocal_report::page::{
+    Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,
+};
+use gyrocal_statistics::format;
+
+use crate::blocks;
+use crate::diagnosis::section;
+use crate::origin::{file_name, origin};
+
+/// Entries of the recommendation on the first screen.
+const SHOWN: usize = 3;
+
+/// The page of a plan.
+#[must_use]
+pub fn of_plan(plan: &PlanResult) -> Part {
+    let blocks = prose(plan);
+    let mut sections = vec![section(
+        "sigmas",
+        "What the run gives",
+        "Standard deviations of the coefficients: of the record so far, and of record and next run together.",
+        vec![Item::Table(sigmas(plan))],
+    )];
+    if !plan.proposals.is_empty() {
+        sections.push(section(
+            "proposals",
+            "Proposals",
+            "The best attitudes of each duration, against continuing in the present one.",
+            vec![Item::Bars(proposals(plan))],
+        ));
+    }
+    sections.push(section(
+        "words",
+        "In words",
+        "The answer as the command prints it, with all its tables.",
+        blocks::items(&blocks),
+    ));
+    Part {
+        name: file_name(&plan.manifest, 0, "record"),
+        size: format!(
+            "{} over {:.2} days",
+            counted(plan.record.rows, "row"),
+            plan.record.duration_s / 86_400.0
+        ),
+        summary: summary(plan, &blocks),
+        sections,
+        origin: origin(&plan.manifest),
+    }
+}
+
+fn summary(plan: &PlanResult, blocks: &[Block]) -> Summary {
+    let paragraphs: Vec<&String> = blocks
+        .iter()
+        .filter_map(|block| match block {
+            Block::Paragraph(words) => Some(words),
+            _ => None,
+        })
+        .collect();
+    let mut cards = Vec::new();
+    let lists = blocks.iter().filter_map(|block| match block {
+        Block::List { title, entries } => Some((title, entries)),
+        _ => None,
+    });
+    for (title, entries) in lists.take(2) {
+        cards.push(Card {
+            title: "Recommended".to_owned(),
+            main: title.trim_end_matches(':').to_owned(),
+            text: entries.iter().take(SHOWN).cloned().collect(),
+            columns: 12,
+            ..Card::default()
+        });
+    }
+    cards.push(Card {
+        title: "Standard deviations".to_owned(),
+        table: Some(sigmas(plan)),
+        columns: 12,
+        ..Card::default()
+    });
+    Summary {
+        tone: Tone::Plain,
+        headline: plan.proposals.first().map_or_else(
+            || "No next run within the limits".to_owned(),
+            |best| format!("Next run: {}, {}", attitude(best), hours(best)),
+        ),
+        sentence: paragraphs
+            .get(1)
+            .map_or_else(String::new, |words| (*words).clone()),
+        cards,
+    }
+}
+
+fn attitude(proposal: &Proposal) -> String {
+    match proposal.angles_deg {
+        Some([x, y, z]) => format!("platform angles {x:.0}°, {y:.0}°, {z:.0}°").replace('-', "−"),
+        None => "continue in the present attitude".to_owned(),
+    }
+}
+
+fn hours(proposal: &Proposal) -> String {
+    format!("{} h", format::short(proposal.duration_s / 3600.0, 3))
+}
+
+/// Sigmas of the coefficients now, of going on, and of the best run.
+fn sigmas(plan: &PlanResult) -> Table {
+    let number = |head: &str| Column {
+        head: head.to_owned(),
+        is_number: true,
+    };
+    let word = |head: &str| Column {
+        head: head.to_owned(),
+        is_number: false,
+    };
+    let going_on = plan.going_on.first().map(|run| &run.outlook.coefficients);
+    let best = plan.proposals.first().map(|run| &run.outlook.coefficients);
+    let cell = |all: Option<&Vec<Forecast>>, place: usize| {
+        let one = all.and_then(|all| all.get(place));
+        Cell::from(one.map_or_else(String::new, |one| format::short(one.sigma, 2)))
+    };
+    let rows = plan
+        .now
+        .coefficients
+        .iter()
+        .enumerate()
+        .map(|(place, now)| {
+            vec![
+                Cell::from(now.name.to_string()),
+                Cell::from(format::short(now.sigma, 2)),
+                cell(going_on, place),
+                cell(best, place),
+                Cell::from(now.unit.to_string()),
+            ]
+        });
+    Table {
+        title: "Standard deviations of the coefficients".to_owned(),
+        columns: vec![
+            word("coefficient"),
+            number("record so far"),
+            number("continued"),
+            number("with the best run"),
+            word("unit"),
+        ],
+        rows: rows.collect(),
+    }
+}
+
+/// Ratio of the sigmas of each proposal.
+fn proposals(plan: &PlanResult) -> Bars {
+    let bar = |proposal: &Proposal, tint: Tint| Bar {
+        label: format!("{}, {}", attitude(proposal), hours(proposal)),
+        value: 100.0 * proposal.outlook.sigma_ratio,
+        tint,
+        note: match proposal.outlook.sets.len() {
+            0 => String::new(),
+            _ => format!("{:.2} names left beyond one", proposal.outlook.surplus()),
+        },
+    };
+    let going_on = plan.going_on.iter().map(|run| bar(run, Tint::Other));
+    let best = plan.proposals.iter().map(|run| bar(run, Tint::Extended));
+    Bars {
+        title: "Sigmas after record and run over those of the record so far".to_owned(),
+        quantity: "geometric mean over the nine coefficients, %".to_owned(),
+        threshold: None,
+        groups: vec![
+            BarGroup {
+                label: "Proposals, the best first for each duration".to_owned(),
+                bars: best.collect(),
+            },
+            BarGroup {
+                label: "Continuing in the present attitude".to_owned(),
+                bars: going_on.collect(),
+            },
+        ],
+        omitted: String::new(),
+    }
+}

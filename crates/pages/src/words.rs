@@ -1,0 +1,27 @@
+//! Numbers in texts.
+
+use gyrocal_statistics::format;
+
+/// Letters of the axes.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A specific force in µg.
+pub(crate) fn micro_g(force_g: f64) -> String {
+    format!("{} µg", format::short(1e6 * force_g, 2))
+}
+
+/// `a, b and c`.
+pub(crate) fn listed(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [head @ .., last] => format!("{} and {last}", head.join(", ")),
+    }
+}
+
+/// The first letter as a capital.
+pub(crate) fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
