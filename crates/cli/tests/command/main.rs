@@ -16,6 +16,7 @@ mod help;
 mod import;
 mod monte_carlo;
 mod plan;
+mod plant;
 mod report;
 mod simulate;
 mod terminal_safety;
