@@ -7,7 +7,7 @@ use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_plant::answer::Diagnosis;
 use gyrocal_plant::{ColumnMap, LoadedPlant, PlantError, SearchOptions, diagnose};
 use gyrocal_record::write_json;
-use gyrocal_statistics::format::significant;
+use gyrocal_statistics::format;
 use miette::Report;
 
 use crate::numbers::probability;
@@ -127,23 +127,23 @@ fn details(answer: &Diagnosis) -> String {
         "sigma",
     ]);
     for one in &answer.parameters {
-        let number = |value: f64| right(significant(value, 5));
+        let number = |value: f64| right(format::significant(value, 5));
         parameters.add_row(vec![
             one.name.as_str().into(),
             one.unit.as_str().into(),
             number(one.declared),
             number(one.nominal),
             number(one.value),
-            right(significant(one.sigma, 2)),
+            right(format::significant(one.sigma, 2)),
         ]);
     }
     shown += &format!("{parameters}\n\n");
     let mut noise = table(vec!["noise", "over the declared one", "95 %"]);
     for one in &answer.noise {
-        let [low, high] = one.interval.map(|end| significant(end, 3));
+        let [low, high] = one.interval.map(|end| format::significant(end, 3));
         noise.add_row(vec![
             one.of.as_str().into(),
-            right(significant(one.ratio, 3)),
+            right(format::significant(one.ratio, 3)),
             right(format!("{low} to {high}")),
         ]);
     }

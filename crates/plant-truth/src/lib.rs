@@ -12,6 +12,7 @@
 
 mod cart_pole;
 mod duffing;
+mod population;
 mod quadrotor;
 mod random;
 mod run;

@@ -2,6 +2,9 @@
 
 use gyrocal_codegen::Program;
 use gyrocal_codegen::program::{Table, Value};
+use serde::Deserialize;
+use serde::de::IntoDeserializer as _;
+use serde::de::value::Error as WordError;
 
 use crate::error::PlantError;
 
@@ -244,22 +247,39 @@ fn effect(row: &Row<'_>) -> Result<EffectEntry, PlantError> {
         name: row.text("name")?,
         formula: row.text("formula")?,
         unit: row.text("unit")?,
-        kind: match row.text("kind")?.as_str() {
-            "ramp" => Kind::Ramp,
-            "step" => Kind::Step,
-            "regressor" => Kind::Regressor(row.index("regressor")?),
-            "term" => Kind::Term,
-            other => return Err(row.refuse(&format!("an effect of the kind `{other}`"))),
+        kind: match row.word("kind")? {
+            WrittenKind::Ramp => Kind::Ramp,
+            WrittenKind::Step => Kind::Step,
+            WrittenKind::Regressor => Kind::Regressor(row.index("regressor")?),
+            WrittenKind::Term => Kind::Term,
         },
-        place: match row.text("place")?.as_str() {
-            "rate" => Place::Rate(index),
-            "output" => Place::Output(index),
-            "parameter" => Place::Parameter(index),
-            other => return Err(row.refuse(&format!("an effect in the place `{other}`"))),
+        place: match row.word("place")? {
+            WrittenPlace::Rate => Place::Rate(index),
+            WrittenPlace::Output => Place::Output(index),
+            WrittenPlace::Parameter => Place::Parameter(index),
         },
         size: row.index("size")?,
         equivalents: row.texts("equivalents")?,
     })
+}
+
+/// A [`Kind`] as a program has it.
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum WrittenKind {
+    Term,
+    Ramp,
+    Step,
+    Regressor,
+}
+
+/// A [`Place`] as a program has it.
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum WrittenPlace {
+    Rate,
+    Output,
+    Parameter,
 }
 
 /// A row of a table.
@@ -309,6 +329,13 @@ impl Row<'_> {
             Value::Text(text) => Ok(text.clone()),
             _ => Err(self.refuse(&format!("no text in `{field}`"))),
         }
+    }
+
+    /// One of a few words.
+    fn word<T: for<'de> Deserialize<'de>>(&self, field: &str) -> Result<T, PlantError> {
+        let text = self.text(field)?;
+        let word: Result<T, WordError> = T::deserialize(text.as_str().into_deserializer());
+        word.map_err(|error| self.refuse(&format!("in `{field}` {error}")))
     }
 
     fn number(&self, field: &str) -> Result<f64, PlantError> {

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::lane::{Injected, Lane};
 use crate::noise::Noise;
-use crate::platform::{EFFECTS, Platform};
+use crate::platform::Platform;
+use crate::sizes::EFFECTS;
 
 /// Steps before the knock, at least.
 const SETTLED: usize = 5 * 1440;

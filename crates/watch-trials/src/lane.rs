@@ -2,7 +2,7 @@ use gyrocal::watch::{Grid, Linearised};
 use gyrocal_watch::{JumpScores, Scores};
 
 use crate::noise::{Noise, Source};
-use crate::platform::{COLUMNS, EFFECTS, JUMPS, ONSETS, STATES};
+use crate::sizes::{COLUMNS, EFFECTS, JUMPS, ONSETS, STATES};
 
 /// An effect in a simulation, from a step on.
 #[derive(Clone, Copy, Debug, PartialEq)]

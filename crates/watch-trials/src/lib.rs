@@ -16,6 +16,7 @@ mod knocks;
 mod lane;
 mod noise;
 mod platform;
+mod sizes;
 mod sound;
 
 pub use delays::{Delay, Trial, delays};

@@ -7,12 +7,8 @@ use gyrocal_truth::Population;
 use gyrocal_watch::{Jumps, Settings, Signatures};
 
 use crate::lane::{Lane, Sigmas};
+use crate::sizes::{COLUMNS, EFFECTS, JUMPS, ONSETS, STATES};
 
-pub(crate) const STATES: usize = 12;
-pub(crate) const COLUMNS: usize = 6;
-pub(crate) const EFFECTS: usize = 18;
-pub(crate) const ONSETS: usize = 10;
-pub(crate) const JUMPS: usize = 12;
 const HALF: usize = STATES * (STATES + 1) / 2;
 const CALENDAR: Calendar = Calendar::of_slots(ONSETS);
 const INTERVAL_S: f64 = 60.0;
