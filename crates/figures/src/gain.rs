@@ -21,8 +21,8 @@ const CLEAN: [u64; 2] = [600_000, 2_000];
 const HIDDEN: [u64; 2] = [700_000, 1_000];
 const CROSS_AXIS: [u64; 2] = [800_000, 300];
 const SECOND: [u64; 2] = [900_000, 1_000];
-const SMALL_SHARE: u64 = 50;
-const SMALL_LEAST: u64 = 16;
+const SMALL_SHARE: u64 = 100;
+const SMALL_LEAST: u64 = 10;
 
 /// Strength of an injected effect, in sigmas of its own bound, and the least one for second records.
 const STRENGTH: f64 = 8.0;

@@ -12,17 +12,17 @@ use crate::resumable::results;
 
 /// Number of records of each cell in the small version.
 const SMALL_RUNS: [(PopulationCell, u64); 11] = [
-    (PopulationCell::Clean, 16),
-    (PopulationCell::Single(5), 8),
-    (PopulationCell::Single(6), 8),
-    (PopulationCell::Single(8), 12),
-    (PopulationCell::Single(12), 6),
-    (PopulationCell::LogUniform, 4),
-    (PopulationCell::Pair, 4),
-    (PopulationCell::Step, 3),
-    (PopulationCell::Cubic, 4),
-    (PopulationCell::Azimuth, 3),
-    (PopulationCell::OutOfCatalogue, 4),
+    (PopulationCell::Clean, 8),
+    (PopulationCell::Single(5), 4),
+    (PopulationCell::Single(6), 4),
+    (PopulationCell::Single(8), 8),
+    (PopulationCell::Single(12), 4),
+    (PopulationCell::LogUniform, 3),
+    (PopulationCell::Pair, 3),
+    (PopulationCell::Step, 2),
+    (PopulationCell::Cubic, 2),
+    (PopulationCell::Azimuth, 2),
+    (PopulationCell::OutOfCatalogue, 2),
 ];
 
 /// All figures of the topic.

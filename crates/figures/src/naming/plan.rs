@@ -24,7 +24,7 @@ const SET_SEEDS: [u64; 2] = [610_000, 300];
 const STRENGTH: f64 = 6.0;
 
 /// Numbers of records in the small version.
-const SMALL: [u64; 2] = [4, 10];
+const SMALL: [u64; 2] = [3, 6];
 
 /// Duration of the short next run, as a fraction of the record: it distinguishes some of the
 /// alternatives.
