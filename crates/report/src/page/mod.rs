@@ -10,7 +10,6 @@ mod chart;
 mod columns;
 mod decimate;
 mod model;
-mod printable;
 mod render;
 mod strips;
 mod time;

@@ -1,14 +1,13 @@
 //! From a page to HTML.
 
+use gyrocal_record::printable;
 use minijinja::{AutoEscape, Environment, context};
-use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::chart::{Chart, Panel};
 use super::columns::Columns;
 use super::decimate::{MOST_ROWS, Row, rows};
 use super::model::{Item, Page, Part, Section};
-use super::printable::printable;
 use super::strips;
 use crate::error::Error;
 use crate::number::{count, readable_unit};
@@ -84,15 +83,17 @@ impl Drawing {
             .iter()
             .map(|section| self.section(place, section))
             .collect::<Result<_, _>>()?;
-        Ok(json!({
+        let mut shown = json!({
             "id": format!("part-{}", place + 1),
-            "name": printable(&part.name),
-            "size": printable(&part.size),
+            "name": part.name,
+            "size": part.size,
             "sign": part.summary.tone.sign(),
-            "summary": shown(&part.summary),
+            "summary": part.summary,
             "sections": sections,
-            "origin": shown(&part.origin),
-        }))
+            "origin": part.origin,
+        });
+        make_printable(&mut shown);
+        Ok(shown)
     }
 
     fn section(&mut self, place: usize, section: &Section) -> Result<Value, Error> {
@@ -103,18 +104,18 @@ impl Drawing {
             .collect::<Result<_, _>>()?;
         Ok(json!({
             "id": format!("p{}-{}", place + 1, section.id),
-            "title": printable(&section.title),
-            "lead": printable(&section.lead),
+            "title": section.title,
+            "lead": section.lead,
             "items": items,
         }))
     }
 
     fn item(&mut self, item: &Item) -> Result<Value, Error> {
         Ok(match item {
-            Item::Text(text) => json!({ "kind": "text", "text": printable(text) }),
-            Item::Command(text) => json!({ "kind": "command", "text": printable(text) }),
-            Item::List(list) => json!({ "kind": "list", "list": shown(list) }),
-            Item::Table(table) => json!({ "kind": "table", "table": shown(table) }),
+            Item::Text(text) => json!({ "kind": "text", "text": text }),
+            Item::Command(text) => json!({ "kind": "command", "text": text }),
+            Item::List(list) => json!({ "kind": "list", "list": list }),
+            Item::Table(table) => json!({ "kind": "table", "table": table }),
             Item::Bars(bars) => json!({ "kind": "bars", "bars": strips::bars(bars) }),
             Item::Estimates(estimates) => {
                 json!({ "kind": "estimates", "estimates": strips::estimates(estimates) })
@@ -147,7 +148,7 @@ impl Drawing {
                 self.panel(panel, factor, &unit)
             })
             .collect();
-        self.charts.push(json!({
+        let mut drawn = json!({
             "id": &id,
             "abscissa": axis(&chart.abscissa, &chart.abscissa_unit),
             "quantity": chart.quantity,
@@ -157,13 +158,15 @@ impl Drawing {
             "linked": !chart.unlinked,
             "height": chart.height_px,
             "panels": panels,
-        }));
+        });
+        make_printable(&mut drawn);
+        self.charts.push(drawn);
         let rows = chart.panels.iter().map(|panel| panel.abscissa.len());
         let most = rows.max().unwrap_or(0);
         json!({
             "id": id,
-            "title": printable(&chart.title),
-            "caption": printable(&chart.caption),
+            "title": chart.title,
+            "caption": chart.caption,
             "columns": chart.columns,
             "height": chart.height_px,
             "panels": chart.panels.iter().map(|panel| description(chart, panel)).collect::<Vec<_>>(),
@@ -187,7 +190,7 @@ impl Drawing {
             .iter()
             .map(|band| {
                 json!({
-                    "label": printable(&band.label),
+                    "label": band.label,
                     "tint": band.tint,
                     "lower": column(&band.lower, factor, true),
                     "upper": column(&band.upper, factor, true),
@@ -199,7 +202,7 @@ impl Drawing {
             .iter()
             .map(|line| {
                 json!({
-                    "label": printable(&line.label),
+                    "label": line.label,
                     "tint": line.tint,
                     "kind": line.kind,
                     "values": column(&line.values, factor, true),
@@ -209,16 +212,16 @@ impl Drawing {
         let levels = panel.levels.iter();
         let marks = panel.marks.iter();
         json!({
-            "name": printable(&panel.name),
-            "unit": printable(unit),
+            "name": panel.name,
+            "unit": unit,
             "abscissa": abscissa,
             "bands": bands,
             "lines": lines,
             "levels": levels
-                .map(|one| json!({ "label": printable(&one.label), "value": factor * one.value }))
+                .map(|one| json!({ "label": one.label, "value": factor * one.value }))
                 .collect::<Vec<_>>(),
             "marks": marks
-                .map(|one| json!({ "label": printable(&one.label), "value": one.value }))
+                .map(|one| json!({ "label": one.label, "value": one.value }))
                 .collect::<Vec<_>>(),
             "scaleFrom": panel.scale_from,
         })
@@ -227,18 +230,18 @@ impl Drawing {
 
 /// Name, note and the text for those who do not see the picture.
 fn description(chart: &Chart, panel: &Panel) -> Value {
-    let lines = panel.lines.iter().map(|line| printable(&line.label));
-    let shown: Vec<String> = lines.collect();
+    let lines = panel.lines.iter().map(|line| &*line.label);
+    let shown: Vec<&str> = lines.collect();
     json!({
-        "name": printable(&panel.name),
-        "note": printable(&panel.note),
+        "name": panel.name,
+        "note": panel.note,
         "label": format!(
             "{}: {} against {}. {}. {}",
-            printable(&panel.name),
+            panel.name,
             shown.join(", "),
             axis(&chart.abscissa, &chart.abscissa_unit),
-            printable(&chart.title),
-            printable(&panel.note),
+            chart.title,
+            panel.note,
         ),
     })
 }
@@ -248,15 +251,14 @@ fn legend(chart: &Chart) -> Vec<Value> {
     let mut entries: Vec<Value> = Vec::new();
     for panel in &chart.panels {
         let lines = panel.lines.iter();
-        let lines = lines.map(
-            |line| json!({ "label": printable(&line.label), "tint": line.tint, "kind": line.kind }),
-        );
+        let lines =
+            lines.map(|line| json!({ "label": line.label, "tint": line.tint, "kind": line.kind }));
         let bands = panel.bands.iter();
-        let bands = bands.map(
-            |band| json!({ "label": printable(&band.label), "tint": band.tint, "kind": "band" }),
-        );
+        let bands =
+            bands.map(|band| json!({ "label": band.label, "tint": band.tint, "kind": "band" }));
         let levels = panel.levels.iter();
-        let levels = levels.map(|level| json!({ "label": printable(&level.label), "tint": "expected", "kind": "dashed" }));
+        let levels = levels
+            .map(|level| json!({ "label": level.label, "tint": "expected", "kind": "dashed" }));
         for entry in lines.chain(bands).chain(levels) {
             if entry["label"] != "" && !entries.contains(&entry) {
                 entries.push(entry);
@@ -269,23 +271,116 @@ fn legend(chart: &Chart) -> Vec<Value> {
 /// A quantity with its unit.
 fn axis(quantity: &str, unit: &str) -> String {
     match unit {
-        "" => printable(quantity),
-        unit => printable(&format!("{quantity} [{unit}]")),
+        "" => quantity.to_owned(),
+        unit => format!("{quantity} [{unit}]"),
     }
 }
 
-/// A structure for a template, all texts printable.
-fn shown(content: &impl Serialize) -> Value {
-    let mut value = serde_json::to_value(content).unwrap_or(Value::Null);
-    make_printable(&mut value);
-    value
-}
-
+/// Escapes what a reader would not see in all texts of a value: HTML would drop it or obey it.
 fn make_printable(value: &mut Value) {
     match value {
-        Value::String(text) => *text = printable(text),
+        Value::String(text) => *text = printable(text).into_owned(),
         Value::Array(values) => values.iter_mut().for_each(make_printable),
         Value::Object(fields) => fields.values_mut().for_each(make_printable),
         _ => (),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::page::{
+        Bar, BarGroup, Bars, Card, Line, LineKind, List, Origin, Summary, Tint, Tone,
+    };
+
+    /// A text that a page must neither obey nor drop.
+    const HOSTILE: &str = "</script><own-tag>\u{202e}\u{7}";
+
+    fn chart() -> Chart {
+        let own = || HOSTILE.to_owned();
+        Chart {
+            title: own(),
+            abscissa: own(),
+            quantity: own(),
+            unit: own(),
+            columns: 1,
+            height_px: 100,
+            panels: vec![Panel {
+                name: own(),
+                abscissa: vec![0.0, 1.0],
+                lines: vec![Line {
+                    label: own(),
+                    tint: Tint::Measured,
+                    kind: LineKind::Solid,
+                    values: vec![0.0, 1.0],
+                }],
+                ..Panel::default()
+            }],
+            ..Chart::default()
+        }
+    }
+
+    #[test]
+    fn no_text_becomes_markup_or_is_hidden() {
+        let own = || HOSTILE.to_owned();
+        let bars = Bars {
+            title: own(),
+            quantity: own(),
+            threshold: Some((1.0, own())),
+            groups: vec![BarGroup {
+                label: own(),
+                bars: vec![Bar {
+                    label: own(),
+                    value: 1.0,
+                    tint: Tint::Other,
+                    note: own(),
+                }],
+            }],
+            omitted: own(),
+        };
+        let items = vec![
+            Item::Text(own()),
+            Item::Command(own()),
+            Item::List(List {
+                title: own(),
+                entries: vec![own()],
+            }),
+            Item::Bars(bars),
+            Item::Chart(chart()),
+        ];
+        let part = Part {
+            name: own(),
+            size: own(),
+            summary: Summary {
+                tone: Tone::Plain,
+                headline: own(),
+                sentence: own(),
+                cards: vec![Card {
+                    title: own(),
+                    command: own(),
+                    ..Card::default()
+                }],
+            },
+            sections: vec![Section {
+                id: "own".to_owned(),
+                title: own(),
+                lead: own(),
+                items,
+            }],
+            origin: Origin {
+                command: own(),
+                ..Origin::default()
+            },
+        };
+        let page = Page {
+            title: own(),
+            parts: vec![part],
+        };
+        let html = page.to_html().unwrap();
+        assert!(html.contains("&lt;own-tag&gt;\\u{202e}\\u{7}"));
+        for hostile in ["<own-tag>", "\u{202e}", "\u{7}"] {
+            assert!(!html.contains(hostile), "{hostile:?}");
+        }
     }
 }

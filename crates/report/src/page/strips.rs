@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::model::{Bars, EstimateRow, Estimates};
-use super::printable::printable;
 use crate::number::{short, with_uncertainty};
 
 /// Width of an interval, in standard deviations each way.
@@ -50,12 +49,12 @@ pub(super) fn bars(bars: &Bars) -> DrawnBars {
         .max(f64::MIN_POSITIVE);
     let percent = |value: f64| format!("{:.2}", 100.0 * (value.max(0.0) / longest).min(1.0));
     let groups = bars.groups.iter().map(|group| DrawnGroup {
-        label: printable(&group.label),
+        label: group.label.clone(),
         bars: group
             .bars
             .iter()
             .map(|bar| DrawnBar {
-                label: printable(&bar.label),
+                label: bar.label.clone(),
                 value: if bar.value.is_nan() {
                     "not tested".to_owned()
                 } else {
@@ -63,23 +62,23 @@ pub(super) fn bars(bars: &Bars) -> DrawnBars {
                 },
                 percent: percent(bar.value),
                 tint: bar.tint.name(),
-                note: printable(&bar.note),
+                note: bar.note.clone(),
             })
             .collect(),
     });
     DrawnBars {
-        title: printable(&bars.title),
-        quantity: printable(&bars.quantity),
+        title: bars.title.clone(),
+        quantity: bars.quantity.clone(),
         threshold: bars
             .threshold
             .as_ref()
             .map(|(value, label)| DrawnThreshold {
                 percent: percent(*value),
-                label: printable(label),
+                label: label.clone(),
                 value: short(*value, 3),
             }),
         groups: groups.collect(),
-        omitted: printable(&bars.omitted),
+        omitted: bars.omitted.clone(),
     }
 }
 
@@ -119,15 +118,15 @@ struct DrawnValue {
 
 pub(super) fn estimates(estimates: &Estimates) -> DrawnEstimates {
     let models = estimates.models.iter().map(|(label, tint)| DrawnModel {
-        label: printable(label),
+        label: label.clone(),
         tint: tint.name(),
     });
     let rows = estimates.rows.iter().map(|row| drawn_row(estimates, row));
     DrawnEstimates {
-        title: printable(&estimates.title),
+        title: estimates.title.clone(),
         models: models.collect(),
         rows: rows.collect(),
-        note_head: printable(&estimates.note_head),
+        note_head: estimates.note_head.clone(),
     }
 }
 
@@ -143,22 +142,22 @@ fn drawn_row(estimates: &Estimates, row: &EstimateRow) -> DrawnRow {
     let place = |value: f64| 100.0 * (value - low + margin) / (high - low + 2.0 * margin);
     let values = row.values.iter().zip(&estimates.models);
     DrawnRow {
-        name: printable(&row.name),
-        unit: printable(&row.unit),
+        name: row.name.clone(),
+        unit: row.unit.clone(),
         values: values
             .map(|(one, (label, tint))| {
                 let [from, to] = ends(one.value, one.sigma).map(place);
                 DrawnValue {
                     text: with_uncertainty(one.value, one.sigma),
                     tint: tint.name(),
-                    label: printable(label),
+                    label: label.clone(),
                     low: format!("{from:.2}"),
                     middle: format!("{:.2}", place(one.value)),
                     width: format!("{:.2}", to - from),
                 }
             })
             .collect(),
-        note: printable(&row.note),
+        note: row.note.clone(),
         strong: row.strong,
     }
 }
