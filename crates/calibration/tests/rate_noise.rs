@@ -134,3 +134,68 @@ fn an_effect_that_is_left_out_leaves_the_likelihood_of_the_nominal_model() {
         "{without:?} {before:?}"
     );
 }
+
+#[test]
+fn degrees_of_freedom_are_those_of_refitted_covariances() {
+    let simulation = simulate(&Scenario {
+        seed: 12,
+        duration_s: 2.0 * 86_400.0,
+        interval_s: 120.0,
+        initial: InitialAttitude::Random,
+        ..Scenario::default()
+    })
+    .unwrap();
+    let run = Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    };
+    let declared =
+        FittedPlatform::nominal(&run, &Options::default(), &NoiseModel::default()).unwrap();
+    let noise = declared.fit_rate_noise(&[], &[]).unwrap();
+    let fitted = declared.with_rate_noise(&noise.noise).unwrap();
+    let white_sigma = fitted.fit_rate_noise(&[], &[]).unwrap().white_sigma;
+    let degrees = fitted.degrees_of_freedom().unwrap();
+    // Derivative of each variance by the logarithm of a gyro's variance, from fits with other noise.
+    let step = 0.1_f64;
+    let variances = |axis: usize, change: f64| -> Vec<f64> {
+        let mut changed = fitted.rate_noise();
+        changed.white[axis] *= (0.5 * change).exp();
+        let refitted = fitted.with_rate_noise(&changed).unwrap();
+        (0..9).map(|i| refitted.covariance()[(i, i)]).collect()
+    };
+    let mut of_variance = [0.0; 9];
+    for (axis, sigma) in white_sigma.iter().enumerate() {
+        let (low, high) = (variances(axis, -step), variances(axis, step));
+        for (sum, (low, high)) in of_variance.iter_mut().zip(low.iter().zip(&high)) {
+            // The logarithm of a variance has twice the standard deviation of that of its root.
+            *sum += ((high - low) / (2.0 * step) * 2.0 * sigma).powi(2);
+        }
+    }
+    for (i, of_variance) in of_variance.iter().enumerate() {
+        let expected = 2.0 * fitted.covariance()[(i, i)].powi(2) / of_variance;
+        // A row tells of two tilts: what one gyro has more of, the others have less. This correlation,
+        // up to -0.5 (the sigma of y falls by 0.14 where the others are held), is left out here, so
+        // that the sum is too large by up to a quarter. The curvature over a step is below 0.02.
+        let ratio = degrees[i] / expected;
+        assert!(
+            ratio > 0.98 && ratio < 1.27,
+            "{i}: {} {expected}",
+            degrees[i]
+        );
+        assert!(
+            degrees[i] > 5.0 && degrees[i] < 500.0,
+            "{i}: {}",
+            degrees[i]
+        );
+    }
+
+    // A walk that the record hardly tells of: not fewer than three.
+    let mut walking = fitted.rate_noise();
+    walking.walk[0] = 1e-4;
+    let degrees = fitted
+        .with_rate_noise(&walking)
+        .unwrap()
+        .degrees_of_freedom()
+        .unwrap();
+    assert!(degrees.iter().all(|degrees| *degrees >= 3.0), "{degrees:?}");
+}
