@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use clap::Args;
 use comfy_table::Cell;
-use gyrocal::effect::{Continuation, EffectKind, Experiment, Need, NoiseProperty};
+use gyrocal::effect::{Continuation, EffectKind, Enters, Experiment, Need, NoiseProperty};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_record::{any_of, nearest_names, printable_line};
@@ -17,7 +17,7 @@ use crate::tables::{right, table};
 
 /// List the effects that a diagnosis knows, or explain one.
 ///
-/// Without an id, all effects are listed by their place in the platform; --verbose adds a table with
+/// Without an id, all effects are listed by the part of the model that they enter; --verbose adds a table with
 /// names and units.
 #[derive(Debug, Args)]
 pub(crate) struct EffectsArguments {
@@ -62,15 +62,22 @@ pub(crate) fn run(arguments: &EffectsArguments) -> Result<Answer, Failure> {
     )))
 }
 
-/// All families by their place.
+/// All families by the part of the model that they enter.
 fn overview() -> Screen {
-    let mut places: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut parts: Vec<(&str, Vec<&str>)> = Vec::new();
     for effect in &EFFECTS {
-        let (place, name) = effect.family.split_once('.').unwrap_or((effect.family, ""));
-        match places.iter_mut().find(|(known, _)| *known == place) {
-            Some((_, names)) if names.contains(&name) => {}
-            Some((_, names)) => names.push(name),
-            None => places.push((place, vec![name])),
+        let part = match effect.enters {
+            Enters::Rates(_) => "gyros",
+            Enters::Outputs(_) => "outputs",
+            Enters::States(_) => "attitude",
+            Enters::Inputs(_) => "inputs",
+            Enters::Time => "time",
+            Enters::Filter => "filter",
+        };
+        match parts.iter_mut().find(|(known, _)| *known == part) {
+            Some((_, families)) if families.contains(&effect.family) => {}
+            Some((_, families)) => families.push(effect.family),
+            None => parts.push((part, vec![effect.family])),
         }
     }
     let tested = EFFECTS
@@ -85,8 +92,8 @@ fn overview() -> Screen {
             EFFECTS.len()
         ),
     );
-    for (place, names) in &places {
-        screen.fact(place, names.join(", "));
+    for (part, families) in &parts {
+        screen.fact(part, families.join(", "));
     }
     screen.fact(
         "axes",

@@ -99,7 +99,7 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 16] = [
     (
         "effects",
         &[
-            ["gyrocal effects", "all effects by their place"],
+            ["gyrocal effects", "all effects by the part that they enter"],
             ["gyrocal effects gyro_y.g_z", "one effect"],
             ["gyrocal effects gyro_i.warmup", "the effects of a family"],
         ],

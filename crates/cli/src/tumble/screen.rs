@@ -149,15 +149,12 @@ fn few_positions(report: &FewPositionReport) -> Screen {
     more(&mut screen, report.findings.len());
     for gyro in &report.gyros {
         let law = gyro.coefficients.iter().map(|one| {
-            let name = one.name.rsplit('.').next().unwrap_or(&one.name);
-            format!("{name} {}", format::with_sigma(one.estimate, one.sigma))
+            let size = format::with_sigma(one.estimate, one.sigma);
+            format!("{} {size} {}", one.name, one.unit)
         });
         screen.fact(
             &gyro.gyro,
-            format!(
-                "{} deg/h, deg/h/g, …",
-                law.take(NAMES_SHOWN).collect::<Vec<_>>().join(", ")
-            ),
+            law.take(NAMES_SHOWN).collect::<Vec<_>>().join(", "),
         );
         let open: Vec<&str> = gyro.undetermined.iter().map(|name| &**name).collect();
         if !open.is_empty() {
