@@ -53,7 +53,8 @@ pub struct AllanTest {
     pub points: [Vec<AllanPoint>; 3],
     /// Course of the noise.
     pub course: NoiseCourse,
-    /// Probability that white noise of the believed size exceeds its expectation as much anywhere.
+    /// Upper bound of the probability that white noise of the believed size exceeds its expectation as
+    /// much anywhere: averaging times that share samples are counted as if they did not.
     pub p_value: f64,
     /// Largest excess: channel and averaging time \[s\].
     pub most: Option<(usize, f64)>,

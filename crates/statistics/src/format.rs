@@ -4,9 +4,19 @@
 /// would print 1, `p < 1e-300` where it underflows, `p undefined` if it is not a number.
 #[must_use]
 pub fn p_value(p: f64) -> String {
+    related("=", p)
+}
+
+/// An upper bound of a p-value: `p <= 0.32`, otherwise as [`p_value`].
+#[must_use]
+pub fn p_bound(p: f64) -> String {
+    related("<=", p)
+}
+
+fn related(sign: &str, p: f64) -> String {
     let text = p_cell(p);
     if text.starts_with(|first: char| first.is_ascii_digit()) {
-        format!("p = {text}")
+        format!("p {sign} {text}")
     } else {
         format!("p {text}")
     }
@@ -117,6 +127,7 @@ mod tests {
         ];
         for (p, expected) in cases {
             assert_eq!(p_value(p), expected);
+            assert_eq!(p_bound(p), expected.replace("p =", "p <="));
         }
         assert_eq!(p_cell(0.317), "0.32");
         assert_eq!(p_cell(1.0), "> 0.99");

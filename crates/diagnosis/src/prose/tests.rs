@@ -1,6 +1,6 @@
 //! The tests beside the search: magnitude, filter, whiteness, Allan deviation, noise audit.
 
-use gyrocal_statistics::format::p_value;
+use gyrocal_statistics::format::{p_bound, p_value};
 
 use super::AXES;
 use super::format::{counted, duration, short, with_sigma};
@@ -18,7 +18,7 @@ pub(super) fn magnitude(result: &DiagnosisResult) -> String {
         return "Specific-force magnitude test: not made, too few rows have all three axes."
             .to_owned();
     };
-    let p = p_value(test.p_value);
+    let p = p_bound(test.p_value);
     if test.accelerometers {
         return format!(
             "Specific-force magnitude test: not gravity, {} ({p}). An accelerometer, or gravity, is \
@@ -109,7 +109,7 @@ pub(super) fn allan(result: &DiagnosisResult) -> String {
                 is long enough."
             .to_owned();
     };
-    let p = p_value(test.p_value);
+    let p = p_bound(test.p_value);
     let course = match test.course {
         AllanCourse::White => {
             let longest = test.points.last().map_or(0.0, |point| point.tau_s);

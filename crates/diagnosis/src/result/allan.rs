@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct AllanTest {
     /// Course of the deviation over averaging time.
     pub course: AllanCourse,
-    /// Probability that white noise of the estimated level exceeds its expectation as much.
+    /// Upper bound of the probability that white noise of the estimated level exceeds its
+    /// expectation as much: averaging times that share samples are counted as if they did not.
     pub p_value: f64,
     /// Rows of the longest stretch without a gap, over which it is taken.
     pub rows: usize,

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 pub struct MagnitudeTest {
     /// Whether accelerometers, or gravity, are other than declared.
     pub accelerometers: bool,
-    /// Probability of as large a deviation by chance, all its tests together.
+    /// Upper bound of the probability of as large a deviation by chance: the tests that it is the
+    /// least of share samples, and are counted as if they did not.
     pub p_value: f64,
     /// Mean magnitude less gravity \[g\].
     pub mean_g: f64,
