@@ -149,12 +149,34 @@ impl Told<'_> {
             [own + one as f64, oracle + other as f64]
         });
         let what = "mean set size over that of a search that knows that no rate walks";
-        vec![
+        let mut figures = vec![
             self.share("detected", 0.98, all().map(|one| one.detected)),
             self.share("a set holds the cause", 0.95, all().map(|one| one.in_set)),
             self.ratio(what, [0.0, 1.1], own / oracle.max(1.0)),
             self.note("spurious second cause", all().map(|one| one.spurious)),
-        ]
+        ];
+        figures.extend(self.coverage_by_kind());
+        figures
+    }
+
+    /// Coverage of the set, of the records in which something was found, by kind of the cause.
+    fn coverage_by_kind(&self) -> Vec<Figure> {
+        let mut kinds: Vec<(EffectKind, Vec<bool>)> = Vec::new();
+        for one in self.records.iter().filter(|one| one.detected) {
+            let Some(effect) = effect(&one.effect) else {
+                continue;
+            };
+            match kinds.iter_mut().find(|(kind, _)| *kind == effect.kind) {
+                Some((_, held)) => held.push(one.in_set),
+                None => kinds.push((effect.kind, vec![one.in_set])),
+            }
+        }
+        let row = |(kind, held): &(EffectKind, Vec<bool>)| {
+            let name = format!("{}: coverage of the set, kind {kind:?}", self.cell.name);
+            let share = Proportion::of(held.iter().copied());
+            Figure::note(&name, format!("{:.3}", share.share())).over(held.len(), self.seeds)
+        };
+        kinds.iter().map(row).collect()
     }
 
     /// Sets without a noise process.
