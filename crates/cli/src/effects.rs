@@ -1,14 +1,11 @@
 //! `gyrocal effects`: the catalogue of effects, from the generated table.
 
-use std::fmt::Write as _;
-
 use clap::Args;
 use comfy_table::Cell;
-use gyrocal::effect::{Continuation, EffectKind, Enters, Experiment, Need, NoiseProperty};
+use gyrocal::effect::Enters;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_diagnosis::prose::{Screen, Standing, explained, tested, typical_size};
 use gyrocal_record::{any_of, nearest_names, printable_line};
-use gyrocal_statistics::format;
 use miette::miette;
 
 use crate::Failure;
@@ -109,139 +106,10 @@ fn listed(effects: impl Iterator<Item = &'static Effect>) -> String {
     for effect in effects {
         table.add_row([
             Cell::new(effect.id),
-            right(typical(effect)),
+            right(typical_size(effect)),
             Cell::new(tested(effect)),
             Cell::new(effect.name),
         ]);
     }
     format!("{}\n", table.trim_fmt())
-}
-
-fn typical(effect: &Effect) -> String {
-    let unit = effect.parameters.first().map_or("", |first| first.unit);
-    match unit {
-        "" => String::new(),
-        "1" => format::short(effect.typical_size, 3),
-        unit => format!("{} {unit}", format::short(effect.typical_size, 3)),
-    }
-}
-
-fn tested(effect: &Effect) -> &'static str {
-    if effect.is_nominal {
-        "a coefficient"
-    } else if effect.default_search {
-        "yes"
-    } else {
-        "on request"
-    }
-}
-
-/// All that the catalogue says of an effect.
-fn explained(effect: &Effect) -> Screen {
-    let mut screen = Screen::new(Standing::Neutral, effect.id, effect.name);
-    screen.fact("course in time", course(effect.kind));
-    screen.fact("term", spaced(effect.formula));
-    let parameters = effect.parameters.iter();
-    let parameters: Vec<String> = parameters
-        .map(|parameter| format!("{} [{}]", parameter.name, parameter.unit))
-        .collect();
-    screen.fact("parameters", parameters.join(", "));
-    screen.fact("typical size", typical(effect));
-    screen.fact("tested", standing(effect));
-    let needs: Vec<String> = effect.needs.iter().map(need).collect();
-    screen.fact("needs", needs.join(", "));
-    if !effect.equivalents.is_empty() {
-        screen.fact("same as", effect.equivalents.join(", "));
-        screen.fact("because", effect.equivalence.reason);
-        screen.fact("would tell them", effect.equivalence.experiment);
-    }
-    screen.fact("looks like", effect.near_twins.join(", "));
-    let experiments = effect.separated_by.iter().map(experiment);
-    screen.fact("told apart by", experiments.collect::<Vec<_>>().join("; "));
-    screen.fact("in a later record", later(effect.continuation));
-    screen.fact("source", effect.reference);
-    if effect.has_term() && !effect.is_nominal {
-        screen.then(
-            format!(
-                "gyrocal extend --effects {} --out extended.model.toml",
-                effect.id
-            ),
-            "a filter with it",
-        );
-    }
-    screen
-}
-
-/// A formula with blanks, at which a line may break.
-fn spaced(formula: &str) -> String {
-    let spaced = formula.replace('*', " * ").replace('/', " / ");
-    spaced.replace(',', ", ").replace(",  ", ", ")
-}
-
-fn standing(effect: &Effect) -> String {
-    let mut text = String::new();
-    let _ = match tested(effect) {
-        "yes" => write!(text, "by every diagnosis"),
-        "on request" if effect.has_signature() => {
-            write!(text, "by `gyrocal diagnose --effects {}`", effect.id)
-        }
-        "on request" => write!(text, "by the noise audit or --filter of a diagnosis"),
-        other => write!(
-            text,
-            "no: it is {other} of the nominal model, estimated by calibrate"
-        ),
-    };
-    text
-}
-
-fn course(kind: EffectKind) -> &'static str {
-    match kind {
-        EffectKind::Constant => "constant",
-        EffectKind::Step => "zero before an onset, constant after it",
-        EffectKind::FromOnset => "zero before an onset, any function of time after it",
-        EffectKind::Exponential => "decays with a time constant from the start of the record",
-        EffectKind::Ramp => "proportional to time",
-        EffectKind::Periodic => "periodic",
-        EffectKind::Regressor => "proportional to a logged quantity",
-        EffectKind::RandomWalk => "random walk: the integral of white noise",
-        EffectKind::StateJump => "sudden change of the attitude at an onset",
-        EffectKind::InitialState => "wrong attitude at the first row",
-        EffectKind::Noise(NoiseProperty::Level) => "noise other than declared",
-        EffectKind::Noise(NoiseProperty::Outliers) => "isolated values far outside the noise",
-        EffectKind::Noise(NoiseProperty::Quantisation) => "steps of the least significant bit",
-        EffectKind::Noise(NoiseProperty::Correlation) => "noise correlated from row to row",
-        EffectKind::Integration => "error of the integration rule of a filter",
-    }
-}
-
-fn need(need: &Need) -> String {
-    match need {
-        Need::Column(name) => format!("the column `{name}` of the record"),
-        Need::Key(key) => format!("`{key}` in the bench file"),
-    }
-}
-
-fn later(continuation: Continuation) -> &'static str {
-    match continuation {
-        Continuation::BeginsAnew => "begins anew",
-        Continuation::GoesOn => "goes on",
-        Continuation::Stays => "stays as at the end of the record",
-        Continuation::ThisRecord => "none: it belongs to its record",
-    }
-}
-
-fn experiment(experiment: &Experiment) -> String {
-    match experiment {
-        Experiment::OtherInitialState => "a run from another initial attitude".to_owned(),
-        Experiment::OtherStart => {
-            "a run from another initial attitude or at another time of day".to_owned()
-        }
-        Experiment::MeasureInitialState => {
-            "an independent measurement of the initial attitude".to_owned()
-        }
-        Experiment::ControlRegressor(name) => format!("a run with {name} held or stepped"),
-        Experiment::ChangeInput(what) => format!("a run with {what}"),
-        Experiment::MeasureInput(what) => (*what).to_owned(),
-        Experiment::StartLate => "a run that starts long after switching on".to_owned(),
-    }
 }

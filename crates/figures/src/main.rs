@@ -3,6 +3,7 @@
 
 mod any_plant;
 mod calibration;
+mod catalogue;
 mod comparison;
 mod cost;
 mod diagnosis_ground;
@@ -57,8 +58,8 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
-    /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper:
-    /// docs/paper.md and its pictures; all others: docs/figures/TOPIC.md).
+    /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper
+    /// and catalogue: their page and its pictures; all others: docs/figures/TOPIC.md).
     #[arg(long, conflicts_with_all = ["small", "parts", "records"])]
     write: bool,
 }
@@ -90,6 +91,8 @@ enum Topic {
     MainJob,
     /// The batch estimator: consistency over a population, exactness, cost.
     Calibration,
+    /// The catalogue of effects: docs/catalogue.md and a picture of each signature.
+    Catalogue,
     /// The structured kernel: speed, scaling, rounding errors, instructions.
     Kernel,
     /// The generator of Rust against others: speed, instructions, operations, random graphs.
@@ -132,6 +135,7 @@ fn main() -> ExitCode {
         Topic::AnyPlant => any_plant::figures(extent),
         Topic::MainJob => main_job::figures(arguments.small),
         Topic::Calibration => calibration::figures(arguments.small),
+        Topic::Catalogue => catalogue::figures(arguments.write),
         Topic::Kernel => kernel::figures(arguments.small, arguments.write),
         Topic::Generator => generator::figures(arguments.small),
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
@@ -188,7 +192,7 @@ impl Topic {
     fn writes_its_page(self) -> bool {
         !matches!(
             self,
-            Self::Kernel | Self::House | Self::Measured | Self::Paper
+            Self::Kernel | Self::House | Self::Measured | Self::Paper | Self::Catalogue
         )
     }
 }
@@ -220,7 +224,7 @@ fn compared(topic: Topic, figures: &[Figure]) -> Vec<Figure> {
     let name = topic.name();
     let renewed_by = match topic {
         // Their pages are compared as a whole, in any version.
-        Topic::Measured | Topic::Paper => return Vec::new(),
+        Topic::Measured | Topic::Paper | Topic::Catalogue => return Vec::new(),
         _ if topic.writes_its_page() => format!("cargo figures {name} --write"),
         _ => format!("cargo figures {name} --out docs/figures/{name}.md"),
     };

@@ -4,6 +4,7 @@
 //! in another language say the same words. [`diagnosis`] gives all of it in reading order; whoever
 //! shows it breaks lines and draws tables. [`first_screen`] gives what a person reads first.
 
+mod catalogue;
 mod findings;
 mod first_screen;
 mod format;
@@ -18,6 +19,7 @@ use serde::Serialize;
 
 use crate::result::{DiagnosisResult, Verdict};
 
+pub use catalogue::{explained, tested, typical_size};
 pub use findings::{likelihood, parameter_values};
 pub use first_screen::first_screen;
 pub use format::counted;

@@ -1,0 +1,230 @@
+//! The signature of an effect in a record, drawn.
+
+use gyrocal::Effect;
+use gyrocal::effect::{EffectKind, EffectParameter, NoiseProperty, Role};
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_report::{ResidualChannel, Residuals};
+use gyrocal_statistics::format;
+use gyrocal_testkit::workspace;
+use gyrocal_truth::{Hidden, InitialAttitude, Scenario, Simulation, Temperature, simulate};
+
+use crate::error::Error;
+use crate::values::Values;
+
+/// Interval of rows, s: enough points for a curve, and a small file.
+const INTERVAL_S: f64 = 600.0;
+
+/// Onset as a part of the record, and time constant, h.
+const ONSET: f64 = 0.4;
+const TIME_CONSTANT_H: f64 = 6.0;
+
+/// Size at which an effect can be seen: its largest residual in sigmas of a sample.
+const VISIBLE_SIGMAS: f64 = 3.0;
+
+/// Largest factor on a typical size: 10 to this power.
+const LARGEST_POWER: i32 = 3;
+
+/// The Earth's field in local east, north, up at a middle latitude, gauss.
+const FIELD_GAUSS: [f64; 3] = [0.0, 0.2, -0.43];
+
+/// Properties of noise that are seen at a glance.
+const NOISE_RATIO: f64 = 3.0;
+const OUTLIER_SIGMAS: f64 = 20.0;
+const QUANTISATION_SIGMAS: f64 = 5.0;
+const CORRELATION: f64 = 0.95;
+
+/// The record that all pictures are of, with its noise.
+fn scenario() -> Result<Scenario, Error> {
+    let path = workspace().join("examples/data/hidden_fault.scenario.toml");
+    Ok(Scenario {
+        hidden: Vec::new(),
+        initial_angles_sigma_deg: [0.01; 3],
+        interval_s: INTERVAL_S,
+        temperature: Some(Temperature::default()),
+        magnetic_field_gauss: Some(FIELD_GAUSS),
+        ..Scenario::read(&path)?
+    })
+}
+
+/// The words of the page on that record.
+pub(super) fn describe(values: &mut Values) -> Result<(), Error> {
+    let scenario = scenario()?;
+    values.put("days", format::short(scenario.duration_s / 86_400.0, 3));
+    values.put("latitude", format::short(scenario.latitude_deg, 3));
+    let angles = match scenario.initial {
+        InitialAttitude::AnglesDeg(angles) => {
+            angles.map(|angle| format!("{angle}°")).to_vec().join(", ")
+        }
+        _ => return Err("the scenario of the pictures has no attitude".into()),
+    };
+    values.put("angles", angles);
+    values.put("visible", format::short(VISIBLE_SIGMAS, 2));
+    Ok(())
+}
+
+/// Whether a record shows the effect; an integration rule belongs to a filter.
+pub(super) fn has_picture(effect: &Effect) -> bool {
+    effect.kind != EffectKind::Integration
+}
+
+/// The picture of an effect that a record can show.
+pub(super) fn picture(effect: &Effect) -> Result<Option<Residuals>, Error> {
+    if !has_picture(effect) {
+        return Ok(None);
+    }
+    let scenario = scenario()?;
+    let mut shown = Shown::of(effect, &scenario, 1.0)?;
+    for power in 1..=LARGEST_POWER {
+        if effect.is_noise() || effect.is_nominal || shown.largest() > scenario.accel_noise_g {
+            break;
+        }
+        shown = Shown::of(effect, &scenario, 10_f64.powi(power))?;
+    }
+    Ok(Some(shown.drawn(effect, &scenario)))
+}
+
+/// A record with the effect, and what is drawn of it.
+struct Shown {
+    title: String,
+    time_s: Vec<f64>,
+    residual_g: Vec<[f64; 3]>,
+}
+
+impl Shown {
+    /// The effect at `factor` times its typical size.
+    fn of(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Self, Error> {
+        let values = values(effect, scenario, factor);
+        let named: Vec<(&str, f64)> = values
+            .iter()
+            .map(|(name, value, _)| (name.as_str(), *value))
+            .collect();
+        let with = Scenario {
+            hidden: vec![Hidden::new(effect.id, &named)?],
+            ..noise_of(effect, scenario)
+        };
+        let simulation = simulate(&with)?;
+        let sizes: Vec<String> = values
+            .iter()
+            .filter(|(_, value, _)| *value != 0.0)
+            .map(|(name, value, unit)| {
+                let value = format::short(*value, 3);
+                let unit = if *unit == "1" { "" } else { unit };
+                format!("{name} {value} {unit}").trim_end().to_owned()
+            })
+            .collect();
+        let residual_g = if effect.is_nominal {
+            let without = simulate(&noise_of(effect, scenario))?;
+            difference(&simulation.record.accel_g, &without.record.accel_g)
+        } else {
+            left_by_the_fit(&simulation, scenario)?
+        };
+        Ok(Self {
+            title: format!("{}: {}", effect.id, sizes.join(", ")),
+            time_s: simulation.record.time_s,
+            residual_g,
+        })
+    }
+
+    /// Largest residual over the number of sigmas at which it is seen, g.
+    fn largest(&self) -> f64 {
+        let all = self.residual_g.iter().flatten();
+        all.fold(0.0_f64, |most, value| most.max(value.abs())) / VISIBLE_SIGMAS
+    }
+
+    fn drawn(self, effect: &Effect, scenario: &Scenario) -> Residuals {
+        let channels = ["x", "y", "z"].into_iter().enumerate();
+        let channels = channels.map(|(axis, name)| ResidualChannel {
+            name: name.to_owned(),
+            before: self.residual_g.iter().map(|row| row[axis]).collect(),
+            after: None,
+            sigma: scenario.accel_noise_g,
+        });
+        let label = if effect.is_nominal {
+            "change of the readings"
+        } else {
+            "left by the fit of the nominal model"
+        };
+        Residuals {
+            title: self.title,
+            subtitle: effect.name.to_owned(),
+            channels: channels.collect(),
+            time_s: self.time_s,
+            before_label: label.to_owned(),
+            after_label: String::new(),
+            quantity: "residual".to_owned(),
+            unit: "g".to_owned(),
+        }
+    }
+}
+
+/// The scenario with its noise for effects of the noise of the readings, without it for all others.
+fn noise_of(effect: &Effect, scenario: &Scenario) -> Scenario {
+    let noise = if matches!(effect.kind, EffectKind::Noise(_)) {
+        1.0
+    } else {
+        0.0
+    };
+    Scenario {
+        accel_noise_g: noise * scenario.accel_noise_g,
+        gyro_noise_deg_per_h: noise * scenario.gyro_noise_deg_per_h,
+        ..scenario.clone()
+    }
+}
+
+/// Name, value and unit of each parameter, as the simulator names them.
+fn values(effect: &Effect, scenario: &Scenario, factor: f64) -> Vec<(String, f64, &'static str)> {
+    if let EffectKind::Noise(property) = effect.kind {
+        return noise_values(property, scenario);
+    }
+    let mut sizes = 0;
+    let parameters = effect.parameters.iter();
+    parameters
+        .map(|parameter: &EffectParameter| {
+            let (name, unit) = (parameter.name.to_owned(), parameter.unit);
+            match parameter.role {
+                Role::Onset(_) => (name, ONSET * scenario.duration_s, unit),
+                Role::TimeConstant(_) => (name, TIME_CONSTANT_H, unit),
+                role => {
+                    sizes += 1;
+                    let size = if sizes == 1 { effect.typical_size } else { 0.0 };
+                    let name = match role {
+                        Role::State(_) => format!("{name}_{unit}"),
+                        _ => name,
+                    };
+                    (name, factor * size, unit)
+                }
+            }
+        })
+        .collect()
+}
+
+fn noise_values(property: NoiseProperty, scenario: &Scenario) -> Vec<(String, f64, &'static str)> {
+    let sigma = scenario.accel_noise_g;
+    let values = match property {
+        NoiseProperty::Level => vec![("ratio", NOISE_RATIO, "")],
+        NoiseProperty::Outliers => vec![("fraction", 0.01, ""), ("size", OUTLIER_SIGMAS, "sigmas")],
+        NoiseProperty::Quantisation => vec![("lsb", QUANTISATION_SIGMAS * sigma, "g")],
+        NoiseProperty::Correlation => vec![("correlation", CORRELATION, "")],
+    };
+    let named = |(name, value, unit): (&str, f64, &'static str)| (name.to_owned(), value, unit);
+    values.into_iter().map(named).collect()
+}
+
+/// Measured less simulated specific force of the nominal model at its best fit, with the noise that
+/// the scenario declares.
+fn left_by_the_fit(simulation: &Simulation, scenario: &Scenario) -> Result<Vec<[f64; 3]>, Error> {
+    let bench = scenario.bench();
+    let run = Run {
+        record: &simulation.record,
+        bench: &bench,
+    };
+    let fit =
+        FittedPlatform::nominal_once(&run, &Options::default(), &NoiseModel::default())?;
+    Ok(difference(&simulation.record.accel_g, &fit.free_run_g()?))
+}
+
+fn difference(one: &[[f64; 3]], other: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let rows = one.iter().zip(other);
+    rows.map(|(one, other)| [0, 1, 2].map(|axis| one[axis] - other[axis]))
+        .collect()
+}
