@@ -190,6 +190,7 @@ mod tests {
         for (name, template) in [
             ("paper.md", crate::paper::TEMPLATE),
             ("measured-data.md", crate::measured::TEMPLATE),
+            ("catalogue.md", crate::catalogue::TEMPLATE),
         ] {
             let page = std::fs::read_to_string(docs().join(name)).expect("the page is committed");
             let mut texts = template

@@ -1,4 +1,6 @@
-//! The report: sizes of its files, and what a browser makes of them.
+//! The report: sizes of its files, and what a browser makes of them; and the first ten minutes of a user.
+
+mod first_minutes;
 
 use std::path::Path;
 
@@ -88,6 +90,9 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
             let folder = crate::page::docs().join("pictures");
             std::fs::write(folder.join(picture), browser.screenshot())?;
         }
+    }
+    if !small {
+        figures.push(first_minutes::figure()?);
     }
     Ok(figures)
 }

@@ -1,0 +1,117 @@
+//! The first ten minutes: the commands of their page, run in a clean clone.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use gyrocal_testkit::workspace;
+
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::page;
+
+/// Longest time that the commands may take, build included, min.
+const LIMIT_MIN: f64 = 10.0;
+
+/// Place that the page clones from, for which the committed state of this tree stands.
+const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");
+
+/// Blocks of a page whose commands a reader runs.
+const SHELL: &str = "```sh\n";
+const CONSOLE: &str = "```console\n";
+const CLOSE: &str = "```";
+
+/// Runs all commands of docs/first-ten-minutes.md in an empty folder, one after the other, and measures
+/// their time. Packages of others are fetched where the machine does not have them.
+pub(super) fn figure() -> Result<Figure, Error> {
+    let text = std::fs::read_to_string(page::docs().join("first-ten-minutes.md"))?;
+    let script = script(&text);
+    // Beside the builds, where there is room for one more.
+    let folder = tempfile::tempdir_in(workspace().join("target"))?;
+    let begin = Instant::now();
+    run(&script, folder.path())?;
+    let minutes = begin.elapsed().as_secs_f64() / 60.0;
+    let commands = script.lines().count();
+    let name = format!("first ten minutes: {commands} commands of the page from a clean clone");
+    Ok(Figure::at_most(&name, LIMIT_MIN, minutes, "min"))
+}
+
+fn run(script: &str, folder: &Path) -> Result<(), Error> {
+    let here = format!("url.{}.insteadOf", workspace().display());
+    let output = Command::new("bash")
+        .args(["-euo", "pipefail", "-c", script])
+        .current_dir(folder)
+        .env_remove("CARGO_TARGET_DIR")
+        .env_remove("RUSTFLAGS")
+        .envs([
+            ("GIT_CONFIG_COUNT", "1"),
+            ("GIT_CONFIG_KEY_0", here.as_str()),
+            ("GIT_CONFIG_VALUE_0", REPOSITORY),
+        ])
+        .output()?;
+    if output.status.success() {
+        Ok(())
+    } else {
+        let said = String::from_utf8_lossy(&output.stderr);
+        Err(format!("docs/first-ten-minutes.md: a command failed: {said}").into())
+    }
+}
+
+/// The commands of a page, one a line, as a reader would type them.
+fn script(page: &str) -> String {
+    let mut script = String::new();
+    let mut rest = page;
+    while let Some((at, open)) = [SHELL, CONSOLE]
+        .into_iter()
+        .filter_map(|open| Some((rest.find(open)?, open)))
+        .min()
+    {
+        let block = &rest[at + open.len()..];
+        let (block, after) = block.split_once(CLOSE).unwrap_or((block, ""));
+        if open == SHELL {
+            script.push_str(&block.replace("\\\n", " "));
+        } else {
+            for line in block.replace("\\\n", " ").lines() {
+                if let Some(command) = line.strip_prefix("$ ") {
+                    script.push_str(command);
+                    script.push('\n');
+                }
+            }
+        }
+        rest = after;
+    }
+    script
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "a failure here is a failed test")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_script_is_the_commands_without_what_they_print() {
+        let page = "a\n```sh\nmake \\\n  all\n```\n```toml\nx = 1\n```\n\
+                    ```console\n$ show \\\n    this\nsize 3 $ 4\n$ end\n```\n";
+        assert_eq!(script(page), "make    all\nshow      this\nend\n");
+    }
+
+    #[test]
+    fn the_page_clones_builds_and_goes_on_to_the_gain() {
+        let path = page::docs().join("first-ten-minutes.md");
+        let script = script(&std::fs::read_to_string(path).expect("the page is committed"));
+        let mut rest = script.as_str();
+        for part in [
+            format!("git clone {REPOSITORY}").as_str(),
+            "cargo build --release",
+            "gyrocal simulate",
+            "gyrocal diagnose",
+            "gyrocal calibrate",
+            "gyrocal extend",
+            "--validate",
+        ] {
+            let at = rest.find(part);
+            let at = at.unwrap_or_else(|| panic!("`{part}` is missing, or earlier"));
+            rest = &rest[at..];
+        }
+    }
+}
