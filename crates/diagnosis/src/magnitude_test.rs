@@ -1,5 +1,5 @@
 //! Specific-force magnitude test: separates errors of the accelerometers from errors of gyros,
-//! attitude and site (docs/method.md, equation 18).
+//! attitude and site (docs/method.md, equation 20).
 
 use gyrocal_record::{Bench, Record};
 use gyrocal_statistics::{BinnedMeans, p_of_least};
