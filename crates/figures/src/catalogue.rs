@@ -50,7 +50,10 @@ pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
         }
     }
     let note = Figure::note("signatures drawn", drawn.to_string());
-    let current = Figure::truth("docs/catalogue.md is the catalogue, with its pictures", same);
+    let current = Figure::truth(
+        "docs/catalogue.md is the catalogue, with its pictures",
+        same,
+    );
     Ok(vec![note, current])
 }
 

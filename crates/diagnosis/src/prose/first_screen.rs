@@ -171,6 +171,21 @@ fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
             gain.cross_validated_log_score_nats
         ),
     );
+    if let Some(validation) = &gain.validation {
+        let error = &validation.compensation;
+        screen.fact(
+            "later record",
+            format!(
+                "{:+.1} nats with it; attitude after {} h of compensation off by {} → {} arcmin ({} \
+                 expected)",
+                validation.log_score_nats,
+                format::short(error.after_h, 3),
+                format::short(error.nominal_arcmin, 2),
+                format::short(error.extended_arcmin, 2),
+                format::short(error.expected_arcmin, 2)
+            ),
+        );
+    }
     let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
     shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
     let named: Vec<String> = shifts

@@ -218,8 +218,7 @@ fn left_by_the_fit(simulation: &Simulation, scenario: &Scenario) -> Result<Vec<[
         record: &simulation.record,
         bench: &bench,
     };
-    let fit =
-        FittedPlatform::nominal_once(&run, &Options::default(), &NoiseModel::default())?;
+    let fit = FittedPlatform::nominal_once(&run, &Options::default(), &NoiseModel::default())?;
     Ok(difference(&simulation.record.accel_g, &fit.free_run_g()?))
 }
 
