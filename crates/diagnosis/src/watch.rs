@@ -78,6 +78,9 @@ pub struct WatchAlarm {
 pub struct WatchCause {
     /// Id of the effect in the catalogue.
     pub id: String,
+    /// Axis that the attitude jumped about, from zero; `None` for other effects.
+    #[serde(skip)]
+    pub jump_axis: Option<usize>,
     /// Estimate of its size.
     pub estimate: f64,
     /// Standard deviation of the estimate, from the declared noise.
@@ -235,13 +238,14 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
     ) -> WatchCause {
         let [estimate, sigma] = [candidate.estimate, candidate.sigma].map(|number| number.to_f64());
         let since = row.saturating_sub(candidate.steps_since as usize);
-        let (id, unit, scale) = match effect {
-            Some(effect) => (effect.id.to_owned(), effect.unit, 1.0),
+        let (id, jump_axis, unit, scale) = match effect {
+            Some(effect) => (effect.id.to_owned(), None, effect.unit, 1.0),
             None => {
                 let axis = candidate.effect - EFFECTS_BY_DEFAULT.len();
                 let letter = ["x", "y", "z"].get(axis).copied().unwrap_or_default();
                 (
                     format!("platform.knock about {letter}"),
+                    Some(axis),
                     "deg",
                     1.0_f64.to_degrees(),
                 )
@@ -249,6 +253,7 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
         };
         WatchCause {
             id,
+            jump_axis,
             estimate: scale * estimate,
             sigma: scale * sigma,
             unit,

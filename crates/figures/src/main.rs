@@ -51,7 +51,7 @@ struct Arguments {
     /// Only these parts of the topic (truth).
     #[arg(long = "part", value_name = "PART")]
     parts: Vec<truth::Part>,
-    /// Most records of each population (truth, logs, any-plant): a part of the full version, which goes on from there.
+    /// Most records of each population (truth, logs, any-plant, watch): a part of the full version, which goes on from there.
     #[arg(long, value_name = "COUNT")]
     records: Option<u64>,
     /// Also write the table into this file, with the command that printed it.
@@ -148,7 +148,7 @@ fn main() -> ExitCode {
         Topic::Logs => logs::figures(extent),
         Topic::Report => report::figures(arguments.small, arguments.write),
         Topic::Truth => truth::figures(extent, &arguments.parts),
-        Topic::Watch => watch::figures(arguments.small),
+        Topic::Watch => watch::figures(extent),
         Topic::Paper => paper::figures(arguments.write),
         Topic::Fleet => fleet::figures(arguments.small),
     };

@@ -4,6 +4,9 @@ use gyrocal_watch::{JumpScores, Scores};
 use crate::noise::{Noise, Source};
 use crate::sizes::{COLUMNS, EFFECTS, JUMPS, ONSETS, STATES};
 
+/// Noise of a gyro beyond this many sigma in one sample turns the platform as a knock does.
+const OUTLIER: f64 = 30.0;
+
 /// An effect in a simulation, from a step on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Injected {
@@ -36,6 +39,8 @@ pub struct Lane {
     pub alone: Option<(usize, Option<usize>)>,
     /// Effects that could not be told apart at the alarm, the most likely one first.
     pub set: Vec<usize>,
+    /// The last step at which the noise of a gyro was beyond thirty sigma before the alarm, with its size.
+    pub outlier: Option<(usize, f64)>,
     /// Sum of squares of the innovations since the onset, and the same over its first day.
     pub information: [f64; 2],
     pub(crate) sums: [f64; 2],
@@ -75,6 +80,7 @@ impl Lane {
             alarm: None,
             alone: None,
             set: Vec::new(),
+            outlier: None,
             information: [0.0; 2],
             sums: [0.0; 2],
             alone_sum: 0.0,
@@ -101,6 +107,11 @@ impl Lane {
             Some(source) => source.sample(),
             None => [0.0; 6],
         };
+        let [x, y, z, ..] = noise.map(f64::abs);
+        let largest = x.max(y).max(z);
+        if largest > OUTLIER && self.alarm.is_none() {
+            self.outlier = Some((row, largest));
+        }
         let mut drift: [f64; 3] = core::array::from_fn(|gyro| sigmas.drift * noise[gyro]);
         let mut accel: [f64; 3] = core::array::from_fn(|axis| sigmas.accel * noise[3 + axis]);
         let mut knock = [0.0; 3];

@@ -12,9 +12,9 @@ pub enum Noise {
     Correlated(f64),
     /// That of accelerometers is Student's with four degrees of freedom, of the declared variance.
     Student4,
-    /// That of gyros is. Its outliers are jumps of the attitude: a sample of sixty sigma, of which
-    /// a year has some, turns the platform by as much as jumps that are looked for.
-    Student4Gyros,
+    /// That of gyros and accelerometers is. Outliers of gyros are jumps of the attitude: a sample of
+    /// sixty sigma, of which a year has some, turns the platform by as much as jumps that are looked for.
+    Student4Both,
 }
 
 /// Six noises a sample, and three steps of walks when they are asked for.
@@ -69,9 +69,9 @@ impl Source {
                     *before = *normal;
                 }
             }
-            Noise::Student4 | Noise::Student4Gyros => {
+            Noise::Student4 | Noise::Student4Both => {
                 let first = if self.noise == Noise::Student4 { 3 } else { 0 };
-                for i in first..first + 3 {
+                for i in first..6 {
                     // χ² with four degrees of freedom; the variance of the quotient is 2.
                     let chi_square = -2.0 * (self.uniform() * self.uniform()).ln();
                     normals[i] *= (2.0 / chi_square).sqrt();

@@ -14,7 +14,6 @@ const CALENDAR: Calendar = Calendar::of_slots(ONSETS);
 const INTERVAL_S: f64 = 60.0;
 const DRIFT_NOISE: f64 = 0.002;
 const ACCEL_NOISE_G: f64 = 1e-5;
-const SET_WIDTH: f64 = 9.0;
 
 /// A platform with its filter, and the signatures of its watch.
 pub struct Platform {
@@ -23,6 +22,7 @@ pub struct Platform {
     signatures: Signatures<f64, STATES, COLUMNS, EFFECTS, ONSETS, HALF>,
     jumps: Jumps<f64, 3, JUMPS>,
     settings: Settings<f64, EFFECTS, 3>,
+    set_width: f64,
     block_s: f64,
 }
 
@@ -65,6 +65,7 @@ impl Platform {
             signatures: Signatures::new(gyrocal::watch::columns(), entries),
             jumps: Jumps::new(),
             settings: watch.of_test(information),
+            set_width: watch.set_width,
             block_s: watch.block_s,
         })
     }
@@ -191,7 +192,7 @@ impl Platform {
         for lane in lanes.iter_mut() {
             if lane.alarm.is_none() && lane.sums[1] >= threshold {
                 lane.alarm = Some((row, Grid::Jumps));
-                lane.set = self.likely(lane, span);
+                lane.set = self.likely(lane);
             }
         }
     }
@@ -241,13 +242,13 @@ impl Platform {
             }
             if lane.alarm.is_none() && lane.sums[0] >= threshold {
                 lane.alarm = Some((row, Grid::Effects));
-                lane.set = self.likely(lane, u32::MAX);
+                lane.set = self.likely(lane);
             }
         }
     }
 
     /// Effects within the deviance of a set, the most likely one first; jumps follow the effects.
-    fn likely(&self, lane: &Lane, span: u32) -> Vec<usize> {
+    fn likely(&self, lane: &Lane) -> Vec<usize> {
         let deviance = |score: f64, information: f64| {
             if information > 0.0 {
                 score * score / information
@@ -265,19 +266,17 @@ impl Platform {
                 (effect, (0..ONSETS).map(of_slot).fold(0.0, f64::max))
             })
             .collect();
-        if span < u32::MAX {
-            all.extend((0..3).map(|jump| {
-                let of_slot = |slot: usize| {
-                    let cell = self.jumps.cell(slot);
-                    let information = cell.map_or(0.0, |cell| cell.information[jump]);
-                    deviance(lane.jump_scores.scores(slot)[jump], information)
-                };
-                (EFFECTS + jump, (0..JUMPS).map(of_slot).fold(0.0, f64::max))
-            }));
-        }
+        all.extend((0..3).map(|jump| {
+            let of_slot = |slot: usize| {
+                let cell = self.jumps.cell(slot);
+                let information = cell.map_or(0.0, |cell| cell.information[jump]);
+                deviance(lane.jump_scores.scores(slot)[jump], information)
+            };
+            (EFFECTS + jump, (0..JUMPS).map(of_slot).fold(0.0, f64::max))
+        }));
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
         let most = all.first().map_or(0.0, |(_, deviance)| *deviance);
-        all.retain(|(_, deviance)| *deviance >= most - SET_WIDTH);
+        all.retain(|(_, deviance)| *deviance >= most - self.set_width);
         all.into_iter().map(|(effect, _)| effect).collect()
     }
 }

@@ -6,6 +6,8 @@ use crate::lane::Lane;
 use crate::noise::Noise;
 use crate::platform::Platform;
 
+/// Steps that an onset of jumps lives.
+const JUMP_LIFE: usize = 48;
 /// Days of a year.
 const YEAR_DAYS: f64 = 365.25;
 
@@ -18,6 +20,9 @@ pub struct Sound {
     pub alarms: usize,
     /// Those whose first alarm was one of jumps.
     pub by_jumps: usize,
+    /// Sizes of the outliers of gyros, sigma, that alarms followed within the life of a jump's onset;
+    /// one for each such alarm.
+    pub outliers: Vec<f64>,
     /// Days until each alarm.
     pub days: Vec<f64>,
 }
@@ -55,10 +60,17 @@ pub fn sound(
             .iter()
             .filter(|lane| lane.alarm.is_some_and(|(_, grid)| grid == Grid::Jumps))
             .count(),
+        outliers: lanes.iter().filter_map(followed).collect(),
         days: lanes
             .iter()
             .filter_map(|lane| Some(lane.alarm?.0 as f64 / 1440.0))
             .collect(),
     };
     Ok(all.chunks(lanes.max(1)).map(of_noise).collect())
+}
+
+/// The outlier of a gyro that an alarm followed, sigma.
+fn followed(lane: &Lane) -> Option<f64> {
+    let ((alarm, _), (row, size)) = (lane.alarm?, lane.outlier?);
+    (row <= alarm && alarm - row <= JUMP_LIFE).then_some(size)
 }

@@ -1,0 +1,139 @@
+//! Delays beside the e-process of one effect alone, and the sets at the alarms.
+
+use gyrocal_statistics::Proportion;
+use gyrocal_watch_trials::{Delay, Injected, Trial, delays};
+
+use super::LANES;
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::resumable;
+use crate::truth::Extent;
+
+/// A population that no constant was tuned on.
+const DELAYS: u64 = 20_261_132;
+/// Days that an alarm is waited for.
+const DAYS: usize = 30;
+/// A cell with fewer alarms among its runs has no share of its own: they are those that noise helped.
+const ALARMED: f64 = 0.5;
+
+/// Effects on gyro or accelerometer x, and their ids.
+const EFFECTS: [(&str, Injected, &str); 4] = [
+    ("step", Injected::Step(0), "gyro_x.step"),
+    ("ramp", Injected::Ramp(0), "gyro_x.ramp"),
+    ("cross-axis term", Injected::Cross(0, 1), "gyro_x.g_y"),
+    ("bias", Injected::Bias(0), "accel_x.bias"),
+];
+const SIZES: [f64; 3] = [2.0, 4.0, 8.0];
+
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
+    let platforms = extent.records(40, 2);
+    let (lanes, days) = if small { (3, 3) } else { (LANES, DAYS) };
+    let sizes: &[f64] = if small { &SIZES[2..] } else { &SIZES };
+    let trials: Vec<Trial> = EFFECTS
+        .iter()
+        .flat_map(|(_, effect, id)| {
+            sizes.iter().map(|sigmas_a_day| Trial {
+                effect: *effect,
+                id,
+                sigmas_a_day: *sigmas_a_day,
+            })
+        })
+        .collect();
+    let mut figures = Vec::new();
+    let mut at_alarm: Vec<Delay> = Vec::new();
+    let mut worst: Option<(Proportion, String)> = None;
+    for walk in [0.0, 1e-5] {
+        let seeds = 0..platforms;
+        let cell = format!("delays {walk:e}");
+        let campaign = resumable::campaign("watch", &cell, seeds.clone(), small)?;
+        let job = |number| delays(DELAYS, number, &trials, lanes, days, walk);
+        let outcome = campaign.run(job, |_| ())?;
+        for (place, trial) in trials.iter().enumerate() {
+            let runs: Vec<Delay> = outcome
+                .successes()
+                .filter_map(|(_, all): (_, &Vec<Vec<Delay>>)| all.get(place))
+                .flatten()
+                .cloned()
+                .collect();
+            let kind = EFFECTS[place / sizes.len()].0;
+            let name = format!(
+                "{kind} of {} sigma a day, walk {walk:.0e}",
+                trial.sigmas_a_day
+            );
+            let count = runs.len();
+            let figure = delay_figure(&name, &runs, small);
+            figures.push(figure.over(count, format!("{DELAYS}, {seeds:?}")));
+            let found: Vec<Delay> = runs
+                .into_iter()
+                .filter(|run| run.days > Some(0.0))
+                .collect();
+            let held = Proportion::of(found.iter().map(|run| run.held));
+            let least = worst
+                .as_ref()
+                .map_or(f64::INFINITY, |(least, _)| least.share());
+            if found.len() as f64 >= ALARMED * count as f64 && held.share() < least {
+                worst = Some((held, name));
+            }
+            at_alarm.extend(found);
+        }
+    }
+    figures.extend(of_sets(&at_alarm, worst, small));
+    Ok(figures)
+}
+
+/// The sets at all alarms, and those of the effect and size that they hold most rarely.
+fn of_sets(at_alarm: &[Delay], worst: Option<(Proportion, String)>, small: bool) -> Vec<Figure> {
+    let seeds = format!("{DELAYS}, all above");
+    let share = |name: &str, held: Proportion| {
+        let figure = Figure::within(name, [0.95, f64::INFINITY], held.share()).of_share(held);
+        let figure = match small {
+            true => figure.judged(held.at_least(0.95)),
+            false => figure,
+        };
+        figure.over(held.trials as usize, seeds.as_str())
+    };
+    let held = Proportion::of(at_alarm.iter().map(|run| run.held));
+    let mut figures = vec![share("set at the alarm holds the truth", held)];
+    if let Some((held, name)) = worst {
+        let mut figure = share("the same of the effect and size with the least share", held);
+        figure.measured = format!("{} ({name})", figure.measured);
+        figures.push(figure);
+    }
+    let effects: usize = at_alarm.iter().map(|run| run.set).sum();
+    let mean = effects as f64 / at_alarm.len().max(1) as f64;
+    figures.push(
+        Figure::within("effects in the set, mean", [1.0, 3.0], mean).over(at_alarm.len(), seeds),
+    );
+    figures
+}
+
+/// Median delay over that of the e-process with this effect alone; runs without an alarm come last.
+fn delay_figure(name: &str, runs: &[Delay], small: bool) -> Figure {
+    let median = |of: fn(&Delay) -> Option<f64>| {
+        let mut days: Vec<f64> = runs
+            .iter()
+            .map(|run| of(run).unwrap_or(f64::INFINITY))
+            .collect();
+        days.sort_by(f64::total_cmp);
+        days.get(days.len() / 2).copied().unwrap_or(f64::INFINITY)
+    };
+    let (days, alone) = (median(|run| run.days), median(|run| run.alone_days));
+    let name = format!("median delay over the one of this effect alone: {name}");
+    let told = |days: f64| match days {
+        days if days.is_finite() => format!("{days:.2} days"),
+        _ => format!("not in {DAYS} days"),
+    };
+    if small || !alone.is_finite() {
+        return Figure::note(&name, format!("{}, alone {}", told(days), told(alone)));
+    }
+    Figure {
+        measured: format!(
+            "{:.2} ({}, alone {})",
+            days / alone,
+            told(days),
+            told(alone)
+        ),
+        ..Figure::within(&name, [0.0, 1.4], days / alone)
+    }
+}
