@@ -4,7 +4,9 @@ use gyrocal_estimation::{ArrayStorage, EstimationError, Factors, Filter, Innovat
 use crate::anchor::{Anchored, Chart};
 use crate::generated::platform::{Drift, Platform, reanchor};
 use crate::initial_attitude::InitialAttitude;
+// emit: off
 use crate::rotation::angles;
+// emit: on
 use crate::settings::FilterSettings;
 
 /// Most parts that one interval is divided into: years of two-minute steps.
@@ -280,11 +282,13 @@ impl<T: Precision, F: Form<T>> PlatformFilter<T, F> {
         })
     }
 
+    // emit: off
     /// Estimated platform angles against East-North-Up, rad: rotations about x, then y, then z.
     #[must_use]
     pub fn angles_rad(&self) -> [T; 3] {
         angles(&self.platform_c_enu())
     }
+    // emit: on
 
     /// The filter underneath, to restore it.
     pub(crate) fn kernel_mut(&mut self) -> &mut PlatformKernel<T, F> {

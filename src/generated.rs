@@ -14,6 +14,7 @@ pub mod platform {
     include!(concat!(env!("OUT_DIR"), "/platform.rs"));
 }
 
+// emit: off
 /// The nominal platform with errors of latitude, Earth rate and gravity as parameters.
 #[cfg(not(gyrocal_rederived))]
 #[rustfmt::skip]
@@ -128,3 +129,4 @@ const fn inputs_hash(source: &'static str) -> &'static str {
     }
     source.split_at(start + MARK.len()).1.split_at(DIGITS).0
 }
+// emit: on

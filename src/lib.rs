@@ -77,6 +77,7 @@ mod anchor;
 mod chart_vectors;
 mod controller;
 mod controller_error;
+mod extension;
 mod filter;
 pub mod generated;
 mod initial_attitude;
@@ -95,21 +96,28 @@ pub use anchor::{Anchored, Chart};
 pub use chart_vectors::{ChartInputs, ChartVectors};
 pub use controller::{ControllerFilter, Limits};
 pub use controller_error::ControllerError;
+pub use extension::{ExtensionFilter, ExtensionKernel};
 pub use filter::{FactorisedPlatformFilter, PlatformFilter};
 #[cfg(feature = "catalogue")]
 pub use generated::catalogue::{Catalogue, EFFECTS};
 pub use generated::platform::{Drift, Platform};
-pub use generated::strapdown::Strapdown;
-pub use generated::surveyed::Surveyed;
 pub use gyrocal_estimation::{
     self as estimation, EstimationError, Innovation, Integration, Precision, Recentring,
 };
-pub use gyrocal_scalar::effect::{self, Effect};
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
 pub use initial_attitude::{ChartAngles, InitialAttitude};
 pub use saved::{SavedForm, SavedNumber};
 pub use settings::{Discretisation, FilterSettings};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};
+
+// emit: off
+#[cfg(feature = "source")]
+pub mod source;
+
+pub use generated::strapdown::Strapdown;
+pub use generated::surveyed::Surveyed;
+pub use gyrocal_scalar::effect::{self, Effect};
+// emit: on
 
 /// The example of the README.
 #[cfg(doctest)]

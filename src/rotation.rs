@@ -147,6 +147,7 @@ pub(crate) fn rotation_vector<T: Scalar + PartialOrd>(matrix: &[[T; 3]; 3]) -> [
     axis.map(|component| component * direction)
 }
 
+// emit: off
 /// Platform angles of equation (4) from the direction cosine matrix: rotations about x, then
 /// y, then z. At theta_y = ±90° only a combination of x and z is determined.
 #[inline]
@@ -159,6 +160,7 @@ pub(crate) fn angles<T: Scalar>(platform_c_enu: &[[T; 3]; 3]) -> [T; 3] {
         (-c[1][0]).atan2(c[0][0]),
     ]
 }
+// emit: on
 
 #[cfg(test)]
 mod tests {

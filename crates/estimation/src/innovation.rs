@@ -141,6 +141,7 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         core::array::from_fn(|k| self.weights[k] * self.variance[k].sqrt())
     }
 
+    // emit: off
     /// Natural logarithm of the density of this innovation.
     #[must_use]
     pub fn log_likelihood(&self) -> T {
@@ -153,4 +154,5 @@ impl<T: Real, const Y: usize> Innovation<T, Y> {
         }
         T::from_f64(-0.5) * sum
     }
+    // emit: on
 }

@@ -137,6 +137,9 @@ mod transition;
 mod unrolled;
 mod zeros;
 
+#[cfg(feature = "source")]
+pub mod source;
+
 pub use covariance::Covariance;
 pub use error::EstimationError;
 pub use factor::Factors;

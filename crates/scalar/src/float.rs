@@ -8,10 +8,10 @@
 //! library it remains the only one.
 
 use crate::exact;
+use crate::{Real, Scalar, exp_f64, sin_cos_f32, sin_cos_f64};
+// emit: off
 use crate::single::hypot_f32;
-use crate::{
-    Real, Scalar, asin_f32, erf_inv_f32, erf_inv_f64, exp_f64, sin_cos_f32, sin_cos_f64, tan_f32,
-};
+use crate::{asin_f32, erf_inv_f32, erf_inv_f64, tan_f32};
 
 /// Functions of `libm` with NaN outside of their domain.
 mod domain {
@@ -26,10 +26,11 @@ mod domain {
         if x < 1.0 { f32::NAN } else { libm::acoshf(x) }
     }
 }
+// emit: on
 
 macro_rules! impl_float {
-    ($float:ident, $sin_cos:path, $($method:ident => $function:path),* ;
-     $($binary:ident => $of_two:path),*) => {
+    ($float:ident, $sin_cos:path, $($method:ident => $function:path),* $(,)? ;
+     $($binary:ident => $of_two:path),* $(,)?) => {
         impl Scalar for $float {
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
@@ -125,23 +126,37 @@ macro_rules! impl_float {
 }
 
 impl_float!(f64, sin_cos_f64,
+    exp => exp_f64, sqrt => exact::sqrt,
+    // emit: off
     tan => libm::tan, asin => libm::asin, acos => libm::acos, atan => libm::atan,
     sinh => libm::sinh, cosh => libm::cosh, tanh => libm::tanh,
     asinh => libm::asinh, acosh => domain::acosh, atanh => libm::atanh,
-    exp => exp_f64, exp_m1 => libm::expm1, ln => libm::log, ln_1p => libm::log1p,
+    exp_m1 => libm::expm1, ln => libm::log, ln_1p => libm::log1p,
     erf => libm::erf, erf_inv => erf_inv_f64,
-    sqrt => exact::sqrt, floor => exact::floor, ceil => exact::ceil;
+    floor => exact::floor, ceil => exact::ceil,
+    // emit: on
+    ;
+    // emit: off
     atan2 => libm::atan2, powf => libm::pow, hypot => libm::hypot,
-    fmod => libm::fmod, remainder => libm::remainder);
+    fmod => libm::fmod, remainder => libm::remainder,
+    // emit: on
+);
 impl_float!(f32, sin_cos_f32,
+    exp => libm::expf, sqrt => exact::sqrtf,
+    // emit: off
     tan => tan_f32, asin => asin_f32, acos => libm::acosf, atan => libm::atanf,
     sinh => libm::sinhf, cosh => libm::coshf, tanh => libm::tanhf,
     asinh => libm::asinhf, acosh => domain::acoshf, atanh => libm::atanhf,
-    exp => libm::expf, exp_m1 => libm::expm1f, ln => libm::logf, ln_1p => libm::log1pf,
+    exp_m1 => libm::expm1f, ln => libm::logf, ln_1p => libm::log1pf,
     erf => libm::erff, erf_inv => erf_inv_f32,
-    sqrt => exact::sqrtf, floor => exact::floorf, ceil => exact::ceilf;
+    floor => exact::floorf, ceil => exact::ceilf,
+    // emit: on
+    ;
+    // emit: off
     atan2 => libm::atan2f, powf => libm::powf, hypot => hypot_f32,
-    fmod => libm::fmodf, remainder => libm::remainderf);
+    fmod => libm::fmodf, remainder => libm::remainderf,
+    // emit: on
+);
 
 #[cfg(test)]
 mod tests {

@@ -18,6 +18,13 @@ pub trait Scalar:
     /// Sine and cosine of an angle in radians.
     #[must_use]
     fn sin_cos(self) -> (Self, Self);
+    /// Natural exponential.
+    #[must_use]
+    fn exp(self) -> Self;
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    // emit: off
     /// Tangent of an angle in radians.
     #[must_use]
     fn tan(self) -> Self;
@@ -42,15 +49,9 @@ pub trait Scalar:
     /// Hyperbolic tangent.
     #[must_use]
     fn tanh(self) -> Self;
-    /// Natural exponential.
-    #[must_use]
-    fn exp(self) -> Self;
     /// Natural logarithm.
     #[must_use]
     fn ln(self) -> Self;
-    /// Square root.
-    #[must_use]
-    fn sqrt(self) -> Self;
     /// `self` to a power that is not a small integer.
     #[must_use]
     fn powf(self, exponent: Self) -> Self;
@@ -91,6 +92,7 @@ pub trait Scalar:
     /// Root of the sum of the squares, without overflow in between.
     #[must_use]
     fn hypot(self, other: Self) -> Self;
+    // emit: on
     /// `self` with the sign of `sign`.
     #[must_use]
     fn copysign(self, sign: Self) -> Self;

@@ -7,7 +7,7 @@ use gyrocal::{
     Anchored, Catalogue, Chart, Drift, FilterSettings, InitialAttitude, Integration, Platform,
     Recentring, Site,
 };
-use gyrocal_extended::Controller;
+use gyrocal_extended::{Controller, controller};
 use gyrocal_extended::extended::{Extended, PARAMETERS, START};
 use gyrocal_truth::{Scenario, simulate};
 
@@ -121,7 +121,7 @@ pub fn after_one_step() -> [f64; 2] {
     let drift = [0.41, -0.13, 0.04, -0.29, 0.21, -0.07, 0.15, 0.09, 0.02];
     let settings = settings(Drift::from_array(drift));
     let attitude = attitude([0.4, -0.6, 1.1]);
-    let mut extended = Controller::new(&settings, &attitude).unwrap();
+    let mut extended = controller(&settings, &attitude).unwrap();
     let mut catalogue = catalogue_filter(&settings, &attitude);
     let sample = extended.expected_g();
     extended.take(0.0, &sample).unwrap();
@@ -142,7 +142,7 @@ pub fn after_three_days() -> [f64; 2] {
     let angles = [10.0_f64, -20.0, 35.0].map(f64::to_radians);
     let settings = settings(Drift::from_array([0.0; Platform::PARAMETERS]));
     let attitude = attitude(angles);
-    let mut extended = Controller::new(&settings, &attitude).unwrap();
+    let mut extended = controller(&settings, &attitude).unwrap();
     let mut catalogue = catalogue_filter(&settings, &attitude);
     for (row, sample) in record.accel_g.iter().take(4321).enumerate() {
         if row == 0 {

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use gyrocal::{FilterSettings, InitialAttitude, PlatformFilter, Site};
-use gyrocal_extended::Controller;
+use gyrocal_extended::controller;
 use gyrocal_record::{Bench, Record};
 
 /// Time with measurement updates, s.
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let attitude = attitude(&bench)?;
     let mut nominal = PlatformFilter::new(&settings, &attitude)?;
-    let mut extended = Controller::new(&settings, &attitude)?;
+    let mut extended = controller(&settings, &attitude)?;
 
     println!("hours alone   nominal error    extended error    torquer command, deg/h");
     let mut next_line_s = 0.0;

@@ -13,4 +13,4 @@ pub mod extended {
     include!(concat!(env!("OUT_DIR"), "/extended.rs"));
 }
 
-pub use controller::{Controller, ExtendedFilter};
+pub use controller::{Controller, controller};

@@ -5,7 +5,7 @@
 )]
 
 use gyrocal::{FilterSettings, InitialAttitude, PlatformFilter, Site};
-use gyrocal_extended::Controller;
+use gyrocal_extended::controller;
 use gyrocal_truth::{Scenario, simulate};
 
 const FAULT: &str = include_str!("../fault.scenario.toml");
@@ -26,7 +26,7 @@ fn a_day_without_samples_is_predicted_to_a_tenth_of_the_nominal_error() {
         sigma_rad: bench.initial_angles_sigma_deg.map(f64::to_radians),
     };
     let mut nominal = PlatformFilter::new(&settings, &attitude).unwrap();
-    let mut extended = Controller::new(&settings, &attitude).unwrap();
+    let mut extended = controller(&settings, &attitude).unwrap();
     let (mut of_nominal, mut of_extended) = (0.0, 0.0);
     for (row, sample) in record.accel_g.iter().enumerate() {
         if row == 0 {

@@ -6,7 +6,7 @@
 )]
 
 use gyrocal::Drift;
-use gyrocal_extended::Controller;
+use gyrocal_extended::controller;
 use gyrocal_extended::extended::START;
 use gyrocal_testkit::extended_comparison::{after_one_step, after_three_days, attitude, settings};
 
@@ -30,7 +30,7 @@ fn three_days_are_the_same() {
 fn the_drift_that_is_compensated_is_that_of_the_equations() {
     let drift = [0.41, -0.13, 0.04, -0.29, 0.21, -0.07, 0.15, 0.09, 0.02];
     let settings = settings(Drift::from_array(drift));
-    let controller = Controller::new(&settings, &attitude([0.4, -0.6, 1.1])).unwrap();
+    let controller = controller(&settings, &attitude([0.4, -0.6, 1.1])).unwrap();
     let a = [0.3_f64, -0.5, 0.8];
     let mut expected: [f64; 3] =
         std::array::from_fn(|i| drift[3 * i] + a[i] * (drift[3 * i + 1] + a[i] * drift[3 * i + 2]));
