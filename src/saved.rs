@@ -27,7 +27,7 @@ const VERSION: u16 = 1;
 const NUMBERS: usize = 3 * Platform::STATES + Platform::STATES * (Platform::STATES - 1) / 2;
 const HEAD: usize = 16;
 const CHART: usize = 12;
-const CHECKSUM: usize = 4;
+pub(crate) const CHECKSUM: usize = 4;
 
 /// Bytes of a saved state of numbers of `number` bytes.
 pub(crate) const fn length(number: usize) -> usize {
@@ -153,7 +153,7 @@ pub(crate) fn restore<T: SavedNumber, F: Form<T> + SavedForm>(
 
 /// The number at an index; out of line, as a state is read number by number at several places.
 #[inline(never)]
-fn number_at<T: SavedNumber>(body: &[u8], index: usize) -> Option<T> {
+pub(crate) fn number_at<T: SavedNumber>(body: &[u8], index: usize) -> Option<T> {
     body.chunks_exact(T::BYTES).nth(index).and_then(T::read)
 }
 
@@ -193,18 +193,18 @@ const MODEL: u32 = {
 };
 
 #[inline(always)]
-fn copy(from: &[u8], to: &mut [u8]) {
+pub(crate) fn copy(from: &[u8], to: &mut [u8]) {
     for (place, byte) in to.iter_mut().zip(from) {
         *place = *byte;
     }
 }
 
-fn crc32(bytes: &[u8]) -> u32 {
+pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     !crc32_of(!0, bytes)
 }
 
 /// CRC-32 of IEEE 802.3, bit by bit: a table would take a kilobyte.
-const fn crc32_of(mut checksum: u32, bytes: &[u8]) -> u32 {
+pub(crate) const fn crc32_of(mut checksum: u32, bytes: &[u8]) -> u32 {
     let mut rest = bytes;
     while let Some((byte, tail)) = rest.split_first() {
         checksum ^= *byte as u32;

@@ -8,6 +8,7 @@ mod courses;
 mod effects;
 mod filter;
 mod linearised;
+mod saved;
 mod settings;
 
 pub use courses::Courses;

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use gyrocal::watch::{Candidate, EFFECTS_BY_DEFAULT, PlatformWatch, WatchSettings};
-use gyrocal::{FilterSettings, InitialAttitude, Limits, SavedNumber, Site};
+use gyrocal::{ControllerError, FilterSettings, InitialAttitude, Limits, SavedNumber, Site};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude as Declared, Scenario, simulate};
 
 const INTERVAL_S: f64 = 60.0;
@@ -103,4 +103,87 @@ fn sizes_are_those_of_the_simulator() {
         let ratio = found.estimate / size;
         assert!((ratio - 1.0).abs() < 0.02, "{id}: {ratio}");
     }
+}
+
+/// Runs rows of a record; gives the bits that filter and watch show after each.
+fn shown<T: SavedNumber>(watched: &mut PlatformWatch<T>, samples: &[[T; 3]]) -> Vec<u64> {
+    let mut bits = Vec::new();
+    for sample in samples {
+        let step = watched.step(T::from_f64(INTERVAL_S), sample).unwrap();
+        let [effects, jumps] = watched.evidence();
+        for number in [step.innovation.nis, effects, jumps] {
+            bits.push(number.to_f64().to_bits());
+        }
+    }
+    watched.candidates(|_, candidate| {
+        bits.push(candidate.estimate.to_f64().to_bits());
+        bits.push(candidate.sigma.to_f64().to_bits());
+        bits.push(u64::from(candidate.steps_since));
+    });
+    bits
+}
+
+fn goes_on_after_a_reset<T: SavedNumber>() {
+    let scenario = Scenario {
+        duration_s: 1.3 * 86_400.0,
+        ..Scenario::default()
+    };
+    let record = simulate(&scenario).unwrap().record;
+    let samples: Vec<[T; 3]> = record
+        .accel_g
+        .iter()
+        .map(|row| row.map(T::from_f64))
+        .collect();
+    let mut watched = started::<T>(&scenario);
+    watched.update(&samples[0]).unwrap();
+    // Not at the end of a block, and a walk is under way.
+    let (before, after) = samples[1..].split_at(1_003);
+    shown(&mut watched, before);
+    let mut saved = vec![0; PlatformWatch::<T>::SAVED_BYTES];
+    watched.save(&mut saved).unwrap();
+    let mut other = started::<T>(&scenario);
+    other.restore(&saved).unwrap();
+    assert_eq!(shown(&mut watched, after), shown(&mut other, after));
+    // A bit of any byte, and nothing has changed.
+    let mut refused = started::<T>(&scenario);
+    refused.restore(&saved).unwrap();
+    for place in (0..saved.len()).step_by(97) {
+        saved[place] ^= 4;
+        let answer = refused.restore(&saved);
+        assert!(answer.is_err_and(|error| error.is_refusal()), "{place}");
+        saved[place] ^= 4;
+    }
+    assert!(refused.restore(&saved[1..]).is_err());
+    let mut fresh = started::<T>(&scenario);
+    fresh.restore(&saved).unwrap();
+    assert_eq!(
+        shown(&mut refused, &after[..200]),
+        shown(&mut fresh, &after[..200])
+    );
+    let mut unset = PlatformWatch::<T>::unset(&EFFECTS_BY_DEFAULT);
+    assert_eq!(unset.restore(&saved), Err(ControllerError::NotRunning));
+    // The filter alone: the watch begins anew.
+    let filter = &saved[..PlatformWatch::<T>::FILTER_BYTES];
+    other.restore_filter(filter).unwrap();
+    assert_eq!(other.evidence().map(|share| share.to_f64()), [0.0; 2]);
+}
+
+#[test]
+fn filter_and_watch_go_on_after_a_reset_bit_by_bit() {
+    goes_on_after_a_reset::<f32>();
+    goes_on_after_a_reset::<f64>();
+}
+
+#[test]
+fn the_grids_of_effects_and_of_jumps_share_one_probability() {
+    let settings = WatchSettings::<f64>::default();
+    let test = settings.of_test([1.0; 18]);
+    // Halves are exact. The sum bounds the probability that either of both alarms.
+    let both = test.budget.alpha + test.jump_budget.alpha;
+    assert_eq!(both, settings.false_alarms_per_year);
+    // Each threshold is that of its onsets in a year over its share.
+    let onsets = [test.budget, test.jump_budget].map(|budget| budget.onsets_per_year);
+    let (hours, steps) = (8_766.0, test.block_steps);
+    assert_eq!(onsets[0], hours * 60.0 / f64::from(steps));
+    assert_eq!(onsets[1], hours * 60.0 / f64::from(test.span_steps));
 }

@@ -1,3 +1,5 @@
+mod saving;
+
 use gyrocal_estimation::{EstimationError, Factors, Innovation, Precision};
 use gyrocal_watch::{Candidate, Entry, Grid, Step, Watch};
 
@@ -15,6 +17,8 @@ use crate::saved::SavedNumber;
 use crate::settings::FilterSettings;
 
 const N: usize = Platform::STATES;
+/// Steps in which each gyro's walk is added once.
+const WALK_TURNS: u32 = 24;
 /// Elements of the lower half of a matrix over the states.
 const L: usize = N * (N + 1) / 2;
 /// Onsets of effects that live at a time: with blocks of two hours the oldest is 42 days.
@@ -229,7 +233,7 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
             *time = *time + interval_s;
         }
         let turn = self.next_walk;
-        self.next_walk = if turn >= 23 { 0 } else { turn + 1 };
+        self.next_walk = if turn + 1 >= WALK_TURNS { 0 } else { turn + 1 };
         if !turn.is_multiple_of(8) {
             return Ok(());
         }
@@ -353,24 +357,6 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
     #[must_use]
     pub fn linearised(&self) -> &Linearised<T> {
         &self.linearised
-    }
-
-    /// Restores a saved state of the filter; see [`ControllerFilter::restore`]. The watch begins anew.
-    ///
-    /// # Errors
-    /// As [`ControllerFilter::restore`].
-    pub fn restore(&mut self, saved: &[u8]) -> Result<(), ControllerError> {
-        self.filter.restore(saved)?;
-        self.go_on();
-        Ok(())
-    }
-
-    /// Writes the state of the filter; see [`ControllerFilter::save`].
-    ///
-    /// # Errors
-    /// As [`ControllerFilter::save`].
-    pub fn save(&self, place: &mut [u8]) -> Result<(), ControllerError> {
-        self.filter.save(place)
     }
 }
 

@@ -10,6 +10,7 @@ use crate::calibrate::CalibrateArguments;
 use crate::characterise::CharacteriseArguments;
 use crate::diagnose::DiagnoseArguments;
 use crate::effects::EffectsArguments;
+use crate::emit::EmitArguments;
 use crate::extend::ExtendArguments;
 use crate::help;
 use crate::import::ImportArguments;
@@ -45,6 +46,7 @@ pub(crate) enum Command {
     Completions(CompletionsArguments),
     Diagnose(DiagnoseArguments),
     Effects(EffectsArguments),
+    Emit(EmitArguments),
     Extend(ExtendArguments),
     Import(ImportArguments),
     Man(ManArguments),

@@ -13,7 +13,8 @@ use serde::Serialize;
 
 use crate::outputs::{manifest, refuse_overlap};
 use crate::{Answer, Failure};
-use effects::{Extension, known, of_diagnosis, of_list, with_members};
+pub(crate) use effects::known;
+use effects::{Extension, of_diagnosis, of_list, with_members};
 
 /// Write the model file of an extended filter.
 ///

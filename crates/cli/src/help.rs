@@ -11,12 +11,13 @@ const FILES: &str = "Files to write";
 const READ: &str = "Files to read";
 
 /// Ids of options that name files to read.
-const INPUTS: [&str; 7] = [
+const INPUTS: [&str; 8] = [
     "bench",
     "benches",
     "diagnosis",
     "gyro_axes",
     "log_description",
+    "module",
     "validate",
     "validate_bench",
 ];
@@ -34,7 +35,7 @@ const WRITTEN: [&str; 8] = [
 ];
 
 /// Commands with their examples, each a command line with its meaning.
-const EXAMPLES: [(&str, &[[&str; 2]]); 16] = [
+const EXAMPLES: [(&str, &[[&str; 2]]); 17] = [
     (
         "allan",
         &[
@@ -102,6 +103,20 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 16] = [
             ["gyrocal effects", "all effects by the part that they enter"],
             ["gyrocal effects gyro_y.g_z", "one effect"],
             ["gyrocal effects gyro_i.warmup", "the effects of a family"],
+        ],
+    ),
+    (
+        "emit",
+        &[
+            [
+                "gyrocal emit --out filter.rs",
+                "the nominal filter in single precision, for a controller",
+            ],
+            [
+                "gyrocal emit extended.model.toml --module src/generated/extended.rs --number f64 \
+                 --out filter.rs",
+                "an extended filter in double precision",
+            ],
         ],
     ),
     (

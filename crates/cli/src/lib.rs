@@ -16,6 +16,7 @@ mod characterise;
 mod command;
 mod diagnose;
 mod effects;
+mod emit;
 mod error_report;
 mod exit;
 mod extend;
@@ -112,6 +113,7 @@ fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
         Command::Completions(arguments) => Ok(manual::completions(arguments, definition()).into()),
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Effects(arguments) => effects::run(arguments),
+        Command::Emit(arguments) => emit::run(arguments),
         Command::Extend(arguments) => extend::run(arguments),
         Command::Import(arguments) => import::run(arguments),
         Command::Man(arguments) => manual::pages(arguments, definition()),

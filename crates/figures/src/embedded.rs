@@ -2,6 +2,7 @@
 //! equal to the host's, and single precision beside double.
 
 mod c_interface;
+mod emitted;
 mod firmware;
 mod precision;
 mod target;
@@ -17,6 +18,7 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
             let mut figures = firmware::figures(&tools, small)?;
             figures.extend(firmware::watch(&tools)?);
             figures.push(firmware::example(&tools)?);
+            figures.extend(emitted::figures(&tools)?);
             figures.extend(c_interface::figures(Some(&tools), &firmware::on_host()?)?);
             figures
         }

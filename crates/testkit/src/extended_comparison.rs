@@ -7,8 +7,8 @@ use gyrocal::{
     Anchored, Catalogue, Chart, Drift, FilterSettings, InitialAttitude, Integration, Platform,
     Recentring, Site,
 };
-use gyrocal_extended::{Controller, controller};
 use gyrocal_extended::extended::{Extended, PARAMETERS, START};
+use gyrocal_extended::{Controller, controller};
 use gyrocal_truth::{Scenario, simulate};
 
 const STEP_S: f64 = 60.0;

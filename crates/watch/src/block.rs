@@ -39,6 +39,29 @@ impl<T: Real, const N: usize, const D: usize, const L: usize> Block<T, N, D, L> 
         }
     }
 
+    /// All numbers, in the order of [`Self::numbers_mut`].
+    pub(crate) fn numbers(&self) -> [&[T]; 6] {
+        [
+            self.unit.as_flattened(),
+            self.driven.as_flattened(),
+            &self.gram,
+            self.mixed.as_flattened(),
+            self.among.as_flattened(),
+            core::slice::from_ref(&self.passed),
+        ]
+    }
+
+    pub(crate) fn numbers_mut(&mut self) -> [&mut [T]; 6] {
+        [
+            self.unit.as_flattened_mut(),
+            self.driven.as_flattened_mut(),
+            &mut self.gram,
+            self.mixed.as_flattened_mut(),
+            self.among.as_flattened_mut(),
+            core::slice::from_mut(&mut self.passed),
+        ]
+    }
+
     #[inline]
     pub(crate) fn begin(&mut self) {
         for (j, row) in self.unit.iter_mut().enumerate() {

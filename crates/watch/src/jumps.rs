@@ -68,6 +68,45 @@ impl<T: Real, const M: usize, const K: usize> Jumps<T, M, K> {
         }
     }
 
+    /// Calls `put` with all numbers, in the order of [`Self::numbers_mut`].
+    pub(crate) fn numbers(&self, put: &mut dyn FnMut(T)) {
+        for span in &self.spans {
+            let matrices = [&span.through, &span.information];
+            let numbers = matrices.into_iter().flat_map(|rows| rows.as_flattened());
+            numbers.for_each(|number| put(*number));
+        }
+        for cell in &self.cells {
+            let deviations = cell.deviation.as_flattened();
+            let numbers = deviations.iter().chain(&cell.information);
+            numbers.for_each(|number| put(*number));
+        }
+    }
+
+    /// Calls `each` with the place of every number.
+    pub(crate) fn numbers_mut(&mut self, each: &mut dyn FnMut(&mut T)) {
+        for span in &mut self.spans {
+            let matrices = [&mut span.through, &mut span.information];
+            let numbers = matrices
+                .into_iter()
+                .flat_map(|rows| rows.as_flattened_mut());
+            numbers.for_each(&mut *each);
+        }
+        for cell in &mut self.cells {
+            let deviations = cell.deviation.as_flattened_mut();
+            let numbers = deviations.iter_mut().chain(&mut cell.information);
+            numbers.for_each(&mut *each);
+        }
+    }
+
+    /// True if the second of both is gathered.
+    pub(crate) fn second(&mut self) -> &mut bool {
+        &mut self.live
+    }
+
+    pub(crate) fn is_second(&self) -> bool {
+        self.live
+    }
+
     /// Forgets everything.
     pub fn reset(&mut self) {
         let [first, second] = &mut self.spans;
@@ -197,6 +236,24 @@ impl<T: Real, const M: usize, const K: usize> JumpScores<T, M, K> {
             live: false,
             cells: [[T::ZERO; M]; K],
         }
+    }
+
+    /// All numbers, in the order of [`Self::numbers_mut`].
+    pub(crate) fn numbers(&self) -> [&[T]; 2] {
+        [self.spans.as_flattened(), self.cells.as_flattened()]
+    }
+
+    pub(crate) fn numbers_mut(&mut self) -> [&mut [T]; 2] {
+        [self.spans.as_flattened_mut(), self.cells.as_flattened_mut()]
+    }
+
+    /// True if the second of both is gathered.
+    pub(crate) fn second(&mut self) -> &mut bool {
+        &mut self.live
+    }
+
+    pub(crate) fn is_second(&self) -> bool {
+        self.live
     }
 
     /// Forgets everything.

@@ -56,4 +56,4 @@ pub use scores::Scores;
 pub use signatures::{Cell, Direction, Signatures};
 pub use step::{Observed, Step, Whitened};
 pub use table::{Course, Driven, Entry, Value};
-pub use watch::{Candidate, Grid, Settings, Watch};
+pub use watch::{Candidate, Counters, Grid, Settings, Watch};

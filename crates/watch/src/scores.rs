@@ -36,6 +36,32 @@ impl<T: Real, const N: usize, const D: usize, const E: usize, const O: usize>
         }
     }
 
+    /// All numbers, in the order of [`Self::numbers_mut`].
+    pub(crate) fn numbers(&self) -> [&[T]; 3] {
+        [
+            self.unit.as_flattened(),
+            self.driven.as_flattened(),
+            self.cells.as_flattened(),
+        ]
+    }
+
+    pub(crate) fn numbers_mut(&mut self) -> [&mut [T]; 3] {
+        [
+            self.unit.as_flattened_mut(),
+            self.driven.as_flattened_mut(),
+            self.cells.as_flattened_mut(),
+        ]
+    }
+
+    /// True if the second of both is gathered.
+    pub(crate) fn second(&mut self) -> &mut bool {
+        &mut self.live
+    }
+
+    pub(crate) fn is_second(&self) -> bool {
+        self.live
+    }
+
     /// Forgets everything.
     pub fn reset(&mut self) {
         self.unit = [[T::ZERO; N]; 2];

@@ -69,6 +69,45 @@ impl<T: Real, const N: usize, const D: usize, const E: usize, const O: usize, co
         }
     }
 
+    /// Calls `put` with all numbers, in the order of [`Self::numbers_mut`].
+    pub(crate) fn numbers(&self, put: &mut dyn FnMut(T)) {
+        for slice in self.blocks.iter().flat_map(Block::numbers) {
+            slice.iter().for_each(|number| put(*number));
+        }
+        for course in self.courses.as_flattened() {
+            put(course.start);
+            put(course.change);
+        }
+        for cell in self.cells.as_flattened() {
+            cell.deviation.iter().for_each(|number| put(*number));
+            put(cell.information);
+        }
+    }
+
+    /// Calls `each` with the place of every number.
+    pub(crate) fn numbers_mut(&mut self, each: &mut dyn FnMut(&mut T)) {
+        for slice in self.blocks.iter_mut().flat_map(Block::numbers_mut) {
+            slice.iter_mut().for_each(&mut *each);
+        }
+        for course in self.courses.as_flattened_mut() {
+            each(&mut course.start);
+            each(&mut course.change);
+        }
+        for cell in self.cells.as_flattened_mut() {
+            cell.deviation.iter_mut().for_each(&mut *each);
+            each(&mut cell.information);
+        }
+    }
+
+    /// True if the second of both blocks is gathered.
+    pub(crate) fn second(&mut self) -> &mut bool {
+        &mut self.live
+    }
+
+    pub(crate) fn is_second(&self) -> bool {
+        self.live
+    }
+
     /// Forgets everything.
     pub fn reset(&mut self) {
         for slot in 0..O {

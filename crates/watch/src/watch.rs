@@ -1,3 +1,5 @@
+mod saved;
+
 use gyrocal_scalar::Real;
 
 use crate::calendar::Calendar;
@@ -7,6 +9,8 @@ use crate::scores::Scores;
 use crate::signatures::Signatures;
 use crate::step::Step;
 use crate::table::{Course, Driven, Entry};
+
+pub use saved::Counters;
 
 /// Settings of a watch.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -19,7 +19,7 @@ pub(super) struct Extension {
 }
 
 /// Effects that a model file may name.
-pub(super) fn known() -> Vec<KnownEffect<'static>> {
+pub(crate) fn known() -> Vec<KnownEffect<'static>> {
     EFFECTS.iter().map(known_effect).collect()
 }
 

@@ -9,6 +9,7 @@ mod characterise;
 mod contract;
 mod diagnose;
 mod documents;
+mod emit;
 mod extend;
 mod first_screen;
 mod folder;

@@ -1,0 +1,113 @@
+//! `gyrocal emit`: a filter as one Rust file.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_emit::{Emission, EmitError, Extension, Number};
+use gyrocal_record::{ModelFile, Outputs, module_name, printable_path};
+use miette::{IntoDiagnostic as _, Report, WrapErr as _};
+
+use crate::extend::known;
+use crate::outputs::refuse_overlap;
+use crate::{Answer, Failure};
+
+/// Write a filter as one self-contained Rust file.
+///
+/// The file needs `core` only. It has the sources of the libraries, the generated model, and tests with
+/// the numbers that the libraries find: docs/embedding.md. Without a model file the filter is the nominal
+/// one.
+#[derive(Debug, Args)]
+pub(crate) struct EmitArguments {
+    /// Model file of an extended filter, as `gyrocal extend` writes it.
+    #[arg(value_name = "NAME.model.toml", requires = "module")]
+    model: Option<PathBuf>,
+    /// The Rust module that a build derived from the model file: docs/extending.md.
+    #[arg(long, value_name = "NAME.rs", requires = "model")]
+    module: Option<PathBuf>,
+    /// Number type.
+    #[arg(long, value_enum, default_value_t = NumberArgument::F32)]
+    number: NumberArgument,
+    /// Write the file (Rust).
+    #[arg(long, value_name = "FILTER.rs")]
+    out: PathBuf,
+}
+
+/// Number type of the filter.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum NumberArgument {
+    /// Single precision.
+    F32,
+    /// Double precision.
+    F64,
+}
+
+impl From<NumberArgument> for Number {
+    fn from(number: NumberArgument) -> Self {
+        match number {
+            NumberArgument::F32 => Self::F32,
+            NumberArgument::F64 => Self::F64,
+        }
+    }
+}
+
+/// Runs the command; returns the text for stdout.
+pub(crate) fn run(arguments: &EmitArguments) -> Result<Answer, Failure> {
+    let files = [&arguments.model, &arguments.module];
+    let inputs: Vec<&Path> = files.into_iter().flatten().map(PathBuf::as_path).collect();
+    refuse_overlap(&inputs, &[("--out", Some(&arguments.out))])?;
+    let number = Number::from(arguments.number);
+    let extended = match (&arguments.model, &arguments.module) {
+        (Some(model), Some(module)) => {
+            let text = std::fs::read_to_string(module)
+                .into_diagnostic()
+                .wrap_err_with(|| format!("{}: cannot be read", printable_path(module)))
+                .map_err(Failure::Work)?;
+            Some((ModelFile::read(model, &known())?, module_name(model)?, text))
+        }
+        _ => None,
+    };
+    let extension = extended.as_ref().map(|(model, name, text)| Extension {
+        model,
+        name,
+        module: text,
+    });
+    let written = Emission { number, extension }.write();
+    let text = written.map_err(|error| Failure::Work(report(error)))?;
+    let mut outputs = Outputs::new();
+    outputs.stage(&arguments.out, text.as_bytes())?;
+    outputs.commit()?;
+    let effects = extended.map_or_else(Vec::new, |(model, _, _)| model.effects);
+    Ok(Answer::of(
+        screen(arguments, number, &effects),
+        String::new(),
+    ))
+}
+
+fn report(error: EmitError) -> Report {
+    Report::msg(error)
+}
+
+fn screen(arguments: &EmitArguments, number: Number, effects: &[String]) -> Screen {
+    let out = printable_path(&arguments.out);
+    let mut screen = Screen::new(
+        Standing::Good,
+        "FILTER",
+        format!("{out}: one file in {}, core only", number.name()),
+    );
+    let estimated = match effects {
+        [] => "the nine drift coefficients".to_owned(),
+        effects => format!("the nine drift coefficients and {}", effects.join(", ")),
+    };
+    screen.fact("estimates", estimated);
+    screen.fact(
+        "compile",
+        format!("rustc --edition 2024 --crate-type lib {out}"),
+    );
+    screen.fact(
+        "its tests",
+        format!("rustc --edition 2024 -O --test -o filter_tests {out} && ./filter_tests"),
+    );
+    screen.fact("what to do", "put it into a controller: docs/embedding.md");
+    screen
+}
