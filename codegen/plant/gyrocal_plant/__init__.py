@@ -9,6 +9,6 @@ except ModuleNotFoundError:
     # In the tree of gyrocal the exporter stands beside this package.
     sys.path.append(str(Path(__file__).resolve().parents[2] / "emit" / "exporter"))
 
-from .declaration import Plant, PlantError
+from .declaration import Plant, PlantError, handed_over
 
-__all__ = ["Plant", "PlantError"]
+__all__ = ["Plant", "PlantError", "handed_over"]

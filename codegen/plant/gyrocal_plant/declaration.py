@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import difflib
 import importlib.util
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -29,6 +32,21 @@ Equations = _equations()
 
 class PlantError(ExportError):
     """A plant that cannot be diagnosed as it is written; the message says what to change."""
+
+
+_handed: list[tuple[str, list[tuple[str, str]]]] | None = None
+
+
+@contextmanager
+def handed_over() -> Iterator[list[tuple[str, list[tuple[str, str]]]]]:
+    """Programs that `Plant.write` hands over instead of writing them, each with the terms that its
+    catalogue leaves out and why: what a build takes from a script."""
+    global _handed
+    _handed = []
+    try:
+        yield _handed
+    finally:
+        _handed = None
 
 
 @dataclass
@@ -81,6 +99,7 @@ class Plant:
         self._rates: dict[str, ca.SX] = {}
         self._densities: dict[str, float] = {}
         self._effects: list[_Effect] = []
+        self._extensions: list[tuple[str, float, float | None]] = []
         self._dropped: list[tuple[str, str]] = []
         self._grammar: bool | None = None
 
@@ -145,8 +164,16 @@ class Plant:
         """Proposes a catalogue beside the effects that are given."""
         self._grammar = True
 
+    def extend(self, ident: str, value: float = 0.0, sigma: float | None = None) -> None:
+        """Takes a term of the catalogue into the equations. Its size becomes a parameter of this name,
+        with its value before a record and the standard deviation of that."""
+        self._extensions.append((ident, float(value), sigma))
+
     def write(self, path: str | Path | None = None) -> None:
         """Writes the program file, by default beside the script."""
+        if _handed is not None:
+            _handed.append((self.to_json(), self._dropped))
+            return
         target = Path(path) if path else Path(sys.argv[0]).with_suffix(".json")
         target.write_text(self.to_json(), encoding="utf-8", newline="\n")
         print(f"{target}: {len(self._effects)} effects in the catalogue, {len(self._dropped)} left out")
@@ -158,6 +185,7 @@ class Plant:
         self._check()
         if self._grammar is not False:
             self._propose()
+        self._extend()
         sizes = self._judged()
         return self._program(sizes).to_json()
 
@@ -272,13 +300,43 @@ class Plant:
             return
         self._effects.append(_Effect(ident, name, str(term), unit, "term", place, index, term))
 
+    def _extend(self) -> None:
+        """Makes terms of the catalogue nominal ones."""
+        of_time = {effect.id for effect in self._of_time(self._constants())}
+        for ident, value, sigma in self._extensions:
+            known = {effect.id: effect for effect in [*self._constants(), *self._effects]}
+            if ident in of_time:
+                raise PlantError(f"effect `{ident}` is a function of time and no term of the equations, "
+                                 "which a model cannot be extended by: leave it out, each diagnosis "
+                                 "searches for it")
+            if ident not in known:
+                near = difflib.get_close_matches(ident, known, n=3)
+                raise PlantError(f"the catalogue has no effect `{ident}` to extend the plant by"
+                                 + (f"; near names are {', '.join(near)}" if near else ""))
+            effect = known[ident]
+            size = self._declare(self._parameters, ident, effect.unit, effect.name, value=value,
+                                 sigma=_sigma(ident, sigma), positive=False)
+            if effect.place == "rate":
+                state = self._states[effect.index].name
+                self._rates[state] = self._rates[state] + size * effect.term
+            else:
+                facts = self._outputs[effect.index].facts
+                facts["expression"] = facts["expression"] + size * effect.term
+            self._effects = [one for one in self._effects if one is not effect]
+        self._extensions = []
+
+    def _constants(self) -> list[_Effect]:
+        """A constant in each rate that is no definition and in each output."""
+        rates = [_Effect(f"{s.name}_rate.bias", f"rate of {s.name}: a constant", "1",
+                         units.per_s(s.unit), "term", "rate", self._states.index(s), ca.SX(1))
+                 for s in self._moving()]
+        return rates + [_Effect(f"{o.name}.bias", f"sensor: a constant in {o.name}", "1", o.unit or "1",
+                                "term", "output", index, ca.SX(1))
+                        for index, o in enumerate(self._outputs)]
+
     def _judged(self) -> list[_Symbol]:
         """Sizes of all terms: biases of the channels first, then what the catalogue keeps."""
-        biases = [_Effect(f"{s.name}_rate.bias", f"rate of {s.name}: a constant", "1",
-                           units.per_s(s.unit), "term", "rate", self._states.index(s), ca.SX(1))
-                  for s in self._moving()]
-        biases += [_Effect(f"{o.name}.bias", f"sensor: a constant in {o.name}", "1", o.unit or "1",
-                           "term", "output", index, ca.SX(1)) for index, o in enumerate(self._outputs)]
+        biases = self._constants()
         every = biases + self._effects
         sizes = ca.SX.sym("size", len(every))
         rates, output = self._with(every, sizes)
@@ -306,7 +364,7 @@ class Plant:
             every[index].equivalents = [names[o] for o in found[index].equivalents if o in names]
         self._biases = biases
         self._effects = [every[index] for index in kept]
-        self._effects += self._of_time()
+        self._effects += self._of_time(biases)
         own = biases + [e for e in self._effects if e.term is not None and e not in biases]
         return own
 
@@ -320,9 +378,9 @@ class Plant:
             return f"does the same as a change of the nominal parameter {names}, which is fitted"
         return ""
 
-    def _of_time(self) -> list[_Effect]:
+    def _of_time(self, biases: list[_Effect]) -> list[_Effect]:
         found = []
-        for bias in self._biases:
+        for bias in biases:
             channel = bias.id.removesuffix(".bias")
             words = bias.name.removesuffix("a constant").rstrip(": ")
             found.append(_Effect(f"{channel}.ramp", f"{words}: a drift in proportion to time",
@@ -354,7 +412,10 @@ class Plant:
         nominal = len(self._parameters)
         elements = [_element(p.name, p.unit, p.doc, f"parameter_{i}")
                     for i, p in enumerate(self._parameters)]
-        elements += [_element(e.id, e.unit, e.name, f"size_{i}") for i, e in enumerate(terms)]
+        # A constant that extends the plant is a channel as well.
+        taken = {p.name for p in self._parameters}
+        elements += [_element(f"further {e.id}" if e.id in taken else e.id, e.unit, e.name, f"size_{i}")
+                     for i, e in enumerate(terms)]
         parameters = Group("parameters", "Parameters, then sizes of effects.", elements)
         states = Group("states", "States.", [_element(s.name, s.unit, s.doc, f"state_{i}")
                                              for i, s in enumerate(self._states)])

@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches, Parser, Subcommand};
 use gyrocal_record::printable_line;
 
 use crate::allan::AllanArguments;
@@ -12,12 +12,13 @@ use crate::diagnose::DiagnoseArguments;
 use crate::effects::EffectsArguments;
 use crate::emit::EmitArguments;
 use crate::extend::ExtendArguments;
+use crate::exit;
 use crate::help;
 use crate::import::ImportArguments;
 use crate::manual::{CompletionsArguments, ManArguments};
 use crate::monte_carlo::MonteCarloArguments;
 use crate::plan::PlanArguments;
-use crate::plant::PlantArguments;
+use crate::plant::{NewPlantArguments, PlantArguments, PlantCli};
 use crate::report::ReportArguments;
 use crate::simulate::SimulateArguments;
 use crate::terminal::{Color, Shown};
@@ -51,6 +52,7 @@ pub(crate) enum Command {
     Import(ImportArguments),
     Man(ManArguments),
     MonteCarlo(MonteCarloArguments),
+    NewPlant(NewPlantArguments),
     Plan(PlanArguments),
     Plant(PlantArguments),
     Report(ReportArguments),
@@ -68,19 +70,33 @@ pub(crate) fn definition() -> clap::Command {
 impl Cli {
     /// Parses the arguments of the program, the first of which is its name. An error shows them with control characters escaped.
     pub(crate) fn of_arguments(arguments: &[OsString]) -> Result<Self, clap::Error> {
-        let definition = definition().color(Color::of_arguments(arguments).of_clap());
-        let parsed = |arguments: &mut dyn Iterator<Item = OsString>| {
-            let matches = definition.clone().try_get_matches_from(arguments)?;
-            Self::from_arg_matches(&matches)
-        };
-        parsed(&mut arguments.iter().cloned()).map_err(|error| {
-            let escaped = arguments.iter().map(|argument| {
-                printable_line(&argument.to_string_lossy())
-                    .into_owned()
-                    .into()
-            });
-            // The same arguments with other letters fail as they did.
-            parsed(&mut { escaped }).err().unwrap_or(error)
-        })
+        parsed(definition(), arguments)
     }
+}
+
+impl PlantCli {
+    /// As [`Cli::of_arguments`], of the program of a package for one plant.
+    pub(crate) fn of_arguments(arguments: &[OsString]) -> Result<Self, clap::Error> {
+        parsed(Self::command().after_help(exit::HELP), arguments)
+    }
+}
+
+fn parsed<P: FromArgMatches>(
+    definition: clap::Command,
+    arguments: &[OsString],
+) -> Result<P, clap::Error> {
+    let definition = definition.color(Color::of_arguments(arguments).of_clap());
+    let parsed = |arguments: &mut dyn Iterator<Item = OsString>| {
+        let matches = definition.clone().try_get_matches_from(arguments)?;
+        P::from_arg_matches(&matches)
+    };
+    parsed(&mut arguments.iter().cloned()).map_err(|error| {
+        let escaped = arguments.iter().map(|argument| {
+            printable_line(&argument.to_string_lossy())
+                .into_owned()
+                .into()
+        });
+        // The same arguments with other letters fail as they did.
+        parsed(&mut { escaped }).err().unwrap_or(error)
+    })
 }

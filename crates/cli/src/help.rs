@@ -155,6 +155,13 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 17] = [
         ]],
     ),
     (
+        "new-plant",
+        &[[
+            "gyrocal new-plant oscillator --gyrocal ../gyrocal",
+            "a package for a plant of your own",
+        ]],
+    ),
+    (
         "plan",
         &[
             [
@@ -169,10 +176,20 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 17] = [
     ),
     (
         "plant",
-        &[[
-            "gyrocal plant diagnose plant.json record.csv --columns columns.toml --validate later.csv",
-            "what the model of any plant lacks, and the gain on a later record",
-        ]],
+        &[
+            [
+                "gyrocal plant derive plant.py",
+                "the program of a plant from its Python script",
+            ],
+            [
+                "gyrocal plant diagnose plant.json record.csv --columns columns.toml --validate later.csv",
+                "what its model lacks, and the gain on a later record",
+            ],
+            [
+                "gyrocal plant extend diagnosis.json --script plant.py",
+                "what was found, in the equations of the script",
+            ],
+        ],
     ),
     (
         "report",

@@ -4,7 +4,8 @@
 //! Each subcommand is a module: arguments, calls of the libraries, tables and text, JSON, pictures.
 //! Files are written whole or not at all. Statistics and estimation are in the libraries.
 //!
-//! [`run`] is the whole command; the binary and the Python package call it.
+//! [`run`] is the whole command; the binary and the Python package call it. [`run_plant`] is that of a
+//! package for one plant.
 //!
 //! `exit.rs` has the exit codes. Text reaches the terminal in `terminal.rs` and errors in
 //! `error_report.rs`, without characters that would steer it.
@@ -47,6 +48,7 @@ mod width;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write as _};
 
+use gyrocal_plant::{LoadedPlant, PlantError};
 use miette::Report;
 
 use crate::answer::Answer;
@@ -55,27 +57,59 @@ use crate::command::{Cli, Command, definition};
 pub use crate::diagnose::NotDiagnosed;
 use crate::error_report::ErrorReport;
 pub use crate::plan::NotPlanned;
+use crate::plant::PlantCli;
+use crate::terminal::Shown;
 
 /// Runs the command with its arguments, the first of which is the name of the program: reads and
 /// writes files, stdout and stderr. Returns the exit code of the process.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     outputs::remember(&arguments);
-    let cli = match Cli::of_arguments(&arguments) {
-        Ok(cli) => cli,
-        // Help and version are among them, and go to stdout.
-        Err(error) => {
-            let _ = error.print();
-            return u8::try_from(error.exit_code()).unwrap_or(exit::USAGE);
+    match Cli::of_arguments(&arguments) {
+        Ok(cli) => {
+            start(&cli.shown);
+            shown(&cli.shown, answer(cli.command.as_ref()))
         }
-    };
-    cli.shown.apply();
-    start_logging(cli.shown.verbose);
+        Err(error) => refused(&error),
+    }
+}
+
+/// Runs the program of a package for one plant: `diagnose` and `extend`, as `gyrocal plant` does. Returns
+/// the exit code of the process.
+pub fn run_plant(
+    arguments: impl IntoIterator<Item = OsString>,
+    plant: Result<LoadedPlant, PlantError>,
+) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    outputs::remember(&arguments);
+    match PlantCli::of_arguments(&arguments) {
+        Ok(cli) => {
+            start(&cli.shown);
+            shown(&cli.shown, plant::run_own(&cli, plant))
+        }
+        Err(error) => refused(&error),
+    }
+}
+
+/// Shows help, a version, or what is wrong with a command line.
+fn refused(error: &clap::Error) -> u8 {
+    // Help and version are among them, and go to stdout.
+    let _ = error.print();
+    u8::try_from(error.exit_code()).unwrap_or(exit::USAGE)
+}
+
+fn start(how: &Shown) {
+    how.apply();
+    start_logging(how.verbose);
     show_errors_plainly();
-    match answer(cli.command.as_ref()) {
+}
+
+/// Prints an answer or a failure; returns the exit code.
+fn shown(how: &Shown, answer: Result<Answer, Failure>) -> u8 {
+    match answer {
         Ok(answer) => {
-            let text = answer.shown(width::columns(), cli.shown.verbose > 0);
-            let text = if cli.shown.quiet { "" } else { &text };
+            let text = answer.shown(width::columns(), how.verbose > 0);
+            let text = if how.quiet { "" } else { &text };
             match terminal::print(text) {
                 // A closed pipe, as in `| head`, is not a failure.
                 Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -118,6 +152,7 @@ fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
         Command::Import(arguments) => import::run(arguments),
         Command::Man(arguments) => manual::pages(arguments, definition()),
         Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
+        Command::NewPlant(arguments) => plant::run_new(arguments),
         Command::Plan(arguments) => plan::run(arguments),
         Command::Plant(arguments) => plant::run(arguments),
         Command::Report(arguments) => report::run(arguments),

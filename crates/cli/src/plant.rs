@@ -1,8 +1,13 @@
-//! `gyrocal plant`: diagnosis of records of any plant.
+//! `gyrocal plant`: diagnosis of records of any plant. The commands of a package for one plant are here as
+//! well.
 
-use std::path::PathBuf;
+mod derive;
+mod extend;
+mod new;
 
-use clap::{Args, Subcommand};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Parser, Subcommand};
 use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_plant::answer::Diagnosis;
 use gyrocal_plant::{ColumnMap, LoadedPlant, PlantError, SearchOptions, diagnose};
@@ -13,9 +18,12 @@ use miette::Report;
 use crate::numbers::probability;
 use crate::progress::Progress;
 use crate::tables::{right, table};
+use crate::terminal::Shown;
 use crate::{Answer, Failure, outputs};
 
-/// Diagnose records of any plant that a program file describes.
+pub(crate) use new::{NewPlantArguments, run as run_new};
+
+/// Derive, diagnose and extend any plant that a Python script declares.
 ///
 /// docs/any-plant.md leads from an equation and a CSV file to a named cause and its gain.
 #[derive(Debug, Args)]
@@ -26,7 +34,25 @@ pub(crate) struct PlantArguments {
 
 #[derive(Debug, Subcommand)]
 enum PlantCommand {
+    Derive(derive::DeriveArguments),
     Diagnose(PlantDiagnoseArguments),
+    Extend(extend::ExtendArguments),
+}
+
+/// The commands of a package for one plant.
+#[derive(Debug, Parser)]
+#[command(about = "Diagnosis of records of one plant: docs/any-plant.md of gyrocal")]
+pub(crate) struct PlantCli {
+    #[command(flatten)]
+    pub(crate) shown: Shown,
+    #[command(subcommand)]
+    command: OwnCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum OwnCommand {
+    Diagnose(RecordArguments),
+    Extend(extend::ExtendArguments),
 }
 
 /// Find what the model of a plant lacks in a record.
@@ -35,6 +61,13 @@ struct PlantDiagnoseArguments {
     /// The plant: the program file that its Python script writes.
     #[arg(value_name = "PLANT.json")]
     plant: PathBuf,
+    #[command(flatten)]
+    record: RecordArguments,
+}
+
+/// Find what the model of this plant lacks in a record.
+#[derive(Debug, Args)]
+struct RecordArguments {
     /// The record (CSV), with a header.
     #[arg(value_name = "RECORD.csv")]
     record: PathBuf,
@@ -61,23 +94,47 @@ impl From<PlantError> for Failure {
     }
 }
 
-/// Runs the command; returns its answer.
-pub(crate) fn run(arguments: &PlantArguments) -> Result<Answer, Failure> {
-    match &arguments.command {
-        PlantCommand::Diagnose(arguments) => run_diagnose(arguments),
+impl From<gyrocal_plant_codegen::Error> for Failure {
+    fn from(error: gyrocal_plant_codegen::Error) -> Self {
+        Self::Work(Report::msg(error.to_string()))
     }
 }
 
-fn run_diagnose(arguments: &PlantDiagnoseArguments) -> Result<Answer, Failure> {
-    let mut inputs = vec![
-        arguments.plant.as_path(),
-        arguments.record.as_path(),
-        arguments.columns.as_path(),
-    ];
+/// Runs the command; returns its answer.
+pub(crate) fn run(arguments: &PlantArguments) -> Result<Answer, Failure> {
+    match &arguments.command {
+        PlantCommand::Derive(arguments) => derive::run(arguments),
+        PlantCommand::Diagnose(arguments) => {
+            run_diagnose(Some(arguments.plant.as_path()), &arguments.record, || {
+                LoadedPlant::read(&arguments.plant)
+            })
+        }
+        PlantCommand::Extend(arguments) => extend::run(arguments),
+    }
+}
+
+/// Runs a command of a package for one plant.
+pub(crate) fn run_own(
+    cli: &PlantCli,
+    plant: Result<LoadedPlant, PlantError>,
+) -> Result<Answer, Failure> {
+    match &cli.command {
+        OwnCommand::Diagnose(arguments) => run_diagnose(None, arguments, || plant),
+        OwnCommand::Extend(arguments) => extend::run(arguments),
+    }
+}
+
+fn run_diagnose(
+    file: Option<&Path>,
+    arguments: &RecordArguments,
+    plant: impl FnOnce() -> Result<LoadedPlant, PlantError>,
+) -> Result<Answer, Failure> {
+    let mut inputs = vec![arguments.record.as_path(), arguments.columns.as_path()];
+    inputs.extend(file);
     inputs.extend(arguments.validate.as_deref());
     inputs.extend(arguments.validate_columns.as_deref());
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    let plant = LoadedPlant::read(&arguments.plant)?;
+    let plant = plant()?;
     let columns = ColumnMap::read(&arguments.columns)?;
     let record = columns.record(plant.description(), &arguments.record)?;
     let later = match &arguments.validate {

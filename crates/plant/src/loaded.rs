@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use gyrocal_codegen::Program;
 use gyrocal_hypothesis::Plant;
+use gyrocal_scalar::{Model, NamedInputs};
 
 use crate::catalogue::Catalogue;
 use crate::description::Description;
 use crate::error::PlantError;
 use crate::functions::Functions;
+use crate::generated::Generated;
 use crate::interpreted::Interpreted;
 
 /// Functions, description and catalogue of a plant.
@@ -71,6 +73,22 @@ impl LoadedPlant {
             functions,
             ..self.clone()
         })
+    }
+
+    /// The same plant with a generated model for its functions.
+    ///
+    /// # Errors
+    /// [`PlantError::NoPlant`] if its sizes differ from those of the program.
+    pub fn with_model<D, const M: usize, const Y: usize>(
+        &self,
+        model: D,
+    ) -> Result<Self, PlantError>
+    where
+        D: Model<f64, M, Y> + Send + Sync + 'static,
+        D::Inputs: NamedInputs<f64>,
+    {
+        let noises = self.functions.sizes().noises;
+        self.with_functions(Arc::new(Generated::new(model, noises)))
     }
 
     fn of(program: &Program, functions: Arc<dyn Functions>) -> Result<Self, PlantError> {

@@ -8,12 +8,12 @@ use std::sync::Arc;
 use gyrocal_codegen::{Header, Program, emit_module};
 use gyrocal_plant::{ColumnMap, Generated, LoadedPlant, SearchOptions, diagnose};
 
-#[path = "generated/duffing.rs"]
+#[path = "../../../examples/duffing/plant.rs"]
 #[rustfmt::skip]
 #[allow(missing_docs, unreachable_pub, dead_code, clippy::all)]
 mod duffing;
 
-const COMMITTED: &str = "tests/generated/duffing.rs";
+const COMMITTED: &str = "../../examples/duffing/plant.rs";
 
 fn path(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(file)

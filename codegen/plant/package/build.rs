@@ -1,0 +1,5 @@
+//! Derives the plant from `plant.py`.
+
+fn main() -> std::process::ExitCode {
+    gyrocal_plant_codegen::build("plant.py")
+}

@@ -1,0 +1,59 @@
+//! `gyrocal plant derive`: the program of a plant from its Python script.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_plant::LoadedPlant;
+use gyrocal_plant_codegen::{derive, settings_of_a_command};
+use gyrocal_record::{Outputs, printable_path};
+
+use crate::outputs::refuse_overlap;
+use crate::progress::Progress;
+use crate::{Answer, Failure};
+
+/// Derive the program file of a plant from its Python script; no Rust is needed.
+///
+/// CasADi is installed from hash-locked wheels when it is needed first; afterwards no network is used.
+#[derive(Debug, Args)]
+pub(super) struct DeriveArguments {
+    /// The script, which declares a plant and ends with `plant.write()`.
+    #[arg(value_name = "PLANT.py")]
+    script: PathBuf,
+    /// Write the program file here; by default beside the script.
+    #[arg(long, value_name = "PLANT.json")]
+    out: Option<PathBuf>,
+}
+
+/// Runs the command; returns its answer.
+pub(super) fn run(arguments: &DeriveArguments) -> Result<Answer, Failure> {
+    let beside = arguments.script.with_extension("json");
+    let out = arguments.out.as_deref().unwrap_or(&beside);
+    refuse_overlap(&[&arguments.script], &[("--out", Some(out))])?;
+    let progress = Progress::waiting("deriving", 1);
+    let derived = derive(&arguments.script, settings_of_a_command())?;
+    drop(progress);
+    let plant = LoadedPlant::parse(&derived.program, &printable_path(&arguments.script))?;
+    let mut outputs = Outputs::new();
+    outputs.stage(out, derived.program.as_bytes())?;
+    outputs.commit()?;
+    let description = plant.description();
+    let mut screen = Screen::new(
+        Standing::Good,
+        "PROGRAM",
+        format!(
+            "{} has {} states, {} parameters, {} outputs and {} effects in its catalogue",
+            description.name,
+            description.states.len(),
+            description.parameters.len(),
+            description.outputs.len(),
+            description.effects.len(),
+        ),
+    );
+    for line in derived.left_out {
+        screen.fact("left out", line);
+    }
+    let mut answer = Answer::of(screen, String::new());
+    answer.wrote(out, "the program, for `gyrocal plant diagnose`");
+    Ok(answer)
+}

@@ -1,0 +1,61 @@
+//! `gyrocal new-plant`: a package for one plant.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_plant_codegen::{Package, Source};
+use gyrocal_record::{printable_path, shell_quoted};
+use miette::miette;
+
+use crate::{Answer, Failure};
+
+/// Make a package for a plant of your own: its Python script, a build that derives it, a command.
+///
+/// It begins with an oscillator: write your own equations into plant.py and your columns into columns.toml.
+#[derive(Debug, Args)]
+pub(crate) struct NewPlantArguments {
+    /// The new directory; its last part is the name of the package.
+    #[arg(value_name = "NAME")]
+    name: PathBuf,
+    /// A tree of gyrocal that the package is built with, instead of the published packages of this version.
+    #[arg(long, value_name = "PATH")]
+    gyrocal: Option<PathBuf>,
+}
+
+/// Runs the command; returns its answer.
+pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Answer, Failure> {
+    let name = arguments.name.file_name().and_then(|name| name.to_str());
+    let name = name.ok_or_else(|| {
+        let given = printable_path(&arguments.name);
+        Failure::Work(miette!("`{given}` has no name of a package for its last part"))
+    })?;
+    let source = match &arguments.gyrocal {
+        Some(path) => Source::Path(path.clone()),
+        None => Source::Version(env!("CARGO_PKG_VERSION").to_owned()),
+    };
+    let package = Package::new(name, source)?;
+    package.write(&arguments.name)?;
+    let from = match &package.source {
+        Source::Path(path) => format!("gyrocal of {}, by its path", printable_path(path)),
+        Source::Version(version) => format!("the published gyrocal {version}, exactly"),
+    };
+    let mut screen = Screen::new(
+        Standing::Good,
+        "NEW PACKAGE",
+        format!("{name} has a plant to begin with and a command to diagnose it."),
+    );
+    screen.fact("built with", from);
+    screen.fact(
+        "next",
+        format!(
+            "cd {} && cargo run -- diagnose data.csv --columns columns.toml",
+            shell_quoted(&printable_path(&arguments.name))
+        ),
+    );
+    let mut answer = Answer::of(screen, String::new());
+    for file in &package.files {
+        answer.wrote(&arguments.name.join(file.path), file.what);
+    }
+    Ok(answer)
+}
