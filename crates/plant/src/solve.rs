@@ -24,7 +24,15 @@ const MAX_HALVINGS: usize = 12;
 /// than a ten-thousandth of its standard deviation.
 const CONVERGED: f64 = 1e-8;
 
-/// A fall below which a search along a step that finds none ends the fit: rounding of a long record.
+/// A fall that is enough after so many steps: at the kinks of a model (a level at its floor, a sign) steps
+/// are many and short. A score then differs from zero by less than half a hundredth of its standard
+/// deviation.
+const ENOUGH: f64 = 1e-5;
+const PATIENCE: usize = 15;
+
+/// A fall below which a search along a step that finds none ends the fit, and that is enough after the last
+/// step: rounding of a long record. A score then differs from zero by less than a twentieth of its standard
+/// deviation.
 const STALLED: f64 = 1e-3;
 
 /// A penalty over the largest multiplier of its defects.
@@ -95,7 +103,7 @@ impl<'a> Solver<'a> {
         let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
         let mut at = start;
         at.values.resize(self.lines.len(), 0.0);
-        for _ in 0..MAX_STEPS {
+        for index in 0..=MAX_STEPS {
             let course = self.course(&at.values);
             let lin = dynamics.linearise(&course, &at.points)?;
             let reduced =
@@ -109,15 +117,17 @@ impl<'a> Solver<'a> {
                 &step.penalties,
             );
             let fall = now - 0.5 * step.promised;
-            if fall.is_finite() && fall.abs() < CONVERGED {
-                return Ok(Solution {
-                    covariance: step.covariance,
-                    cost: step.promised,
-                    lin,
-                    at,
-                });
-            }
-            match self.search(&mut dynamics, &lin, &at, &step, now) {
+            let enough = match index {
+                MAX_STEPS => STALLED,
+                PATIENCE.. => ENOUGH,
+                _ => CONVERGED,
+            };
+            let next = if fall.abs() < enough {
+                None
+            } else {
+                self.search(&mut dynamics, &lin, &at, &step, now)
+            };
+            match next {
                 Some(next) => at = next,
                 None if fall.abs() < STALLED => {
                     return Ok(Solution {
