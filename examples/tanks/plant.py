@@ -20,7 +20,7 @@ def root(level):
 
 plant.rate("upper", k4 * pump - k1 * root(upper))
 plant.rate("lower", k2 * root(upper) - k3 * root(lower))
-plant.output("y", "m", lower, sigma=0.02, saturates=(-1.0, 9.95), doc="level of the lower tank")
+plant.output("y", "m", lower, sigma=0.02, saturates=(-1.0, 9.8), doc="level of the lower tank")
 
 if __name__ == "__main__":
     plant.write()

@@ -72,7 +72,7 @@ pub(crate) fn best(
     let values = first.unwrap_or(&declared);
     match simulated(problem, ratios, values) {
         Ok(solution) => found.push(solution),
-        Err(error) => reason = error.to_string(),
+        Err(error) => reason = words(error),
     }
     let count = problem
         .record
@@ -97,7 +97,7 @@ pub(crate) fn best(
         starts.tried += 1;
         match led(problem, ratios, &values) {
             Ok(solution) => found.push(solution),
-            Err(error) => reason = error.to_string(),
+            Err(error) => reason = words(error),
         }
         found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     }
@@ -106,6 +106,14 @@ pub(crate) fn best(
     let best = found.into_iter().next();
     best.map(|best| (best, starts))
         .ok_or(PlantError::NoFit { reason })
+}
+
+/// The reason of a failure.
+fn words(error: PlantError) -> String {
+    match error {
+        PlantError::NoFit { reason } => reason,
+        other => other.to_string(),
+    }
 }
 
 /// From a simulation.
