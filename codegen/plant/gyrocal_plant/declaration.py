@@ -64,9 +64,9 @@ class _Effect:
     name: str
     formula: str
     unit: str
-    # term, ramp, step or regressor.
+    # term, ramp, step, regressor, delay or play.
     kind: str
-    # rate, output or parameter.
+    # rate, output, parameter or input.
     place: str
     index: int
     # Size of a term; what it multiplies.
@@ -334,9 +334,19 @@ class Plant:
                                 "term", "output", index, ca.SX(1))
                         for index, o in enumerate(self._outputs)]
 
+    def _input_errors(self) -> list[_Effect]:
+        """What acts in the place of each input beside what is logged: no effect itself, but delay and play
+        multiply it."""
+        rates = ca.vertcat(*self._rates.values())
+        if self._grammar is False:
+            return []
+        return [_Effect(f"{i.name}.error", f"input {i.name}", "1", i.unit or "1", "term", "input", index,
+                        ca.SX(1))
+                for index, i in enumerate(self._inputs) if ca.depends_on(rates, i.sx)]
+
     def _judged(self) -> list[_Symbol]:
         """Sizes of all terms: biases of the channels first, then what the catalogue keeps."""
-        biases = self._constants()
+        biases = self._constants() + self._input_errors()
         every = biases + self._effects
         sizes = ca.SX.sym("size", len(every))
         rates, output = self._with(every, sizes)
@@ -355,6 +365,8 @@ class Plant:
             if is_bias:
                 # Drifts, steps and regressors of a channel multiply it, whether it is an effect or not.
                 self._channels[(effect.place, effect.index)] = len(self._channels)
+            if effect.place == "input":
+                continue
             if why:
                 self._dropped.append((effect.id, why))
             else:
@@ -371,7 +383,7 @@ class Plant:
     def _reason(self, every: list[_Effect], judged: dependence.Judgement) -> str:
         if judged.is_zero:
             return "is identically zero, or the same at all points as nothing"
-        if judged.copy_of is not None:
+        if judged.copy_of is not None and every[judged.copy_of].place != "input":
             return f"is a copy of `{every[judged.copy_of].id}`"
         if judged.covered_by is not None:
             names = " and ".join(f"`{self._parameters[i].name}`" for i in judged.covered_by)
@@ -381,6 +393,11 @@ class Plant:
     def _of_time(self, biases: list[_Effect]) -> list[_Effect]:
         found = []
         for bias in biases:
+            if bias.place == "input":
+                found += [_Effect(f"{self._inputs[bias.index].name}.{kind}", f"{bias.name} {words}", formula,
+                                  unit, kind, "input", bias.index)
+                          for kind, words, formula, unit in grammar.of_input(bias.unit)]
+                continue
             channel = bias.id.removesuffix(".bias")
             words = bias.name.removesuffix("a constant").rstrip(": ")
             found.append(_Effect(f"{channel}.ramp", f"{words}: a drift in proportion to time",
@@ -403,7 +420,14 @@ class Plant:
     def _with(self, effects: list[_Effect], sizes: ca.SX) -> tuple[ca.SX, ca.SX]:
         rates = [self._rates[s.name] for s in self._states]
         output = [o.facts["expression"] for o in self._outputs]
+        errors = {e.index: sizes[position] for position, e in enumerate(effects) if e.place == "input"}
+        logged = ca.vertcat(*[i.sx for i in self._inputs])
+        acting = ca.vertcat(*[i.sx + errors.get(index, 0) for index, i in enumerate(self._inputs)])
+        if errors:
+            rates = [ca.substitute(rate, logged, acting) for rate in rates]
         for position, effect in enumerate(effects):
+            if effect.place == "input":
+                continue
             target = rates if effect.place == "rate" else output
             target[effect.index] = target[effect.index] + sizes[position] * effect.term
         return ca.vertcat(*rates), ca.vertcat(*output)
@@ -449,7 +473,7 @@ class Plant:
                 return effect.index
             return nominal + self._channels[(effect.place, effect.index)]
 
-        channels = [{"place": b.place, "index": b.index, "unit": b.unit, "name": b.id.removesuffix(".bias"),
+        channels = [{"place": b.place, "index": b.index, "unit": b.unit, "name": b.id.removesuffix(".bias").removesuffix(".error"),
                      "constant": nominal + position} for position, b in enumerate(self._biases)]
         outputs = []
         for one in self._outputs:

@@ -48,6 +48,12 @@ def _power(unit: str, power: int) -> str:
     return " ".join([unit] * power)
 
 
+def of_input(unit: str) -> Iterator[tuple[str, str, str, str]]:
+    """Errors of an input over time: id, words, formula and unit."""
+    yield "delay", "acts late, by a delay", "u(t - size) - u(t)", "s"
+    yield "play", "has play, as by backlash or hysteresis: half its width", "play(u) - u", unit
+
+
 def of_output(name: str, unit: str, reading: ca.SX, slope: ca.SX | None
               ) -> Iterator[tuple[str, str, str, ca.SX]]:
     """Errors of a sensor: functions of what it should read. `slope` is its rate of change."""

@@ -64,9 +64,7 @@ pub fn derive(script: &Path, settings: Settings) -> Result<DerivedPlant, Error> 
         model: model(&module.json)?,
         program: module.json,
         rust: module.rust,
-        left_out: left_out.map_or_else(Vec::new, |text| {
-            text.lines().map(str::to_owned).collect()
-        }),
+        left_out: left_out.map_or_else(Vec::new, |text| text.lines().map(str::to_owned).collect()),
     })
 }
 

@@ -1,5 +1,9 @@
 //! Diagnosis of any plant: five simulated plants with hidden effects.
 
+mod gauges;
+mod interpreted;
+mod oracle;
+
 use std::time::Instant;
 
 use gyrocal_plant::answer::{Diagnosis, Found};
@@ -42,6 +46,8 @@ struct Outcome {
     holds: bool,
     first: bool,
     set: usize,
+    /// Effects without an onset in the set, and in that of an oracle, of a hidden effect without one.
+    beside_oracle: Option<[f64; 2]>,
     /// Whether the simulation of a second record is better with what was found, of a record whose effect
     /// was named.
     better: Option<bool>,
@@ -55,8 +61,10 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         .collect::<Result<_, PlantError>>()?;
     let mut figures = clean(&plants, extent.records(400, 3));
     figures.extend(hidden(&plants, extent.records(200, 4)));
+    figures.extend(gauges::figures()?);
     figures.push(starts(&plants, extent.records(100, 3))?);
     figures.push(duration(&plants)?);
+    figures.extend(interpreted::figures(&plants[0].1, extent.records(20, 2))?);
     Ok(figures)
 }
 
@@ -130,8 +138,19 @@ fn one_hidden(kind: Kind, plant: &LoadedPlant, seed: u64) -> Result<Outcome, Pla
     };
     let later = record(plant, &later)?;
     let first = record(plant, &setting)?;
-    let answer = diagnose(plant, first, Some(later), &SearchOptions::default())?.answer;
+    let diagnosed = diagnose(plant, first, Some(later), &SearchOptions::default())?;
+    let (answer, nominal) = (diagnosed.answer, diagnosed.searched.nominal);
     let own = setting.hidden.0;
+    let strength = strength(&setting);
+    let beside_oracle = answer.findings.first().and_then(|found| {
+        let ids = found.rivals.iter().map(|(id, _)| id.as_str());
+        let ids = ids.chain([found.effect.as_str()]);
+        let set = ids
+            .filter(|id| !oracle::has_onset(plant.tables(), id))
+            .count();
+        let oracle = oracle::set_size(&nominal, own, strength)?;
+        Some([set as f64, oracle])
+    });
     let is_in = |found: &Found| {
         let rivals = found.rivals.iter().map(|(id, _)| id.as_str());
         let mut set = rivals.chain(found.equivalents.iter().map(String::as_str));
@@ -146,7 +165,8 @@ fn one_hidden(kind: Kind, plant: &LoadedPlant, seed: u64) -> Result<Outcome, Pla
     });
     Ok(Outcome {
         kind,
-        strength: strength(&setting),
+        strength,
+        beside_oracle,
         detected: !(answer.findings.is_empty() && answer.unexplained.is_empty()),
         holds: answer.findings.iter().any(is_in),
         first: answer
@@ -176,6 +196,7 @@ fn hidden(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
                     holds: false,
                     first: false,
                     set: 0,
+                    beside_oracle: None,
                     better: None,
                 })
             })
@@ -210,6 +231,7 @@ fn hidden(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
             0.95,
         ),
     ];
+    figures.push(set_sizes(strong(), &seeds));
     for kind in Kind::ALL {
         let own = || strong().filter(move |one| one.kind == kind);
         let holds = Proportion::of(own().map(|one| one.holds));
@@ -221,6 +243,27 @@ fn hidden(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
         figures.push(note.over(holds.trials as usize, seeds.clone()));
     }
     figures
+}
+
+/// Mean size of the set over that of an oracle's.
+fn set_sizes<'a>(strong: impl Iterator<Item = &'a Outcome>, seeds: &str) -> Figure {
+    let pairs: Vec<[f64; 2]> = strong.filter_map(|one| one.beside_oracle).collect();
+    let sum = |index: usize| pairs.iter().map(|pair| pair[index]).sum::<f64>();
+    let (ours, oracle) = (sum(0), sum(1));
+    let name = "any plant: mean size of the set of d >= 8 over an oracle's, effects without onset";
+    let count = pairs.len().max(1) as f64;
+    let figure = Figure::within(name, [0.0, 1.1], ours / oracle);
+    Figure {
+        target: "<= 1.1".to_owned(),
+        measured: format!(
+            "{:.3}: {:.2} over {:.2}",
+            ours / oracle,
+            ours / count,
+            oracle / count
+        ),
+        ..figure
+    }
+    .over(pairs.len(), seeds)
 }
 
 /// Fits of oscillator and tanks from random parameters within a factor of three.

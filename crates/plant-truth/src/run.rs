@@ -49,6 +49,8 @@ pub(crate) struct Simulator<'a, const N: usize> {
     pub(crate) step_s: f64,
     /// Inputs between rows go in a straight line; they are held otherwise.
     pub(crate) interpolate: bool,
+    /// Half the width of the play between the first input, as it is logged, and what acts.
+    pub(crate) play: f64,
     pub(crate) rates: &'a dyn Fn(&Moment<'_, N>) -> [f64; N],
     pub(crate) outputs: &'a dyn Fn(&Moment<'_, N>) -> Vec<f64>,
 }
@@ -73,12 +75,18 @@ impl<const N: usize> Simulator<'_, N> {
             None => input(row as f64 * self.step_s, readings),
         };
         let mut here = given(0, &readings);
+        let mut behind = here.first().copied().unwrap_or(0.0);
         for row in 0..rows {
+            let mut acting = here.clone();
+            if self.play > 0.0 {
+                behind = behind.max(here[0] - self.play).min(here[0] + self.play);
+                acting[0] = behind;
+            }
             let share = row as f64 / (rows - 1) as f64;
             let moment = Moment {
                 share,
                 state: &state,
-                input: &here,
+                input: &acting,
             };
             readings = (self.outputs)(&moment);
             for (reading, sigma) in readings.iter_mut().zip(sigmas) {
@@ -88,8 +96,8 @@ impl<const N: usize> Simulator<'_, N> {
             run.inputs.push(here.clone());
             run.outputs.push(readings.clone());
             let next = given(row + 1, &readings);
-            let end = if self.interpolate { &next } else { &here };
-            state = self.step(state, [share, 1.0 / (rows - 1) as f64], [&here, end]);
+            let end = if self.interpolate { &next } else { &acting };
+            state = self.step(state, [share, 1.0 / (rows - 1) as f64], [&acting, end]);
             here = next;
         }
         run

@@ -21,6 +21,7 @@ pub(crate) const FACTS: Facts = Facts {
         ("y.lag", 0.001),
         ("a.step", -1.0),
         ("b.step", 0.5),
+        ("drive.play", 0.02),
     ],
 };
 
@@ -54,6 +55,7 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
         setting,
         step_s: STEP_S,
         interpolate: false,
+        play: size("drive.play"),
         rates: &rates,
         outputs: &outputs,
     };

@@ -60,6 +60,7 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
         setting,
         step_s: STEP_S,
         interpolate: false,
+        play: 0.0,
         rates: &rates,
         outputs: &outputs,
     };

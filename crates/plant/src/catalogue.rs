@@ -13,6 +13,7 @@ use gyrocal_scalar::effect::{
 };
 
 use crate::description::{Description, EffectEntry, Kind, Place};
+use crate::input_errors::InputError;
 
 /// A function of time times a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +22,17 @@ pub(crate) struct Modulated {
     pub(crate) of: usize,
     /// Output whose rows it changes, if it is none of a step.
     pub(crate) output: Option<usize>,
-    /// Its weight.
-    pub(crate) weight: usize,
+    /// Its course.
+    pub(crate) course: Modulation,
+}
+
+/// A course over a record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Modulation {
+    /// A weight of the tables.
+    Weight(usize),
+    /// An error of an input.
+    Error(InputError, usize),
 }
 
 /// Tables, and what the sizes of functions of time multiply.
@@ -78,8 +88,8 @@ struct Builder<'d> {
     states: usize,
     rates: Vec<Channel>,
     rate_states: Vec<usize>,
-    /// The nominal parameter that each channel beyond those of the description is.
-    changed: Vec<usize>,
+    /// The nominal parameter or the input that each channel beyond those of rates is.
+    changed: Vec<Place>,
     modulated: Vec<Modulated>,
     shapes: Vec<Element>,
     elements: Vec<Element>,
@@ -104,7 +114,8 @@ impl Catalogue {
         builder.channels();
         let effects = description.effects.iter();
         let effects: Vec<Effect> = effects.map(|entry| builder.effect(entry)).collect();
-        let outputs = description.channels.iter().filter(|one| one.is_output);
+        let outputs = description.channels.iter();
+        let outputs = outputs.filter(|one| matches!(one.place, Place::Output(_)));
         let outputs = outputs.map(|one| Channel {
             id: kept(&one.name),
             name: kept(&one.name),
@@ -139,7 +150,7 @@ fn states_and_inputs(description: &Description) -> impl Iterator<Item = &str> {
     states.chain(inputs)
 }
 
-impl Builder<'_> {
+impl<'d> Builder<'d> {
     fn parameters(&mut self) {
         for state in &self.description.states {
             let id = format!("initial {}", state.id);
@@ -156,12 +167,10 @@ impl Builder<'_> {
     }
 
     fn channels(&mut self) {
-        for one in self
-            .description
-            .channels
-            .iter()
-            .filter(|one| !one.is_output)
-        {
+        for one in &self.description.channels {
+            let Place::Rate(state) = one.place else {
+                continue;
+            };
             self.rates.push(Channel {
                 id: kept(&one.name),
                 name: kept(&one.name),
@@ -169,34 +178,51 @@ impl Builder<'_> {
                 label: "",
                 constant: self.states + one.constant,
             });
-            self.rate_states.push(one.index);
+            self.rate_states.push(state);
         }
     }
 
-    /// The channel of a rate, or that of a parameter, which is made.
+    /// The channel of a rate, or that of a parameter or an input, which is made.
     fn rate_channel(&mut self, place: Place) -> Option<usize> {
         match place {
             Place::Rate(state) => self.rate_states.iter().position(|one| *one == state),
             Place::Output(_) => None,
-            Place::Parameter(index) => {
+            Place::Parameter(_) | Place::Input(_) => {
                 let first = self.rates.len() - self.changed.len();
-                let known = self.changed.iter().position(|one| *one == index);
+                let known = self.changed.iter().position(|one| *one == place);
                 if let Some(known) = known {
                     return Some(first + known);
                 }
-                let own = &self.description.parameters[index];
-                self.changed.push(index);
+                let (id, unit, constant) = self.changed_channel(place)?;
+                self.changed.push(place);
                 self.rates.push(Channel {
-                    id: kept(&own.id),
-                    name: kept(&own.id),
-                    unit: kept(&own.unit),
+                    id: kept(id),
+                    name: kept(id),
+                    unit: kept(unit),
                     label: "",
-                    constant: self.states + index,
+                    constant: self.states + constant,
                 });
                 let state = self.rate_states.first().copied().unwrap_or(0);
                 self.rate_states.push(state);
                 Some(self.rates.len() - 1)
             }
+        }
+    }
+
+    /// Id and unit of a parameter or an input, and the parameter of the model that changes it.
+    fn changed_channel(&self, place: Place) -> Option<(&'d str, &'d str, usize)> {
+        let description = self.description;
+        match place {
+            Place::Parameter(index) => {
+                let own = &description.parameters[index];
+                Some((&own.id, &own.unit, index))
+            }
+            Place::Input(_) => {
+                let mut channels = description.channels.iter();
+                let own = channels.find(|one| one.place == place)?;
+                Some((&own.name, &own.unit, own.constant))
+            }
+            Place::Rate(_) | Place::Output(_) => None,
         }
     }
 
@@ -221,18 +247,30 @@ impl Builder<'_> {
                 (EffectKind::Constant, vec![size(own, None)])
             }
             Kind::Ramp => {
-                let own = self.modulated(entry, RAMP);
+                let own = self.modulated(entry, Modulation::Weight(RAMP));
                 (EffectKind::Ramp, vec![size(own, Some(RAMP))])
             }
             Kind::Regressor(index) => {
                 let weight = RAMP + 1 + index;
-                let own = self.modulated(entry, weight);
+                let own = self.modulated(entry, Modulation::Weight(weight));
                 (EffectKind::Regressor, vec![size(own, Some(weight))])
+            }
+            Kind::Delay | Kind::Play => {
+                let error = match entry.kind {
+                    Kind::Play => InputError::Play,
+                    _ => InputError::Delay,
+                };
+                let input = match place {
+                    Place::Input(input) => input,
+                    _ => 0,
+                };
+                let own = self.modulated(entry, Modulation::Error(error, input));
+                (EffectKind::Constant, vec![size(own, None)])
             }
             Kind::Step => {
                 let shape = self.shapes.len();
                 let weight = RAMP + 1 + self.description.regressors.len() + shape;
-                let own = self.modulated(entry, weight);
+                let own = self.modulated(entry, Modulation::Weight(weight));
                 self.shapes.push(element("onset_s", "s", "onset"));
                 let onset = EffectParameter {
                     name: "onset_s",
@@ -272,7 +310,7 @@ impl Builder<'_> {
     }
 
     /// A new size that multiplies a function of time.
-    fn modulated(&mut self, entry: &EffectEntry, weight: usize) -> Role {
+    fn modulated(&mut self, entry: &EffectEntry, course: Modulation) -> Role {
         let output = match entry.place {
             Place::Output(output) => Some(output),
             _ => None,
@@ -280,7 +318,7 @@ impl Builder<'_> {
         self.modulated.push(Modulated {
             of: entry.size,
             output,
-            weight,
+            course,
         });
         self.elements
             .push(element(&entry.id, &entry.unit, &entry.name));

@@ -69,13 +69,11 @@ pub struct Noise {
     pub density: f64,
 }
 
-/// A rate or an output that effects enter.
+/// A rate, an output or an input that effects enter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Whether it is an output.
-    pub is_output: bool,
-    /// The state or the output.
-    pub index: usize,
+    /// What effects enter.
+    pub place: Place,
     /// Unit.
     pub unit: String,
     /// Name.
@@ -95,6 +93,10 @@ pub enum Kind {
     Step,
     /// Proportional to a logged quantity.
     Regressor(usize),
+    /// The input acts late.
+    Delay,
+    /// The input has play.
+    Play,
 }
 
 /// Part of the model that an effect enters.
@@ -106,6 +108,8 @@ pub enum Place {
     Output(usize),
     /// A nominal parameter, which it changes.
     Parameter(usize),
+    /// An input, which acts otherwise than it is logged.
+    Input(usize),
 }
 
 /// An effect of the catalogue.
@@ -232,16 +236,24 @@ impl Description {
 
 fn channel(row: &Row<'_>) -> Result<Channel, PlantError> {
     Ok(Channel {
-        is_output: row.text("place")? == "output",
-        index: row.index("index")?,
+        place: place(row)?,
         unit: row.text("unit")?,
         name: row.text("name")?,
         constant: row.index("constant")?,
     })
 }
 
-fn effect(row: &Row<'_>) -> Result<EffectEntry, PlantError> {
+fn place(row: &Row<'_>) -> Result<Place, PlantError> {
     let index = row.index("index")?;
+    Ok(match row.word("place")? {
+        WrittenPlace::Rate => Place::Rate(index),
+        WrittenPlace::Output => Place::Output(index),
+        WrittenPlace::Parameter => Place::Parameter(index),
+        WrittenPlace::Input => Place::Input(index),
+    })
+}
+
+fn effect(row: &Row<'_>) -> Result<EffectEntry, PlantError> {
     Ok(EffectEntry {
         id: row.text("id")?,
         name: row.text("name")?,
@@ -252,12 +264,10 @@ fn effect(row: &Row<'_>) -> Result<EffectEntry, PlantError> {
             WrittenKind::Step => Kind::Step,
             WrittenKind::Regressor => Kind::Regressor(row.index("regressor")?),
             WrittenKind::Term => Kind::Term,
+            WrittenKind::Delay => Kind::Delay,
+            WrittenKind::Play => Kind::Play,
         },
-        place: match row.word("place")? {
-            WrittenPlace::Rate => Place::Rate(index),
-            WrittenPlace::Output => Place::Output(index),
-            WrittenPlace::Parameter => Place::Parameter(index),
-        },
+        place: place(row)?,
         size: row.index("size")?,
         equivalents: row.texts("equivalents")?,
     })
@@ -271,6 +281,8 @@ enum WrittenKind {
     Ramp,
     Step,
     Regressor,
+    Delay,
+    Play,
 }
 
 /// A [`Place`] as a program has it.
@@ -280,6 +292,7 @@ enum WrittenPlace {
     Rate,
     Output,
     Parameter,
+    Input,
 }
 
 /// A row of a table.

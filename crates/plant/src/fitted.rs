@@ -309,7 +309,12 @@ impl FittedModel for FittedPlant {
     fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, PlantError> {
         let all: Vec<usize> = (0..self.plant().parameters.len()).collect();
         let problem = &self.problem;
-        let mut lines = of_parameters(&problem.plant, &problem.rows, &self.extension, &all);
+        let mut lines = of_parameters(
+            &problem.plant,
+            (&problem.record, &problem.rows),
+            &self.extension,
+            &all,
+        );
         lines.extend(problem.columns(&self.extension));
         lines.extend(self.further(further));
         Ok(self.pass(&lines, Keep::Nothing)?.gram)

@@ -34,7 +34,7 @@
 //!
 //! # What it does not do
 //!
-//! It draws nothing, and has no random walks, hysteresis or delays. Several records are not fitted
+//! It draws nothing, and has no random walks. Play and delays are those of inputs. Several records are not fitted
 //! together.
 
 pub mod answer;
@@ -50,6 +50,7 @@ mod fitted;
 mod functions;
 mod generated;
 mod identifiability;
+mod input_errors;
 mod interpreted;
 mod lines;
 mod loaded;

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use gyrocal_hypothesis::{Column, ModelExtension, Rows};
 
+use crate::catalogue::Modulation;
 use crate::loaded::LoadedPlant;
+use crate::record::PlantRecord;
 
 /// One column.
 #[derive(Clone, Debug)]
@@ -42,7 +44,7 @@ impl Line {
 /// The lines of all parameters of the tables of a plant, at the shapes of an extension.
 pub(crate) fn of_parameters(
     plant: &LoadedPlant,
-    rows: &Rows,
+    (record, rows): (&PlantRecord, &Rows),
     extension: &ModelExtension,
     wanted: &[usize],
 ) -> Vec<Line> {
@@ -58,12 +60,17 @@ pub(crate) fn of_parameters(
             return Line::Parameter(parameter);
         };
         let modulated = plant.catalogue.modulated[own];
-        match modulated.output {
-            Some(output) => {
-                Line::Output(output, rows.row_weights(tables, modulated.weight, &shapes))
+        match (modulated.course, modulated.output) {
+            (Modulation::Weight(weight), Some(output)) => {
+                Line::Output(output, rows.row_weights(tables, weight, &shapes))
             }
-            None => {
-                let steps = rows.step_weights(tables, modulated.weight, &shapes);
+            (Modulation::Weight(weight), None) => {
+                Line::Profile(modulated.of, rows.step_weights(tables, weight, &shapes))
+            }
+            (Modulation::Error(error, input), _) => {
+                let inputs = &plant.description.inputs;
+                let interpolate = inputs[input].interpolate;
+                let steps = error.steps(record, inputs.len(), input, interpolate);
                 Line::Profile(modulated.of, steps)
             }
         }

@@ -7,6 +7,7 @@ use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_statistics::math::ln;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use crate::catalogue::Modulation;
 use crate::description::Kind;
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
@@ -85,6 +86,11 @@ impl FittedPlant {
     fn later_line(&self, modulated: usize, later: &PlantRecord) -> Option<Line> {
         let plant = &self.problem.plant;
         let own = plant.catalogue.modulated[modulated];
+        if let Modulation::Error(error, input) = own.course {
+            let inputs = &plant.description.inputs;
+            let steps = error.steps(later, inputs.len(), input, inputs[input].interpolate);
+            return Some(Line::Profile(own.of, steps));
+        }
         let effects = plant.description.effects.iter();
         let mut of_time = effects.filter(|effect| effect.kind != Kind::Term);
         let kind = of_time.nth(modulated)?.kind;
@@ -108,7 +114,7 @@ impl FittedPlant {
                     .map(|value| value + shift)
                     .collect()
             }
-            Kind::Step | Kind::Term => vec![1.0; rows],
+            _ => vec![1.0; rows],
         };
         Some(match own.output {
             Some(output) => Line::Output(output, steps.into()),

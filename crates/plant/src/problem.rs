@@ -55,7 +55,7 @@ impl Problem {
     pub(crate) fn lines(&self, extension: &ModelExtension) -> Vec<Line> {
         let own = extension.parameters.iter().map(|(parameter, _)| *parameter);
         let wanted: Vec<usize> = (0..self.nominal()).chain(own).collect();
-        let mut lines = of_parameters(&self.plant, &self.rows, extension, &wanted);
+        let mut lines = of_parameters(&self.plant, (&self.record, &self.rows), extension, &wanted);
         lines.extend(self.columns(extension));
         lines
     }

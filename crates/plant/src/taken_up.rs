@@ -30,7 +30,12 @@ impl FittedPlant {
         let tables = problem.plant.tables();
         let nominal = problem.nominal();
         let all: Vec<usize> = (0..tables.parameters.len()).collect();
-        let lines = of_parameters(&problem.plant, &problem.rows, &Default::default(), &all);
+        let lines = of_parameters(
+            &problem.plant,
+            (&problem.record, &problem.rows),
+            &Default::default(),
+            &all,
+        );
         let gram = self.pass(&lines, Keep::Nothing)?.gram;
         let names: Vec<&str> = tables.parameters[..nominal]
             .iter()

@@ -30,7 +30,10 @@ pub(super) struct ExtendArguments {
 pub(super) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
     let read = |path: &PathBuf| {
         std::fs::read_to_string(path).map_err(|reason| {
-            Failure::Work(miette!("{}: cannot be read: {reason}", printable_path(path)))
+            Failure::Work(miette!(
+                "{}: cannot be read: {reason}",
+                printable_path(path)
+            ))
         })
     };
     let (text, script) = (read(&arguments.diagnosis)?, read(&arguments.script)?);
@@ -74,6 +77,9 @@ fn answer(arguments: &ExtendArguments, extension: &Extension) -> Answer {
         screen.fact("left out", format!("{} {}", one.effect, one.why));
     }
     let mut answer = Answer::of(screen, String::new());
-    answer.wrote(&arguments.script, "the equations; derive or build them again");
+    answer.wrote(
+        &arguments.script,
+        "the equations; derive or build them again",
+    );
     answer
 }

@@ -28,7 +28,9 @@ pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Answer, Failure> {
     let name = arguments.name.file_name().and_then(|name| name.to_str());
     let name = name.ok_or_else(|| {
         let given = printable_path(&arguments.name);
-        Failure::Work(miette!("`{given}` has no name of a package for its last part"))
+        Failure::Work(miette!(
+            "`{given}` has no name of a package for its last part"
+        ))
     })?;
     let source = match &arguments.gyrocal {
         Some(path) => Source::Path(path.clone()),

@@ -1,0 +1,137 @@
+//! Gauges that are found and said, and weak excitation that is called none.
+
+use std::path::PathBuf;
+
+use gyrocal_plant::{FittedPlant, LoadedPlant, PlantRecord};
+use gyrocal_plant_codegen::{derive, settings_of_a_command};
+use gyrocal_plant_truth::{Kind, Setting, Stream, simulate};
+
+use super::{loaded, record};
+use crate::error::Error;
+use crate::figure::Figure;
+
+/// Seed of the records.
+const SEED: u64 = 400_000;
+
+/// Rows of a record, and the time between them, s.
+const ROWS: usize = 300;
+const STEP_S: f64 = 0.2;
+
+/// Steps of a simulation between rows.
+const FINE: usize = 20;
+
+/// Rows over which an input is held.
+const HELD: usize = 10;
+
+/// Standard deviation of the sensor.
+const SIGMA: f64 = 0.01;
+
+/// Tanks, two synthetic models and an oscillator without its drive.
+pub(super) fn figures() -> Result<Vec<Figure>, Error> {
+    let tanks = loaded(Kind::Tanks)?;
+    let level = record(&tanks, &Setting::random(Kind::Tanks, SEED, ROWS))?;
+    let product = script("product.py")?;
+    let product_record = of_rates(&product, 1, |state, input| {
+        vec![2.0 * 0.4 * input - 0.5 * state[0]]
+    })?;
+    let compartments = script("compartments.py")?;
+    let compartments_record = of_rates(&compartments, 2, |state, input| {
+        let uptake = 0.5 * state[0];
+        vec![0.8 * input - uptake, uptake / 2.0 - 0.2 * state[1]]
+    })?;
+    let duffing = loaded(Kind::Duffing)?;
+    let setting = Setting::random(Kind::Duffing, SEED, ROWS);
+    let still = vec![vec![0.0]; ROWS + 1];
+    let run = simulate(&setting, Some(&still));
+    let free = PlantRecord {
+        inputs: vec![0.0; ROWS],
+        outputs: run.outputs.concat(),
+        time_s: run.time_s,
+        ..PlantRecord::default()
+    };
+    let free = free.prepared(duffing.description(), "simulated")?;
+    let cases = [
+        ("tanks", gauge_of(&tanks, level, &["k1", "k2", "k4"])?),
+        (
+            "product of two gains",
+            gauge_of(&product, product_record, &["a", "b"])?,
+        ),
+        (
+            "amount without a scale",
+            gauge_of(&compartments, compartments_record, &["share", "volume"])?,
+        ),
+        ("an input that is still", weak(&duffing, free)?),
+    ];
+    let right = cases.iter().filter(|(_, right)| *right).count();
+    let wrong: Vec<&str> = cases
+        .iter()
+        .filter(|(_, right)| !right)
+        .map(|(name, _)| *name)
+        .collect();
+    let name =
+        "any plant: gauge of tanks and of two synthetic models said, weak excitation called none";
+    let mut figure = Figure::truth(name, wrong.is_empty());
+    figure.target = format!("{0} of {0}", cases.len());
+    figure.measured = match wrong.as_slice() {
+        [] => format!("{right} of {}", cases.len()),
+        wrong => format!("{right} of {}, not {}", cases.len(), wrong.join(", ")),
+    };
+    Ok(vec![figure.over(cases.len(), SEED.to_string())])
+}
+
+/// A plant that is derived from a script beside this file.
+fn script(name: &str) -> Result<LoadedPlant, Error> {
+    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src/any_plant")).join(name);
+    let derived = derive(&path, settings_of_a_command())?;
+    Ok(LoadedPlant::parse(&derived.program, name)?)
+}
+
+/// A record of rates of states, the last of which is read; the input is held at random values.
+fn of_rates(
+    plant: &LoadedPlant,
+    states: usize,
+    rates: impl Fn(&[f64], f64) -> Vec<f64>,
+) -> Result<PlantRecord, Error> {
+    let mut random = Stream::new(SEED, 5);
+    let mut state = vec![0.0; states];
+    let mut run = PlantRecord::default();
+    let mut input = 0.0;
+    for row in 0..ROWS {
+        if row % HELD == 0 {
+            input = random.between(0.0, 2.0);
+        }
+        run.time_s.push(row as f64 * STEP_S);
+        run.inputs.push(input);
+        run.outputs
+            .push(state[states - 1] + SIGMA * random.normal());
+        let h = STEP_S / FINE as f64;
+        for _ in 0..FINE {
+            // Heun's rule, in steps a hundredth of the time constants.
+            let here = rates(&state, input);
+            let ahead: Vec<f64> = state.iter().zip(&here).map(|(x, k)| x + h * k).collect();
+            let there = rates(&ahead, input);
+            for ((x, a), b) in state.iter_mut().zip(&here).zip(&there) {
+                *x += 0.5 * h * (a + b);
+            }
+        }
+    }
+    Ok(run.prepared(plant.description(), "simulated")?)
+}
+
+/// Whether one gauge is found, with exactly these parameters in it, and said to be one.
+fn gauge_of(plant: &LoadedPlant, record: PlantRecord, expected: &[&str]) -> Result<bool, Error> {
+    let (held, directions) = FittedPlant::nominal(plant, record, &[])?.to_hold()?;
+    let [one] = directions.as_slice() else {
+        return Ok(false);
+    };
+    let parts = one.parts.iter().filter(|part| part.parameter.is_some());
+    let mut names: Vec<&str> = parts.map(|part| part.name.as_str()).collect();
+    names.sort_unstable();
+    Ok(one.is_gauge && names == expected && held.len() == 1)
+}
+
+/// Whether what is not determined is found and said to be no gauge.
+fn weak(plant: &LoadedPlant, record: PlantRecord) -> Result<bool, Error> {
+    let directions = FittedPlant::nominal(plant, record, &[])?.null_directions()?;
+    Ok(!directions.is_empty() && directions.iter().all(|one| !one.is_gauge))
+}
