@@ -59,16 +59,16 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         .into_iter()
         .map(|kind| Ok((kind, loaded(kind)?)))
         .collect::<Result<_, PlantError>>()?;
-    let mut figures = clean(&plants, extent.records(400, 3));
-    figures.extend(hidden(&plants, extent.records(200, 4)));
+    let mut figures = clean(&plants, extent.records(400, 2));
+    figures.extend(hidden(&plants, extent.records(200, 3)));
     figures.extend(gauges::figures()?);
-    figures.push(starts(&plants, extent.records(100, 3))?);
+    figures.push(starts(&plants, extent.records(100, 2))?);
     figures.push(duration(&plants)?);
     figures.extend(interpreted::figures(&plants[0].1, extent.records(20, 2))?);
     Ok(figures)
 }
 
-fn loaded(kind: Kind) -> Result<LoadedPlant, PlantError> {
+pub(crate) fn loaded(kind: Kind) -> Result<LoadedPlant, PlantError> {
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
     let file = format!("{examples}/{}/plant.json", kind.facts().name);
     LoadedPlant::read(std::path::Path::new(&file))

@@ -21,6 +21,7 @@ mod measured;
 mod naming;
 mod page;
 mod paper;
+mod plant_peers;
 mod report;
 mod resumable;
 mod topic_page;
@@ -51,7 +52,7 @@ struct Arguments {
     /// Only these parts of the topic (truth).
     #[arg(long = "part", value_name = "PART")]
     parts: Vec<truth::Part>,
-    /// Most records of each population (truth, logs, any-plant, watch): a part of the full version, which goes on from there.
+    /// Most records of each population (truth, logs, any-plant, plant-peers, watch): a part of the full version, which goes on from there.
     #[arg(long, value_name = "COUNT")]
     records: Option<u64>,
     /// Also write the table into this file, with the command that printed it.
@@ -87,6 +88,8 @@ impl Arguments {
 enum Topic {
     /// Five simulated plants with hidden effects: alarms, sets, gain, starts, time.
     AnyPlant,
+    /// The diagnosis of a plant beside sparse and symbolic regression from PyPI.
+    PlantPeers,
     /// From symbols to nine drift coefficients.
     MainJob,
     /// The batch estimator: consistency over a population, exactness, cost.
@@ -133,6 +136,7 @@ fn main() -> ExitCode {
     };
     let figures = match arguments.topic {
         Topic::AnyPlant => any_plant::figures(extent),
+        Topic::PlantPeers => plant_peers::figures(extent),
         Topic::MainJob => main_job::figures(arguments.small),
         Topic::Calibration => calibration::figures(arguments.small),
         Topic::Catalogue => catalogue::figures(arguments.write),

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::format::significant;
 use gyrocal_statistics::math::exp;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -72,9 +73,9 @@ impl NullDirection {
             let sign = if part.change < 0.0 { "−" } else { "+" };
             let size = part.change.abs();
             if part.is_share {
-                format!("{sign}{size:.2} % of {}", part.name)
+                format!("{} by {sign}{} %", part.name, significant(size, 3))
             } else {
-                format!("{sign}{size:.2e} of {}", part.name)
+                format!("{} by {sign}{}", part.name, significant(size, 3))
             }
         };
         let parts: Vec<String> = self.parts.iter().map(part).collect();
@@ -83,12 +84,12 @@ impl NullDirection {
         });
         if self.is_gauge {
             format!(
-                "no record of this plant determines {} together{held}",
+                "no record of this plant shows a change of {} together{held}",
                 parts.join(", ")
             )
         } else {
             format!(
-                "this record does not excite {}{held}: another input would",
+                "this record does not show a change of {}{held}: with another input it would",
                 parts.join(", ")
             )
         }

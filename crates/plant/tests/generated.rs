@@ -3,51 +3,24 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use gyrocal_codegen::{Header, Program, emit_module};
-use gyrocal_plant::{ColumnMap, Generated, LoadedPlant, SearchOptions, diagnose};
+use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
 
 #[path = "../../../examples/duffing/plant.rs"]
 #[rustfmt::skip]
 #[allow(missing_docs, unreachable_pub, dead_code, clippy::all)]
 mod duffing;
 
-const COMMITTED: &str = "../../examples/duffing/plant.rs";
-
-fn path(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
-}
-
 fn example(file: &str) -> PathBuf {
-    path("../../examples/duffing").join(file)
-}
-
-#[test]
-fn the_generated_rust_is_that_of_the_program() {
-    let text = std::fs::read_to_string(example("plant.json")).unwrap();
-    let program = Program::from_json(&text, "plant.json").unwrap();
-    let header = Header {
-        rebuild_command: "GYROCAL_WRITE_EXAMPLES=1 cargo test -p gyrocal-plant --test generated"
-            .into(),
-        source: "examples/duffing/plant.json".into(),
-        fingerprint: "of the program".into(),
-    };
-    let module = emit_module(&program, &header).unwrap();
-    if std::env::var_os("GYROCAL_WRITE_EXAMPLES").is_some() {
-        std::fs::write(path(COMMITTED), &module).unwrap();
-    }
-    assert!(
-        std::fs::read_to_string(path(COMMITTED)).unwrap() == module,
-        "{COMMITTED} is stale"
-    );
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../examples/duffing")
+        .join(file)
 }
 
 #[test]
 fn both_diagnose_the_same() {
     let interpreted = LoadedPlant::read(&example("plant.json")).unwrap();
-    let generated = Generated::new(duffing::Duffing, 0);
-    let generated = interpreted.with_functions(Arc::new(generated)).unwrap();
+    let generated = interpreted.with_model(duffing::Duffing).unwrap();
     let columns = ColumnMap::read(&example("columns.toml")).unwrap();
     let answers = [&interpreted, &generated].map(|plant| {
         let record = columns
