@@ -31,6 +31,8 @@ CATALOGUE = {
 NAMES = {"p": [("l", 1), ("dp", -1), ("j", 1)], "q": [("m", 1), ("dq", -1), ("j", -1)],
          "r": [("n", 1), ("dr", -1)]}
 WINDOW = 40
+# Lengths of smoothing, rows; each method takes the one whose model simulates its own record best.
+SMOOTHING = (5, 7, 9, 13)
 
 
 def read(path):
@@ -51,6 +53,17 @@ def matrix(table, terms):
 def measured(record):
     states = np.stack([record[f"angle_{n}"] for n in STATES[:3]] + [record[f"gyro_{n}"] for n in STATES[3:]], 1)
     return record["time_s"], states, np.stack([record[n] for n in TORQUES], 1)
+
+
+def centred(torques):
+    """Torques about a row: they are held, and a difference about the row sees the one before too."""
+    return 0.5 * (torques + np.concatenate([torques[:1], torques[:-1]]))
+
+
+def smoothed(method, record):
+    """Names and model of a method by its best smoothing."""
+    tried = [method(length) for length in SMOOTHING]
+    return min(tried, key=lambda one: later_error(one[1], record))
 
 
 def linear(coefficients):
@@ -88,12 +101,12 @@ def later_error(rates, record):
     return error if np.isfinite(error) else 1e9
 
 
-def sindy(record):
+def sindy(record, length):
     """STLSQ on smoothed differences; its threshold by the error on the last third."""
     time_s, states, torques = measured(record)
-    smoother = ps.SmoothedFiniteDifference(smoother_kws={"window_length": 9, "polyorder": 3})
+    smoother = ps.SmoothedFiniteDifference(smoother_kws={"window_length": length, "polyorder": 3})
     slopes = smoother._differentiate(states, time_s)
-    table = columns(smoother.smoothed_x_ if hasattr(smoother, "smoothed_x_") else states, torques)
+    table = columns(smoother.smoothed_x_, centred(torques))
     cut, found, ranked = 2 * len(states) // 3, {}, []
     for index, axis in enumerate("pqr"):
         terms = NOMINAL[axis] + list(CATALOGUE[axis].values())
@@ -120,11 +133,11 @@ def sindy(record):
     return [name for _, name in sorted(ranked, reverse=True)], linear(found)
 
 
-def operon(record, seconds, seed):
+def operon(record, length, seconds, seed):
     """Symbolic regression of what the fitted nominal terms leave, with the same terms for variables."""
     time_s, states, torques = measured(record)
-    slopes = savgol_filter(states, 9, 3, deriv=1, delta=time_s[1] - time_s[0], axis=0)
-    table = columns(savgol_filter(states, 9, 3, axis=0), torques)
+    slopes = savgol_filter(states, length, 3, deriv=1, delta=time_s[1] - time_s[0], axis=0)
+    table = columns(savgol_filter(states, length, 3, axis=0), centred(torques))
     nominal, regressors, ranked = {}, {}, []
     for index, axis in enumerate("pqr"):
         theta, target = matrix(table, NOMINAL[axis]), slopes[:, 3 + index]
@@ -136,7 +149,7 @@ def operon(record, seconds, seed):
         inputs = matrix(table, terms)
         regressor = SymbolicRegressor(
             allowed_symbols="add,sub,mul,constant,variable", optimizer_iterations=10, max_length=15,
-            population_size=500, time_limit=max(1, round(seconds / 3)), n_threads=1, random_state=seed)
+            max_time=max(1, round(seconds / 3 / len(SMOOTHING))), n_threads=1, random_state=seed)
         regressor.fit(inputs, rest)
         regressors[axis] = regressor, terms
         told = regressor.predict(inputs)
@@ -147,8 +160,8 @@ def operon(record, seconds, seed):
             without = inputs.copy()
             without[:, place] = np.mean(inputs[:, place])
             scores.append((np.std(told - regressor.predict(without)) / noise, name))
-        # What a hundredth of the noise or less rests on is not in the formula.
-        ranked += [score for score in scores if score[0] > 0.01]
+        # What moves the formula by less than a tenth of the noise counts as absent from it.
+        ranked += [score for score in scores if score[0] > 0.1]
     base = linear(nominal)
 
     def rates(states, torques):
@@ -176,10 +189,10 @@ def main():
         record, later = read(directory / entry["record"]), read(directory / entry["later"])
         row = {"ours": {"names": entry["names"], "error": later_error(ours(entry), later),
                         "seconds": entry["seconds"]}}
-        for name, method in (("pysindy", lambda: sindy(record)),
-                             ("pyoperon", lambda: operon(record, entry["seconds"], 1 + index))):
+        for name, method in (("pysindy", lambda length: sindy(record, length)),
+                             ("pyoperon", lambda length: operon(record, length, entry["seconds"], 1 + index))):
             began = time.perf_counter()
-            names, rates = method()
+            names, rates = smoothed(method, record)
             row[name] = {"names": names, "seconds": time.perf_counter() - began,
                          "error": later_error(rates, later)}
         results.append(row)
