@@ -42,12 +42,12 @@ pub(super) fn run(arguments: &DeriveArguments) -> Result<Answer, Failure> {
         Standing::Good,
         "PROGRAM",
         format!(
-            "{} has {} states, {} parameters, {} outputs and {} effects in its catalogue",
+            "{} has {}, {}, {} and {} in its catalogue",
             description.name,
-            description.states.len(),
-            description.parameters.len(),
-            description.outputs.len(),
-            description.effects.len(),
+            counted(description.states.len(), "state"),
+            counted(description.parameters.len(), "parameter"),
+            counted(description.outputs.len(), "output"),
+            counted(description.effects.len(), "effect"),
         ),
     );
     for line in derived.left_out {
@@ -56,4 +56,10 @@ pub(super) fn run(arguments: &DeriveArguments) -> Result<Answer, Failure> {
     let mut answer = Answer::of(screen, String::new());
     answer.wrote(out, "the program, for `gyrocal plant diagnose`");
     Ok(answer)
+}
+
+/// A number of things, by the word for one of them.
+fn counted(count: usize, one: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {one}{plural}")
 }
