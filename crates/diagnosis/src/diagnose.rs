@@ -14,7 +14,7 @@ mod untestable_rows;
 use std::borrow::Cow;
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run, rows};
-use gyrocal_hypothesis::{FittedModel, SearchOptions, Searched, Selection};
+use gyrocal_hypothesis::{FittedModel, ScoreTable, SearchOptions, Searched, Selection};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::allan_test;
@@ -88,6 +88,8 @@ pub struct Diagnosis<'a> {
     pub innovations: Innovations,
     /// Whitened innovations with all causes in the model, row by row; NaN where there is no value.
     pub whitened: Vec<[f64; 3]>,
+    /// Scores on the effects that no finding holds: what the record adds to the evidence of a fleet.
+    pub scores: ScoreTable,
     /// The predicted later record, after [`Self::validate`].
     pub later: Option<LaterPrediction>,
 }
@@ -104,6 +106,7 @@ impl Diagnosis<'_> {
             audit: self.audit,
             innovations: self.innovations,
             whitened: self.whitened,
+            scores: self.scores,
             later: self.later,
         }
     }
@@ -237,6 +240,7 @@ fn diagnose_sound<'a>(
         audit,
         innovations: audited.innovations,
         whitened,
+        scores: searched.scores,
         later: None,
     })
 }

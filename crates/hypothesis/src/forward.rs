@@ -191,7 +191,7 @@ fn try_effect<F: FittedModel>(
 }
 
 /// Hypotheses that are not in the model and can be distinguished from it.
-fn open_hypotheses<F: FittedModel>(
+pub(crate) fn open_hypotheses<F: FittedModel>(
     context: &SearchContext<'_>,
     state: &SearchState<F>,
 ) -> Vec<Hypothesis> {

@@ -4,7 +4,7 @@ use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::Accepted;
 use crate::context::{MOST_EFFECTS, SearchContext, SearchOptions, extension};
-use crate::forward::{Beside, FirstRound, forward};
+use crate::forward::{Beside, FirstRound, forward, open_hypotheses};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
 use crate::null_distribution::GaussianDraws;
@@ -16,6 +16,7 @@ use crate::reassess::reassess;
 use crate::result::Finding;
 use crate::rows::Rows;
 use crate::score::Ranked;
+use crate::score_table::ScoreTable;
 use crate::state::{SearchState, settled};
 use crate::walk_candidates::Candidates;
 use crate::walks::{Compared, compare};
@@ -40,6 +41,8 @@ pub struct Searched<F> {
     pub unavailable: Vec<Unavailable>,
     /// Whether the search ended at its budget of work: there may be more to be found.
     pub is_cut: bool,
+    /// Scores on what the model does not hold.
+    pub scores: ScoreTable,
     base: ModelExtension,
     plant: &'static Plant,
     rows: Rows,
@@ -116,7 +119,9 @@ pub fn search<F: FittedModel>(
     add_none_of_these(&context, model, &mut effects, &mut walks.named)?;
     let effects = effects.into_iter().map(|effect| effect.finding);
     let findings = effects.chain(walks.named).collect();
+    let open = open_hypotheses(&context, &state);
     Ok(Searched {
+        scores: ScoreTable::of(&state.stage.bank, &open),
         fitted: state.stage.fitted,
         nominal: nominal.fitted,
         noise: state.stage.noise,

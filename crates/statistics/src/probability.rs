@@ -84,6 +84,14 @@ pub fn student_probability(t: f64, degrees_of_freedom: f64) -> Option<f64> {
     Some(distribution.cdf(t))
 }
 
+/// The value that a variable of Student's distribution stays below with a probability; `None` if the
+/// degrees of freedom are not positive.
+#[must_use]
+pub fn student_quantile(probability: f64, degrees_of_freedom: f64) -> Option<f64> {
+    let distribution = StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?;
+    Some(distribution.inverse_cdf(probability))
+}
+
 /// Probability that a variable of Fisher's F distribution exceeds a value; `None` if the degrees of
 /// freedom, of numerator and denominator, are not positive.
 #[must_use]
@@ -188,6 +196,7 @@ mod tests {
             Some(normal_probability(1.0))
         );
         assert_eq!(student_probability(1.0, 0.0), None);
+        assert!((student_quantile(0.975, 10.0).unwrap_or(0.0) - 2.228).abs() < 1e-3);
         assert!((student_two_sided_p(-2.228, 10.0).unwrap_or(0.0) - 0.05).abs() < 1e-4);
         assert!((f_tail(3.098, [3.0, 20.0]).unwrap_or(0.0) - 0.05).abs() < 1e-4);
         for value in [129.561, 74.222] {

@@ -1,0 +1,4 @@
+//! skeleton
+mod course;
+mod error;
+mod random_effects;
