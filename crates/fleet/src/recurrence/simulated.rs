@@ -1,0 +1,112 @@
+//! Fleets whose scores are drawn, and an oracle: measures of the search for recurring causes.
+
+use gyrocal_hypothesis::ScoreTable;
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::math::{exp, ln_1p};
+use nalgebra::{Cholesky, DVector};
+
+use super::mixture::in_random_direction;
+use super::naming::scores;
+use super::scores::{UnitScores, direction};
+use super::UnitRecords;
+
+/// Added to the diagonal of a correlation that is drawn from.
+const JITTER: f64 = 1e-4;
+
+/// A cause in a share of the units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Injected<'a> {
+    /// Public id of the effect.
+    pub effect: &'a str,
+    /// Standard deviations of a unit's own estimate.
+    pub strength: f64,
+    /// Share of the units.
+    pub share: f64,
+}
+
+/// Scores of a record drawn from their joint distribution: with a cause in a random direction at a random
+/// onset, or without. `None` if the record does not show the effect.
+#[must_use]
+pub fn simulated_scores(
+    table: &ScoreTable,
+    cause: Option<(&str, f64)>,
+    draw: &mut Draw,
+) -> Option<ScoreTable> {
+    let count = table.z.len();
+    let mut correlation = table.correlation.clone();
+    for i in 0..count {
+        correlation[(i, i)] += JITTER;
+    }
+    let lower = Cholesky::new(correlation)?.unpack();
+    let normal = DVector::from_fn(count, |_, _| draw.normal());
+    let mut z = lower * normal;
+    if let Some((effect, strength)) = cause {
+        let own = table.effects.iter().find(|own| own.id == effect)?;
+        let columns = draw.one_of(&own.variants);
+        let size = columns.len();
+        let part = table.correlation.select_rows(columns).select_columns(columns);
+        let root = Cholesky::new(part)?.unpack();
+        // Sizes b with bᵀ J b = d².
+        let sizes = root
+            .transpose()
+            .solve_upper_triangular(&(direction(size, draw) * strength))?;
+        for (column, size) in columns.iter().zip(sizes.iter()) {
+            z += table.correlation.column(*column) * *size;
+        }
+    }
+    Some(ScoreTable {
+        z: z.iter().copied().collect(),
+        ..table.clone()
+    })
+}
+
+/// Whether the most powerful test finds a cause, at a level: the likelihood ratio for one that knows which
+/// effect it is, its strength and its share, and not which units have it, with which sign and onset.
+#[must_use]
+pub fn oracle_finds(
+    units: &[UnitRecords<'_>],
+    cause: Injected<'_>,
+    level: f64,
+    draws: usize,
+    draw: &mut Draw,
+) -> bool {
+    let observed = scores(units, cause.effect);
+    let reached = ln_ratio(&observed, cause);
+    if reached <= 0.0 {
+        return false;
+    }
+    let mut drawn = observed;
+    let mut sum = exp(-reached);
+    for _ in 0..draws {
+        for unit in &mut drawn {
+            unit.redrawn(draw);
+            if draw.uniform() < cause.share {
+                unit.shift(cause.strength, draw);
+            }
+        }
+        let own = ln_ratio(&drawn, cause);
+        if own >= reached {
+            sum += exp(-own);
+        }
+    }
+    sum / (draws as f64 + 1.0) <= level
+}
+
+/// Logarithm of the likelihood ratio of a cause of known share and strength.
+fn ln_ratio(units: &[UnitScores], cause: Injected<'_>) -> f64 {
+    let ratio = |unit: &UnitScores| {
+        let count = unit.variants();
+        let blocks = unit.blocks.iter();
+        let each = blocks.flat_map(|block| {
+            block.variants.iter().map(|span| {
+                let own = block.whitened.rows(span.start, span.len());
+                in_random_direction(span.len(), own.norm_squared(), cause.strength)
+            })
+        });
+        match count {
+            0 => 0.0,
+            _ => ln_1p(cause.share * (each.sum::<f64>() / count as f64 - 1.0)),
+        }
+    };
+    units.iter().map(ratio).sum()
+}
