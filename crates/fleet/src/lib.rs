@@ -4,7 +4,7 @@
 //! # What it is
 //!
 //! [`summarise`] takes the diagnosed records of many units, each with its name, its coefficients, its findings
-//! and its scores ([`FleetRecord`]), and gives a [`FleetResult`]; [`prose()`] has its sentences. What a
+//! and its scores ([`FleetRecord`]), and gives a [`FleetResult`]; [`prose`] has its sentences. What a
 //! record needs to send is its result and its scores as [`to_bytes`] makes them, and not its samples.
 //!
 //! # The domain in brief
@@ -59,6 +59,7 @@ mod course;
 mod error;
 mod groups;
 mod level;
+pub mod prose;
 mod random_effects;
 mod record;
 pub mod recurrence;
@@ -70,6 +71,7 @@ pub use answer::{
     LikelyUnit, OutlierUnit, RecordProblem, RecurringCause, SCHEMA_VERSION, UnitLevel, WithInterval,
 };
 pub use error::FleetError;
+
 pub use record::{Coefficient, FleetRecord, RecordName};
 pub use score_bytes::{from_bytes, to_bytes};
 pub use summarise::{FleetOptions, summarise};

@@ -12,6 +12,7 @@
 //! | [`of_calibration`] | a calibration |
 //! | [`of_open_loop`] | a fit of the nominal model alone |
 //! | [`of_plan`] | a planned next run |
+//! | [`of_fleet`] | what a fleet shows |
 //! | [`of_tumble`] | a multi-position test with many stops |
 //! | [`of_allan`] | Allan deviations of a log |
 //!
@@ -24,6 +25,7 @@ mod blocks;
 mod calibration;
 mod diagnosis;
 mod error;
+mod fleet;
 mod origin;
 mod plan;
 mod tumble;
@@ -33,6 +35,7 @@ pub use allan::{AllanAnswer, of_allan};
 pub use calibration::{CalibratedRecord, of_calibration, of_open_loop};
 pub use diagnosis::{of_diagnosis, of_result};
 pub use error::PageError;
+pub use fleet::of_fleet;
 pub use gyrocal_report::page::{Page, Part};
 pub use plan::of_plan;
 pub use tumble::of_tumble;

@@ -1,0 +1,215 @@
+//! The sentences and tables of what a fleet shows.
+
+use gyrocal_diagnosis::prose::{Block, Column, Table, counted};
+use gyrocal_statistics::format;
+
+use crate::answer::{
+    FleetCoefficient, FleetResult, Group, GroupFinding, GroupKind, RecurringCause, WithInterval,
+};
+
+/// Units that are named in a sentence.
+const NAMED: usize = 5;
+
+/// The whole answer in reading order.
+#[must_use]
+pub fn all(fleet: &FleetResult) -> Vec<Block> {
+    let mut blocks = vec![
+        Block::Paragraph(size(fleet)),
+        Block::Paragraph(verdict(fleet)),
+    ];
+    let list = |title: &str, entries: Vec<String>| {
+        (!entries.is_empty()).then(|| Block::List {
+            title: title.to_owned(),
+            entries,
+        })
+    };
+    let recurring = fleet.recurring.iter().map(recurring).collect();
+    blocks.extend(list("Causes that recur below what units show by themselves:", recurring));
+    let groups = fleet.groups.iter().map(group).collect();
+    blocks.extend(list("Batches and sites that differ:", groups));
+    blocks.extend(list("Units outside of the others:", outliers(fleet)));
+    let found = fleet.found_in_units.iter().map(|one| {
+        let units = counted(one.units.len(), "unit");
+        format!("`{}` in {units}: {}", one.effect, named(&one.units))
+    });
+    blocks.extend(list("Causes that units show by themselves:", found.collect()));
+    blocks.push(Block::Table(coefficients(fleet)));
+    let problems = fleet.problems.iter();
+    let problems = problems.map(|one| format!("{}/{}: {}", one.unit, one.record, one.problem));
+    blocks.extend(list("Records that are left out:", problems.collect()));
+    blocks
+}
+
+/// Number of units and records.
+#[must_use]
+pub fn size(fleet: &FleetResult) -> String {
+    let units = counted(fleet.units, "unit");
+    let records = counted(fleet.records, "record");
+    match fleet.problems.len() {
+        0 => format!("The fleet has {units} with {records}."),
+        left_out => format!("The fleet has {units} with {records}; {left_out} more are left out."),
+    }
+}
+
+/// The answer in a sentence.
+#[must_use]
+pub fn verdict(fleet: &FleetResult) -> String {
+    let recurring: Vec<String> = fleet.recurring.iter().map(|one| format!("`{}`", one.effect)).collect();
+    let groups: Vec<String> = fleet.groups.iter().map(|one| group_name(&one.group)).collect();
+    let causes = match recurring.len() {
+        0 => "No cause recurs below what the units show by themselves".to_owned(),
+        1 => format!("One cause recurs below what the units show by themselves, {}", recurring[0]),
+        count => format!(
+            "{count} causes recur below what the units show by themselves: {}",
+            recurring.join(", ")
+        ),
+    };
+    let groups = match groups.len() {
+        0 => "no batch and no site differs".to_owned(),
+        _ => format!("the others differ from {}", groups.join(", ")),
+    };
+    format!(
+        "{causes}; {groups}. The false discovery rate of causes is {}, the probability of a false batch or \
+         site {}.",
+        format::percent(fleet.false_discovery_rate),
+        format::percent(fleet.group_probability),
+    )
+}
+
+/// A recurring cause in a sentence.
+#[must_use]
+pub fn recurring(cause: &RecurringCause) -> String {
+    let mut text = format!("`{}`, {}: ", cause.effect, format::p_value(cause.p_value));
+    match (cause.is_common, cause.size, cause.size_sigma) {
+        (true, Some(size), Some(sigma)) => {
+            text += &format!(
+                "one size in all units, {} {}",
+                format::with_sigma(size, sigma),
+                cause.unit
+            );
+        }
+        _ => {
+            text += &format!(
+                "in about {} of the units, at {} standard deviations of a unit",
+                format::percent((100.0 * cause.share).round() / 100.0),
+                format::short(cause.strength, 2)
+            );
+        }
+    }
+    let units: Vec<String> = cause.units.iter().map(|one| one.unit.clone()).collect();
+    if !cause.is_common && !units.is_empty() {
+        text += &format!(", more likely than not in {}", named(&units));
+    }
+    if !cause.alternatives.is_empty() {
+        text += &format!("; the fleet does not tell it from {}", cause.alternatives.join(", "));
+    }
+    if !cause.by_e_value {
+        text += "; its rate of false discoveries rests on tests that depend positively on one another";
+    }
+    text + "."
+}
+
+/// A batch or site in a sentence.
+#[must_use]
+pub fn group(finding: &GroupFinding) -> String {
+    let mut text = format!(
+        "{} ({}) differs in `{}` by {} {}, {}",
+        capital(&group_name(&finding.group)),
+        counted(finding.units, "unit"),
+        finding.coefficient,
+        interval(&finding.offset),
+        finding.unit,
+        format::p_value(finding.p_value)
+    );
+    for other in &finding.alternatives {
+        text += &format!(
+            "; {} explains it as well, {} of its {} are the same",
+            group_name(&other.group),
+            other.shared,
+            counted(other.units, "unit")
+        );
+    }
+    text + "."
+}
+
+fn group_name(group: &Group) -> String {
+    match group.kind {
+        GroupKind::Batch => format!("batch {}", group.name),
+        GroupKind::Site => format!("site {}", group.name),
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+fn outliers(fleet: &FleetResult) -> Vec<String> {
+    let of = |one: &FleetCoefficient| {
+        let level = one.outliers.iter().map(|outlier| {
+            let estimate = format::short(outlier.estimate, 4);
+            (outlier, format!("{estimate} {}", one.unit))
+        });
+        let ageing = one.ageing_outliers.iter().map(|outlier| {
+            let estimate = format::short(outlier.estimate, 4);
+            (outlier, format!("a change of {estimate} {} in a year", one.unit))
+        });
+        let entries = level.chain(ageing).map(|(outlier, what)| {
+            format!(
+                "{}: `{}` is {what}, {} standard deviations from the mean of the others, {}",
+                outlier.unit,
+                one.name,
+                format::short(outlier.t, 3),
+                format::p_value(outlier.p_value)
+            )
+        });
+        entries.collect::<Vec<String>>()
+    };
+    fleet.coefficients.iter().flat_map(of).collect()
+}
+
+/// The first names of a list, and how many more there are.
+fn named(units: &[String]) -> String {
+    let first = units.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
+    match units.len().saturating_sub(NAMED) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
+}
+
+/// Estimate and interval with the digits that the interval allows.
+fn interval(found: &WithInterval) -> String {
+    let [low, high] = found.interval;
+    let [estimate, _] = format::estimate(found.estimate, 0.25 * (high - low));
+    let decimals = estimate.split_once('.').map_or(0, |(_, digits)| digits.len());
+    format!("{estimate} ({low:.decimals$} to {high:.decimals$})")
+}
+
+/// Mean, spread and ageing of each coefficient.
+#[must_use]
+pub fn coefficients(fleet: &FleetResult) -> Table {
+    let cell = |found: &Option<WithInterval>| found.as_ref().map_or_else(String::new, interval);
+    let rows = fleet.coefficients.iter().map(|one| {
+        vec![
+            one.name.clone(),
+            cell(&one.mean),
+            cell(&one.spread),
+            cell(&one.repeatability),
+            cell(&one.ageing),
+            one.unit.clone(),
+        ]
+    });
+    Table {
+        title: "Drift coefficients over the units, with 95 % intervals:".to_owned(),
+        columns: vec![
+            Column::words("coefficient"),
+            Column::numbers("mean"),
+            Column::numbers("spread of units"),
+            Column::numbers("record to record"),
+            Column::numbers("change in a year"),
+            Column::words("unit"),
+        ],
+        rows: rows.collect(),
+    }
+}

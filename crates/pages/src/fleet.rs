@@ -1,0 +1,170 @@
+//! The page of a fleet.
+
+use gyrocal_diagnosis::prose::counted;
+use gyrocal_fleet::{FleetResult, prose};
+use gyrocal_report::page::{
+    Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,
+};
+use gyrocal_statistics::format;
+
+use crate::blocks;
+use crate::diagnosis::section;
+use crate::origin::origin;
+
+/// Units of a coefficient that are shown as bars.
+const SHOWN: usize = 40;
+
+/// The page of what a fleet shows.
+#[must_use]
+pub fn of_fleet(fleet: &FleetResult) -> Part {
+    let mut sections = vec![section(
+        "coefficients",
+        "Coefficients over the units",
+        "Mean and spread of the units, with 95 % intervals. The spread is without the errors of the estimates.",
+        vec![Item::Table(blocks::table(&prose::coefficients(fleet)))],
+    )];
+    if !fleet.recurring.is_empty() {
+        sections.push(section(
+            "recurring",
+            "Causes that recur",
+            "Too weak for one record, and in more units than chance puts them.",
+            vec![Item::Bars(evidence(fleet)), Item::Table(units(fleet))],
+        ));
+    }
+    let levels = fleet.coefficients.iter().map(|one| {
+        let mut bars: Vec<Bar> = one
+            .levels
+            .iter()
+            .map(|level| Bar {
+                label: level.unit.clone(),
+                value: level.estimate.abs(),
+                tint: match one.outliers.iter().any(|other| other.unit == level.unit) {
+                    true => Tint::Extended,
+                    false => Tint::Nominal,
+                },
+                note: format::with_sigma(level.estimate, level.sigma),
+            })
+            .collect();
+        bars.sort_by(|a, b| b.value.total_cmp(&a.value));
+        let more = bars.len().saturating_sub(SHOWN);
+        bars.truncate(SHOWN);
+        Item::Bars(Bars {
+            title: one.name.clone(),
+            quantity: format!("size of the coefficient, {}", one.unit),
+            threshold: None,
+            groups: vec![BarGroup {
+                label: "Units, the largest first; outside of the others in the second colour".to_owned(),
+                bars,
+            }],
+            omitted: match more {
+                0 => String::new(),
+                more => format!("{} with smaller coefficients are not shown.", counted(more, "unit")),
+            },
+        })
+    });
+    sections.push(section(
+        "units",
+        "Units",
+        "Each coefficient of each unit, mean over its records.",
+        levels.collect(),
+    ));
+    sections.push(section(
+        "words",
+        "In words",
+        "All that the fleet shows.",
+        blocks::items(&prose::all(fleet)),
+    ));
+    Part {
+        name: "fleet".to_owned(),
+        size: format!(
+            "{}, {}",
+            counted(fleet.units, "unit"),
+            counted(fleet.records, "record")
+        ),
+        summary: summary(fleet),
+        sections,
+        origin: origin(&fleet.manifest),
+    }
+}
+
+fn summary(fleet: &FleetResult) -> Summary {
+    let is_clean = fleet.recurring.is_empty() && fleet.groups.is_empty();
+    let card = |title: &str, text: Vec<String>| Card {
+        title: title.to_owned(),
+        main: match text.len() {
+            0 => "none".to_owned(),
+            count => count.to_string(),
+        },
+        text,
+        columns: 6,
+        ..Card::default()
+    };
+    Summary {
+        tone: if is_clean { Tone::Good } else { Tone::Found },
+        headline: if is_clean {
+            "Nothing beyond single units".to_owned()
+        } else {
+            format!(
+                "{} in many units, {} that differ",
+                counted(fleet.recurring.len(), "cause"),
+                counted(fleet.groups.len(), "group")
+            )
+        },
+        sentence: prose::verdict(fleet),
+        cards: vec![
+            card(
+                "Causes that recur",
+                fleet.recurring.iter().map(prose::recurring).collect(),
+            ),
+            card(
+                "Batches and sites that differ",
+                fleet.groups.iter().map(prose::group).collect(),
+            ),
+        ],
+    }
+}
+
+fn evidence(fleet: &FleetResult) -> Bars {
+    let bars = fleet.recurring.iter().map(|cause| Bar {
+        label: cause.effect.clone(),
+        value: cause.ln_evidence,
+        tint: Tint::Extended,
+        note: format::p_value(cause.p_value),
+    });
+    Bars {
+        title: "Evidence".to_owned(),
+        quantity: "logarithm of the e-value, nats".to_owned(),
+        threshold: None,
+        groups: vec![BarGroup {
+            label: "Effects".to_owned(),
+            bars: bars.collect(),
+        }],
+        omitted: String::new(),
+    }
+}
+
+/// Units that are likely to have a recurring cause.
+fn units(fleet: &FleetResult) -> Table {
+    let column = |head: &str, is_number| Column {
+        head: head.to_owned(),
+        is_number,
+    };
+    let rows = fleet.recurring.iter().flat_map(|cause| {
+        cause.units.iter().map(|one| {
+            vec![
+                Cell::from(cause.effect.clone()),
+                Cell::from(one.unit.clone()),
+                Cell::from(format!("{:.2}", one.probability)),
+            ]
+        })
+    });
+    Table {
+        title: "Units that are more likely than not to have it".to_owned(),
+        columns: vec![
+            column("effect", false),
+            column("unit", false),
+            column("probability", true),
+        ],
+        rows: rows.collect(),
+    }
+}
