@@ -67,37 +67,97 @@ def measure_fleet(count):
         gyrocal.diagnose(one.record, one.bench).to_json()
     library_s = time.perf_counter() - started
     started = time.perf_counter()
-    batches = (batch.slice(at, 64) for at in range(0, count, 64))
-    table = pa.Table.from_batches(fleet.diagnose_batches(batches), fleet.OUTPUT)
+    tables = []
+    resident = []
+    for at in range(0, count, 64):
+        tables += fleet.diagnose_batches([batch.slice(at, 64)])
+        resident.append((time.perf_counter() - started, present_mb()))
     batches_s = time.perf_counter() - started
+    table = pa.Table.from_batches(tables, fleet.OUTPUT)
     expected = in_order(table)
+    held_mb = table.nbytes / 1e6
 
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
+        stages = measure_stages(folder, batch, table, library_s)
         equal = True
         worker_mb = 0.0
         two_s = None
-        for workers, partitions in ((1, 3), (2, 16), (4, 7)):
-            source, out = folder / f"in-{partitions}", folder / f"out-{partitions}"
+        killed = {"kills": 0, "lost": 0, "repeated": 0}
+        runs = 0
+        for partitions in (3, 7, 16):
+            source = folder / f"in-{partitions}"
             write(source, batch, partitions)
-            seconds, memory, _ = on_cluster(source, out, workers, kills=0)
-            equal &= results(out).equals(expected)
-            worker_mb = max(worker_mb, memory)
-            two_s = seconds if workers == 2 else two_s
-        out = folder / "killed"
-        source = folder / "in-killed"
-        write(source, batch, 32)
-        _, _, killed = on_cluster(source, out, 2, kills=20)
-        equal &= results(out).equals(expected)
+            for workers in (1, 2, 4):
+                # The speed is that of two workers which nothing disturbs.
+                kills = 0 if (workers, partitions) == (2, 16) else 3
+                out = folder / f"out-{partitions}-{workers}"
+                seconds, memory, own = on_cluster(source, out, workers, kills)
+                equal &= results(out).equals(expected)
+                worker_mb = max(worker_mb, memory)
+                two_s = two_s if kills else seconds
+                killed = {name: killed[name] + own[name] for name in killed}
+                runs += 1
     return {
         "records": count,
         "library_s": library_s,
         "batches_s": batches_s,
         "two_workers_s": two_s,
         "equal": equal,
+        "runs": runs,
         "worker_mb": worker_mb,
-        "largest_result_bytes": max(len(text) for text in expected.column("result").to_pylist()),
+        "growth_mb": growth(resident, held_mb),
+        "largest_sent_bytes": max(
+            len(row["result"]) + len(row["scores"]) for row in expected.to_pylist()
+        ),
+        **stages,
         **killed,
+    }
+
+
+def growth(resident, held_mb):
+    """Growth of the memory from the first half of the batches to the second, without their results."""
+    half = len(resident) // 2
+    if not half:
+        return 0.0
+    first, last = (sum(mb for _, mb in part) / len(part) for part in (resident[:half], resident[half:]))
+    return last - first - 0.5 * held_mb
+
+
+def measure_stages(folder, batch, table, library_s):
+    """Seconds of each stage over all records, and bytes that it moves."""
+    import pyarrow.parquet as pq
+
+    import gyrocal
+    from gyrocal import fleet
+
+    write(folder / "stages", batch, 1)
+    (source,) = (folder / "stages").glob("*.parquet")
+    started = time.perf_counter()
+    read = [one for one in pq.ParquetFile(source).iter_batches(64)]
+    read_s = time.perf_counter() - started
+    started = time.perf_counter()
+    for one in read:
+        for given in fleet._records(one):
+            fleet._record_of(given)
+    records_s = time.perf_counter() - started
+    started = time.perf_counter()
+    pq.write_table(table, folder / "result.parquet")
+    write_s = time.perf_counter() - started
+    started = time.perf_counter()
+    before = present_mb()
+    fleet.summarise(table)
+    summary_s = time.perf_counter() - started
+    return {
+        "read_s": read_s,
+        "records_s": records_s,
+        "diagnosis_s": library_s,
+        "write_s": write_s,
+        "summary_s": summary_s,
+        "summary_mb": max(resident_mb() - before, 0.0),
+        "bytes_in": source.stat().st_size,
+        "bytes_out": (folder / "result.parquet").stat().st_size,
+        "rows_of_a_record": len(batch.column("time_s")[0]),
     }
 
 
@@ -121,6 +181,13 @@ def results(out):
     import pyarrow.parquet as pq
 
     return in_order(pa.concat_tables([pq.read_table(path) for path in out.glob("part-*.parquet")]))
+
+
+def present_mb():
+    import resource
+
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * resource.getpagesize() / 2**20
 
 
 def resident_mb(dask_worker=None):

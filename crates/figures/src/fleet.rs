@@ -1,5 +1,9 @@
-//! The Python package: size of its wheel, import, first diagnosis without Rust, overhead over the command,
-//! and fleets of records on workers.
+//! What a fleet shows, and the Python package: size of its wheel, import, first diagnosis without Rust,
+//! overhead over the command, fleets of records on workers.
+
+mod levels;
+mod recurring;
+mod whole;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -21,9 +25,20 @@ const EFFECTS_FOUND: i32 = 3;
 /// Records of the fleet.
 const RECORDS: usize = 400;
 
-/// All figures. The small version repeats less and leaves the fleet to the tests of the package; without
-/// Python, or where its packages cannot be had, nothing is judged.
+/// All figures.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    let mut figures = levels::figures(small)?;
+    figures.extend(recurring::figures(small)?);
+    if !small {
+        figures.extend(whole::figures()?);
+    }
+    figures.extend(of_package(small)?);
+    Ok(figures)
+}
+
+/// Those of the package. The small version repeats less and leaves the fleet to the tests of the package;
+/// without Python, or where its packages cannot be had, nothing is judged.
+fn of_package(small: bool) -> Result<Vec<Figure>, Error> {
     let build = root().join(PACKAGE).join("build");
     if let Err(missing) = output(Command::new(build).arg("environment")) {
         eprintln!("NOTHING OF THE PYTHON PACKAGE IS MEASURED: {missing}");
@@ -34,8 +49,8 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let wheel = wheel()?;
     let mut figures = vec![size(&wheel)?, import(if small { 3 } else { 15 })?];
     figures.push(first_diagnosis(&wheel)?);
-    figures.push(overhead(if small { 3 } else { 15 })?);
     if !small {
+        figures.push(overhead(15)?);
         figures.extend(fleet(RECORDS)?);
     }
     Ok(figures)
@@ -156,15 +171,26 @@ fn overhead(rounds: usize) -> Result<Figure, Error> {
 #[derive(Deserialize)]
 struct Fleet {
     records: usize,
+    rows_of_a_record: usize,
     library_s: f64,
     batches_s: f64,
     two_workers_s: f64,
     equal: bool,
+    runs: usize,
     worker_mb: f64,
-    largest_result_bytes: f64,
+    growth_mb: f64,
+    largest_sent_bytes: f64,
     kills: usize,
     lost: usize,
     repeated: usize,
+    read_s: f64,
+    records_s: f64,
+    diagnosis_s: f64,
+    write_s: f64,
+    summary_s: f64,
+    summary_mb: f64,
+    bytes_in: f64,
+    bytes_out: f64,
 }
 
 fn fleet(records: usize) -> Result<Vec<Figure>, Error> {
@@ -175,18 +201,19 @@ fn fleet(records: usize) -> Result<Vec<Figure>, Error> {
     let overhead = 100.0 * (found.batches_s / found.library_s - 1.0);
     let name = "two workers: records a second over the library in one process with one thread";
     let batches = "batches of Arrow over the library, one process: overhead a record";
+    let equal = format!(
+        "1, 2, 4 workers, three partitionings, killed workers ({} runs): equal bits",
+        found.runs
+    );
     let killed = format!(
-        "one worker killed {} times: lost, and repeated after it",
+        "workers killed {} times: lost, and repeated after it",
         found.kills
     );
     let lost = found.lost + found.repeated;
-    let figures = vec![
+    let mut figures = vec![
         Figure::within(name, [1.6, f64::INFINITY], rate),
         Figure::at_most(batches, 5.0, overhead, "%"),
-        Figure::truth(
-            "1, 2, 4 workers, three partitionings, killed workers: equal bits",
-            found.equal,
-        ),
+        Figure::truth(&equal, found.equal),
         Figure {
             target: "0 and 0".to_owned(),
             measured: format!("{} and {}", found.lost, found.repeated),
@@ -194,18 +221,77 @@ fn fleet(records: usize) -> Result<Vec<Figure>, Error> {
         },
         Figure::at_most("memory of a worker, most", 1000.0, found.worker_mb, "MB"),
         Figure::at_most(
-            "largest result of a record",
+            "memory of a process, second half of the records over the first",
+            10.0,
+            found.growth_mb,
+            "MB",
+        ),
+        Figure::at_most(
+            "result and scores of a record, most bytes",
             200.0,
-            found.largest_result_bytes / 1e3,
+            found.largest_sent_bytes / 1e3,
             "kB",
         ),
-        Figure::note(
-            "cost of a record, one thread",
-            format!("{:.1} ms", 1e3 * found.library_s / records as f64),
-        ),
     ];
+    figures.extend(scale(&found));
     let over = figures
         .into_iter()
         .map(|figure| figure.over(records, seeds.clone()));
     Ok(over.collect())
+}
+
+/// A million records.
+const MILLION: f64 = 1e6;
+
+/// An assumed price of an hour of a core, in any currency: results are proportional to it.
+const CORE_HOUR: f64 = 0.05;
+
+/// An assumed rate at which a shared store serves all workers together, bytes/s.
+const STORE_RATE: f64 = 1e9;
+
+/// Costs of a record, and what follows from them for a million.
+fn scale(found: &Fleet) -> Vec<Figure> {
+    let records = found.records as f64;
+    let each = |name: &str, seconds: f64| {
+        let milliseconds = 1e3 * seconds / records;
+        Figure::note(name, format!("{milliseconds:.2} ms a record"))
+    };
+    let total_s = found.read_s + found.records_s + found.diagnosis_s + found.write_s;
+    let (bytes_in, bytes_out) = (found.bytes_in / records, found.bytes_out / records);
+    let hours = total_s / records * MILLION / 3600.0;
+    // Workers that the store feeds: beyond them, more do not help.
+    let workers = STORE_RATE / ((bytes_in + bytes_out) / (total_s / records));
+    let rows = found.rows_of_a_record;
+    vec![
+        Figure::note("rows of a record", format!("{rows}")),
+        each("stage: read Parquet", found.read_s),
+        each("stage: columns to a record", found.records_s),
+        each("stage: diagnosis, with its result as JSON", found.diagnosis_s),
+        each("stage: write Parquet", found.write_s),
+        each("stage: summary of the fleet, one process", found.summary_s),
+        Figure::note(
+            "summary of the fleet: memory",
+            format!("{:.2} MB a record", found.summary_mb / records),
+        ),
+        Figure::note(
+            "bytes of a record in and out",
+            format!("{:.1} kB and {:.1} kB", bytes_in / 1e3, bytes_out / 1e3),
+        ),
+        Figure::note(
+            &format!("a million such records: core-hours, price at {CORE_HOUR} an hour of a core"),
+            format!("{hours:.1} h, {:.2}", CORE_HOUR * hours),
+        ),
+        Figure::note(
+            "a million such records: bytes in and out",
+            format!(
+                "{:.1} GB and {:.1} GB",
+                bytes_in * MILLION / 1e9,
+                bytes_out * MILLION / 1e9
+            ),
+        ),
+        Figure::note(
+            &format!("workers that a store of {} GB/s feeds: beyond, no linear scaling", STORE_RATE / 1e9),
+            format!("{workers:.0}"),
+        ),
+    ]
 }

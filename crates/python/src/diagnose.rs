@@ -51,6 +51,9 @@ impl<'a> Given<'a> {
 /// The result (JSON), and its sentences and tables (JSON).
 pub(crate) type Answer = (String, String);
 
+/// The same with the scores of the record as bytes, of a record that was searched.
+pub(crate) type Scored = (String, String, Option<Vec<u8>>);
+
 /// Diagnoses a record.
 #[pyfunction]
 #[pyo3(signature = (record, bench, later, effects, false_alarm, euler_filter, command))]
@@ -67,7 +70,7 @@ pub(crate) fn diagnose(
     false_alarm: f64,
     euler_filter: bool,
     command: &str,
-) -> PyResult<Answer> {
+) -> PyResult<Scored> {
     let given = Given {
         record: record.get(),
         bench: bench.get(),
@@ -115,35 +118,37 @@ fn answer(
     later: Option<Given<'_>>,
     options: &DiagnoseOptions,
     command: &str,
-) -> Outcome<Answer> {
-    let mut result = result(given, later, options)?;
+) -> Outcome<Scored> {
+    let (mut result, scores) = result(given, later, options)?;
     let inputs = [Some(given), later].into_iter().flatten();
     let inputs = inputs.flat_map(|one| [one.record.input.clone(), one.bench.input.clone()]);
     result.manifest = manifest(MODEL_HASH, options.seed, inputs.collect(), command);
-    Ok((json(&result)?, json(&prose::diagnosis(&result))?))
+    let blocks = json(&prose::diagnosis(&result))?;
+    Ok((json(&result)?, blocks, scores))
 }
 
-/// A gross error of the set-up is an answer too.
+/// The result and the scores. A gross error of the set-up is an answer too.
 fn result(
     given: Given<'_>,
     later: Option<Given<'_>>,
     options: &DiagnoseOptions,
-) -> Outcome<DiagnosisResult> {
+) -> Outcome<(DiagnosisResult, Option<Vec<u8>>)> {
     if options.filter.is_some() && given.bench.bench.initial_angles_deg.is_none() {
         return Err(given.no_diagnosis(CalibrationError::NoAttitude.into()));
     }
     let diagnosed: Result<Diagnosis<'_>, _> =
         diagnose_gated(given.gate(options)?, &given.bench.bench, options);
     let mut diagnosis = match diagnosed {
-        Err(DiagnosisError::Setup { result }) => return Ok(*result),
+        Err(DiagnosisError::Setup { result }) => return Ok((*result, None)),
         found => found.map_err(|source| given.no_diagnosis(source))?,
     };
     if let Some(later) = later {
         let gate = later.gate(options)?;
         match diagnosis.validate_gated(&given.run(), gate, &later.bench.bench, options) {
-            Err(DiagnosisError::Setup { result }) => return Ok(*result),
+            Err(DiagnosisError::Setup { result }) => return Ok((*result, None)),
             validated => validated.map_err(|source| later.no_diagnosis(source))?,
         }
     }
-    Ok(diagnosis.result)
+    let scores = gyrocal_fleet::to_bytes(&diagnosis.scores);
+    Ok((diagnosis.result, Some(scores)))
 }

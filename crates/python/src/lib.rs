@@ -12,10 +12,13 @@ mod calibrate;
 mod characterise;
 mod diagnose;
 mod error;
+mod fleet;
 mod names;
 mod origin;
 mod plan;
+mod plant;
 mod record;
+mod report;
 mod simulate;
 
 use pyo3::prelude::*;
@@ -36,9 +39,15 @@ mod _gyrocal {
     #[pymodule_export]
     use crate::diagnose::diagnose;
     #[pymodule_export]
+    use crate::fleet::summarise_fleet;
+    #[pymodule_export]
     use crate::plan::plan;
     #[pymodule_export]
+    use crate::plant::HeldPlant;
+    #[pymodule_export]
     use crate::record::HeldRecord;
+    #[pymodule_export]
+    use crate::report::report;
     #[pymodule_export]
     use crate::simulate::simulate;
 

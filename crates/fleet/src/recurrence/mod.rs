@@ -27,7 +27,7 @@ use gyrocal_statistics::math::exp;
 
 use naming::{Naming, Tested};
 
-pub use simulated::{Injected, oracle_finds, simulated_scores};
+pub use simulated::{Injected, ScoreSimulator, oracle_finds};
 
 /// The records of one unit.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use gyrocal_hypothesis::ScoreTable;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::math::{exp, ln_1p};
-use nalgebra::{Cholesky, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::mixture::in_random_direction;
 use super::naming::scores;
@@ -24,40 +24,60 @@ pub struct Injected<'a> {
     pub share: f64,
 }
 
-/// Scores of a record drawn from their joint distribution: with a cause in a random direction at a random
-/// onset, or without. `None` if the record does not show the effect.
-#[must_use]
-pub fn simulated_scores(
-    table: &ScoreTable,
-    cause: Option<(&str, f64)>,
-    draw: &mut Draw,
-) -> Option<ScoreTable> {
-    let count = table.z.len();
-    let mut correlation = table.correlation.clone();
-    for i in 0..count {
-        correlation[(i, i)] += JITTER;
-    }
-    let lower = Cholesky::new(correlation)?.unpack();
-    let normal = DVector::from_fn(count, |_, _| draw.normal());
-    let mut z = lower * normal;
-    if let Some((effect, strength)) = cause {
-        let own = table.effects.iter().find(|own| own.id == effect)?;
-        let columns = draw.one_of(&own.variants);
-        let size = columns.len();
-        let part = table.correlation.select_rows(columns).select_columns(columns);
-        let root = Cholesky::new(part)?.unpack();
-        // Sizes b with bᵀ J b = d².
-        let sizes = root
-            .transpose()
-            .solve_upper_triangular(&(direction(size, draw) * strength))?;
-        for (column, size) in columns.iter().zip(sizes.iter()) {
-            z += table.correlation.column(*column) * *size;
+/// Draws the scores of a record from their joint distribution.
+#[derive(Clone, Debug)]
+pub struct ScoreSimulator {
+    table: ScoreTable,
+    /// Factor of the correlation.
+    lower: DMatrix<f64>,
+}
+
+impl ScoreSimulator {
+    /// Of a record with these scores. `None` if their correlation is none.
+    #[must_use]
+    pub fn new(table: ScoreTable) -> Option<Self> {
+        let mut correlation = table.correlation.clone();
+        for i in 0..correlation.nrows() {
+            correlation[(i, i)] += JITTER;
         }
+        let lower = Cholesky::new(correlation)?.unpack();
+        Some(Self { table, lower })
     }
-    Some(ScoreTable {
-        z: z.iter().copied().collect(),
-        ..table.clone()
-    })
+
+    /// The scores of the record itself.
+    #[must_use]
+    pub fn table(&self) -> &ScoreTable {
+        &self.table
+    }
+
+    /// Scores with a cause of a strength in a random direction at a random onset, or without. `None` if the
+    /// record does not show the effect.
+    #[must_use]
+    pub fn draw(&self, cause: Option<(&str, f64)>, draw: &mut Draw) -> Option<ScoreTable> {
+        let table = &self.table;
+        let normal = DVector::from_fn(table.z.len(), |_, _| draw.normal());
+        let mut z = &self.lower * normal;
+        if let Some((effect, strength)) = cause {
+            let own = table.effects.iter().find(|own| own.id == effect)?;
+            let columns = draw.one_of(&own.variants);
+            let part = table
+                .correlation
+                .select_rows(columns)
+                .select_columns(columns);
+            let root = Cholesky::new(part)?.unpack();
+            // Sizes b with bᵀ J b = d².
+            let sizes = root
+                .transpose()
+                .solve_upper_triangular(&(direction(columns.len(), draw) * strength))?;
+            for (column, size) in columns.iter().zip(sizes.iter()) {
+                z += table.correlation.column(*column) * *size;
+            }
+        }
+        Some(ScoreTable {
+            z: z.iter().copied().collect(),
+            ..table.clone()
+        })
+    }
 }
 
 /// Whether the most powerful test finds a cause, at a level: the likelihood ratio for one that knows which

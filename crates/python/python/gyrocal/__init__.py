@@ -13,8 +13,19 @@ numbers that the command ``gyrocal`` gives.
 from ._calls import calibrate, characterise, diagnose, plan, simulate
 from ._errors import ComputationError, GyrocalError, InputError, SetupError
 from ._gyrocal import VERSION as __version__
+from ._plant import Plant
 from ._record import COLUMNS, Bench, Record
-from ._results import Calibration, Characteristics, Diagnosis, Fields, Plan, Result, Simulation
+from ._results import (
+    Calibration,
+    Characteristics,
+    Diagnosis,
+    Fields,
+    Fleet,
+    Plan,
+    PlantDiagnosis,
+    Result,
+    Simulation,
+)
 
 __all__ = [
     "COLUMNS",
@@ -24,9 +35,12 @@ __all__ = [
     "ComputationError",
     "Diagnosis",
     "Fields",
+    "Fleet",
     "GyrocalError",
     "InputError",
     "Plan",
+    "Plant",
+    "PlantDiagnosis",
     "Record",
     "Result",
     "SetupError",

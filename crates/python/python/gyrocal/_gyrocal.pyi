@@ -1,7 +1,7 @@
 """The extension module. Users call the functions of the package."""
 
 from os import PathLike
-from typing import final
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,24 @@ class Bench:
     def latitude_deg(self) -> float: ...
     def to_toml(self) -> str: ...
 
+@final
+class Plant:
+    @staticmethod
+    def of_program(text: str, name: str) -> Plant: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def inputs(self) -> list[str]: ...
+    @property
+    def outputs(self) -> list[str]: ...
+    @property
+    def regressors(self) -> list[str]: ...
+    @property
+    def effects(self) -> list[str]: ...
+    def diagnose(
+        self, record: dict[str, Any], later: dict[str, Any] | None, false_alarm: float
+    ) -> tuple[str, str]: ...
+
 def command(arguments: list[str]) -> int: ...
 def check_columns(names: list[str], frame: str) -> None: ...
 def simulate(
@@ -74,7 +92,7 @@ def diagnose(
     false_alarm: float,
     euler_filter: bool,
     command: str,
-) -> tuple[str, str]: ...
+) -> tuple[str, str, bytes | None]: ...
 def plan(
     record: Record,
     bench: Bench,
@@ -97,3 +115,12 @@ def characterise(
     threads: int | None,
     command: str,
 ) -> str: ...
+def summarise_fleet(
+    records: list[dict[str, Any]],
+    false_discovery_rate: float,
+    group_probability: float,
+    outlier_probability: float,
+    seed: int,
+    command: str,
+) -> tuple[str, str]: ...
+def report(kind: str, result: str) -> str: ...

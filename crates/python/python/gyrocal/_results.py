@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import html
 import json
+import os
 import textwrap
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from . import _gyrocal
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,7 +24,9 @@ __all__ = [
     "Characteristics",
     "Diagnosis",
     "Fields",
+    "Fleet",
     "Plan",
+    "PlantDiagnosis",
     "Result",
     "Simulation",
 ]
@@ -121,6 +126,16 @@ class Result(Fields):
 
         return pd.DataFrame(self._rows())
 
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Writes the result as an HTML page, one file that needs no network.
+
+        Raises:
+            InputError: There is no page of such a result.
+        """
+        page = _gyrocal.report(type(self).__name__, self._text)
+        with open(path, "w", encoding="utf-8", newline="\n") as file:
+            file.write(page)
+
     def _rows(self) -> list[dict[str, Any]]:
         raise NotImplementedError
 
@@ -141,7 +156,8 @@ class Result(Fields):
 class Diagnosis(Result):
     """Result of :func:`gyrocal.diagnose`."""
 
-    __slots__ = ()
+    __slots__ = ("_scores",)
+    _scores: bytes | None
     verdict: str
     record: Fields
     setup: list[Fields]
@@ -152,6 +168,22 @@ class Diagnosis(Result):
     remainder: Fields
     threshold: float | None
     search_complete: bool
+
+    def __init__(self, text: str, blocks: str | None = None, scores: bytes | None = None) -> None:
+        super().__init__(text, blocks)
+        object.__setattr__(self, "_scores", None if scores is None else bytes(scores))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        kind, arguments = super().__reduce__()
+        return kind, (*arguments, self._scores)
+
+    @property
+    def scores(self) -> bytes | None:
+        """Scores of the record on all effects that it does not show by itself.
+
+        They are what :func:`gyrocal.fleet.summarise` pools; ``None`` of a record that was not searched.
+        """
+        return self._scores
 
     def _rows(self) -> list[dict[str, Any]]:
         """One row a finding; the parameters are columns."""
@@ -295,6 +327,83 @@ class Characteristics(Result):
 
     def __repr__(self) -> str:
         return f"<gyrocal.Characteristics: {len(self._fields['cells'])} cells>"
+
+
+class Fleet(Result):
+    """Result of :func:`gyrocal.fleet.summarise`."""
+
+    __slots__ = ()
+    units: int
+    records: int
+    problems: list[Fields]
+    false_discovery_rate: float
+    group_probability: float
+    outlier_probability: float
+    coefficients: list[Fields]
+    groups: list[Fields]
+    recurring: list[Fields]
+    found_in_units: list[Fields]
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """One row a coefficient."""
+        rows = []
+        for one in self._fields["coefficients"]:
+            row = {"name": one["name"], "unit": one["unit"]}
+            for key in ("mean", "spread", "repeatability", "ageing", "ageing_spread"):
+                found = one[key]
+                row[key] = None if found is None else found["estimate"]
+                low, high = (None, None) if found is None else found["interval"]
+                row[f"{key}_low"], row[f"{key}_high"] = low, high
+            row["outliers"] = [outlier["unit"] for outlier in one["outliers"]]
+            rows.append(row)
+        return rows
+
+    def __repr__(self) -> str:
+        effects = ", ".join(cause["effect"] for cause in self._fields["recurring"])
+        groups = ", ".join(one["group"]["name"] for one in self._fields["groups"])
+        found = "; ".join(filter(None, (effects, groups)))
+        return f"<gyrocal.Fleet of {self.units} units{': ' + found if found else ''}>"
+
+
+class PlantDiagnosis(Result):
+    """Result of :meth:`gyrocal.Plant.diagnose`."""
+
+    __slots__ = ()
+    plant: str
+    rows: int
+    findings: list[Fields]
+    unexplained: list[Fields]
+    parameters: list[Fields]
+    noise: list[Fields]
+    undetermined: list[Fields]
+    later_record: Fields | None
+
+    def __init__(self, text: str, sentences: str | None = None) -> None:
+        super().__init__(text)
+        said = [] if sentences is None else json.loads(sentences)
+        blocks = [{"paragraph": sentence} for sentence in said]
+        object.__setattr__(self, "_blocks", blocks)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        said = [block["paragraph"] for block in self._blocks or []]
+        return type(self), (self._text, json.dumps(said))
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """One row a finding; its sizes are columns."""
+        rows = []
+        for finding in self._fields["findings"]:
+            row = {key: finding[key] for key in ("effect", "name", "formula", "z", "p_value")}
+            row["alternatives"] = [name for name, _ in finding["rivals"]]
+            for size in finding["sizes"]:
+                row[size["name"]] = size["value"]
+                row[size["name"] + "_sigma"] = size["sigma"]
+                row[size["name"] + "_unit"] = size["unit"]
+            rows.append(row)
+        return rows
+
+    def __repr__(self) -> str:
+        effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
+        return f"<gyrocal.PlantDiagnosis of {self.plant}: {effects or 'nothing found'}>"
 
 
 class Simulation(Result):

@@ -24,10 +24,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from . import _gyrocal
-from ._calls import diagnose
+from ._calls import _call, diagnose
 from ._errors import GyrocalError, InputError
 from ._record import COLUMNS, Bench, Record, as_record
-from ._results import Diagnosis
+from ._results import Diagnosis, Fleet
 
 __all__ = [
     "INPUT",
@@ -36,22 +36,34 @@ __all__ = [
     "diagnose_batches",
     "diagnose_partitions",
     "read_manifest",
+    "summarise",
 ]
 
 _NUMBERS = pa.list_(pa.float64())
 
-#: Columns of the input; ``temperature_c`` may be null, or absent.
+#: What an operator knows of a record beside its name: ``date_s`` are seconds since any fixed moment.
+KNOWN = [
+    pa.field("date_s", pa.float64()),
+    pa.field("batch", pa.string()),
+    pa.field("site", pa.string()),
+]
+
+#: Columns of the input; ``temperature_c`` and those of :data:`KNOWN` may be null, or absent.
 INPUT = pa.schema(
     [
         pa.field("unit", pa.string()),
         pa.field("record", pa.string()),
         pa.field("bench", pa.string()),
         *(pa.field(name, _NUMBERS) for name in COLUMNS),
+        *KNOWN,
     ]
 )
 
-#: Columns of the output. ``status`` is ``done`` or ``failed``; ``result`` is the JSON of the diagnosis, and
-#: ``error`` and ``advice`` tell what is wrong with a record that could not be diagnosed.
+#: Columns that a batch may lack.
+_OPTIONAL = {COLUMNS[4], *(field.name for field in KNOWN)}
+
+#: Columns of the output. ``status`` is ``done`` or ``failed``; ``result`` is the JSON of the diagnosis,
+#: ``scores`` what :func:`summarise` pools (:attr:`gyrocal.Diagnosis.scores`), and ``error`` and ``advice`` tell what is wrong with a record that could not be diagnosed.
 OUTPUT = pa.schema(
     [
         pa.field("unit", pa.string()),
@@ -62,6 +74,8 @@ OUTPUT = pa.schema(
         pa.field("z", pa.float64()),
         pa.field("p_value", pa.float64()),
         pa.field("result", pa.string()),
+        pa.field("scores", pa.binary()),
+        *KNOWN,
         pa.field("error", pa.string()),
         pa.field("advice", pa.string()),
     ]
@@ -73,10 +87,16 @@ BATCH_ROWS = 64
 _MANIFEST = "manifest.json"
 
 
-def batch_of_records(records: Iterable[tuple[str, str, Any, Any]]) -> pa.RecordBatch:
-    """A batch of the input from tuples of unit, name of the record, record and bench description."""
+def batch_of_records(records: Iterable[tuple[Any, ...]]) -> pa.RecordBatch:
+    """A batch of the input from tuples of unit, name of the record, record and bench description.
+
+    A fifth element is a mapping of what else is known, with the keys of :data:`KNOWN`.
+    """
     columns: dict[str, list[Any]] = {name: [] for name in INPUT.names}
-    for unit, name, record, bench in records:
+    for unit, name, record, bench, *rest in records:
+        known = rest[0] if rest else {}
+        for field in KNOWN:
+            columns[field.name].append(known.get(field.name))
         held = as_record(record)
         columns["unit"].append(unit)
         columns["record"].append(name)
@@ -162,11 +182,65 @@ def read_manifest(out: str | os.PathLike[str]) -> dict[str, Any]:
     return json.loads((Path(out) / _MANIFEST).read_text())
 
 
+def summarise(
+    results: str | os.PathLike[str] | pa.Table | Iterable[pa.RecordBatch],
+    *,
+    false_discovery_rate: float = 0.05,
+    group_probability: float = 0.02,
+    outlier_probability: float = 0.01,
+    seed: int = 0,
+) -> Fleet:
+    """Shows what the records of a fleet show together and none of them by itself.
+
+    Coefficients over units and time, causes that recur below what each unit shows, batches and sites that
+    differ. It needs the results of the records, and not their samples.
+
+    Args:
+        results: A folder of :func:`diagnose_partitions`, or batches or a table of the output.
+        false_discovery_rate: Share of false ones among the causes that recur.
+        group_probability: Family-wise probability that a fleet without differences shows a batch or site.
+        outlier_probability: Family-wise probability that a coefficient without outliers shows one.
+        seed: Seed of the draws that p-values come from.
+
+    Raises:
+        InputError: An argument is wrong, or no record was diagnosed.
+    """
+    records = [_summarised(row) for batch in _batches(results) for row in batch.to_pylist()]
+    command = _call("fleet.summarise", results, false_discovery_rate=false_discovery_rate, seed=seed)
+    return Fleet(
+        *_gyrocal.summarise_fleet(
+            records, false_discovery_rate, group_probability, outlier_probability, seed, command
+        )
+    )
+
+
+#: Columns of the output that a summary reads.
+_SUMMARISED = ("unit", "record", "result", "scores", "error", *(field.name for field in KNOWN))
+
+
+def _batches(results: Any) -> Iterator[pa.RecordBatch]:
+    if isinstance(results, (str, os.PathLike)):
+        for path in sorted(Path(results).glob("*.parquet")):
+            with pq.ParquetFile(path) as file:
+                yield from file.iter_batches(BATCH_ROWS, columns=list(_SUMMARISED))
+        return
+    yield from results.to_batches() if isinstance(results, pa.Table) else results
+
+
+def _summarised(row: dict[str, Any]) -> dict[str, Any]:
+    found = {name: row.get(name) for name in _SUMMARISED}
+    for name in ("unit", "record"):
+        if found[name] is None:
+            found |= {name: "<without a name>", "result": None}
+            found["error"] = found["error"] or f"it has no name of its {name}"
+    return found
+
+
 def _records(batch: pa.RecordBatch) -> Iterator[dict[str, Any]]:
     """The records of a batch, their numbers as views of its buffers."""
     names = batch.schema.names
     for field in INPUT:
-        if field.name not in names and field.name != COLUMNS[4]:
+        if field.name not in names and field.name not in _OPTIONAL:
             raise InputError(
                 f"batch: found the columns {', '.join(names)}, expected `{field.name}` too",
                 expected=field.name,
@@ -208,6 +282,7 @@ def _cell(column: pa.Array, row: int) -> Any:
 def _row(given: dict[str, Any], false_alarm: float) -> dict[str, Any]:
     row = dict.fromkeys(OUTPUT.names)
     row.update(unit=given["unit"], record=given["record"], status="failed")
+    row.update({field.name: given.get(field.name) for field in KNOWN})
     try:
         found = _diagnosis(given, false_alarm)
     except GyrocalError as error:
@@ -219,6 +294,7 @@ def _row(given: dict[str, Any], false_alarm: float) -> dict[str, Any]:
         verdict=found.verdict,
         effects=[finding["effect"] for finding in findings],
         result=found.to_json(),
+        scores=found.scores,
     )
     if findings:
         row.update(z=findings[0]["z"], p_value=findings[0]["p_value"])
@@ -233,6 +309,12 @@ def _diagnosis(given: dict[str, Any], false_alarm: float) -> Diagnosis:
         raise InputError(
             f"{name}: found no `{missing[0]}`", advice="leave the record out, or give what is missing"
         )
+    return diagnose(*_record_of(given), false_alarm=false_alarm)
+
+
+def _record_of(given: dict[str, Any]) -> tuple[Record, Bench]:
+    """The record and the bench description of a row."""
+    name = f"{given['unit']}/{given['record']}"
     bench = Bench.parse(given["bench"], name=f"{name}: bench")
     columns = {column: given[column] for column in COLUMNS if given.get(column) is not None}
     lengths = {column: len(values) for column, values in columns.items()}
@@ -242,8 +324,7 @@ def _diagnosis(given: dict[str, Any], false_alarm: float) -> Diagnosis:
             advice="give all columns of the same rows; a missing value is nan",
         )
     samples = np.column_stack([columns[column] for column in COLUMNS[1:4]])
-    record = Record(columns["time_s"], samples, columns.get(COLUMNS[4]), name=name)
-    return diagnose(record, bench, false_alarm=false_alarm)
+    return Record(columns["time_s"], samples, columns.get(COLUMNS[4]), name=name), bench
 
 
 def _diagnose_partition(path: Path, out: Path, false_alarm: float) -> None:

@@ -1,0 +1,101 @@
+//! A fleet of records from end to end: simulated, diagnosed, its scores sent as bytes, and looked at.
+
+use gyrocal_diagnosis::result::read_text;
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_evaluation::inject;
+use gyrocal_fleet::{FleetOptions, FleetRecord, RecordName, summarise, to_bytes};
+use gyrocal_record::SourceText;
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_truth::{Scenario, simulate};
+use rayon::prelude::*;
+
+use super::recurring::scenario;
+use crate::error::Error;
+use crate::figure::Figure;
+
+const UNITS: u64 = 200;
+
+/// Share of the units that have the cause, and its strength.
+const SHARE: f64 = 0.2;
+const STRENGTH: f64 = 2.5;
+
+/// The cause.
+const CAUSE: &str = "gyro_y.g_z";
+
+/// First record; those of the scores that other fleets are drawn from are below.
+const FIRST: u64 = 1000;
+
+/// A diagnosed record and what was sent.
+struct Sent {
+    record: FleetRecord,
+    bytes: usize,
+}
+
+fn sent(number: u64, with_cause: bool) -> Result<Sent, Error> {
+    let mut scenario = scenario(FIRST + number);
+    let mut draw = Draw::new(FIRST + number, 0);
+    if with_cause && draw.uniform() < SHARE {
+        let effect = gyrocal::EFFECTS.iter().find(|effect| effect.id == CAUSE);
+        let effect = effect.ok_or("no such effect")?;
+        let injected = inject(&scenario, &[(effect, None)], STRENGTH, 1.0, &mut draw)?;
+        let hidden = injected.iter().flatten().map(|one| one.to_hidden());
+        scenario = Scenario {
+            hidden: hidden.collect::<Result<_, _>>()?,
+            ..scenario
+        };
+    }
+    let simulated = simulate(&scenario)?;
+    let options = DiagnoseOptions::default();
+    let diagnosed = diagnose(&simulated.record, &simulated.bench, &options)?;
+    let result = serde_json::to_string(&diagnosed.result)?;
+    let scores = to_bytes(&diagnosed.scores);
+    let bytes = result.len() + scores.len();
+    // What arrives is what was sent.
+    read_text(&SourceText::new(&result, "result")?)?;
+    let name = RecordName {
+        unit: format!("{number}"),
+        record: "1".to_owned(),
+        ..RecordName::default()
+    };
+    Ok(Sent {
+        record: FleetRecord::read(name, &result, Some(&scores))?,
+        bytes,
+    })
+}
+
+pub(super) fn figures() -> Result<Vec<Figure>, Error> {
+    let fleet = |with_cause: bool| -> Result<Vec<Sent>, Error> {
+        let numbers = (0..UNITS).into_par_iter();
+        numbers.map(|number| sent(number, with_cause)).collect()
+    };
+    let (with, without) = (fleet(true)?, fleet(false)?);
+    let bytes = with.iter().chain(&without).map(|one| one.bytes).max();
+    let bytes = bytes.unwrap_or_default();
+    let recurring = |sent: Vec<Sent>| -> Result<Vec<(String, Vec<String>)>, Error> {
+        let records: Vec<FleetRecord> = sent.into_iter().map(|one| one.record).collect();
+        let found = summarise(&records, &FleetOptions::default())?.recurring;
+        Ok(found.into_iter().map(|one| (one.effect, one.alternatives)).collect())
+    };
+    let (with, without) = (recurring(with)?, recurring(without)?);
+    let named = |(effect, alternatives): &(String, Vec<String>)| {
+        effect == CAUSE || alternatives.iter().any(|other| other == CAUSE)
+    };
+    let seeds = format!("{FIRST}..{}", FIRST + UNITS);
+    let of = |figure: Figure| figure.over(UNITS as usize, seeds.clone());
+    Ok(vec![
+        of(Figure::truth(
+            "200 simulated records, `gyro_y.g_z` of 2.5 sigmas in a fifth of them: it alone recurs",
+            with.len() == 1 && with.iter().all(named),
+        )),
+        of(Figure::truth(
+            "the same records without it: nothing recurs",
+            without.is_empty(),
+        )),
+        of(Figure::at_most(
+            "result and scores of a record: most bytes that travel",
+            200.0,
+            bytes as f64 / 1e3,
+            "kB",
+        )),
+    ])
+}

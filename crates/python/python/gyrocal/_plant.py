@@ -1,0 +1,242 @@
+"""Any plant: its equations from CasADi, its records, what its model lacks."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _gyrocal
+from ._errors import InputError
+from ._record import _column
+from ._results import PlantDiagnosis
+
+__all__ = ["Plant"]
+
+#: A column of a record: its name, or a mapping with ``column``, ``factor`` and ``offset``.
+Source = Union[str, Mapping[str, Any]]
+
+
+class Plant:
+    """A plant whose functions are interpreted: nothing is compiled for it.
+
+    Args:
+        declared: The plant as ``gyrocal_plant.Plant`` declares it, with its functions of CasADi and its
+            catalogue of effects, or the path of the program file that such a declaration writes.
+    """
+
+    __slots__ = ("_held", "_program")
+    _held: _gyrocal.Plant
+    _program: tuple[str, str]
+
+    def __init__(self, declared: Any) -> None:
+        if isinstance(declared, (str, os.PathLike)):
+            name = os.fspath(declared)
+            try:
+                text = Path(declared).read_text(encoding="utf-8")
+            except OSError as error:
+                raise InputError(f"{name}: cannot be read: {error.strerror}", file=name) from error
+        elif hasattr(declared, "to_json"):
+            name, text = f"<{type(declared).__name__}>", declared.to_json()
+        else:
+            raise InputError(
+                f"plant: found a {type(declared).__name__}, expected a declared plant or a program file",
+                found=type(declared).__name__,
+                advice="declare it with gyrocal_plant.Plant (docs/any-plant.md)",
+            )
+        self._set(text, name)
+
+    def _set(self, text: str, name: str) -> None:
+        self._program = (text, name)
+        self._held = _gyrocal.Plant.of_program(text, name)
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._held.name
+
+    @property
+    def inputs(self) -> list[str]:
+        """Names of its inputs."""
+        return self._held.inputs
+
+    @property
+    def outputs(self) -> list[str]:
+        """Names of its outputs."""
+        return self._held.outputs
+
+    @property
+    def regressors(self) -> list[str]:
+        """Names of the logged quantities that it depends on."""
+        return self._held.regressors
+
+    @property
+    def effects(self) -> list[str]:
+        """Ids of the effects of its catalogue."""
+        return self._held.effects
+
+    def diagnose(
+        self,
+        record: Any,
+        columns: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        *,
+        later: Any = None,
+        later_columns: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        false_alarm: float = 0.01,
+    ) -> PlantDiagnosis:
+        """Shows what the model of the plant lacks in a record, and names the cause.
+
+        Args:
+            record: A CSV file, a frame of pandas or Polars, an Arrow table or a mapping of columns.
+            columns: Its columns by the names of the plant: the tables ``time``, ``inputs``, ``outputs`` and
+                ``regressors`` of a map file, or the path of one. Without it columns have the names of the
+                plant, and time is ``time_s``.
+            later: A later record of the same plant, to measure the gain of what is found.
+            later_columns: Its columns, if they differ.
+            false_alarm: Family-wise probability of a false alarm.
+
+        Raises:
+            InputError: A record, a column or an argument is wrong.
+            ComputationError: The plant could not be fitted.
+        """
+        given = self._columns(record, columns)
+        other = None
+        if later is not None:
+            other = self._columns(later, columns if later_columns is None else later_columns)
+        return PlantDiagnosis(*self._held.diagnose(given, other, false_alarm))
+
+    def _columns(self, record: Any, columns: Any) -> dict[str, Any]:
+        frame, name = _frame(record)
+        places = self._map(columns)
+
+        def group(kind: str, names: list[str]) -> list[NDArray[np.float64]]:
+            known = places.get(kind, {})
+            unknown = [one for one in known if one not in names]
+            if unknown:
+                raise InputError(
+                    f"columns: found the {kind[:-1]} `{unknown[0]}`, which the plant has not",
+                    found=unknown[0],
+                    expected=", ".join(names),
+                )
+            missing = [one for one in names if one not in known]
+            if missing:
+                raise InputError(
+                    f"columns: found no column for the {kind[:-1]} `{missing[0]}`",
+                    expected=missing[0],
+                    advice=f"add it to `{kind}`",
+                )
+            return [_values(frame, known[one], name) for one in names]
+
+        return {
+            "name": name,
+            "time_s": _values(frame, _time(places), name),
+            "inputs": group("inputs", self.inputs),
+            "outputs": group("outputs", self.outputs),
+            "regressors": group("regressors", self.regressors),
+        }
+
+    def _map(self, columns: Any) -> Mapping[str, Any]:
+        if columns is None:
+            same = {kind: {one: one for one in getattr(self, kind)} for kind in _KINDS}
+            return {"time": "time_s", **same}
+        if isinstance(columns, Mapping):
+            return columns
+        import tomllib
+
+        try:
+            return tomllib.loads(Path(columns).read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise InputError(f"{os.fspath(columns)}: {error}", file=os.fspath(columns)) from error
+
+    def __repr__(self) -> str:
+        return f"<gyrocal.Plant {self.name}: {len(self.effects)} effects in its catalogue>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _of_program, self._program
+
+
+#: Kinds of columns, as the tables of a map name them.
+_KINDS = ("inputs", "outputs", "regressors")
+
+
+def _of_program(text: str, name: str) -> Plant:
+    plant = Plant.__new__(Plant)
+    plant._set(text, name)
+    return plant
+
+
+def _time(places: Mapping[str, Any]) -> Source:
+    if "time" not in places:
+        raise InputError("columns: found no `time`", expected="time", advice="add `time` to the columns")
+    return places["time"]
+
+
+def _frame(record: Any) -> tuple[Any, str]:
+    """Columns by name, and the name of the record."""
+    if isinstance(record, (str, os.PathLike)):
+        name = os.fspath(record)
+        try:
+            return _csv(Path(record).read_text(encoding="utf-8"), name), name
+        except OSError as error:
+            raise InputError(f"{name}: cannot be read: {error.strerror}", file=name) from error
+    return record, f"<{type(record).__name__}>"
+
+
+def _csv(text: str, name: str) -> dict[str, NDArray[np.float64]]:
+    import csv
+
+    rows = list(csv.reader(text.splitlines(), skipinitialspace=True))
+    if not rows:
+        raise InputError(f"{name}: found no header", file=name)
+    header = [field.strip() for field in rows[0]]
+    columns: dict[str, list[str]] = {field: [] for field in header}
+    for line, row in enumerate(rows[1:], start=2):
+        if len(row) != len(header):
+            raise InputError(
+                f"{name}:{line}: found {len(row)} fields, expected {len(header)}", file=name, line=line
+            )
+        for field, value in zip(header, row):
+            columns[field].append(value.strip())
+    return {field: np.array(values, dtype=object) for field, values in columns.items()}
+
+
+def _values(frame: Any, source: Source, name: str) -> NDArray[np.float64]:
+    place = {"column": source} if isinstance(source, str) else dict(source)
+    column = place.pop("column", None)
+    factor, offset = float(place.pop("factor", 1.0)), float(place.pop("offset", 0.0))
+    if column is None or place:
+        raise InputError(
+            f"columns: found {source!r}, expected a name, or column, factor and offset",
+            found=repr(source),
+        )
+    try:
+        found = frame[column]
+    except (KeyError, IndexError, ValueError) as error:
+        names = ", ".join(map(str, getattr(frame, "column_names", None) or list(frame)))
+        raise InputError(
+            f"{name}: found no column `{column}`", expected=column, advice=f"it has {names}"
+        ) from error
+    if isinstance(found, np.ndarray) and found.dtype == object and all(
+        isinstance(value, str) for value in found
+    ):
+        found = _parsed(found, column, name)
+    return factor * np.ascontiguousarray(_column(found, column, name)) + offset
+
+
+def _parsed(texts: NDArray[Any], column: str, name: str) -> NDArray[np.float64]:
+    """The numbers of a file; an empty field is a missing value."""
+    values = np.empty(len(texts))
+    for row, text in enumerate(texts):
+        try:
+            values[row] = float(text) if text else np.nan
+        except ValueError as error:
+            raise InputError(
+                f"{name}: row {row + 1} has `{text}` in column `{column}`, expected a number",
+                file=name,
+                found=text,
+            ) from error
+    return values

@@ -1,0 +1,85 @@
+"""Plants of users: the numbers and names of the command, refusals in words."""
+
+import pickle
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import gyrocal
+from conftest import run_command
+
+FOLDER = Path("examples/duffing")
+COLUMNS = {"time": "time_s", "inputs": {"u": "drive_n"}, "outputs": {"y": "displacement_m"}}
+
+
+class Declared:
+    """What a declaration gives: the text of its program file."""
+
+    def to_json(self):
+        return (FOLDER / "plant.json").read_text()
+
+
+@pytest.fixture(scope="module")
+def found():
+    plant = gyrocal.Plant(FOLDER / "plant.json")
+    return plant.diagnose(FOLDER / "record.csv", FOLDER / "columns.toml", later=FOLDER / "later.csv")
+
+
+def test_numbers_and_names_are_those_of_the_command(tmp_path, found):
+    arguments = ["plant", "diagnose", FOLDER / "plant.json", FOLDER / "record.csv"]
+    arguments += ["--columns", FOLDER / "columns.toml", "--validate", FOLDER / "later.csv"]
+    assert found.to_dict() == run_command(arguments, tmp_path)
+    assert len(found.findings) == 1
+    frame = found.to_dataframe()
+    assert list(frame.effect) == [found.findings[0].effect]
+    assert frame["size"][0] == found.findings[0].sizes[0].value
+    assert found.findings[0].effect in repr(found)
+    assert "<p>" in found._repr_html_()
+    assert pickle.loads(pickle.dumps(found)) == found
+    assert str(pickle.loads(pickle.dumps(found))) == str(found)
+
+
+def test_a_declared_plant_takes_frames(found):
+    plant = pickle.loads(pickle.dumps(gyrocal.Plant(Declared())))
+    assert (plant.name, plant.inputs, plant.outputs) == ("Duffing", ["u"], ["y"])
+    assert found.findings[0].effect in plant.effects
+    frame = pd.read_csv(FOLDER / "record.csv")
+    again = plant.diagnose(frame, COLUMNS)
+    assert again.findings == found.findings
+    # Other units of the same numbers: factors of two change no bit.
+    doubled = frame.assign(displacement_m=2.0 * frame.displacement_m)
+    columns = COLUMNS | {"outputs": {"y": {"column": "displacement_m", "factor": 0.5}}}
+    assert plant.diagnose(doubled, columns).findings == found.findings
+
+
+def test_wrong_input_is_refused_in_words(tmp_path):
+    plant = gyrocal.Plant(FOLDER / "plant.json")
+    frame = pd.read_csv(FOLDER / "record.csv")
+    for columns, words in [
+        (COLUMNS | {"inputs": {}}, "input `u`"),
+        (COLUMNS | {"inputs": {"u": "drive_n", "w": "drive_n"}}, "input `w`"),
+        (COLUMNS | {"outputs": {"y": "displacement"}}, "column `displacement`"),
+        ({key: COLUMNS[key] for key in ("inputs", "outputs")}, "time"),
+        (None, "column `time`|column `u`|column `time_s`"),
+    ]:
+        with pytest.raises(gyrocal.InputError, match=words):
+            plant.diagnose(frame, columns)
+    with pytest.raises(gyrocal.InputError, match="object"):
+        plant.diagnose(frame.assign(drive_n=[None] + ["a"] * (len(frame) - 1)), COLUMNS)
+    with pytest.raises(gyrocal.InputError, match="drive|input|number"):
+        plant.diagnose(frame.assign(drive_n=float("nan")), COLUMNS)
+    with pytest.raises(gyrocal.InputError, match="false_alarm"):
+        plant.diagnose(frame, COLUMNS, false_alarm=0.0)
+    with pytest.raises(gyrocal.InputError, match="cannot be read"):
+        gyrocal.Plant(tmp_path / "missing.json")
+    with pytest.raises(gyrocal.GyrocalError):
+        plant_file = tmp_path / "other.json"
+        plant_file.write_text("{}")
+        gyrocal.Plant(plant_file)
+    with pytest.raises(gyrocal.InputError, match="found a int"):
+        gyrocal.Plant(3)
+    short = tmp_path / "short.csv"
+    short.write_text("time_s,drive_n,displacement_m\n0,1\n")
+    with pytest.raises(gyrocal.InputError, match="short.csv:2"):
+        plant.diagnose(short, COLUMNS)
