@@ -3,6 +3,7 @@
 measure.py import               seconds of the import, in this process
 measure.py diagnosis            seconds of one diagnosis of the example from a frame
 measure.py fleet RECORDS        a fleet of short records on Dask
+measure.py spark RECORDS        the same rows by Spark, by the lines of docs/python.md; needs Java and pyspark
 """
 
 import json
@@ -249,12 +250,42 @@ def on_cluster(source, out, workers, kills):
     return seconds, memory, {"kills": len(killed), "lost": lost, "repeated": repeated}
 
 
+def measure_spark(count):
+    """The lines of the page, in a folder of their own."""
+    import os
+    import tempfile
+    from pathlib import Path
+
+    import pyarrow as pa
+
+    import gyrocal
+    from gyrocal import fleet
+
+    page = Path("docs/python.md").read_text()
+    (lines,) = [block.partition("```")[0] for block in page.split("```python\n")[1:] if "mapInArrow" in block]
+    made = [gyrocal.simulate(scenario(seed)) for seed in range(count)]
+    rows = [(f"unit-{i % 7}", f"run-{i}", m.record, m.bench) for i, m in enumerate(made)]
+    batch = fleet.batch_of_records(rows)
+    expected = in_order(pa.Table.from_batches(fleet.diagnose_batches([batch]), fleet.OUTPUT))
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        write(Path("records"), batch, 3)
+        started = time.perf_counter()
+        exec(lines, {"__name__": "__main__"})
+        seconds = time.perf_counter() - started
+        found = results(Path("results")).cast(fleet.OUTPUT)
+        os.chdir("/")
+    return {"records": count, "seconds": seconds, "equal": found.equals(expected)}
+
+
 if __name__ == "__main__":
     kind, *arguments = sys.argv[1:]
     if kind == "import":
         measured = measure_import()
     elif kind == "diagnosis":
         measured = measure_diagnosis()
+    elif kind == "spark":
+        measured = measure_spark(int(arguments[0]))
     else:
         measured = measure_fleet(int(arguments[0]))
     print(json.dumps(measured))

@@ -50,6 +50,7 @@ fn of_package(small: bool) -> Result<Vec<Figure>, Error> {
     let mut figures = vec![size(&wheel)?, import(if small { 3 } else { 15 })?];
     figures.push(first_diagnosis(&wheel)?);
     if !small {
+        figures.push(spark(RECORDS_OF_SPARK)?);
         figures.push(overhead(15)?);
         figures.extend(fleet(RECORDS)?);
     }
@@ -78,13 +79,39 @@ struct Seconds {
 }
 
 fn measured<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Error> {
-    let mut python = Command::new(folder().join("environment/bin/python"));
+    measured_by(&folder().join("environment/bin/python"), arguments)
+}
+
+fn measured_by<T: for<'a> Deserialize<'a>>(python: &Path, arguments: &[&str]) -> Result<T, Error> {
+    let mut python = Command::new(python);
     let script = root().join(PACKAGE).join("measure.py");
     let printed = output(python.current_dir(root()).arg(script).args(arguments))?;
     let json = printed.lines().find(|line| line.starts_with('{'));
     Ok(serde_json::from_str(
         json.ok_or("no measurement was printed")?,
     )?)
+}
+
+/// Records that Spark maps.
+const RECORDS_OF_SPARK: usize = 60;
+
+/// An environment with the wheel and pyspark, beside a Java; without it Spark is not run.
+const SPARK: &str = "GYROCAL_SPARK_PYTHON";
+
+/// What Spark gave.
+#[derive(Deserialize)]
+struct Spark {
+    equal: bool,
+}
+
+/// The documented lines for Spark: rows of the same bits.
+fn spark(records: usize) -> Result<Figure, Error> {
+    let name = "Spark maps the records by the lines of docs/python.md: equal bits";
+    let Some(python) = std::env::var_os(SPARK) else {
+        return Ok(Figure::note(name, format!("not run: {SPARK} is not set")));
+    };
+    let found: Spark = measured_by(Path::new(&python), &["spark", &records.to_string()])?;
+    Ok(Figure::truth(name, found.equal).over(records, format!("0..{records}")))
 }
 
 fn import(rounds: usize) -> Result<Figure, Error> {
@@ -266,7 +293,10 @@ fn scale(found: &Fleet) -> Vec<Figure> {
         Figure::note("rows of a record", format!("{rows}")),
         each("stage: read Parquet", found.read_s),
         each("stage: columns to a record", found.records_s),
-        each("stage: diagnosis, with its result as JSON", found.diagnosis_s),
+        each(
+            "stage: diagnosis, with its result as JSON",
+            found.diagnosis_s,
+        ),
         each("stage: write Parquet", found.write_s),
         each("stage: summary of the fleet, one process", found.summary_s),
         Figure::note(
@@ -290,7 +320,10 @@ fn scale(found: &Fleet) -> Vec<Figure> {
             ),
         ),
         Figure::note(
-            &format!("workers that a store of {} GB/s feeds: beyond, no linear scaling", STORE_RATE / 1e9),
+            &format!(
+                "workers that a store of {} GB/s feeds: beyond, no linear scaling",
+                STORE_RATE / 1e9
+            ),
             format!("{workers:.0}"),
         ),
     ]

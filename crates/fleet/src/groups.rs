@@ -75,7 +75,12 @@ pub(crate) fn differing(
         .collect();
     let tests: usize = coefficients
         .iter()
-        .map(|one| groups.iter().filter(|group| group.column(one.levels).is_some()).count())
+        .map(|one| {
+            groups
+                .iter()
+                .filter(|group| group.column(one.levels).is_some())
+                .count()
+        })
         .sum();
     loop {
         let least = best.iter().flatten();
@@ -127,14 +132,17 @@ fn best_of(coefficients: &[Tested<'_>], coefficient: usize, groups: &[Members]) 
             continue;
         };
         let p_value = student_two_sided_p(fit.t(place), fit.degrees_of_freedom);
-        if let (Some(p_value), Some(interval)) = (p_value.filter(|p| p.is_finite()), fit.interval(place)) {
+        if let (Some(p_value), Some(interval)) =
+            (p_value.filter(|p| p.is_finite()), fit.interval(place))
+        {
             let estimate = fit.beta[place];
             tested.push((index, p_value, WithInterval { estimate, interval }, column));
         }
     }
     tested.sort_by(|a, b| a.1.total_cmp(&b.1));
     let (group, p_value, offset, column) = tested.first().cloned()?;
-    let equivalent = |p: f64| chi_square_equivalent(gyrocal_statistics::math::ln(p.max(f64::MIN_POSITIVE)));
+    let equivalent =
+        |p: f64| chi_square_equivalent(gyrocal_statistics::math::ln(p.max(f64::MIN_POSITIVE)));
     let near = |p: f64| equivalent(p_value) - equivalent(p) < ALTERNATIVE;
     Some(Best {
         coefficient,
@@ -156,7 +164,12 @@ mod tests {
     use crate::answer::GroupKind;
     use crate::course::Estimate;
 
-    fn members(kind: GroupKind, name: &str, count: usize, is_in: impl Fn(usize) -> bool) -> Members {
+    fn members(
+        kind: GroupKind,
+        name: &str,
+        count: usize,
+        is_in: impl Fn(usize) -> bool,
+    ) -> Members {
         Members {
             group: Group {
                 kind,
@@ -172,7 +185,11 @@ mod tests {
             value: (place % 3) as f64 - 1.0 + if place < raised { 10.0 } else { 0.0 },
             variance: 1e-4,
         };
-        Levels::of(&(0..count).map(|place| Some(estimate(place))).collect::<Vec<_>>())
+        Levels::of(
+            &(0..count)
+                .map(|place| Some(estimate(place)))
+                .collect::<Vec<_>>(),
+        )
     }
 
     #[test]
@@ -180,9 +197,13 @@ mod tests {
         let levels = levels(60, 12);
         let groups = [
             members(GroupKind::Batch, "B1", 60, |place| place < 12),
-            members(GroupKind::Batch, "B2", 60, |place| (12..30).contains(&place)),
+            members(GroupKind::Batch, "B2", 60, |place| {
+                (12..30).contains(&place)
+            }),
             members(GroupKind::Site, "north", 60, |place| place < 12),
-            members(GroupKind::Site, "south", 60, |place| place % 2 == 0 && place >= 12),
+            members(GroupKind::Site, "south", 60, |place| {
+                place % 2 == 0 && place >= 12
+            }),
         ];
         let mut tested = [Tested {
             name: "gyro_x.bias",
@@ -196,7 +217,10 @@ mod tests {
         assert!((found[0].offset.estimate - 10.0).abs() < 0.5);
         let other = &found[0].alternatives[..];
         assert_eq!(other.len(), 1);
-        assert_eq!((other[0].group.name.as_str(), other[0].shared), ("north", 12));
+        assert_eq!(
+            (other[0].group.name.as_str(), other[0].shared),
+            ("north", 12)
+        );
         // The mean is that of the units outside.
         let mean = levels.mean_and_spread(tested[0].columns.clone()).mean;
         assert!(mean.is_some_and(|mean| mean.estimate.abs() < 0.1));

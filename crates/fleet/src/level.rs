@@ -147,6 +147,10 @@ mod tests {
         let found = levels.mean_and_spread(Vec::new());
         assert!(found.mean.is_some_and(|mean| mean.estimate.abs() < 1e-9));
         let expected = (40.0_f64 / 19.0 - 0.01).sqrt();
-        assert!(found.spread.is_some_and(|spread| (spread.estimate - expected).abs() < 1e-9));
+        assert!(
+            found
+                .spread
+                .is_some_and(|spread| (spread.estimate - expected).abs() < 1e-9)
+        );
     }
 }

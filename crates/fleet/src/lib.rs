@@ -68,7 +68,8 @@ mod summarise;
 
 pub use answer::{
     FleetCoefficient, FleetResult, FoundCause, Group, GroupAlternative, GroupFinding, GroupKind,
-    LikelyUnit, OutlierUnit, RecordProblem, RecurringCause, SCHEMA_VERSION, UnitLevel, WithInterval,
+    LikelyUnit, OutlierUnit, RecordProblem, RecurringCause, SCHEMA_VERSION, UnitLevel,
+    WithInterval,
 };
 pub use error::FleetError;
 

@@ -24,7 +24,10 @@ pub fn all(fleet: &FleetResult) -> Vec<Block> {
         })
     };
     let recurring = fleet.recurring.iter().map(recurring).collect();
-    blocks.extend(list("Causes that recur below what units show by themselves:", recurring));
+    blocks.extend(list(
+        "Causes that recur below what units show by themselves:",
+        recurring,
+    ));
     let groups = fleet.groups.iter().map(group).collect();
     blocks.extend(list("Batches and sites that differ:", groups));
     blocks.extend(list("Units outside of the others:", outliers(fleet)));
@@ -32,7 +35,10 @@ pub fn all(fleet: &FleetResult) -> Vec<Block> {
         let units = counted(one.units.len(), "unit");
         format!("`{}` in {units}: {}", one.effect, named(&one.units))
     });
-    blocks.extend(list("Causes that units show by themselves:", found.collect()));
+    blocks.extend(list(
+        "Causes that units show by themselves:",
+        found.collect(),
+    ));
     blocks.push(Block::Table(coefficients(fleet)));
     let problems = fleet.problems.iter();
     let problems = problems.map(|one| format!("{}/{}: {}", one.unit, one.record, one.problem));
@@ -54,11 +60,22 @@ pub fn size(fleet: &FleetResult) -> String {
 /// The answer in a sentence.
 #[must_use]
 pub fn verdict(fleet: &FleetResult) -> String {
-    let recurring: Vec<String> = fleet.recurring.iter().map(|one| format!("`{}`", one.effect)).collect();
-    let groups: Vec<String> = fleet.groups.iter().map(|one| group_name(&one.group)).collect();
+    let recurring: Vec<String> = fleet
+        .recurring
+        .iter()
+        .map(|one| format!("`{}`", one.effect))
+        .collect();
+    let groups: Vec<String> = fleet
+        .groups
+        .iter()
+        .map(|one| group_name(&one.group))
+        .collect();
     let causes = match recurring.len() {
         0 => "No cause recurs below what the units show by themselves".to_owned(),
-        1 => format!("One cause recurs below what the units show by themselves, {}", recurring[0]),
+        1 => format!(
+            "One cause recurs below what the units show by themselves, {}",
+            recurring[0]
+        ),
         count => format!(
             "{count} causes recur below what the units show by themselves: {}",
             recurring.join(", ")
@@ -101,10 +118,14 @@ pub fn recurring(cause: &RecurringCause) -> String {
         text += &format!(", more likely than not in {}", named(&units));
     }
     if !cause.alternatives.is_empty() {
-        text += &format!("; the fleet does not tell it from {}", cause.alternatives.join(", "));
+        text += &format!(
+            "; the fleet does not tell it from {}",
+            cause.alternatives.join(", ")
+        );
     }
     if !cause.by_e_value {
-        text += "; its rate of false discoveries rests on tests that depend positively on one another";
+        text +=
+            "; its rate of false discoveries rests on tests that depend positively on one another";
     }
     text + "."
 }
@@ -153,7 +174,10 @@ fn outliers(fleet: &FleetResult) -> Vec<String> {
         });
         let ageing = one.ageing_outliers.iter().map(|outlier| {
             let estimate = format::short(outlier.estimate, 4);
-            (outlier, format!("a change of {estimate} {} in a year", one.unit))
+            (
+                outlier,
+                format!("a change of {estimate} {} in a year", one.unit),
+            )
         });
         let entries = level.chain(ageing).map(|(outlier, what)| {
             format!(
@@ -171,7 +195,12 @@ fn outliers(fleet: &FleetResult) -> Vec<String> {
 
 /// The first names of a list, and how many more there are.
 fn named(units: &[String]) -> String {
-    let first = units.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
+    let first = units
+        .iter()
+        .take(NAMED)
+        .cloned()
+        .collect::<Vec<_>>()
+        .join(", ");
     match units.len().saturating_sub(NAMED) {
         0 => first,
         more => format!("{first} and {more} more"),
@@ -182,7 +211,9 @@ fn named(units: &[String]) -> String {
 fn interval(found: &WithInterval) -> String {
     let [low, high] = found.interval;
     let [estimate, _] = format::estimate(found.estimate, 0.25 * (high - low));
-    let decimals = estimate.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let decimals = estimate
+        .split_once('.')
+        .map_or(0, |(_, digits)| digits.len());
     format!("{estimate} ({low:.decimals$} to {high:.decimals$})")
 }
 

@@ -62,19 +62,22 @@ impl FleetRecord {
             unit: unit.to_owned(),
         };
         // Over all members of the confidence sets, where there are causes.
-        let coefficients = result.coefficients.iter().flat_map(|all| match &all.over_set {
-            Some(over_set) => over_set
-                .iter()
-                .map(|one| of(&one.name, one.estimate, one.sigma, &one.unit))
-                .collect::<Vec<_>>(),
-            None => all
-                .extended
-                .as_ref()
-                .unwrap_or(&all.nominal)
-                .iter()
-                .map(|one| of(&one.name, one.estimate, one.sigma, &one.unit))
-                .collect(),
-        });
+        let coefficients = result
+            .coefficients
+            .iter()
+            .flat_map(|all| match &all.over_set {
+                Some(over_set) => over_set
+                    .iter()
+                    .map(|one| of(&one.name, one.estimate, one.sigma, &one.unit))
+                    .collect::<Vec<_>>(),
+                None => all
+                    .extended
+                    .as_ref()
+                    .unwrap_or(&all.nominal)
+                    .iter()
+                    .map(|one| of(&one.name, one.estimate, one.sigma, &one.unit))
+                    .collect(),
+            });
         Self {
             name,
             coefficients: coefficients.collect(),
@@ -93,6 +96,10 @@ impl FleetRecord {
     pub fn read(name: RecordName, result: &str, scores: Option<&[u8]>) -> Result<Self, FleetError> {
         let origin = format!("{}/{}", name.unit, name.record);
         let result = read_text(&SourceText::new(result, &origin)?)?;
-        Ok(Self::new(name, &result, scores.map(from_bytes).transpose()?))
+        Ok(Self::new(
+            name,
+            &result,
+            scores.map(from_bytes).transpose()?,
+        ))
     }
 }

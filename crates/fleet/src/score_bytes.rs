@@ -80,19 +80,26 @@ pub fn from_bytes(bytes: &[u8]) -> Result<ScoreTable, FleetError> {
     let (header, numbers) = rest
         .split_at_checked(length)
         .ok_or(FleetError::Scores("the header is cut off"))?;
-    let header: Header =
-        serde_json::from_slice(header).map_err(|_| FleetError::Scores("the header is no JSON of scores"))?;
+    let header: Header = serde_json::from_slice(header)
+        .map_err(|_| FleetError::Scores("the header is no JSON of scores"))?;
     let count = header.columns;
     let columns = header.effects.iter().flat_map(|effect| &effect.variants);
     if count > MOST_COLUMNS || columns.flatten().any(|column| *column >= count) {
-        return Err(FleetError::Scores("the header names columns that are not there"));
+        return Err(FleetError::Scores(
+            "the header names columns that are not there",
+        ));
     }
     let numbers = numbers.as_chunks::<4>();
     let expected = 2 * count + count * count.saturating_sub(1) / 2;
     if numbers.0.len() != expected || !numbers.1.is_empty() {
-        return Err(FleetError::Scores("found another number of values than the header tells"));
+        return Err(FleetError::Scores(
+            "found another number of values than the header tells",
+        ));
     }
-    let mut numbers = numbers.0.iter().map(|one| f64::from(f32::from_le_bytes(*one)));
+    let mut numbers = numbers
+        .0
+        .iter()
+        .map(|one| f64::from(f32::from_le_bytes(*one)));
     let mut take = |count: usize| -> Vec<f64> { numbers.by_ref().take(count).collect() };
     let z = take(count);
     let root_information = take(count);

@@ -44,8 +44,14 @@ impl FleetOptions {
     fn check(&self) -> Result<(), FleetError> {
         let all = [
             ("the false discovery rate", self.false_discovery_rate),
-            ("the probability of a false batch or site", self.group_probability),
-            ("the probability of a false outlier", self.outlier_probability),
+            (
+                "the probability of a false batch or site",
+                self.group_probability,
+            ),
+            (
+                "the probability of a false outlier",
+                self.outlier_probability,
+            ),
         ];
         for (what, found) in all {
             if !(found > 0.0 && found < 1.0) {
@@ -60,7 +66,10 @@ impl FleetOptions {
 ///
 /// # Errors
 /// [`FleetError::NoRecords`] if no record can be used, [`FleetError::Probability`].
-pub fn summarise(records: &[FleetRecord], options: &FleetOptions) -> Result<FleetResult, FleetError> {
+pub fn summarise(
+    records: &[FleetRecord],
+    options: &FleetOptions,
+) -> Result<FleetResult, FleetError> {
     options.check()?;
     let (records, problems) = sound(records);
     if records.is_empty() {
@@ -169,7 +178,10 @@ struct OneCoefficient<'a> {
 impl<'a> Fleet<'a> {
     fn new(units: BTreeMap<&'a str, Vec<&'a FleetRecord>>) -> Self {
         let (names, records): (Vec<&str>, Vec<Vec<&FleetRecord>>) = units.into_iter().unzip();
-        let dates = records.iter().flatten().filter_map(|record| record.name.date_s);
+        let dates = records
+            .iter()
+            .flatten()
+            .filter_map(|record| record.name.date_s);
         let (sum, count) = dates.fold((0.0, 0.0), |(sum, count), date| (sum + date, count + 1.0));
         Self {
             names,
@@ -181,7 +193,12 @@ impl<'a> Fleet<'a> {
     fn coefficients(&self, options: &FleetOptions) -> Vec<OneCoefficient<'a>> {
         let mut known = BTreeSet::new();
         let mut all: Vec<(&str, &str)> = Vec::new();
-        for one in self.records.iter().flatten().flat_map(|record| &record.coefficients) {
+        for one in self
+            .records
+            .iter()
+            .flatten()
+            .flat_map(|record| &record.coefficients)
+        {
             if known.insert(&one.name) {
                 all.push((&one.name, &one.unit));
             }
@@ -256,7 +273,9 @@ impl<'a> Fleet<'a> {
             }
         }
         let groups = groups.into_iter();
-        groups.map(|(group, units)| Members { group, units }).collect()
+        groups
+            .map(|(group, units)| Members { group, units })
+            .collect()
     }
 
     fn recurring(&self, options: &FleetOptions) -> Vec<RecurringCause> {
@@ -320,7 +339,10 @@ impl<'a> Fleet<'a> {
 
 fn most_frequent_site(records: &[&FleetRecord]) -> Option<String> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for site in records.iter().filter_map(|record| record.name.site.as_deref()) {
+    for site in records
+        .iter()
+        .filter_map(|record| record.name.site.as_deref())
+    {
         *counts.entry(site).or_default() += 1;
     }
     // Of equally frequent ones the first by name.

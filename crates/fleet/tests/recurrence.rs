@@ -19,12 +19,17 @@ fn simulator() -> ScoreSimulator {
         variants,
     };
     let mut effects = vec![
-        effect("step".to_owned(), false, (0..5).map(|column| vec![column]).collect()),
+        effect(
+            "step".to_owned(),
+            false,
+            (0..5).map(|column| vec![column]).collect(),
+        ),
         effect("wave".to_owned(), true, vec![vec![5, 6]]),
         effect("constant".to_owned(), true, vec![vec![7]]),
         effect("twin".to_owned(), true, vec![vec![8]]),
     ];
-    effects.extend((9..19).map(|column| effect(format!("other-{column}"), true, vec![vec![column]])));
+    effects
+        .extend((9..19).map(|column| effect(format!("other-{column}"), true, vec![vec![column]])));
     let correlation = DMatrix::from_fn(19, 19, |i, j| match (i.min(j), i.max(j)) {
         (one, other) if one == other => 1.0,
         // Neighbouring onsets.
@@ -56,7 +61,9 @@ fn fleet(cause: Option<(&str, f64, usize)>, seed: u64) -> Vec<ScoreTable> {
 }
 
 fn found(tables: &[ScoreTable]) -> Vec<Discovery> {
-    let names: Vec<String> = (0..tables.len()).map(|unit| format!("unit-{unit}")).collect();
+    let names: Vec<String> = (0..tables.len())
+        .map(|unit| format!("unit-{unit}"))
+        .collect();
     recurring(&units(&names, tables), &RecurrenceOptions::default())
 }
 
@@ -82,9 +89,16 @@ fn a_cause_with_random_signs_and_onsets_is_found_and_no_other() {
         assert!(only.strength > 2.0 && only.strength < 4.0, "{only:?}");
         assert!(!only.is_common);
         // Most of the units that are told have it.
-        let with: Vec<String> = (0..UNITS).step_by(5).map(|unit| format!("unit-{unit}")).collect();
+        let with: Vec<String> = (0..UNITS)
+            .step_by(5)
+            .map(|unit| format!("unit-{unit}"))
+            .collect();
         let right = only.units.iter().filter(|(unit, _)| with.contains(unit));
-        assert!(right.count() * 10 > only.units.len() * 8, "{:?}", only.units);
+        assert!(
+            right.count() * 10 > only.units.len() * 8,
+            "{:?}",
+            only.units
+        );
     }
 }
 
@@ -96,7 +110,10 @@ fn a_twin_is_told_as_an_alternative() {
         .chain(&found[0].alternatives)
         .map(String::as_str)
         .collect();
-    assert!(all.contains(&"constant") && all.contains(&"twin"), "{all:?}");
+    assert!(
+        all.contains(&"constant") && all.contains(&"twin"),
+        "{all:?}"
+    );
 }
 
 #[test]

@@ -18,7 +18,10 @@ fn scenario() -> Scenario {
 }
 
 fn injected(strength: f64) -> InjectedEffect {
-    let effect = gyrocal::EFFECTS.iter().find(|effect| effect.id == "gyro_y.g_z").unwrap();
+    let effect = gyrocal::EFFECTS
+        .iter()
+        .find(|effect| effect.id == "gyro_y.g_z")
+        .unwrap();
     let mut draw = Draw::new(1, 0);
     let all = inject(&scenario(), &[(effect, None)], strength, 1.0, &mut draw).unwrap();
     all.unwrap().remove(0)
@@ -38,7 +41,12 @@ fn scores_of_a_record_are_small_and_those_of_an_independent_projection() {
     let table = &diagnosed.scores;
     let bytes = to_bytes(table);
     let result = serde_json::to_string(&diagnosed.result).unwrap();
-    assert!(bytes.len() + result.len() < 200_000, "{} {}", bytes.len(), result.len());
+    assert!(
+        bytes.len() + result.len() < 200_000,
+        "{} {}",
+        bytes.len(),
+        result.len()
+    );
 
     let read = from_bytes(&bytes).unwrap();
     assert_eq!(read.effects, table.effects);
@@ -46,7 +54,11 @@ fn scores_of_a_record_are_small_and_those_of_an_independent_projection() {
     // Rounding of values below one to single precision.
     assert!(difference < 1e-7, "{difference}");
 
-    let own = table.effects.iter().find(|own| own.id == "gyro_y.g_z").unwrap();
+    let own = table
+        .effects
+        .iter()
+        .find(|own| own.id == "gyro_y.g_z")
+        .unwrap();
     assert!(own.persists && own.variants.len() == 1);
     let column = own.variants[0][0];
     // The other projection has the declared noise and this one that of the record, which 288 rows tell to
@@ -54,10 +66,18 @@ fn scores_of_a_record_are_small_and_those_of_an_independent_projection() {
     let strength = table.root_information[column] * cause.sizes[0].abs();
     assert!((strength - 2.0).abs() < 0.4, "{strength}");
     let expected = table.root_information[column] * cause.sizes[0];
-    assert!((table.z[column] - expected).abs() < 4.0, "{} {expected}", table.z[column]);
+    assert!(
+        (table.z[column] - expected).abs() < 4.0,
+        "{} {expected}",
+        table.z[column]
+    );
 
     // A step has its onsets.
-    let step = table.effects.iter().find(|own| own.id == "gyro_x.step").unwrap();
+    let step = table
+        .effects
+        .iter()
+        .find(|own| own.id == "gyro_x.step")
+        .unwrap();
     assert!(!step.persists && step.variants.len() > 30);
     let name = RecordName::default();
     let again = FleetRecord::read(name.clone(), &result, Some(&bytes)).unwrap();
@@ -101,7 +121,10 @@ fn the_order_of_records_changes_nothing() {
     assert_eq!(summarise(&records, &options).unwrap(), first);
     assert_eq!(first.found_in_units[0].units, ["a", "b", "c"]);
     let words = format!("{:?}", prose::all(&first));
-    assert!(words.contains("3 units with 3 records") && words.contains("gyro_x.bias"), "{words}");
+    assert!(
+        words.contains("3 units with 3 records") && words.contains("gyro_x.bias"),
+        "{words}"
+    );
 }
 
 #[test]
@@ -120,7 +143,11 @@ fn wrong_records_are_named_and_the_others_go_on() {
         .map(|one| (one.unit.as_str(), one.record.as_str()))
         .collect();
     assert_eq!(problems, [("a", "1"), ("b", "2"), ("d", "1")]);
-    assert!(fleet.problems[0].problem.contains("two units with one name"));
+    assert!(
+        fleet.problems[0]
+            .problem
+            .contains("two units with one name")
+    );
     assert_eq!((fleet.units, fleet.records), (3, 3));
     let none = summarise(&records[4..5], &FleetOptions::default());
     assert!(matches!(none, Err(FleetError::NoRecords)));
@@ -128,7 +155,10 @@ fn wrong_records_are_named_and_the_others_go_on() {
         false_discovery_rate: 0.0,
         ..FleetOptions::default()
     };
-    assert!(matches!(summarise(&records, &options), Err(FleetError::Probability { .. })));
+    assert!(matches!(
+        summarise(&records, &options),
+        Err(FleetError::Probability { .. })
+    ));
     // A single unit has no spread, and no error either.
     let one = summarise(&records[..1], &FleetOptions::default()).unwrap();
     assert!(one.coefficients[0].mean.is_none() && one.coefficients[0].levels.len() == 1);

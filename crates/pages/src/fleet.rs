@@ -53,12 +53,16 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
             quantity: format!("size of the coefficient, {}", one.unit),
             threshold: None,
             groups: vec![BarGroup {
-                label: "Units, the largest first; outside of the others in the second colour".to_owned(),
+                label: "Units, the largest first; outside of the others in the second colour"
+                    .to_owned(),
                 bars,
             }],
             omitted: match more {
                 0 => String::new(),
-                more => format!("{} with smaller coefficients are not shown.", counted(more, "unit")),
+                more => format!(
+                    "{} with smaller coefficients are not shown.",
+                    counted(more, "unit")
+                ),
             },
         })
     });

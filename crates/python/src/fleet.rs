@@ -78,7 +78,9 @@ fn answer(records: Vec<Diagnosed>, options: &FleetOptions, command: &str) -> Out
         let found = match &one.result {
             Some(result) => FleetRecord::read(name, result, one.scores.as_deref())
                 .map_err(|error| error.to_string()),
-            None => Err(one.error.unwrap_or_else(|| "it was not diagnosed".to_owned())),
+            None => Err(one
+                .error
+                .unwrap_or_else(|| "it was not diagnosed".to_owned())),
         };
         match found {
             Ok(record) => read.push(record),

@@ -70,9 +70,8 @@ pub use periodogram::{
 pub use probability::{
     CHI_SQUARE_99, NORMAL_97_5, chi_square_equivalent, chi_square_quantile, chi_square_tail,
     chi_square_two_sided_p, chi_square_z, f_tail, ln_chi_square_tail, normal_probability,
-    normal_quantile, p_of_least, student_probability, student_quantile,
-    student_two_sided_p, two_sided_p,
-    z_of_two_sided_p,
+    normal_quantile, p_of_least, student_probability, student_quantile, student_two_sided_p,
+    two_sided_p, z_of_two_sided_p,
 };
 pub use proportion::{Judgement, Proportion};
 pub use robust::{NORMAL_MAD, robust_sigma, theil_sen_at_zero};

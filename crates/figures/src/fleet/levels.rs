@@ -106,7 +106,8 @@ fn coverages(fleets: u64) -> Result<Vec<Figure>, Error> {
             .collect::<Result<_, _>>()?;
         for (index, what) in ["mean", "spread"].into_iter().enumerate() {
             let share = Proportion::of(covered.iter().map(|covered| covered[index]));
-            let name = format!("{units} units: coverage of the 95 % interval of the fleet's {what}");
+            let name =
+                format!("{units} units: coverage of the 95 % interval of the fleet's {what}");
             figures.push(of_coverage(&name, share, &seeds));
         }
     }
@@ -117,7 +118,10 @@ fn of_coverage(name: &str, share: Proportion, seeds: &std::ops::Range<u64>) -> F
     Figure::within(name, BAND, share.share())
         .judged(coverage(share, BAND))
         .of_share(share)
-        .over(share.trials as usize, format!("{}..{}", seeds.start, seeds.end))
+        .over(
+            share.trials as usize,
+            format!("{}..{}", seeds.start, seeds.end),
+        )
 }
 
 /// Thirty units with four records over three years: all five intervals.
@@ -215,9 +219,9 @@ fn grouped(odd: Odd, seed: u64) -> Result<Grouped, Error> {
         _ => odd == Odd::BatchWithItsSite && name == SITES.to_string(),
     };
     let name = format!("coefficient {differs}");
-    let right = found.iter().find(|one| {
-        one.coefficient == name && holds(one.group.kind, &one.group.name)
-    });
+    let right = found
+        .iter()
+        .find(|one| one.coefficient == name && holds(one.group.kind, &one.group.name));
     let both = right.is_some_and(|one| {
         let mut alternatives = one.alternatives.iter();
         alternatives.any(|other| holds(other.group.kind, &other.group.name))

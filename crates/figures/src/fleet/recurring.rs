@@ -87,7 +87,9 @@ fn fleet(
         let simulator = draw.one_of(simulators);
         let own = cause.filter(|(_, share)| has(unit, *share));
         let own = own.map(|(strength, _)| (effect.as_str(), strength));
-        simulator.draw(own, &mut draw).ok_or_else(|| Error::from("scores that no record has"))
+        simulator
+            .draw(own, &mut draw)
+            .ok_or_else(|| Error::from("scores that no record has"))
     });
     let tables: Vec<ScoreTable> = tables.collect::<Result<_, _>>()?;
     let names: Vec<String> = (0..UNITS).map(|unit| format!("{unit}")).collect();
@@ -104,7 +106,11 @@ fn fleet(
         ..RecurrenceOptions::default()
     };
     let found = recurring(&units, &options);
-    let tested = tables.iter().map(|table| table.effects.len()).max().unwrap_or(1);
+    let tested = tables
+        .iter()
+        .map(|table| table.effects.len())
+        .max()
+        .unwrap_or(1);
     let right = found.iter().filter(|one| {
         cause.is_some() && (one.effect == effect || one.alternatives.contains(&effect))
     });
@@ -145,7 +151,10 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
             .collect::<Result<_, Error>>()?;
         own.extend(found);
         figures.push(power(
-            &format!("200 units, a cause of 1, 2 or 3 sigmas in {:.0} % of them", 100.0 * share),
+            &format!(
+                "200 units, a cause of 1, 2 or 3 sigmas in {:.0} % of them",
+                100.0 * share
+            ),
             &own,
             format!("{first}..{last}"),
         ));
@@ -158,7 +167,10 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         .map(|seed| fleet(&simulators, &effects, None, seed))
         .collect::<Result<_, Error>>()?;
     all.extend(none);
-    figures.push(false_discoveries(&all, format!("those, and {first}..{}", first + clean)));
+    figures.push(false_discoveries(
+        &all,
+        format!("those, and {first}..{}", first + clean),
+    ));
     Ok(figures)
 }
 
@@ -167,7 +179,11 @@ fn power(name: &str, fleets: &[Outcome], seeds: String) -> Figure {
     let count = |is: fn(&Outcome) -> bool| fleets.iter().filter(|one| is(one)).count();
     let (found, oracle) = (count(|one| one.found), count(|one| one.oracle));
     let ratio = found as f64 / oracle as f64;
-    let figure = Figure::within(&format!("{name}: power over the oracle's"), [0.8, f64::INFINITY], ratio);
+    let figure = Figure::within(
+        &format!("{name}: power over the oracle's"),
+        [0.8, f64::INFINITY],
+        ratio,
+    );
     Figure {
         measured: format!("{ratio:.2} ({found} over {oracle})"),
         // Of nothing that an oracle finds there is no share.

@@ -74,7 +74,10 @@ pub(super) fn figures() -> Result<Vec<Figure>, Error> {
     let recurring = |sent: Vec<Sent>| -> Result<Vec<(String, Vec<String>)>, Error> {
         let records: Vec<FleetRecord> = sent.into_iter().map(|one| one.record).collect();
         let found = summarise(&records, &FleetOptions::default())?.recurring;
-        Ok(found.into_iter().map(|one| (one.effect, one.alternatives)).collect())
+        Ok(found
+            .into_iter()
+            .map(|one| (one.effect, one.alternatives))
+            .collect())
     };
     let (with, without) = (recurring(with)?, recurring(without)?);
     let named = |(effect, alternatives): &(String, Vec<String>)| {

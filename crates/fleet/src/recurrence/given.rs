@@ -56,7 +56,11 @@ pub(crate) fn given(table: &ScoreTable, named: &str, effects: &[&str]) -> ScoreT
     let projection = best.and_then(|best| Projection::of(table, best.columns));
     let kept = |effect: &&ScoredEffect| effect.id != named && effects.contains(&&*effect.id);
     let kept: Vec<&ScoredEffect> = table.effects.iter().filter(kept).collect();
-    let mut columns: Vec<usize> = kept.iter().flat_map(|one| one.variants.iter().flatten()).copied().collect();
+    let mut columns: Vec<usize> = kept
+        .iter()
+        .flat_map(|one| one.variants.iter().flatten())
+        .copied()
+        .collect();
     columns.sort_unstable();
     columns.dedup();
     let Some(projection) = projection else {
@@ -70,7 +74,9 @@ pub(crate) fn given(table: &ScoreTable, named: &str, effects: &[&str]) -> ScoreT
     let left: Vec<f64> = (0..columns.len())
         .map(|column| 1.0 - taken.column(column).norm_squared())
         .collect();
-    let seen: Vec<usize> = (0..columns.len()).filter(|column| left[*column] > VISIBLE).collect();
+    let seen: Vec<usize> = (0..columns.len())
+        .filter(|column| left[*column] > VISIBLE)
+        .collect();
     let place = |column: &usize| {
         let before = columns.binary_search(column).ok()?;
         seen.binary_search(&before).ok()

@@ -83,7 +83,9 @@ pub(crate) fn cells(units: &[UnitRatios]) -> Vec<f64> {
     let mut cells = Vec::with_capacity(STRENGTHS.len() * SHARES.len());
     for strength in 0..STRENGTHS.len() {
         for share in SHARES {
-            let terms = units.iter().map(|unit| ln_1p(share * (unit[strength] - 1.0)));
+            let terms = units
+                .iter()
+                .map(|unit| ln_1p(share * (unit[strength] - 1.0)));
             cells.push(terms.sum());
         }
     }
@@ -114,7 +116,8 @@ impl Pooled {
     /// `None` of effects whose size is not the same in all records.
     pub(crate) fn of(units: &[UnitScores]) -> Option<Self> {
         let blocks = units.iter().flat_map(|unit| &unit.blocks);
-        let (mut information, mut score): (Option<DMatrix<f64>>, Option<DVector<f64>>) = (None, None);
+        let (mut information, mut score): (Option<DMatrix<f64>>, Option<DVector<f64>>) =
+            (None, None);
         for block in blocks {
             let root = block.root.as_ref()?;
             let own = root * root.transpose();
@@ -215,11 +218,7 @@ impl Evidence {
 }
 
 /// Draws units that have the cause, as (3) averages over it: their density over that without the cause is E.
-pub(crate) fn draw_with_cause(
-    units: &mut [UnitScores],
-    pooled: Option<&Pooled>,
-    draw: &mut Draw,
-) {
+pub(crate) fn draw_with_cause(units: &mut [UnitScores], pooled: Option<&Pooled>, draw: &mut Draw) {
     for unit in units.iter_mut() {
         unit.redrawn(draw);
     }
@@ -248,7 +247,9 @@ mod tests {
         let length = d * square.sqrt();
         let steps = 20_000;
         let angle = |step: i32| std::f64::consts::PI * (f64::from(step) + 0.5) / f64::from(steps);
-        let plane: f64 = (0..steps).map(|step| (length * angle(step).cos()).exp()).sum();
+        let plane: f64 = (0..steps)
+            .map(|step| (length * angle(step).cos()).exp())
+            .sum();
         let space: f64 = (0..steps)
             .map(|step| {
                 let angle = angle(step);

@@ -101,7 +101,10 @@ pub fn recurring(units: &[UnitRecords<'_>], options: &RecurrenceOptions) -> Vec<
     let reciprocals = tested.iter().map(|one| exp(-one.evidence.ln_e)).collect();
     let by_e_values = step_up(reciprocals, rate);
     tested.sort_by(|a, b| b.evidence.ln_e.total_cmp(&a.evidence.ln_e));
-    let by_e_values: Vec<String> = tested[..by_e_values].iter().map(|one| one.id.clone()).collect();
+    let by_e_values: Vec<String> = tested[..by_e_values]
+        .iter()
+        .map(|one| one.id.clone())
+        .collect();
     let mut naming = Naming {
         limit,
         options,

@@ -104,7 +104,9 @@ fn of_record(table: &ScoreTable, effect: &ScoredEffect) -> Option<Block> {
         own.solve_lower_triangular_mut(&mut rows);
         let mut rows = correlation.columns(first, size).transpose();
         own.solve_lower_triangular_mut(&mut rows);
-        correlation.columns_mut(first, size).copy_from(&rows.transpose());
+        correlation
+            .columns_mut(first, size)
+            .copy_from(&rows.transpose());
         variants.push(first..first + size);
         first += size;
     }

@@ -5,10 +5,10 @@ use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::math::{exp, ln_1p};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use super::UnitRecords;
 use super::mixture::in_random_direction;
 use super::naming::scores;
 use super::scores::{UnitScores, direction};
-use super::UnitRecords;
 
 /// Added to the diagonal of a correlation that is drawn from.
 const JITTER: f64 = 1e-4;
