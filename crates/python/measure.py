@@ -261,6 +261,7 @@ def measure_spark(count):
     import gyrocal
     from gyrocal import fleet
 
+    os.environ.setdefault("PYSPARK_PYTHON", sys.executable)
     page = Path("docs/python.md").read_text()
     (lines,) = [block.partition("```")[0] for block in page.split("```python\n")[1:] if "mapInArrow" in block]
     made = [gyrocal.simulate(scenario(seed)) for seed in range(count)]

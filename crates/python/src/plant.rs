@@ -1,8 +1,6 @@
 //! Any plant, by its program file: its functions are interpreted.
 
-use std::path::PathBuf;
-
-use gyrocal_plant::{ColumnMap, LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
+use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
@@ -26,42 +24,7 @@ struct Columns {
     regressors: Vec<Vec<f64>>,
 }
 
-/// A file (CSV) and the map of its columns, of a file or as JSON.
-#[derive(Clone, Debug, FromPyObject)]
-pub(crate) struct GivenFile {
-    #[pyo3(item)]
-    path: PathBuf,
-    #[pyo3(item)]
-    map_path: Option<PathBuf>,
-    #[pyo3(item)]
-    map: Option<String>,
-}
-
-/// A record as Python hands it over.
-#[derive(FromPyObject)]
-pub(crate) enum GivenRecord<'py> {
-    /// A file.
-    File(GivenFile),
-    /// Columns in memory.
-    Columns(GivenColumns<'py>),
-}
-
-/// The same without the interpreter.
-enum Source {
-    File(GivenFile),
-    Columns(Columns),
-}
-
-impl GivenRecord<'_> {
-    fn source(self) -> Source {
-        match self {
-            Self::File(file) => Source::File(file),
-            Self::Columns(columns) => Source::Columns(columns.columns()),
-        }
-    }
-}
-
-/// Columns in memory.
+/// The same as Python hands it over.
 #[derive(FromPyObject)]
 pub(crate) struct GivenColumns<'py> {
     #[pyo3(item)]
@@ -152,18 +115,18 @@ impl HeldPlant {
     fn diagnose(
         &self,
         py: Python<'_>,
-        record: GivenRecord<'_>,
-        later: Option<GivenRecord<'_>>,
+        record: GivenColumns<'_>,
+        later: Option<GivenColumns<'_>>,
         false_alarm: f64,
     ) -> PyResult<Answer> {
-        let record = record.source();
-        let later = later.map(GivenRecord::source);
+        let record = record.columns();
+        let later = later.map(|later| later.columns());
         Ok(py.detach(|| self.answer(record, later, false_alarm))?)
     }
 }
 
 impl HeldPlant {
-    fn answer(&self, record: Source, later: Option<Source>, false_alarm: f64) -> Outcome<Answer> {
+    fn answer(&self, record: Columns, later: Option<Columns>, false_alarm: f64) -> Outcome<Answer> {
         if !(false_alarm > 0.0 && false_alarm < 1.0) {
             return Err(Failure::of_value(
                 "false_alarm",
@@ -182,30 +145,7 @@ impl HeldPlant {
         Ok((json(&answer)?, json(&answer.sentences())?))
     }
 
-    fn record(&self, source: Source) -> Outcome<PlantRecord> {
-        match source {
-            Source::Columns(columns) => self.record_of_columns(columns),
-            Source::File(file) => {
-                let map = match (&file.map_path, &file.map) {
-                    (Some(path), _) => ColumnMap::read(path)?,
-                    (None, map) => {
-                        serde_json::from_str(map.as_deref().unwrap_or("{}")).map_err(|error| {
-                            let advice = "give time, inputs, outputs and regressors";
-                            Failure::of_value(
-                                "columns",
-                                error.to_string(),
-                                "a map of columns",
-                                advice,
-                            )
-                        })?
-                    }
-                };
-                Ok(map.record(self.plant.description(), &file.path)?)
-            }
-        }
-    }
-
-    fn record_of_columns(&self, columns: Columns) -> Outcome<PlantRecord> {
+    fn record(&self, columns: Columns) -> Outcome<PlantRecord> {
         let Columns {
             name,
             time_s,

@@ -47,7 +47,6 @@ def test_a_declared_plant_takes_frames(found):
     frame = pd.read_csv(FOLDER / "record.csv")
     again = plant.diagnose(frame, COLUMNS)
     assert again.findings == found.findings
-    assert plant.diagnose(FOLDER / "record.csv", COLUMNS).to_dict() == again.to_dict()
     # Other units of the same numbers: factors of two change no bit.
     doubled = frame.assign(displacement_m=2.0 * frame.displacement_m)
     columns = COLUMNS | {"outputs": {"y": {"column": "displacement_m", "factor": 0.5}}}
@@ -82,7 +81,5 @@ def test_wrong_input_is_refused_in_words(tmp_path):
         gyrocal.Plant(3)
     short = tmp_path / "short.csv"
     short.write_text("time_s,drive_n,displacement_m\n0,1\n")
-    with pytest.raises(gyrocal.InputError, match="short.csv"):
+    with pytest.raises(gyrocal.InputError, match="short.csv:2"):
         plant.diagnose(short, COLUMNS)
-    with pytest.raises(gyrocal.InputError, match="map of columns"):
-        plant.diagnose(FOLDER / "record.csv", {"time": "time_s"})

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import _gyrocal
 from ._errors import InputError
-from ._record import _column, _json
+from ._record import _column
 from ._results import PlantDiagnosis
 
 __all__ = ["Plant"]
@@ -110,11 +110,7 @@ class Plant:
         return PlantDiagnosis(*self._held.diagnose(given, other, false_alarm))
 
     def _columns(self, record: Any, columns: Any) -> dict[str, Any]:
-        if isinstance(record, (str, os.PathLike)):
-            is_path = isinstance(columns, (str, os.PathLike))
-            places = None if is_path else _json(self._map(columns), "columns")
-            return {"path": record, "map_path": columns if is_path else None, "map": places}
-        name = f"<{type(record).__name__}>"
+        frame, name = _frame(record)
         places = self._map(columns)
 
         def group(kind: str, names: list[str]) -> list[NDArray[np.float64]]:
@@ -133,11 +129,11 @@ class Plant:
                     expected=missing[0],
                     advice=f"add it to `{kind}`",
                 )
-            return [_values(record, known[one], name) for one in names]
+            return [_values(frame, known[one], name) for one in names]
 
         return {
             "name": name,
-            "time_s": _values(record, _time(places), name),
+            "time_s": _values(frame, _time(places), name),
             "inputs": group("inputs", self.inputs),
             "outputs": group("outputs", self.outputs),
             "regressors": group("regressors", self.regressors),
@@ -179,6 +175,35 @@ def _time(places: Mapping[str, Any]) -> Source:
     return places["time"]
 
 
+def _frame(record: Any) -> tuple[Any, str]:
+    """Columns by name, and the name of the record."""
+    if isinstance(record, (str, os.PathLike)):
+        name = os.fspath(record)
+        try:
+            return _csv(Path(record).read_text(encoding="utf-8"), name), name
+        except OSError as error:
+            raise InputError(f"{name}: cannot be read: {error.strerror}", file=name) from error
+    return record, f"<{type(record).__name__}>"
+
+
+def _csv(text: str, name: str) -> dict[str, NDArray[np.float64]]:
+    import csv
+
+    rows = list(csv.reader(text.splitlines(), skipinitialspace=True))
+    if not rows:
+        raise InputError(f"{name}: found no header", file=name)
+    header = [field.strip() for field in rows[0]]
+    columns: dict[str, list[str]] = {field: [] for field in header}
+    for line, row in enumerate(rows[1:], start=2):
+        if len(row) != len(header):
+            raise InputError(
+                f"{name}:{line}: found {len(row)} fields, expected {len(header)}", file=name, line=line
+            )
+        for field, value in zip(header, row):
+            columns[field].append(value.strip())
+    return {field: np.array(values, dtype=object) for field, values in columns.items()}
+
+
 def _values(frame: Any, source: Source, name: str) -> NDArray[np.float64]:
     place = {"column": source} if isinstance(source, str) else dict(source)
     column = place.pop("column", None)
@@ -196,5 +221,23 @@ def _values(frame: Any, source: Source, name: str) -> NDArray[np.float64]:
             advice=f"it has {', '.join(map(str, names))}",
         )
     found = frame[column]
+    if isinstance(found, np.ndarray) and found.dtype == object and all(
+        isinstance(value, str) for value in found
+    ):
+        found = _parsed(found, column, name)
     return factor * np.ascontiguousarray(_column(found, column, name)) + offset
 
+
+def _parsed(texts: NDArray[Any], column: str, name: str) -> NDArray[np.float64]:
+    """The numbers of a file; an empty field is a missing value."""
+    values = np.empty(len(texts))
+    for row, text in enumerate(texts):
+        try:
+            values[row] = float(text) if text else np.nan
+        except ValueError as error:
+            raise InputError(
+                f"{name}: row {row + 1} has `{text}` in column `{column}`, expected a number",
+                file=name,
+                found=text,
+            ) from error
+    return values
