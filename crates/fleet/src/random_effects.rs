@@ -202,6 +202,7 @@ impl RandomEffects {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)] // tests stop where they fail
 mod tests {
     use super::*;
 

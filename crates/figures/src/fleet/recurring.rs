@@ -139,17 +139,15 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     let mut all = Vec::new();
     for (row, share) in SHARES.into_iter().enumerate() {
-        let mut own: Vec<Outcome> = Vec::new();
         let first = FIRST_SEED + 1000 * row as u64;
         let last = first + STRENGTHS.len() as u64 * fleets;
-        let found: Vec<Outcome> = (first..last)
+        let own: Vec<Outcome> = (first..last)
             .into_par_iter()
             .map(|seed| {
                 let strength = STRENGTHS[(seed % STRENGTHS.len() as u64) as usize];
                 fleet(&simulators, &effects, Some((strength, share)), seed)
             })
             .collect::<Result<_, Error>>()?;
-        own.extend(found);
         figures.push(power(
             &format!(
                 "200 units, a cause of 1, 2 or 3 sigmas in {:.0} % of them",
