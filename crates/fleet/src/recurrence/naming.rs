@@ -2,6 +2,7 @@
 
 use gyrocal_hypothesis::ScoreTable;
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::math::exp;
 
 use super::mixture::{Evidence, Pooled};
 use super::null::p_value;
@@ -50,25 +51,31 @@ pub(super) fn scores(units: &[UnitRecords<'_>], id: &str) -> Vec<UnitScores> {
 
 /// Naming of effects, the one with the most evidence first.
 pub(super) struct Naming<'o> {
-    /// Largest p-value of a discovery.
-    pub(super) limit: f64,
+    /// Largest p-value of the first discovery.
+    pub(super) first_limit: f64,
     pub(super) options: &'o RecurrenceOptions,
-    /// Effects that are discoveries by their e-values alone.
-    pub(super) by_e_values: Vec<String>,
     pub(super) found: Vec<Discovery>,
 }
 
 impl Naming<'_> {
+    /// Largest p-value of the next discovery.
+    fn limit(&self) -> f64 {
+        self.first_limit * (self.found.len() as f64 + 1.0)
+    }
+
     /// Names the first of `tested`, which are in falling order of their evidence, and goes on with those that
     /// have evidence of their own with it in the model.
     pub(super) fn name(&mut self, units: &[UnitRecords<'_>], tested: Vec<Tested>) {
-        let Some(best) = tested.iter().find(|one| one.p_value <= self.limit) else {
+        let limit = self.limit();
+        let Some(best) = tested.iter().find(|one| one.p_value <= limit) else {
             return;
         };
         let mut discovery = self.describe(units, best);
+        // What may be named next.
+        let next = limit + self.first_limit;
         let open: Vec<&str> = tested
             .iter()
-            .filter(|one| one.p_value <= self.limit && one.id != best.id)
+            .filter(|one| one.p_value <= next && one.id != best.id)
             .map(|one| one.id.as_str())
             .collect();
         let left: Vec<Vec<ScoreTable>> = units
@@ -91,14 +98,14 @@ impl Naming<'_> {
         let mut again: Vec<Tested> = open
             .iter()
             .map(|id| Tested::of(&beside, id, self.options))
-            .filter(|one| one.p_value <= self.limit)
+            .filter(|one| one.p_value <= next)
             .collect();
         let has_own = |id: &str| again.iter().any(|own| own.id == id);
         let near = |one: &&Tested| best.evidence.ln_e - one.evidence.ln_e < ALTERNATIVE;
         discovery.alternatives = tested
             .iter()
             .filter(|one| one.id != best.id && !has_own(&one.id))
-            .filter(|one| one.p_value <= self.limit || near(one))
+            .filter(|one| one.p_value <= next || near(one))
             .map(|one| one.id.clone())
             .collect();
         self.found.push(discovery);
@@ -124,7 +131,7 @@ impl Naming<'_> {
             effect: tested.id.clone(),
             ln_e: evidence.ln_e,
             p_value: tested.p_value,
-            by_e_value: self.by_e_values.contains(&tested.id),
+            by_e_value: exp(-evidence.ln_e) <= self.limit(),
             share,
             strength,
             is_common: evidence.is_common(),
