@@ -13,7 +13,7 @@ pub(crate) fn sqrt(x: f64) -> f64 {
     }
     // Subnormal numbers are scaled by 2^54, their roots back by 2^-27.
     if x < f64::MIN_POSITIVE {
-        return sqrt(x * 18_014_398_509_481_984.0) * 7.450_580_596_923_828e-9;
+        return sqrt(x * 18_014_398_509_481_984.0) / 134_217_728.0;
     }
     let bits = x.to_bits();
     let exponent = (bits >> 52) as i64 - 1023;
@@ -32,7 +32,7 @@ pub(crate) fn sqrtf(x: f32) -> f32 {
     }
     // Subnormal numbers are scaled by 2^24, their roots back by 2^-12.
     if x < f32::MIN_POSITIVE {
-        return sqrtf(x * 16_777_216.0) * 2.441_406_25e-4;
+        return sqrtf(x * 16_777_216.0) / 4_096.0;
     }
     let bits = x.to_bits();
     let exponent = (bits >> 23) as i32 - 127;
