@@ -21,7 +21,7 @@ pub struct WatchSettings<T> {
     pub walk_deg_per_h_per_sqrt_h: [T; 3],
     /// Largest standardised innovation that filter and watch take; larger ones count as this one.
     pub clip: T,
-    /// Deviance within which effects cannot be told apart.
+    /// Deviance within which effects cannot be told apart; beside a third of the largest one.
     pub set_width: T,
     /// Standard deviation of the sizes that are looked for, in units of the sigma that a day of
     /// samples leaves of them.

@@ -4,7 +4,7 @@ use gyrocal::watch::{
 };
 use gyrocal::{ControllerError, FilterSettings, InitialAttitude, Limits, Site};
 use gyrocal_truth::Population;
-use gyrocal_watch::{Jumps, Settings, Signatures};
+use gyrocal_watch::{Jumps, Settings, Signatures, least_of_set};
 
 use crate::lane::{Lane, Sigmas};
 use crate::sizes::{COLUMNS, EFFECTS, JUMPS, ONSETS, STATES};
@@ -276,7 +276,8 @@ impl Platform {
         }));
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
         let most = all.first().map_or(0.0, |(_, deviance)| *deviance);
-        all.retain(|(_, deviance)| *deviance >= most - self.set_width);
+        let least = least_of_set(most, self.set_width);
+        all.retain(|(_, deviance)| *deviance >= least);
         all.into_iter().map(|(effect, _)| effect).collect()
     }
 }

@@ -41,6 +41,16 @@ impl<T: Real> Evidence<T> {
     }
 }
 
+/// The least deviance of an effect that cannot be told apart from the one with the largest: `width` below
+/// it, or a third of it.
+///
+/// An effect whose onset lies between two of the grid loses a share of its deviance, however large that is.
+#[inline]
+#[must_use]
+pub fn least_of_set<T: Real>(largest: T, width: T) -> T {
+    largest - width.max(largest * T::from_f64(1.0 / 3.0))
+}
+
 /// Probability of a false alarm, and the onsets that share it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget<T> {

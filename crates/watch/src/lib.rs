@@ -50,7 +50,7 @@ mod table;
 mod watch;
 
 pub use calendar::Calendar;
-pub use evidence::{Budget, Evidence};
+pub use evidence::{Budget, Evidence, least_of_set};
 pub use jumps::{JumpCell, JumpScores, Jumps};
 pub use scores::Scores;
 pub use signatures::{Cell, Direction, Signatures};

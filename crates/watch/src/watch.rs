@@ -3,7 +3,7 @@ mod saved;
 use gyrocal_scalar::Real;
 
 use crate::calendar::Calendar;
-use crate::evidence::{Budget, Evidence};
+use crate::evidence::{Budget, Evidence, least_of_set};
 use crate::jumps::{JumpScores, Jumps};
 use crate::scores::Scores;
 use crate::signatures::Signatures;
@@ -409,8 +409,8 @@ impl<
         best
     }
 
-    /// Calls `each` with the candidates whose deviance is within `width` of the largest one: the
-    /// effects that cannot be told apart.
+    /// Calls `each` with the candidates whose deviance is at least [`least_of_set`]: the effects that
+    /// cannot be told apart.
     pub fn candidates(&self, width: T, mut each: impl FnMut(Candidate<T>)) {
         let mut largest = T::ZERO;
         for effect in 0..E + M {
@@ -418,9 +418,10 @@ impl<
                 largest = largest.max(candidate.deviance);
             }
         }
+        let least = least_of_set(largest, width);
         for effect in 0..E + M {
             if let Some(candidate) = self.candidate(effect)
-                && candidate.deviance >= largest - width
+                && candidate.deviance >= least
             {
                 each(candidate);
             }
