@@ -1,3 +1,4 @@
+mod onsets;
 mod saving;
 
 use gyrocal_estimation::{EstimationError, Factors, Innovation, Precision};

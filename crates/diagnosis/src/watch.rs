@@ -65,7 +65,8 @@ pub struct WatchAlarm {
     pub time_s: f64,
     /// True for a jump of the attitude, which has a grid of its own.
     pub jump: bool,
-    /// Row at which the set was asked for again, after twice the delay or at the end of the record.
+    /// Row at which the set was asked for again: after twice the delay, before an onset of the set is
+    /// dropped, or at the end of the record.
     pub refined_row: usize,
     /// Effects that cannot be told apart at the alarm, the most likely one first.
     pub at_alarm: Vec<WatchCause>,
@@ -202,6 +203,8 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
             let time_s = self.record.time_s[row];
             let again_s = time_s + (time_s - since_s);
             let refined_row = self.record.time_s.partition_point(|time| *time < again_s);
+            // Before an onset of the set is dropped.
+            let refined_row = refined_row.min(row + self.steps_left());
             let alarm = WatchAlarm {
                 row: row + 1,
                 time_s,
@@ -219,6 +222,15 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
             self.answer.alarms.push(alarm);
             self.watched.go_on();
         }
+    }
+
+    /// Steps that all onsets of the set still live.
+    fn steps_left(&self) -> usize {
+        let mut left = u32::MAX;
+        self.watched.candidates(|_, candidate| {
+            left = left.min(self.watched.steps_left(&candidate));
+        });
+        left.saturating_sub(1) as usize
     }
 
     fn causes(&self, row: usize) -> Vec<WatchCause> {

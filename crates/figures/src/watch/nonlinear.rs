@@ -102,9 +102,10 @@ fn of_cell(cell: Cell, runs: &[Run], small: bool) -> Vec<Figure> {
             &format!("nonlinear, {what}: alarms before it"),
             false_alarms,
         ),
-        share(
-            format!("nonlinear, {what}: found within {left} days"),
+        Figure::note_share(
+            &format!("nonlinear, {what}: found within {left} days"),
             alarmed,
+            "",
         ),
         Figure::note(
             &format!("nonlinear, {what}: median delay"),
@@ -114,10 +115,7 @@ fn of_cell(cell: Cell, runs: &[Run], small: bool) -> Vec<Figure> {
             format!("nonlinear, {what}: set at the alarm holds it"),
             held,
         ),
-        share(
-            format!("nonlinear, {what}: set after twice the delay holds it"),
-            refined,
-        ),
+        share(format!("nonlinear, {what}: refined set holds it"), refined),
     ]
 }
 
