@@ -114,6 +114,20 @@ pub enum CalibrationError {
         /// Error of the record.
         source: Box<CalibrationError>,
     },
+    /// No record was given.
+    #[error("there is no record; give at least one")]
+    NoRecords,
+    /// The bench description of a record contradicts that of the first.
+    #[error(
+        "the bench file of record {} contradicts that of the first record in {key}: one platform has one;          give the records that belong together",
+        record + 1
+    )]
+    UnlikeBenches {
+        /// Index of the record.
+        record: usize,
+        /// Key that differs.
+        key: &'static str,
+    },
     /// The averaging interval is out of range.
     #[error(
         "means over {found_s} s were asked for, expected from {least_s} s, two rows of the record, \

@@ -6,6 +6,7 @@ mod open_loop;
 mod passes;
 mod prediction;
 mod rate_noise;
+mod several;
 
 use gyrocal::estimation::batch::Walk;
 use gyrocal::generated::catalogue::{self, CatalogueInputs};
@@ -30,6 +31,8 @@ use crate::uncertainty::Uncertainty;
 pub use open_loop::SiteBias;
 pub use prediction::{Estimates, Expectation, WalkEnd};
 pub use rate_noise::GYRO_NOISE_PRIOR_SIGMA;
+use several::Several;
+pub use several::joined_record;
 
 /// Axes of the platform.
 const AXES: usize = 3;
@@ -39,9 +42,10 @@ const S_PER_H: f64 = 3600.0;
 
 const SHAPES: usize = catalogue::SHAPES.len();
 
-/// Onsets and time constants as [`Catalogue`] takes them.
-fn shapes(extension: &ModelExtension) -> [f64; SHAPES] {
-    core::array::from_fn(|index| extension.shape(index))
+/// Onsets and time constants of a record as [`Catalogue`] takes them.
+fn shapes(several: Option<&Several>, extension: &ModelExtension, run: usize) -> [f64; SHAPES] {
+    let shapes = several::shapes_of(several, extension, run);
+    core::array::from_fn(|index| shapes[index])
 }
 
 /// Site quantities with a declared standard deviation: parameters of every fit.
@@ -97,7 +101,15 @@ fn walks(deg_per_h_per_sqrt_h: &[f64; 3]) -> Vec<Walk> {
         .collect()
 }
 
-/// An extended model at its best fit to a record.
+/// What a fit has beside its problem.
+struct Parts {
+    noise: NoiseModel,
+    several: Option<Several>,
+}
+
+/// An extended model at its best fit to a record, or to several records of one platform.
+///
+/// Rows of several records are counted through all of them, one after the other.
 #[derive(Clone)]
 pub struct FittedPlatform<'a> {
     problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
@@ -105,6 +117,10 @@ pub struct FittedPlatform<'a> {
     uncertainty: Uncertainty,
     extension: ModelExtension,
     noise: NoiseModel,
+    /// Number of values that all records share.
+    shared: usize,
+    /// `None` of one record.
+    several: Option<Several>,
 }
 
 impl<'a> FittedPlatform<'a> {
@@ -190,7 +206,9 @@ impl<'a> FittedPlatform<'a> {
             runs: vec![leg],
             values,
         };
-        Self::solved(problem, extension, noise.clone())
+        let noise = noise.clone();
+        let several = None;
+        Self::solved(problem, extension, Parts { noise, several })
     }
 
     /// Fits another extension, from where this one is.
@@ -205,11 +223,11 @@ impl<'a> FittedPlatform<'a> {
     fn refitted_with(
         &self,
         extension: &ModelExtension,
-        change: impl FnOnce(&mut RunProblem<'a, CatalogueInputs<f64>>),
+        change: impl Fn(&mut RunProblem<'a, CatalogueInputs<f64>>),
         noise: NoiseModel,
     ) -> Result<Self, CalibrationError> {
         let before = self.parameters();
-        let leg = &self.problem.runs[0];
+        let amplitudes = &self.problem.runs[0].amplitudes;
         let mut unknowns = self.problem.unknowns[..PARAMETERS].to_vec();
         let mut values = self.problem.values[..PARAMETERS].to_vec();
         for (parameter, sigma) in &extension.parameters {
@@ -225,32 +243,27 @@ impl<'a> FittedPlatform<'a> {
                 .columns()
                 .iter()
                 .position(|c| c == column);
-            values.push(same.map_or(0.0, |same| self.problem.values[leg.amplitudes[same]]));
+            values.push(same.map_or(0.0, |same| self.problem.values[amplitudes[same]]));
         }
-        let mut chart = leg.chart;
-        chart.inputs_mut().shapes = shapes(extension);
-        let mut problem = Problem {
+        // The offsets of each turn-on come last.
+        values.extend_from_slice(&self.problem.values[self.shared..]);
+        let mut runs = self.problem.runs.clone();
+        for run in &mut runs {
+            run.parameter_unknowns = Vec::new();
+            run.further = ExtraColumns::default();
+            run.amplitudes = Vec::new();
+            change(run);
+        }
+        let problem = Problem {
             model: self.problem.model,
             integration: self.problem.integration,
             longest_step_s: self.problem.longest_step_s,
             unknowns,
-            runs: vec![RunProblem {
-                rows: leg.rows.clone(),
-                chart,
-                noise_density: leg.noise_density,
-                prior: leg.prior,
-                prior_covariance: leg.prior_covariance,
-                points: leg.points.clone(),
-                parameter_unknowns: Vec::new(),
-                further: ExtraColumns::default(),
-                amplitudes: Vec::new(),
-                walks: leg.walks.clone(),
-                walk_changes: leg.walk_changes.clone(),
-            }],
+            runs,
             values,
         };
-        change(&mut problem.runs[0]);
-        Self::solved(problem, extension.clone(), noise)
+        let several = self.several.clone();
+        Self::solved(problem, extension.clone(), Parts { noise, several })
     }
 
     /// The same extension fitted with another noise.
@@ -269,10 +282,11 @@ impl<'a> FittedPlatform<'a> {
         self.refitted_with(&self.extension, change, noise.clone())
     }
 
+    /// `problem` has the unknowns that all records share, and no run has columns yet.
     fn solved(
         mut problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
         extension: ModelExtension,
-        noise: NoiseModel,
+        Parts { noise, mut several }: Parts,
     ) -> Result<Self, CalibrationError> {
         let mut sums = vec![Vec::new(); Catalogue::PARAMETERS];
         for (parameter, sum) in sums.iter_mut().enumerate().take(PARAMETERS) {
@@ -282,23 +296,41 @@ impl<'a> FittedPlatform<'a> {
             sums[*parameter].push(PARAMETERS + offset);
         }
         let first = PARAMETERS + extension.parameters.len();
-        let last = first + extension.columns.columns().len();
-        problem.values.resize(last, 0.0);
-        let leg = &mut problem.runs[0];
-        leg.parameter_unknowns = sums;
-        leg.further = extension.columns.clone();
-        leg.amplitudes = (first..last).collect();
-        leg.further
-            .set_amplitudes(problem.values[first..].iter().copied());
+        let shared = first + extension.columns.columns().len();
+        let own = several.as_ref().map_or(0, Several::unknowns);
+        problem.values.resize(shared + own, 0.0);
+        for run in 0..problem.runs.len() {
+            let mut sums = sums.clone();
+            if let Some(several) = &several {
+                for (parameter, sigma) in several.offsets.iter().zip(&several.offset_sigmas) {
+                    sums[*parameter].push(problem.unknowns.len());
+                    problem.unknowns.push(Unknown::estimated(*sigma));
+                }
+            }
+            let columns = several::columns_of(several.as_ref(), extension.columns.columns(), run);
+            let leg = &mut problem.runs[run];
+            leg.chart.inputs_mut().shapes = shapes(several.as_ref(), &extension, run);
+            leg.parameter_unknowns = sums;
+            leg.further = ExtraColumns::new(columns);
+            leg.amplitudes = (first..shared).collect();
+            leg.further
+                .set_amplitudes(problem.values[first..shared].iter().copied());
+        }
         let solution = problem.solve(MAX_ITERATIONS)?;
         let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
             .ok_or(CalibrationError::NotPositiveDefinite)?;
+        if let Some(several) = &mut several {
+            let points = problem.runs.iter().flat_map(|run| &run.points);
+            several.points = points.copied().collect();
+        }
         Ok(Self {
             problem,
             solution,
             uncertainty,
             extension,
             noise,
+            shared,
+            several,
         })
     }
 
@@ -332,6 +364,8 @@ impl<'a> FittedPlatform<'a> {
             uncertainty: self.uncertainty,
             extension: self.extension,
             noise: self.noise,
+            shared: self.shared,
+            several: self.several,
         }
     }
 
@@ -358,10 +392,10 @@ impl<'a> FittedPlatform<'a> {
     /// columns.
     #[must_use]
     pub fn values(&self) -> &[f64] {
-        &self.problem.values
+        &self.problem.values[..self.shared]
     }
 
-    /// Covariance of their errors.
+    /// Covariance of their errors; of several records those of each turn-on follow.
     #[must_use]
     pub fn covariance(&self) -> &DMatrix<f64> {
         &self.uncertainty.total
@@ -370,8 +404,7 @@ impl<'a> FittedPlatform<'a> {
     /// Standard deviations before the record, in the order of [`Self::values`].
     #[must_use]
     pub fn prior_sigma(&self) -> Vec<f64> {
-        self.problem
-            .unknowns
+        self.problem.unknowns[..self.shared]
             .iter()
             .map(|unknown| unknown.sigma)
             .collect()
@@ -393,10 +426,14 @@ impl<'a> FittedPlatform<'a> {
     /// Smoothed attitude at each row.
     #[must_use]
     pub fn points(&self) -> &[Orientation] {
-        &self.problem.runs[0].points
+        match &self.several {
+            Some(several) => &several.points,
+            None => &self.problem.runs[0].points,
+        }
     }
 
-    /// All parameters of [`Catalogue`]: those that are not estimated are zero.
+    /// All parameters of [`Catalogue`]: those that are not estimated are zero. Of several records those of
+    /// the first.
     #[must_use]
     pub fn parameters(&self) -> Vec<f64> {
         self.problem.parameters(0)
@@ -405,7 +442,12 @@ impl<'a> FittedPlatform<'a> {
     /// Specific force that the model gives at each row for the smoothed attitude, g.
     #[must_use]
     pub fn predicted_g(&self) -> Vec<[f64; 3]> {
-        self.problem.outputs(0, self.points(), &self.parameters())
+        let runs = self.problem.runs.iter().enumerate();
+        runs.flat_map(|(run, leg)| {
+            let parameters = self.problem.parameters(run);
+            self.problem.outputs(run, &leg.points, &parameters)
+        })
+        .collect()
     }
 
     /// Specific force that the model gives when it runs by itself from the first attitude, with
@@ -414,11 +456,15 @@ impl<'a> FittedPlatform<'a> {
     /// # Errors
     /// [`CalibrationError::Pass`].
     pub fn free_run_g(&self) -> Result<Vec<[f64; 3]>, CalibrationError> {
-        let parameters = self.parameters();
-        let points = self
-            .problem
-            .with_run(0, &parameters, |pass| pass.free_run())
-            .map_err(|error| CalibrationError::pass(0, error))?;
-        Ok(self.problem.outputs(0, &points, &parameters))
+        let mut simulated_g = Vec::with_capacity(self.points().len());
+        for run in 0..self.problem.runs.len() {
+            let parameters = self.problem.parameters(run);
+            let points = self
+                .problem
+                .with_run(run, &parameters, |pass| pass.free_run())
+                .map_err(|error| CalibrationError::pass(run, error))?;
+            simulated_g.extend(self.problem.outputs(run, &points, &parameters));
+        }
+        Ok(simulated_g)
     }
 }

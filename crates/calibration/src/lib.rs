@@ -139,6 +139,7 @@ pub use error::CalibrationError;
 pub use fit::{Consistency, FitStatistics};
 pub use fitted_platform::{
     Estimates, Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel, SiteBias, WalkEnd,
+    joined_record,
 };
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;

@@ -61,6 +61,7 @@ pub fn rows(record: &Record, covariates: Vec<Covariate>) -> Rows {
     };
     Rows {
         time_s: record.time_s.clone(),
+        starts: Vec::new(),
         regressors: record.temperature_c.iter().map(about_mean).collect(),
         covariates,
     }

@@ -138,6 +138,16 @@ impl<'a> WeightedRows<'a> {
         }
     }
 
+    /// The record.
+    pub(crate) fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// Sets the temperature that temperatures are taken about: that of several records.
+    pub(crate) fn set_mean_temperature_c(&mut self, mean_temperature_c: f64) {
+        self.mean_temperature_c = mean_temperature_c;
+    }
+
     /// Sets the standard deviation of values of weight 1.
     pub(crate) fn set_noise(&mut self, noise_g: [f64; 3]) {
         self.variance_g2 = noise_g.map(|sigma| sigma * sigma);

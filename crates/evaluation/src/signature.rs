@@ -44,7 +44,10 @@ impl SignatureColumns {
         };
         let further = match (effect.kind, shape, effect.rate()) {
             (EffectKind::InitialState, ..) => [0, 1, 2]
-                .map(|axis| Column::InitialState { state: axis })
+                .map(|axis| Column::InitialState {
+                    row: 0,
+                    state: axis,
+                })
                 .to_vec(),
             (EffectKind::StateJump, Some(onset_s), _) => {
                 let row = rows_before(onset_s).saturating_sub(1).min(last_step);

@@ -8,8 +8,10 @@ use gyrocal_estimation::batch::Columns;
 /// One such column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Column {
-    /// Change of a moving state at the first row, outside its prior.
+    /// Change of a moving state at the first row of a record, outside its prior.
     InitialState {
+        /// The first row of the record.
+        row: usize,
         /// Index of the state.
         state: usize,
     },
@@ -121,7 +123,7 @@ impl<const M: usize, const Y: usize> Columns<M, Y> for ExtraColumns {
 
     fn start(&self, column: usize) -> [f64; M] {
         let mut change = [0.0; M];
-        if let Column::InitialState { state } = self.columns[column] {
+        if let Column::InitialState { row: 0, state } = self.columns[column] {
             change[state] = 1.0;
         }
         change

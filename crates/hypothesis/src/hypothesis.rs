@@ -13,6 +13,9 @@ use crate::signature::{Source, signature};
 /// which the statistic of a step falls by a few percent.
 const ONSETS: usize = 40;
 
+/// Fewest onsets in one of several records.
+const LEAST_ONSETS: usize = 24;
+
 /// Time constants on the grid of the search.
 const TIME_CONSTANTS: usize = 10;
 
@@ -110,10 +113,16 @@ impl HypothesisSet {
     /// The hypotheses of some effects over a record.
     #[must_use]
     pub fn new(plant: &Plant, rows: &Rows, effects: &[&'static Effect]) -> Self {
-        let last = rows.len().saturating_sub(1);
-        let mut onset_rows: Vec<usize> = (1..=ONSETS)
-            .map(|index| index * last / (ONSETS + 1))
-            .filter(|row| *row > 0)
+        let onsets = (ONSETS / (rows.starts.len() + 1)).max(LEAST_ONSETS);
+        let mut onset_rows: Vec<usize> = rows
+            .records()
+            .flat_map(|record| {
+                let last = record.len().saturating_sub(1);
+                (1..=onsets)
+                    .map(move |index| index * last / (onsets + 1))
+                    .filter(|row| *row > 0)
+                    .map(move |row| record.start + row)
+            })
             .collect();
         onset_rows.dedup();
         let mut set = Self {
@@ -150,10 +159,15 @@ impl HypothesisSet {
                 let onsets = self.onset_rows.iter();
                 onsets.map(|row| Some(rows.since_first_s(*row))).collect()
             }
-            Some(_) => time_constants_h(rows.duration_s())
+            Some(_) => time_constants_h(rows.longest_record_s())
                 .into_iter()
                 .map(Some)
                 .collect(),
+            // Each record has a first row.
+            None if effect.kind == EffectKind::InitialState && !rows.starts.is_empty() => {
+                let firsts = rows.records().map(|record| record.start);
+                firsts.map(|row| Some(rows.since_first_s(row))).collect()
+            }
             None => vec![None],
         };
         let mut variants = Vec::with_capacity(shapes.len());

@@ -69,7 +69,7 @@ impl ShapeScale {
             [0.0, duration_s]
         } else {
             let interval_s = duration_s / rows.len().max(2) as f64;
-            [SHORTEST * interval_s, LONGEST * duration_s].map(|s| ln(s / 3600.0))
+            [SHORTEST * interval_s, LONGEST * rows.longest_record_s()].map(|s| ln(s / 3600.0))
         };
         Some(Self { is_onset, ends })
     }

@@ -29,10 +29,11 @@ pub fn signature(
     rows: &Rows,
 ) -> Option<Vec<Source>> {
     match (effect.kind, effect.enters, shape) {
-        (EffectKind::InitialState, Enters::States(states), _) => {
+        (EffectKind::InitialState, Enters::States(states), start_s) => {
+            let row = start_s.map_or(0, |start_s| rows.rows_before(start_s));
             let columns = states
                 .iter()
-                .map(|state| Column::InitialState { state: *state });
+                .map(|state| Column::InitialState { row, state: *state });
             Some(columns.map(Source::Column).collect())
         }
         (EffectKind::StateJump, Enters::States(states), Some(onset_s)) => {

@@ -147,7 +147,7 @@ fn simulate(parameters: &[f64], extension: &ModelExtension, amplitudes: &[f64]) 
     let columns = extension.columns.columns();
     let mut state = INITIAL;
     for (column, amplitude) in columns.iter().zip(amplitudes) {
-        if let Column::InitialState { state: index } = column {
+        if let Column::InitialState { state: index, .. } = column {
             state[*index] += amplitude;
         }
     }
@@ -408,6 +408,7 @@ fn findings(seed: u64, hide: impl Fn(&mut [f64; 6], &mut ModelExtension)) -> Vec
         .collect();
     let nominal = FittedDuffing::fit(&measured, &ModelExtension::default(), TRUTH[..3].to_vec());
     let rows = Rows {
+        starts: Vec::new(),
         time_s: (0..ROWS).map(|row| row as f64 * STEP_S).collect(),
         ..Rows::default()
     };

@@ -131,6 +131,7 @@ impl FittedPlant {
     #[must_use]
     pub fn rows(&self) -> Rows {
         Rows {
+            starts: Vec::new(),
             covariates: self.covariates(),
             ..(*self.problem.rows).clone()
         }

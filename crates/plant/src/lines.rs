@@ -27,7 +27,7 @@ impl Line {
     /// A column of the search.
     pub(crate) fn of(column: &Column, states: usize, steps: usize) -> Self {
         match column {
-            Column::InitialState { state } => Self::Start(*state),
+            Column::InitialState { state, .. } => Self::Start(*state),
             Column::StateJump { row, state } => Self::Jump(*row, *state),
             Column::Step { parameter, row } => {
                 let profile = (0..steps).map(|step| f64::from(u8::from(step >= *row)));

@@ -30,6 +30,7 @@ impl Problem {
         );
         let time_s = record.time_s.iter().map(|time| (time - first) * scale);
         let rows = Rows {
+            starts: Vec::new(),
             time_s: time_s.collect(),
             regressors: record.regressors.clone(),
             covariates: Vec::new(),

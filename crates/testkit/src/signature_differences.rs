@@ -278,7 +278,10 @@ fn attitude_probes(record: &Record, axis: usize) -> Result<Vec<Probe>, Error> {
     let initial = rotation(
         EffectKind::InitialState,
         Vec::new(),
-        Column::InitialState { state: axis },
+        Column::InitialState {
+            row: 0,
+            state: axis,
+        },
         String::new(),
     );
     let jumps = probed_rows(record).map(|row| {

@@ -12,6 +12,26 @@ use crate::solve::add_gram;
 /// estimate.
 const WIDE: f64 = 100.0;
 
+/// Sums over passes over the records.
+struct Seen {
+    /// Gram matrix of residual and unknowns.
+    gram: DMatrix<f64>,
+    /// Sum of the logarithms of the innovations' variances.
+    log_variance: f64,
+    /// Number of innovations.
+    values: usize,
+}
+
+impl Seen {
+    fn new(unknowns: usize) -> Self {
+        Self {
+            gram: DMatrix::zeros(unknowns + 1, unknowns + 1),
+            log_variance: 0.0,
+            values: 0,
+        }
+    }
+}
+
 impl FittedPlatform<'_> {
     /// Logarithm of the density of the record without the rows of a range, all unknowns integrated
     /// out over their priors, linearised about this fit. Unknowns without a prior get one, of
@@ -24,15 +44,24 @@ impl FittedPlatform<'_> {
         &self,
         left_out: core::ops::Range<usize>,
     ) -> Result<f64, CalibrationError> {
-        let parameters = self.parameters();
-        let reduced = self
-            .problem
-            .without_rows(0, &parameters, left_out, |pass| {
-                let tape = self.solution.tapes[0].as_deref();
-                Linearisation { tape, ..*pass }.reduce(|_| ())
-            })
-            .map_err(|error| CalibrationError::pass(0, error))?;
-        self.log_evidence(&reduced.gram, reduced.log_variance, reduced.values)
+        let mut parts = Seen::new(self.problem.unknowns.len());
+        for (run, rows) in self.record_rows().into_iter().enumerate() {
+            let parameters = self.problem.parameters(run);
+            let within = |row: usize| row.clamp(rows.start, rows.end) - rows.start;
+            let own = within(left_out.start)..within(left_out.end);
+            let reduced = self
+                .problem
+                .without_rows(run, &parameters, own, |pass| {
+                    let tape = self.solution.tapes[run].as_deref();
+                    Linearisation { tape, ..*pass }.reduce(|_| ())
+                })
+                .map_err(|error| CalibrationError::pass(run, error))?;
+            let columns = self.problem.runs[run].column_unknowns();
+            add_gram(&mut parts.gram, &reduced.gram, &columns);
+            parts.log_variance += reduced.log_variance;
+            parts.values += reduced.values;
+        }
+        self.log_evidence(&parts)
     }
 
     /// Logarithm of the density of the first `rows` rows with this noise of the gyros, which walk where
@@ -55,33 +84,39 @@ impl FittedPlatform<'_> {
             let walking = pairs.filter(|(_, believed)| **believed > 0.0);
             factors.extend(walking.map(|(size, believed)| (size / believed).powi(2)));
         }
-        let score = self
-            .problem
-            .with_first_rows(0, &self.parameters(), rows, |pass| {
-                let tape = self.solution.tapes[0].as_deref();
-                Linearisation { tape, ..*pass }.noise_score_of_columns(&factors, usize::MAX)
-            })
-            .map_err(|error| CalibrationError::pass(0, error))?;
-        self.log_evidence(&score.gram, score.log_variance, score.values)
+        let mut parts = Seen::new(self.problem.unknowns.len());
+        for (run, own) in self.record_rows().into_iter().enumerate() {
+            let count = rows.clamp(own.start, own.end) - own.start;
+            if count == 0 {
+                continue;
+            }
+            let parameters = self.problem.parameters(run);
+            let score = self
+                .problem
+                .with_first_rows(run, &parameters, count, |pass| {
+                    let tape = self.solution.tapes[run].as_deref();
+                    Linearisation { tape, ..*pass }.noise_score_of_columns(&factors, usize::MAX)
+                })
+                .map_err(|error| CalibrationError::pass(run, error))?;
+            let columns = self.problem.runs[run].column_unknowns();
+            add_gram(&mut parts.gram, &score.gram, &columns);
+            parts.log_variance += score.log_variance;
+            parts.values += score.values;
+        }
+        self.log_evidence(&parts)
     }
 
-    /// From the Gram matrix of a pass, the sum of the logarithms of its innovations' variances, and their
-    /// number.
+    /// From passes over the records.
     fn log_evidence(
         &self,
-        of_columns: &DMatrix<f64>,
-        log_variance: f64,
-        values: usize,
+        Seen {
+            gram,
+            log_variance,
+            values,
+        }: &Seen,
     ) -> Result<f64, CalibrationError> {
         let unknowns = &self.problem.unknowns;
         let count = unknowns.len();
-        // The pass has the parameters in the order of the model.
-        let mut gram = DMatrix::zeros(count + 1, count + 1);
-        add_gram(
-            &mut gram,
-            of_columns,
-            &self.problem.runs[0].column_unknowns(),
-        );
         let mut information = gram.view((1, 1), (count, count)).into_owned();
         let mut gradient = DVector::zeros(count);
         let mut prior = 0.0;
@@ -105,6 +140,6 @@ impl FittedPlatform<'_> {
             * (gram[(0, 0)] + prior - gained
                 + log_variance
                 + determinant
-                + values as f64 * core::f64::consts::TAU.ln()))
+                + *values as f64 * core::f64::consts::TAU.ln()))
     }
 }

@@ -1,11 +1,12 @@
 //! Passes over a record with a fitted model: what signatures, sudden changes and noise would say.
 
-use gyrocal::estimation::batch::{Linearisation, Reduced, Tape, Whitened};
+use gyrocal::estimation::batch::{Linearisation, NoiseScore, Reduced, Tape, Whitened};
 use gyrocal::{Catalogue, EstimationError};
 use gyrocal_hypothesis::{Column, ExtraColumns, StateJump};
 use nalgebra::{DMatrix, DVector};
 
 use super::FittedPlatform;
+use super::several::add_score;
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::noise::{self, NoiseEstimate};
@@ -16,15 +17,18 @@ impl FittedPlatform<'_> {
     /// # Errors
     /// [`CalibrationError::Pass`].
     pub fn whitened(&self) -> Result<Vec<[f64; 3]>, CalibrationError> {
-        let parameters = self.parameters();
         let mut whitened = vec![[f64::NAN; 3]; self.points().len()];
-        self.problem
-            .with_run(0, &parameters, |pass| {
-                let tape = self.solution.tapes[0].as_deref();
-                Linearisation { tape, ..*pass }
-                    .reduce(|value| whitened[value.row][value.output] = value.columns[0])
-            })
-            .map_err(|error| CalibrationError::pass(0, error))?;
+        for (run, rows) in self.record_rows().into_iter().enumerate() {
+            let parameters = self.problem.parameters(run);
+            let own = &mut whitened[rows];
+            self.problem
+                .with_run(run, &parameters, |pass| {
+                    let tape = self.solution.tapes[run].as_deref();
+                    Linearisation { tape, ..*pass }
+                        .reduce(|value| own[value.row][value.output] = value.columns[0])
+                })
+                .map_err(|error| CalibrationError::pass(run, error))?;
+        }
         Ok(whitened)
     }
 
@@ -34,15 +38,35 @@ impl FittedPlatform<'_> {
     /// # Errors
     /// [`CalibrationError::Pass`].
     pub fn jumps(&self) -> Result<Vec<Option<StateJump>>, CalibrationError> {
-        let parameters = self.parameters();
+        let mut jumps: Vec<Option<StateJump>> = vec![None; self.points().len()];
+        for (run, rows) in self.record_rows().into_iter().enumerate() {
+            self.jumps_in(run, &mut jumps[rows])?;
+        }
+        Ok(jumps)
+    }
+
+    /// The same of one record.
+    fn jumps_in(
+        &self,
+        run: usize,
+        jumps: &mut [Option<StateJump>],
+    ) -> Result<(), CalibrationError> {
+        let parameters = self.problem.parameters(run);
         let covariance = &self.uncertainty.conditional;
         let count = covariance.nrows();
-        let mut jumps: Vec<Option<StateJump>> = vec![None; self.points().len()];
+        let unknowns = self.problem.runs[run].column_unknowns();
         self.problem
-            .with_run(0, &parameters, |pass| {
-                let tape = self.solution.tapes[0].as_deref();
+            .with_run(run, &parameters, |pass| {
+                let tape = self.solution.tapes[run].as_deref();
                 Linearisation { tape, ..*pass }.jumps(|row, found| {
-                    let cross = DMatrix::from_fn(count, 3, |i, j| found.columns[i + 1][j]);
+                    let mut cross = DMatrix::zeros(count, 3);
+                    for (unknowns, column) in unknowns.iter().zip(&found.columns[1..]) {
+                        for unknown in *unknowns {
+                            for (axis, value) in column.iter().enumerate() {
+                                cross[(*unknown, axis)] += value;
+                            }
+                        }
+                    }
                     let projected = covariance * &cross;
                     jumps[row] = Some(StateJump {
                         // Columns are derivatives of the innovations: those of a jump too.
@@ -54,8 +78,7 @@ impl FittedPlatform<'_> {
                     });
                 })
             })
-            .map_err(|error| CalibrationError::pass(0, error))?;
-        Ok(jumps)
+            .map_err(|error| CalibrationError::pass(run, error))
     }
 
     /// Passes over the record with all parameters of [`Catalogue`] as columns (all but those in
@@ -71,7 +94,13 @@ impl FittedPlatform<'_> {
         mut watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
         let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
-        self.reduced(&all, None, further, &mut watch)
+        let mut total: Option<Reduced<3>> = None;
+        for run in 0..self.records() {
+            let mut own = self.reduced(run, &all, None, further, &mut watch)?;
+            own.gram = self.without_offsets(own.gram, run)?;
+            add(&mut total, own);
+        }
+        total.ok_or(CalibrationError::NoRecords)
     }
 
     /// The same with the parameters of the fit as columns only, in the order of
@@ -80,6 +109,22 @@ impl FittedPlatform<'_> {
     /// # Errors
     /// [`CalibrationError::Pass`].
     pub fn conditional(&self, further: &[Column]) -> Result<Reduced<3>, CalibrationError> {
+        let mut total: Option<Reduced<3>> = None;
+        for run in 0..self.records() {
+            add(&mut total, self.conditional_in(run, further)?);
+        }
+        total.ok_or(CalibrationError::NoRecords)
+    }
+
+    /// The same of one of the records.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn conditional_in(
+        &self,
+        run: usize,
+        further: &[Column],
+    ) -> Result<Reduced<3>, CalibrationError> {
         let own: Vec<usize> = (0..PARAMETERS)
             .chain(self.extension.parameters.iter().map(|(place, _)| *place))
             .collect();
@@ -87,8 +132,8 @@ impl FittedPlatform<'_> {
         let mut active = own.clone();
         active.sort_unstable();
         active.dedup();
-        let tape = self.solution.tapes[0].as_deref();
-        let mut reduced = self.reduced(&active, tape, further, &mut |_| ())?;
+        let tape = self.solution.tapes[run].as_deref();
+        let mut reduced = self.reduced(run, &active, tape, further, &mut |_| ())?;
         let first = active.len() + 1;
         let columns: Vec<usize> = core::iter::once(0)
             .chain(
@@ -98,20 +143,22 @@ impl FittedPlatform<'_> {
             .chain(first..reduced.gram.ncols())
             .collect();
         reduced.gram = reduced.gram.select_rows(&columns).select_columns(&columns);
+        reduced.gram = self.without_offsets(reduced.gram, run)?;
         Ok(reduced)
     }
 
     fn reduced(
         &self,
+        run: usize,
         active: &[usize],
         tape: Option<&Tape<3>>,
         further: &[Column],
         watch: &mut dyn FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
-        let leg = &self.problem.runs[0];
+        let leg = &self.problem.runs[run];
         let own = self.extension.columns.columns().len();
-        let mut columns = self.extension.columns.columns().to_vec();
-        columns.extend_from_slice(further);
+        let mut columns = leg.further.columns().to_vec();
+        columns.extend(self.columns_of(further, run));
         let mut all = ExtraColumns::new(columns);
         let amplitudes = leg
             .amplitudes
@@ -119,12 +166,12 @@ impl FittedPlatform<'_> {
             .map(|unknown| self.problem.values[*unknown]);
         all.set_amplitudes(amplitudes);
         debug_assert_eq!(own, leg.amplitudes.len());
-        let parameters = self.parameters();
+        let parameters = self.problem.parameters(run);
         self.problem
-            .with_active(0, &parameters, active, &all, |pass| {
+            .with_active(run, &parameters, active, &all, |pass| {
                 Linearisation { tape, ..*pass }.reduce(watch)
             })
-            .map_err(|error| CalibrationError::pass(0, error))
+            .map_err(|error| CalibrationError::pass(run, error))
     }
 
     /// Noise by maximum likelihood, over what the fit believes.
@@ -132,17 +179,38 @@ impl FittedPlatform<'_> {
     /// # Errors
     /// [`CalibrationError::Pass`].
     pub fn noise(&self) -> Result<NoiseEstimate, CalibrationError> {
-        let parameters = self.parameters();
-        self.problem
-            .with_run(0, &parameters, |pass| {
-                let tape = self.solution.tapes[0].as_deref();
-                let pass = Linearisation { tape, ..*pass };
-                noise::estimate(|factors| {
+        noise::estimate(|factors| {
+            let mut total: Option<NoiseScore> = None;
+            for run in 0..self.records() {
+                let parameters = self.problem.parameters(run);
+                let score = self.problem.with_run(run, &parameters, |pass| {
+                    let tape = self.solution.tapes[run].as_deref();
+                    let pass = Linearisation { tape, ..*pass };
                     let mut factors = factors.to_vec();
                     factors.resize(factors.len() + pass.walks.walks.len(), 1.0);
                     pass.noise_score(&factors)
-                })
+                })?;
+                add_score(&mut total, score);
+            }
+            total.ok_or(EstimationError::InvalidArgument {
+                expected: "at least one record",
             })
-            .map_err(|error: EstimationError| CalibrationError::pass(0, error))
+        })
+        .map_err(|error: EstimationError| CalibrationError::pass(0, error))
     }
+}
+
+/// Adds a pass over another record, whose columns are the same.
+fn add(total: &mut Option<Reduced<3>>, own: Reduced<3>) {
+    let Some(total) = total else {
+        *total = Some(own);
+        return;
+    };
+    total.gram += own.gram;
+    total.trajectory_cost += own.trajectory_cost;
+    total.log_variance += own.log_variance;
+    total.values += own.values;
+    total.rows += own.rows;
+    total.last = own.last;
+    total.last_walks = own.last_walks;
 }

@@ -167,6 +167,7 @@ impl FittedPlatform<'_> {
         let (information, derivatives) = likelihood.at_fit()?;
         let of_noise = Cholesky::new(information).ok_or(CalibrationError::NotPositiveDefinite)?;
         let covariance = self.covariance();
+        let shared = self.shared;
         let changes: Vec<_> = derivatives
             .iter()
             .map(|derivative| covariance * derivative * covariance)
@@ -180,7 +181,7 @@ impl FittedPlatform<'_> {
             let degrees = 2.0 * covariance[(place, place)].powi(2) / of_variance;
             degrees.max(FEWEST_DEGREES)
         };
-        Ok((0..covariance.nrows()).map(degrees).collect())
+        Ok((0..shared).map(degrees).collect())
     }
 
     /// The likelihood of the noise about this fit, and the density of a walk that does over the record
@@ -192,7 +193,8 @@ impl FittedPlatform<'_> {
         held: &'p [usize],
     ) -> (Likelihood<'p, 'p>, f64) {
         let leg = &self.problem.runs[0];
-        let duration_s = leg.rows.duration_s();
+        let runs = self.problem.runs.iter();
+        let duration_s = runs.map(|run| run.rows.duration_s()).fold(0.0, f64::max);
         let unit = leg.noise_density.iter().sum::<f64>() / AXES as f64 / (duration_s * duration_s);
         let mut walks = Vec::new();
         let mut free = Vec::new();
@@ -222,7 +224,6 @@ impl FittedPlatform<'_> {
             absent,
             held,
             rows: self.points().len(),
-            parameters: self.parameters(),
         };
         (likelihood, unit)
     }

@@ -1,6 +1,5 @@
 //! The restricted likelihood of the gyros' noise and its maximum.
 
-use gyrocal::estimation::EstimationError;
 use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
 use gyrocal_hypothesis::RateNoiseFit;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -8,6 +7,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use super::{GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
+use crate::fitted_platform::several::add_score;
 use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
 use crate::platform::PLATFORM;
 use crate::solve::add_gram;
@@ -57,7 +57,6 @@ pub(super) struct Likelihood<'p, 'a> {
     pub(super) held: &'p [usize],
     /// Number of rows that tell of the noise, from the first.
     pub(super) rows: usize,
-    pub(super) parameters: Vec<f64>,
 }
 
 impl Likelihood<'_, '_> {
@@ -177,55 +176,69 @@ impl Likelihood<'_, '_> {
         factors
     }
 
-    fn pass<R>(
-        &self,
-        pass: impl FnOnce(
-            &dyn Fn(&[f64], usize) -> Result<NoiseScore, EstimationError>,
-        ) -> Result<R, EstimationError>,
-    ) -> Result<R, CalibrationError> {
-        let fitted = self.fitted;
-        let changes = if self.walks.len() == fitted.problem.runs[0].walks.len() {
-            &fitted.problem.runs[0].walk_changes[..]
-        } else {
-            &[]
-        };
-        fitted
-            .problem
-            .with_first_rows(0, &self.parameters, self.rows, |linearised| {
-                let tape = fitted.solution.tapes[0].as_deref();
-                let walks = Walks {
-                    walks: &self.walks,
-                    changes,
-                }
-                .over_first(self.rows);
-                let linearised = Linearisation {
-                    tape,
-                    walks,
-                    ..*linearised
-                };
-                pass(&|factors, first| linearised.noise_score_of_columns(factors, first))
-            })
-            .map_err(|error| CalibrationError::pass(0, error))
+    /// The score of the rows of all records, with Gram matrices of the unknowns of the fit. `first` is the
+    /// first factor whose derivatives are wanted.
+    fn score(&self, factors: &[f64], first: usize) -> Result<NoiseScore, CalibrationError> {
+        let problem = &self.fitted.problem;
+        let mut total = None;
+        for (run, rows) in self.fitted.record_rows().into_iter().enumerate() {
+            let count = self.rows.clamp(rows.start, rows.end) - rows.start;
+            if count == 0 && run > 0 {
+                break;
+            }
+            let leg = &problem.runs[run];
+            let changes = if self.walks.len() == leg.walks.len() {
+                &leg.walk_changes[..]
+            } else {
+                &[]
+            };
+            let parameters = problem.parameters(run);
+            let mut score = problem
+                .with_first_rows(run, &parameters, count, |linearised| {
+                    let tape = self.fitted.solution.tapes[run].as_deref();
+                    let walks = Walks {
+                        walks: &self.walks,
+                        changes,
+                    }
+                    .over_first(count);
+                    Linearisation {
+                        tape,
+                        walks,
+                        ..*linearised
+                    }
+                    .noise_score_of_columns(factors, first)
+                })
+                .map_err(|error| CalibrationError::pass(run, error))?;
+            let columns = leg.column_unknowns();
+            score.gram = self.gram(&score.gram, &columns);
+            for own in &mut score.d_gram {
+                *own = self.gram(own, &columns);
+            }
+            add_score(&mut total, score);
+        }
+        total.ok_or(CalibrationError::NoRecords)
     }
 
     pub(super) fn value(&self, logarithms: &[f64]) -> Result<f64, CalibrationError> {
-        let score = self.pass(|score| score(&self.factors(logarithms), usize::MAX))?;
+        let score = self.score(&self.factors(logarithms), usize::MAX)?;
         let (value, ..) = self.restricted(&score, logarithms)?;
         Ok(value)
     }
 
     fn at(&self, logarithms: &DVector<f64>) -> Result<At, CalibrationError> {
-        let score = self.pass(|score| score(&self.factors(logarithms.as_slice()), AXES))?;
+        let score = self.score(&self.factors(logarithms.as_slice()), AXES)?;
         let (value, solution, inverse) = self.restricted(&score, logarithms.as_slice())?;
         let unknowns = self.unknowns();
+        let integrated = self.integrated();
         let believed = self.fitted.noise.gyro_ratio;
         let mut gradient = DVector::zeros(unknowns.len());
         for (index, unknown) in unknowns.iter().enumerate() {
-            let gram = self.gram(&score.d_gram[*unknown]);
-            let squares = (&gram * &solution).dot(&solution);
-            let count = inverse.nrows();
+            let gram = &score.d_gram[*unknown];
+            let squares = (gram * &solution).dot(&solution);
+            let places: Vec<usize> = integrated.iter().map(|place| place + 1).collect();
             let determinant = gram
-                .view((1, 1), (count, count))
+                .select_rows(&places)
+                .select_columns(&places)
                 .component_mul(&inverse)
                 .sum();
             gradient[index] = -0.5 * (score.d_log_variance[*unknown] + squares + determinant);
@@ -277,22 +290,31 @@ impl Likelihood<'_, '_> {
     /// the unknowns of the fit by each of its logarithms.
     pub(super) fn at_fit(&self) -> Result<(DMatrix<f64>, Vec<DMatrix<f64>>), CalibrationError> {
         let factors = self.factors(&vec![0.0; AXES + self.free.len()]);
-        let score = self.pass(|score| score(&factors, AXES))?;
+        let score = self.score(&factors, AXES)?;
         let count = self.fitted.problem.unknowns.len();
         let derivative = |unknown: &usize| {
-            let gram = self.gram(&score.d_gram[*unknown]);
+            let gram = &score.d_gram[*unknown];
             gram.view((1, 1), (count, count)).into_owned()
         };
         let derivatives = self.unknowns().iter().map(derivative).collect();
         Ok((self.information(&score), derivatives))
     }
 
-    /// Gram matrix of the unknowns of the fit.
-    fn gram(&self, of_columns: &DMatrix<f64>) -> DMatrix<f64> {
+    /// Places of the unknowns that are integrated out: coefficients, what the bench declares uncertain, and
+    /// the offsets of each turn-on.
+    fn integrated(&self) -> Vec<usize> {
+        let fitted = self.fitted;
+        let first = PARAMETERS + fitted.nuisances();
+        (0..first)
+            .chain(fitted.shared..fitted.problem.unknowns.len())
+            .collect()
+    }
+
+    /// Gram matrix of the unknowns of the fit from that of the columns of a pass.
+    fn gram(&self, of_columns: &DMatrix<f64>, columns: &[&[usize]]) -> DMatrix<f64> {
         let count = self.fitted.problem.unknowns.len();
         let mut gram = DMatrix::zeros(count + 1, count + 1);
-        let columns = self.fitted.problem.runs[0].column_unknowns();
-        add_gram(&mut gram, of_columns, &columns);
+        add_gram(&mut gram, of_columns, columns);
         gram
     }
 
@@ -304,21 +326,21 @@ impl Likelihood<'_, '_> {
         logarithms: &[f64],
     ) -> Result<(f64, DVector<f64>, DMatrix<f64>), CalibrationError> {
         let problem = &self.fitted.problem;
-        let gram = self.gram(&score.gram);
+        let gram = &score.gram;
         let count = problem.unknowns.len();
-        let integrated = PARAMETERS + self.fitted.nuisances();
+        let integrated = self.integrated();
         let mut solution = DVector::zeros(count + 1);
         solution[0] = 1.0;
         let weight = |place: usize| problem.unknowns[place].sigma.powi(-2);
         // The rows may end before the onset of an effect.
         let is_told = |place: usize| gram[(place + 1, place + 1)] + weight(place) > 0.0;
         let present: Vec<usize> = (0..count)
-            .filter(|at| !self.absent.contains(at) && (*at < integrated || is_told(*at)))
+            .filter(|at| !self.absent.contains(at) && (integrated.contains(at) || is_told(*at)))
             .collect();
         for place in self.absent {
             solution[place + 1] = -problem.values[*place];
         }
-        let pull = &gram * &solution;
+        let pull = gram * &solution;
         let gradient = DVector::from_fn(present.len(), |i, _| {
             let place = present[i];
             -pull[place + 1] - weight(place) * problem.values[place]
@@ -329,7 +351,10 @@ impl Likelihood<'_, '_> {
         for (i, place) in present.iter().enumerate() {
             inner[(i, i)] += weight(*place);
         }
-        let own = inner.view((0, 0), (integrated, integrated)).into_owned();
+        let places: Vec<usize> = (0..present.len())
+            .filter(|at| integrated.contains(&present[*at]))
+            .collect();
+        let own = inner.select_rows(&places).select_columns(&places);
         let not_definite = || CalibrationError::NotPositiveDefinite;
         let change = Cholesky::new(inner)
             .ok_or_else(not_definite)?
@@ -343,7 +368,7 @@ impl Likelihood<'_, '_> {
             .iter()
             .map(|place| weight(*place) * (problem.values[*place] + solution[place + 1]).powi(2))
             .sum();
-        let squares = (&gram * &solution).dot(&solution);
+        let squares = (gram * &solution).dot(&solution);
         let believed = self.fitted.noise.gyro_ratio;
         let of_noise: f64 = (0..AXES)
             .map(|axis| {
