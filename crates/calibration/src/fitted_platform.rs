@@ -6,6 +6,7 @@ mod open_loop;
 mod passes;
 mod prediction;
 mod rate_noise;
+mod record_sizes;
 mod several;
 
 use gyrocal::estimation::batch::Walk;
@@ -31,6 +32,7 @@ use crate::uncertainty::Uncertainty;
 pub use open_loop::SiteBias;
 pub use prediction::{Estimates, Expectation, WalkEnd};
 pub use rate_noise::GYRO_NOISE_PRIOR_SIGMA;
+pub use record_sizes::RecordSizes;
 use several::Several;
 pub use several::joined_record;
 

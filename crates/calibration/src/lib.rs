@@ -138,8 +138,8 @@ pub use cramer_rao::cramer_rao_bound;
 pub use error::CalibrationError;
 pub use fit::{Consistency, FitStatistics};
 pub use fitted_platform::{
-    Estimates, Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel, SiteBias, WalkEnd,
-    joined_record,
+    Estimates, Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel, RecordSizes,
+    SiteBias, WalkEnd, joined_record,
 };
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;

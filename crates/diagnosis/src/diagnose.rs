@@ -7,14 +7,16 @@ mod given;
 mod gyro_noise;
 mod later;
 mod noise_audited_fit;
+mod records;
 mod screening;
+mod shared_or_own;
 mod stopped;
 mod untestable_rows;
 
 use std::borrow::Cow;
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run, rows};
-use gyrocal_hypothesis::{FittedModel, ScoreTable, SearchOptions, Searched, Selection};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_hypothesis::{ScoreTable, SearchOptions, Searched, Selection};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::allan_test;
@@ -23,7 +25,7 @@ use crate::error::DiagnosisError;
 use crate::error_budget::{RESIDUAL_TESTS, shares};
 use crate::filter_test::{TestedFilter, filter_test};
 use crate::gate::Gate;
-use crate::magnitude_test::magnitude_test;
+use crate::magnitude_test::{MagnitudeTest, magnitude_test};
 use crate::noise::{NoiseAudit, Outlier};
 use crate::power::powers;
 use crate::request;
@@ -38,8 +40,10 @@ pub use answer::{manifest, record_summary};
 pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
 pub use later::predict_later;
-use noise_audited_fit::noise_audited_fit;
+use noise_audited_fit::{AuditedFit, noise_audited_fit};
+pub use records::{RecordToDiagnose, RecordsDiagnosis, diagnose_records};
 pub use screening::screen_record;
+use shared_or_own::sizes_by_record;
 use untestable_rows::detect_outliers;
 
 /// Settings of a diagnosis.
@@ -162,6 +166,16 @@ pub fn diagnose_watched<'a>(
     }
 }
 
+/// A record without gross errors, or several as one, with the noise audited and the nominal model fitted.
+struct Sound<'e, 'a> {
+    run: Run<'e>,
+    /// Gross errors that the set-up had.
+    setup: Vec<SetupProblem>,
+    magnitude: Option<MagnitudeTest>,
+    audited: AuditedFit<'a>,
+    shares: FalseAlarmShares,
+}
+
 /// Diagnoses a record without gross errors; `setup` are those that it had.
 fn diagnose_sound<'a>(
     record: &'a Record,
@@ -173,21 +187,47 @@ fn diagnose_sound<'a>(
     watch(Stage::Audit);
     let run = Run { record, bench };
     let shares = shares(options.false_alarm_probability);
-
     let declared = NoiseModel::default();
     let audited = noise_audited_fit(&run, &declared, shares.noise_audit, &options.calibration)?;
+    let accel_noise_g = audited
+        .noise_model
+        .accel_ratio
+        .map(|ratio| ratio * bench.accel_noise_g);
+    let cleaned = audited.audit.cleaned.apply(record);
+    let magnitude = magnitude_test(&cleaned, bench, &accel_noise_g, shares.magnitude_test).ok();
+    let sound = Sound {
+        run,
+        setup,
+        magnitude,
+        audited,
+        shares,
+    };
+    concluded(sound, options, watch)
+}
+
+/// Search, residual test, gain and answer.
+fn concluded<'e, 'a: 'e>(
+    sound: Sound<'e, 'a>,
+    options: &DiagnoseOptions,
+    watch: &mut dyn FnMut(Stage),
+) -> Result<Diagnosis<'e>, DiagnosisError> {
+    let Sound {
+        run,
+        setup,
+        magnitude,
+        audited,
+        shares,
+    } = sound;
+    let Run { record, bench } = run;
     let mut audit = audited.audit;
     let accel_noise_g = audited
         .noise_model
         .accel_ratio
         .map(|ratio| ratio * bench.accel_noise_g);
-    let cleaned = audit.cleaned.apply(record);
-    let magnitude = magnitude_test(&cleaned, bench, &accel_noise_g, shares.magnitude_test).ok();
-
     let selection = selection(record, bench, options);
     let search = search_options(options, &shares);
     watch(Stage::Search);
-    let rows = rows(record, audited.nominal.covariates());
+    let rows = audited.nominal.rows(record);
     let searched = gyrocal_hypothesis::search(audited.nominal, rows, &selection, &search)?;
     let nominal = searched.nominal.clone();
     let noise_model = searched.fitted.noise_model().clone();
@@ -196,6 +236,10 @@ fn diagnose_sound<'a>(
     audit.add_outliers(outliers, bench.accel_noise_g);
     let gyro_noise =
         gyro_noise_findings(&searched.fitted, &searched.noise, &audit, shares.gyro_noise)?;
+    let by_record = match nominal.records() {
+        1 => vec![None; searched.findings.len()],
+        _ => sizes_by_record(&searched)?,
+    };
 
     watch(Stage::Validation);
     let whitened = whitened(&searched.fitted, record)?;
@@ -223,6 +267,7 @@ fn diagnose_sound<'a>(
         nominal: &nominal,
         power: powers(&nominal, record, &searched.ranking, searched.threshold)?,
         searched: &searched,
+        by_record,
         estimate: &estimate,
         remainder,
         allan,
@@ -282,7 +327,7 @@ fn model_gain(
     run: &Run<'_>,
     noise_model: &NoiseModel,
 ) -> Result<Option<Gain>, CalibrationError> {
-    let Some(scores) = validated.scores.filter(|_| !searched.findings.is_empty()) else {
+    let Some(scores) = validated.scores.clone().filter(|_| !searched.findings.is_empty()) else {
         return Ok(None);
     };
     let extended = validated.extended.as_ref().unwrap_or(&searched.fitted);

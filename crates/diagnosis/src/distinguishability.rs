@@ -169,6 +169,7 @@ mod tests {
             rivals: alternatives.clone(),
             alternatives,
             none_of_these: None,
+            by_record: None,
             equivalents: equivalents.collect(),
             gain_nats: Some(20.0),
             accepted: Some(true),

@@ -55,6 +55,28 @@ pub enum DiagnosisError {
     /// A statistic that could not be computed.
     #[error(transparent)]
     Statistics(#[from] StatisticsError),
+    /// One of several records has an error; the source is that error.
+    #[error("{name} cannot be diagnosed with the other records")]
+    OfRecord {
+        /// Name of the record.
+        name: String,
+        /// Its error.
+        source: Box<DiagnosisError>,
+    },
+    /// Records whose coefficients no platform has together.
+    #[error(
+        "{name}: {coefficient} differs from that of {first} by {sigmas:.0} standard deviations; diagnose records          of several platforms one by one, or declare `turn_on_sigma_deg_per_h` in [prior] if only the turn-on          differs"
+    )]
+    SeveralPlatforms {
+        /// Name of the record.
+        name: String,
+        /// Name of the first record.
+        first: String,
+        /// The coefficient that differs most.
+        coefficient: &'static str,
+        /// Its difference in standard deviations.
+        sigmas: f64,
+    },
     /// An effect was asked for that the catalogue does not hold.
     #[error("there is no effect `{id}` in the catalogue{nearest}")]
     UnknownEffect {

@@ -97,7 +97,7 @@ pub use calibration_report::{CalibratedRecord, CalibrationEvidence, calibration_
 pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
 pub use diagnose::{
     DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, diagnose_watched, fit_effects, manifest,
-    predict_later, record_summary, screen_record,
+    RecordToDiagnose, RecordsDiagnosis, diagnose_records, predict_later, record_summary, screen_record,
 };
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};

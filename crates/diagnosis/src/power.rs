@@ -2,8 +2,8 @@
 
 use gyrocal::effect::Role;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_calibration::{CalibrationError, FittedPlatform, rows};
-use gyrocal_hypothesis::{FittedModel, Ranked, sigmas};
+use gyrocal_calibration::{CalibrationError, FittedPlatform};
+use gyrocal_hypothesis::{Ranked, sigmas};
 use gyrocal_record::Record;
 use gyrocal_statistics::normal_probability;
 
@@ -38,7 +38,7 @@ pub(crate) fn powers(
         .iter()
         .map(|effect| (*effect, typical_shape(effect, record)))
         .collect();
-    let sigmas = sigmas(nominal, &rows(record, nominal.covariates()), &asked)?;
+    let sigmas = sigmas(nominal, &nominal.rows(record), &asked)?;
     Ok(effects
         .into_iter()
         .zip(sigmas)

@@ -11,7 +11,6 @@ use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel};
 use gyrocal_record::Record;
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
-use block_scores::BLOCKS;
 pub(crate) use cross_validation::{CrossValidated, KeepDecision, cross_validate};
 pub(crate) use later_record::predict;
 pub use later_record::{AttitudeErrors, LaterPrediction};
@@ -26,7 +25,7 @@ use crate::result::{CoefficientShift, FreeRun, Gain, Prediction};
 /// As [`FittedPlatform::free_run_g`].
 pub(crate) fn gain(
     [nominal, extended]: [&FittedPlatform<'_>; 2],
-    ([before, after], prediction): ([[f64; BLOCKS]; 2], Prediction),
+    ([before, after], prediction): ([Vec<f64>; 2], Prediction),
     record: &Record,
     noise: &NoiseModel,
     accel_noise_g: f64,

@@ -2,7 +2,7 @@
 
 use gyrocal_scalar::effect::Effect;
 
-use crate::accepted::Accepted;
+use crate::accepted::{Accepted, value_places};
 use crate::context::{MOST_EFFECTS, SearchContext, SearchOptions, extension};
 use crate::forward::{Beside, FirstRound, forward, open_hypotheses};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
@@ -48,6 +48,21 @@ pub struct Searched<F> {
     rows: Rows,
     set: HypothesisSet,
     accepted: Vec<Accepted>,
+}
+
+impl<F: FittedModel> Searched<F> {
+    /// Each finding but random walks, as an effect with the places of its sizes among the values of
+    /// [`Self::fitted`].
+    #[must_use]
+    pub fn sizes(&self) -> Vec<(&'static Effect, Vec<usize>)> {
+        let accepted = self.accepted.iter();
+        accepted
+            .map(|accepted| {
+                let hypothesis = &self.set.hypotheses()[accepted.hypothesis];
+                (hypothesis.effect(), value_places(&self.fitted, hypothesis))
+            })
+            .collect()
+    }
 }
 
 impl<F> Searched<F> {

@@ -16,7 +16,7 @@ use crate::power::{needs_caveat, undetectable};
 use crate::result::{
     AllanCourse, AllanPoint, AllanTest, DiagnosisResult, Estimated, FalseAlarmShares, Finding,
     Gain, Indistinguishable, MagnitudeTest, NoiseAuditSummary, NotTested, NotTestedReason, Power,
-    RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION, Verdict,
+    RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION, SizesByRecord, Verdict,
 };
 use crate::untested::{Tests, not_tested, untested};
 use crate::validation::CrossValidated;
@@ -34,6 +34,8 @@ pub(super) struct Evidence<'e, 'a> {
     pub(super) nominal: &'e FittedPlatform<'a>,
     pub(super) power: Vec<Power>,
     pub(super) searched: &'e Searched<FittedPlatform<'a>>,
+    /// Sizes in each of several records, in the order of the findings of the search.
+    pub(super) by_record: Vec<Option<SizesByRecord>>,
     pub(super) estimate: &'e NoiseEstimate,
     pub(super) remainder: ResidualTest,
     pub(super) allan: Option<statistics::AllanTest>,
@@ -59,6 +61,7 @@ impl Evidence<'_, '_> {
             schema_version: SCHEMA_VERSION,
             manifest: manifest(self.options.seed),
             record: record_summary(self.run.record),
+            records: Vec::new(),
             later_record: None,
             verdict,
             false_alarm_probability: self.options.false_alarm_probability,
@@ -97,7 +100,12 @@ impl Evidence<'_, '_> {
     fn findings(&self) -> Vec<Finding> {
         let noise = self.audit.findings.iter().chain(&self.gyro_noise);
         let causes = self.searched.findings.iter().zip(&self.validated.decisions);
-        let causes = causes.map(|(finding, decision)| findings::of_cause(finding, decision));
+        let causes = causes
+            .zip(&self.by_record)
+            .map(|((finding, decision), by_record)| Finding {
+                by_record: by_record.clone(),
+                ..findings::of_cause(finding, decision)
+            });
         let filter = self.filter.as_ref().and_then(|tested| tested.inconsistent);
         noise
             .map(findings::of_noise)

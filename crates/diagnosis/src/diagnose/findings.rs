@@ -82,6 +82,7 @@ fn bare(effect: &str, kind: FindingKind, z: f64, p_value: f64) -> Finding {
         rivals: Vec::new(),
         alternatives: Vec::new(),
         none_of_these: None,
+        by_record: None,
         equivalents: Vec::new(),
         gain_nats: None,
         accepted: None,

@@ -35,6 +35,7 @@ fn result(record: &Record, options: &DiagnoseOptions, setup: Vec<SetupProblem>) 
         schema_version: SCHEMA_VERSION,
         manifest: manifest(options.seed),
         record: record_summary(record),
+        records: Vec::new(),
         later_record: None,
         verdict: Verdict::Setup,
         false_alarm_probability: options.false_alarm_probability,

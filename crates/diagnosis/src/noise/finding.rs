@@ -58,7 +58,7 @@ impl Shares {
 }
 
 /// Result of the audit: findings, estimates of the noise, and the cleaned record.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct NoiseAudit {
     /// Findings, the most significant first.
     pub findings: Vec<NoiseFinding>,
@@ -81,7 +81,7 @@ pub struct NoiseAudit {
 }
 
 /// Values and noise model for later stages, instead of record and declared noise.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cleaned {
     /// Values to use, row by row: those that exist and are not outliers.
     pub keep: Vec<[bool; 3]>,

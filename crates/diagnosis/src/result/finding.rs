@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::SizesByRecord;
+
 /// One detected effect: estimates, significance, alternatives and exact equivalents.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -28,6 +30,10 @@ pub struct Finding {
     /// Probability that a cause outside of the catalogue leaves eight standard deviations or more beside
     /// what is named, at prior odds of one to one; `None` where it was not estimated.
     pub none_of_these: Option<f64>,
+    /// Sizes in each of several records; `None` of one record, of noise, and of an effect that lies in one
+    /// record by its nature.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_record: Option<SizesByRecord>,
     /// Exact equivalents: effects that no record can distinguish from it.
     pub equivalents: Vec<Equivalent>,
     /// Gain in the log score of cross-validation with the effect in the model, given the other

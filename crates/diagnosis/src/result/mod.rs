@@ -17,6 +17,7 @@ mod gain;
 mod limits;
 mod magnitude;
 mod read;
+mod records;
 mod residual_test;
 mod residuals;
 #[cfg(feature = "schema")]
@@ -38,6 +39,7 @@ pub use limits::{
 };
 pub use magnitude::MagnitudeTest;
 pub use read::{read, read_text};
+pub use records::{RecordResult, RecordSize, SizeChoice, SizesByRecord};
 pub use residual_test::{
     ResidualCorrelation, ResidualLine, ResidualTest, ResidualVerdict, UnmodelledPattern,
     UnmodelledTerm,
@@ -59,8 +61,12 @@ pub struct DiagnosisResult {
     /// Program, inputs and command that made the result: record and bench file first, then the
     /// later record and its bench file.
     pub manifest: Manifest,
-    /// Size of the record.
+    /// Size of the record; of several records that of all together.
     pub record: RecordSummary,
+    /// The records, if several were diagnosed together; rows and times of this answer then are on one clock,
+    /// on which each record follows the one before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<RecordResult>,
     /// Size of the later record, if one was given.
     pub later_record: Option<RecordSummary>,
     /// The answer in one word.

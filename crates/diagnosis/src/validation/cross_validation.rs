@@ -5,7 +5,7 @@ use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use gyrocal_hypothesis::Searched;
 
-use super::block_scores::{BLOCKS, block_log_scores, forward_log_scores};
+use super::block_scores::{block_log_scores, forward_log_scores};
 use crate::result::Prediction;
 
 /// Decision of the cross-validation on one cause.
@@ -24,7 +24,7 @@ pub(crate) struct CrossValidated<'a> {
     pub(crate) extended: Option<FittedPlatform<'a>>,
     /// Log scores of the blocks with the nominal model, and with the extended one or, if no cause
     /// gains, with all causes; `None` without causes.
-    pub(crate) scores: Option<[[f64; BLOCKS]; 2]>,
+    pub(crate) scores: Option<[Vec<f64>; 2]>,
     /// Rows that the scores predict a block from.
     pub(crate) prediction: Prediction,
     /// In the order of the findings.
@@ -60,9 +60,9 @@ pub(crate) fn cross_validate<'a>(
     };
     let (prediction, log_scores) = scoring(walks > 0);
     let before = log_scores(nominal)?;
-    let mut scored: Vec<(Vec<bool>, [f64; BLOCKS])> = Vec::new();
+    let mut scored: Vec<(Vec<bool>, Vec<f64>)> = Vec::new();
     if searched.unmodelled.is_empty() && walks == 0 {
-        scored.push((vec![false; count], before));
+        scored.push((vec![false; count], before.clone()));
     }
     let stays: Vec<bool> = findings[..count]
         .iter()
@@ -71,15 +71,15 @@ pub(crate) fn cross_validate<'a>(
     let mut decisions = backward_elimination(&stays, |kept| {
         let known = scored.iter().find(|(other, _)| other == kept);
         let scores = match known {
-            Some((_, scores)) => *scores,
+            Some((_, scores)) => scores.clone(),
             // A model that cannot be fitted has the score of the nominal one.
             None => match fit(kept) {
                 Ok(fit) => log_scores(&fit)?,
-                Err(_) => before,
+                Err(_) => before.clone(),
             },
         };
         if known.is_none() {
-            scored.push((kept.to_vec(), scores));
+            scored.push((kept.to_vec(), scores.clone()));
         }
         Ok::<f64, CalibrationError>(scores.iter().sum())
     })?;
@@ -111,7 +111,7 @@ pub(crate) fn cross_validate<'a>(
 }
 
 /// A log score of the blocks of a fit.
-type LogScores = fn(&FittedPlatform<'_>) -> Result<[f64; BLOCKS], CalibrationError>;
+type LogScores = fn(&FittedPlatform<'_>) -> Result<Vec<f64>, CalibrationError>;
 
 /// The log score with or without walks in the model, and the rows that it predicts a block from.
 fn scoring(has_walks: bool) -> (Prediction, LogScores) {
