@@ -2,10 +2,11 @@
 
 mod failed;
 mod figures;
+mod several;
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{ArgAction, Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_diagnosis::{
@@ -32,12 +33,13 @@ pub use failed::NotDiagnosed;
 /// distinguish them, the cross-validated gain, and the residual after them.
 #[derive(Debug, Args)]
 pub(crate) struct DiagnoseArguments {
-    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c.
-    #[arg(value_name = "RECORD.csv")]
-    record: PathBuf,
-    /// The bench description (TOML).
-    #[arg(long, value_name = "BENCH.toml")]
-    bench: PathBuf,
+    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c. Several records of
+    /// one platform are diagnosed together, and each alone.
+    #[arg(value_name = "RECORD.csv", required = true)]
+    records: Vec<PathBuf>,
+    /// The bench description (TOML), one for all records or one for each, in their order.
+    #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
+    benches: Vec<PathBuf>,
     /// The result to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -75,6 +77,25 @@ enum Filter {
     Euler,
 }
 
+impl DiagnoseArguments {
+    fn options(&self) -> DiagnoseOptions {
+        DiagnoseOptions {
+            false_alarm_probability: self.false_alarm,
+            also: self.effects.clone(),
+            filter: self.filter.map(|filter| match filter {
+                Filter::Euler => TestedFilter::Euler,
+            }),
+            ..DiagnoseOptions::default()
+        }
+    }
+
+    /// Each record with its bench file.
+    fn pairs(&self) -> impl Iterator<Item = (&PathBuf, &PathBuf)> {
+        let benches = self.benches.iter().cycle();
+        self.records.iter().zip(benches)
+    }
+}
+
 /// A diagnosis with its inputs.
 struct DiagnosisRun<'a> {
     path: &'a Path,
@@ -85,23 +106,19 @@ struct DiagnosisRun<'a> {
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     let inputs = checked_inputs(arguments)?;
-    let bench = Bench::read(&arguments.bench)?;
-    let file = records::read(&arguments.record)?;
+    let ([record], [bench_path]) = (&arguments.records[..], &arguments.benches[..]) else {
+        return several::run(arguments, &inputs);
+    };
+    let bench = Bench::read(bench_path)?;
+    let file = records::read(record)?;
     let later = match (&arguments.validate, &arguments.validate_bench) {
         (Some(path), Some(bench)) => Some((path, records::read(path)?, Bench::read(bench)?)),
         _ => None,
     };
     let rows = file.record().len();
     tracing::info!(rows, "read");
-    let options = DiagnoseOptions {
-        false_alarm_probability: arguments.false_alarm,
-        also: arguments.effects.clone(),
-        filter: arguments.filter.map(|filter| match filter {
-            Filter::Euler => TestedFilter::Euler,
-        }),
-        ..DiagnoseOptions::default()
-    };
-    let failed = |source| NotDiagnosed::new(&arguments.record, &bench, source);
+    let options = arguments.options();
+    let failed = |source| NotDiagnosed::new(record, &bench, source);
     if arguments.filter.is_some() && bench.initial_angles_deg.is_none() {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
@@ -138,7 +155,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
     answer(
         arguments,
         &DiagnosisRun {
-            path: &arguments.record,
+            path: record,
             bench: &bench,
             diagnosis,
         },
@@ -147,8 +164,17 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
 
 /// The files that are read. Arguments that contradict each other are refused before that.
 fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> {
-    let inputs: Vec<&Path> = [&arguments.record, &arguments.bench]
-        .into_iter()
+    let (records, benches) = (arguments.records.len(), arguments.benches.len());
+    if benches != 1 && benches != records {
+        return Err(Failure::Usage(format!(
+            "{benches} bench files for {records} {}: give --bench once for all records, or once for each in \
+             their order",
+            if records == 1 { "record" } else { "records" }
+        )));
+    }
+    let inputs: Vec<&Path> = arguments
+        .pairs()
+        .flat_map(|(record, bench)| [record, bench])
         .chain(&arguments.validate)
         .chain(&arguments.validate_bench)
         .map(PathBuf::as_path)
@@ -162,7 +188,7 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
     let (report, figures) = (arguments.report.as_deref(), arguments.figures.as_deref());
     page::check(&inputs, &[json], report, figures)?;
     if let Some(later) = &arguments.validate
-        && same_file(later, &arguments.record)
+        && arguments.records.iter().any(|record| same_file(later, record))
     {
         return Err(Failure::Usage(format!(
             "--validate {} is the record itself: a later one has had no part in the models",
@@ -226,11 +252,16 @@ fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answe
         answer.wrote(path, "the result for programs");
     }
     outputs.commit()?;
-    answer.exit_code = match (arguments.exit_code, result.verdict) {
+    answer.exit_code = exit_code(arguments, result.verdict);
+    Ok(answer)
+}
+
+/// The exit code of a verdict, if it was asked for.
+fn exit_code(arguments: &DiagnoseArguments, verdict: Verdict) -> u8 {
+    match (arguments.exit_code, verdict) {
         (true, Verdict::EffectsFound) => exit::FOUND,
         (true, Verdict::Unexplained) => exit::UNEXPLAINED,
         (true, Verdict::Setup) => exit::SETUP,
         _ => exit::DONE,
-    };
-    Ok(answer)
+    }
 }

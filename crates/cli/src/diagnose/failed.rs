@@ -35,7 +35,15 @@ impl NotDiagnosed {
         use CalibrationError as Fit;
         use DiagnosisError as Why;
 
-        match &self.source {
+        let source = match &self.source {
+            Why::OfRecord { source, .. } => source,
+            source => source,
+        };
+        match source {
+            Why::SeveralPlatforms { .. } | Why::Calibration(Fit::UnlikeBenches { .. }) => {
+                "give the records of one platform, with the same [prior] and [uncertainty] in their bench \
+                 files"
+            }
             Why::UnknownEffect { .. } => "docs/diagnosis.md lists the effects",
             Why::Setup { .. } => {
                 "mend the record or its bench file: docs/setup-checks.md lists what is checked"

@@ -4,6 +4,7 @@ use gyrocal_statistics::format::{p_value, percent};
 
 use super::Block;
 use super::format::{short, with_sigma};
+use super::records;
 use crate::result::{Alternative, DiagnosisResult, Finding, Parameter};
 
 /// Alternatives that an entry names; the ranking shows all of them.
@@ -24,6 +25,7 @@ pub(super) fn entries(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
 
 fn paragraphs(finding: &Finding) -> Vec<String> {
     let mut paragraphs = vec![estimate(finding)];
+    paragraphs.extend(records::sizes(finding));
     if let (Some(nats), Some(false)) = (finding.gain_nats, finding.accepted) {
         paragraphs.push(format!(
             "Significant, but not in the extended model: with it cross-validation does not improve \

@@ -3,7 +3,8 @@
 use gyrocal_statistics::format::{self, p_value, percent, with_sigma};
 
 use super::format::{counted, short};
-use super::screen::{Screen, Standing, few, record_and_bench};
+use super::records::{self, files};
+use super::screen::{Screen, Standing, few};
 use super::verdict;
 use crate::result::{
     DiagnosisResult, Finding, FindingKind, NotTestedReason, Parameter, Relation, ResidualVerdict,
@@ -66,6 +67,7 @@ fn found(result: &DiagnosisResult) -> Screen {
         };
         screen.fact(label, size(finding));
     }
+    screen.fact("in each record", records::fact(result));
     screen.fact(
         "how sure",
         format!(
@@ -210,14 +212,15 @@ fn remainder(result: &DiagnosisResult) -> String {
 }
 
 fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
-    let files = record_and_bench(&result.manifest.inputs);
+    let files = files(result);
     let groups = !result.cannot_tell.is_empty();
     let causes: Vec<&str> = result
         .causes()
         .filter(|finding| finding.accepted == Some(true))
         .map(|finding| &*finding.effect)
         .collect();
-    if groups {
+    let is_one = result.records.is_empty();
+    if groups && is_one {
         screen.then(
             format!("gyrocal plan {files}"),
             "the run that would distinguish them",
@@ -234,10 +237,15 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
                 "noise and filter in detail",
             );
         }
-    } else {
+    } else if is_one {
         screen.then(
             format!("gyrocal calibrate {files} --with {}", causes.join(",")),
             "the coefficients with it in the model",
+        );
+    } else {
+        screen.then(
+            format!("gyrocal extend RESULT.json --out NAME.model.toml"),
+            "the model file with it, from the result of --json",
         );
     }
 }
@@ -266,11 +274,18 @@ fn unexplained(result: &DiagnosisResult) -> Screen {
         "coefficients",
         "of the nominal model: they may be biased by more than their sigmas",
     );
-    let files = record_and_bench(&result.manifest.inputs);
-    screen.then(
-        format!("gyrocal diagnose {files} --figures figures"),
-        "pictures of the residual",
-    );
+    let files = files(result);
+    if result.records.is_empty() {
+        screen.then(
+            format!("gyrocal diagnose {files} --figures figures"),
+            "pictures of the residual",
+        );
+    } else {
+        screen.then(
+            format!("gyrocal diagnose {files} --report report.html"),
+            "the residual of each record",
+        );
+    }
     screen
 }
 
@@ -298,15 +313,17 @@ fn clean(result: &DiagnosisResult) -> Screen {
             format!("mean NIS {:.3} (expected {low:.3} to {high:.3})", nis.mean),
         );
     }
-    let files = record_and_bench(&result.manifest.inputs);
+    let files = files(result);
     screen.then(
         format!("gyrocal calibrate {files}"),
         "the nine coefficients with their sigmas",
     );
-    screen.then(
-        format!("gyrocal plan {files}"),
-        "the run that reduces the sigmas most",
-    );
+    if result.records.is_empty() {
+        screen.then(
+            format!("gyrocal plan {files}"),
+            "the run that reduces the sigmas most",
+        );
+    }
     screen
 }
 

@@ -10,6 +10,7 @@ mod first_screen;
 mod format;
 mod gain;
 mod limits;
+mod records;
 mod screen;
 mod tables;
 mod tests;
@@ -110,6 +111,7 @@ pub fn diagnosis(result: &DiagnosisResult) -> Vec<Block> {
     blocks.extend(verdict::unfinished(result).map(Block::Paragraph));
     blocks.push(Block::Paragraph(tests::magnitude(result)));
     blocks.extend(findings::entries(result));
+    blocks.extend(records::table(result).map(Block::Table));
     blocks.extend(tests::filter(result).map(Block::Paragraph));
     blocks.extend(limits::indistinguishable(result));
     blocks.extend(gain::paragraphs(result).map(Block::Paragraph));

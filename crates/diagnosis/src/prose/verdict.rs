@@ -5,12 +5,26 @@ use gyrocal_statistics::format::{p_value, percent};
 
 use super::Block;
 use super::format::counted;
+use super::screen::few;
 use crate::result::{
     DiagnosisResult, FindingKind, NotTestedReason, ResidualVerdict, SetupProblem, Verdict,
 };
 
+/// Records that are named.
+const RECORDS_SHOWN: usize = 4;
+
 /// The record and its size.
 pub(super) fn record(result: &DiagnosisResult) -> String {
+    if !result.records.is_empty() {
+        let names: Vec<&str> = result.records.iter().map(|one| &*one.name).collect();
+        return format!(
+            "{} together ({}): {} over {:.2} days",
+            counted(names.len(), "record"),
+            few(&names, RECORDS_SHOWN),
+            counted(result.record.rows, "row"),
+            result.record.duration_s / 86_400.0
+        );
+    }
     let path = result.manifest.inputs.first();
     format!(
         "{}: {} over {:.2} days",

@@ -1,0 +1,106 @@
+//! `gyrocal diagnose` of several records of one platform.
+
+use std::path::Path;
+
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_calibration::shared_rows;
+use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records, prose};
+use gyrocal_pages::{of_diagnosis, of_result};
+use gyrocal_record::{Bench, Outputs, RecordFile, printable_path};
+use gyrocal_setup::PlatformKind;
+use miette::miette;
+
+use super::{DiagnoseArguments, NotDiagnosed, exit_code};
+use crate::layout::layout;
+use crate::outputs::manifest;
+use crate::progress::Progress;
+use crate::{Answer, Failure, page, records};
+
+/// Runs the command; `inputs` are each record with its bench file.
+pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Answer, Failure> {
+    refuse_options(arguments)?;
+    let benches: Vec<Bench> = arguments
+        .pairs()
+        .map(|(_, bench)| Bench::read(bench))
+        .collect::<Result<_, _>>()?;
+    let files: Vec<RecordFile> = arguments
+        .records
+        .iter()
+        .map(|path| records::read(path))
+        .collect::<Result<_, _>>()?;
+    refuse_twins(arguments, &files)?;
+    let options = arguments.options();
+    let rows = files.iter().map(|file| file.record().len()).sum();
+    tracing::info!(rows, records = files.len(), "read");
+    let mut progress = Progress::waiting("diagnosing", rows);
+    let mut checked = Vec::with_capacity(files.len());
+    for ((path, file), bench) in arguments.records.iter().zip(&files).zip(&benches) {
+        let kind = PlatformKind::Stabilised;
+        checked.push(RecordToDiagnose {
+            name: printable_path(path),
+            gate: Gate::of_file(kind, file, bench, &options.calibration)?,
+            bench,
+        });
+    }
+    let failed = |source| NotDiagnosed::new(&arguments.records[0], &benches[0], source);
+    let mut found =
+        diagnose_records(checked, &options, |stage| progress.at(stage)).map_err(failed)?;
+    drop(progress);
+    found.together.result.manifest = manifest(MODEL_HASH, options.seed, inputs)?;
+    let result = &found.together.result;
+    tracing::info!(verdict = ?result.verdict, "diagnosed");
+    let mut answer = Answer::of(prose::first_screen(result), layout(&prose::diagnosis(result)));
+    let mut outputs = Outputs::new();
+    if let Some(path) = &arguments.report {
+        let mut parts = vec![of_result(result)];
+        for ((record, alone), bench) in arguments.records.iter().zip(&found.alone).zip(&benches) {
+            parts.push(page::part(record, of_diagnosis(alone, bench))?);
+        }
+        page::stage(path, parts, &mut outputs)?;
+        answer.wrote(path, page::WHAT);
+    }
+    if let Some(path) = &arguments.json {
+        outputs.stage_json(path, result)?;
+        answer.wrote(path, "the result for programs");
+    }
+    outputs.commit()?;
+    answer.exit_code = exit_code(arguments, result.verdict);
+    Ok(answer)
+}
+
+/// Refuses options that go with one record.
+fn refuse_options(arguments: &DiagnoseArguments) -> Result<(), Failure> {
+    let one = [
+        ("--figures", arguments.figures.is_some()),
+        ("--validate", arguments.validate.is_some()),
+        ("--filter", arguments.filter.is_some()),
+    ];
+    match one.into_iter().find(|(_, given)| *given) {
+        Some((option, _)) => Err(Failure::Usage(format!(
+            "{option} goes with one record, {} are given: diagnose that record by itself",
+            arguments.records.len()
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a record that is given twice, in whole or in part.
+fn refuse_twins(arguments: &DiagnoseArguments, files: &[RecordFile]) -> Result<(), Failure> {
+    for (index, one) in files.iter().enumerate() {
+        for (other_index, other) in files.iter().enumerate().skip(index + 1) {
+            if let Some(shared) = shared_rows(one.record(), other.record()) {
+                return Err(Failure::Work(miette!(
+                    help = "leave one of them out, or cut the rows that both have from one",
+                    "{}: found {} consecutive rows that {} has too, from row {} of the data (t = {} s) on, \
+                     expected rows of its own: they would count twice",
+                    printable_path(&arguments.records[other_index]),
+                    shared.rows,
+                    printable_path(&arguments.records[index]),
+                    shared.first + 1,
+                    other.record().time_s[shared.first],
+                )));
+            }
+        }
+    }
+    Ok(())
+}

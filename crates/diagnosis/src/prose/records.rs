@@ -1,0 +1,97 @@
+//! Several records of one platform.
+
+use gyrocal_record::{Input, shell_quoted};
+use gyrocal_statistics::format::with_sigma;
+
+use super::screen::record_and_bench;
+use super::{Column, Table};
+use crate::result::{DiagnosisResult, Finding, FindingKind, SizeChoice, Verdict};
+
+/// Whether an effect has one size in all records, and its sizes in each.
+pub(super) fn sizes(finding: &Finding) -> Option<String> {
+    let found = finding.by_record.as_ref()?;
+    let odds = found.log_odds_nats.abs();
+    let words = match found.choice {
+        SizeChoice::Shared => format!("one size in all records ({odds:.1} nats better than one for each)"),
+        SizeChoice::PerTurnOn => {
+            format!("a size for each turn-on ({odds:.1} nats better than one size)")
+        }
+        SizeChoice::Undecided => {
+            format!("one size or one for each turn-on: cannot be told apart ({odds:.1} nats)")
+        }
+    };
+    let unit = finding.parameters.first().map_or("1", |size| &*size.unit);
+    let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+    let sizes = found.sizes.iter().map(|one| {
+        let own = one.estimates.iter();
+        let own: Vec<String> = own.map(|size| with_sigma(size.estimate, size.sigma)).collect();
+        format!("{} in record {}", own.join(", "), one.record + 1)
+    });
+    let sizes: Vec<String> = sizes.collect();
+    Some(format!("{words}: {}{unit}", sizes.join(", ")))
+}
+
+/// Each record with what it tells alone.
+pub(super) fn table(result: &DiagnosisResult) -> Option<Table> {
+    if result.records.is_empty() {
+        return None;
+    }
+    let records = result.records.iter().enumerate();
+    Some(Table {
+        title: "Each record alone:".to_owned(),
+        columns: vec![
+            Column::numbers("record"),
+            Column::words("name"),
+            Column::numbers("rows"),
+            Column::words("alone"),
+        ],
+        rows: records
+            .map(|(index, one)| {
+                vec![
+                    (index + 1).to_string(),
+                    one.name.clone(),
+                    one.record.rows.to_string(),
+                    alone(&one.alone),
+                ]
+            })
+            .collect(),
+    })
+}
+
+/// The answer of a record alone, in a few words.
+fn alone(result: &DiagnosisResult) -> String {
+    match result.verdict {
+        Verdict::Clean => "no fault found".to_owned(),
+        Verdict::Unexplained => "unexplained".to_owned(),
+        Verdict::Setup => "wrong set-up".to_owned(),
+        Verdict::EffectsFound => {
+            let findings = result.findings.iter();
+            let ids: Vec<&str> = findings.map(|finding| &*finding.effect).collect();
+            ids.join(", ")
+        }
+    }
+}
+
+/// Words of the first screen: what each record tells of the causes, or that none shows any alone.
+pub(super) fn fact(result: &DiagnosisResult) -> String {
+    let causes = result.of_kind(FindingKind::Cause);
+    let sizes: Vec<String> = causes.filter_map(sizes).collect();
+    sizes.join("; ")
+}
+
+/// The files of a result as arguments of a command, as a shell reads them.
+pub(super) fn files(result: &DiagnosisResult) -> String {
+    let inputs = &result.manifest.inputs;
+    let count = result.records.len();
+    if count < 2 || inputs.len() < 2 * count {
+        return record_and_bench(inputs);
+    }
+    let quoted = |input: &Input| shell_quoted(&input.path);
+    let pairs = inputs.chunks_exact(2).take(count);
+    let records: Vec<String> = pairs.clone().map(|pair| quoted(&pair[0])).collect();
+    let mut benches: Vec<String> = pairs.map(|pair| quoted(&pair[1])).collect();
+    if benches.iter().all(|bench| *bench == benches[0]) {
+        benches.truncate(1);
+    }
+    format!("{} --bench {}", records.join(" "), benches.join(" --bench "))
+}
