@@ -188,7 +188,10 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
     let (report, figures) = (arguments.report.as_deref(), arguments.figures.as_deref());
     page::check(&inputs, &[json], report, figures)?;
     if let Some(later) = &arguments.validate
-        && arguments.records.iter().any(|record| same_file(later, record))
+        && arguments
+            .records
+            .iter()
+            .any(|record| same_file(later, record))
     {
         return Err(Failure::Usage(format!(
             "--validate {} is the record itself: a later one has had no part in the models",

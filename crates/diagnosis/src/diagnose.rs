@@ -41,7 +41,7 @@ pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
-pub use records::{RecordToDiagnose, RecordsDiagnosis, diagnose_records};
+pub use records::{RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together};
 pub use screening::screen_record;
 use shared_or_own::sizes_by_record;
 use untestable_rows::detect_outliers;
@@ -327,7 +327,11 @@ fn model_gain(
     run: &Run<'_>,
     noise_model: &NoiseModel,
 ) -> Result<Option<Gain>, CalibrationError> {
-    let Some(scores) = validated.scores.clone().filter(|_| !searched.findings.is_empty()) else {
+    let Some(scores) = validated
+        .scores
+        .clone()
+        .filter(|_| !searched.findings.is_empty())
+    else {
         return Ok(None);
     };
     let extended = validated.extended.as_ref().unwrap_or(&searched.fitted);

@@ -96,8 +96,9 @@ mod watch;
 pub use calibration_report::{CalibratedRecord, CalibrationEvidence, calibration_report};
 pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
 pub use diagnose::{
-    DiagnoseOptions, Diagnosis, diagnose, diagnose_gated, diagnose_watched, fit_effects, manifest,
-    RecordToDiagnose, RecordsDiagnosis, diagnose_records, predict_later, record_summary, screen_record,
+    DiagnoseOptions, Diagnosis, RecordToDiagnose, RecordsDiagnosis, diagnose, diagnose_gated,
+    diagnose_records, diagnose_together, diagnose_watched, fit_effects, manifest, predict_later,
+    record_summary, screen_record,
 };
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};

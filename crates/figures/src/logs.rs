@@ -2,6 +2,7 @@
 
 mod allan;
 mod positions;
+mod records;
 mod stops;
 mod vertical;
 
@@ -21,6 +22,7 @@ const LARGE_CELL: usize = 1000;
 pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let mut figures = allan::figures(extent)?;
     figures.extend(positions::figures(extent)?);
+    figures.extend(records::figures(extent)?);
     figures.extend(stops::figures(extent)?);
     figures.extend(vertical::figures(extent)?);
     Ok(figures)

@@ -171,7 +171,10 @@ impl Rows {
         let mut own = shapes.to_vec();
         let (Some(first_s), Some(last_s)) = (
             self.time_s.get(record.start),
-            record.end.checked_sub(1).and_then(|row| self.time_s.get(row)),
+            record
+                .end
+                .checked_sub(1)
+                .and_then(|row| self.time_s.get(row)),
         ) else {
             return own;
         };

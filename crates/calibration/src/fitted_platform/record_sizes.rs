@@ -59,7 +59,10 @@ impl FittedPlatform<'_> {
             // Places of the record's columns among the unknowns.
             let own = slot.into_iter().flat_map(|slot| {
                 let at = first + each * slot;
-                places.iter().enumerate().map(move |(i, place)| (at + i, *place))
+                places
+                    .iter()
+                    .enumerate()
+                    .map(move |(i, place)| (at + i, *place))
             });
             let columns: Vec<(usize, usize)> =
                 shared.iter().copied().enumerate().chain(own).collect();

@@ -63,7 +63,8 @@ pub fn joined_record(records: &[&Record]) -> (Record, Vec<usize>) {
             offset_s = last_s + GAP_INTERVALS * interval_s - first_s;
             starts.push(all.time_s.len());
         }
-        all.time_s.extend(record.time_s.iter().map(|t| t + offset_s));
+        all.time_s
+            .extend(record.time_s.iter().map(|t| t + offset_s));
         all.accel_g.extend_from_slice(&record.accel_g);
         if let (Some(all), Some(own)) = (&mut all.temperature_c, &record.temperature_c) {
             all.extend_from_slice(own);
@@ -108,7 +109,10 @@ impl<'a> FittedPlatform<'a> {
                 .map(|(_, sigma)| Unknown::estimated(*sigma)),
         );
         let count = unknowns.len();
-        let records: Vec<&Record> = parts.iter().map(|part| part.problem.runs[0].rows.record()).collect();
+        let records: Vec<&Record> = parts
+            .iter()
+            .map(|part| part.problem.runs[0].rows.record())
+            .collect();
         let (record, starts) = joined_record(&records);
         let mut clock = rows(&record, Vec::new());
         clock.starts = starts;
@@ -119,7 +123,8 @@ impl<'a> FittedPlatform<'a> {
         for (part, bench) in parts.iter().zip(benches) {
             let mut run = part.problem.runs[0].clone();
             run.set_walks(Vec::new());
-            let density = filter_settings(bench, gyrocal::Discretisation::default()).drift_noise_density();
+            let density =
+                filter_settings(bench, gyrocal::Discretisation::default()).drift_noise_density();
             run.noise_density = [density; 3];
             run.rows.set_mean_temperature_c(mean_temperature_c(&record));
             runs.push(run);
@@ -274,7 +279,9 @@ fn joined_noise(parts: &[FittedPlatform<'_>]) -> NoiseModel {
     };
     NoiseModel {
         accel_ratio: core::array::from_fn(|axis| {
-            let squares = parts.iter().map(|part| part.noise.accel_ratio[axis].powi(2));
+            let squares = parts
+                .iter()
+                .map(|part| part.noise.accel_ratio[axis].powi(2));
             (squares.sum::<f64>() / parts.len() as f64).sqrt()
         }),
         weights: weights.then(|| parts.iter().flat_map(of_part).collect()),
@@ -302,7 +309,10 @@ pub(super) fn shapes_of(
 pub(super) fn columns_of(several: Option<&Several>, columns: &[Column], run: usize) -> Vec<Column> {
     let rows = several.and_then(|several| several.clock.records().nth(run));
     match rows {
-        Some(rows) => columns.iter().map(|column| in_record(column, &rows)).collect(),
+        Some(rows) => columns
+            .iter()
+            .map(|column| in_record(column, &rows))
+            .collect(),
         None => columns.to_vec(),
     }
 }

@@ -49,7 +49,10 @@ pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Ans
     found.together.result.manifest = manifest(MODEL_HASH, options.seed, inputs)?;
     let result = &found.together.result;
     tracing::info!(verdict = ?result.verdict, "diagnosed");
-    let mut answer = Answer::of(prose::first_screen(result), layout(&prose::diagnosis(result)));
+    let mut answer = Answer::of(
+        prose::first_screen(result),
+        layout(&prose::diagnosis(result)),
+    );
     let mut outputs = Outputs::new();
     if let Some(path) = &arguments.report {
         let mut parts = vec![of_result(result)];

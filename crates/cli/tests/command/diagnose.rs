@@ -3,6 +3,7 @@
 mod bad_input;
 mod sealed;
 mod setup;
+mod several;
 mod validation;
 
 use std::fs;

@@ -16,7 +16,8 @@ use crate::power::{needs_caveat, undetectable};
 use crate::result::{
     AllanCourse, AllanPoint, AllanTest, DiagnosisResult, Estimated, FalseAlarmShares, Finding,
     Gain, Indistinguishable, MagnitudeTest, NoiseAuditSummary, NotTested, NotTestedReason, Power,
-    RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION, SizesByRecord, Verdict,
+    RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION,
+    SizesByRecord, Verdict,
 };
 use crate::untested::{Tests, not_tested, untested};
 use crate::validation::CrossValidated;

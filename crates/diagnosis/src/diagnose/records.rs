@@ -62,17 +62,7 @@ pub fn diagnose_records(
     mut watch: impl FnMut(Stage),
 ) -> Result<RecordsDiagnosis, DiagnosisError> {
     let watch: &mut dyn FnMut(Stage) = &mut watch;
-    let mut sound = Vec::with_capacity(records.len());
-    for RecordToDiagnose { name, gate, bench } in records {
-        let (record, setup) = gate.sound(options).map_err(|error| of(&name, error))?;
-        request::check(&options.also, &record, bench).map_err(|error| of(&name, error))?;
-        sound.push(SoundRecord {
-            name,
-            record,
-            bench,
-            setup,
-        });
-    }
+    let sound = sound_records(records, options)?;
     let mut alone = Vec::with_capacity(sound.len());
     for one in &sound {
         let setup = one.setup.clone();
@@ -93,14 +83,44 @@ pub fn diagnose_records(
         .map(|(index, (one, alone))| RecordResult {
             name: one.name.clone(),
             record: record_summary(&one.record),
-            turn_on_deg_per_h: turn_ons.get(index).map(|axes| {
-                axes.map(|[estimate, sigma]| Estimated { estimate, sigma })
-            }),
+            turn_on_deg_per_h: turn_ons
+                .get(index)
+                .map(|axes| axes.map(|[estimate, sigma]| Estimated { estimate, sigma })),
             alone: alone.result.clone(),
         })
         .collect();
     together.result.record = summary(&together.result.records);
     Ok(RecordsDiagnosis { together, alone })
+}
+
+/// Diagnoses several records together, without a diagnosis of each alone.
+///
+/// # Errors
+/// As [`diagnose_records`].
+pub fn diagnose_together(
+    records: Vec<RecordToDiagnose<'_>>,
+    options: &DiagnoseOptions,
+    mut watch: impl FnMut(Stage),
+) -> Result<Diagnosis<'static>, DiagnosisError> {
+    jointly(&sound_records(records, options)?, options, &mut watch)
+}
+
+fn sound_records<'a>(
+    records: Vec<RecordToDiagnose<'a>>,
+    options: &DiagnoseOptions,
+) -> Result<Vec<SoundRecord<'a>>, DiagnosisError> {
+    let mut sound = Vec::with_capacity(records.len());
+    for RecordToDiagnose { name, gate, bench } in records {
+        let (record, setup) = gate.sound(options).map_err(|error| of(&name, error))?;
+        request::check(&options.also, &record, bench).map_err(|error| of(&name, error))?;
+        sound.push(SoundRecord {
+            name,
+            record,
+            bench,
+            setup,
+        });
+    }
+    Ok(sound)
 }
 
 /// The error of a record, with its name.
@@ -129,13 +149,9 @@ fn jointly(
             record: &one.record,
             bench: one.bench,
         };
-        let audited = noise_audited_fit(
-            &run,
-            &NoiseModel::default(),
-            of_audit,
-            &options.calibration,
-        )
-        .map_err(|error| of(&one.name, error))?;
+        let audited =
+            noise_audited_fit(&run, &NoiseModel::default(), of_audit, &options.calibration)
+                .map_err(|error| of(&one.name, error))?;
         let noise_g = audited
             .noise_model
             .accel_ratio
@@ -192,8 +208,8 @@ fn one_platform(
     let mut worst: Option<(f64, usize, usize)> = None;
     for (index, other) in others.iter().enumerate() {
         for place in 0..DRIFT.len() {
-            let variance =
-                first.nominal.covariance()[(place, place)] + other.nominal.covariance()[(place, place)];
+            let variance = first.nominal.covariance()[(place, place)]
+                + other.nominal.covariance()[(place, place)];
             let difference = other.nominal.values()[place] - first.nominal.values()[place];
             let sigmas = difference / variance.sqrt();
             if worst.is_none_or(|(most, ..)| sigmas.abs() > f64::abs(most)) {
@@ -281,8 +297,7 @@ fn add(all: &mut NoiseAudit, other: NoiseAudit) {
             None => all.findings.push(finding),
         }
     }
-    all.findings
-        .sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    all.findings.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
     all.accel_ratio = None;
     all.correlation = None;
     all.gyro_ratio = None;

@@ -24,10 +24,8 @@ pub(super) fn sizes_by_record(
 ) -> Result<Vec<Option<SizesByRecord>>, CalibrationError> {
     let mut all = Vec::with_capacity(searched.findings.len());
     for (effect, places) in searched.sizes() {
-        let is_of_one = matches!(
-            effect.shape().map(|shape| shape.role),
-            Some(Role::Onset(_))
-        ) || !effect.has_term();
+        let is_of_one = matches!(effect.shape().map(|shape| shape.role), Some(Role::Onset(_)))
+            || !effect.has_term();
         if is_of_one || places.is_empty() {
             all.push(None);
             continue;
@@ -88,7 +86,12 @@ fn log_likelihood(sizes: &RecordSizes, common: impl Fn(usize, usize) -> bool) ->
         });
         let cholesky = Cholesky::new(total)?;
         let squares = cholesky.solve(&sizes.estimates).dot(&sizes.estimates);
-        let determinant = cholesky.l().diagonal().iter().map(|x| 2.0 * x.ln()).sum::<f64>();
+        let determinant = cholesky
+            .l()
+            .diagonal()
+            .iter()
+            .map(|x| 2.0 * x.ln())
+            .sum::<f64>();
         Some(-0.5 * (squares + determinant))
     };
     SCALES.filter_map(of_scale).max_by(f64::total_cmp)

@@ -12,7 +12,9 @@ pub(super) fn sizes(finding: &Finding) -> Option<String> {
     let found = finding.by_record.as_ref()?;
     let odds = found.log_odds_nats.abs();
     let words = match found.choice {
-        SizeChoice::Shared => format!("one size in all records ({odds:.1} nats better than one for each)"),
+        SizeChoice::Shared => {
+            format!("one size in all records ({odds:.1} nats better than one for each)")
+        }
         SizeChoice::PerTurnOn => {
             format!("a size for each turn-on ({odds:.1} nats better than one size)")
         }
@@ -21,10 +23,16 @@ pub(super) fn sizes(finding: &Finding) -> Option<String> {
         }
     };
     let unit = finding.parameters.first().map_or("1", |size| &*size.unit);
-    let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+    let unit = if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
     let sizes = found.sizes.iter().map(|one| {
         let own = one.estimates.iter();
-        let own: Vec<String> = own.map(|size| with_sigma(size.estimate, size.sigma)).collect();
+        let own: Vec<String> = own
+            .map(|size| with_sigma(size.estimate, size.sigma))
+            .collect();
         format!("{} in record {}", own.join(", "), one.record + 1)
     });
     let sizes: Vec<String> = sizes.collect();
@@ -93,5 +101,9 @@ pub(super) fn files(result: &DiagnosisResult) -> String {
     if benches.iter().all(|bench| *bench == benches[0]) {
         benches.truncate(1);
     }
-    format!("{} --bench {}", records.join(" "), benches.join(" --bench "))
+    format!(
+        "{} --bench {}",
+        records.join(" "),
+        benches.join(" --bench ")
+    )
 }

@@ -16,7 +16,9 @@ fn blocks(fit: &FittedPlatform<'_>) -> Vec<Range<usize>> {
     }
     let rows = fit.points().len();
     let end = |block: usize| block * rows / BLOCKS;
-    (0..BLOCKS).map(|block| end(block)..end(block + 1)).collect()
+    (0..BLOCKS)
+        .map(|block| end(block)..end(block + 1))
+        .collect()
 }
 
 /// Logarithm of the density of each block of the record given the others, nats; of several records that
