@@ -2,6 +2,7 @@
 
 mod evidence;
 mod hypothesis;
+mod noise_model;
 mod open_loop;
 mod passes;
 mod prediction;
@@ -29,6 +30,7 @@ use crate::settings::filter_settings;
 use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
 
+pub use noise_model::NoiseModel;
 pub use open_loop::SiteBias;
 pub use prediction::{Estimates, Expectation, WalkEnd};
 pub use rate_noise::GYRO_NOISE_PRIOR_SIGMA;
@@ -63,31 +65,6 @@ fn of_site(bench: &Bench) -> ModelExtension {
             })
             .collect(),
         ..ModelExtension::default()
-    }
-}
-
-/// The noise that is believed of a record.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NoiseModel {
-    /// Standard deviation of the accelerometers over the declared one.
-    pub accel_ratio: [f64; 3],
-    /// Standard deviation of the gyros' white noise over the declared one.
-    pub gyro_ratio: [f64; 3],
-    /// Random walk of the gyros' constant drift, deg/h/√h; zero for none.
-    pub gyro_walk_deg_per_h_per_sqrt_h: [f64; 3],
-    /// Weight of each value, if some are not trusted: 0 leaves a value out.
-    pub weights: Option<Vec<[f64; 3]>>,
-}
-
-impl Default for NoiseModel {
-    /// As declared.
-    fn default() -> Self {
-        Self {
-            accel_ratio: [1.0; 3],
-            gyro_ratio: [1.0; 3],
-            gyro_walk_deg_per_h_per_sqrt_h: [0.0; 3],
-            weights: None,
-        }
     }
 }
 

@@ -236,10 +236,7 @@ fn concluded<'e, 'a: 'e>(
     audit.add_outliers(outliers, bench.accel_noise_g);
     let gyro_noise =
         gyro_noise_findings(&searched.fitted, &searched.noise, &audit, shares.gyro_noise)?;
-    let by_record = match nominal.records() {
-        1 => vec![None; searched.findings.len()],
-        _ => sizes_by_record(&searched)?,
-    };
+    let by_record = sizes_by_record(&searched)?;
 
     watch(Stage::Validation);
     let whitened = whitened(&searched.fitted, record)?;

@@ -69,6 +69,13 @@ fn written<'a>(
     bench: &'a Bench,
 ) -> Result<Known<'a>, Failure> {
     let diagnosis = result::read(path)?;
+    if !diagnosis.records.is_empty() {
+        return Err(Failure::Usage(format!(
+            "{} is a result of {} records: a run is planned from one, give the diagnosis of that one",
+            printable_path(path),
+            diagnosis.records.len()
+        )));
+    }
     check_inputs(path, &diagnosis, arguments)?;
     let named = NamedCause::all(&diagnosis);
     let noise = noise_of(&diagnosis);

@@ -23,6 +23,10 @@ pub(super) fn sizes_by_record(
     searched: &Searched<FittedPlatform<'_>>,
 ) -> Result<Vec<Option<SizesByRecord>>, CalibrationError> {
     let mut all = Vec::with_capacity(searched.findings.len());
+    if searched.fitted.records() == 1 {
+        all.resize(searched.findings.len(), None);
+        return Ok(all);
+    }
     for (effect, places) in searched.sizes() {
         let is_of_one = matches!(effect.shape().map(|shape| shape.role), Some(Role::Onset(_)))
             || !effect.has_term();

@@ -24,15 +24,15 @@ const EFFECT: u64 = 1810;
 
 const FIRST_PAIR: u64 = 850_000;
 const PAIRS: u64 = 1000;
-const SMALL_PAIRS: u64 = 6;
+const SMALL_PAIRS: u64 = 4;
 
 const FIRST_FOUR: u64 = 860_000;
 const FOURS: u64 = 1000;
-const SMALL_FOURS: u64 = 4;
+const SMALL_FOURS: u64 = 2;
 
 const FIRST_CLEAN: u64 = 870_000;
 const CLEAN: u64 = 2000;
-const SMALL_CLEAN: u64 = 4;
+const SMALL_CLEAN: u64 = 2;
 
 /// Largest upper bound of the share of clean quadruples with a finding.
 const MOST_FALSE: f64 = 0.02;

@@ -57,6 +57,15 @@ fn two_records_are_told_together_and_alone() {
     assert_eq!(result.records.len(), 2);
     let by_record = result.findings[0].by_record.as_ref().unwrap();
     assert_eq!(by_record.choice, SizeChoice::Shared);
+    let said = folder.fail(&[
+        "plan",
+        "a.csv",
+        "--bench",
+        "a.bench.toml",
+        "--diagnosis",
+        "o.json",
+    ]);
+    assert!(said.contains("a result of 2 records"), "{said}");
     // A model file is made from it as from one record.
     folder.succeed(&["extend", "o.json", "--out", "both.model.toml"]);
     assert!(folder.text("both.model.toml").contains("gyro_y.g_z"));
