@@ -65,7 +65,7 @@ fn the_information_of_two_records_is_the_sum_of_dense_ones() {
             bias_sigma_deg_per_h: [0.02; 3],
             g_sigma_deg_per_h_per_g: [0.02; 3],
             gg_sigma_deg_per_h_per_g2: [0.02; 3],
-            ..one.bench.prior.clone()
+            ..one.bench.prior
         };
     }
     let fit = joined(&simulations).unwrap();
@@ -115,11 +115,10 @@ fn the_joint_fit_is_that_of_calibration_with_and_without_turn_ons() {
             bench: &simulations[index].bench,
         });
         let expected = calibrate_runs(&runs, &options(), |_| ()).unwrap();
-        let drift = expected.drift.to_array();
-        for i in 0..COEFFICIENTS {
+        for (i, drift) in expected.drift.to_array().into_iter().enumerate() {
             let sigma = expected.covariance[i][i].sqrt();
             // Steps end at a ten-thousandth of a sigma.
-            assert!((fit.values()[i] - drift[i]).abs() < 1e-3 * sigma, "{i}");
+            assert!((fit.values()[i] - drift).abs() < 1e-3 * sigma, "{i}");
             assert!(
                 (fit.covariance()[(i, i)].sqrt() / sigma - 1.0).abs() < 1e-3,
                 "{i}"

@@ -244,7 +244,7 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
         );
     } else {
         screen.then(
-            format!("gyrocal extend RESULT.json --out NAME.model.toml"),
+            "gyrocal extend RESULT.json --out NAME.model.toml",
             "the model file with it, from the result of --json",
         );
     }
