@@ -7,7 +7,7 @@ use gyrocal_record::fields::{MOST_COLUMNS, too_many_columns};
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 
 use crate::binary_file::read_binary;
-use crate::error::InstrumentError;
+use crate::error::{InstrumentError, Unfit};
 use crate::file_format::{FileFormat, Only};
 use crate::log_lines::{LogLine, log_lines};
 
@@ -107,6 +107,28 @@ pub(crate) struct FileColumns {
 }
 
 impl FileColumns {
+    /// An error of a row: at its place in a text, by its number in a binary file. The words say what was
+    /// found, what was expected and what to do.
+    pub(crate) fn error_at(
+        &self,
+        row: usize,
+        kind: InputErrorKind,
+        unfit: Unfit,
+        [found, expected, advice]: [&str; 3],
+    ) -> InstrumentError {
+        match &self.text {
+            Some((source, places)) => source
+                .error(kind, places[row].clone(), found, expected, advice)
+                .into(),
+            None => InstrumentError::unfit(
+                unfit,
+                format!("{found} in record {}", row + 1),
+                expected,
+                advice,
+            ),
+        }
+    }
+
     /// Reads the columns `names` of a file of any format.
     pub(crate) fn read(
         path: &Path,

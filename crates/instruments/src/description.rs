@@ -5,6 +5,7 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 use serde::{Deserialize, Serialize};
 
+use crate::covariates::{TableColumn, TemperatureColumn};
 use crate::file_format::FileFormat;
 
 /// Columns, units and axes of a log: one description for all commands.
@@ -21,6 +22,10 @@ pub struct Description {
     pub gyro: Gyro,
     /// The three accelerometers.
     pub accel: Accel,
+    /// Temperature of the unit.
+    pub temperature: Option<TemperatureColumn>,
+    /// Rate or angle of the turntable that carries the unit.
+    pub table: Option<TableColumn>,
     /// Site of the recording.
     #[serde(default)]
     pub site: Site,
@@ -293,6 +298,9 @@ impl Description {
         }
         if !count(self.accel.counts_per_g) {
             return Some(("counts_per_g", "positive numbers"));
+        }
+        if !self.table.as_ref().is_none_or(TableColumn::has_axis) {
+            return Some(("[table]", "an `axis` that is not zero"));
         }
         let latitude = self.site.latitude_deg;
         if !latitude.is_none_or(|latitude| (-90.0..=90.0).contains(&latitude)) {

@@ -56,6 +56,10 @@ pub enum Unfit {
     Axes,
     /// The attitudes do not determine the unknowns.
     Undetermined,
+    /// A temperature that is none in its unit.
+    Temperature,
+    /// A gyro at the end of its range.
+    Saturated,
     /// A setting outside its range.
     Setting,
 }

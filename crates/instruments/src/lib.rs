@@ -10,6 +10,8 @@
 //!   of gravity at rest and from the turns between stops.
 //! - [`multi_position`]: the multi-position test (tumble test). A unit is stopped in many attitudes; the
 //!   drift law is fitted to its gyro outputs at rest and extended by significant terms.
+//! - [`rates`]: logs in the rate domain. Gyro outputs at rest or on a turntable against Earth rate, known
+//!   rates, specific force, temperature and time; biases may be of any size.
 //! - [`strapdown`]: the import of a strapdown unit at rest as an analytic platform, the space-stable
 //!   platform that the rest of `gyrocal` calibrates.
 //!
@@ -52,14 +54,18 @@ mod allan_analysis;
 mod binary_file;
 mod clock;
 mod columns;
+mod covariates;
 pub mod description;
+mod earth_rate;
 mod error;
 pub mod file_format;
 mod gyro_from_turns;
 mod least_squares;
 mod log;
 mod log_lines;
+mod mean_noise;
 pub mod multi_position;
+pub mod rates;
 mod result_file;
 mod stop_means;
 mod stops;
@@ -70,6 +76,7 @@ pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positio
 pub use allan_analysis::{AllanColumn, AllanColumnPoint, AllanSettings, allan_columns, allan_log};
 pub use clock::Clock;
 pub use columns::{Columns, read_columns, read_described};
+pub use covariates::{TableColumn, TableUnit, TemperatureColumn, TemperatureUnit};
 pub use description::Description;
 pub use error::{InstrumentError, Unfit};
 pub use gyro_from_turns::{GyroCalibration, gyro_from_turns};

@@ -7,6 +7,7 @@ use gyrocal_statistics::median_interval_s;
 
 use crate::clock::{Clock, resampled, steady_clock};
 use crate::columns::FileColumns;
+use crate::covariates::{refuse_saturated, temperatures_c};
 use crate::description::{AccelUnit, CountScale, Description, Direction, GyroUnit, Jitter};
 use crate::error::{InstrumentError, Unfit};
 
@@ -19,6 +20,10 @@ pub struct Log {
     pub gyro: Vec<[f64; 3]>,
     /// Specific force along body x, y, z: g, or counts above zero if the scale is not known.
     pub accel: Vec<[f64; 3]>,
+    /// Temperature \[degrees Celsius\], if the log has it.
+    pub temperature_c: Option<Vec<f64>>,
+    /// Rate of the turntable about its axis \[rad/s\], if the log has it.
+    pub table_rate: Option<Vec<f64>>,
     /// `true` if the scale of the gyros is not known.
     pub gyro_in_counts: bool,
     /// `true` if the scale of the accelerometers is not known.
@@ -77,6 +82,8 @@ impl Log {
                 .collect(),
             gyro,
             accel,
+            temperature_c: None,
+            table_rate: None,
             gyro_in_counts: false,
             accel_in_counts: false,
             interval_s,
@@ -101,19 +108,34 @@ impl Log {
         let accel_scale = accel_scale(description)?;
         let columns = &file.values;
         let rows = columns.first().map_or(0, Vec::len);
-        let (time_s, clock) = match (&columns[6..], description.time.rate_hz) {
-            ([stamps], _) => {
+        let mut others = columns[6..].iter();
+        let stamps = description.time.column.as_ref().and(others.next());
+        let (time_s, clock) = match (stamps, description.time.rate_hz) {
+            (Some(stamps), _) => {
                 let unit_s = description.time.unit_s;
                 let time_s: Vec<f64> = stamps.iter().map(|stamp| stamp * unit_s).collect();
                 refuse_backwards(&file, &time_s)?;
                 (time_s, Clock::Stamps)
             }
-            (_, rate_hz) => {
+            (None, rate_hz) => {
                 let interval_s = 1.0 / rate_hz.unwrap_or(1.0);
                 let time_s = (1..=rows).map(|row| row as f64 * interval_s).collect();
                 (time_s, Clock::Rate)
             }
         };
+        let interval_s = usual_interval_s(&time_s)?;
+        let temperature_c = match (&description.temperature, others.len()) {
+            (Some(column), 1..) => {
+                let values = others.next().map_or(&[][..], Vec::as_slice);
+                Some(temperatures_c(&file, values, column)?)
+            }
+            _ => None,
+        };
+        let table = description.table.as_ref().zip(others.next());
+        let table_rate = table.map(|(column, values)| column.rates(values, &time_s));
+        for (values, name) in columns.iter().zip(&description.gyro.columns) {
+            refuse_saturated(&file, values, name)?;
+        }
         let body = |first: usize, zero: f64, scale: [f64; 3], axes: [Direction; 3]| {
             let sample = |row: usize| {
                 let column = |i: usize| (columns[first + i][row] - zero) * scale[i];
@@ -124,7 +146,7 @@ impl Log {
         };
         let (gyro, accel) = (&description.gyro, &description.accel);
         let log = Self {
-            interval_s: usual_interval_s(&time_s)?,
+            interval_s,
             gyro: body(
                 0,
                 gyro.zero_counts,
@@ -137,6 +159,8 @@ impl Log {
                 accel_scale.unwrap_or([1.0; 3]),
                 accel.axes,
             ),
+            temperature_c,
+            table_rate,
             gyro_in_counts: gyro_scale.is_none(),
             accel_in_counts: accel_scale.is_none(),
             time_s,
@@ -194,12 +218,18 @@ impl Log {
         let at_s: Vec<f64> = (0..count)
             .map(|sample| first + sample as f64 * self.interval_s)
             .collect();
+        let alone = |values: Vec<f64>| -> Vec<f64> {
+            let vectors: Vec<[f64; 3]> = values.into_iter().map(|value| [value; 3]).collect();
+            let at_equal = resampled(&self.time_s, &vectors, &at_s);
+            at_equal.into_iter().map(|[value, ..]| value).collect()
+        };
+        let jitter_s = self.scatter() * self.interval_s;
         Self {
+            temperature_c: self.temperature_c.map(alone),
+            table_rate: self.table_rate.map(alone),
             gyro: resampled(&self.time_s, &self.gyro, &at_s),
             accel: resampled(&self.time_s, &self.accel, &at_s),
-            clock: Clock::Resampled {
-                jitter_s: self.scatter() * self.interval_s,
-            },
+            clock: Clock::Resampled { jitter_s },
             time_s: at_s,
             ..self
         }
@@ -252,12 +282,20 @@ impl Log {
     }
 }
 
-/// Columns of the description: gyros, accelerometers, time.
+/// Columns of the description: gyros, accelerometers, time, temperature, turntable.
 fn names(description: &Description) -> Vec<&str> {
     let sensors = description.gyro.columns.iter();
     let sensors = sensors.chain(&description.accel.columns);
     let mut names: Vec<&str> = sensors.map(String::as_str).collect();
     names.extend(description.time.column.as_deref());
+    let temperature = description.temperature.as_ref();
+    names.extend(temperature.map(|column| column.column.as_str()));
+    names.extend(
+        description
+            .table
+            .as_ref()
+            .map(|table| table.column.as_str()),
+    );
     names
 }
 
@@ -314,23 +352,12 @@ fn refuse_backwards(file: &FileColumns, time_s: &[f64]) -> Result<(), Instrument
     let expected = "times that rise";
     let advice = "cut the log where the clock was set back; if only the stamps are wrong, give `rate_hz` \
                   in place of the time column";
-    match &file.text {
-        Some((source, places)) => {
-            let place = places[row + 1].clone();
-            Err(source
-                .error(InputErrorKind::Time, place, found, expected, advice)
-                .into())
-        }
-        None => {
-            let found = format!("{found} in record {}", row + 2);
-            Err(InstrumentError::unfit(
-                Unfit::Jitter,
-                found,
-                expected,
-                advice,
-            ))
-        }
-    }
+    Err(file.error_at(
+        row + 1,
+        InputErrorKind::Time,
+        Unfit::Jitter,
+        [&found, expected, advice],
+    ))
 }
 
 fn usual_interval_s(time_s: &[f64]) -> Result<f64, InstrumentError> {

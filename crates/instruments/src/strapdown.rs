@@ -19,7 +19,6 @@
 mod axes_file;
 mod bench;
 mod checks;
-mod earth_rate;
 mod gyro_noise;
 mod integrate;
 mod rotation_fit;
@@ -35,9 +34,9 @@ pub use rotation_fit::{RotationFit, fit_rotation};
 
 use crate::accel_from_norm::refuse_wrong_norm;
 use crate::description::Description;
+use crate::earth_rate::{deg_per_h, earth_deg_per_h};
 use crate::error::{InstrumentError, Unfit};
 use crate::log::Log;
-use earth_rate::{deg_per_h, earth_deg_per_h};
 use gyro_noise::gyro_noise_deg_per_h;
 
 /// Settings of an import.

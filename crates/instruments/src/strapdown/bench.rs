@@ -5,8 +5,8 @@ use gyrocal_record::Bench;
 use nalgebra::{Matrix3, Vector3};
 
 use super::ImportSettings;
-use super::earth_rate::earth_deg_per_h;
 use super::rotation_fit::RotationFit;
+use crate::earth_rate::earth_deg_per_h;
 use crate::error::InstrumentError;
 
 /// The bench description, made as the text of a bench file and parsed as any other.

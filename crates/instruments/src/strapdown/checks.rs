@@ -1,9 +1,9 @@
 //! Checks of the settings, and of the log against a unit at rest on the Earth.
 
 use super::ImportSettings;
-use super::earth_rate::deg_per_h;
 use super::rotation_fit::RotationFit;
 use crate::description::Description;
+use crate::earth_rate::deg_per_h;
 use crate::error::{InstrumentError, Unfit};
 use crate::log::Log;
 
@@ -84,8 +84,9 @@ pub(super) fn refuse_other_rates(
         } else if near(3600.0) || near(1.0 / 3600.0) {
             "seconds and hours seem to be mixed up: change `unit`"
         } else {
-            "check unit and scale of the gyros; if they are right, gyros with errors as large as \
-             Earth rate cannot hold an analytic platform: use gyrocal tumble"
+            "a bias of that size is ordinary for many gyros, but it cannot hold an analytic platform: \
+             evaluate the log with gyrocal rates, or check unit and scale of the gyros if such a bias is \
+             not expected"
         };
         return Err(InstrumentError::unfit(
             Unfit::GyroScale,

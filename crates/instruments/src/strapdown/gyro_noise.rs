@@ -2,9 +2,9 @@
 
 use gyrocal_statistics::allan::{allan_deviation, octaves};
 
-use super::earth_rate::deg_per_h;
 use super::integrate::PlatformRow;
 use super::rotation_fit::RotationFit;
+use crate::earth_rate::deg_per_h;
 use crate::error::InstrumentError;
 
 /// Upper limit of the white noise of the gyros about horizontal axes, as held over one minute

@@ -1,0 +1,312 @@
+//! Logs in the rate domain: gyro outputs at rest, or on a turntable, against Earth rate, the rate of the
+//! table, specific force, temperature and time.
+//!
+//! Each log has one attitude to gravity; several logs of one unit are evaluated together. Means over
+//! blocks of a log are fitted by generalised least squares with the noise that they show: angle random
+//! walk, quantisation, bias instability and rate random walk, estimated together with the law. Biases may
+//! be of any size. What a mean over a whole log tells is known better, since slow noise is part of it:
+//! [`LogRates`].
+
+mod blocks;
+mod heading;
+mod law;
+mod noise_model;
+mod of_log;
+mod terms;
+
+use gyrocal::generated::catalogue::RATES;
+use gyrocal_statistics::NORMAL_97_5;
+use nalgebra::DVector;
+use serde::Serialize;
+
+pub use of_log::LogRates;
+
+use crate::accel_from_norm::refuse_wrong_norm;
+use crate::description::Description;
+use crate::earth_rate::{deg_per_h, earth_deg_per_h};
+use crate::error::{InstrumentError, Unfit};
+use crate::log::Log;
+use blocks::Blocks;
+use law::{Data, Law};
+use noise_model::NoiseModel;
+use terms::{RateTerm, time_and_temperature};
+
+/// Settings of an evaluation in rates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RateSettings {
+    /// Family-wise false-alarm probability of effects beyond the base law, of each gyro.
+    pub false_alarm_probability: f64,
+    /// Standard deviation of the level, from the errors of the accelerometers.
+    pub level_sigma_deg: f64,
+}
+
+impl Default for RateSettings {
+    fn default() -> Self {
+        Self {
+            false_alarm_probability: 0.01,
+            level_sigma_deg: 0.01,
+        }
+    }
+}
+
+/// Coefficient of a law.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RateCoefficient {
+    /// Name, such as `gyro_x.bias`.
+    pub name: String,
+    /// Estimate.
+    pub estimate: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// Unit of both.
+    pub unit: String,
+}
+
+/// Effect beyond the base law.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RateEffect {
+    /// Name of the coefficient in the law.
+    pub name: String,
+    /// Time of a step in its log, and the number of the log from zero.
+    pub step: Option<(f64, usize)>,
+    /// Family-wise p-value.
+    pub p_value: f64,
+    /// Other effects that explain the log as well.
+    pub alternatives: Vec<String>,
+}
+
+/// Coefficients of the noise of a gyro by IEEE Std 952, as the means over blocks show them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RateNoise {
+    /// N \[deg/h sqrt(s)\].
+    pub random_walk: f64,
+    /// Q \[deg/h s\].
+    pub quantisation: f64,
+    /// B \[deg/h\].
+    pub bias_instability: f64,
+    /// K \[deg/h/sqrt(s)\].
+    pub rate_random_walk: f64,
+}
+
+/// Law of one gyro.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GyroRates {
+    /// Name of the gyro.
+    pub gyro: String,
+    /// Coefficients. The bias is that at mean temperature and mean time.
+    pub coefficients: Vec<RateCoefficient>,
+    /// Their covariance.
+    pub covariance: Vec<Vec<f64>>,
+    /// Terms of the base law that the logs do not determine in addition.
+    pub undetermined: Vec<String>,
+    /// Effects that were found, in their order.
+    pub effects: Vec<RateEffect>,
+    /// The noise.
+    pub noise: RateNoise,
+}
+
+/// Result of an evaluation in rates.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RateReport {
+    /// Each log by its means.
+    pub logs: Vec<LogRates>,
+    /// The laws of gyros x, y, z.
+    pub gyros: Vec<GyroRates>,
+    /// Vertical part of Earth rate \[deg/h\].
+    pub earth_vertical_deg_per_h: f64,
+    /// Horizontal part of Earth rate \[deg/h\].
+    pub earth_horizontal_deg_per_h: f64,
+    /// Correlation of temperature and time; `None` without temperature.
+    pub time_and_temperature: Option<f64>,
+    /// `true` if temperature and time go together so closely that effects of one cannot be told from those
+    /// of the other.
+    pub time_is_temperature: bool,
+}
+
+/// Correlation of temperature and time from which their effects are not told apart.
+const TOGETHER: f64 = 0.9;
+
+/// Blocks of all logs together.
+const MOST_BLOCKS: usize = 64;
+
+/// Fewest blocks of a log.
+const FEWEST_BLOCKS: usize = 8;
+
+/// Evaluates logs of one unit, each at rest in one attitude to gravity or on a turntable.
+///
+/// # Errors
+///
+/// [`Unfit::TooShort`] without a log; [`Unfit::NoScale`] in counts; [`Unfit::Setting`] without latitude;
+/// [`Unfit::Norm`] if specific force is not gravity; [`Unfit::NeverStatic`] if it turns within a log;
+/// [`Unfit::Saturated`] for a gyro that never changes.
+pub fn evaluate_rates(
+    logs: &[Log],
+    description: &Description,
+    settings: &RateSettings,
+) -> Result<RateReport, InstrumentError> {
+    let latitude_deg = check(logs, description)?;
+    let count = (MOST_BLOCKS / logs.len()).max(FEWEST_BLOCKS);
+    let axis = description.table.as_ref().and_then(|table| table.axis);
+    let blocks: Result<Vec<Blocks>, InstrumentError> = logs
+        .iter()
+        .map(|log| Blocks::of(log, count, axis))
+        .collect();
+    let blocks = blocks?;
+    refuse_wrong_norm(logs.iter().map(mean_norm_g))?;
+    let [horizontal, vertical] = earth_deg_per_h(latitude_deg);
+    let mut laws = Vec::with_capacity(3);
+    for gyro in 0..3 {
+        let data = Data {
+            gyro,
+            logs: &blocks,
+            rates: outputs(&blocks, gyro, vertical),
+            noise: NoiseModel::of(&blocks, gyro, horizontal),
+        };
+        let law = data.law(settings.false_alarm_probability);
+        laws.push(law.ok_or_else(|| never_changes(gyro))?);
+    }
+    let variances: [_; 3] = core::array::from_fn(|gyro| laws[gyro].fit.variances);
+    let level_sigma_rad = settings.level_sigma_deg.to_radians();
+    let earth = [horizontal, vertical];
+    let of_log = |(log, blocks)| LogRates::of(log, blocks, earth, level_sigma_rad, &variances);
+    let correlation = time_and_temperature(&blocks);
+    Ok(RateReport {
+        logs: logs.iter().zip(&blocks).map(of_log).collect(),
+        gyros: laws
+            .iter()
+            .enumerate()
+            .map(|(gyro, law)| report(gyro, law))
+            .collect(),
+        earth_vertical_deg_per_h: vertical,
+        earth_horizontal_deg_per_h: horizontal,
+        time_and_temperature: correlation,
+        time_is_temperature: correlation.is_some_and(|r| r.abs() >= TOGETHER),
+    })
+}
+
+/// Outputs of a gyro less the rate of the table and the vertical part of Earth rate \[deg/h\].
+fn outputs(logs: &[Blocks], gyro: usize, vertical: f64) -> DVector<f64> {
+    let mut values = Vec::new();
+    for log in logs {
+        for block in 0..log.len() {
+            let table = log.table.as_ref().map_or(0.0, |rates| rates[block][gyro]);
+            let rate = deg_per_h(log.rate[block][gyro] - table);
+            values.push(rate - vertical * log.up[block][gyro]);
+        }
+    }
+    DVector::from_vec(values)
+}
+
+fn report(gyro: usize, law: &Law) -> GyroRates {
+    let fit = &law.fit;
+    let name = |term: &RateTerm| term.name(gyro);
+    let coefficients = law
+        .terms
+        .iter()
+        .enumerate()
+        .map(|(i, term)| RateCoefficient {
+            name: term.name(gyro),
+            estimate: fit.estimates[i],
+            sigma: fit.covariance[(i, i)].sqrt(),
+            unit: term.unit(gyro),
+        });
+    let [
+        random_walk,
+        quantisation,
+        bias_instability,
+        rate_random_walk,
+    ] = fit.variances.map(f64::sqrt);
+    GyroRates {
+        gyro: RATES[gyro].id.to_owned(),
+        coefficients: coefficients.collect(),
+        covariance: fit
+            .covariance
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect(),
+        undetermined: law.undetermined.iter().map(name).collect(),
+        effects: law
+            .found
+            .iter()
+            .map(|found| RateEffect {
+                name: found.term.name(gyro),
+                step: match found.term {
+                    RateTerm::Step { log, time_s } => Some((time_s, log)),
+                    _ => None,
+                },
+                p_value: found.p_value,
+                alternatives: found.alternatives.iter().map(name).collect(),
+            })
+            .collect(),
+        noise: RateNoise {
+            random_walk,
+            quantisation,
+            bias_instability,
+            rate_random_walk,
+        },
+    }
+}
+
+impl RateCoefficient {
+    /// Ends of the 95 % interval.
+    #[must_use]
+    pub fn interval(&self) -> [f64; 2] {
+        [-1.0, 1.0].map(|side| self.estimate + side * NORMAL_97_5 * self.sigma)
+    }
+}
+
+/// Refuses what cannot be evaluated; returns the latitude \[deg\].
+fn check(logs: &[Log], description: &Description) -> Result<f64, InstrumentError> {
+    if logs.is_empty() {
+        return Err(InstrumentError::unfit(
+            Unfit::TooShort,
+            "no log",
+            "one or more",
+            "give the logs of the unit",
+        ));
+    }
+    for log in logs {
+        if log.gyro_in_counts || log.accel_in_counts {
+            return Err(InstrumentError::unfit(
+                Unfit::NoScale,
+                "counts whose scale is to be estimated",
+                "scales that are given",
+                "give `counts_per_rad_per_s` and `counts_per_g`, as a multi-position test of the unit \
+                 (gyrocal tumble) prints them",
+            ));
+        }
+        for gyro in 0..3 {
+            if log.gyro.iter().all(|rate| rate[gyro] == log.gyro[0][gyro]) {
+                return Err(never_changes(gyro));
+            }
+        }
+    }
+    description.site.latitude_deg.ok_or_else(|| {
+        InstrumentError::unfit(
+            Unfit::Setting,
+            "a description without latitude",
+            "`latitude_deg` in `[site]`",
+            "the gyros measure Earth rate beside their errors",
+        )
+    })
+}
+
+/// Norm of the mean specific force of a log \[g\].
+fn mean_norm_g(log: &Log) -> f64 {
+    let mean =
+        |axis: usize| log.accel.iter().map(|force| force[axis]).sum::<f64>() / log.len() as f64;
+    [0, 1, 2]
+        .map(|axis| mean(axis).powi(2))
+        .iter()
+        .sum::<f64>()
+        .sqrt()
+}
+
+fn never_changes(gyro: usize) -> InstrumentError {
+    InstrumentError::unfit(
+        Unfit::Saturated,
+        format!("{} with the same output in every sample", RATES[gyro].id),
+        "an output with noise",
+        "the gyro is saturated or dead, or its column is that of something else: look at the column",
+    )
+}

@@ -1,0 +1,110 @@
+//! What one log tells by its means: mean rates, their vertical part, and biases of the gyros.
+
+use gyrocal_statistics::allan::{allan_deviation, fit_noise, octaves};
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::blocks::Blocks;
+use super::heading::half_width;
+use super::noise_model::Variances;
+use crate::earth_rate::deg_per_h;
+use crate::log::Log;
+use crate::mean_noise::mean_variance;
+
+/// What the means of one log tell. A mean is that of the whole log: what changes slowly is part of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LogRates {
+    /// Length of the log.
+    pub duration_s: f64,
+    /// Mean outputs of the gyros and their standard deviations \[deg/h\].
+    pub rate_deg_per_h: [[f64; 2]; 3],
+    /// Mean output along specific force, up, and its standard deviation \[deg/h\]: Earth rate, and bias.
+    pub vertical_deg_per_h: [f64; 2],
+    /// Magnitude of the mean output across specific force \[deg/h\]: Earth rate, and bias.
+    pub horizontal_deg_per_h: f64,
+    /// Bias of each gyro at this specific force: output less Earth rate \[deg/h\].
+    pub bias_deg_per_h: [f64; 3],
+    /// Half the widths of the 95 % intervals of the biases, for any heading \[deg/h\].
+    pub bias_half_width_deg_per_h: [f64; 3],
+    /// Least and largest temperature \[degrees Celsius\].
+    pub temperature_c: Option<[f64; 2]>,
+}
+
+/// Samples whose scatter determines the fast parts of the noise.
+const MOST_SAMPLES: usize = 1 << 16;
+
+impl LogRates {
+    /// Means of a log on the Earth with a horizontal and a vertical rate \[deg/h\], whose slow noise is known
+    /// from its blocks.
+    pub(super) fn of(
+        log: &Log,
+        blocks: &Blocks,
+        [horizontal, vertical]: [f64; 2],
+        level_sigma_rad: f64,
+        variances: &[Variances; 3],
+    ) -> Self {
+        let duration_s = log.interval_s * log.len() as f64;
+        let up = blocks.mean_up;
+        let table = blocks.table.as_ref().map_or_else(Vector3::zeros, |rates| {
+            rates.iter().sum::<Vector3<f64>>() / rates.len() as f64
+        });
+        let sum: Vector3<f64> = log.gyro.iter().map(|rate| Vector3::from(*rate)).sum();
+        let mean = (sum / log.len() as f64 - table).map(deg_per_h);
+        let along = |direction: Vector3<f64>, of_blocks: f64| {
+            let used = &log.gyro[..log.len().min(MOST_SAMPLES)];
+            let rates = used
+                .iter()
+                .map(|rate| deg_per_h(direction.dot(&Vector3::from(*rate))));
+            let rates: Vec<f64> = rates.collect();
+            fast_variance(&rates, log.interval_s, duration_s).unwrap_or(of_blocks)
+        };
+        let of_blocks = |gyro: usize| {
+            let [random_walk, quantisation, ..] = variances[gyro];
+            random_walk / duration_s + 2.0 * quantisation / (duration_s * duration_s)
+        };
+        let level = level_sigma_rad * horizontal.hypot(vertical);
+        let sigma: [f64; 3] =
+            core::array::from_fn(|gyro| along(axis(gyro), of_blocks(gyro)).sqrt());
+        let of_vertical = (0..3).map(|gyro| up[gyro].powi(2) * of_blocks(gyro)).sum();
+        let across = |gyro: usize| horizontal * (1.0 - up[gyro].powi(2)).max(0.0).sqrt();
+        let temperature = log.temperature_c.as_ref().map(|values| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            [
+                low,
+                values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            ]
+        });
+        let across_up = (mean - up * up.dot(&mean)).norm();
+        Self {
+            duration_s,
+            rate_deg_per_h: core::array::from_fn(|gyro| [mean[gyro], sigma[gyro]]),
+            vertical_deg_per_h: [
+                up.dot(&mean),
+                // An error of the level sees what is across.
+                along(up, of_vertical)
+                    .sqrt()
+                    .hypot(level_sigma_rad * across_up),
+            ],
+            horizontal_deg_per_h: across_up,
+            bias_deg_per_h: core::array::from_fn(|gyro| mean[gyro] - vertical * up[gyro]),
+            bias_half_width_deg_per_h: core::array::from_fn(|gyro| {
+                half_width(across(gyro), sigma[gyro].hypot(level))
+            }),
+            temperature_c: temperature,
+        }
+    }
+}
+
+fn axis(gyro: usize) -> Vector3<f64> {
+    let mut axis = Vector3::zeros();
+    axis[gyro] = 1.0;
+    axis
+}
+
+/// Variance of the mean over `duration_s` by the fast parts of the noise of rates; `None` if they are not
+/// determined, as of filtered samples.
+fn fast_variance(rates: &[f64], interval_s: f64, duration_s: f64) -> Option<f64> {
+    const CONFIDENCE: f64 = 0.95;
+    let points = allan_deviation(rates, interval_s, &octaves(rates.len()), CONFIDENCE).ok()?;
+    mean_variance(&fit_noise(&points, rates.len()).ok()?, duration_s)
+}

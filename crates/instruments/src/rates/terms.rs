@@ -1,0 +1,183 @@
+//! Terms of the law of a gyro's output in rates, as columns of a linear regression.
+
+use gyrocal::generated::catalogue::RATES;
+use nalgebra::DVector;
+
+use super::blocks::Blocks;
+use crate::earth_rate::deg_per_h;
+use crate::multi_position::Term;
+
+/// A term of the law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum RateTerm {
+    /// A term of the drift law in specific force, or a ramp in time.
+    Drift(Term),
+    /// Error of scale for the own axis, misalignment toward another.
+    Turn(usize),
+    /// Power of temperature about its mean.
+    Temperature(i32),
+    /// Rate of change of temperature.
+    TemperatureRate,
+    /// Part of temperature that follows it with play: different on the way up and on the way down.
+    Hysteresis,
+    /// Change at a time \[s\] of a log.
+    Step { log: usize, time_s: f64 },
+}
+
+/// Play of the hysteresis over the range of temperature.
+const PLAY: f64 = 0.25;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl RateTerm {
+    /// Public name.
+    pub(super) fn name(self, gyro: usize) -> String {
+        let own = RATES[gyro].id;
+        match self {
+            Self::Drift(term) => term.id(gyro).to_owned(),
+            Self::Turn(axis) if axis == gyro => format!("{own}.scale"),
+            Self::Turn(axis) => format!("{own}.about_{}", AXES[axis]),
+            Self::Temperature(1) => format!("{own}.temperature"),
+            Self::Temperature(power) => format!("{own}.temperature_{power}"),
+            Self::TemperatureRate => format!("{own}.temperature_rate"),
+            Self::Hysteresis => format!("{own}.temperature_hysteresis"),
+            Self::Step { .. } => format!("{own}.step"),
+        }
+    }
+
+    /// Unit of its coefficient.
+    pub(super) fn unit(self, gyro: usize) -> String {
+        match self {
+            Self::Drift(term) => term.unit(gyro).to_owned(),
+            Self::Turn(axis) if axis == gyro => "ppm".to_owned(),
+            Self::Turn(_) => "mrad".to_owned(),
+            Self::Temperature(1) | Self::Hysteresis => "deg/h/K".to_owned(),
+            Self::Temperature(power) => format!("deg/h/K^{power}"),
+            Self::TemperatureRate => "deg/h/(K/min)".to_owned(),
+            Self::Step { .. } => "deg/h".to_owned(),
+        }
+    }
+
+    /// Output per unit of its coefficient at each block of all logs \[deg/h\]; `None` without the column of the
+    /// logs that it needs.
+    pub(super) fn column(self, gyro: usize, logs: &[Blocks]) -> Option<DVector<f64>> {
+        match self {
+            // Of the whole log: what changes within it is noise of the accelerometers.
+            Self::Drift(Term::Nominal(power)) => {
+                Some(each(logs, |log| log.mean_up[gyro].powi(power as i32)))
+            }
+            Self::Drift(Term::Cross(axis)) => Some(each(logs, |log| log.mean_up[axis])),
+            Self::Drift(Term::Ramp) => Some(centred(times_days(logs))),
+            Self::Drift(_) => None,
+            Self::Turn(axis) => {
+                let factor = if axis == gyro { 1e-6 } else { 1e-3 };
+                let tables = of_logs(logs, |log| log.table.clone())?;
+                let rate = tables.iter().map(|rate| factor * deg_per_h(rate[axis]));
+                Some(DVector::from_iterator(tables.len(), rate))
+            }
+            Self::Temperature(power) => {
+                let temperature = temperature(logs)?;
+                Some(centred(temperature.map(|value| value.powi(power))))
+            }
+            Self::TemperatureRate => {
+                let changes = of_logs(logs, |log| {
+                    let temperature = log.temperature_c.as_ref()?;
+                    Some(slopes(temperature, log.block_s / 60.0))
+                })?;
+                Some(DVector::from_vec(changes))
+            }
+            Self::Hysteresis => {
+                let all = temperature(logs)?;
+                let play = 0.5 * PLAY * (all.max() - all.min());
+                let lagging = of_logs(logs, |log| Some(lag(log.temperature_c.as_ref()?, play)))?;
+                let lagging = centred(DVector::from_vec(lagging));
+                Some(all - lagging)
+            }
+            Self::Step { log: which, time_s } => {
+                let mut values = Vec::new();
+                for (number, log) in logs.iter().enumerate() {
+                    let later = log.time_s.iter().map(|at| {
+                        let after = number > which || (number == which && *at > time_s);
+                        f64::from(u8::from(after))
+                    });
+                    values.extend(later);
+                }
+                Some(centred(DVector::from_vec(values)))
+            }
+        }
+    }
+}
+
+/// Time from the middle of each block to the beginning of its log in days; logs follow one another.
+pub(super) fn times_days(logs: &[Blocks]) -> DVector<f64> {
+    let mut values = Vec::new();
+    let mut end_s = f64::NEG_INFINITY;
+    for log in logs {
+        let start_s = log.time_s[0] - 0.5 * log.block_s;
+        // Clocks that begin anew are joined.
+        let later_s = if start_s > end_s - log.block_s {
+            0.0
+        } else {
+            end_s - start_s
+        };
+        values.extend(log.time_s.iter().map(|at| (at + later_s) / 86_400.0));
+        end_s = log.time_s[log.len() - 1] + later_s + 0.5 * log.block_s;
+    }
+    DVector::from_vec(values)
+}
+
+/// Temperature about its mean.
+pub(super) fn temperature(logs: &[Blocks]) -> Option<DVector<f64>> {
+    let values = of_logs(logs, |log| log.temperature_c.clone())?;
+    Some(centred(DVector::from_vec(values)))
+}
+
+/// Correlation of temperature and time; `None` without temperature or if it is constant.
+pub(super) fn time_and_temperature(logs: &[Blocks]) -> Option<f64> {
+    let temperature = temperature(logs)?;
+    let time = centred(times_days(logs));
+    let norms = temperature.norm() * time.norm();
+    (norms > 0.0).then(|| temperature.dot(&time) / norms)
+}
+
+/// The same value for each block of a log.
+fn each(logs: &[Blocks], value: impl Fn(&Blocks) -> f64) -> DVector<f64> {
+    let values = logs
+        .iter()
+        .flat_map(|log| core::iter::repeat_n(value(log), log.len()));
+    DVector::from_vec(values.collect())
+}
+
+/// Values of all logs in a row; `None` if one has none.
+fn of_logs<T>(logs: &[Blocks], values: impl Fn(&Blocks) -> Option<Vec<T>>) -> Option<Vec<T>> {
+    let of_each: Option<Vec<Vec<T>>> = logs.iter().map(values).collect();
+    Some(of_each?.into_iter().flatten().collect())
+}
+
+fn centred(values: DVector<f64>) -> DVector<f64> {
+    let mean = values.mean();
+    values.add_scalar(-mean)
+}
+
+/// Slopes over three neighbours, two at the ends.
+fn slopes(values: &[f64], step: f64) -> Vec<f64> {
+    let last = values.len().saturating_sub(1);
+    (0..values.len())
+        .map(|at| {
+            let (from, to) = (at.saturating_sub(1), (at + 1).min(last));
+            (values[to] - values[from]) / ((to - from).max(1) as f64 * step)
+        })
+        .collect()
+}
+
+/// Values followed with a play of `half` to either side.
+fn lag(values: &[f64], half: f64) -> Vec<f64> {
+    let mut at = values.first().copied().unwrap_or(0.0);
+    values
+        .iter()
+        .map(|value| {
+            at = at.clamp(value - half, value + half);
+            at
+        })
+        .collect()
+}

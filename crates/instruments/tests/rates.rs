@@ -1,0 +1,263 @@
+//! Logs in the rate domain against errors that are known.
+
+#![allow(clippy::expect_used, reason = "a failure here is a failed test")]
+
+use gyrocal_instruments::rates::{GyroRates, RateReport, RateSettings, evaluate_rates};
+use gyrocal_instruments::{Description, Log, Unfit};
+use gyrocal_statistics::deviates::Normals;
+use nalgebra::{Matrix3, Vector3};
+
+const DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
+const EARTH_DEG_PER_H: f64 = 15.041_07;
+const LATITUDE_DEG: f64 = 50.0;
+
+/// Standard deviations that an estimate may be from the truth: 4.5 of about 60 estimates of fixed seeds.
+const SIGMAS: f64 = 4.5;
+
+fn description(more: &str) -> Description {
+    let text = format!(
+        "[time]\nrate_hz = 10\n[gyro]\ncolumns = [\"a\", \"b\", \"c\"]\nunit = \"rad/s\"\n[accel]\n\
+         columns = [\"d\", \"e\", \"f\"]\nunit = \"g\"\n{more}[site]\nlatitude_deg = {LATITUDE_DEG:?}\n"
+    );
+    Description::parse(&text, "log.toml").expect("description")
+}
+
+/// Drift \[deg/h\] at a sample, beside Earth rate and the table.
+type Drift<'a> = &'a dyn Fn(usize) -> Vector3<f64>;
+
+/// A log of ten samples a second: `up` in body axes, rate of the table about it \[rad/s\], matrix of the gyros.
+fn log(
+    up: Vector3<f64>,
+    samples: usize,
+    table: &dyn Fn(usize) -> f64,
+    matrix: &Matrix3<f64>,
+    drift: Drift<'_>,
+    seed: u64,
+) -> Log {
+    let mut normals = Normals::of_seed(seed);
+    let up = up.normalize();
+    let (sine, cosine) = LATITUDE_DEG.to_radians().sin_cos();
+    let other = Vector3::new(0.3, 0.5, 0.8);
+    let east = up.cross(&other).normalize();
+    let north = up.cross(&east);
+    let mut angle = 0.0_f64;
+    let mut gyro = Vec::new();
+    let mut accel = Vec::new();
+    for sample in 0..samples {
+        angle += 0.1 * table(sample);
+        let horizontal = angle.cos() * north - angle.sin() * east;
+        let earth = EARTH_DEG_PER_H * DEG_PER_H * (sine * up + cosine * horizontal);
+        let mut noise = |size: f64| Vector3::from([(); 3].map(|()| size * normals.normal()));
+        let rate =
+            matrix * (earth + up * table(sample)) + DEG_PER_H * (drift(sample) + noise(30.0));
+        gyro.push(rate.into());
+        accel.push((up + noise(1e-3)).into());
+    }
+    Log::from_samples(0.1, gyro, accel)
+}
+
+fn evaluated(logs: &[Log], more: &str) -> RateReport {
+    evaluate_rates(logs, &description(more), &RateSettings::default()).expect("evaluation")
+}
+
+fn near(gyro: &GyroRates, name: &str, truth: f64) {
+    let coefficient = gyro.coefficients.iter().find(|c| c.name == name);
+    let coefficient = coefficient.unwrap_or_else(|| panic!("{name} in {:?}", gyro.coefficients));
+    let z = (coefficient.estimate - truth) / coefficient.sigma;
+    assert!(z.abs() < SIGMAS, "{name}: {coefficient:?}, truth {truth}");
+}
+
+#[test]
+fn biases_of_degrees_a_second_are_ordinary() {
+    // 5, -2 and 0.1 deg/s.
+    let bias = Vector3::new(18_000.0, -7_200.0, 360.0);
+    let up = Vector3::new(0.1, -0.2, 1.0);
+    let made = log(up, 20_000, &|_| 0.0, &Matrix3::identity(), &|_| bias, 1);
+    let report = evaluated(&[made], "");
+    let log = &report.logs[0];
+    for gyro in 0..3 {
+        assert!(
+            report.gyros[gyro].effects.is_empty(),
+            "{:?}",
+            report.gyros[gyro].effects
+        );
+        let error = log.bias_deg_per_h[gyro] - bias[gyro];
+        // Earth rate in an unknown direction is what is not known of it.
+        assert!(error.abs() < log.bias_half_width_deg_per_h[gyro], "{log:?}");
+        assert!(log.bias_half_width_deg_per_h[gyro] < EARTH_DEG_PER_H);
+    }
+    let expected = report.earth_vertical_deg_per_h + bias.dot(&up.normalize());
+    let [rate, sigma] = log.vertical_deg_per_h;
+    assert!(
+        (rate - expected).abs() < SIGMAS * sigma,
+        "{log:?}, {expected}"
+    );
+}
+
+#[test]
+fn turntable_rates_tell_scale_misalignment_and_sensitivity_to_force() {
+    let matrix = Matrix3::new(
+        1.002, 0.004, -0.003, 0.001, 0.997, 0.005, -0.002, 0.006, 1.001,
+    );
+    let bias = Vector3::new(300.0, -200.0, 100.0);
+    let of_force = Matrix3::new(20.0, -35.0, 10.0, 5.0, 15.0, -30.0, 25.0, 0.0, -10.0);
+    // Each axis up and down, at rest, at 30 deg/s to either side, and at rest.
+    let table =
+        |sample: usize| 30.0_f64.to_radians() * [0.0, 1.0, -1.0, 0.0][(sample / 500).min(3)];
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let logs: Vec<Log> = axes
+        .into_iter()
+        .flat_map(|axis| [axis, -axis])
+        .enumerate()
+        .map(|(number, up)| {
+            let drift = bias + of_force * up;
+            let mut log = log(up, 2000, &table, &matrix, &|_| drift, 10 + number as u64);
+            log.table_rate = Some((0..2000).map(table).collect());
+            log
+        })
+        .collect();
+    let report = evaluated(&logs, "[table]\ncolumn = \"t\"\nunit = \"deg/s\"\n");
+    for (gyro, law) in report.gyros.iter().enumerate() {
+        let own = ["x", "y", "z"][gyro];
+        assert!(law.undetermined.is_empty(), "{:?}", law.undetermined);
+        near(law, &format!("gyro_{own}.bias"), bias[gyro]);
+        for axis in 0..3 {
+            let other = ["x", "y", "z"][axis];
+            near(
+                law,
+                &format!("gyro_{own}.g_{other}"),
+                of_force[(gyro, axis)],
+            );
+            if axis == gyro {
+                near(
+                    law,
+                    &format!("gyro_{own}.scale"),
+                    1e6 * (matrix[(gyro, gyro)] - 1.0),
+                );
+            } else {
+                near(
+                    law,
+                    &format!("gyro_{own}.about_{other}"),
+                    1e3 * matrix[(gyro, axis)],
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn one_axis_of_a_table_leaves_the_others_undetermined() {
+    let table = |sample: usize| 0.2 * f64::from(u8::from(sample > 1000));
+    let mut made = log(
+        Vector3::z(),
+        3000,
+        &table,
+        &Matrix3::identity(),
+        &|_| Vector3::zeros(),
+        20,
+    );
+    made.table_rate = Some((0..3000).map(table).collect());
+    let report = evaluated(&[made], "");
+    let undetermined = &report.gyros[0].undetermined;
+    assert!(
+        undetermined.contains(&"gyro_x.about_y".to_owned()),
+        "{undetermined:?}"
+    );
+    assert!(
+        undetermined.contains(&"gyro_x.g_x".to_owned()),
+        "{undetermined:?}"
+    );
+    near(&report.gyros[2], "gyro_z.scale", 0.0);
+}
+
+#[test]
+fn a_step_and_a_sensitivity_to_temperature_are_found_and_named() {
+    let samples = 36_000;
+    // Up and down again: no course in time.
+    let temperature = |sample: usize| 25.0 + 10.0 * (12.0 * sample as f64 / samples as f64).sin();
+    let drift = |sample: usize| {
+        let step = if sample < 20_000 { 0.0 } else { 6.0 };
+        Vector3::new(step, 1.5 * (temperature(sample) - 25.0), 0.0)
+    };
+    let mut made = log(
+        Vector3::z(),
+        samples,
+        &|_| 0.0,
+        &Matrix3::identity(),
+        &drift,
+        30,
+    );
+    made.temperature_c = Some((0..samples).map(temperature).collect());
+    let report = evaluated(&[made], "");
+    let [x, y, z] = &report.gyros[..] else {
+        panic!("three gyros")
+    };
+    assert_eq!(x.effects.len(), 1, "{:?}", x.effects);
+    let (at_s, _) = x.effects[0].step.expect("a step");
+    // Blocks are 56 s long.
+    assert!((at_s - 2000.0).abs() < 60.0, "{at_s}");
+    near(x, "gyro_x.step", 6.0);
+    assert_eq!(y.effects.len(), 1, "{:?}", y.effects);
+    near(y, "gyro_y.temperature", 1.5);
+    assert!(z.effects.is_empty(), "{:?}", z.effects);
+    assert!(!report.time_is_temperature);
+}
+
+#[test]
+fn a_course_of_temperature_in_time_is_said_to_be_one() {
+    let samples = 20_000;
+    let temperature = |sample: usize| 20.0 + 8.0 * sample as f64 / samples as f64;
+    let drift = |sample: usize| Vector3::new(2.0 * (temperature(sample) - 24.0), 0.0, 0.0);
+    let mut made = log(
+        Vector3::z(),
+        samples,
+        &|_| 0.0,
+        &Matrix3::identity(),
+        &drift,
+        40,
+    );
+    made.temperature_c = Some((0..samples).map(temperature).collect());
+    let report = evaluated(&[made], "");
+    assert!(report.time_is_temperature);
+    let effect = &report.gyros[0].effects[0];
+    let mut names = effect.alternatives.clone();
+    names.push(effect.name.clone());
+    for name in ["gyro_x.ramp", "gyro_x.temperature"] {
+        assert!(names.contains(&name.to_owned()), "{names:?}");
+    }
+}
+
+#[test]
+fn a_dead_gyro_and_a_log_that_turns_over_are_refused() {
+    let still = |_: usize| Vector3::zeros();
+    let mut dead = log(
+        Vector3::z(),
+        2000,
+        &|_| 0.0,
+        &Matrix3::identity(),
+        &still,
+        50,
+    );
+    for rate in &mut dead.gyro {
+        rate[1] = 0.5;
+    }
+    let settings = RateSettings::default();
+    let kind = |logs: &[Log]| {
+        let error = evaluate_rates(logs, &description(""), &settings).expect_err("refused");
+        error.kind()
+    };
+    assert_eq!(kind(&[dead]), Some(Unfit::Saturated));
+    let mut over = log(
+        Vector3::z(),
+        2000,
+        &|_| 0.0,
+        &Matrix3::identity(),
+        &still,
+        51,
+    );
+    for force in &mut over.accel[1200..] {
+        *force = force.map(|component| -component);
+    }
+    assert_eq!(kind(&[over]), Some(Unfit::NeverStatic));
+    assert_eq!(kind(&[]), Some(Unfit::TooShort));
+}
