@@ -19,6 +19,8 @@ use crate::manual::{CompletionsArguments, ManArguments};
 use crate::monte_carlo::MonteCarloArguments;
 use crate::plan::PlanArguments;
 use crate::plant::{NewPlantArguments, PlantArguments, PlantCli};
+use crate::plant::PlantArguments;
+use crate::rates::RatesArguments;
 use crate::report::ReportArguments;
 use crate::simulate::SimulateArguments;
 use crate::terminal::{Color, Shown};
@@ -55,6 +57,7 @@ pub(crate) enum Command {
     NewPlant(NewPlantArguments),
     Plan(PlanArguments),
     Plant(PlantArguments),
+    Rates(RatesArguments),
     Report(ReportArguments),
     Simulate(SimulateArguments),
     Tumble(TumbleArguments),

@@ -192,6 +192,19 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 18] = [
         ],
     ),
     (
+        "rates",
+        &[
+            [
+                "gyrocal rates log.csv --log-description log.toml",
+                "one log at rest: biases of any size, noise, effects of temperature and time",
+            ],
+            [
+                "gyrocal rates x_up.csv x_down.csv y_up.csv --log-description table.toml",
+                "a turntable, a log for each attitude: scale, misalignment, g sensitivity",
+            ],
+        ],
+    ),
+    (
         "report",
         &[
             [

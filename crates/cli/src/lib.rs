@@ -35,6 +35,7 @@ mod pictures;
 mod plan;
 mod plant;
 mod progress;
+mod rates;
 mod records;
 mod report;
 mod simulate;
@@ -155,6 +156,7 @@ fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
         Command::NewPlant(arguments) => plant::run_new(arguments),
         Command::Plan(arguments) => plan::run(arguments),
         Command::Plant(arguments) => plant::run(arguments),
+        Command::Rates(arguments) => rates::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Tumble(arguments) => tumble::run(arguments),

@@ -2,6 +2,8 @@
 
 mod allan;
 mod positions;
+mod rates;
+mod rates_simulation;
 mod records;
 mod stops;
 mod vertical;
@@ -25,6 +27,7 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     figures.extend(records::figures(extent)?);
     figures.extend(stops::figures(extent)?);
     figures.extend(vertical::figures(extent)?);
+    figures.extend(rates::figures(extent)?);
     Ok(figures)
 }
 

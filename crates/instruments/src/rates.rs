@@ -154,19 +154,19 @@ pub fn evaluate_rates(
     let blocks = blocks?;
     refuse_wrong_norm(logs.iter().map(mean_norm_g))?;
     let [horizontal, vertical] = earth_deg_per_h(latitude_deg);
+    let level_sigma_rad = settings.level_sigma_deg.to_radians();
     let mut laws = Vec::with_capacity(3);
     for gyro in 0..3 {
         let data = Data {
             gyro,
             logs: &blocks,
             rates: outputs(&blocks, gyro, vertical),
-            noise: NoiseModel::of(&blocks, gyro, horizontal),
+            noise: NoiseModel::of(&blocks, gyro, horizontal, level_sigma_rad),
         };
         let law = data.law(settings.false_alarm_probability);
         laws.push(law.ok_or_else(|| never_changes(gyro))?);
     }
     let variances: [_; 3] = core::array::from_fn(|gyro| laws[gyro].fit.variances);
-    let level_sigma_rad = settings.level_sigma_deg.to_radians();
     let earth = [horizontal, vertical];
     let of_log = |(log, blocks)| LogRates::of(log, blocks, earth, level_sigma_rad, &variances);
     let correlation = time_and_temperature(&blocks);

@@ -18,6 +18,7 @@ mod import;
 mod monte_carlo;
 mod plan;
 mod plant;
+mod rates;
 mod report;
 mod simulate;
 mod terminal_safety;

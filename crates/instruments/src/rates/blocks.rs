@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Rotation3, Unit, Vector3};
 
+use crate::earth_rate::deg_per_h;
 use crate::error::{InstrumentError, Unfit};
 use crate::log::Log;
 
@@ -20,6 +21,8 @@ pub(super) struct Blocks {
     pub(super) temperature_c: Option<Vec<f64>>,
     /// Mean rate of the turntable in body axes \[rad/s\].
     pub(super) table: Option<Vec<Vector3<f64>>>,
+    /// `true` if the axis of the table is that of specific force, with its error.
+    axis_is_up: bool,
     /// Two horizontal directions in body axes at right angles, as the table turns them; means over blocks.
     pub(super) horizontal: [Vec<Vector3<f64>>; 2],
     /// Mean specific force of the log over its norm.
@@ -68,6 +71,7 @@ impl Blocks {
             time_s: scalar(&log.time_s),
             rate: means(&|sample| Vector3::from(log.gyro[sample])),
             temperature_c: log.temperature_c.as_deref().map(scalar),
+            axis_is_up: table_axis.is_none(),
             table: log.table_rate.as_deref().map(|rates| {
                 let along = scalar(rates);
                 along.into_iter().map(|rate| rate * axis).collect()
@@ -91,6 +95,16 @@ impl Blocks {
             sum += 0.5 * &along * along.transpose();
         }
         sum
+    }
+
+    /// Covariance of the means of a gyro \[deg²/h²\] that an error of the level of `sigma_rad` makes, where
+    /// specific force stands for the axis of the table.
+    pub(super) fn of_level(&self, gyro: usize, sigma_rad: f64) -> Option<DMatrix<f64>> {
+        let table = self.table.as_ref().filter(|_| self.axis_is_up)?;
+        let across = sigma_rad * sigma_rad * (1.0 - self.mean_up[gyro].powi(2)).max(0.0);
+        let rates = table.iter().map(|rate| deg_per_h(rate.dot(&self.mean_up)));
+        let rates = DVector::from_iterator(self.len(), rates);
+        Some(across * &rates * rates.transpose())
     }
 }
 

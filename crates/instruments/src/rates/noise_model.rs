@@ -24,7 +24,7 @@ const ITERATIONS: usize = 40;
 /// Covariances of one gyro's means over all logs.
 pub(super) struct NoiseModel {
     parts: [DMatrix<f64>; PARTS],
-    /// Covariance that is known: of the heading.
+    /// Covariance that is known: of heading and level.
     known: DMatrix<f64>,
 }
 
@@ -40,8 +40,13 @@ pub(super) struct Fit {
 
 impl NoiseModel {
     /// Model of `gyro`; `horizontal_deg_per_h` is the horizontal part of Earth rate, whose direction is not
-    /// known.
-    pub(super) fn of(logs: &[Blocks], gyro: usize, horizontal_deg_per_h: f64) -> Self {
+    /// known, and `level_sigma_rad` the standard deviation of the level.
+    pub(super) fn of(
+        logs: &[Blocks],
+        gyro: usize,
+        horizontal_deg_per_h: f64,
+        level_sigma_rad: f64,
+    ) -> Self {
         let total = logs.iter().map(Blocks::len).sum();
         let mut parts: [DMatrix<f64>; PARTS] =
             core::array::from_fn(|_| DMatrix::zeros(total, total));
@@ -57,7 +62,10 @@ impl NoiseModel {
                     .view_mut((first, first), (count, count))
                     .copy_from(&own);
             }
-            let heading = log.of_heading(gyro) * horizontal_deg_per_h.powi(2);
+            let mut heading = log.of_heading(gyro) * horizontal_deg_per_h.powi(2);
+            if let Some(level) = log.of_level(gyro, level_sigma_rad) {
+                heading += level;
+            }
             known
                 .view_mut((first, first), (count, count))
                 .copy_from(&heading);

@@ -1,5 +1,7 @@
 //! Checks of the settings, and of the log against a unit at rest on the Earth.
 
+use nalgebra::Vector3;
+
 use super::ImportSettings;
 use super::rotation_fit::RotationFit;
 use crate::description::Description;
@@ -75,25 +77,8 @@ pub(super) fn refuse_other_rates(
     let found = [fit.horizontal_rate[0], fit.vertical_rate[0]].map(deg_per_h);
     let earth = horizontal.hypot(vertical);
     let total = found[0].hypot(found[1]);
-    let ratio = total / earth;
-    if !(0.5..=2.0).contains(&ratio) {
-        let near = |expected: f64| (0.8..=1.25).contains(&(ratio / expected));
-        let degrees = 1.0_f64.to_degrees();
-        let advice = if near(degrees) || near(1.0 / degrees) {
-            "radians and degrees seem to be mixed up: change `unit`"
-        } else if near(3600.0) || near(1.0 / 3600.0) {
-            "seconds and hours seem to be mixed up: change `unit`"
-        } else {
-            "a bias of that size is ordinary for many gyros, but it cannot hold an analytic platform: \
-             evaluate the log with gyrocal rates, or check unit and scale of the gyros if such a bias is \
-             not expected"
-        };
-        return Err(InstrumentError::unfit(
-            Unfit::GyroScale,
-            format!("a rate of {total:.4} deg/h at rest"),
-            format!("Earth rate, {earth:.4} deg/h, within a factor of two"),
-            advice,
-        ));
+    if let Some(error) = other_rate(total, earth) {
+        return Err(error);
     }
     // Where the vertical part is small its sign tells nothing.
     if vertical.abs() > 0.2 * earth && found[1] * vertical < 0.0 {
@@ -106,4 +91,56 @@ pub(super) fn refuse_other_rates(
         ));
     }
     Ok(())
+}
+
+/// Refuses outputs so large that specific force turns within a row, though it keeps its direction in the body.
+pub(super) fn refuse_large_bias(
+    log: &Log,
+    averaging_s: f64,
+    [horizontal, vertical]: [f64; 2],
+) -> Result<(), InstrumentError> {
+    /// Turn within a row that shortens its mean by 0.2 %.
+    const LARGEST_TURN_RAD: f64 = 0.2;
+    /// Share of the mean norm in the norm of the mean, of a force whose direction scatters by 8 degrees.
+    const STILL: f64 = 0.99;
+    let count = log.len() as f64;
+    let mean = |samples: &[[f64; 3]]| {
+        let sum: Vector3<f64> = samples.iter().map(|sample| Vector3::from(*sample)).sum();
+        (sum / count).norm()
+    };
+    let norms = log.accel.iter().map(|force| Vector3::from(*force).norm());
+    let rate = mean(&log.gyro);
+    let still = mean(&log.accel) >= STILL * norms.sum::<f64>() / count;
+    if !still || rate * averaging_s < LARGEST_TURN_RAD {
+        return Ok(());
+    }
+    match other_rate(deg_per_h(rate), horizontal.hypot(vertical)) {
+        Some(error) => Err(error),
+        None => Ok(()),
+    }
+}
+
+/// The error of a rate at rest that is not the Earth's within a factor of two \[deg/h\].
+fn other_rate(total: f64, earth: f64) -> Option<InstrumentError> {
+    let ratio = total / earth;
+    if (0.5..=2.0).contains(&ratio) {
+        return None;
+    }
+    let near = |expected: f64| (0.8..=1.25).contains(&(ratio / expected));
+    let degrees = 1.0_f64.to_degrees();
+    let advice = if near(degrees) || near(1.0 / degrees) {
+        "radians and degrees seem to be mixed up: change `unit`"
+    } else if near(3600.0) || near(1.0 / 3600.0) {
+        "seconds and hours seem to be mixed up: change `unit`"
+    } else {
+        "a bias of that size is ordinary for many gyros, but it cannot hold an analytic platform: \
+         evaluate the log with gyrocal rates, or check unit and scale of the gyros if such a bias is \
+         not expected"
+    };
+    Some(InstrumentError::unfit(
+        Unfit::GyroScale,
+        format!("a rate of {total:.4} deg/h at rest"),
+        format!("Earth rate, {earth:.4} deg/h, within a factor of two"),
+        advice,
+    ))
 }

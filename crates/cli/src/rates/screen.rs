@@ -1,0 +1,115 @@
+//! The first screen of `gyrocal rates`.
+
+use gyrocal_diagnosis::prose::{Screen, Standing, counted};
+use gyrocal_instruments::rates::RateReport;
+use gyrocal_record::printable_path;
+use gyrocal_statistics::format;
+
+use super::RatesArguments;
+
+/// Effects that are told one by one.
+const EFFECTS_SHOWN: usize = 4;
+
+/// Names of a list that are shown.
+const NAMES_SHOWN: usize = 3;
+
+/// Effects beyond the base law, biases, and what is not determined.
+pub(super) fn first(arguments: &RatesArguments, report: &RateReport) -> Screen {
+    let found: Vec<_> = report
+        .gyros
+        .iter()
+        .flat_map(|gyro| gyro.effects.iter().map(move |effect| (gyro, effect)))
+        .collect();
+    let mut screen = match found.len() {
+        0 => Screen::new(
+            Standing::Good,
+            "RATES",
+            "no significant effect in temperature or time",
+        ),
+        count => Screen::new(
+            Standing::Doubtful,
+            "RATES CHANGE",
+            format!("{} in temperature or time", counted(count, "effect")),
+        ),
+    };
+    for (gyro, effect) in found.iter().take(EFFECTS_SHOWN) {
+        let coefficient = gyro.coefficients.iter().find(|c| c.name == effect.name);
+        if let Some(coefficient) = coefficient {
+            let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
+            let others = match &effect.alternatives[..] {
+                [] => String::new(),
+                names => format!("; may also be {}", names.join(", ")),
+            };
+            screen.fact(
+                &effect.name,
+                format!(
+                    "{estimate} {}, {}{others}",
+                    coefficient.unit,
+                    format::p_value(effect.p_value)
+                ),
+            );
+        }
+    }
+    biases(report, &mut screen);
+    if let (true, Some(correlation)) = (report.time_is_temperature, report.time_and_temperature) {
+        screen.fact(
+            "not told",
+            format!(
+                "temperature from time: their correlation is {correlation:.2}; warm the unit up and let \
+                 it cool down"
+            ),
+        );
+    }
+    let mut undetermined: Vec<&str> = Vec::new();
+    for gyro in &report.gyros {
+        undetermined.extend(gyro.undetermined.iter().map(String::as_str));
+    }
+    if !undetermined.is_empty() {
+        let shown = undetermined[..undetermined.len().min(NAMES_SHOWN)].join(", ");
+        let rest = match undetermined.len().saturating_sub(NAMES_SHOWN) {
+            0 => String::new(),
+            rest => format!(" and {rest} more"),
+        };
+        screen.fact(
+            "undetermined",
+            format!("{shown}{rest}: turn the unit over, a log each"),
+        );
+    }
+    let duration_s: f64 = report.logs.iter().map(|log| log.duration_s).sum();
+    let named = match &arguments.logs[..] {
+        [only] => printable_path(only).to_string(),
+        logs => counted(logs.len(), "log"),
+    };
+    screen.fact("log", format!("{named} over {duration_s:.0} s"));
+    screen
+}
+
+/// Biases of the gyros: of one log by its means, of several by the law.
+fn biases(report: &RateReport, screen: &mut Screen) {
+    if let [log] = &report.logs[..] {
+        for (gyro, law) in report.gyros.iter().enumerate() {
+            screen.fact(
+                &law.gyro,
+                format!(
+                    "{:.4} ± {:.4} deg/h (95 %), bias and terms in specific force",
+                    log.bias_deg_per_h[gyro], log.bias_half_width_deg_per_h[gyro]
+                ),
+            );
+        }
+        let [rate, sigma] = log.vertical_deg_per_h;
+        screen.fact(
+            "vertical",
+            format!(
+                "{rate:.4} ± {sigma:.4} deg/h, Earth {:.4}",
+                report.earth_vertical_deg_per_h
+            ),
+        );
+        return;
+    }
+    for gyro in &report.gyros {
+        if let Some(bias) = gyro.coefficients.first() {
+            let estimate = format::estimate(bias.estimate, bias.sigma).join(" ± ");
+            screen.fact(&bias.name, format!("{estimate} {}", bias.unit));
+        }
+    }
+}

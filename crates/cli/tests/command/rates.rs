@@ -1,0 +1,105 @@
+//! `gyrocal rates` on simulated logs.
+
+use std::fmt::Write as _;
+
+use crate::folder::Folder;
+
+const DESCRIPTION: &str = "[time]\ncolumn = \"t\"\n[gyro]\ncolumns = [\"gx\", \"gy\", \"gz\"]\nunit = \
+                           \"deg/s\"\n[accel]\ncolumns = [\"ax\", \"ay\", \"az\"]\nunit = \"g\"\n\
+                           [temperature]\ncolumn = \"temp\"\nunit = \"C\"\n[site]\nlatitude_deg = 48\n";
+
+/// A log of 2000 samples at 10 Hz with a bias of 3 deg/s of gyro x.
+fn log(temperature: f64, gyro_z: impl Fn(usize, f64) -> f64) -> String {
+    let mut state = 3_u64;
+    let mut noise = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 40) as f64 / f64::from(1_u32 << 24) - 0.5
+    };
+    let mut text = "t,gx,gy,gz,ax,ay,az,temp\n".to_owned();
+    for sample in 0..2000 {
+        let [x, y, z] = [0.02 * noise(), 0.02 * noise(), 0.02 * noise()];
+        let force = [1e-3 * noise(), 1e-3 * noise(), 1.0 + 1e-3 * noise()];
+        let temperature = temperature + 0.01 * noise();
+        let z = gyro_z(sample, z);
+        let _ = writeln!(
+            text,
+            "{:.1},{:.6},{y:.6},{z:.6},{:.6},{:.6},{:.6},{temperature:.4}",
+            0.1 * sample as f64,
+            3.0 + x,
+            force[0],
+            force[1],
+            force[2],
+        );
+    }
+    text
+}
+
+fn folder(log: String) -> Folder {
+    let folder = Folder::new();
+    folder.put("log.csv", log);
+    folder.put("log.toml", DESCRIPTION);
+    folder
+}
+
+const ARGUMENTS: [&str; 6] = [
+    "rates",
+    "log.csv",
+    "--log-description",
+    "log.toml",
+    "--json",
+    "o.json",
+];
+
+#[test]
+fn a_bias_of_degrees_a_second_is_told_within_earth_rate() {
+    let folder = folder(log(25.0, |_, z| z));
+    let text = folder.succeed(&ARGUMENTS);
+    assert!(text.contains("gyro_x.bias"), "{text}");
+    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let log = &json["logs"][0];
+    let bias = log["bias_deg_per_h"][0].as_f64().unwrap();
+    let half_width = log["bias_half_width_deg_per_h"][0].as_f64().unwrap();
+    // 3 deg/s; Earth rate toward an unknown heading, and noise of 0.006 deg/s over 2000 samples.
+    assert!((bias - 10_800.0).abs() < half_width, "{bias} {half_width}");
+    assert!(half_width < 16.0, "{half_width}");
+}
+
+#[test]
+fn the_import_of_such_a_log_names_the_command_for_it() {
+    let folder = folder(log(25.0, |_, z| z));
+    let errors = folder.fail(&[
+        "import",
+        "strapdown",
+        "log.csv",
+        "--log-description",
+        "log.toml",
+        "--out",
+        "r.csv",
+        "--averaging-s",
+        "10",
+    ]);
+    assert!(errors.contains("gyrocal rates"), "{errors}");
+}
+
+#[test]
+fn a_temperature_in_another_unit_is_told_with_its_line() {
+    let errors = folder(log(298.0, |_, z| z)).fail(&ARGUMENTS);
+    assert!(errors.contains("log.csv:2"), "{errors}");
+    assert!(errors.contains("unit = \"K\""), "{errors}");
+}
+
+#[test]
+fn a_saturated_gyro_is_told_with_its_line() {
+    let at_end = |sample: usize, z: f64| {
+        if (700..760).contains(&sample) {
+            300.0
+        } else {
+            z
+        }
+    };
+    let errors = folder(log(25.0, at_end)).fail(&ARGUMENTS);
+    assert!(errors.contains("log.csv:702"), "{errors}");
+    assert!(errors.contains("60 samples of `gz`"), "{errors}");
+}
