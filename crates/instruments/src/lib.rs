@@ -63,7 +63,6 @@ mod gyro_from_turns;
 mod least_squares;
 mod log;
 mod log_lines;
-mod mean_noise;
 pub mod multi_position;
 pub mod rates;
 mod result_file;

@@ -8,6 +8,7 @@
 //! [`LogRates`].
 
 mod blocks;
+mod fast_noise;
 mod heading;
 mod law;
 mod noise_model;

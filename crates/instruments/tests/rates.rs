@@ -207,7 +207,7 @@ fn a_step_and_a_sensitivity_to_temperature_are_found_and_named() {
 fn a_course_of_temperature_in_time_is_said_to_be_one() {
     let samples = 20_000;
     let temperature = |sample: usize| 20.0 + 8.0 * sample as f64 / samples as f64;
-    let drift = |sample: usize| Vector3::new(2.0 * (temperature(sample) - 24.0), 0.0, 0.0);
+    let drift = |sample: usize| Vector3::new(6.0 * (temperature(sample) - 24.0), 0.0, 0.0);
     let mut made = log(
         Vector3::z(),
         samples,

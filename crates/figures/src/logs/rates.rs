@@ -98,7 +98,7 @@ fn static_log(seed: u64, longest_s: f64) -> Result<Static, InstrumentError> {
         quantisation: white * draw.log_uniform([1e-3, 0.1]),
         flicker: white * draw.log_uniform([3e-3, 0.1]),
         walk: white * draw.log_uniform([1e-5, 1e-3]),
-        step: draw.log_uniform([0.1, 2.0]),
+        step: draw.log_uniform([0.1, 1.0]),
         latitude_deg: 120.0 * draw.uniform() - 60.0,
     };
     let up = vector(&mut draw).normalize();
@@ -225,7 +225,7 @@ fn table_test(seed: u64) -> Result<Vec<bool>, InstrumentError> {
         quantisation: white * draw.log_uniform([1e-3, 0.1]),
         flicker: white * draw.log_uniform([3e-3, 0.1]),
         walk: white * draw.log_uniform([1e-5, 1e-3]),
-        step: draw.log_uniform([0.1, 2.0]),
+        step: draw.log_uniform([0.1, 1.0]),
         latitude_deg: 120.0 * draw.uniform() - 60.0,
     };
     let rate = draw.log_uniform([5.0, 50.0]).to_radians();

@@ -1,10 +1,10 @@
 //! The law of one gyro: its base terms as far as the logs determine them, and significant effects.
 
-use gyrocal_statistics::chi_square_tail;
+use gyrocal_statistics::f_tail;
 use nalgebra::{DMatrix, DVector};
 
 use super::blocks::Blocks;
-use super::noise_model::{Fit, NoiseModel, Variances, first_variances};
+use super::noise_model::{Fit, NoiseModel, PARTS, Variances, first_variances};
 use super::terms::RateTerm;
 use crate::multi_position::Term;
 
@@ -50,7 +50,6 @@ impl Data<'_> {
         let (mut terms, undetermined) = self.base();
         let mut found: Vec<Found> = Vec::new();
         let mut start = first_variances(self.logs, &self.rates);
-        let tests = (self.candidates().len() + self.rates.len()) as f64;
         while found.len() < MOST_EFFECTS {
             let here = self.fit(&terms, start, false)?;
             start = here.variances;
@@ -64,7 +63,10 @@ impl Data<'_> {
             let Some(&(term, gain)) = refitted.first() else {
                 break;
             };
-            let p_value = (tests * chi_square_tail(gain.max(0.0), 1.0).unwrap_or(1.0)).min(1.0);
+            // The noise is estimated: the gain of a likelihood whose scale is fitted is that of an F.
+            let freedom = self.rates.len() as f64 - (terms.len() + 1 + PARTS) as f64;
+            let f = (gain.max(0.0) / self.rates.len() as f64).exp_m1() * freedom;
+            let p_value = (self.tests(term) * f_tail(f, [1.0, freedom]).unwrap_or(1.0)).min(1.0);
             if p_value > false_alarm {
                 break;
             }
@@ -125,6 +127,14 @@ impl Data<'_> {
         ];
         candidates.retain(|term| term.column(self.gyro, self.logs).is_some());
         candidates
+    }
+
+    /// Tests that a p-value is corrected for: twice those of its kind, courses or steps.
+    fn tests(&self, term: RateTerm) -> f64 {
+        2.0 * match term {
+            RateTerm::Step { .. } => self.rates.len() as f64,
+            _ => self.candidates().len() as f64,
+        }
     }
 
     /// Candidates by their significance with the noise of a fit, of the steps the most significant one.

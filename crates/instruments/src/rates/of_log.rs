@@ -1,15 +1,14 @@
 //! What one log tells by its means: mean rates, their vertical part, and biases of the gyros.
 
-use gyrocal_statistics::allan::{allan_deviation, fit_noise, octaves};
 use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::blocks::Blocks;
+use super::fast_noise::{Slow, mean_variance};
 use super::heading::half_width;
 use super::noise_model::Variances;
 use crate::earth_rate::deg_per_h;
 use crate::log::Log;
-use crate::mean_noise::mean_variance;
 
 /// What the means of one log tell. A mean is that of the whole log: what changes slowly is part of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,9 +29,6 @@ pub struct LogRates {
     pub temperature_c: Option<[f64; 2]>,
 }
 
-/// Samples whose scatter determines the fast parts of the noise.
-const MOST_SAMPLES: usize = 1 << 16;
-
 impl LogRates {
     /// Means of a log on the Earth with a horizontal and a vertical rate \[deg/h\], whose slow noise is known
     /// from its blocks.
@@ -50,22 +46,26 @@ impl LogRates {
         });
         let sum: Vector3<f64> = log.gyro.iter().map(|rate| Vector3::from(*rate)).sum();
         let mean = (sum / log.len() as f64 - table).map(deg_per_h);
-        let along = |direction: Vector3<f64>, of_blocks: f64| {
-            let used = &log.gyro[..log.len().min(MOST_SAMPLES)];
-            let rates = used
-                .iter()
-                .map(|rate| deg_per_h(direction.dot(&Vector3::from(*rate))));
-            let rates: Vec<f64> = rates.collect();
-            fast_variance(&rates, log.interval_s, duration_s).unwrap_or(of_blocks)
-        };
-        let of_blocks = |gyro: usize| {
-            let [random_walk, quantisation, ..] = variances[gyro];
-            random_walk / duration_s + 2.0 * quantisation / (duration_s * duration_s)
+        let along = |direction: Vector3<f64>| {
+            let rates = log.gyro.iter();
+            let rates: Vec<f64> = rates
+                .map(|rate| deg_per_h(direction.dot(&Vector3::from(*rate))))
+                .collect();
+            let sum = |part: usize| -> f64 {
+                let parts = variances.iter().zip(direction.iter());
+                parts
+                    .map(|(of_gyro, share)| share * share * of_gyro[part])
+                    .sum()
+            };
+            let slow = Slow {
+                bias_instability: sum(2),
+                rate_random_walk: sum(3),
+            };
+            let of_blocks = sum(0) / duration_s + 2.0 * sum(1) / (duration_s * duration_s);
+            mean_variance(&rates, log.interval_s, blocks.block_s, slow).unwrap_or(of_blocks)
         };
         let level = level_sigma_rad * horizontal.hypot(vertical);
-        let sigma: [f64; 3] =
-            core::array::from_fn(|gyro| along(axis(gyro), of_blocks(gyro)).sqrt());
-        let of_vertical = (0..3).map(|gyro| up[gyro].powi(2) * of_blocks(gyro)).sum();
+        let sigma: [f64; 3] = core::array::from_fn(|gyro| along(axis(gyro)).sqrt());
         let across = |gyro: usize| horizontal * (1.0 - up[gyro].powi(2)).max(0.0).sqrt();
         let temperature = log.temperature_c.as_ref().map(|values| {
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -81,9 +81,7 @@ impl LogRates {
             vertical_deg_per_h: [
                 up.dot(&mean),
                 // An error of the level sees what is across.
-                along(up, of_vertical)
-                    .sqrt()
-                    .hypot(level_sigma_rad * across_up),
+                along(up).sqrt().hypot(level_sigma_rad * across_up),
             ],
             horizontal_deg_per_h: across_up,
             bias_deg_per_h: core::array::from_fn(|gyro| mean[gyro] - vertical * up[gyro]),
@@ -99,12 +97,4 @@ fn axis(gyro: usize) -> Vector3<f64> {
     let mut axis = Vector3::zeros();
     axis[gyro] = 1.0;
     axis
-}
-
-/// Variance of the mean over `duration_s` by the fast parts of the noise of rates; `None` if they are not
-/// determined, as of filtered samples.
-fn fast_variance(rates: &[f64], interval_s: f64, duration_s: f64) -> Option<f64> {
-    const CONFIDENCE: f64 = 0.95;
-    let points = allan_deviation(rates, interval_s, &octaves(rates.len()), CONFIDENCE).ok()?;
-    mean_variance(&fit_noise(&points, rates.len()).ok()?, duration_s)
 }

@@ -4,12 +4,11 @@
 //! alone. The mean rate along mean specific force tells it directly, with the noise of the gyros over the
 //! whole record, if the unit does not rock: rocking is a rate that noise does not describe.
 
-use gyrocal_statistics::allan::{allan_deviation, fit_noise, octaves};
+use gyrocal_statistics::allan::{NoiseFit, NoisePart, allan_deviation, fit_noise, octaves};
 use nalgebra::Vector3;
 
 use crate::earth_rate::deg_per_h;
 use crate::log::Log;
-use crate::mean_noise::mean_variance;
 
 /// Mean rate along mean specific force, and its standard deviation \[deg/h\]; `None` if the rate is no
 /// stationary noise about a mean. `level_sigma_rad` is the standard deviation of the level and
@@ -39,6 +38,22 @@ pub(super) fn projected(
             .sqrt()
             .hypot(level_sigma_rad * horizontal_deg_per_h),
     ])
+}
+
+/// Variance of the mean about the mean of the slow parts, which are part of the bias of the record.
+fn mean_variance(fit: &NoiseFit, duration_s: f64) -> Option<f64> {
+    let white = fit.coefficient(NoisePart::RandomWalk)?;
+    let size = match (white.estimate?, white.interval?) {
+        (estimate, [low, _]) if low > 0.0 => estimate,
+        // Not visible: half of the most that it may be.
+        (_, [_, high]) => 0.5 * high,
+    };
+    let quantisation = fit
+        .coefficient(NoisePart::Quantisation)?
+        .estimate
+        .unwrap_or(0.0);
+    // The angle at both ends is quantised.
+    Some(size * size / duration_s + 2.0 * (quantisation / duration_s).powi(2))
 }
 
 /// Mean of two estimates weighted by what each knows.
