@@ -19,7 +19,6 @@ use crate::manual::{CompletionsArguments, ManArguments};
 use crate::monte_carlo::MonteCarloArguments;
 use crate::plan::PlanArguments;
 use crate::plant::{NewPlantArguments, PlantArguments, PlantCli};
-use crate::plant::PlantArguments;
 use crate::rates::RatesArguments;
 use crate::report::ReportArguments;
 use crate::simulate::SimulateArguments;

@@ -35,7 +35,7 @@ const WRITTEN: [&str; 8] = [
 ];
 
 /// Commands with their examples, each a command line with its meaning.
-const EXAMPLES: [(&str, &[[&str; 2]]); 18] = [
+const EXAMPLES: [(&str, &[[&str; 2]]); 19] = [
     (
         "allan",
         &[
