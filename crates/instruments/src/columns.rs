@@ -7,9 +7,11 @@ use gyrocal_record::fields::{MOST_COLUMNS, too_many_columns};
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 
 use crate::binary_file::read_binary;
+use crate::date_time::seconds_of;
 use crate::error::{InstrumentError, Unfit};
 use crate::file_format::{FileFormat, Only};
 use crate::log_lines::{LogLine, log_lines};
+use crate::remedy;
 
 /// Columns of a text file.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,43 +46,112 @@ pub fn read_described(
     format: &FileFormat,
     names: &[&str],
 ) -> Result<Columns, Error> {
+    read_dated(source, format, names, None)
+}
+
+/// As [`read_described`], where the column `dated`, by its index in `names`, has dates and times.
+pub(crate) fn read_dated(
+    source: &SourceText,
+    format: &FileFormat,
+    names: &[&str],
+    dated: Option<usize>,
+) -> Result<Columns, Error> {
     let mut lines = log_lines(source, format).peekable();
-    let header = header(source, format, names, &mut lines);
-    if header.fields.len() > MOST_COLUMNS {
-        let start = header.span.start;
-        return Err(too_many_columns(source, start..start, header.fields.len()));
-    }
-    let titles: Vec<&str> = match format.header {
-        true => header.fields.iter().map(|(_, text)| *text).collect(),
-        false => Vec::new(),
-    };
-    let index = |name: &str| match format.header {
-        true => index(source, &header, &titles, name),
-        false => number_of(source, &header, name),
-    };
-    let indices = names
-        .iter()
-        .map(|name| index(name))
-        .collect::<Result<Vec<usize>, Error>>()?;
-    let filter = match &format.only {
-        Some(only) => Some((index(&only.column)?, only)),
-        None => None,
-    };
+    let selection = Selection::find(source, format, names, &mut lines)?;
     let mut values = vec![Vec::new(); names.len()];
     let mut places: Vec<Range<usize>> = Vec::new();
     for line in lines {
-        if filter.is_some_and(|(index, only)| !is_of_sensor(&line, index, only)) {
+        if !selection.takes(source, format, &line)? {
             continue;
         }
-        if line.fields.len() != header.fields.len() {
-            return Err(field_count(source, format, &line, &header));
-        }
-        for (column, &index) in values.iter_mut().zip(&indices) {
-            column.push(number(source, &line.fields[index])?);
+        for (at, (column, &index)) in values.iter_mut().zip(&selection.indices).enumerate() {
+            let field = &line.fields[index];
+            column.push(match dated == Some(at) {
+                true => date(source, field)?,
+                false => number(source, format, field)?,
+            });
         }
         places.push(line.span);
     }
     if places.is_empty() {
+        return Err(selection.no_rows(source, format));
+    }
+    Ok(Columns { values, places })
+}
+
+/// The selected columns in the lines of a text.
+#[derive(Debug)]
+pub(crate) struct Selection {
+    /// Place of the header, or of the first row of a file without one.
+    pub(crate) header: Range<usize>,
+    /// Field of each selected column.
+    pub(crate) indices: Vec<usize>,
+    /// Number of fields of a row.
+    fields: usize,
+    /// Field of the sensor's name.
+    sensor: Option<usize>,
+}
+
+impl Selection {
+    /// Finds the columns `names` in the header, and takes the lines up to the first row.
+    pub(crate) fn find<'a>(
+        source: &'a SourceText,
+        format: &'a FileFormat,
+        names: &[&str],
+        lines: &mut core::iter::Peekable<impl Iterator<Item = LogLine<'a>>>,
+    ) -> Result<Self, Error> {
+        let header = header(source, format, names, lines);
+        if header.fields.len() > MOST_COLUMNS {
+            let start = header.span.start;
+            return Err(too_many_columns(source, start..start, header.fields.len()));
+        }
+        let titles: Vec<&str> = match format.header {
+            true => header.fields.iter().map(|(_, text)| *text).collect(),
+            false => Vec::new(),
+        };
+        let index = |name: &str| match format.header {
+            true => index(source, format, &header, &titles, name),
+            false => number_of(source, format, &header, name),
+        };
+        let indices = names
+            .iter()
+            .map(|name| index(name))
+            .collect::<Result<Vec<usize>, Error>>()?;
+        let sensor = match &format.only {
+            Some(only) => Some(index(&only.column)?),
+            None => None,
+        };
+        for _ in 0..format.skip_rows {
+            lines.next();
+        }
+        Ok(Self {
+            header: header.span,
+            indices,
+            fields: header.fields.len(),
+            sensor,
+        })
+    }
+
+    /// Whether a line is a row of the sensor.
+    pub(crate) fn takes(
+        &self,
+        source: &SourceText,
+        format: &FileFormat,
+        line: &LogLine<'_>,
+    ) -> Result<bool, Error> {
+        if let (Some(index), Some(only)) = (self.sensor, &format.only)
+            && !is_of_sensor(line, index, only)
+        {
+            return Ok(false);
+        }
+        if line.fields.len() != self.fields {
+            return Err(self.field_count(source, format, line));
+        }
+        Ok(true)
+    }
+
+    /// The error of a file without rows.
+    pub(crate) fn no_rows(&self, source: &SourceText, format: &FileFormat) -> Error {
         let found = match &format.only {
             Some(only) => format!(
                 "no row with `{}` in the column `{}`",
@@ -88,15 +159,49 @@ pub fn read_described(
             ),
             None => "a header without rows".to_owned(),
         };
-        return Err(source.error(
+        source.error(
             InputErrorKind::TooFewRows,
-            header.span.start..header.span.start,
+            self.header.start..self.header.start,
             found,
             "samples",
             "check that the program that wrote the log had finished",
-        ));
+        )
     }
-    Ok(Columns { values, places })
+
+    fn field_count(&self, source: &SourceText, format: &FileFormat, line: &LogLine<'_>) -> Error {
+        let first = if format.header {
+            "the header"
+        } else {
+            "the first row"
+        };
+        if line.fields.len() < self.fields && source.ends_within_line(&line.span) {
+            return source.error(
+                InputErrorKind::FieldCount,
+                line.span.clone(),
+                format!(
+                    "a last line that is cut off, with {} fields",
+                    line.fields.len()
+                ),
+                format!("{} fields, as {first} has", self.fields),
+                "the file ends within this line, as if its writer or a copy was stopped: copy the file \
+                 again, or delete this line",
+            );
+        }
+        let advice = remedy::of_line(format, &source.text()[line.span.clone()]).unwrap_or_else(|| {
+            format!(
+                "decimal numbers have a point, and fields are separated by {}; `delimiter` in \
+                 `[file]` names others",
+                format.delimiter.description()
+            )
+        });
+        source.error(
+            InputErrorKind::FieldCount,
+            line.span.clone(),
+            format!("{} fields", line.fields.len()),
+            format!("{} fields, as {first} has", self.fields),
+            advice,
+        )
+    }
 }
 
 /// Columns of a file, with the text that errors can point into; binary files have none.
@@ -134,13 +239,14 @@ impl FileColumns {
         path: &Path,
         format: &FileFormat,
         names: &[&str],
+        dated: Option<usize>,
     ) -> Result<Self, InstrumentError> {
         match &format.binary {
             Some(binary) => Ok(Self {
                 values: read_binary(path, binary, format.only.as_ref(), names)?,
                 text: None,
             }),
-            None => Self::of_text(SourceText::read(path)?, format, names),
+            None => Self::of_text(SourceText::read(path)?, format, names, dated),
         }
     }
 
@@ -148,8 +254,9 @@ impl FileColumns {
         source: SourceText,
         format: &FileFormat,
         names: &[&str],
+        dated: Option<usize>,
     ) -> Result<Self, InstrumentError> {
-        let Columns { values, places } = read_described(&source, format, names)?;
+        let Columns { values, places } = read_dated(&source, format, names, dated)?;
         Ok(Self {
             values,
             text: Some((source, places)),
@@ -198,52 +305,17 @@ fn is_of_sensor(line: &LogLine<'_>, index: usize, only: &Only) -> bool {
     *text == only.equals || same_number().unwrap_or(false)
 }
 
-fn field_count(
-    source: &SourceText,
-    format: &FileFormat,
-    line: &LogLine<'_>,
-    header: &LogLine<'_>,
-) -> Error {
-    let first = if format.header {
-        "the header"
-    } else {
-        "the first row"
-    };
-    if line.fields.len() < header.fields.len() && source.ends_within_line(&line.span) {
-        return source.error(
-            InputErrorKind::FieldCount,
-            line.span.clone(),
-            format!(
-                "a last line that is cut off, with {} fields",
-                line.fields.len()
-            ),
-            format!("{} fields, as {first} has", header.fields.len()),
-            "the file ends within this line, as if its writer or a copy was stopped: copy the file \
-             again, or delete this line",
-        );
-    }
-    source.error(
-        InputErrorKind::FieldCount,
-        line.span.clone(),
-        format!("{} fields", line.fields.len()),
-        format!("{} fields, as {first} has", header.fields.len()),
-        format!(
-            "decimal numbers have a point, and fields are separated by {}; `delimiter` in `[file]` \
-             names others",
-            format.delimiter.description()
-        ),
-    )
-}
-
 /// Index of the column of a name.
 fn index(
     source: &SourceText,
+    format: &FileFormat,
     header: &LogLine<'_>,
     titles: &[&str],
     name: &str,
 ) -> Result<usize, Error> {
     let mut indices = (0..titles.len()).filter(|index| titles[*index] == name);
-    let advice = format!("the columns are {}", titles.join(", "));
+    let advice = remedy::of_line(format, &source.text()[header.span.clone()])
+        .unwrap_or_else(|| format!("the columns are {}", titles.join(", ")));
     let error = |found: String, expected: String| {
         let span = header.span.clone();
         source.error(InputErrorKind::Header, span, found, expected, &*advice)
@@ -263,7 +335,12 @@ fn index(
 }
 
 /// Index of a column of a file without header, by its number from one.
-fn number_of(source: &SourceText, first: &LogLine<'_>, name: &str) -> Result<usize, Error> {
+fn number_of(
+    source: &SourceText,
+    format: &FileFormat,
+    first: &LogLine<'_>,
+    name: &str,
+) -> Result<usize, Error> {
     let count = first.fields.len();
     match name.parse::<usize>() {
         Ok(number) if (1..=count).contains(&number) => Ok(number - 1),
@@ -272,20 +349,40 @@ fn number_of(source: &SourceText, first: &LogLine<'_>, name: &str) -> Result<usi
             first.span.clone(),
             format!("{count} columns without a header"),
             format!("a column `{name}`"),
-            format!("without a header columns are called \"1\" to \"{count}\""),
+            remedy::of_line(format, &source.text()[first.span.clone()]).unwrap_or_else(|| {
+                format!("without a header columns are called \"1\" to \"{count}\"")
+            }),
         )),
     }
 }
 
-fn number(source: &SourceText, (span, text): &(Range<usize>, &str)) -> Result<f64, Error> {
-    let number = text.parse::<f64>().ok();
+fn number(
+    source: &SourceText,
+    format: &FileFormat,
+    (span, text): &(Range<usize>, &str),
+) -> Result<f64, Error> {
+    let number = format.decimal.number(text);
     number.filter(|value| value.is_finite()).ok_or_else(|| {
         source.error(
             InputErrorKind::NotANumber,
             span.clone(),
             format!("`{}`", &source.text()[span.clone()]),
             "a finite number",
-            "cut the log before the first sample that is missing",
+            remedy::of_number(format, text).unwrap_or_else(|| {
+                "cut the log before the first sample that is missing".to_owned()
+            }),
+        )
+    })
+}
+
+fn date(source: &SourceText, (span, text): &(Range<usize>, &str)) -> Result<f64, Error> {
+    seconds_of(text).ok_or_else(|| {
+        source.error(
+            InputErrorKind::Time,
+            span.clone(),
+            format!("`{}`", &source.text()[span.clone()]),
+            "a date and time of RFC 3339",
+            "write 2026-03-01T12:00:00Z, with a fraction and an offset if there are any",
         )
     })
 }

@@ -4,50 +4,9 @@ use gyrocal_record::InputErrorKind;
 use serde::{Deserialize, Serialize};
 
 use crate::columns::FileColumns;
+use crate::description::Temperature;
+use crate::description::temperature::TemperatureUnit;
 use crate::error::{InstrumentError, Unfit};
-
-/// Temperature of the unit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct TemperatureColumn {
-    /// The column.
-    pub column: String,
-    /// Its unit.
-    pub unit: TemperatureUnit,
-}
-
-/// Units of a temperature.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum TemperatureUnit {
-    /// Degrees Celsius.
-    #[serde(rename = "C")]
-    Celsius,
-    /// Kelvin.
-    #[serde(rename = "K")]
-    Kelvin,
-    /// Degrees Fahrenheit.
-    #[serde(rename = "F")]
-    Fahrenheit,
-}
-
-impl TemperatureUnit {
-    fn celsius(self, value: f64) -> f64 {
-        match self {
-            Self::Celsius => value,
-            Self::Kelvin => value - 273.15,
-            Self::Fahrenheit => (value - 32.0) / 1.8,
-        }
-    }
-
-    const ALL: [(Self, &'static str); 3] = [
-        (Self::Celsius, "C"),
-        (Self::Kelvin, "K"),
-        (Self::Fahrenheit, "F"),
-    ];
-}
 
 /// Rate or angle of the turntable that carries the unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -117,6 +76,13 @@ impl TableColumn {
 /// Temperatures of units at work \[degrees Celsius\].
 const PLAUSIBLE_C: core::ops::RangeInclusive<f64> = -100.0..=250.0;
 
+/// Units and their names in a description.
+const UNITS: [(TemperatureUnit, &str); 3] = [
+    (TemperatureUnit::Celsius, "C"),
+    (TemperatureUnit::Kelvin, "K"),
+    (TemperatureUnit::Fahrenheit, "F"),
+];
+
 /// Temperatures of a laboratory or a vehicle, by which another unit is recognised.
 const USUAL_C: core::ops::RangeInclusive<f64> = -60.0..=130.0;
 
@@ -124,7 +90,7 @@ const USUAL_C: core::ops::RangeInclusive<f64> = -60.0..=130.0;
 pub(crate) fn temperatures_c(
     file: &FileColumns,
     values: &[f64],
-    column: &TemperatureColumn,
+    column: &Temperature,
 ) -> Result<Vec<f64>, InstrumentError> {
     let of = |value: &f64| column.unit.celsius(*value);
     let celsius: Vec<f64> = values.iter().map(of).collect();
@@ -134,7 +100,7 @@ pub(crate) fn temperatures_c(
     else {
         return Ok(celsius);
     };
-    let others = TemperatureUnit::ALL
+    let others = UNITS
         .iter()
         .filter(|(unit, _)| *unit != column.unit && USUAL_C.contains(&unit.celsius(values[row])));
     let others: Vec<String> = others

@@ -5,8 +5,16 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 use serde::{Deserialize, Serialize};
 
-use crate::covariates::{TableColumn, TemperatureColumn};
+use crate::covariates::TableColumn;
 use crate::file_format::FileFormat;
+
+pub mod temperature;
+pub mod time;
+pub mod units;
+
+pub use temperature::Temperature;
+pub use time::{Jitter, Time, TimeUnit};
+pub use units::{AccelUnit, CountScale, Estimate, GyroUnit};
 
 /// Columns, units and axes of a log: one description for all commands.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,50 +26,17 @@ pub struct Description {
     pub file: FileFormat,
     /// Times of the samples.
     pub time: Time,
-    /// The three gyros.
-    pub gyro: Gyro,
+    /// The three gyros; a record of a stable platform needs none.
+    pub gyro: Option<Gyro>,
     /// The three accelerometers.
     pub accel: Accel,
     /// Temperature of the unit.
-    pub temperature: Option<TemperatureColumn>,
+    pub temperature: Option<Temperature>,
     /// Rate or angle of the turntable that carries the unit.
     pub table: Option<TableColumn>,
     /// Site of the recording.
     #[serde(default)]
     pub site: Site,
-}
-
-/// Times of the samples: a column of time stamps, or a rate.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Time {
-    /// The column of time stamps.
-    pub column: Option<String>,
-    /// Seconds in one unit of that column.
-    #[serde(default = "one")]
-    pub unit_s: f64,
-    /// Samples a second, on a clock that is exact; in place of a column.
-    pub rate_hz: Option<f64>,
-    /// Meaning of time stamps that jitter.
-    #[serde(default)]
-    pub jitter: Jitter,
-}
-
-/// Meaning of time stamps that jitter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum Jitter {
-    /// Stamps of a computer that received samples of a steady clock: equal intervals, if no sample is
-    /// missing.
-    #[default]
-    Steady,
-    /// Times of samples, used as they are.
-    Use,
-    /// Times of samples, which are interpolated at equal intervals.
-    Resample,
 }
 
 /// The three gyros.
@@ -112,66 +87,6 @@ pub struct Site {
     pub latitude_deg: Option<f64>,
     /// Gravity in m/s², as used for the scale of the accelerometers.
     pub gravity_m_per_s2: Option<f64>,
-}
-
-/// Units of a rate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum GyroUnit {
-    /// rad/s
-    #[serde(rename = "rad/s")]
-    RadPerS,
-    /// deg/s
-    #[serde(rename = "deg/s")]
-    DegPerS,
-    /// deg/h
-    #[serde(rename = "deg/h")]
-    DegPerH,
-    /// Raw counts.
-    #[serde(rename = "counts")]
-    Counts,
-}
-
-/// Units of specific force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum AccelUnit {
-    /// m/s²
-    #[serde(rename = "m/s2")]
-    MetrePerS2,
-    /// Local gravity.
-    #[serde(rename = "g")]
-    G,
-    /// Raw counts.
-    #[serde(rename = "counts")]
-    Counts,
-}
-
-/// Scale of raw counts.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(untagged)]
-pub enum CountScale {
-    /// Counts per unit, the same for all axes.
-    Same(f64),
-    /// Counts per unit of each axis.
-    Each([f64; 3]),
-    /// Estimated from the recording.
-    Estimate(Estimate),
-}
-
-/// Source of an estimated scale.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Estimate {
-    /// Turns between stops.
-    #[serde(rename = "from-turns")]
-    FromTurns,
-    /// The norm of specific force at rest.
-    #[serde(rename = "from-stops")]
-    FromStops,
 }
 
 /// Direction of a body axis: a column and its sign.
@@ -284,16 +199,11 @@ impl Description {
             Some(CountScale::Each(values)) => values.into_iter().all(positive),
             Some(CountScale::Estimate(_)) | None => true,
         };
-        if self.time.column.is_some() == self.time.rate_hz.is_some() {
-            return Some(("[time]", "either `column` or `rate_hz`"));
+        if let Some(mistake) = self.time.mistake() {
+            return Some(mistake);
         }
-        if !self.time.rate_hz.is_none_or(positive) {
-            return Some(("rate_hz", "a positive number"));
-        }
-        if !positive(self.time.unit_s) {
-            return Some(("unit_s", "a positive number"));
-        }
-        if !count(self.gyro.counts_per_rad_per_s) {
+        let gyro = self.gyro.as_ref();
+        if !count(gyro.and_then(|gyro| gyro.counts_per_rad_per_s)) {
             return Some(("counts_per_rad_per_s", "positive numbers"));
         }
         if !count(self.accel.counts_per_g) {
@@ -311,18 +221,14 @@ impl Description {
         if !gravity.is_none_or(|gravity| (9.7..=9.9).contains(&gravity)) {
             return Some(("gravity_m_per_s2", "a number from 9.7 to 9.9"));
         }
-        if self.accel.unit == AccelUnit::MetrePerS2 && gravity.is_none() {
+        if self.accel.unit.needs_gravity() && gravity.is_none() {
             return Some((
                 "[accel]",
-                "`gravity_m_per_s2` in `[site]` with the unit m/s2",
+                "`gravity_m_per_s2` in `[site]` with the units m/s2 and ft/s2",
             ));
         }
         None
     }
-}
-
-fn one() -> f64 {
-    1.0
 }
 
 fn straight() -> [Direction; 3] {

@@ -52,6 +52,8 @@ pub enum Unfit {
     GyroScale,
     /// The scale of raw counts is missing.
     NoScale,
+    /// The log of an instrument test has no gyros.
+    NoGyros,
     /// The axes are left-handed, or those of gyros and accelerometers are not the same.
     Axes,
     /// The attitudes do not determine the unknowns.

@@ -14,6 +14,13 @@ pub struct FileFormat {
     /// Number of lines before the header, or before the first row. A preamble in front of a header that
     /// has the columns of the description needs none: it is passed over.
     pub skip_lines: usize,
+    /// Number of lines between the header and the first row, as one of units.
+    pub skip_rows: usize,
+    /// Decimal sign of the numbers.
+    pub decimal: Decimal,
+    /// Texts that stand for a missing value of an accelerometer or a temperature of a record, beside an empty
+    /// field and `nan`.
+    pub missing: Vec<String>,
     /// `false` for a file without a header: its columns are then called `"1"`, `"2"` and so on.
     pub header: bool,
     /// The rows of one sensor of a file with several.
@@ -28,6 +35,9 @@ impl Default for FileFormat {
             delimiter: Delimiter::Comma,
             comment: None,
             skip_lines: 0,
+            skip_rows: 0,
+            decimal: Decimal::Point,
+            missing: Vec::new(),
             header: true,
             only: None,
             binary: None,
@@ -49,6 +59,30 @@ pub enum Delimiter {
     Tab,
     /// One or more blanks or tabs.
     Space,
+    /// A vertical bar.
+    Bar,
+}
+
+/// Decimal sign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum Decimal {
+    /// A point.
+    #[default]
+    Point,
+    /// A comma. Fields that commas separate have to be in quotation marks then.
+    Comma,
+}
+
+impl Decimal {
+    /// The number of a text, infinities and `nan` included.
+    pub(crate) fn number(self, text: &str) -> Option<f64> {
+        match self {
+            Self::Comma if text.contains(',') => text.replacen(',', ".", 1).parse().ok(),
+            _ => text.parse().ok(),
+        }
+    }
 }
 
 impl Delimiter {
@@ -60,6 +94,7 @@ impl Delimiter {
             Self::Semicolon => "semicolons",
             Self::Tab => "tabs",
             Self::Space => "blanks",
+            Self::Bar => "vertical bars",
         }
     }
 }

@@ -4,6 +4,8 @@
 //!
 //! - [`Log`] and [`Description`]: samples of six sensors from a CSV file whose columns, units and axes a
 //!   TOML file describes.
+//! - [`read_record`] and [`average_file`]: the record of a stable platform from a described file of any such
+//!   format.
 //! - [`find_stops`] and [`stop_means`]: intervals at rest, and means over them with standard errors for
 //!   coloured noise.
 //! - [`accel_from_norm`] and [`gyro_from_turns`]: scales, zeros and alignment of raw counts, from the norm
@@ -55,6 +57,7 @@ mod binary_file;
 mod clock;
 mod columns;
 mod covariates;
+mod date_time;
 pub mod description;
 mod earth_rate;
 mod error;
@@ -64,7 +67,11 @@ mod least_squares;
 mod log;
 mod log_lines;
 pub mod multi_position;
+mod platform_average;
+mod platform_record;
+mod platform_row;
 pub mod rates;
+mod remedy;
 mod result_file;
 mod stop_means;
 mod stops;
@@ -75,11 +82,13 @@ pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positio
 pub use allan_analysis::{AllanColumn, AllanColumnPoint, AllanSettings, allan_columns, allan_log};
 pub use clock::Clock;
 pub use columns::{Columns, read_columns, read_described};
-pub use covariates::{TableColumn, TableUnit, TemperatureColumn, TemperatureUnit};
+pub use covariates::{TableColumn, TableUnit};
 pub use description::Description;
 pub use error::{InstrumentError, Unfit};
 pub use gyro_from_turns::{GyroCalibration, gyro_from_turns};
 pub use log::Log;
+pub use platform_average::{AveragedRecordFile, LONGEST_STREAMED_S, average_file};
+pub use platform_record::{parse_record, read_record};
 pub use result_file::ResultFile;
 pub use stop_means::{StopMeans, stop_means};
 pub use stops::{StopSettings, find_stops, given_stops};

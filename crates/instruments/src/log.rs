@@ -8,7 +8,8 @@ use gyrocal_statistics::median_interval_s;
 use crate::clock::{Clock, resampled, steady_clock};
 use crate::columns::FileColumns;
 use crate::covariates::{refuse_saturated, temperatures_c};
-use crate::description::{AccelUnit, CountScale, Description, Direction, GyroUnit, Jitter};
+use crate::description::time::WEEK_S;
+use crate::description::{CountScale, Description, Direction, Gyro, GyroUnit, Jitter};
 use crate::error::{InstrumentError, Unfit};
 
 /// Samples of six sensors; all vectors have the same length.
@@ -52,8 +53,8 @@ impl Log {
     /// [`InstrumentError::File`] at its place in the file; [`Unfit::Gap`], [`Unfit::Jitter`] and
     /// [`Unfit::NoScale`].
     pub fn read(path: &Path, description: &Description) -> Result<Self, InstrumentError> {
-        let names = names(description);
-        let file = FileColumns::read(path, &description.file, &names)?;
+        let names = names(description)?;
+        let file = FileColumns::read(path, &description.file, &names, dated(description))?;
         Self::from_columns(file, description)
     }
 
@@ -68,8 +69,8 @@ impl Log {
         description: &Description,
     ) -> Result<Self, InstrumentError> {
         let source = SourceText::new(text, name)?;
-        let names = names(description);
-        let file = FileColumns::of_text(source, &description.file, &names)?;
+        let names = names(description)?;
+        let file = FileColumns::of_text(source, &description.file, &names, dated(description))?;
         Self::from_columns(file, description)
     }
 
@@ -104,16 +105,22 @@ impl Log {
     }
 
     fn from_columns(file: FileColumns, description: &Description) -> Result<Self, InstrumentError> {
-        let gyro_scale = gyro_scale(description)?;
+        let gyro = gyro_of(description)?;
+        let gyro_scale = gyro_scale(gyro)?;
         let accel_scale = accel_scale(description)?;
         let columns = &file.values;
         let rows = columns.first().map_or(0, Vec::len);
         let mut others = columns[6..].iter();
         let stamps = description.time.column.as_ref().and(others.next());
+        let weeks = description.time.week_column.as_ref().and(others.next());
         let (time_s, clock) = match (stamps, description.time.rate_hz) {
             (Some(stamps), _) => {
-                let unit_s = description.time.unit_s;
-                let time_s: Vec<f64> = stamps.iter().map(|stamp| stamp * unit_s).collect();
+                let unit_s = description.time.numeric_unit_s();
+                let week_s = |row: usize| weeks.map_or(0.0, |weeks| weeks[row] * WEEK_S);
+                let stamps = stamps.iter().enumerate();
+                let time_s: Vec<f64> = stamps
+                    .map(|(row, stamp)| stamp * unit_s + week_s(row))
+                    .collect();
                 refuse_backwards(&file, &time_s)?;
                 (time_s, Clock::Stamps)
             }
@@ -133,7 +140,7 @@ impl Log {
         };
         let table = description.table.as_ref().zip(others.next());
         let table_rate = table.map(|(column, values)| column.rates(values, &time_s));
-        for (values, name) in columns.iter().zip(&description.gyro.columns) {
+        for (values, name) in columns.iter().zip(&gyro.columns) {
             refuse_saturated(&file, values, name)?;
         }
         let body = |first: usize, zero: f64, scale: [f64; 3], axes: [Direction; 3]| {
@@ -144,7 +151,7 @@ impl Log {
             };
             (0..rows).map(sample).collect::<Vec<[f64; 3]>>()
         };
-        let (gyro, accel) = (&description.gyro, &description.accel);
+        let accel = &description.accel;
         let log = Self {
             interval_s,
             gyro: body(
@@ -282,27 +289,42 @@ impl Log {
     }
 }
 
-/// Columns of the description: gyros, accelerometers, time, temperature, turntable.
-fn names(description: &Description) -> Vec<&str> {
-    let sensors = description.gyro.columns.iter();
+/// Columns of the description: gyros, accelerometers, time, GPS week, temperature, turntable.
+fn names(description: &Description) -> Result<Vec<&str>, InstrumentError> {
+    let sensors = gyro_of(description)?.columns.iter();
     let sensors = sensors.chain(&description.accel.columns);
     let mut names: Vec<&str> = sensors.map(String::as_str).collect();
     names.extend(description.time.column.as_deref());
+    names.extend(description.time.week_column.as_deref());
     let temperature = description.temperature.as_ref();
     names.extend(temperature.map(|column| column.column.as_str()));
-    names.extend(
-        description
-            .table
-            .as_ref()
-            .map(|table| table.column.as_str()),
-    );
-    names
+    let table = description.table.as_ref();
+    names.extend(table.map(|table| table.column.as_str()));
+    Ok(names)
+}
+
+/// Index among the columns of that with dates and times.
+fn dated(description: &Description) -> Option<usize> {
+    const TIME: usize = 6;
+    description.time.is_text().then_some(TIME)
+}
+
+fn gyro_of(description: &Description) -> Result<&Gyro, InstrumentError> {
+    description.gyro.as_ref().ok_or_else(|| {
+        InstrumentError::unfit(
+            Unfit::NoGyros,
+            "a description without `[gyro]`",
+            "the columns of three gyros",
+            "add `[gyro]` with `columns = [\"gx\", \"gy\", \"gz\"]` and `unit = \"deg/s\"` by the \
+             names and the unit of the log; only the record of a stable platform has no gyros",
+        )
+    })
 }
 
 /// Factor from counts above zero to rad/s; `None` if turns are to determine it.
-fn gyro_scale(description: &Description) -> Result<Option<[f64; 3]>, InstrumentError> {
+fn gyro_scale(gyro: &Gyro) -> Result<Option<[f64; 3]>, InstrumentError> {
     let per_hour = 1.0_f64.to_radians() / 3600.0;
-    match (description.gyro.unit, description.gyro.counts_per_rad_per_s) {
+    match (gyro.unit, gyro.counts_per_rad_per_s) {
         (GyroUnit::RadPerS, _) => Ok(Some([1.0; 3])),
         (GyroUnit::DegPerS, _) => Ok(Some([1.0_f64.to_radians(); 3])),
         (GyroUnit::DegPerH, _) => Ok(Some([per_hour; 3])),
@@ -312,15 +334,15 @@ fn gyro_scale(description: &Description) -> Result<Option<[f64; 3]>, InstrumentE
 }
 
 /// Factor from counts above zero to g; `None` if stops are to determine it.
-fn accel_scale(description: &Description) -> Result<Option<[f64; 3]>, InstrumentError> {
-    match (description.accel.unit, description.accel.counts_per_g) {
-        (AccelUnit::G, _) => Ok(Some([1.0; 3])),
-        (AccelUnit::MetrePerS2, _) => {
-            let gravity = description.site.gravity_m_per_s2.unwrap_or(f64::NAN);
-            Ok(Some([1.0 / gravity; 3]))
-        }
-        (AccelUnit::Counts, Some(scale)) => Ok(per_unit(scale)),
-        (AccelUnit::Counts, None) => Err(no_scale("accel", "counts_per_g", "from-stops")),
+pub(crate) fn accel_scale(description: &Description) -> Result<Option<[f64; 3]>, InstrumentError> {
+    let gravity = description.site.gravity_m_per_s2.unwrap_or(f64::NAN);
+    match (
+        description.accel.unit.in_g(gravity),
+        description.accel.counts_per_g,
+    ) {
+        (Some(factor), _) => Ok(Some([factor; 3])),
+        (None, Some(scale)) => Ok(per_unit(scale)),
+        (None, None) => Err(no_scale("accel", "counts_per_g", "from-stops")),
     }
 }
 

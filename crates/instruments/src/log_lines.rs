@@ -60,11 +60,23 @@ fn fields(line: &str, start: usize, delimiter: Delimiter) -> Vec<(Range<usize>, 
     };
     let one = |piece| (place(piece), unquoted(piece));
     match delimiter {
-        Delimiter::Comma => line.split(',').map(one).collect(),
-        Delimiter::Semicolon => line.split(';').map(one).collect(),
-        Delimiter::Tab => line.split('\t').map(one).collect(),
+        Delimiter::Comma => pieces(line, ',').map(one).collect(),
+        Delimiter::Semicolon => pieces(line, ';').map(one).collect(),
+        Delimiter::Tab => pieces(line, '\t').map(one).collect(),
+        Delimiter::Bar => pieces(line, '|').map(one).collect(),
         Delimiter::Space => line.split_whitespace().map(one).collect(),
     }
+}
+
+/// Pieces between delimiters that stand outside of quotation marks. A mark that never closes holds
+/// nothing together.
+fn pieces(line: &str, delimiter: char) -> impl Iterator<Item = &str> {
+    let are_paired = line.matches('"').count() % 2 == 0;
+    let mut within = false;
+    line.split(move |sign: char| {
+        within ^= are_paired && sign == '"';
+        sign == delimiter && !within
+    })
 }
 
 fn unquoted(piece: &str) -> &str {

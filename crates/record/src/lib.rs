@@ -55,6 +55,7 @@
 
 mod bench;
 mod bound;
+mod content;
 mod document;
 mod error;
 mod excerpt;
@@ -81,6 +82,7 @@ mod white_noise;
 
 pub use bench::{Bench, Prior};
 pub use bound::Bound;
+pub use content::open_content;
 pub use document::Document;
 pub use error::{Error, InputError, InputErrorKind};
 pub use gimbals::GimbalLimits;

@@ -54,6 +54,23 @@ impl RecordFile {
         })
     }
 
+    /// Takes a record that was read from a text of another format, with the places of its rows and of its
+    /// header.
+    #[must_use]
+    pub fn of_rows(
+        record: Record,
+        source: SourceText,
+        places: Vec<Range<usize>>,
+        header: Range<usize>,
+    ) -> Self {
+        Self {
+            record,
+            source,
+            places,
+            header,
+        }
+    }
+
     /// Takes a record in memory as if it stood in a file; errors call it `name`. Its rows have no lines;
     /// those of errors are the lines that its rows would have after a header.
     #[must_use]

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use crate::content::read_content;
 use crate::error::{Error, InputError, InputErrorKind};
 use crate::excerpt::Excerpt;
 use crate::printable::bounded;
@@ -12,21 +13,34 @@ use crate::printable::bounded;
 pub struct SourceText {
     name: String,
     text: String,
+    /// Lines of the file before the text.
+    lines_before: usize,
 }
 
 impl SourceText {
-    /// Reads a file as UTF-8 text.
+    /// Reads a file as UTF-8 text; gzip and Zstandard are decompressed.
     ///
     /// # Errors
     ///
     /// [`Error::Unreadable`] if the operating system refuses, [`Error::Input`] if the file has
     /// no content or is not UTF-8.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let bytes = std::fs::read(path).map_err(|reason| Error::Unreadable {
-            path: path.to_owned(),
-            reason,
-        })?;
-        Self::from_bytes(bytes, &path.display().to_string())
+        Self::from_bytes(read_content(path)?, &path.display().to_string())
+    }
+
+    /// Takes a block of whole lines out of a file, which has `lines_before` lines in front of it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if it is not UTF-8.
+    pub fn of_block(bytes: Vec<u8>, name: &str, lines_before: usize) -> Result<Self, Error> {
+        let text = String::from_utf8(bytes)
+            .map_err(|error| not_utf8(error.as_bytes(), name, lines_before))?;
+        Ok(Self {
+            name: name.to_owned(),
+            text: text.trim_start_matches('\u{feff}').to_owned(),
+            lines_before,
+        })
     }
 
     /// Takes the content of a file as UTF-8 text.
@@ -37,7 +51,7 @@ impl SourceText {
     pub fn from_bytes(bytes: Vec<u8>, name: &str) -> Result<Self, Error> {
         let text = match String::from_utf8(bytes) {
             Ok(text) => text,
-            Err(error) => return Err(not_utf8(error.as_bytes(), name)),
+            Err(error) => return Err(not_utf8(error.as_bytes(), name, 0)),
         };
         Self::new(&text, name)
     }
@@ -52,6 +66,7 @@ impl SourceText {
         let source = Self {
             name: name.to_owned(),
             text: text.to_owned(),
+            lines_before: 0,
         };
         if text.trim().is_empty() {
             return Err(source.error(
@@ -70,6 +85,7 @@ impl SourceText {
         Self {
             name: name.to_owned(),
             text: String::new(),
+            lines_before: 0,
         }
     }
 
@@ -92,7 +108,7 @@ impl SourceText {
         // A carriage return ends a line too unless a line feed follows.
         let ends = before.match_indices(['\n', '\r']);
         let ends = ends.filter(|(at, end)| *end == "\n" || !self.text[at + 1..].starts_with('\n'));
-        let (mut line, mut line_start) = (1, 0);
+        let (mut line, mut line_start) = (self.lines_before + 1, 0);
         for (at, _) in ends {
             (line, line_start) = (line + 1, at + 1);
         }
@@ -154,7 +170,7 @@ pub(crate) fn quoted(text: &str) -> String {
 }
 
 /// The bytes before the first wrong one are valid, so offsets into the lossy text are right.
-fn not_utf8(bytes: &[u8], name: &str) -> Error {
+fn not_utf8(bytes: &[u8], name: &str, lines_before: usize) -> Error {
     let offset = match std::str::from_utf8(bytes) {
         Ok(text) => text.len(),
         Err(error) => error.valid_up_to(),
@@ -165,12 +181,13 @@ fn not_utf8(bytes: &[u8], name: &str) -> Error {
     let source = SourceText {
         name: name.to_owned(),
         text: String::from_utf8_lossy(bytes).into_owned(),
+        lines_before,
     };
     source.error(
         InputErrorKind::NotUtf8,
         offset..offset,
         found,
         "UTF-8 text",
-        "save the file as UTF-8; spreadsheets and compressed or binary files are not read",
+        "save the file as UTF-8; spreadsheets and binary files are not read, but for Parquet",
     )
 }

@@ -1,0 +1,261 @@
+//! Records of a stable platform from files of any format that a description describes.
+
+use std::path::Path;
+
+use gyrocal_record::{InputErrorKind, Record, RecordFile, SourceText};
+use gyrocal_statistics::median_interval_s;
+
+use crate::columns::Selection;
+use crate::description::{Description, Jitter};
+use crate::error::InstrumentError;
+use crate::file_format::FileFormat;
+use crate::log_lines::{LogLine, log_lines};
+use crate::platform_row::{Cell, PlatformRow};
+
+/// Intervals longer than this many median ones are gaps, which are not interpolated.
+const GAP: f64 = 1.5;
+
+/// Reads the record of a stable platform from a file of a described format: time, three accelerometers and
+/// the temperature, if there is one. Values are as they stand, as of [`RecordFile::read`]; a check of the
+/// set-up follows.
+///
+/// # Errors
+///
+/// [`InstrumentError::File`] at its place, with the line that the description lacks where that is plain.
+pub fn read_record(path: &Path, description: &Description) -> Result<RecordFile, InstrumentError> {
+    #[cfg(feature = "parquet")]
+    if crate::parquet_file::is_one(path)? {
+        let (record, name) = crate::parquet_file::read_record(path, description)?;
+        return Ok(RecordFile::of_record(finished(record, description), &name));
+    }
+    #[cfg(not(feature = "parquet"))]
+    refuse_parquet(path)?;
+    parse_record(SourceText::read(path)?, description)
+}
+
+/// Parses the text of a record.
+///
+/// # Errors
+///
+/// As of [`read_record`].
+pub fn parse_record(
+    source: SourceText,
+    description: &Description,
+) -> Result<RecordFile, InstrumentError> {
+    let mut reader = RowReader::new(description)?;
+    let mut record = Record::default();
+    let mut places = Vec::new();
+    reader.read(&source, |row, line| {
+        row.push_to(&mut record);
+        places.push(line.span);
+        Ok(())
+    })?;
+    let header = match &reader.selection {
+        Some(selection) if record.is_empty() => {
+            return Err(selection.no_rows(&source, reader.format()).into());
+        }
+        Some(selection) => selection.header.clone(),
+        None => 0..0,
+    };
+    let rows = record.len();
+    let record = finished(record, description);
+    if record.len() != rows || description.time.jitter == Jitter::Resample {
+        return Ok(RecordFile::of_record(record, source.name()));
+    }
+    Ok(RecordFile::of_rows(record, source, places, header))
+}
+
+/// Rows of the text of a record, which may come in blocks of whole lines.
+#[derive(Debug)]
+pub(crate) struct RowReader<'a> {
+    description: &'a Description,
+    row: PlatformRow<'a>,
+    selection: Option<Selection>,
+    later: FileFormat,
+    rows: usize,
+}
+
+impl<'a> RowReader<'a> {
+    pub(crate) fn new(description: &'a Description) -> Result<Self, InstrumentError> {
+        Ok(Self {
+            description,
+            row: PlatformRow::new(description)?,
+            selection: None,
+            later: FileFormat {
+                skip_lines: 0,
+                ..description.file.clone()
+            },
+            rows: 0,
+        })
+    }
+
+    fn format(&self) -> &'a FileFormat {
+        &self.description.file
+    }
+
+    /// Hands each row of the next block to `take`.
+    pub(crate) fn read(
+        &mut self,
+        source: &SourceText,
+        mut take: impl FnMut(Row, LogLine<'_>) -> Result<(), InstrumentError>,
+    ) -> Result<(), InstrumentError> {
+        let format = self.format();
+        let first = self.selection.is_none();
+        let later = self.later.clone();
+        let mut lines = log_lines(source, if first { format } else { &later }).peekable();
+        let selection = match self.selection.take() {
+            Some(selection) => selection,
+            None => Selection::find(source, format, self.row.names(), &mut lines)?,
+        };
+        for line in lines {
+            if !selection.takes(source, format, &line)? {
+                continue;
+            }
+            let fields: Vec<Cell<'_>> = selection
+                .indices
+                .iter()
+                .map(|index| Cell::Text(line.fields[*index].1))
+                .collect();
+            let row = self.row.of(&fields, self.rows).map_err(|fault| {
+                let (span, text) = &line.fields[selection.indices[fault.column]];
+                source.error(
+                    fault.kind,
+                    span.clone(),
+                    match text.is_empty() {
+                        true => "an empty field".to_owned(),
+                        false => format!("`{text}`"),
+                    },
+                    fault.expected,
+                    fault.advice,
+                )
+            })?;
+            self.rows += 1;
+            take(row, line)?;
+        }
+        self.selection = Some(selection);
+        Ok(())
+    }
+}
+
+/// One row of a record.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    pub(crate) time_s: f64,
+    pub(crate) accel_g: [f64; 3],
+    /// `NaN` where it is missing.
+    pub(crate) temperature_c: Option<f64>,
+}
+
+impl Row {
+    pub(crate) fn push_to(self, record: &mut Record) {
+        record.time_s.push(self.time_s);
+        record.accel_g.push(self.accel_g);
+        if let Some(temperature_c) = self.temperature_c {
+            record
+                .temperature_c
+                .get_or_insert_default()
+                .push(temperature_c);
+        }
+    }
+}
+
+/// The record with temperatures between those logged, and at equal intervals if that is described.
+pub(crate) fn finished(mut record: Record, description: &Description) -> Record {
+    if let Some(column) = &mut record.temperature_c {
+        fill(&record.time_s, column);
+        if column.iter().any(|value| value.is_nan()) {
+            record.temperature_c = None;
+        }
+    }
+    match description.time.jitter {
+        Jitter::Resample => resampled(&record),
+        _ => record,
+    }
+}
+
+/// Interpolates missing values between their neighbours; before the first and after the last they are as
+/// those.
+fn fill(time_s: &[f64], column: &mut [f64]) {
+    let known: Vec<usize> = (0..column.len()).filter(|row| !column[*row].is_nan()).collect();
+    let (Some(first), Some(last)) = (known.first(), known.last()) else {
+        return;
+    };
+    let (at_first, at_last) = (column[*first], column[*last]);
+    column[..*first].fill(at_first);
+    column[*last..].fill(at_last);
+    for pair in known.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        for row in from + 1..to {
+            let share = (time_s[row] - time_s[from]) / (time_s[to] - time_s[from]);
+            column[row] = column[from] + share * (column[to] - column[from]);
+        }
+    }
+}
+
+/// The record interpolated at equal intervals; within gaps components are missing.
+fn resampled(record: &Record) -> Record {
+    let interval_s = median_interval_s(&record.time_s);
+    let rises = record.time_s.windows(2).all(|pair| pair[0] < pair[1]);
+    if !(rises && interval_s > 0.0) {
+        // A check of the set-up tells what is wrong with the times.
+        return record.clone();
+    }
+    let first_s = record.time_s[0];
+    let count = (record.duration_s() / interval_s + 1e-9) as usize + 1;
+    let mut even = Record::default();
+    let mut at = 0;
+    for sample in 0..count {
+        let time_s = first_s + sample as f64 * interval_s;
+        while at + 2 < record.len() && record.time_s[at + 1] < time_s {
+            at += 1;
+        }
+        let length_s = record.time_s[at + 1] - record.time_s[at];
+        let share = (time_s - record.time_s[at]) / length_s;
+        let between = |from: f64, to: f64| match share {
+            0.0 => from,
+            1.0 => to,
+            _ => from + share * (to - from),
+        };
+        let is_gap = length_s > GAP * interval_s && share > 0.0 && share < 1.0;
+        let accel = |axis: usize| match is_gap {
+            true => f64::NAN,
+            false => between(record.accel_g[at][axis], record.accel_g[at + 1][axis]),
+        };
+        let row = Row {
+            time_s,
+            accel_g: [accel(0), accel(1), accel(2)],
+            temperature_c: record
+                .temperature_c
+                .as_ref()
+                .map(|column| between(column[at], column[at + 1])),
+        };
+        row.push_to(&mut even);
+    }
+    even
+}
+
+/// Refuses Parquet where its reader is not built in.
+#[cfg(not(feature = "parquet"))]
+fn refuse_parquet(path: &Path) -> Result<(), InstrumentError> {
+    use std::io::Read as _;
+    let mut first = Vec::new();
+    let opened = gyrocal_record::open_content(path)?;
+    if opened.take(4).read_to_end(&mut first).is_ok() && first == b"PAR1" {
+        return Err(InstrumentError::unfit(
+            crate::Unfit::Binary,
+            format!("{}: a file of Parquet", path.display()),
+            "text, as this program was built without Parquet",
+            "build it with `cargo install gyrocal-cli --features parquet`, or write the log as CSV",
+        ));
+    }
+    Ok(())
+}
+
+/// What is wrong with a cell.
+pub(crate) struct Fault {
+    /// Its column, by the order of [`PlatformRow::names`].
+    pub(crate) column: usize,
+    pub(crate) kind: InputErrorKind,
+    pub(crate) expected: &'static str,
+    pub(crate) advice: String,
+}

@@ -1,0 +1,171 @@
+//! One row of a stable platform's record from the cells of a described file.
+
+use gyrocal_record::InputErrorKind;
+
+use crate::date_time::seconds_of;
+use crate::description::time::WEEK_S;
+use crate::description::{Accel, Description};
+use crate::error::{InstrumentError, Unfit};
+use crate::log::accel_scale;
+use crate::platform_record::{Fault, Row};
+use crate::remedy;
+
+/// A cell of a file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Cell<'a> {
+    /// A text.
+    Text(&'a str),
+    /// A number of a typed column.
+    #[cfg(feature = "parquet")]
+    Number(f64),
+    /// A time stamp of a typed column, s.
+    #[cfg(feature = "parquet")]
+    Seconds(f64),
+    /// A missing value of a typed column.
+    #[cfg(feature = "parquet")]
+    Missing,
+}
+
+/// Columns of a row and their conversion.
+#[derive(Debug)]
+pub(crate) struct PlatformRow<'a> {
+    description: &'a Description,
+    scale: [f64; 3],
+    names: Vec<&'a str>,
+    time: Option<usize>,
+    week: Option<usize>,
+    temperature: Option<usize>,
+}
+
+impl<'a> PlatformRow<'a> {
+    pub(crate) fn new(description: &'a Description) -> Result<Self, InstrumentError> {
+        let mut names: Vec<&str> = Vec::new();
+        names.extend(description.accel.columns.iter().map(String::as_str));
+        let mut also = |name: Option<&'a String>| {
+            let name = name?;
+            names.push(name);
+            Some(names.len() - 1)
+        };
+        let time = also(description.time.column.as_ref());
+        let week = also(description.time.week_column.as_ref());
+        let temperature = also(description.temperature.as_ref().map(|it| &it.column));
+        let scale = accel_scale(description)?.ok_or_else(|| {
+            InstrumentError::unfit(
+                Unfit::NoScale,
+                "`counts_per_g = \"from-stops\"` for a record of a stable platform",
+                "counts per g",
+                "give the number of `counts_per_g`: only the log of a six-sensor unit in many attitudes \
+                 determines it",
+            )
+        })?;
+        Ok(Self {
+            description,
+            scale,
+            names,
+            time,
+            week,
+            temperature,
+        })
+    }
+
+    /// Names of the columns: accelerometers, time, week, temperature.
+    pub(crate) fn names(&self) -> &[&'a str] {
+        &self.names
+    }
+
+    /// The row of some cells, which has this number from 0.
+    pub(crate) fn of(&self, cells: &[Cell<'_>], row: usize) -> Result<Row, Fault> {
+        let mut raw = [0.0; 3];
+        for (axis, value) in raw.iter_mut().enumerate() {
+            *value = (self.value(cells, axis, row)? - self.accel().zero_counts) * self.scale[axis];
+        }
+        let temperature_c = match (self.temperature, &self.description.temperature) {
+            (Some(column), Some(temperature)) => {
+                Some(temperature.unit.celsius(self.value(cells, column, row)?))
+            }
+            _ => None,
+        };
+        Ok(Row {
+            time_s: self.time_s(cells, row)?,
+            accel_g: self.accel().axes.map(|direction| direction.of(raw)),
+            temperature_c,
+        })
+    }
+
+    fn accel(&self) -> &'a Accel {
+        &self.description.accel
+    }
+
+    fn time_s(&self, cells: &[Cell<'_>], row: usize) -> Result<f64, Fault> {
+        let time = &self.description.time;
+        let Some(column) = self.time else {
+            return Ok(row as f64 / time.rate_hz.unwrap_or(1.0));
+        };
+        let format = &self.description.file;
+        let fault = |column: usize, expected: &'static str, advice: Option<String>| Fault {
+            column,
+            kind: InputErrorKind::Time,
+            expected,
+            advice: advice.unwrap_or_default(),
+        };
+        let number = |column: usize| match cells[column] {
+            Cell::Text(text) => {
+                let number = format.decimal.number(text).filter(|value| value.is_finite());
+                number.ok_or_else(|| {
+                    fault(column, "a time in numbers", remedy::of_time(format, text))
+                })
+            }
+            #[cfg(feature = "parquet")]
+            Cell::Number(value) if value.is_finite() => Ok(value),
+            #[cfg(feature = "parquet")]
+            _ => Err(fault(column, "a time in every row", None)),
+        };
+        match cells[column] {
+            #[cfg(feature = "parquet")]
+            Cell::Seconds(seconds) => return Ok(seconds),
+            Cell::Text(text) if time.is_text() => {
+                return seconds_of(text).ok_or_else(|| {
+                    let advice = "write 2026-03-01T12:00:00Z, with a fraction and an offset if there \
+                                  are any";
+                    fault(column, "a date and time of RFC 3339", Some(advice.to_owned()))
+                });
+            }
+            _ => {}
+        }
+        let week_s = match self.week {
+            Some(week) => number(week)? * WEEK_S,
+            None => 0.0,
+        };
+        Ok(number(column)? * time.numeric_unit_s() + week_s)
+    }
+
+    /// A value; `NaN` if it is missing.
+    fn value(&self, cells: &[Cell<'_>], column: usize, row: usize) -> Result<f64, Fault> {
+        let format = &self.description.file;
+        match cells[column] {
+            Cell::Text(text) => {
+                if text.is_empty() || format.missing.iter().any(|missing| missing == text) {
+                    return Ok(f64::NAN);
+                }
+                let number = format.decimal.number(text);
+                number.filter(|value| !value.is_infinite()).ok_or_else(|| Fault {
+                    column,
+                    kind: InputErrorKind::NotANumber,
+                    expected: "a finite number, or an empty field for a missing one",
+                    advice: remedy::of_value(format, text, row).unwrap_or_default(),
+                })
+            }
+            #[cfg(feature = "parquet")]
+            Cell::Number(value) => Ok(value),
+            #[cfg(feature = "parquet")]
+            Cell::Missing => Ok(f64::NAN),
+            #[cfg(feature = "parquet")]
+            Cell::Seconds(_) => Err(Fault {
+                column,
+                kind: InputErrorKind::WrongType,
+                expected: "a column of numbers",
+                advice: String::new(),
+            }),
+        }
+    }
+}
