@@ -67,6 +67,8 @@ mod least_squares;
 mod log;
 mod log_lines;
 pub mod multi_position;
+#[cfg(feature = "parquet")]
+mod parquet_file;
 mod platform_average;
 mod platform_record;
 mod platform_row;

@@ -50,6 +50,18 @@ pub fn average_file(
         ));
     }
     let name = path.display().to_string();
+    #[cfg(feature = "parquet")]
+    if crate::parquet_file::is_one(path)? {
+        let mut means = Means::new(interval_s);
+        crate::parquet_file::for_each_row(path, description, |row| {
+            means.add(row).map_err(|last_s| {
+                let found = format!("{name}: time {} s after {last_s} s", row.time_s);
+                let advice = "sort the rows by time";
+                InstrumentError::unfit(Unfit::Jitter, found, "times that rise", advice)
+            })
+        })?;
+        return means.file(&name, description);
+    }
     let mut content = open_content(path)?;
     let mut reader = RowReader::new(description)?;
     let mut means = Means::new(interval_s);
@@ -75,19 +87,7 @@ pub fn average_file(
             })
         })?;
     }
-    let (record, rows) = means.end();
-    if rows == 0 {
-        return Err(InstrumentError::unfit(
-            Unfit::TooShort,
-            format!("{name}: no rows"),
-            "samples",
-            "check that the program that wrote the log had finished",
-        ));
-    }
-    Ok(AveragedRecordFile {
-        record: finished(record, description),
-        rows,
-    })
+    means.file(&name, description)
 }
 
 /// The next whole lines; `None` after the last.
@@ -157,9 +157,24 @@ impl Means {
         Ok(())
     }
 
-    fn end(mut self) -> (Record, usize) {
+    fn file(
+        mut self,
+        name: &str,
+        description: &Description,
+    ) -> Result<AveragedRecordFile, InstrumentError> {
         self.group.push_to(&mut self.record);
-        (self.record, self.rows)
+        if self.rows == 0 {
+            return Err(InstrumentError::unfit(
+                Unfit::TooShort,
+                format!("{name}: no rows"),
+                "samples",
+                "check that the program that wrote the log had finished",
+            ));
+        }
+        Ok(AveragedRecordFile {
+            record: finished(self.record, description),
+            rows: self.rows,
+        })
     }
 }
 

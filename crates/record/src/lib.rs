@@ -71,6 +71,7 @@ mod printable;
 mod record;
 mod record_file;
 mod report;
+mod result_table;
 mod rows;
 mod setup;
 mod site;
@@ -99,6 +100,7 @@ pub use report::{
     OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport, SiteReport, TrueCoefficient, TurnOn,
     UndeterminedReport,
 };
+pub use result_table::ResultTable;
 pub use setup::SetupProblem;
 pub use site::{Gravity, Site, SiteUncertainty};
 pub use source::SourceText;
