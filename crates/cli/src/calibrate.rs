@@ -30,7 +30,7 @@ use crate::numbers::positive;
 use crate::outputs;
 use crate::page;
 use crate::progress::Progress;
-use crate::{Answer, Failure, exit};
+use crate::{Answer, Failure, exit, records};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
 use inputs::Measurement;
@@ -52,9 +52,14 @@ pub(crate) struct CalibrateArguments {
     /// examples/data/three_days.bench.toml is one.
     #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
     benches: Vec<PathBuf>,
+    #[command(flatten)]
+    map: records::Map,
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+    /// Write the coefficients as a table: CSV, or Parquet if the name ends in .parquet.
+    #[arg(long, value_name = "OUT.csv")]
+    coefficients: Option<PathBuf>,
     #[arg(long, value_name = "OUT.html", help = page::HELP)]
     report: Option<PathBuf>,
     /// Average fast records over intervals of this length, 600 s at most: quicker, and without loss
@@ -190,12 +195,14 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         .chain(&arguments.benches)
         .chain(&arguments.gyro_axes)
         .map(PathBuf::as_path)
+        .chain(arguments.map.path())
         .collect();
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let json_output = ("--json", arguments.json.as_deref());
-    page::check(&inputs, &[json_output], arguments.report.as_deref(), None)?;
-    let (records, benches) = (&arguments.records, &arguments.benches);
-    let measurements = inputs::read(records, benches, arguments.average, arguments.kind())?;
+    let table = ("--coefficients", arguments.coefficients.as_deref());
+    page::check(&inputs, &[json_output, table], arguments.report.as_deref(), None)?;
+    outputs::refuse_unwritable(&[arguments.coefficients.as_deref()], None)?;
+    let measurements = inputs::read(arguments)?;
     if measurements.iter().any(|measurement| measurement.stops) {
         return Err(stopped(arguments, &measurements, &inputs)?.into());
     }
@@ -233,7 +240,8 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     };
     let mut answer = Answer::of(screen::first(&found), prose::summary(&found));
     let mut outputs = Outputs::new();
-    if arguments.json.is_some() || arguments.report.is_some() {
+    let asked = [&arguments.json, &arguments.report, &arguments.coefficients];
+    if asked.into_iter().any(Option::is_some) {
         let report = json::report(&found, &inputs)?;
         if let Some(path) = &arguments.report {
             over_time::stage(path, &report, &found, &options, &mut outputs)?;
@@ -242,6 +250,9 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         if let Some(path) = &arguments.json {
             outputs.stage_json(path, &report)?;
         }
+        let path = arguments.coefficients.as_deref();
+        let table = || report.coefficient_table();
+        records::stage(path, table, "the coefficients", &mut outputs, &mut answer)?;
     }
     outputs.commit()?;
     if let Some(path) = &arguments.json {

@@ -40,9 +40,17 @@ pub(crate) struct DiagnoseArguments {
     /// The bench description (TOML), one for all records or one for each, in their order.
     #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
     benches: Vec<PathBuf>,
+    #[command(flatten)]
+    map: records::Map,
     /// The result to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+    /// Write the findings as a table: CSV, or Parquet if the name ends in .parquet.
+    #[arg(long, value_name = "OUT.csv")]
+    findings: Option<PathBuf>,
+    /// Write the coefficients of the nominal and of the extended model as such a table.
+    #[arg(long, value_name = "OUT.csv")]
+    coefficients: Option<PathBuf>,
     /// A later record of the same platform (CSV), to be predicted with the nominal and with the
     /// extended model.
     #[arg(long, value_name = "LATER.csv", requires = "validate_bench")]
@@ -110,9 +118,9 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         return several::run(arguments, &inputs);
     };
     let bench = Bench::read(bench_path)?;
-    let file = records::read(record)?;
+    let file = arguments.map.read(record)?;
     let later = match (&arguments.validate, &arguments.validate_bench) {
-        (Some(path), Some(bench)) => Some((path, records::read(path)?, Bench::read(bench)?)),
+        (Some(path), Some(bench)) => Some((path, arguments.map.read(path)?, Bench::read(bench)?)),
         _ => None,
     };
     let rows = file.record().len();
@@ -178,6 +186,7 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
         .chain(&arguments.validate)
         .chain(&arguments.validate_bench)
         .map(PathBuf::as_path)
+        .chain(arguments.map.path())
         .collect();
     outputs::check(
         &inputs,
@@ -186,7 +195,11 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
     )?;
     let json = ("--json", arguments.json.as_deref());
     let (report, figures) = (arguments.report.as_deref(), arguments.figures.as_deref());
-    page::check(&inputs, &[json], report, figures)?;
+    let findings = arguments.findings.as_deref();
+    let coefficients = arguments.coefficients.as_deref();
+    let others = [json, ("--findings", findings), ("--coefficients", coefficients)];
+    page::check(&inputs, &others, report, figures)?;
+    outputs::refuse_unwritable(&[findings, coefficients], figures)?;
     if let Some(later) = &arguments.validate
         && arguments
             .records
@@ -254,9 +267,25 @@ fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answe
         outputs.stage_json(path, result)?;
         answer.wrote(path, "the result for programs");
     }
+    stage_tables(arguments, result, &mut outputs, &mut answer)?;
     outputs.commit()?;
     answer.exit_code = exit_code(arguments, result.verdict);
     Ok(answer)
+}
+
+/// Stages the tables of findings and coefficients that are asked for.
+fn stage_tables(
+    arguments: &DiagnoseArguments,
+    result: &DiagnosisResult,
+    outputs: &mut Outputs,
+    answer: &mut Answer,
+) -> Result<(), Failure> {
+    let findings = || result.finding_table();
+    let path = arguments.findings.as_deref();
+    records::stage(path, findings, "the findings", outputs, answer)?;
+    let coefficients = || result.coefficient_table();
+    let path = arguments.coefficients.as_deref();
+    records::stage(path, coefficients, "the coefficients", outputs, answer)
 }
 
 /// The exit code of a verdict, if it was asked for.

@@ -1,7 +1,8 @@
-//! `gyrocal import strapdown`: record and bench description of an analytic platform from the log of
-//! a strapdown unit at rest.
+//! `gyrocal import`: records from the files of other programs and instruments. `import strapdown` makes the
+//! record and bench description of an analytic platform from the log of a strapdown unit at rest.
 
 mod screen;
+mod table;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -25,6 +26,7 @@ pub(crate) struct ImportArguments {
 
 #[derive(Debug, Subcommand)]
 enum Kind {
+    Csv(table::TableArguments),
     Strapdown(StrapdownArguments),
 }
 
@@ -85,6 +87,7 @@ struct StrapdownArguments {
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &ImportArguments) -> Result<Answer, Failure> {
     match &arguments.kind {
+        Kind::Csv(arguments) => table::run(arguments),
         Kind::Strapdown(arguments) => strapdown(arguments),
     }
 }

@@ -35,6 +35,8 @@ pub(crate) struct PlanArguments {
     /// The bench description (TOML).
     #[arg(long, value_name = "BENCH.toml")]
     bench: PathBuf,
+    #[command(flatten)]
+    map: records::Map,
     /// Result of `gyrocal diagnose --json` for this record; without it the record is diagnosed.
     #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["effects", "false_alarm"])]
     diagnosis: Option<PathBuf>,
@@ -89,12 +91,13 @@ const DIAGNOSED: f64 = 0.5;
 pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
     inputs.extend(arguments.diagnosis.as_deref());
+    inputs.extend(arguments.map.path());
     refuse_repeated(&arguments.limits)?;
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let json = ("--json", arguments.json.as_deref());
     page::check(&inputs, &[json], arguments.report.as_deref(), None)?;
     let bench = Bench::read(&arguments.bench)?;
-    let file = records::read(&arguments.record)?;
+    let file = arguments.map.read(&arguments.record)?;
     let rows = file.record().len();
     tracing::info!(rows, "read");
     let mut progress = Progress::waiting("planning", rows);

@@ -1,16 +1,50 @@
-//! Records as they stand in their files.
+//! Records as they stand in their files, and tables of results.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use gyrocal_record::{Error, RecordFile};
+use clap::Args;
+use gyrocal_instruments::{Description, read_any};
+use gyrocal_record::{Outputs, RecordFile, ResultTable};
 
-use crate::terminal;
+use crate::measured::unusable;
+use crate::{Answer, Failure, terminal};
 
-/// Reads a record; warns of a last line that seems cut off.
-pub(crate) fn read(path: &Path) -> Result<RecordFile, Error> {
-    let file = RecordFile::read(path)?;
-    if let Some(note) = file.cut_note() {
-        terminal::warn(&note);
+/// The map of records in other formats.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct Map {
+    /// Map of records with other columns, units or separators (TOML); docs/formats.md has every key.
+    #[arg(long, value_name = "MAP.toml")]
+    columns: Option<PathBuf>,
+}
+
+impl Map {
+    /// Its file, if there is one.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        self.columns.as_deref()
     }
-    Ok(file)
+
+    /// Reads a record; warns of a last line that seems cut off.
+    pub(crate) fn read(&self, path: &Path) -> Result<RecordFile, Failure> {
+        let description = self.path().map(Description::read).transpose()?;
+        let file = read_any(path, description.as_ref()).map_err(|error| unusable(path, error))?;
+        if let Some(note) = file.cut_note() {
+            terminal::warn(&note);
+        }
+        Ok(file)
+    }
+}
+
+/// Stages a table, if it is asked for.
+pub(crate) fn stage(
+    path: Option<&Path>,
+    table: impl FnOnce() -> ResultTable,
+    what: &str,
+    outputs: &mut Outputs,
+    answer: &mut Answer,
+) -> Result<(), Failure> {
+    if let Some(path) = path {
+        outputs.stage(path, &table().content(path)?)?;
+        answer.wrote(path, what);
+    }
+    Ok(())
 }

@@ -30,6 +30,8 @@ pub(crate) struct ReportArguments {
     /// The bench description (TOML): one for all records, or one for each in their order.
     #[arg(long = "bench", value_name = "BENCH.toml", action = ArgAction::Append)]
     benches: Vec<PathBuf>,
+    #[command(flatten)]
+    map: records::Map,
     /// The report to write (HTML).
     #[arg(long, value_name = "OUT.html", default_value = "report.html")]
     out: PathBuf,
@@ -47,7 +49,8 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
         )));
     }
     let all = arguments.inputs.iter().chain(&arguments.benches);
-    let all: Vec<&Path> = all.map(PathBuf::as_path).collect();
+    let all = all.map(PathBuf::as_path).chain(arguments.map.path());
+    let all: Vec<&Path> = all.collect();
     refuse_overlap(&all, &[("--out", Some(&arguments.out))])?;
     refuse_unwritable(&[Some(&arguments.out)], None)?;
     let mut benches = arguments.benches.iter();
@@ -57,7 +60,7 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
             of_file(path)?
         } else {
             let bench = benches.next().or(arguments.benches.last());
-            of_record(path, bench.map_or(Path::new(""), PathBuf::as_path))?
+            of_record(path, bench.map_or(Path::new(""), PathBuf::as_path), &arguments.map)?
         });
     }
     let mut outputs = Outputs::new();
@@ -73,11 +76,12 @@ fn is_result(path: &Path) -> bool {
         .is_some_and(|form| form.eq_ignore_ascii_case("json"))
 }
 
-fn of_record(path: &Path, bench_path: &Path) -> Result<Part, Failure> {
+fn of_record(path: &Path, bench_path: &Path, map: &records::Map) -> Result<Part, Failure> {
     let bench = Bench::read(bench_path)?;
-    let file = records::read(path)?;
+    let file = map.read(path)?;
     let options = DiagnoseOptions::default();
-    let origin = manifest(MODEL_HASH, options.seed, &[path, bench_path])?;
+    let inputs: Vec<&Path> = [path, bench_path].into_iter().chain(map.path()).collect();
+    let origin = manifest(MODEL_HASH, options.seed, &inputs)?;
     let _progress = Progress::waiting("diagnosing", file.record().len());
     let gate = Gate::of_file(
         PlatformKind::Stabilised,

@@ -1,20 +1,20 @@
 //! `gyrocal watch`: a record replayed through the watch of a controller.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_diagnosis::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, watch_record};
-use gyrocal_record::{Bench, Record, write_json};
+use gyrocal_record::{Bench, write_json};
 use serde_json::json;
 
 use crate::diagnose::NotDiagnosed;
 use crate::numbers::{not_negative, probability};
 use crate::outputs::{self, manifest};
 use crate::tables::{right, table};
-use crate::{Answer, Failure};
+use crate::{Answer, Failure, records};
 
 /// Replay a record through the watch that runs on a controller beside the filter.
 ///
@@ -30,6 +30,8 @@ pub(crate) struct WatchArguments {
     /// The bench description (TOML), with the attitude of the first row.
     #[arg(long, value_name = "BENCH.toml")]
     bench: PathBuf,
+    #[command(flatten)]
+    map: records::Map,
     /// Probability of a false alarm in a year.
     #[arg(long, value_name = "P", default_value_t = WatchOptions::default().false_alarms_per_year, value_parser = probability)]
     false_alarm: f64,
@@ -46,9 +48,10 @@ pub(crate) struct WatchArguments {
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &WatchArguments) -> Result<Answer, Failure> {
-    let inputs = [&*arguments.record, &*arguments.bench];
+    let inputs = [&*arguments.record, &*arguments.bench].into_iter();
+    let inputs: Vec<&Path> = inputs.chain(arguments.map.path()).collect();
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    let record = Record::read(&arguments.record)?;
+    let record = arguments.map.read(&arguments.record)?.into_rising()?;
     let bench = Bench::read(&arguments.bench)?;
     let options = WatchOptions {
         false_alarms_per_year: arguments.false_alarm,

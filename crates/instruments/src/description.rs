@@ -149,6 +149,19 @@ impl Description {
         Self::from_source(&SourceText::new(text, name)?)
     }
 
+    /// The description of the columns that a record has without one.
+    ///
+    /// # Errors
+    ///
+    /// None: the text is this program's.
+    pub fn of_records() -> Result<Self, Error> {
+        Self::parse(
+            "[time]\ncolumn = \"time_s\"\n[accel]\ncolumns = [\"accel_x_g\", \"accel_y_g\", \
+             \"accel_z_g\"]\nunit = \"g\"\n",
+            "columns of a record",
+        )
+    }
+
     /// Its schema (JSON Schema, draft 2020-12).
     #[cfg(feature = "schema")]
     #[must_use]
@@ -172,7 +185,7 @@ impl Description {
             };
             let found = format!("{found} ({})", error.message().replace('\n', ", "));
             let expected = "a description of the log";
-            let advice = "docs/measured-data.md has every key";
+            let advice = "docs/formats.md has every key";
             source.error(InputErrorKind::Syntax, span, found, expected, advice)
         })?;
         match description.mistake() {
@@ -185,7 +198,7 @@ impl Description {
                     start..start + line.len(),
                     format!("`{line}`"),
                     expected,
-                    "docs/measured-data.md has every key",
+                    "docs/formats.md has every key",
                 ))
             }
         }

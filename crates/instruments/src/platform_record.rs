@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use gyrocal_record::{InputErrorKind, Record, RecordFile, SourceText};
+use gyrocal_record::{Error, InputErrorKind, Record, RecordFile, SourceText};
 use gyrocal_statistics::median_interval_s;
 
 use crate::columns::Selection;
@@ -11,6 +11,7 @@ use crate::error::InstrumentError;
 use crate::file_format::FileFormat;
 use crate::log_lines::{LogLine, log_lines};
 use crate::platform_row::{Cell, PlatformRow};
+use crate::proposal::propose_map;
 
 /// Intervals longer than this many median ones are gaps, which are not interpolated.
 const GAP: f64 = 1.5;
@@ -31,6 +32,38 @@ pub fn read_record(path: &Path, description: &Description) -> Result<RecordFile,
     #[cfg(not(feature = "parquet"))]
     refuse_parquet(path)?;
     parse_record(SourceText::read(path)?, description)
+}
+
+/// Reads the record of a stable platform as [`RecordFile::read`] does, or by a description. Without one a file
+/// of Parquet has the columns of a record, and the error of another header says what to describe.
+///
+/// # Errors
+///
+/// As of [`read_record`].
+pub fn read_any(
+    path: &Path,
+    description: Option<&Description>,
+) -> Result<RecordFile, InstrumentError> {
+    if let Some(description) = description {
+        return read_record(path, description);
+    }
+    #[cfg(feature = "parquet")]
+    if crate::parquet_file::is_one(path)? {
+        return read_record(path, &Description::of_records()?);
+    }
+    #[cfg(not(feature = "parquet"))]
+    refuse_parquet(path)?;
+    let source = SourceText::read(path)?;
+    let text = source.clone();
+    RecordFile::of(source).map_err(|error| match error {
+        Error::Input(mut input) if input.kind == InputErrorKind::Header => {
+            if let Some(map) = propose_map(&text) {
+                input.advice = format!("a map of it (`--columns MAP.toml`) has {map}");
+            }
+            Error::Input(input).into()
+        }
+        other => other.into(),
+    })
 }
 
 /// Parses the text of a record.

@@ -22,25 +22,52 @@ pub(crate) fn of_line(format: &FileFormat, line: &str) -> Option<String> {
     {
         return Some(add(&format!("comment = \"{sign}\""), "file"));
     }
-    let others = [
-        (Delimiter::Semicolon, ';', "semicolon"),
-        (Delimiter::Tab, '\t', "tab"),
-        (Delimiter::Bar, '|', "bar"),
-        (Delimiter::Comma, ',', "comma"),
-    ];
+    match delimiter_of(line) {
+        Some(delimiter) if delimiter != format.delimiter && !separates(format.delimiter, line) => {
+            Some(add(&format!("delimiter = \"{}\"", word_of(delimiter)), "file"))
+        }
+        _ => None,
+    }
+}
+
+/// Fewest separators of a line: those between a time and three accelerometers.
+const FEWEST: usize = 3;
+
+fn separates(delimiter: Delimiter, line: &str) -> bool {
     let count = |sign: char| line.matches(sign).count();
-    let is_there = |(delimiter, sign, _): &(Delimiter, char, &str)| {
-        // A time and three accelerometers have three separators.
-        *delimiter != format.delimiter && count(*sign) >= 3
-    };
-    if others.iter().any(|(delimiter, sign, _)| *delimiter == format.delimiter && count(*sign) >= 3) {
-        return None;
+    FEWEST
+        <= match delimiter {
+            Delimiter::Comma => count(','),
+            Delimiter::Semicolon => count(';'),
+            Delimiter::Tab => count('\t'),
+            Delimiter::Bar => count('|'),
+            Delimiter::Space => line.split_whitespace().count().saturating_sub(1),
+        }
+}
+
+/// The delimiter that a line seems to have.
+pub(crate) fn delimiter_of(line: &str) -> Option<Delimiter> {
+    // Decimal commas are between other signs, and blanks within names.
+    [
+        Delimiter::Semicolon,
+        Delimiter::Tab,
+        Delimiter::Bar,
+        Delimiter::Comma,
+        Delimiter::Space,
+    ]
+    .into_iter()
+    .find(|delimiter| separates(*delimiter, line))
+}
+
+/// The word of a delimiter in a description.
+pub(crate) fn word_of(delimiter: Delimiter) -> &'static str {
+    match delimiter {
+        Delimiter::Comma => "comma",
+        Delimiter::Semicolon => "semicolon",
+        Delimiter::Tab => "tab",
+        Delimiter::Bar => "bar",
+        Delimiter::Space => "space",
     }
-    if let Some((_, _, word)) = others.into_iter().find(is_there) {
-        return Some(add(&format!("delimiter = \"{word}\""), "file"));
-    }
-    (format.delimiter != Delimiter::Space && line.split_whitespace().count() > 3)
-        .then(|| add("delimiter = \"space\"", "file"))
 }
 
 /// Remedy for a field that is no number.

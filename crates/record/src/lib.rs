@@ -55,6 +55,7 @@
 
 mod bench;
 mod bound;
+mod coefficient_table;
 mod content;
 mod document;
 mod error;

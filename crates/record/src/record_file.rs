@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use crate::error::Error;
+use crate::error::{Error, InputErrorKind};
 use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, refuse_too_few};
 use crate::printable::printable_line;
 use crate::record::Record;
@@ -44,7 +44,12 @@ impl RecordFile {
         Self::of(SourceText::new(text, name)?)
     }
 
-    fn of(source: SourceText) -> Result<Self, Error> {
+    /// Takes the text of a record.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if it is not in the format of a record.
+    pub fn of(source: SourceText) -> Result<Self, Error> {
         let (record, places, header) = parse(&source, Form::Lenient)?;
         Ok(Self {
             record,
@@ -137,6 +142,26 @@ impl RecordFile {
                 Some([line(first)?, line(last)?])
             });
         }
+    }
+
+    /// The record, if its times rise.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] at the first row that does not.
+    pub fn into_rising(self) -> Result<Record, Error> {
+        let times = &self.record.time_s;
+        let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) else {
+            return Ok(self.record);
+        };
+        let place = self.places.get(row + 1).cloned().unwrap_or(0..0);
+        Err(self.source.error(
+            InputErrorKind::Time,
+            place,
+            format!("time {} s after {} s", times[row + 1], times[row]),
+            format!("a time greater than {} s", times[row]),
+            "sort the rows by time and keep one of those that repeat",
+        ))
     }
 
     /// Refuses values that are no platform's in what is left of the record: fewer than `least` rows

@@ -9,10 +9,10 @@ use gyrocal_calibration::{
 use gyrocal_diagnosis::Gate;
 use gyrocal_instruments::strapdown::read_axes;
 use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, SourceText, printable_path};
-use gyrocal_setup::PlatformKind;
 use miette::miette;
 
-use crate::{Failure, records};
+use super::CalibrateArguments;
+use crate::Failure;
 
 /// One record with the bench that it was taken on.
 pub(super) struct Measurement {
@@ -48,12 +48,9 @@ impl Measurement {
 
 /// Reads records and benches (one for all records or one for each), leaves out what gross errors of
 /// the set-ups spoilt, averages if requested, and refuses inputs that cannot belong together.
-pub(super) fn read(
-    records: &[PathBuf],
-    benches: &[PathBuf],
-    average_s: Option<f64>,
-    kind: PlatformKind,
-) -> Result<Vec<Measurement>, Failure> {
+pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, Failure> {
+    let (records, benches) = (&arguments.records, &arguments.benches);
+    let (average_s, kind) = (arguments.average, arguments.kind());
     refuse_twins(records)?;
     let read: Vec<Bench> = benches
         .iter()
@@ -63,7 +60,7 @@ pub(super) fn read(
     let mut measurements = Vec::with_capacity(records.len());
     for (index, path) in records.iter().enumerate() {
         let bench = if benches.len() == 1 { 0 } else { index };
-        let file = records::read(path)?;
+        let file = arguments.map.read(path)?;
         let found = Gate::of_file(kind, &file, &read[bench], &Options::default())?;
         measurements.push(Measurement {
             path: path.clone(),

@@ -14,7 +14,7 @@ use super::{DiagnoseArguments, NotDiagnosed, exit_code};
 use crate::layout::layout;
 use crate::outputs::manifest;
 use crate::progress::Progress;
-use crate::{Answer, Failure, page, records};
+use crate::{Answer, Failure, page};
 
 /// Runs the command; `inputs` are each record with its bench file.
 pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Answer, Failure> {
@@ -26,7 +26,7 @@ pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Ans
     let files: Vec<RecordFile> = arguments
         .records
         .iter()
-        .map(|path| records::read(path))
+        .map(|path| arguments.map.read(path))
         .collect::<Result<_, _>>()?;
     refuse_twins(arguments, &files)?;
     let options = arguments.options();
@@ -66,6 +66,7 @@ pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Ans
         outputs.stage_json(path, result)?;
         answer.wrote(path, "the result for programs");
     }
+    super::stage_tables(arguments, result, &mut outputs, &mut answer)?;
     outputs.commit()?;
     answer.exit_code = exit_code(arguments, result.verdict);
     Ok(answer)

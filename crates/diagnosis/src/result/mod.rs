@@ -22,6 +22,7 @@ mod residual_test;
 mod residuals;
 #[cfg(feature = "schema")]
 mod schema;
+mod tables;
 
 pub use gyrocal_record::SetupProblem;
 use gyrocal_record::{Manifest, NoiseReport};
