@@ -200,7 +200,12 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let json_output = ("--json", arguments.json.as_deref());
     let table = ("--coefficients", arguments.coefficients.as_deref());
-    page::check(&inputs, &[json_output, table], arguments.report.as_deref(), None)?;
+    page::check(
+        &inputs,
+        &[json_output, table],
+        arguments.report.as_deref(),
+        None,
+    )?;
     outputs::refuse_unwritable(&[arguments.coefficients.as_deref()], None)?;
     let measurements = inputs::read(arguments)?;
     if measurements.iter().any(|measurement| measurement.stops) {

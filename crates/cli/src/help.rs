@@ -134,14 +134,17 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 19] = [
     ),
     (
         "import",
-        &[[
-            "gyrocal import csv log.csv.gz --columns map.toml --out record.csv",
-            "a record from a table of another program",
-        ], [
-            "gyrocal import strapdown log.csv --log-description log.toml --out r.csv \
+        &[
+            [
+                "gyrocal import csv log.csv.gz --columns map.toml --out record.csv",
+                "a record from a table of another program",
+            ],
+            [
+                "gyrocal import strapdown log.csv --log-description log.toml --out r.csv \
              --bench-out b.toml",
-            "a record for `calibrate` from a strapdown log at rest",
-        ]],
+                "a record for `calibrate` from a strapdown log at rest",
+            ],
+        ],
     ),
     (
         "man",

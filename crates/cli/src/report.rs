@@ -60,7 +60,11 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
             of_file(path)?
         } else {
             let bench = benches.next().or(arguments.benches.last());
-            of_record(path, bench.map_or(Path::new(""), PathBuf::as_path), &arguments.map)?
+            of_record(
+                path,
+                bench.map_or(Path::new(""), PathBuf::as_path),
+                &arguments.map,
+            )?
         });
     }
     let mut outputs = Outputs::new();

@@ -9,10 +9,11 @@ use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_instruments::multi_position::{
     MultiPositionSettings, multi_position_test, prepare_logs,
 };
-use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
+use gyrocal_instruments::{Description, Log, StopSettings, find_stops, read_record};
 use gyrocal_pages::{Part, of_diagnosis, of_open_loop, of_tumble, page};
 use gyrocal_record::{Bench, Input, Manifest, Record};
 use gyrocal_testkit::browser::Browser;
+use gyrocal_testkit::dialects::check_dialects;
 use gyrocal_testkit::workspace;
 use gyrocal_truth::{Scenario, simulate};
 
@@ -94,7 +95,33 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
     if !small {
         figures.push(first_minutes::figure()?);
     }
+    figures.push(dialects());
     Ok(figures)
+}
+
+/// Files of the test set of formats and dialects that are read right, or refused with the line to add.
+fn dialects() -> Figure {
+    let outcomes = check_dialects(|path, map| {
+        let description = Description::parse(map, "map.toml").map_err(words)?;
+        let file = read_record(path, &description).map_err(words)?;
+        Ok(file.record().clone())
+    });
+    let right = outcomes.iter().filter(|one| one.fault.is_empty()).count() as f64;
+    let refused = outcomes.iter().filter(|one| one.refused).count();
+    let all = outcomes.len() as f64;
+    Figure::within(
+        &format!(
+            "formats and dialects read right or refused with the line to add, of {all} ({refused} refused: Parquet not built in)"
+        ),
+        [all, all],
+        right,
+    )
+}
+
+/// The words of an error with its advice.
+fn words(error: impl Into<gyrocal_instruments::InstrumentError>) -> String {
+    let error = error.into();
+    format!("{error}; {}", error.advice())
 }
 
 /// A failure of a library as that of this topic.

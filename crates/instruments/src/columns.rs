@@ -187,13 +187,14 @@ impl Selection {
                  again, or delete this line",
             );
         }
-        let advice = remedy::of_line(format, &source.text()[line.span.clone()]).unwrap_or_else(|| {
-            format!(
-                "decimal numbers have a point, and fields are separated by {}; `delimiter` in \
+        let advice =
+            remedy::of_line(format, &source.text()[line.span.clone()]).unwrap_or_else(|| {
+                format!(
+                    "decimal numbers have a point, and fields are separated by {}; `delimiter` in \
                  `[file]` names others",
-                format.delimiter.description()
-            )
-        });
+                    format.delimiter.description()
+                )
+            });
         source.error(
             InputErrorKind::FieldCount,
             line.span.clone(),

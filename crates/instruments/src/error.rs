@@ -81,6 +81,16 @@ impl InstrumentError {
         }
     }
 
+    /// Advice to the user; empty if there is none.
+    #[must_use]
+    pub fn advice(&self) -> &str {
+        match self {
+            Self::File(gyrocal_record::Error::Input(input)) => &input.advice,
+            Self::Unfit { advice, .. } => advice,
+            Self::File(_) | Self::Statistics(_) => "",
+        }
+    }
+
     /// Kind of a problem of the recording; `None` for errors of files and of arguments.
     #[must_use]
     pub fn kind(&self) -> Option<Unfit> {

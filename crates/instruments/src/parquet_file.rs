@@ -37,7 +37,12 @@ pub(crate) fn read_record(
     })?;
     let name = path.display().to_string();
     if record.is_empty() {
-        return Err(unfit(path, "no rows", "samples", "check the program that wrote it"));
+        return Err(unfit(
+            path,
+            "no rows",
+            "samples",
+            "check the program that wrote it",
+        ));
     }
     Ok((record, name))
 }
@@ -51,7 +56,12 @@ pub(crate) fn for_each_row(
     let platform_row = PlatformRow::new(description)?;
     let damaged = |reason: ParquetError| {
         let found = format!("what no reader of Parquet accepts ({reason})");
-        unfit(path, &found, "a whole file", "copy the file again, or write it without zstd")
+        unfit(
+            path,
+            &found,
+            "a whole file",
+            "copy the file again, or write it without zstd",
+        )
     };
     let reader = SerializedFileReader::new(open(path)?).map_err(damaged)?;
     let schema = reader.metadata().file_metadata().schema();
@@ -61,7 +71,9 @@ pub(crate) fn for_each_row(
         let row = row.map_err(damaged)?;
         let cells = platform_row.names().iter().map(|name| {
             let mut columns = row.get_column_iter();
-            let field = columns.find(|(title, _)| title == name).map(|(_, field)| field);
+            let field = columns
+                .find(|(title, _)| title == name)
+                .map(|(_, field)| field);
             field.map_or(Some(Cell::Missing), cell)
         });
         let Some(cells) = cells.collect::<Option<Vec<Cell<'_>>>>() else {
@@ -74,7 +86,11 @@ pub(crate) fn for_each_row(
         };
         let row = platform_row.of(&cells, number).map_err(|fault| {
             let name = platform_row.names()[fault.column];
-            let found = format!("{:?} in the column `{name}` of row {}", cells[fault.column], number + 1);
+            let found = format!(
+                "{:?} in the column `{name}` of row {}",
+                cells[fault.column],
+                number + 1
+            );
             unfit(path, &found, fault.expected, &fault.advice)
         })?;
         take(row)?;

@@ -209,7 +209,9 @@ pub(crate) fn finished(mut record: Record, description: &Description) -> Record 
 /// Interpolates missing values between their neighbours; before the first and after the last they are as
 /// those.
 fn fill(time_s: &[f64], column: &mut [f64]) {
-    let known: Vec<usize> = (0..column.len()).filter(|row| !column[*row].is_nan()).collect();
+    let known: Vec<usize> = (0..column.len())
+        .filter(|row| !column[*row].is_nan())
+        .collect();
     let (Some(first), Some(last)) = (known.first(), known.last()) else {
         return;
     };

@@ -110,7 +110,10 @@ impl<'a> PlatformRow<'a> {
         };
         let number = |column: usize| match cells[column] {
             Cell::Text(text) => {
-                let number = format.decimal.number(text).filter(|value| value.is_finite());
+                let number = format
+                    .decimal
+                    .number(text)
+                    .filter(|value| value.is_finite());
                 number.ok_or_else(|| {
                     fault(column, "a time in numbers", remedy::of_time(format, text))
                 })
@@ -148,12 +151,14 @@ impl<'a> PlatformRow<'a> {
                     return Ok(f64::NAN);
                 }
                 let number = format.decimal.number(text);
-                number.filter(|value| !value.is_infinite()).ok_or_else(|| Fault {
-                    column,
-                    kind: InputErrorKind::NotANumber,
-                    expected: "a finite number, or an empty field for a missing one",
-                    advice: remedy::of_value(format, text, row).unwrap_or_default(),
-                })
+                number
+                    .filter(|value| !value.is_infinite())
+                    .ok_or_else(|| Fault {
+                        column,
+                        kind: InputErrorKind::NotANumber,
+                        expected: "a finite number, or an empty field for a missing one",
+                        advice: remedy::of_value(format, text, row).unwrap_or_default(),
+                    })
             }
             #[cfg(feature = "parquet")]
             Cell::Number(value) => Ok(value),

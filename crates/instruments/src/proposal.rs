@@ -22,10 +22,7 @@ pub fn propose_map(source: &SourceText) -> Option<String> {
         .map(|line| &source.text()[line.span])
         .find_map(|line| Some((line, delimiter_of(line)?)).filter(|(line, _)| !is_numeric(line)));
     let (line, delimiter) = first?;
-    let format = FileFormat {
-        delimiter,
-        ..plain
-    };
+    let format = FileFormat { delimiter, ..plain };
     let header = log_lines(source, &format).find(|one| &source.text()[one.span.clone()] == line)?;
     let names: Vec<&str> = header.fields.iter().map(|(_, name)| *name).collect();
     let time = names.iter().find(|name| is_time(name))?;
@@ -75,14 +72,17 @@ mod tests {
 
     #[test]
     fn a_header_of_another_program_gives_its_map() {
-        let map = proposed("# made by\nZeit;Beschl X [m/s²];Beschl Y [m/s²];Beschl Z [m/s²]\n1;2;3;4\n");
+        let map =
+            proposed("# made by\nZeit;Beschl X [m/s²];Beschl Y [m/s²];Beschl Z [m/s²]\n1;2;3;4\n");
         assert_eq!(
             map.unwrap(),
             "[file] delimiter = \"semicolon\"; [time] column = \"Zeit\"; [accel] columns = [\"Beschl X \
              [m/s²]\", \"Beschl Y [m/s²]\", \"Beschl Z [m/s²]\"] and unit = \"g\" or another"
         );
         let map = proposed("t,ax,ay,az\n0,0,0,1\n").unwrap();
-        assert!(map.starts_with("[time] column = \"t\"; [accel] columns = [\"ax\", \"ay\", \"az\"]"));
+        assert!(
+            map.starts_with("[time] column = \"t\"; [accel] columns = [\"ax\", \"ay\", \"az\"]")
+        );
     }
 
     #[test]

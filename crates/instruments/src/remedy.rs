@@ -24,7 +24,10 @@ pub(crate) fn of_line(format: &FileFormat, line: &str) -> Option<String> {
     }
     match delimiter_of(line) {
         Some(delimiter) if delimiter != format.delimiter && !separates(format.delimiter, line) => {
-            Some(add(&format!("delimiter = \"{}\"", word_of(delimiter)), "file"))
+            Some(add(
+                &format!("delimiter = \"{}\"", word_of(delimiter)),
+                "file",
+            ))
         }
         _ => None,
     }

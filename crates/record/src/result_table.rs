@@ -39,7 +39,9 @@ impl ResultTable {
         name: &'static str,
         cells: impl IntoIterator<Item = Option<f64>>,
     ) -> Self {
-        let cells = cells.into_iter().map(|cell| cell.filter(|it| it.is_finite()));
+        let cells = cells
+            .into_iter()
+            .map(|cell| cell.filter(|it| it.is_finite()));
         self.columns.push((name, Column::Numbers(cells.collect())));
         self
     }
@@ -74,7 +76,9 @@ impl ResultTable {
     ///
     /// [`Error::Unwritable`], of Parquet also where its writer is not built in.
     pub fn content(&self, path: &Path) -> Result<Vec<u8>, Error> {
-        let is_parquet = path.extension().is_some_and(|it| it.eq_ignore_ascii_case("parquet"));
+        let is_parquet = path
+            .extension()
+            .is_some_and(|it| it.eq_ignore_ascii_case("parquet"));
         let written = match is_parquet {
             true => self.to_parquet(),
             false => self.to_csv(),
@@ -133,7 +137,9 @@ impl ResultTable {
                 .map(Arc::new)
         };
         let fields = self.columns.iter().map(field).collect::<Result<_, _>>()?;
-        let schema = Type::group_type_builder("table").with_fields(fields).build()?;
+        let schema = Type::group_type_builder("table")
+            .with_fields(fields)
+            .build()?;
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .build();
@@ -148,14 +154,19 @@ impl ResultTable {
             match column {
                 Column::Texts(cells) => {
                     let there: Vec<i16> = cells.iter().map(|it| i16::from(it.is_some())).collect();
-                    let values: Vec<ByteArray> =
-                        cells.iter().flatten().map(|text| ByteArray::from(text.as_str())).collect();
-                    into.typed::<ByteArrayType>().write_batch(&values, Some(&there), None)?;
+                    let values: Vec<ByteArray> = cells
+                        .iter()
+                        .flatten()
+                        .map(|text| ByteArray::from(text.as_str()))
+                        .collect();
+                    into.typed::<ByteArrayType>()
+                        .write_batch(&values, Some(&there), None)?;
                 }
                 Column::Numbers(cells) => {
                     let there: Vec<i16> = cells.iter().map(|it| i16::from(it.is_some())).collect();
                     let values: Vec<f64> = cells.iter().flatten().copied().collect();
-                    into.typed::<DoubleType>().write_batch(&values, Some(&there), None)?;
+                    into.typed::<DoubleType>()
+                        .write_batch(&values, Some(&there), None)?;
                 }
             }
             into.close()?;

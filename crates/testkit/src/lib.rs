@@ -5,6 +5,7 @@
 //! - `filters`: a platform with any number of states, rounding errors against 400-bit references,
 //!   Kalman filters of other packages, and times of a step.
 //! - `browser`: a headless browser for pages.
+//! - `dialects`: a test set of formats and dialects of records.
 //! - `calibration`: dense least squares for short records, and signatures by finite differences of the
 //!   independent simulation.
 //! - `noise`: records with faulty noise.
@@ -31,6 +32,8 @@ mod command;
 mod copy;
 #[cfg(feature = "calibration")]
 pub mod dense_least_squares;
+#[cfg(feature = "dialects")]
+pub mod dialects;
 #[cfg(feature = "extended")]
 pub mod extended_comparison;
 #[cfg(feature = "filters")]
