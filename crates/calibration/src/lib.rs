@@ -99,6 +99,7 @@ mod attitude;
 mod averaging;
 mod azimuth;
 mod batch;
+mod budget;
 mod calibrate;
 mod check;
 mod coefficients;
@@ -131,6 +132,9 @@ mod uncertainty;
 mod work;
 
 pub use averaging::{AveragedRecord, SIGNIFICANT_WALK_SHARE, attitude_walk_share, average_record};
+pub use budget::{
+    CoefficientBudget, Contribution, UncertaintyBudget, UncertaintySource, uncertainty_budget,
+};
 pub use calibrate::{calibrate, calibrate_runs, calibrate_strapdown, first_run_sigmas};
 pub use check::check_record;
 pub use coefficients::BIASES;

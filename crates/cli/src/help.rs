@@ -23,8 +23,10 @@ const INPUTS: [&str; 8] = [
 ];
 
 /// Ids of options that name files to write.
-const WRITTEN: [&str; 8] = [
+const WRITTEN: [&str; 10] = [
     "json",
+    "coefficients",
+    "findings",
     "figures",
     "markdown",
     "out",

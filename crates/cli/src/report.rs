@@ -1,12 +1,14 @@
 //! `gyrocal report`: answers as one HTML file.
 
+mod budget;
+
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_design::PlanResult;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, Gate, diagnose_gated, result};
-use gyrocal_pages::{Part, of_calibration, of_diagnosis, of_plan, of_result};
+use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result};
 use gyrocal_record::{Bench, CalibrationReport, Outputs, SourceText};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
@@ -32,6 +34,9 @@ pub(crate) struct ReportArguments {
     benches: Vec<PathBuf>,
     #[command(flatten)]
     map: records::Map,
+    /// Add the uncertainty budget of the coefficients of each record, by its sources.
+    #[arg(long)]
+    uncertainty: bool,
     /// The report to write (HTML).
     #[arg(long, value_name = "OUT.html", default_value = "report.html")]
     out: PathBuf,
@@ -42,6 +47,11 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
     let records = arguments.inputs.iter().filter(|path| !is_result(path));
     let records = records.count();
     let benches = arguments.benches.len();
+    if arguments.uncertainty && records == 0 {
+        return Err(Failure::Usage(
+            "--uncertainty is of records: give the record (CSV) with --bench".to_owned(),
+        ));
+    }
     if benches != records && !(benches == 1 && records > 0) {
         return Err(Failure::Usage(format!(
             "{benches} of --bench for {records} of records: give --bench once for all records, or once \
@@ -55,22 +65,29 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
     refuse_unwritable(&[Some(&arguments.out)], None)?;
     let mut benches = arguments.benches.iter();
     let mut parts = Vec::with_capacity(arguments.inputs.len());
+    let mut budgets = Vec::new();
     for path in &arguments.inputs {
         parts.push(if is_result(path) {
             of_file(path)?
         } else {
             let bench = benches.next().or(arguments.benches.last());
-            of_record(
-                path,
-                bench.map_or(Path::new(""), PathBuf::as_path),
-                &arguments.map,
-            )?
+            let bench = bench.map_or(Path::new(""), PathBuf::as_path);
+            let mut part = of_record(path, bench, &arguments.map)?;
+            if arguments.uncertainty {
+                let budget = budget::of_record(path, bench, &arguments.map)?;
+                part.sections.push(of_budget(&budget));
+                budgets.push(budget);
+            }
+            part
         });
     }
     let mut outputs = Outputs::new();
     page::stage(&arguments.out, parts, &mut outputs)?;
     outputs.commit()?;
-    let mut answer = Answer::default();
+    let mut answer = match &budgets[..] {
+        [] => Answer::default(),
+        all => Answer::of(budget::screen(all), budget::text(all)),
+    };
     answer.wrote(&arguments.out, page::WHAT);
     Ok(answer)
 }

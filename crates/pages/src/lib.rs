@@ -29,6 +29,7 @@ mod fleet;
 mod origin;
 mod plan;
 mod tumble;
+mod uncertainty;
 mod words;
 
 pub use allan::{AllanAnswer, of_allan};
@@ -39,6 +40,7 @@ pub use fleet::of_fleet;
 pub use gyrocal_report::page::{Page, Part};
 pub use plan::of_plan;
 pub use tumble::of_tumble;
+pub use uncertainty::of_budget;
 
 /// A page of one answer or several.
 #[must_use]

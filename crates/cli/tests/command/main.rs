@@ -6,6 +6,7 @@ mod allan;
 mod bad_input;
 mod calibrate;
 mod characterise;
+mod columns;
 mod contract;
 mod diagnose;
 mod documents;

@@ -75,7 +75,7 @@ fn found(result: &DiagnosisResult) -> Screen {
             percent(result.false_alarm_probability)
         ),
     );
-    screen.fact("may also be", others(result));
+    screen.fact("may also be", may_also_be(result));
     effect_on_fit(result, &mut screen);
     screen.fact("left over", remainder(result));
     next_of_found(result, &mut screen);
@@ -113,7 +113,8 @@ fn value_with_unit(parameter: &Parameter) -> String {
 }
 
 /// The other members of the confidence sets, exact equivalents and near twins, without repetition.
-fn others(result: &DiagnosisResult) -> String {
+#[must_use]
+pub fn may_also_be(result: &DiagnosisResult) -> String {
     let mut names: Vec<&str> = Vec::new();
     let mut add = |name| {
         if !names.contains(&name) {

@@ -22,7 +22,7 @@ use crate::result::{DiagnosisResult, Verdict};
 
 pub use catalogue::{explained, tested, typical_size};
 pub use findings::{likelihood, parameter_values};
-pub use first_screen::first_screen;
+pub use first_screen::{first_screen, may_also_be};
 pub use format::counted;
 pub use limits::{near_twins, not_tested, why_not_distinguished, would_distinguish};
 pub use screen::{Fact, NextStep, Screen, Standing, few, record_and_bench};

@@ -215,7 +215,7 @@ fn alternatives(result: &DiagnosisResult) -> Card {
                 let sure = first.coverage.map_or_else(String::new, |coverage| {
                     format!(" at {}", format::percent(coverage))
                 });
-                main = "No other tested effect".to_owned();
+                main = prose::may_also_be(result);
                 text.insert(
                     0,
                     format!("All alternatives that were tested are excluded{sure}."),

@@ -1,0 +1,137 @@
+//! Records of other programs: `--columns`, `import csv`, and tables of results.
+
+use crate::folder::{Folder, example};
+
+const MAP: &str = "[file]\ndelimiter = \"semicolon\"\ndecimal = \"comma\"\n[time]\ncolumn = \"Zeit\"\n\
+                   unit = \"min\"\n[accel]\ncolumns = [\"aX\", \"aY\", \"aZ\"]\nunit = \"mg\"\n";
+
+/// The example `three_days` as another program would have written it, with its bench and map.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    let text = std::fs::read_to_string(example("three_days.csv")).unwrap();
+    let mut other = "Zeit;aX;aY;aZ\n".to_owned();
+    for line in text.lines().skip(1) {
+        let mut numbers = line.split(',').map(|field| field.parse::<f64>().unwrap());
+        let time_min = numbers.next().unwrap() / 60.0;
+        let mg = numbers.take(3).map(|g| format!(";{}", g * 1e3));
+        other += &format!("{time_min}{}\n", mg.collect::<String>()).replace('.', ",");
+    }
+    folder.put("l.csv", other);
+    folder.put("map.toml", MAP);
+    folder.put(
+        "b.toml",
+        std::fs::read_to_string(example("three_days.bench.toml")).unwrap(),
+    );
+    folder
+}
+
+/// Rows of a table, split at commas.
+fn cells(text: &str) -> Vec<Vec<String>> {
+    let rows = text.lines().skip(1);
+    rows.map(|row| row.split(',').map(str::to_owned).collect())
+        .collect()
+}
+
+#[test]
+fn a_mapped_record_has_the_coefficients_of_the_record() {
+    let folder = folder();
+    folder.succeed(&[
+        "calibrate",
+        "l.csv",
+        "--bench",
+        "b.toml",
+        "--columns",
+        "map.toml",
+        "--no-noise",
+        "--json",
+        "mapped.json",
+        "--coefficients",
+        "mapped.csv",
+    ]);
+    let record = example("three_days.csv");
+    folder.succeed(&[
+        "calibrate",
+        &record,
+        "--bench",
+        "b.toml",
+        "--no-noise",
+        "--coefficients",
+        "plain.csv",
+    ]);
+    let [mapped, plain] = ["mapped.csv", "plain.csv"].map(|name| cells(&folder.text(name)));
+    assert_eq!((mapped.len(), mapped[0].len()), (9, 5));
+    for (mapped, plain) in mapped.iter().zip(&plain) {
+        assert_eq!(mapped[1], plain[1]);
+        let [a, b, sigma] = [&mapped[2], &plain[2], &plain[3]].map(|it| it.parse::<f64>().unwrap());
+        // Units were converted there and back: the last bits of samples differ, with noise of 1e-5 g.
+        assert!((a - b).abs() < 1e-6 * sigma, "{mapped:?} {plain:?}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&folder.text("mapped.json")).unwrap();
+    assert_eq!(json["manifest"]["inputs"][2]["path"], "map.toml");
+}
+
+#[test]
+fn a_record_without_its_map_is_refused_with_one() {
+    let folder = folder();
+    let errors = folder.fail(&["diagnose", "l.csv", "--bench", "b.toml"]);
+    for part in ["l.csv:1:5", "--columns", "column = \"Zeit\""] {
+        assert!(errors.contains(part), "{errors} lacks {part}");
+    }
+    folder.put("map.toml", MAP.replace("decimal = \"comma\"\n", ""));
+    let arguments = [
+        "diagnose",
+        "l.csv",
+        "--bench",
+        "b.toml",
+        "--columns",
+        "map.toml",
+    ];
+    let errors = folder.fail(&arguments);
+    assert!(errors.contains("`decimal = \"comma\"`"), "{errors}");
+    folder.put("map.toml", MAP.replace("aZ", "az"));
+    let errors = folder.fail(&arguments);
+    assert!(
+        errors.contains("a column `az`") && errors.contains("Zeit, aX, aY, aZ"),
+        "{errors}"
+    );
+}
+
+#[test]
+fn an_imported_record_is_read_by_every_command() {
+    let folder = folder();
+    let arguments = [
+        "import",
+        "csv",
+        "l.csv",
+        "--columns",
+        "map.toml",
+        "--out",
+        "r.csv",
+    ];
+    let text = folder.succeed(&arguments);
+    assert!(text.contains("4321 rows"), "{text}");
+    folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml", "--no-noise"]);
+    let errors = folder.fail(&[&arguments[..], &["--average", "60"]].concat());
+    assert!(errors.contains("calibrate --average"), "{errors}");
+}
+
+#[test]
+fn findings_are_a_table_of_their_parameters() {
+    let folder = Folder::new();
+    let [record, bench] = ["hidden_fault.csv", "hidden_fault.bench.toml"].map(example);
+    folder.succeed(&[
+        "diagnose",
+        &record,
+        "--bench",
+        &bench,
+        "--findings",
+        "f.csv",
+        "--coefficients",
+        "c.csv",
+    ]);
+    let findings = cells(&folder.text("f.csv"));
+    assert_eq!(findings[0][0], "gyro_y.g_z");
+    let coefficients = cells(&folder.text("c.csv"));
+    let of = |model: &str| coefficients.iter().filter(|row| row[0] == model).count();
+    assert_eq!([of("nominal"), of("extended")], [9, 9]);
+}
