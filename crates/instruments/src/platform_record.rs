@@ -58,7 +58,8 @@ pub fn read_any(
     RecordFile::of(source).map_err(|error| match error {
         Error::Input(mut input) if input.kind == InputErrorKind::Header => {
             if let Some(map) = propose_map(&text) {
-                input.advice = format!("a map of it (`--columns MAP.toml`) has {map}");
+                let first = input.advice.trim_end_matches('.');
+                input.advice = format!("{first}; or read it by a map, `--columns MAP.toml`, with {map}");
             }
             Error::Input(input).into()
         }
