@@ -233,7 +233,7 @@ fn with_exact_attitudes(
         .collect();
     let options = Options {
         noise: false,
-        ..options.clone()
+        ..*options
     };
     calibrate_runs(&exact, &options, |_| ()).map(Some)
 }

@@ -71,7 +71,7 @@ fn fields(line: &str, start: usize, delimiter: Delimiter) -> Vec<(Range<usize>, 
 /// Pieces between delimiters that stand outside of quotation marks. A mark that never closes holds
 /// nothing together.
 fn pieces(line: &str, delimiter: char) -> impl Iterator<Item = &str> {
-    let are_paired = line.matches('"').count() % 2 == 0;
+    let are_paired = line.matches('"').count().is_multiple_of(2);
     let mut within = false;
     line.split(move |sign: char| {
         within ^= are_paired && sign == '"';

@@ -59,7 +59,8 @@ pub fn read_any(
         Error::Input(mut input) if input.kind == InputErrorKind::Header => {
             if let Some(map) = propose_map(&text) {
                 let first = input.advice.trim_end_matches('.');
-                input.advice = format!("{first}; or read it by a map, `--columns MAP.toml`, with {map}");
+                input.advice =
+                    format!("{first}; or read it by a map, `--columns MAP.toml`, with {map}");
             }
             Error::Input(input).into()
         }

@@ -98,7 +98,8 @@ fn difference(record: &Record, truth: &Record, case: &Value) -> String {
         let away = record.time_s[row] - first_s - truth.time_s[row];
         // Seconds since 1970 have steps of 2.4e-7 s.
         let step_s = if first_s == 0.0 { 0.0 } else { 5e-7 };
-        if !(away.abs() <= number("time_tolerance_s") + step_s) {
+        let right = away.abs() <= number("time_tolerance_s") + step_s;
+        if !right {
             return format!("time {away} s away in row {row}");
         }
         for axis in 0..3 {
