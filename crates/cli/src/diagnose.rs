@@ -197,7 +197,11 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
     let (report, figures) = (arguments.report.as_deref(), arguments.figures.as_deref());
     let findings = arguments.findings.as_deref();
     let coefficients = arguments.coefficients.as_deref();
-    let others = [json, ("--findings", findings), ("--coefficients", coefficients)];
+    let others = [
+        json,
+        ("--findings", findings),
+        ("--coefficients", coefficients),
+    ];
     page::check(&inputs, &others, report, figures)?;
     outputs::refuse_unwritable(&[findings, coefficients], figures)?;
     if let Some(later) = &arguments.validate
