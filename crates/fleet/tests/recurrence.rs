@@ -88,15 +88,21 @@ fn a_cause_with_random_signs_and_onsets_is_found_and_no_other() {
         assert!(only.share > 0.1 && only.share < 0.4, "{only:?}");
         assert!(only.strength > 2.0 && only.strength < 4.0, "{only:?}");
         assert!(!only.is_common);
-        // Most of the units that are told have it.
+        // Of the units that are told as many have it as their probabilities say: to four standard deviations.
         let with: Vec<String> = (0..UNITS)
             .step_by(5)
             .map(|unit| format!("unit-{unit}"))
             .collect();
-        let right = only.units.iter().filter(|(unit, _)| with.contains(unit));
+        let right = only
+            .units
+            .iter()
+            .filter(|(unit, _)| with.contains(unit))
+            .count();
+        let expected: f64 = only.units.iter().map(|(_, p)| p).sum();
+        let variance: f64 = only.units.iter().map(|(_, p)| p * (1.0 - p)).sum();
         assert!(
-            right.count() * 10 > only.units.len() * 8,
-            "{:?}",
+            (right as f64 - expected).abs() < 4.0 * variance.sqrt(),
+            "{right} {:?}",
             only.units
         );
     }
