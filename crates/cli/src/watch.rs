@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Answer, Failure> {
     let inputs = [&*arguments.record, &*arguments.bench].into_iter();
     let inputs: Vec<&Path> = inputs.chain(arguments.map.path()).collect();
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    let record = arguments.map.read(&arguments.record)?.into_rising()?;
+    let record = arguments.map.read(&arguments.record)?.into_sound()?;
     let bench = Bench::read(&arguments.bench)?;
     let options = WatchOptions {
         false_alarms_per_year: arguments.false_alarm,

@@ -132,7 +132,8 @@ pub(crate) fn add_none_of_these<F: FittedModel>(
     effects: &mut [ConditionalResult],
     walks: &mut [Finding],
 ) -> Result<(), F::Error> {
-    if effects.is_empty() && walks.is_empty() || context.budget.is_spent(&stage.fitted) {
+    // One set of columns is always paid for, but not beside what a search had only begun to find.
+    if effects.is_empty() && walks.is_empty() || context.budget.is_cut() {
         return Ok(());
     }
     let beside = RichAlternative::new(&stage.fitted, &context.rows)?.ln_evidence();

@@ -111,8 +111,12 @@ impl Log {
         let columns = &file.values;
         let rows = columns.first().map_or(0, Vec::len);
         let mut others = columns[6..].iter();
-        let stamps = description.time.column.as_ref().and(others.next());
-        let weeks = description.time.week_column.as_ref().and(others.next());
+        let stamps = description.time.column.as_ref().and_then(|_| others.next());
+        let weeks = description
+            .time
+            .week_column
+            .as_ref()
+            .and_then(|_| others.next());
         let (time_s, clock) = match (stamps, description.time.rate_hz) {
             (Some(stamps), _) => {
                 let unit_s = description.time.numeric_unit_s();
@@ -138,7 +142,10 @@ impl Log {
             }
             _ => None,
         };
-        let table = description.table.as_ref().zip(others.next());
+        let table = description
+            .table
+            .as_ref()
+            .and_then(|column| Some((column, others.next()?)));
         let table_rate = table.map(|(column, values)| column.rates(values, &time_s));
         for (values, name) in columns.iter().zip(&gyro.columns) {
             refuse_saturated(&file, values, name)?;

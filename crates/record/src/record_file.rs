@@ -164,6 +164,19 @@ impl RecordFile {
         ))
     }
 
+    /// The record, if it is one that [`Record::read`] takes: times rise, and specific force is of gravity's
+    /// size wherever it was measured.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] at the first row that is none.
+    pub fn into_sound(self) -> Result<Record, Error> {
+        let last = self.places.last().unwrap_or(&self.header);
+        refuse_too_few(&self.record, &self.source, last, 1)?;
+        check_norms(&self.record, &self.source, &self.places, Codes::Refused)?;
+        self.into_rising()
+    }
+
     /// Refuses values that are no platform's in what is left of the record: fewer than `least` rows
     /// with a value, rows too far apart, readings that do not change, and magnitudes far from gravity.
     /// The rows of `usable` are the first of this record, with values missing or corrected.
@@ -212,6 +225,19 @@ mod tests {
         assert_eq!(lines, [Some(3), Some(4), Some(6), None]);
         let refused = RecordFile::parse(&format!("{HEADER}\n0,0,0,up\n"), "r.csv");
         assert!(refused.unwrap_err().to_string().contains("r.csv:2:7"));
+    }
+
+    #[test]
+    fn a_sound_record_is_one_that_is_read_strictly() {
+        for rows in ["0,0,0,1\n60,0,0,9.81\n", "0,0,0,1\n0,0,0,1\n", ""] {
+            let strict = Record::parse(&format!("\n{HEADER}\n{rows}"), "r.csv");
+            let sound = file(rows).into_sound();
+            assert_eq!(
+                strict.unwrap_err().to_string(),
+                sound.unwrap_err().to_string()
+            );
+        }
+        assert_eq!(file("0,0,0,1\n60,0,0,1\n").into_sound().unwrap().len(), 2);
     }
 
     #[test]

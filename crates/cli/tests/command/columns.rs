@@ -8,7 +8,7 @@ const MAP: &str = "[file]\ndelimiter = \"semicolon\"\ndecimal = \"comma\"\n[time
 /// The example `three_days` as another program would have written it, with its bench and map.
 fn folder() -> Folder {
     let folder = Folder::new();
-    let text = std::fs::read_to_string(example("three_days.csv")).unwrap();
+    let text = example("three_days.csv");
     let mut other = "Zeit;aX;aY;aZ\n".to_owned();
     for line in text.lines().skip(1) {
         let mut numbers = line.split(',').map(|field| field.parse::<f64>().unwrap());
@@ -18,10 +18,7 @@ fn folder() -> Folder {
     }
     folder.put("l.csv", other);
     folder.put("map.toml", MAP);
-    folder.put(
-        "b.toml",
-        std::fs::read_to_string(example("three_days.bench.toml")).unwrap(),
-    );
+    folder.put("b.toml", example("three_days.bench.toml"));
     folder
 }
 
@@ -48,10 +45,10 @@ fn a_mapped_record_has_the_coefficients_of_the_record() {
         "--coefficients",
         "mapped.csv",
     ]);
-    let record = example("three_days.csv");
+    folder.put_example("three_days.csv");
     folder.succeed(&[
         "calibrate",
-        &record,
+        "three_days.csv",
         "--bench",
         "b.toml",
         "--no-noise",
@@ -118,12 +115,13 @@ fn an_imported_record_is_read_by_every_command() {
 #[test]
 fn findings_are_a_table_of_their_parameters() {
     let folder = Folder::new();
-    let [record, bench] = ["hidden_fault.csv", "hidden_fault.bench.toml"].map(example);
+    folder.put_example("hidden_fault.csv");
+    folder.put_example("hidden_fault.bench.toml");
     folder.succeed(&[
         "diagnose",
-        &record,
+        "hidden_fault.csv",
         "--bench",
-        &bench,
+        "hidden_fault.bench.toml",
         "--findings",
         "f.csv",
         "--coefficients",

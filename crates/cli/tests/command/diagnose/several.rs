@@ -32,6 +32,14 @@ fn folder() -> Folder {
     folder
 }
 
+/// The message of a command line that cannot be.
+fn refused(folder: &Folder, arguments: &[&str]) -> String {
+    let output = folder.run(arguments);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{errors}");
+    errors
+}
+
 #[test]
 fn two_records_are_told_together_and_alone() {
     let folder = folder();
@@ -57,14 +65,17 @@ fn two_records_are_told_together_and_alone() {
     assert_eq!(result.records.len(), 2);
     let by_record = result.findings[0].by_record.as_ref().unwrap();
     assert_eq!(by_record.choice, SizeChoice::Shared);
-    let said = folder.fail(&[
-        "plan",
-        "a.csv",
-        "--bench",
-        "a.bench.toml",
-        "--diagnosis",
-        "o.json",
-    ]);
+    let said = refused(
+        &folder,
+        &[
+            "plan",
+            "a.csv",
+            "--bench",
+            "a.bench.toml",
+            "--diagnosis",
+            "o.json",
+        ],
+    );
     assert!(said.contains("a result of 2 records"), "{said}");
     // A model file is made from it as from one record.
     folder.succeed(&["extend", "o.json", "--out", "both.model.toml"]);
@@ -76,12 +87,12 @@ fn what_goes_with_one_record_is_refused() {
     let folder = folder();
     let both = ["diagnose", "a.csv", "b.csv", "--bench", "a.bench.toml"];
     for further in [["--filter", "euler"], ["--figures", "pictures"]] {
-        let said = folder.fail(&[&both[..], &further].concat());
+        let said = refused(&folder, &[&both[..], &further].concat());
         assert!(said.contains("goes with one record"), "{said}");
     }
     let said = folder.fail(&["diagnose", "a.csv", "a.csv", "--bench", "a.bench.toml"]);
     assert!(said.contains("consecutive rows"), "{said}");
     let three = ["--bench", "b.bench.toml", "--bench", "a.bench.toml"];
-    let said = folder.fail(&[&both[..], &three].concat());
+    let said = refused(&folder, &[&both[..], &three].concat());
     assert!(said.contains("3 bench files for 2 records"), "{said}");
 }
