@@ -129,6 +129,13 @@ impl CalibrateArguments {
         }
     }
 
+    /// The files that are read.
+    fn inputs(&self) -> Vec<&Path> {
+        let files = self.records.iter().chain(&self.benches);
+        let files = files.chain(&self.gyro_axes).map(PathBuf::as_path);
+        files.chain(self.map.path()).collect()
+    }
+
     /// Checks what clap cannot express.
     fn check(&self) -> Result<(), Failure> {
         let usage = |message: String| Err(Failure::Usage(message));
@@ -189,24 +196,8 @@ const FITTED: f64 = 0.5;
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     arguments.check()?;
-    let inputs: Vec<&Path> = arguments
-        .records
-        .iter()
-        .chain(&arguments.benches)
-        .chain(&arguments.gyro_axes)
-        .map(PathBuf::as_path)
-        .chain(arguments.map.path())
-        .collect();
-    outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    let json_output = ("--json", arguments.json.as_deref());
-    let table = ("--coefficients", arguments.coefficients.as_deref());
-    page::check(
-        &inputs,
-        &[json_output, table],
-        arguments.report.as_deref(),
-        None,
-    )?;
-    outputs::refuse_unwritable(&[arguments.coefficients.as_deref()], None)?;
+    let inputs = arguments.inputs();
+    check_outputs(arguments, &inputs)?;
     let measurements = inputs::read(arguments)?;
     if measurements.iter().any(|measurement| measurement.stops) {
         return Err(stopped(arguments, &measurements, &inputs)?.into());
@@ -268,6 +259,15 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         answer.exit_code = exit::FAILED;
     }
     Ok(answer)
+}
+
+/// Refuses outputs that are inputs, or cannot be written.
+fn check_outputs(arguments: &CalibrateArguments, inputs: &[&Path]) -> Result<(), Failure> {
+    let (json, table) = (arguments.json.as_deref(), arguments.coefficients.as_deref());
+    outputs::check(inputs, json, None)?;
+    let others = [("--json", json), ("--coefficients", table)];
+    page::check(inputs, &others, arguments.report.as_deref(), None)?;
+    outputs::refuse_unwritable(&[table], None)
 }
 
 /// Writes the result of records whose set-up is wrong; the failure that tells it.

@@ -22,8 +22,10 @@ mod bundle;
 mod elementary;
 mod emission;
 mod error;
+mod number;
 mod reference;
 mod text;
 
-pub use emission::{Emission, Extension, Number};
+pub use emission::{Emission, Extension};
 pub use error::EmitError;
+pub use number::Number;

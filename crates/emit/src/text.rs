@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::emission::Number;
+use crate::number::Number;
 use crate::reference::{ANGLES_RAD, Expected, INTERVAL_S, LATITUDE_DEG, SIGMA_RAD, Start};
 
 /// True if the libraries of this program fuse multiplication and addition, which the file does not.
@@ -95,29 +95,8 @@ pub fn emitted_filter(
     )
 }
 
-/// Tests of a nominal filter.
-pub(crate) fn nominal_vectors(
-    number: Number,
-    samples: &[[f64; 3]],
-    expected: &[Expected],
-) -> String {
-    let tolerance = match (FUSED, number) {
-        (false, _) => (
-            0.0,
-            "The numbers are those of the libraries, to the last bit.",
-        ),
-        (true, Number::F64) => (
-            1e-6,
-            "The libraries that gave the numbers fuse multiplication and addition: other last bits, in sigma.",
-        ),
-        (true, Number::F32) => (
-            0.1,
-            "The libraries that gave the numbers fuse multiplication and addition: other last bits, in sigma.",
-        ),
-    };
-    let mut text = tables(number, samples, expected, tolerance);
-    text.push_str(
-        "
+/// Tests of a nominal filter after their tables.
+const NOMINAL_TESTS: &str = "
     fn started() -> EmittedFilter {
         let mut filter = EmittedFilter::unset();
         filter.start(&settings(), &attitude(), Limits::default()).unwrap();
@@ -175,8 +154,30 @@ pub(crate) fn nominal_vectors(
         assert_eq!(refused, Err(ControllerError::IntervalNotPositive));
     }
 }
-",
-    );
+";
+
+/// Tests of a nominal filter.
+pub(crate) fn nominal_vectors(
+    number: Number,
+    samples: &[[f64; 3]],
+    expected: &[Expected],
+) -> String {
+    let tolerance = match (FUSED, number) {
+        (false, _) => (
+            0.0,
+            "The numbers are those of the libraries, to the last bit.",
+        ),
+        (true, Number::F64) => (
+            1e-6,
+            "The libraries that gave the numbers fuse multiplication and addition: other last bits, in sigma.",
+        ),
+        (true, Number::F32) => (
+            0.1,
+            "The libraries that gave the numbers fuse multiplication and addition: other last bits, in sigma.",
+        ),
+    };
+    let mut text = tables(number, samples, expected, tolerance);
+    text.push_str(NOMINAL_TESTS);
     text
 }
 

@@ -203,13 +203,16 @@ mod tests {
                 .next()
                 .and_then(|first| page.strip_prefix(first))
                 .expect("the page begins as its template does");
-            for text in texts {
+            let texts: Vec<&str> = texts.collect();
+            for text in &texts {
                 let place = rest
                     .find(text)
                     .unwrap_or_else(|| panic!("{name} lacks: {text}"));
                 rest = &rest[place + text.len()..];
             }
-            assert_eq!(rest, "", "{name} ends as its template does");
+            // What is filled in may stand last.
+            let last = texts.last().is_some_and(|text| text.trim().is_empty());
+            assert!(last || rest.is_empty(), "{name} ends as its template does");
         }
     }
 

@@ -1,77 +1,11 @@
-//! Columns of a log beside those of the sensors: temperature, and rate or angle of a turntable.
+//! Checks of the columns of a log: temperatures in another unit, saturated gyros.
 
 use gyrocal_record::InputErrorKind;
-use serde::{Deserialize, Serialize};
 
 use crate::columns::FileColumns;
 use crate::description::Temperature;
 use crate::description::temperature::TemperatureUnit;
 use crate::error::{InstrumentError, Unfit};
-
-/// Rate or angle of the turntable that carries the unit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct TableColumn {
-    /// The column: mean rate over the interval that ends at its time stamp, or the angle at its end.
-    pub column: String,
-    /// Its unit. An angle may begin again after a turn.
-    pub unit: TableUnit,
-    /// Axis of the table in body axes, right-handed, of any length; along specific force, up, if it is not
-    /// given.
-    pub axis: Option<[f64; 3]>,
-}
-
-/// Units of the rate or the angle of a turntable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum TableUnit {
-    /// rad/s
-    #[serde(rename = "rad/s")]
-    RadPerS,
-    /// deg/s
-    #[serde(rename = "deg/s")]
-    DegPerS,
-    /// deg/h
-    #[serde(rename = "deg/h")]
-    DegPerH,
-    /// Radians.
-    #[serde(rename = "rad")]
-    Rad,
-    /// Degrees.
-    #[serde(rename = "deg")]
-    Deg,
-}
-
-impl TableColumn {
-    pub(crate) fn has_axis(&self) -> bool {
-        let finite = |axis: [f64; 3]| axis.iter().all(|component| component.is_finite());
-        self.axis
-            .is_none_or(|axis| finite(axis) && axis.iter().any(|component| *component != 0.0))
-    }
-
-    /// Mean rates over the intervals of the samples \[rad/s\], from values of the column.
-    pub(crate) fn rates(&self, values: &[f64], time_s: &[f64]) -> Vec<f64> {
-        let factor = match self.unit {
-            TableUnit::RadPerS | TableUnit::Rad => 1.0,
-            TableUnit::DegPerS | TableUnit::Deg => 1.0_f64.to_radians(),
-            TableUnit::DegPerH => 1.0_f64.to_radians() / 3600.0,
-        };
-        if !matches!(self.unit, TableUnit::Rad | TableUnit::Deg) {
-            return values.iter().map(|value| factor * value).collect();
-        }
-        let turn = core::f64::consts::TAU;
-        let rate = |sample: usize| {
-            // The first sample has no angle before it: the rate of the next stands for it.
-            let sample = sample.max(1);
-            let step = factor * (values[sample] - values[sample - 1]);
-            let step = step - turn * (step / turn).round();
-            step / (time_s[sample] - time_s[sample - 1])
-        };
-        (0..values.len()).map(rate).collect()
-    }
-}
 
 /// Temperatures of units at work \[degrees Celsius\].
 const PLAUSIBLE_C: core::ops::RangeInclusive<f64> = -100.0..=250.0;

@@ -5,13 +5,14 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 use serde::{Deserialize, Serialize};
 
-use crate::covariates::TableColumn;
 use crate::file_format::FileFormat;
 
+pub mod table;
 pub mod temperature;
 pub mod time;
 pub mod units;
 
+pub use table::{TableColumn, TableUnit};
 pub use temperature::Temperature;
 pub use time::{Jitter, Time, TimeUnit};
 pub use units::{AccelUnit, CountScale, Estimate, GyroUnit};

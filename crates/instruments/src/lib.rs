@@ -85,7 +85,6 @@ pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positio
 pub use allan_analysis::{AllanColumn, AllanColumnPoint, AllanSettings, allan_columns, allan_log};
 pub use clock::Clock;
 pub use columns::{Columns, read_columns, read_described};
-pub use covariates::{TableColumn, TableUnit};
 pub use description::Description;
 pub use error::{InstrumentError, Unfit};
 pub use gyro_from_turns::{GyroCalibration, gyro_from_turns};

@@ -9,7 +9,7 @@ use crate::clock::{Clock, resampled, steady_clock};
 use crate::columns::FileColumns;
 use crate::covariates::{refuse_saturated, temperatures_c};
 use crate::description::time::WEEK_S;
-use crate::description::{CountScale, Description, Direction, Gyro, GyroUnit, Jitter};
+use crate::description::{CountScale, Description, Direction, Gyro, GyroUnit, Jitter, Time};
 use crate::error::{InstrumentError, Unfit};
 
 /// Samples of six sensors; all vectors have the same length.
@@ -117,23 +117,7 @@ impl Log {
             .week_column
             .as_ref()
             .and_then(|_| others.next());
-        let (time_s, clock) = match (stamps, description.time.rate_hz) {
-            (Some(stamps), _) => {
-                let unit_s = description.time.numeric_unit_s();
-                let week_s = |row: usize| weeks.map_or(0.0, |weeks| weeks[row] * WEEK_S);
-                let stamps = stamps.iter().enumerate();
-                let time_s: Vec<f64> = stamps
-                    .map(|(row, stamp)| stamp * unit_s + week_s(row))
-                    .collect();
-                refuse_backwards(&file, &time_s)?;
-                (time_s, Clock::Stamps)
-            }
-            (None, rate_hz) => {
-                let interval_s = 1.0 / rate_hz.unwrap_or(1.0);
-                let time_s = (1..=rows).map(|row| row as f64 * interval_s).collect();
-                (time_s, Clock::Rate)
-            }
-        };
+        let (time_s, clock) = times(&file, &description.time, stamps, weeks)?;
         let interval_s = usual_interval_s(&time_s)?;
         let temperature_c = match (&description.temperature, others.len()) {
             (Some(column), 1..) => {
@@ -294,6 +278,29 @@ impl Log {
              sensor samples at such intervals, `jitter = \"use\"` or `\"resample\"`",
         )
     }
+}
+
+/// Times of the rows, and how they are known.
+fn times(
+    file: &FileColumns,
+    time: &Time,
+    stamps: Option<&Vec<f64>>,
+    weeks: Option<&Vec<f64>>,
+) -> Result<(Vec<f64>, Clock), InstrumentError> {
+    let Some(stamps) = stamps else {
+        let interval_s = 1.0 / time.rate_hz.unwrap_or(1.0);
+        let rows = file.values.first().map_or(0, Vec::len);
+        let time_s = (1..=rows).map(|row| row as f64 * interval_s).collect();
+        return Ok((time_s, Clock::Rate));
+    };
+    let unit_s = time.numeric_unit_s();
+    let week_s = |row: usize| weeks.map_or(0.0, |weeks| weeks[row] * WEEK_S);
+    let stamps = stamps.iter().enumerate();
+    let time_s: Vec<f64> = stamps
+        .map(|(row, stamp)| stamp * unit_s + week_s(row))
+        .collect();
+    refuse_backwards(file, &time_s)?;
+    Ok((time_s, Clock::Stamps))
 }
 
 /// Columns of the description: gyros, accelerometers, time, GPS week, temperature, turntable.

@@ -12,8 +12,7 @@ use parquet::schema::types::Type;
 
 use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
-use crate::platform_record::Row;
-use crate::platform_row::{Cell, PlatformRow};
+use crate::platform_row::{Cell, PlatformRow, Row};
 
 /// First bytes of a file of Parquet.
 const PARQUET: &[u8] = b"PAR1";

@@ -7,7 +7,8 @@ use gyrocal_record::{Error, Record, SourceText, open_content};
 
 use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
-use crate::platform_record::{Row, RowReader, finished};
+use crate::platform_record::{RowReader, finished};
+use crate::platform_row::Row;
 
 /// Longest interval of such means, s. The mean of a platform that turns with the Earth exceeds the value at
 /// its middle by T² a''/24, which is 2e-8 g at 10 s; over longer intervals `average_record` corrects it,

@@ -10,7 +10,7 @@ use crate::description::{Description, Jitter};
 use crate::error::InstrumentError;
 use crate::file_format::FileFormat;
 use crate::log_lines::{LogLine, log_lines};
-use crate::platform_row::{Cell, PlatformRow};
+use crate::platform_row::{Cell, PlatformRow, Row};
 use crate::proposal::propose_map;
 
 /// Intervals longer than this many median ones are gaps, which are not interpolated.
@@ -172,28 +172,6 @@ impl<'a> RowReader<'a> {
     }
 }
 
-/// One row of a record.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Row {
-    pub(crate) time_s: f64,
-    pub(crate) accel_g: [f64; 3],
-    /// `NaN` where it is missing.
-    pub(crate) temperature_c: Option<f64>,
-}
-
-impl Row {
-    pub(crate) fn push_to(self, record: &mut Record) {
-        record.time_s.push(self.time_s);
-        record.accel_g.push(self.accel_g);
-        if let Some(temperature_c) = self.temperature_c {
-            record
-                .temperature_c
-                .get_or_insert_default()
-                .push(temperature_c);
-        }
-    }
-}
-
 /// The record with temperatures between those logged, and at equal intervals if that is described.
 pub(crate) fn finished(mut record: Record, description: &Description) -> Record {
     if let Some(column) = &mut record.temperature_c {
@@ -286,13 +264,4 @@ fn refuse_parquet(path: &Path) -> Result<(), InstrumentError> {
         ));
     }
     Ok(())
-}
-
-/// What is wrong with a cell.
-pub(crate) struct Fault {
-    /// Its column, by the order of [`PlatformRow::names`].
-    pub(crate) column: usize,
-    pub(crate) kind: InputErrorKind,
-    pub(crate) expected: &'static str,
-    pub(crate) advice: String,
 }

@@ -1,13 +1,12 @@
 //! One row of a stable platform's record from the cells of a described file.
 
-use gyrocal_record::InputErrorKind;
+use gyrocal_record::{InputErrorKind, Record};
 
 use crate::date_time::seconds_of;
 use crate::description::time::WEEK_S;
 use crate::description::{Accel, Description};
 use crate::error::{InstrumentError, Unfit};
 use crate::log::accel_scale;
-use crate::platform_record::{Fault, Row};
 use crate::remedy;
 
 /// A cell of a file.
@@ -24,6 +23,37 @@ pub(crate) enum Cell<'a> {
     /// A missing value of a typed column.
     #[cfg(feature = "parquet")]
     Missing,
+}
+
+/// One row of a record.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    pub(crate) time_s: f64,
+    pub(crate) accel_g: [f64; 3],
+    /// `NaN` where it is missing.
+    pub(crate) temperature_c: Option<f64>,
+}
+
+impl Row {
+    pub(crate) fn push_to(self, record: &mut Record) {
+        record.time_s.push(self.time_s);
+        record.accel_g.push(self.accel_g);
+        if let Some(temperature_c) = self.temperature_c {
+            record
+                .temperature_c
+                .get_or_insert_default()
+                .push(temperature_c);
+        }
+    }
+}
+
+/// What is wrong with a cell.
+pub(crate) struct Fault {
+    /// Its column, by the order of [`PlatformRow::names`].
+    pub(crate) column: usize,
+    pub(crate) kind: InputErrorKind,
+    pub(crate) expected: &'static str,
+    pub(crate) advice: String,
 }
 
 /// Columns of a row and their conversion.

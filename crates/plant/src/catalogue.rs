@@ -272,14 +272,10 @@ impl<'d> Builder<'d> {
                 let weight = RAMP + 1 + self.description.regressors.len() + shape;
                 let own = self.modulated(entry, Modulation::Weight(weight));
                 self.shapes.push(element("onset_s", "s", "onset"));
-                let onset = EffectParameter {
-                    name: "onset_s",
-                    unit: "s",
-                    role: Role::Onset(Some(shape)),
-                    scale: 1.0,
-                    weight: None,
-                };
-                (EffectKind::Step, vec![size(own, Some(weight)), onset])
+                (
+                    EffectKind::Step,
+                    vec![size(own, Some(weight)), onset(shape)],
+                )
             }
         };
         let id = kept(&entry.id);
@@ -323,5 +319,16 @@ impl<'d> Builder<'d> {
         self.elements
             .push(element(&entry.id, &entry.unit, &entry.name));
         Role::Parameter(self.elements.len() - 1)
+    }
+}
+
+/// The onset of a step, one of the shapes.
+fn onset(shape: usize) -> EffectParameter {
+    EffectParameter {
+        name: "onset_s",
+        unit: "s",
+        role: Role::Onset(Some(shape)),
+        scale: 1.0,
+        weight: None,
     }
 }
