@@ -1,6 +1,6 @@
 //! Causes that recur in many units below each one's threshold.
 //!
-//! Every effect has the evidence E that it is in some share of the units ([`mixture`]) and the p-value of that
+//! Every effect has the evidence E that it is in some share of the units (`mixture`) and the p-value of that
 //! evidence. Signatures overlap, so that one cause raises the evidence of its twins. The effect with the largest
 //! evidence is named; what has no evidence of its own with it in the model of each unit is an alternative
 //! to it, and what has is named in turn.
