@@ -22,7 +22,7 @@ pub(super) fn figures(tools: &Tools, small: bool) -> Result<Vec<Figure>, Error> 
         "f32: links with a panic handler that does not exist",
         true,
     )];
-    figures.push(soft_double(tools, &firmware)?);
+    figures.push(soft_double(tools, &firmware, "f32")?);
     for (rule, limit) in INSTRUCTIONS {
         let lines = Lines(tools.run(&firmware, rule)?);
         figures.extend(of_rule("f32", rule, &lines, Some(limit))?);
@@ -92,7 +92,7 @@ pub(super) fn watch(tools: &Tools) -> Result<Vec<Figure>, Error> {
             "f32: watch: all bits on the target are those of the host",
             here == there && !here.is_empty(),
         ),
-        soft_double(tools, &firmware)?,
+        soft_double(tools, &firmware, "f32: watch")?,
     ];
     Ok(figures
         .map(|figure| figure.over(lines.steps(), "examples/data/three_days.csv"))
@@ -244,7 +244,7 @@ fn memory(lines: &Lines) -> Result<Vec<Figure>, Error> {
 }
 
 /// Calls of software for double precision: there must be none where all numbers are single.
-fn soft_double(tools: &Tools, firmware: &Path) -> Result<Figure, Error> {
+fn soft_double(tools: &Tools, firmware: &Path, program: &str) -> Result<Figure, Error> {
     let is_double = |name: &String| {
         let rest = name.strip_prefix("__aeabi_").unwrap_or_default();
         rest.starts_with('d') && !rest.starts_with("div")
@@ -256,10 +256,10 @@ fn soft_double(tools: &Tools, firmware: &Path) -> Result<Figure, Error> {
     let symbols = tools.symbols(firmware)?;
     let found: Vec<&String> = symbols.iter().filter(|name| is_double(name)).collect();
     let measured = found.len().to_string();
-    let name = "f32: functions of software for double precision in the firmware";
+    let name = format!("{program}: functions of software for double precision in the firmware");
     Ok(Figure {
         target: "0".to_owned(),
         measured,
-        ..Figure::truth(name, found.is_empty() && !symbols.is_empty())
+        ..Figure::truth(&name, found.is_empty() && !symbols.is_empty())
     })
 }
