@@ -42,7 +42,7 @@ impl<T: Precision> Default for WatchSettings<T> {
             block_s: number(7200.0),
             walk_deg_per_h_per_sqrt_h: [number(1e-5); 3],
             clip: number(3.0),
-            set_width: number(12.0),
+            set_width: number(9.0),
             sought_sigmas: number(4.0),
             sought_jump_rad: number(4e-5),
         }

@@ -14,7 +14,7 @@ use crate::resumable;
 use crate::truth::Extent;
 
 /// A population that no constant was tuned on.
-const RECORDS: u64 = 20_261_134;
+const RECORDS: u64 = 20_261_234;
 const DAYS: f64 = 14.0;
 /// An effect begins when the filter has settled.
 const ONSET_DAYS: f64 = 6.0;
