@@ -81,8 +81,9 @@ fn entry(first: &Effect) -> String {
     if ids.len() > 1 {
         text += &format!("| family | {} |\n", ids.join(", "));
     }
+    let letters = |words: &str| words.replace(' ', "");
     for fact in &screen.facts {
-        let words = if fact.words == first.formula || fact.label == "term" {
+        let words = if letters(&fact.words) == letters(first.formula) {
             format!("`{}`", fact.words)
         } else {
             fact.words.clone()
