@@ -3,6 +3,7 @@
 //! Walks of all rates together take up an effect of a rate that does not walk; effects without walks
 //! do not explain the others. Only with the walks of the others in the model is the question fair.
 
+use crate::accepted::{Accepted, value_places};
 use crate::bank::NominalEstimate;
 use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::forward::{Beside, forward};
@@ -147,7 +148,7 @@ fn in_place<F: FittedModel>(
         seeks_unmodelled: false,
         ..state.clone()
     };
-    // Effects of both models are penalised alike, and the first in the place of the walk is free.
+    // Effects of both models are penalised alike; the first in the place of the walk costs its choice.
     let before = state.penalties(threshold, 0.0, 1);
     let first = if state.accepted.is_empty() {
         0.0
@@ -164,12 +165,33 @@ fn in_place<F: FittedModel>(
     if added.is_empty() {
         return Ok(None);
     }
+    let walking = state.stage.noise.noise.walking();
     let further = added.iter().skip(1);
     let penalties: f64 = further.map(|own| threshold + own.penalty).sum();
-    let advantage = 2.0 * (with.stage.noise.log_likelihood - own) - penalties;
+    let choice = choice_of_first(context, &with, &added[0], walking.len())?;
+    let advantage = 2.0 * (with.stage.noise.log_likelihood - own) - penalties - choice;
     Ok(Some(InPlace {
         walk,
         state: with,
         advantage,
     }))
+}
+
+/// Twice the logarithm of the number of effects among which the first one in the place of a walk was
+/// chosen, all of which could have stood for a path of that walk: shapes by the search penalty, walks by
+/// their number, and sizes. Of sizes up to its own it resolves as many as it has standard deviations
+/// (the Occam factor of a normal prior of that width; Kass and Raftery, J. Amer. Statist. Assoc. 90,
+/// 773, 1995).
+fn choice_of_first<F: FittedModel>(
+    context: &SearchContext<'_>,
+    with: &SearchState<F>,
+    first: &Accepted,
+    walks: usize,
+) -> Result<f64, F::Error> {
+    let fitted = &with.stage.fitted;
+    let absent = value_places(fitted, &context.set.hypotheses[first.hypothesis]);
+    let walking = with.stage.noise.noise.walking();
+    let without = fitted.fit_rate_noise(&walking, &absent)?;
+    let gained = 2.0 * (with.stage.noise.log_likelihood - without.log_likelihood);
+    Ok(first.penalty + gained.max(0.0).ln_1p() + 2.0 * (walks as f64).ln())
 }
