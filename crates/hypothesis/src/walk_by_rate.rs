@@ -86,7 +86,9 @@ pub(crate) fn replaced<F: FittedModel>(
             .first()
             .is_none_or(|best| best.advantage <= BESIDE_WALKS)
         {
-            let in_place_of = others.iter().filter(|other| other.advantage > 0.0);
+            let in_place_of = others
+                .iter()
+                .filter(|other| other.advantage > -BESIDE_WALKS);
             let in_place_of = in_place_of.map(|other| {
                 let deficit = 0.5 * (BESIDE_WALKS - other.advantage);
                 let added = &other.state.accepted[state.accepted.len()..];
