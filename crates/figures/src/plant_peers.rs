@@ -32,6 +32,13 @@ const STRENGTHS: [f64; 2] = [8.0, 50.0];
 /// Effects that are terms of the rates, which all methods can name.
 const EFFECTS: usize = 5;
 
+/// The name of our own row.
+const OWN: &str = "ours";
+
+/// Error of a model that leaves a record altogether, standard deviations of the sensors, as the script
+/// writes it.
+const DIVERGED: f64 = 1e9;
+
 /// Names of the columns of a record.
 const INPUTS: [&str; 3] = ["up", "uq", "ur"];
 const OUTPUTS: [&str; 6] = [
@@ -88,11 +95,16 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     output(Command::new(python).arg(&script).arg(&directory))?;
     let text = std::fs::read_to_string(directory.join("peers.json"))?;
     let said: Vec<BTreeMap<String, Said>> = serde_json::from_str(&text)?;
+    if said.len() != ours.len() {
+        return Err(format!("{} records were answered of {}", said.len(), ours.len()).into());
+    }
     let seeds = format!("{SEEDS} to {}", SEEDS + count - 1);
-    Ok(["ours", "pysindy", "pyoperon"]
-        .iter()
-        .flat_map(|method| of_method(method, &ours, &said, &seeds))
-        .collect())
+    let [own, peers @ ..] =
+        &[OWN, "pysindy", "pyoperon"].map(|method| Row::new(method, &ours, &said));
+    let judged = peers.iter().flat_map(|peer| own.beside(peer, &seeds));
+    let noted = core::iter::once(own).chain(peers);
+    let noted = noted.flat_map(|row| row.figures(&seeds));
+    Ok(judged.chain(noted).collect())
 }
 
 fn environment(directory: &Path) -> Result<PathBuf, Error> {
@@ -193,61 +205,117 @@ fn diagnosed(plant: &LoadedPlant, seed: u64, directory: &Path) -> Result<Ours, E
     })
 }
 
-fn of_method(
-    method: &str,
-    ours: &[Ours],
-    said: &[BTreeMap<String, Said>],
-    seeds: &str,
-) -> Vec<Figure> {
-    let pairs: Vec<(&Ours, &Said)> = ours
-        .iter()
-        .zip(said)
-        .filter_map(|(own, said)| Some((own, said.get(method)?)))
-        .collect();
-    let is_first =
-        |(own, said): &(&Ours, &Said)| said.names.first().is_some_and(|name| name == own.truth);
-    // As many names as our set has.
-    let is_within = |(own, said): &(&Ours, &Said)| {
-        if method == "ours" {
-            own.set.iter().any(|name| name == own.truth)
-        } else {
-            said.names
-                .iter()
-                .take(own.set.len().max(1))
-                .any(|name| name == own.truth)
-        }
-    };
-    let first = Proportion::of(pairs.iter().map(is_first));
-    let within = Proportion::of(pairs.iter().map(is_within));
-    let false_terms = pairs.iter().map(|(own, said)| {
-        let wrong = said.names.iter().filter(|name| {
-            let in_set = method == "ours" && own.set.contains(name);
-            **name != own.truth && !in_set
+/// What one method reached over all records.
+struct Row {
+    method: &'static str,
+    /// Records whose hidden effect is the first name.
+    first: Proportion,
+    /// Records whose hidden effect is among as many first names as our set has.
+    within: Proportion,
+    /// Names that are not the hidden effect, for each record.
+    wrong: f64,
+    /// Median over records of the error on a second record, standard deviations of the sensors.
+    error: f64,
+    /// Records whose model leaves the second record altogether.
+    diverged: usize,
+    /// Median time of a record, s.
+    seconds: f64,
+}
+
+impl Row {
+    /// A record that a method says nothing of counts as one without names whose model diverges.
+    fn new(method: &'static str, ours: &[Ours], said: &[BTreeMap<String, Said>]) -> Self {
+        let nothing = Said {
+            names: Vec::new(),
+            error: DIVERGED,
+            seconds: f64::NAN,
+        };
+        let said = said.iter().map(|of| of.get(method).unwrap_or(&nothing));
+        let pairs: Vec<(&Ours, &Said)> = ours.iter().zip(said).collect();
+        let is_within = |(own, said): &(&Ours, &Said)| {
+            let names = if method == OWN { &own.set } else { &said.names };
+            let mut names = names.iter().take(own.set.len().max(1));
+            names.any(|name| name == own.truth)
+        };
+        let wrong = pairs.iter().map(|(own, said)| {
+            let names = said.names.iter();
+            names.filter(|name| *name != own.truth).count() as f64
         });
-        wrong.count() as f64
-    });
-    let mean = false_terms.sum::<f64>() / pairs.len().max(1) as f64;
-    let middle = |of: fn(&Said) -> f64| {
-        let values: Vec<f64> = pairs.iter().map(|(_, said)| of(said)).collect();
-        median(&values)
-    };
-    let note = |what: &str, measured: String| {
-        Figure::note(&format!("plant peers: {what}, {method}"), measured).over(pairs.len(), seeds)
-    };
-    let share = |what: &str, share| {
-        Figure::note_share(&format!("plant peers: {what}, {method}"), share, seeds)
-    };
-    vec![
-        share("truth is the first name", first),
-        share("truth within a set of equal size", within),
-        note("mean number of false terms", format!("{mean:.2}")),
-        note(
-            "median error on a second record, sigma of the sensors",
-            format!("{:.3}", middle(|said| said.error)),
-        ),
-        note(
-            "median time",
-            format!("{:.2} s", middle(|said| said.seconds)),
-        ),
-    ]
+        let middle = |of: fn(&Said) -> f64| {
+            median(&pairs.iter().map(|(_, said)| of(said)).collect::<Vec<_>>())
+        };
+        let first = pairs.iter().map(|(own, said)| {
+            let first = said.names.first();
+            first.is_some_and(|name| name == own.truth)
+        });
+        Self {
+            method,
+            first: Proportion::of(first),
+            within: Proportion::of(pairs.iter().map(is_within)),
+            wrong: wrong.sum::<f64>() / pairs.len().max(1) as f64,
+            error: middle(|said| said.error),
+            diverged: pairs
+                .iter()
+                .filter(|(_, said)| said.error >= DIVERGED)
+                .count(),
+            seconds: middle(|said| said.seconds),
+        }
+    }
+
+    /// Advantages over another method: positive where this one is better.
+    fn advantages(&self, other: &Self) -> [(&'static str, f64); 4] {
+        [
+            ("first name", self.first.share() - other.first.share()),
+            ("set", self.within.share() - other.within.share()),
+            ("false terms", other.wrong - self.wrong),
+            ("error", other.error - self.error),
+        ]
+    }
+
+    /// Not worse in any, better in one or more.
+    fn beside(&self, other: &Self, seeds: &str) -> Vec<Figure> {
+        let advantages = self.advantages(other);
+        let of = |is: fn(f64) -> bool| {
+            let names = advantages.iter().filter(|(_, by)| is(*by));
+            let names: Vec<&str> = names.map(|(name, _)| *name).collect();
+            match names.as_slice() {
+                [] => "none".to_owned(),
+                names => names.join(", "),
+            }
+        };
+        let is_not_worse = advantages.iter().all(|(_, by)| *by >= 0.0);
+        let is_better = advantages.iter().any(|(_, by)| *by > 0.0);
+        let figure = |what: &str, target: &str, measured, holds| Figure {
+            target: target.to_owned(),
+            measured,
+            ..Figure::truth(&format!("plant peers: {what} than {}", other.method), holds)
+        };
+        let runs = self.first.trials as usize;
+        vec![
+            figure("worse", "none", of(|by| by < 0.0), is_not_worse).over(runs, seeds),
+            figure("better", "one or more", of(|by| by > 0.0), is_better).over(runs, seeds),
+        ]
+    }
+
+    fn figures(&self, seeds: &str) -> Vec<Figure> {
+        let name = |what: &str| format!("plant peers: {what}, {}", self.method);
+        let note = |what: &str, measured| {
+            Figure::note(&name(what), measured).over(self.first.trials as usize, seeds)
+        };
+        let share = |what: &str, share| Figure::note_share(&name(what), share, seeds);
+        vec![
+            share("hidden effect is the first name", self.first),
+            share("hidden effect within a set of equal size", self.within),
+            note("mean number of false terms", format!("{:.2}", self.wrong)),
+            note(
+                "median error on a second record, sigma of the sensors",
+                format!("{:.4}", self.error),
+            ),
+            note(
+                "records whose model leaves the second one altogether",
+                self.diverged.to_string(),
+            ),
+            note("median time", format!("{:.2} s", self.seconds)),
+        ]
+    }
 }

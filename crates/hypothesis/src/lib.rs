@@ -117,6 +117,7 @@ mod pattern;
 mod plant;
 mod rate_noise;
 mod reassess;
+mod replaced;
 mod result;
 mod rows;
 mod score;

@@ -5,6 +5,7 @@ use crate::accepted::Accepted;
 use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
+use crate::replaced::{Replaced, replaceable};
 use crate::result::{ConditionalResult, add_shape_intervals, evaluate};
 use crate::score::Best;
 use crate::state::{SearchState, stage};
@@ -20,6 +21,7 @@ pub(crate) fn reassess<F: FittedModel>(
     draws: &mut GaussianDraws,
 ) -> Result<Vec<ConditionalResult>, F::Error> {
     let mut swaps = 0;
+    let mut replaced: Vec<Replaced> = Vec::new();
     loop {
         let mut results = Vec::with_capacity(state.accepted.len());
         let mut weakest: Option<(usize, f64)> = None;
@@ -68,6 +70,10 @@ pub(crate) fn reassess<F: FittedModel>(
                 )?;
             }
             _ => {
+                if let Some(found) = replaceable(context, state, threshold)? {
+                    replaced.push(found);
+                    continue;
+                }
                 for (index, result) in results.iter_mut().enumerate() {
                     let finding = &mut result.finding;
                     add_shape_intervals(
@@ -79,6 +85,9 @@ pub(crate) fn reassess<F: FittedModel>(
                         draws,
                     )?;
                     let hypothesis = state.accepted[index].hypothesis;
+                    for other in replaced.iter().filter(|other| other.by == hypothesis) {
+                        other.add_to(&mut finding.alternatives);
+                    }
                     let own = rivals.iter().filter(|rival| rival.of.contains(&hypothesis));
                     for rival in own {
                         finding

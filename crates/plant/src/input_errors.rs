@@ -11,7 +11,8 @@ const PLAY: f64 = 0.05;
 /// The form of an error, which its size multiplies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum InputError {
-    /// The input acts late; the size is the delay, s. To first order it is minus the slope.
+    /// The input acts late; the size is the delay, s. To first order it is minus the slope, and exact where
+    /// the delay is the interval of the rows.
     Delay,
     /// The input has play, as backlash and hysteresis have; the size is half its width.
     Play,
@@ -37,16 +38,13 @@ impl InputError {
         match self {
             Self::Delay => steps
                 .map(|step| {
-                    // A held input was another one before the row, an interpolated one moves within the
-                    // step.
-                    let from = if interpolate {
-                        step
-                    } else {
-                        step.saturating_sub(1)
-                    };
+                    // What the input was a row before, on average over the step, less what it is: a row is
+                    // the delay that a log has most often, and of that this is no approximation.
+                    let before = step.saturating_sub(1);
                     let to = if interpolate { step + 1 } else { step };
+                    let share = if interpolate { 0.5 } else { 1.0 };
                     let interval_s = record.time_s[step + 1] - record.time_s[step];
-                    (values[from] - values[to]) / interval_s
+                    share * (values[before] - values[to]) / interval_s
                 })
                 .collect(),
             Self::Play => {
@@ -102,5 +100,11 @@ mod tests {
         }
         let steps = InputError::Delay.steps(&record, 1, 0, false);
         assert_eq!(*steps, [0.0, -10.0, 10.0, -0.2]);
+        // Means over a step: of the second one 5, and of the step before it 5 too.
+        let steps = InputError::Delay.steps(&record, 1, 0, true);
+        let expected = [-5.0, 0.0, 4.9, -5.0];
+        for (step, expected) in steps.iter().zip(expected) {
+            assert!((step - expected).abs() < 1e-12, "{steps:?}");
+        }
     }
 }
