@@ -54,7 +54,9 @@
 //! (l_a − q_a) − (l_b − q_b) < 3.5                                               (6)
 //! ```
 //!
-//! given the other effects. [`CONFIDENCE_SET_DEVIANCE`] is calibrated by simulation. An effect gives way
+//! given the other effects. Where the model asks for it ([`FittedModel::sets_need_fits`]), l_b of the nearest
+//! rivals is that of a fit with b in the place of a, and of two effects whose sizes are hardly told apart one
+//! is taken out if the other, fitted anew, explains as much; it stays in the set. [`CONFIDENCE_SET_DEVIANCE`] is calibrated by simulation. An effect gives way
 //! to one that is nested in it unless it is better by the 5 % point of χ²(1), [`NESTED_MODEL_CHI2`].
 //!
 //! # Noise and random walks
@@ -99,6 +101,7 @@
 mod accepted;
 mod bank;
 mod budget;
+mod by_fits;
 mod column;
 mod context;
 mod continuation;
@@ -116,6 +119,7 @@ mod outside;
 mod pattern;
 mod plant;
 mod rate_noise;
+mod reach;
 mod reassess;
 mod replaced;
 mod result;

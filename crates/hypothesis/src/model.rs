@@ -143,6 +143,12 @@ pub trait FittedModel: Clone {
     /// Those of a pass over the record.
     fn conditional_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, Self::Error>;
 
+    /// Whether nominal parameters move so far to take an effect up that rivals are compared by fits and not
+    /// by scores about one fit.
+    fn sets_need_fits(&self) -> bool {
+        false
+    }
+
     /// Work of all passes that were made so far, in a unit that grows with rows and columns; zero of a
     /// model that does not count it, whose searches have no budget.
     fn work(&self) -> u64 {

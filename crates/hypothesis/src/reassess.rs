@@ -2,6 +2,7 @@
 //! given those found later.
 
 use crate::accepted::Accepted;
+use crate::by_fits::Compared;
 use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
@@ -27,10 +28,13 @@ pub(crate) fn reassess<F: FittedModel>(
         let mut weakest: Option<(usize, f64)> = None;
         let mut better: Option<(usize, Best, f64)> = None;
         for index in 0..state.accepted.len() {
-            let SearchState {
-                stage, accepted, ..
-            } = &*state;
-            let result = evaluate(stage, context, accepted, index, draws)?;
+            let compared = Compared {
+                stage: &state.stage,
+                accepted: &state.accepted,
+                unmodelled: &state.unmodelled,
+                index,
+            };
+            let result = evaluate(&compared, context, draws)?;
             if weakest.is_none_or(|(_, least)| result.tested < least) {
                 weakest = Some((index, result.tested));
             }

@@ -51,6 +51,9 @@ pub(crate) fn replaceable<F: FittedModel>(
     state: &mut SearchState<F>,
     threshold: f64,
 ) -> Result<Option<Replaced>, F::Error> {
+    if !state.stage.fitted.sets_need_fits() {
+        return Ok(None);
+    }
     let mut least: Option<(f64, Replaced, SearchState<F>)> = None;
     for (index, by) in correlated(context, state) {
         if context.budget.is_spent(&state.stage.fitted) {

@@ -5,12 +5,14 @@ use nalgebra::DMatrix;
 
 use crate::accepted::{Accepted, value_places};
 use crate::bank::{GramProducts, NominalEstimate, ScoreBank};
+use crate::by_fits::{Compared, fit_rivals};
 use crate::column::Column;
 use crate::context::SearchContext;
 use crate::hypothesis::{Hypothesis, HypothesisSet, Variant};
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::rate_noise::RateNoiseFit;
+use crate::reach::reaches;
 use crate::rows::Rows;
 use crate::score::{Best, NESTED_MODEL_CHI2, Scores};
 use crate::shape::ShapeScale;
@@ -170,12 +172,16 @@ pub(crate) struct ConditionalResult {
 
 /// Evaluates one accepted effect, the others being in the model.
 pub(crate) fn evaluate<F: FittedModel>(
-    stage: &FittedStage<F>,
+    compared: &Compared<'_, F>,
     context: &SearchContext<'_>,
-    accepted: &[Accepted],
-    index: usize,
     draws: &mut GaussianDraws,
 ) -> Result<ConditionalResult, F::Error> {
+    let Compared {
+        stage,
+        accepted,
+        index,
+        ..
+    } = *compared;
     let set = &context.set;
     let own = &accepted[index];
     let places = &stage.places[index];
@@ -185,6 +191,13 @@ pub(crate) fn evaluate<F: FittedModel>(
     let mut scores = Scores::of(&bank, &hypotheses, &null, None);
     scores.refine(&stage.fitted, context, &hypotheses, &places.values)?;
     let statistic = scores.best[own.hypothesis].map_or(0.0, |best| best.statistic);
+    let reaches = if stage.fitted.sets_need_fits() {
+        let of = (&bank, hypotheses.as_slice());
+        fit_rivals(compared, context, of, &mut scores, statistic);
+        reaches(&bank, &hypotheses, &scores, context.options.seed)
+    } else {
+        vec![CONFIDENCE_SET_DEVIANCE; hypotheses.len()]
+    };
     // The penalty of a jump is for the test of every step and not for its directions.
     let (penalised, tested) = if set.hypotheses[own.hypothesis].is_jump {
         (statistic - own.searched, statistic - own.searched)
@@ -214,7 +227,7 @@ pub(crate) fn evaluate<F: FittedModel>(
             alternatives: alternatives(
                 &scores,
                 &hypotheses,
-                (own.hypothesis, penalised),
+                (own.hypothesis, penalised, &reaches),
                 |columns| {
                     let count = context.plant.nominal_parameters;
                     stage.products.estimates(&places.values, columns, count)
@@ -286,7 +299,7 @@ fn prior_margin(hypotheses: &[Hypothesis], named: usize, other: usize) -> f64 {
 fn alternatives(
     scores: &Scores<'_>,
     hypotheses: &[Hypothesis],
-    (named, penalised): (usize, f64),
+    (named, penalised, reaches): (usize, f64, &[f64]),
     estimates: impl Fn(&[usize]) -> Option<NominalEstimate>,
 ) -> Vec<Alternative> {
     let equivalents = hypotheses[named].effect.equivalents;
@@ -296,7 +309,7 @@ fn alternatives(
                 && scores.best[*other].is_some()
                 && !equivalents.contains(&hypotheses[*other].id())
         })
-        .filter(|other| penalised - scores.penalised(*other) < CONFIDENCE_SET_DEVIANCE)
+        .filter(|other| penalised - scores.penalised(*other) < reaches[*other])
         .map(|other| Alternative {
             effect: hypotheses[other].id(),
             log_likelihood_deficit: 0.5

@@ -307,6 +307,10 @@ impl FittedModel for FittedPlant {
         self.solved(&self.extension, ratios, self.solution.at.clone())
     }
 
+    fn sets_need_fits(&self) -> bool {
+        true
+    }
+
     fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, PlantError> {
         let all: Vec<usize> = (0..self.plant().parameters.len()).collect();
         let problem = &self.problem;

@@ -15,7 +15,7 @@ use crate::pass::{Keep, Reduced, Variances, reduce};
 use crate::problem::Problem;
 
 /// Most Gauss-Newton steps.
-const MAX_STEPS: usize = 60;
+const MAX_STEPS: usize = 200;
 
 /// Most halvings of a step.
 const MAX_HALVINGS: usize = 12;

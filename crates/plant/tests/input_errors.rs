@@ -39,20 +39,31 @@ fn a_drive_that_is_logged_too_early_is_a_delay() {
     run.inputs.remove(0);
     run.inputs.push(run.inputs[ROWS - 2].clone());
     let answer = diagnosed(Kind::Servo, run);
-    // An axis is nearly linear, so that a late encoder does nearly the same: the diagnosis may share the
-    // lateness between both.
-    let late = ["drive.delay", "y.lag"];
-    let all_late = answer
-        .findings
-        .iter()
-        .all(|found| late.contains(&found.effect.as_str()));
-    assert!(all_late, "{:?}", answer.sentences());
-    let sum: f64 = answer
-        .findings
-        .iter()
-        .map(|found| found.sizes[0].value)
-        .sum();
-    assert!((sum - step_s).abs() < 0.05 * step_s, "{sum}");
+    // A delay and a lag of half a row each do the same to second order: both sizes together are a maximum of
+    // the likelihood too, but the delay alone explains as much.
+    let [found] = answer.findings.as_slice() else {
+        panic!("{:?}", answer.sentences());
+    };
+    assert_eq!(found.effect, "drive.delay", "{:?}", answer.sentences());
+    let size = found.sizes[0].value;
+    assert!((size - step_s).abs() < 0.02 * step_s, "{size}");
+}
+
+#[test]
+fn a_lag_that_a_delay_replaced_stays_in_its_set() {
+    // Of seeds 60000 to 60005, which the search was looked at with, the lag was first in these.
+    for seed in [60_003, 60_004, 60_005] {
+        let mut run = simulate(&Setting::random(Kind::Servo, seed, ROWS), None);
+        run.inputs.remove(0);
+        run.inputs.push(run.inputs[ROWS - 2].clone());
+        let answer = diagnosed(Kind::Servo, run);
+        let set = set(&answer.findings[0]);
+        assert_eq!(answer.findings.len(), 1, "{:?}", answer.sentences());
+        assert!(
+            set.contains(&"drive.delay") && set.contains(&"y.lag"),
+            "{set:?}"
+        );
+    }
 }
 
 #[test]
@@ -64,7 +75,7 @@ fn an_oscillator_cannot_tell_a_late_drive_from_a_late_sensor() {
     let answer = diagnosed(Kind::Duffing, run);
     let found = &answer.findings[0];
     // A linear plant does not change in time: both are the same but for second differences.
-    let late = set(found).contains(&"u.delay") || set(found).contains(&"y.lag");
+    let late = set(found).contains(&"u.delay");
     assert!(late, "{:?}", answer.sentences());
     assert!(
         (found.sizes[0].value - step_s).abs() < 0.1 * step_s,

@@ -1,0 +1,122 @@
+//! Likelihoods of rival hypotheses by fits: where nominal parameters move far to take an effect up, a score
+//! about one fit misjudges what another effect would gain.
+
+use crate::accepted::Accepted;
+use crate::bank::ScoreBank;
+use crate::context::SearchContext;
+use crate::hypothesis::Hypothesis;
+use crate::model::FittedModel;
+use crate::pattern::Unmodelled;
+use crate::result::{CONFIDENCE_SET_DEVIANCE, FittedStage};
+use crate::score::Scores;
+
+/// Share of the statistic of the named effect by which a score may misjudge that of a rival: rivals that
+/// lack more than it are not fitted.
+const MISJUDGED: f64 = 0.15;
+
+/// Most fits for one effect: of the nearest rivals that differ in the record.
+const MOST_FITS: usize = 6;
+
+/// Rest of the information of one signature beside another below which both are the same in the record.
+const SAME: f64 = 1e-9;
+
+/// The model with its accepted effects, of which one is compared with its rivals.
+pub(crate) struct Compared<'a, F> {
+    pub(crate) stage: &'a FittedStage<F>,
+    pub(crate) accepted: &'a [Accepted],
+    pub(crate) unmodelled: &'a [Unmodelled],
+    pub(crate) index: usize,
+}
+
+/// Replaces the statistics of the nearest rivals of an accepted effect by those of fits with each of them
+/// in its place; `own` is the statistic of the effect. One that cannot be fitted keeps its score.
+pub(crate) fn fit_rivals<F: FittedModel>(
+    compared: &Compared<'_, F>,
+    context: &SearchContext<'_>,
+    (bank, hypotheses): (&ScoreBank, &[Hypothesis]),
+    scores: &mut Scores<'_>,
+    own: f64,
+) {
+    let named = compared.accepted[compared.index].hypothesis;
+    let penalised = scores.penalised(named);
+    let widest = CONFIDENCE_SET_DEVIANCE + MISJUDGED * own;
+    let mut near: Vec<(usize, f64)> = (0..hypotheses.len())
+        .filter(|other| *other != named && scores.best[*other].is_some())
+        .filter(|other| !hypotheses[*other].is_jump)
+        .map(|other| (other, penalised - scores.penalised(other)))
+        .filter(|(_, deficit)| *deficit < widest)
+        .collect();
+    near.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut fitted: Vec<(usize, f64)> = Vec::new();
+    for (other, _) in near {
+        if context.budget.is_spent(&compared.stage.fitted) {
+            return;
+        }
+        let twin = fitted
+            .iter()
+            .find(|(one, _)| is_same(bank, scores, hypotheses, *one, other));
+        let gained = match twin {
+            Some((_, gained)) => *gained,
+            None if fitted.len() >= MOST_FITS => continue,
+            None => match gained(compared, context, scores, hypotheses, other) {
+                Some(gained) => gained,
+                None => continue,
+            },
+        };
+        fitted.push((other, gained));
+        if let Some(best) = &mut scores.best[other] {
+            // The shape is that of the score, so that its likelihood is no less than that of the fit.
+            let statistic = own + gained;
+            best.statistic = match best.shape(hypotheses) {
+                Some(_) => statistic.max(best.statistic),
+                None => statistic,
+            };
+        }
+    }
+}
+
+/// Twice the log-likelihood of a rival less that of the named effect.
+fn gained<F: FittedModel>(
+    compared: &Compared<'_, F>,
+    context: &SearchContext<'_>,
+    scores: &Scores<'_>,
+    hypotheses: &[Hypothesis],
+    other: usize,
+) -> Option<f64> {
+    let stage = compared.stage;
+    let mut accepted = compared.accepted.to_vec();
+    accepted[compared.index] = Accepted {
+        hypothesis: other,
+        shape: scores.best[other]?.shape(hypotheses),
+        ..accepted[compared.index].clone()
+    };
+    let fitted = context
+        .fitted(&stage.fitted, &accepted, compared.unmodelled)
+        .ok()?;
+    let noise = fitted.fit_rate_noise(&stage.noise.noise.walking(), &[]);
+    Some(2.0 * (noise.ok()?.log_likelihood - stage.noise.log_likelihood))
+}
+
+/// Whether two hypotheses of one size each are the same in this record.
+fn is_same(
+    bank: &ScoreBank,
+    scores: &Scores<'_>,
+    hypotheses: &[Hypothesis],
+    one: usize,
+    other: usize,
+) -> bool {
+    let column = |index: usize| {
+        let best = scores.best[index]?;
+        let variant = hypotheses[index].variants.get(best.variant)?;
+        match (best.shape(hypotheses), variant.columns.as_slice()) {
+            (None, [column]) => Some(*column),
+            _ => None,
+        }
+    };
+    let (Some(a), Some(b)) = (column(one), column(other)) else {
+        return false;
+    };
+    let information = &bank.information;
+    let product = information[(a, a)] * information[(b, b)];
+    1.0 - information[(a, b)].powi(2) / product < SAME
+}
