@@ -105,6 +105,17 @@ impl WatchedEffect {
         (parameter < Platform::PARAMETERS).then_some(Platform::MOVING + parameter)
     }
 
+    /// The gyro whose random walk, larger than declared, cannot be told apart from it at an alarm: a walk
+    /// has drifted away from the filter since some time, which is a step of the drift or a ramp. `None` for
+    /// effects of another course, and of accelerometers.
+    #[must_use]
+    pub const fn walking_gyro(&self) -> Option<usize> {
+        match (self.channel, self.course) {
+            (Channel::Rate(rate), EffectCourse::Constant | EffectCourse::SinceOnset) => Some(rate),
+            _ => None,
+        }
+    }
+
     /// Information on its size that a day of samples of a settled filter gives, by the declared noise;
     /// a scale for the sizes that are looked for. The factors are medians over attitudes, measured by
     /// the example `tune` of `gyrocal-watch-trials`: a factor of two in them costs little.

@@ -90,6 +90,10 @@ fn screen(replay: &WatchReplay) -> Screen {
             causes.join("; or ")
         );
         screen.fact("alarm", words);
+        if !alarm.walks.is_empty() {
+            let words = format!("{}, larger than declared", alarm.walks.join(", "));
+            screen.fact("may also be", words);
+        }
     }
     let rate = format!(
         "{} a year, beside a walk of {:.0e} deg/h/sqrt(h)",

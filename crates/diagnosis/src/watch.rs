@@ -1,10 +1,11 @@
 //! A record replayed through the watch of a controller.
 
+use gyrocal::effect::EffectKind;
 use gyrocal::watch::{
     Candidate, EFFECTS_BY_DEFAULT, Grid, PlatformWatch, WatchSettings, WatchedEffect,
 };
 use gyrocal::{
-    ControllerError, Discretisation, Drift, FilterSettings, InitialAttitude, Limits, Real,
+    ControllerError, Discretisation, Drift, EFFECTS, FilterSettings, InitialAttitude, Limits, Real,
     SavedNumber, Site,
 };
 use gyrocal_calibration::{CalibrationError, declared_attitude, filter_settings};
@@ -72,6 +73,8 @@ pub struct WatchAlarm {
     pub at_alarm: Vec<WatchCause>,
     /// The same when it was refined.
     pub refined: Vec<WatchCause>,
+    /// Random walks of gyros, larger than declared, that cannot be told apart from an effect of either set.
+    pub walks: Vec<&'static str>,
 }
 
 /// An effect that an alarm may stand for.
@@ -82,6 +85,9 @@ pub struct WatchCause {
     /// Axis that the attitude jumped about, from zero; `None` for other effects.
     #[serde(skip)]
     pub jump_axis: Option<usize>,
+    /// Gyro whose random walk, larger than declared, cannot be told apart from it.
+    #[serde(skip)]
+    pub walking_gyro: Option<usize>,
     /// Estimate of its size.
     pub estimate: f64,
     /// Standard deviation of the estimate, from the declared noise.
@@ -212,6 +218,7 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
                 refined_row: refined_row.min(last) + 1,
                 at_alarm,
                 refined: Vec::new(),
+                walks: Vec::new(),
             };
             self.open = Some((alarm, refined_row.min(last)));
         }
@@ -219,6 +226,7 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
             && let Some((mut alarm, _)) = self.open.take()
         {
             alarm.refined = self.causes(row);
+            alarm.walks = walks_in(alarm.at_alarm.iter().chain(&alarm.refined));
             self.answer.alarms.push(alarm);
             self.watched.go_on();
         }
@@ -266,6 +274,7 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
         WatchCause {
             id,
             jump_axis,
+            walking_gyro: effect.and_then(WatchedEffect::walking_gyro),
             estimate: scale * estimate,
             sigma: scale * sigma,
             unit,
@@ -273,6 +282,18 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
             deviance: candidate.deviance.to_f64(),
         }
     }
+}
+
+/// The random walks that cannot be told apart from causes of a set.
+fn walks_in<'c>(causes: impl Iterator<Item = &'c WatchCause>) -> Vec<&'static str> {
+    let gyros: Vec<usize> = causes.filter_map(|cause| cause.walking_gyro).collect();
+    let walks = EFFECTS
+        .iter()
+        .filter(|effect| effect.kind == EffectKind::RandomWalk);
+    walks
+        .filter(|walk| walk.rate().is_some_and(|rate| gyros.contains(&rate)))
+        .map(|walk| walk.id)
+        .collect()
 }
 
 /// Settings in the numbers of the filter.

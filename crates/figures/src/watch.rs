@@ -15,6 +15,7 @@ use crate::truth::Extent;
 /// Populations that no constant was tuned on.
 const SOUND: u64 = 20_261_231;
 const KNOCKS: u64 = 20_261_233;
+const WALKS: u64 = 20_261_235;
 /// Realisations of the noise of each platform.
 const LANES: usize = 25;
 
@@ -24,6 +25,7 @@ const OTHER_LANES: usize = 10;
 /// All figures. The small version has a few platforms over weeks.
 pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let mut figures = false_alarms(extent)?;
+    figures.extend(undeclared_walks(extent)?);
     figures.extend(delays::figures(extent)?);
     figures.extend(of_jumps(extent)?);
     figures.extend(nonlinear::figures(extent)?);
@@ -90,6 +92,45 @@ fn false_alarms(extent: Extent) -> Result<Vec<Figure>, Error> {
         Figure::within(name, [0.9, f64::INFINITY], turned.share()).of_share(turned)
     };
     figures.push(figure.over(turned.trials as usize, seeds));
+    Ok(figures)
+}
+
+/// Walks that are not declared, or half: the time to an alarm whose set holds the walk.
+fn undeclared_walks(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let lanes = if extent.small { 4 } else { OTHER_LANES };
+    let years = if extent.small { 0.1 } else { 1.0 };
+    let mut figures = Vec::new();
+    for (declared, walk) in [(0.0, 1e-5), (0.0, 1e-4), (5e-6, 1e-5), (5e-5, 1e-4)] {
+        let seeds = 0..extent.records(40, 2);
+        let cell = format!("undeclared {declared:e} {walk:e}");
+        let campaign = resumable::campaign("watch", &cell, seeds.clone(), extent.small)?;
+        let noises = [(Noise::Declared, walk)];
+        let job = |number| sound(WALKS, number, years, declared, &noises, lanes);
+        let outcome = campaign.run(job, |_| ())?;
+        let all: Vec<&Sound> = outcome.successes().flat_map(|(_, all)| all).collect();
+        let platforms: usize = all.iter().map(|sound| sound.platforms).sum();
+        let alarms: usize = all.iter().map(|sound| sound.alarms).sum();
+        let mut days: Vec<f64> = all
+            .iter()
+            .flat_map(|sound| sound.days.iter().zip(&sound.walks))
+            .filter_map(|(days, walks)| walks.then_some(*days))
+            .collect();
+        days.sort_by(f64::total_cmp);
+        let median = days.get(platforms / 2).map_or_else(
+            || "no median within the time".to_owned(),
+            |days| format!("median {days:.1} days"),
+        );
+        let name = format!(
+            "walk {walk:.0e}, declared {declared:.0e}: delay to an alarm whose set holds a walk"
+        );
+        let measured = format!(
+            "{median}; {} of {platforms} within {years} years, {} other alarms",
+            days.len(),
+            alarms - days.len()
+        );
+        let seeds = format!("{WALKS}, {seeds:?}");
+        figures.push(Figure::note(&name, measured).over(platforms, seeds));
+    }
     Ok(figures)
 }
 

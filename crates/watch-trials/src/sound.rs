@@ -1,5 +1,5 @@
 use gyrocal::ControllerError;
-use gyrocal::watch::Grid;
+use gyrocal::watch::{EFFECTS_BY_DEFAULT, Grid};
 use serde::{Deserialize, Serialize};
 
 use crate::lane::Lane;
@@ -25,6 +25,8 @@ pub struct Sound {
     pub outliers: Vec<f64>,
     /// Days until each alarm.
     pub days: Vec<f64>,
+    /// Whether the set of each alarm holds a random walk of a gyro.
+    pub walks: Vec<bool>,
 }
 
 /// Platforms of one number of the population, `lanes` for each noise, over `years`; `declared` is the
@@ -65,6 +67,11 @@ pub fn sound(
             .iter()
             .filter_map(|lane| Some(lane.alarm?.0 as f64 / 1440.0))
             .collect(),
+        walks: lanes
+            .iter()
+            .filter(|lane| lane.alarm.is_some())
+            .map(may_walk)
+            .collect(),
     };
     Ok(all.chunks(lanes.max(1)).map(of_noise).collect())
 }
@@ -73,4 +80,13 @@ pub fn sound(
 fn followed(lane: &Lane) -> Option<f64> {
     let ((alarm, _), (row, size)) = (lane.alarm?, lane.outlier?);
     (row <= alarm && alarm - row <= JUMP_LIFE).then_some(size)
+}
+
+/// Whether the alarm may be one of a walk that is larger than declared.
+fn may_walk(lane: &Lane) -> bool {
+    let mut effects = lane
+        .set
+        .iter()
+        .filter_map(|index| EFFECTS_BY_DEFAULT.get(*index));
+    effects.any(|effect| effect.walking_gyro().is_some())
 }
