@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &RatesArguments) -> Result<Answer, Failure> {
     }
     of_logs(&mut text, arguments, &report);
     for gyro in &report.gyros {
-        of_gyro(&mut text, gyro);
+        of_gyro(&mut text, gyro, report.logs.len() > 1);
     }
     let mut answer = Answer::of(screen::first(arguments, &report), text);
     let mut outputs = Outputs::new();
@@ -120,7 +120,7 @@ fn of_logs(text: &mut String, arguments: &RatesArguments, report: &RateReport) {
     );
 }
 
-fn of_gyro(text: &mut String, gyro: &GyroRates) {
+fn of_gyro(text: &mut String, gyro: &GyroRates, several: bool) {
     let mut table = table(["coefficient", "estimate"]);
     for coefficient in &gyro.coefficients {
         let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
@@ -150,10 +150,15 @@ fn of_gyro(text: &mut String, gyro: &GyroRates) {
         let _ = writeln!(text, "Found: {}{at} ({p}); {alternatives}.", effect.name);
     }
     let noise = &gyro.noise;
+    let between = if several {
+        format!(", bias from log to log {:.3e} deg/h", noise.between_logs)
+    } else {
+        String::new()
+    };
     let _ = writeln!(
         text,
-        "Noise of the blocks: random walk {:.3e} deg/h sqrt(s), bias instability {:.3e} deg/h, rate \
-         random walk {:.3e} deg/h/sqrt(s).\n",
+        "Noise: random walk {:.3e} deg/h sqrt(s), bias instability {:.3e} deg/h, rate random walk \
+         {:.3e} deg/h/sqrt(s){between}.\n",
         noise.random_walk, noise.bias_instability, noise.rate_random_walk
     );
 }

@@ -1,6 +1,7 @@
 //! Instrument tests on simulated logs whose errors are known.
 
 mod allan;
+mod oracle;
 mod positions;
 mod rates;
 mod rates_simulation;

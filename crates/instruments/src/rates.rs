@@ -2,10 +2,10 @@
 //! table, specific force, temperature and time.
 //!
 //! Each log has one attitude to gravity; several logs of one unit are evaluated together. Means over
-//! blocks of a log are fitted by generalised least squares with the noise that they show: angle random
-//! walk, quantisation, bias instability and rate random walk, estimated together with the law. Biases may
-//! be of any size. What a mean over a whole log tells is known better, since slow noise is part of it:
-//! [`LogRates`].
+//! blocks of a log are fitted by generalised least squares with the noise that the logs show: angle random
+//! walk and quantisation within blocks, bias instability, rate random walk and changes of the bias from log to
+//! log estimated together with the law. Biases may be of any size. What a mean over a whole log tells is known
+//! better, since slow noise is part of it: [`LogRates`].
 
 mod blocks;
 mod fast_noise;
@@ -16,7 +16,7 @@ mod of_log;
 mod terms;
 
 use gyrocal::generated::catalogue::RATES;
-use gyrocal_statistics::NORMAL_97_5;
+use gyrocal_statistics::{NORMAL_97_5, student_quantile};
 use nalgebra::DVector;
 use serde::Serialize;
 
@@ -28,6 +28,7 @@ use crate::earth_rate::{deg_per_h, earth_deg_per_h};
 use crate::error::{InstrumentError, Unfit};
 use crate::log::Log;
 use blocks::Blocks;
+use fast_noise::fast_parts;
 use law::{Data, Law};
 use noise_model::NoiseModel;
 use terms::{RateTerm, time_and_temperature};
@@ -61,6 +62,8 @@ pub struct RateCoefficient {
     pub sigma: f64,
     /// Unit of both.
     pub unit: String,
+    /// Degrees of freedom of the standard deviation: the noise is estimated from the same logs.
+    pub degrees_of_freedom: f64,
 }
 
 /// Effect beyond the base law.
@@ -87,6 +90,8 @@ pub struct RateNoise {
     pub bias_instability: f64,
     /// K \[deg/h/sqrt(s)\].
     pub rate_random_walk: f64,
+    /// Standard deviation of the bias from log to log beyond these \[deg/h\]; zero of a single log.
+    pub between_logs: f64,
 }
 
 /// Law of one gyro.
@@ -145,16 +150,15 @@ pub fn evaluate_rates(
     description: &Description,
     settings: &RateSettings,
 ) -> Result<RateReport, InstrumentError> {
-    let latitude_deg = check(logs, description)?;
+    let [horizontal, vertical] = earth_deg_per_h(check(logs, description)?);
     let count = (MOST_BLOCKS / logs.len()).max(FEWEST_BLOCKS);
     let axis = description.table.as_ref().and_then(|table| table.axis);
     let blocks: Result<Vec<Blocks>, InstrumentError> = logs
         .iter()
-        .map(|log| Blocks::of(log, count, axis))
+        .map(|log| Blocks::of(log, count, axis, vertical))
         .collect();
     let blocks = blocks?;
     refuse_wrong_norm(logs.iter().map(mean_norm_g))?;
-    let [horizontal, vertical] = earth_deg_per_h(latitude_deg);
     let level_sigma_rad = settings.level_sigma_deg.to_radians();
     let mut laws = Vec::with_capacity(3);
     for gyro in 0..3 {
@@ -162,7 +166,13 @@ pub fn evaluate_rates(
             gyro,
             logs: &blocks,
             rates: outputs(&blocks, gyro, vertical),
-            noise: NoiseModel::of(&blocks, gyro, horizontal, level_sigma_rad),
+            noise: NoiseModel::of(
+                &blocks,
+                gyro,
+                horizontal,
+                level_sigma_rad,
+                fast_parts(logs, &blocks, gyro),
+            ),
         };
         let law = data.law(settings.false_alarm_probability);
         laws.push(law.ok_or_else(|| never_changes(gyro))?);
@@ -210,12 +220,14 @@ fn report(gyro: usize, law: &Law) -> GyroRates {
             estimate: fit.estimates[i],
             sigma: fit.covariance[(i, i)].sqrt(),
             unit: term.unit(gyro),
+            degrees_of_freedom: law.degrees_of_freedom[i],
         });
     let [
         random_walk,
         quantisation,
         bias_instability,
         rate_random_walk,
+        between_logs,
     ] = fit.variances.map(f64::sqrt);
     GyroRates {
         gyro: RATES[gyro].id.to_owned(),
@@ -244,15 +256,17 @@ fn report(gyro: usize, law: &Law) -> GyroRates {
             quantisation,
             bias_instability,
             rate_random_walk,
+            between_logs,
         },
     }
 }
 
 impl RateCoefficient {
-    /// Ends of the 95 % interval.
+    /// Ends of the 95 % interval, by Student's distribution.
     #[must_use]
     pub fn interval(&self) -> [f64; 2] {
-        [-1.0, 1.0].map(|side| self.estimate + side * NORMAL_97_5 * self.sigma)
+        let quantile = student_quantile(0.975, self.degrees_of_freedom).unwrap_or(NORMAL_97_5);
+        [-1.0, 1.0].map(|side| self.estimate + side * quantile * self.sigma)
     }
 }
 

@@ -1,19 +1,19 @@
 //! Several records of one platform, diagnosed together.
 
 use gyrocal::Effect;
-use gyrocal::effect::Enters;
+use gyrocal::effect::{EffectKind, Enters};
 use gyrocal_calibration::Run;
 use gyrocal_diagnosis::{
     DiagnoseOptions, Gate, RecordToDiagnose, Verdict, diagnose, diagnose_together,
 };
-use gyrocal_evaluation::{InjectedEffect, same_or_equivalent, testable_effects};
+use gyrocal_evaluation::{InjectedEffect, effect_of, same_or_equivalent, testable_effects};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::at_least;
+use super::{at_least, oracle};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
@@ -34,6 +34,9 @@ const FIRST_CLEAN: u64 = 870_000;
 const CLEAN: u64 = 2000;
 const SMALL_CLEAN: u64 = 2;
 
+/// Largest mean size of the set over an oracle's.
+const MOST_OVER_ORACLE: f64 = 1.1;
+
 /// Largest upper bound of the share of clean quadruples with a finding.
 const MOST_FALSE: f64 = 0.02;
 
@@ -52,6 +55,12 @@ struct Named {
     set: usize,
     /// Size of the set of the first record alone, if it finds anything.
     alone: Option<usize>,
+    /// Whether the cause is a function of time or temperature beside force.
+    in_time: bool,
+    /// Members of the set that have an onset or a time constant.
+    shapes: usize,
+    /// Expected size of an oracle's set, without such members.
+    oracle: Option<f64>,
 }
 
 pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
@@ -97,6 +106,7 @@ fn named(
     let all: Vec<&Named> = outcome.successes().map(|(_, named)| named).collect();
     let seeds = format!("{seeds:?}");
     let found = all.iter().map(|one| one.together);
+    let beside = beside_oracle(name, &all, &seeds, small);
     let mean = |sizes: Vec<usize>| sizes.iter().sum::<usize>() as f64 / sizes.len().max(1) as f64;
     let together = mean(
         all.iter()
@@ -106,14 +116,58 @@ fn named(
     );
     let alone: Vec<usize> = all.iter().filter_map(|one| one.alone).collect();
     let count = alone.len();
-    Ok(vec![
-        at_least(&format!("{name}: found"), target, found, &seeds, small),
+    let mut figures = vec![at_least(
+        &format!("{name}: found"),
+        target,
+        found,
+        &seeds,
+        small,
+    )];
+    figures.extend(beside);
+    figures.push(
         Figure::note(
             &format!("{name}: mean size of the set, together and of the first record alone"),
             format!("{together:.2} and {:.2} (of {count})", mean(alone)),
         )
         .over(all.len(), seeds),
-    ])
+    );
+    Ok(figures)
+}
+
+/// Mean sizes of sets over those of an oracle: of terms that are constant in time, and of the others.
+fn beside_oracle(name: &str, all: &[&Named], seeds: &str, small: bool) -> Vec<Figure> {
+    let sizes = |in_time: bool| {
+        let of = all
+            .iter()
+            .filter(|one| one.together && one.in_time == in_time);
+        let pairs: Vec<[f64; 2]> = of
+            .filter_map(|one| Some([(one.set - one.shapes) as f64, one.oracle?]))
+            .collect();
+        let sum = |part: usize| pairs.iter().map(|pair| pair[part]).sum::<f64>();
+        (sum(0) / sum(1), pairs.len())
+    };
+    let (ratio, count) = sizes(false);
+    if count == 0 {
+        return Vec::new();
+    }
+    let what = "mean size of the set over an oracle's, members without onset or time constant";
+    let mut figure = Figure::within(&format!("{name}: {what}"), [0.0, MOST_OVER_ORACLE], ratio);
+    if small {
+        figure.holds = None;
+        figure.too_few = true;
+    }
+    let mut figures = vec![figure.over(count, seeds)];
+    let (ratio, count) = sizes(true);
+    if count > 0 {
+        let name = format!("{name}: the same of causes in time or temperature");
+        figures.push(Figure::note(&name, format!("{ratio:.3}")).over(count, seeds));
+    }
+    let found = all.iter().filter(|one| one.together);
+    let shapes: Vec<f64> = found.map(|one| one.shapes as f64).collect();
+    let mean = shapes.iter().sum::<f64>() / shapes.len().max(1) as f64;
+    let name = format!("{name}: mean number of members with onset or time constant beside these");
+    figures.push(Figure::note(&name, format!("{mean:.2}")).over(shapes.len(), seeds));
+    figures
 }
 
 /// A day at a random attitude, of the platform and the record of a seed.
@@ -185,10 +239,19 @@ fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
     });
     let first = diagnose(&simulations[0].record, &simulations[0].bench, &options)?;
     let alone = first.result.causes().next();
+    let shapes = holds.map_or(0, |cause| {
+        let others = cause.alternatives.iter().map(|other| &*other.effect);
+        let all = core::iter::once(&*cause.effect).chain(others);
+        all.filter(|id| effect_of(id).is_some_and(|member| member.shape().is_some()))
+            .count()
+    });
     Ok(Named {
         together: holds.is_some(),
         set: holds.map_or(0, |cause| 1 + cause.alternatives.len()),
         alone: alone.map(|cause| 1 + cause.alternatives.len()),
+        in_time: effect.kind != EffectKind::Constant,
+        shapes,
+        oracle: oracle::set_size(&scenarios[0], &simulations, &injected)?,
     })
 }
 

@@ -19,6 +19,8 @@ pub(super) struct Blocks {
     pub(super) up: Vec<Vector3<f64>>,
     /// Mean temperature \[degrees Celsius\].
     pub(super) temperature_c: Option<Vec<f64>>,
+    /// Vertical part of Earth rate \[deg/h\].
+    pub(super) vertical_deg_per_h: f64,
     /// Mean rate of the turntable in body axes \[rad/s\].
     pub(super) table: Option<Vec<Vector3<f64>>>,
     /// `true` if the axis of the table is that of specific force, with its error.
@@ -38,6 +40,7 @@ impl Blocks {
         log: &Log,
         count: usize,
         table_axis: Option<[f64; 3]>,
+        vertical_deg_per_h: f64,
     ) -> Result<Self, InstrumentError> {
         let length = (log.len() / count).max(1);
         let means = |of: &dyn Fn(usize) -> Vector3<f64>| -> Vec<Vector3<f64>> {
@@ -71,6 +74,7 @@ impl Blocks {
             time_s: scalar(&log.time_s),
             rate: means(&|sample| Vector3::from(log.gyro[sample])),
             temperature_c: log.temperature_c.as_deref().map(scalar),
+            vertical_deg_per_h,
             axis_is_up: table_axis.is_none(),
             table: log.table_rate.as_deref().map(|rates| {
                 let along = scalar(rates);
@@ -109,7 +113,7 @@ impl Blocks {
 }
 
 /// Angle of the table at each sample, from the beginning.
-fn table_angles(log: &Log) -> Option<Vec<f64>> {
+pub(super) fn table_angles(log: &Log) -> Option<Vec<f64>> {
     let mut angle = 0.0;
     let rates = log.table_rate.as_ref()?;
     let angles = rates.iter().map(|rate| {

@@ -33,6 +33,8 @@ pub(super) struct Law {
     pub(super) found: Vec<Found>,
     pub(super) undetermined: Vec<RateTerm>,
     pub(super) fit: Fit,
+    /// Degrees of freedom of each standard deviation.
+    pub(super) degrees_of_freedom: Vec<f64>,
 }
 
 /// Rates of one gyro with their noise.
@@ -81,7 +83,11 @@ impl Data<'_> {
             terms.push(term);
         }
         let fit = self.fit(&terms, start, true)?;
+        let degrees_of_freedom =
+            self.noise
+                .degrees_of_freedom(&self.columns(&terms)?, &self.rates, fit.variances)?;
         Some(Law {
+            degrees_of_freedom,
             terms,
             found,
             undetermined,

@@ -12,20 +12,32 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use super::blocks::Blocks;
 
 /// Parts of the noise, in the order of [`Variances`].
-pub(super) const PARTS: usize = 4;
+pub(super) const PARTS: usize = 5;
 
 /// Squares of the coefficients: random walk N \[deg²/h² s\], quantisation Q \[deg²/h² s²\], bias
-/// instability B \[deg²/h²\], rate random walk K \[deg²/h²/s\].
+/// instability B \[deg²/h²\], rate random walk K \[deg²/h²/s\], change of the bias from log to log \[deg²/h²\].
 pub(super) type Variances = [f64; PARTS];
+
+/// The part that changes from log to log only: what of the bias a single log cannot show. Slow noise and
+/// repeated turn-ons make it.
+const BETWEEN_LOGS: usize = 4;
 
 /// Iterations; the likelihood changes by less than 0.05 after.
 const ITERATIONS: usize = 40;
+
+/// Information on the logarithm of a variance before any log: its standard deviation is ten.
+const LEAST_INFORMATION: f64 = 1e-2;
+
+/// Degrees of freedom from which Student's distribution is the normal one.
+const MOST_FREEDOM: f64 = 1e6;
 
 /// Covariances of one gyro's means over all logs.
 pub(super) struct NoiseModel {
     parts: [DMatrix<f64>; PARTS],
     /// Covariance that is known: of heading and level.
     known: DMatrix<f64>,
+    /// Squares of random walk and quantisation, if they are known from within blocks.
+    fast: Option<[f64; 2]>,
 }
 
 /// A law fitted by generalised least squares.
@@ -40,12 +52,14 @@ pub(super) struct Fit {
 
 impl NoiseModel {
     /// Model of `gyro`; `horizontal_deg_per_h` is the horizontal part of Earth rate, whose direction is not
-    /// known, and `level_sigma_rad` the standard deviation of the level.
+    /// known, `level_sigma_rad` the standard deviation of the level, and `fast` what is known of random walk
+    /// and quantisation.
     pub(super) fn of(
         logs: &[Blocks],
         gyro: usize,
         horizontal_deg_per_h: f64,
         level_sigma_rad: f64,
+        fast: Option<[f64; 2]>,
     ) -> Self {
         let total = logs.iter().map(Blocks::len).sum();
         let mut parts: [DMatrix<f64>; PARTS] =
@@ -57,6 +71,7 @@ impl NoiseModel {
             for (part, matrix) in parts.iter_mut().enumerate() {
                 let own = DMatrix::from_fn(count, count, |i, j| {
                     covariance(part, i, j, count, log.block_s)
+                        * f64::from(u8::from(part != BETWEEN_LOGS || logs.len() > 1))
                 });
                 matrix
                     .view_mut((first, first), (count, count))
@@ -71,7 +86,7 @@ impl NoiseModel {
                 .copy_from(&heading);
             first += count;
         }
-        Self { parts, known }
+        Self { parts, known, fast }
     }
 
     /// Fits columns to rates with the variances of most likelihood, restricted or not; `None` if the columns
@@ -84,6 +99,9 @@ impl NoiseModel {
         restricted: bool,
     ) -> Option<Fit> {
         let mut variances = start;
+        for (variance, known) in variances.iter_mut().zip(self.fast.into_iter().flatten()) {
+            *variance = known;
+        }
         for _ in 0..ITERATIONS {
             let (solved, inverse) = self.solve(columns, rates, variances)?;
             let weights = match restricted {
@@ -94,13 +112,67 @@ impl NoiseModel {
                 false => inverse.clone(),
             };
             let left = &inverse * (rates - columns * &solved.estimates);
-            for (variance, part) in variances.iter_mut().zip(&self.parts) {
+            let free = variances
+                .iter_mut()
+                .zip(&self.parts)
+                .skip(self.known_parts());
+            for (variance, part) in free {
                 let found = left.dot(&(part * &left));
                 let expected = weights.component_mul(part).sum();
-                *variance *= (found / expected).max(0.0).sqrt();
+                // A part that these logs do not have stays zero.
+                *variance *= if expected > 0.0 {
+                    (found / expected).max(0.0).sqrt()
+                } else {
+                    0.0
+                };
             }
         }
         Some(self.solve(columns, rates, variances)?.0)
+    }
+
+    /// Degrees of freedom of the standard deviation of each coefficient by Satterthwaite's approximation with
+    /// the expected information on the variances: F. E. Satterthwaite, "An approximate distribution of
+    /// estimates of variance components", Biometrics Bulletin 2, 1946; M. G. Kenward and J. H. Roger, "Small
+    /// sample inference for fixed effects from restricted maximum likelihood", Biometrics 53, 1997.
+    pub(super) fn degrees_of_freedom(
+        &self,
+        columns: &DMatrix<f64>,
+        rates: &DVector<f64>,
+        variances: Variances,
+    ) -> Option<Vec<f64>> {
+        let (fit, inverse) = self.solve(columns, rates, variances)?;
+        let across = &inverse * columns;
+        let projection = &inverse - &across * &fit.covariance * across.transpose();
+        // In the logarithms of the variances: a part that vanishes takes no share.
+        let fitted = self.known_parts()..PARTS;
+        let parts = fitted.map(|part| &self.parts[part] * variances[part]);
+        let parts: Vec<DMatrix<f64>> = parts.collect();
+        let weighted: Vec<DMatrix<f64>> = parts.iter().map(|part| &projection * part).collect();
+        let count = parts.len();
+        let mut information = DMatrix::from_fn(count, count, |i, j| {
+            0.5 * weighted[i].dot(&weighted[j].transpose())
+        });
+        for part in 0..count {
+            information[(part, part)] += LEAST_INFORMATION;
+        }
+        let of_variances = information.cholesky()?.inverse();
+        let taken = &across * &fit.covariance;
+        let slopes: Vec<DMatrix<f64>> = parts
+            .iter()
+            .map(|part| taken.transpose() * part * &taken)
+            .collect();
+        let of_coefficient = |index: usize| {
+            let slope = DVector::from_fn(count, |part, _| slopes[part][(index, index)]);
+            let variance = fit.covariance[(index, index)];
+            let of_variance = slope.dot(&(&of_variances * &slope));
+            (2.0 * variance * variance / of_variance).clamp(1.0, MOST_FREEDOM)
+        };
+        Some((0..columns.ncols()).map(of_coefficient).collect())
+    }
+
+    /// Number of parts whose variances are not fitted; they are the first.
+    fn known_parts(&self) -> usize {
+        self.fast.map_or(0, |known| known.len())
     }
 
     /// Fits columns with given variances; also the inverse of the covariance.
@@ -156,6 +228,7 @@ pub(super) fn first_variances(logs: &[Blocks], rates: &DVector<f64>) -> Variance
         variance * block_s * block_s,
         variance,
         variance / duration_s,
+        variance,
     ]
 }
 
@@ -177,6 +250,7 @@ fn covariance(part: usize, i: usize, j: usize, count: usize, block_s: f64) -> f6
         },
         // The density B² / (2 π f) begins at about the inverse of the length of the log: slower parts are bias.
         2 => ((count as f64).ln() + 1.0 + flicker(lag)) / PI,
+        BETWEEN_LOGS => 1.0,
         _ => {
             let before = i.min(j) as f64;
             block_s

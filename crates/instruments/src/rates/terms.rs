@@ -71,9 +71,17 @@ impl RateTerm {
             Self::Drift(_) => None,
             Self::Turn(axis) => {
                 let factor = if axis == gyro { 1e-6 } else { 1e-3 };
-                let tables = of_logs(logs, |log| log.table.clone())?;
-                let rate = tables.iter().map(|rate| factor * deg_per_h(rate[axis]));
-                Some(DVector::from_iterator(tables.len(), rate))
+                // Errors of scale and axes act on the rate of the Earth as on that of the table.
+                let rates = of_logs(logs, |log| {
+                    let earth = log.vertical_deg_per_h * log.mean_up[axis];
+                    let rates = log.table.as_ref()?.iter();
+                    Some(
+                        rates
+                            .map(|rate| factor * (deg_per_h(rate[axis]) + earth))
+                            .collect(),
+                    )
+                })?;
+                Some(DVector::from_vec(rates))
             }
             Self::Temperature(power) => {
                 let temperature = temperature(logs)?;
