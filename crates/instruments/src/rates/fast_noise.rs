@@ -1,7 +1,7 @@
 //! The fast parts of the noise, angle random walk and quantisation, by the scatter within blocks.
 
 use gyrocal_statistics::allan::{allan_deviation, octaves};
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector};
 
 use super::blocks::{Blocks, table_angles};
 use crate::earth_rate::deg_per_h;
@@ -23,7 +23,9 @@ const CONFIDENCE: f64 = 0.95;
 pub(super) fn fast_parts(logs: &[Log], blocks: &[Blocks], gyro: usize) -> Option<[f64; 2]> {
     let (mut sum, mut duration_s) = ([0.0; 2], 0.0);
     for (log, blocks) in logs.iter().zip(blocks) {
-        let own = of_log(log, blocks.block_s, gyro)?;
+        let own = of_log(log, blocks.block_s, |sample| {
+            deg_per_h(log.gyro[sample][gyro])
+        })?;
         let own_s = log.interval_s * log.len() as f64;
         for (sum, part) in sum.iter_mut().zip(own) {
             *sum += own_s * part;
@@ -33,9 +35,18 @@ pub(super) fn fast_parts(logs: &[Log], blocks: &[Blocks], gyro: usize) -> Option
     Some(sum.map(|sum| sum / duration_s))
 }
 
-/// The parts of one log: Allan variances of what bias, rate of the table and turning Earth rate leave,
+/// Variance of the mean of `rate` \[deg/h\] over a whole log that the fast parts make; `None` if the log is too
+/// short.
+pub(super) fn mean_variance(log: &Log, block_s: f64, rate: impl Fn(usize) -> f64) -> Option<f64> {
+    let [random_walk, quantisation] = of_log(log, block_s, rate)?;
+    let duration_s = log.interval_s * log.len() as f64;
+    // The angle at both ends is quantised.
+    Some(random_walk / duration_s + 2.0 * quantisation / (duration_s * duration_s))
+}
+
+/// The parts of a rate of one log: Allan variances of what bias, rate of the table and turning Earth rate leave,
 /// fitted by 3 Q²/τ² + N²/τ and a constant, none of them negative.
-fn of_log(log: &Log, block_s: f64, gyro: usize) -> Option<[f64; 2]> {
+fn of_log(log: &Log, block_s: f64, rate: impl Fn(usize) -> f64) -> Option<[f64; 2]> {
     let length = part_length(block_s, log.interval_s);
     let means = |of: &dyn Fn(usize) -> f64| {
         let count = log.len() / length;
@@ -51,7 +62,7 @@ fn of_log(log: &Log, block_s: f64, gyro: usize) -> Option<[f64; 2]> {
         columns.push(means(&|sample| angles[sample].cos()));
         columns.push(means(&|sample| angles[sample].sin()));
     }
-    let left = without(means(&|sample| deg_per_h(log.gyro[sample][gyro])), columns);
+    let left = without(means(&rate), columns);
     let averaging = averaging(left.len());
     let short_s = log.interval_s * length as f64;
     let points = allan_deviation(left.as_slice(), short_s, &averaging, CONFIDENCE).ok()?;
@@ -126,58 +137,4 @@ fn averaging(parts: usize) -> Vec<usize> {
         .into_iter()
         .filter(|count| *count <= PARTS_OF_BLOCK)
         .collect()
-}
-
-/// Squares of bias instability and rate random walk, which are known from the blocks.
-#[derive(Clone, Copy)]
-pub(super) struct Slow {
-    pub(super) bias_instability: f64,
-    pub(super) rate_random_walk: f64,
-}
-
-/// Variance of the mean over all `rates` that angle random walk and quantisation make.
-///
-/// Allan variances at averaging times from a 64th of a block to a block are fitted by 3 Q²/τ² + N²/τ beside
-/// the known slow parts; a filter of the samples is shorter than that. `None` if the log is too short.
-pub(super) fn mean_variance(
-    rates: &[f64],
-    interval_s: f64,
-    block_s: f64,
-    slow: Slow,
-) -> Option<f64> {
-    let length = part_length(block_s, interval_s);
-    let means: Vec<f64> = rates
-        .chunks_exact(length)
-        .map(|chunk| chunk.iter().sum::<f64>() / length as f64)
-        .collect();
-    let averaging = averaging(means.len());
-    let short_s = interval_s * length as f64;
-    let points = allan_deviation(&means, short_s, &averaging, CONFIDENCE).ok()?;
-    let of_flicker = 2.0 * core::f64::consts::LN_2 / core::f64::consts::PI;
-    let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
-    let rows: Vec<(Vector2<f64>, f64, f64)> = points
-        .iter()
-        .map(|point| {
-            let tau_s = point.tau_s;
-            let known = of_flicker * slow.bias_instability + slow.rate_random_walk * tau_s / 3.0;
-            let variance = point.deviation * point.deviation;
-            let weight = point.degrees_of_freedom / (2.0 * variance * variance);
-            let row = Vector2::new(1.0 / tau_s, 3.0 / (tau_s * tau_s));
-            (row, variance - known, weight)
-        })
-        .collect();
-    for (row, variance, weight) in &rows {
-        normal += *weight * row * row.transpose();
-        right += *weight * *variance * row;
-    }
-    let both = normal.cholesky()?.solve(&right);
-    let alone = |part: usize| (right[part] / normal[(part, part)]).max(0.0);
-    let [random_walk, quantisation] = match (both.x >= 0.0, both.y >= 0.0) {
-        (true, true) => [both.x, both.y],
-        (true, false) => [alone(0), 0.0],
-        _ => [0.0, alone(1)],
-    };
-    let duration_s = interval_s * rates.len() as f64;
-    // The angle at both ends is quantised.
-    Some(random_walk / duration_s + 2.0 * quantisation / (duration_s * duration_s))
 }

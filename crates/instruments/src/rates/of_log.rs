@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::blocks::Blocks;
-use super::fast_noise::{Slow, mean_variance};
+use super::fast_noise::mean_variance;
 use super::heading::half_width;
 use super::noise_model::Variances;
 use crate::earth_rate::deg_per_h;
@@ -47,22 +47,15 @@ impl LogRates {
         let sum: Vector3<f64> = log.gyro.iter().map(|rate| Vector3::from(*rate)).sum();
         let mean = (sum / log.len() as f64 - table).map(deg_per_h);
         let along = |direction: Vector3<f64>| {
-            let rates = log.gyro.iter();
-            let rates: Vec<f64> = rates
-                .map(|rate| deg_per_h(direction.dot(&Vector3::from(*rate))))
-                .collect();
             let sum = |part: usize| -> f64 {
                 let parts = variances.iter().zip(direction.iter());
                 parts
                     .map(|(of_gyro, share)| share * share * of_gyro[part])
                     .sum()
             };
-            let slow = Slow {
-                bias_instability: sum(2),
-                rate_random_walk: sum(3),
-            };
             let of_blocks = sum(0) / duration_s + 2.0 * sum(1) / (duration_s * duration_s);
-            mean_variance(&rates, log.interval_s, blocks.block_s, slow).unwrap_or(of_blocks)
+            let rate = |sample: usize| deg_per_h(direction.dot(&Vector3::from(log.gyro[sample])));
+            mean_variance(log, blocks.block_s, rate).unwrap_or(of_blocks)
         };
         let level = level_sigma_rad * horizontal.hypot(vertical);
         let sigma: [f64; 3] = core::array::from_fn(|gyro| along(axis(gyro)).sqrt());
