@@ -194,6 +194,10 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 19] = [
                 "what its model lacks, and the gain on a later record",
             ],
             [
+                "gyrocal plant diagnose plant.json a.csv b.csv --columns columns.toml --report report.html",
+                "two records together and alone, as a page to look at",
+            ],
+            [
                 "gyrocal plant extend diagnosis.json --script plant.py",
                 "what was found, in the equations of the script",
             ],

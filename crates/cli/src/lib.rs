@@ -48,6 +48,7 @@ mod width;
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write as _};
+use std::path::Path;
 
 use gyrocal_plant::{LoadedPlant, PlantError};
 use miette::Report;
@@ -65,7 +66,7 @@ use crate::terminal::Shown;
 /// writes files, stdout and stderr. Returns the exit code of the process.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    outputs::remember(&arguments);
+    outputs::remember("gyrocal".into(), &arguments);
     match Cli::of_arguments(&arguments) {
         Ok(cli) => {
             start(&cli.shown);
@@ -82,7 +83,7 @@ pub fn run_plant(
     plant: Result<LoadedPlant, PlantError>,
 ) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    outputs::remember(&arguments);
+    outputs::remember(program(&arguments), &arguments);
     match PlantCli::of_arguments(&arguments) {
         Ok(cli) => {
             start(&cli.shown);
@@ -90,6 +91,13 @@ pub fn run_plant(
         }
         Err(error) => refused(&error),
     }
+}
+
+/// Name of the program of a package, without its path.
+fn program(arguments: &[OsString]) -> OsString {
+    let path = arguments.first().map(Path::new);
+    let name = path.and_then(Path::file_stem);
+    name.unwrap_or_default().to_owned()
 }
 
 /// Shows help, a version, or what is wrong with a command line.

@@ -114,23 +114,22 @@ fn identity(path: &Path) -> PathBuf {
     }
 }
 
-/// Arguments of the command that runs, without the path of the program: the process may be another
-/// program's, whose own arguments differ.
+/// Name and arguments of the command that runs: the process may be another program's, whose own arguments
+/// differ.
 static ARGUMENTS: RwLock<Vec<OsString>> = RwLock::new(Vec::new());
 
-/// Keeps the arguments of a command, the first of which is the path of the program, for its manifest.
-pub(crate) fn remember(arguments: &[OsString]) {
+/// Keeps the arguments of a command, the first of which is the path of the program, for its manifest; with
+/// `name` in place of that path.
+pub(crate) fn remember(name: OsString, arguments: &[OsString]) {
     let mut kept = ARGUMENTS.write().unwrap_or_else(PoisonError::into_inner);
-    *kept = arguments.get(1..).unwrap_or_default().to_vec();
+    let further = arguments.get(1..).unwrap_or_default().iter().cloned();
+    *kept = std::iter::once(name).chain(further).collect();
 }
 
-/// The command line as typed, with `gyrocal` for the path of the program.
+/// The command line as typed, with a name for the path of the program.
 pub(crate) fn command_line() -> String {
     let arguments = ARGUMENTS.read().unwrap_or_else(PoisonError::into_inner);
     let arguments = arguments.iter();
     let arguments = arguments.map(|argument| shell_quoted(&argument.to_string_lossy()));
-    std::iter::once("gyrocal".to_owned())
-        .chain(arguments)
-        .collect::<Vec<_>>()
-        .join(" ")
+    arguments.collect::<Vec<_>>().join(" ")
 }

@@ -2,24 +2,18 @@
 //! well.
 
 mod derive;
+mod diagnose;
 mod extend;
 mod new;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_plant::answer::Diagnosis;
-use gyrocal_plant::{ColumnMap, LoadedPlant, PlantError, SearchOptions, diagnose};
-use gyrocal_record::write_json;
-use gyrocal_statistics::format;
+use gyrocal_plant::{LoadedPlant, PlantError};
 use miette::Report;
 
-use crate::numbers::probability;
-use crate::progress::Progress;
-use crate::tables::{right, table};
 use crate::terminal::Shown;
-use crate::{Answer, Failure, outputs};
+use crate::{Answer, Failure};
 
 pub(crate) use new::{NewPlantArguments, run as run_new};
 
@@ -51,41 +45,18 @@ pub(crate) struct PlantCli {
 
 #[derive(Debug, Subcommand)]
 enum OwnCommand {
-    Diagnose(RecordArguments),
+    Diagnose(diagnose::RecordArguments),
     Extend(extend::ExtendArguments),
 }
 
-/// Find what the model of a plant lacks in a record.
+/// Find what the model of a plant lacks in a record, or in several.
 #[derive(Debug, Args)]
 struct PlantDiagnoseArguments {
     /// The plant: the program file that its Python script writes.
     #[arg(value_name = "PLANT.json")]
     plant: PathBuf,
     #[command(flatten)]
-    record: RecordArguments,
-}
-
-/// Find what the model of this plant lacks in a record.
-#[derive(Debug, Args)]
-struct RecordArguments {
-    /// The record (CSV), with a header.
-    #[arg(value_name = "RECORD.csv")]
-    record: PathBuf,
-    /// Columns of the record for time, inputs and outputs (TOML).
-    #[arg(long, value_name = "MAP.toml")]
-    columns: PathBuf,
-    /// A later record of the same plant, to measure the gain of what is found.
-    #[arg(long, value_name = "LATER.csv")]
-    validate: Option<PathBuf>,
-    /// Columns of the later record, if they differ.
-    #[arg(long, value_name = "MAP.toml", requires = "validate")]
-    validate_columns: Option<PathBuf>,
-    /// Write the result for programs (JSON).
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
-    /// Family-wise false-alarm probability.
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
-    false_alarm: f64,
+    records: diagnose::RecordArguments,
 }
 
 impl From<PlantError> for Failure {
@@ -105,7 +76,8 @@ pub(crate) fn run(arguments: &PlantArguments) -> Result<Answer, Failure> {
     match &arguments.command {
         PlantCommand::Derive(arguments) => derive::run(arguments),
         PlantCommand::Diagnose(arguments) => {
-            run_diagnose(Some(arguments.plant.as_path()), &arguments.record, || {
+            let file = Some(arguments.plant.as_path());
+            diagnose::run(file, &arguments.records, || {
                 LoadedPlant::read(&arguments.plant)
             })
         }
@@ -119,91 +91,7 @@ pub(crate) fn run_own(
     plant: Result<LoadedPlant, PlantError>,
 ) -> Result<Answer, Failure> {
     match &cli.command {
-        OwnCommand::Diagnose(arguments) => run_diagnose(None, arguments, || plant),
+        OwnCommand::Diagnose(arguments) => diagnose::run(None, arguments, || plant),
         OwnCommand::Extend(arguments) => extend::run(arguments),
     }
-}
-
-fn run_diagnose(
-    file: Option<&Path>,
-    arguments: &RecordArguments,
-    plant: impl FnOnce() -> Result<LoadedPlant, PlantError>,
-) -> Result<Answer, Failure> {
-    let mut inputs = vec![arguments.record.as_path(), arguments.columns.as_path()];
-    inputs.extend(file);
-    inputs.extend(arguments.validate.as_deref());
-    inputs.extend(arguments.validate_columns.as_deref());
-    outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    let plant = plant()?;
-    let columns = ColumnMap::read(&arguments.columns)?;
-    let record = columns.record(plant.description(), &arguments.record)?;
-    let later = match &arguments.validate {
-        Some(path) => {
-            let own = arguments.validate_columns.as_deref().map(ColumnMap::read);
-            let columns = own.transpose()?.unwrap_or(columns);
-            Some(columns.record(plant.description(), path)?)
-        }
-        None => None,
-    };
-    let options = SearchOptions {
-        false_alarm_probability: arguments.false_alarm,
-        ..SearchOptions::default()
-    };
-    let progress = Progress::waiting("diagnosing", record.len());
-    let diagnosed = diagnose(&plant, record, later, &options)?;
-    drop(progress);
-    let mut answer = Answer::of(screen(&diagnosed.answer), details(&diagnosed.answer));
-    if let Some(path) = &arguments.json {
-        write_json(path, &diagnosed.answer)?;
-        answer.wrote(path, "the result for programs");
-    }
-    Ok(answer)
-}
-
-fn screen(answer: &Diagnosis) -> Screen {
-    let (standing, verdict) = if answer.has_findings() {
-        (Standing::Bad, "MODEL LACKS SOMETHING")
-    } else {
-        (Standing::Good, "NOTHING FOUND")
-    };
-    let mut screen = Screen::new(standing, verdict, answer.verdict());
-    for (label, words) in answer.facts() {
-        screen.fact(label, words);
-    }
-    screen
-}
-
-fn details(answer: &Diagnosis) -> String {
-    let mut shown = String::new();
-    let mut parameters = table(vec![
-        "",
-        "unit",
-        "declared",
-        "nominal",
-        "with findings",
-        "sigma",
-    ]);
-    for one in &answer.parameters {
-        let number = |value: f64| right(format::significant(value, 5));
-        parameters.add_row(vec![
-            one.name.as_str().into(),
-            one.unit.as_str().into(),
-            number(one.declared),
-            number(one.nominal),
-            number(one.value),
-            right(format::significant(one.sigma, 2)),
-        ]);
-    }
-    shown += &format!("{parameters}\n\n");
-    let mut noise = table(vec!["noise", "over the declared one", "95 %"]);
-    for one in &answer.noise {
-        let [low, high] = one.interval.map(|end| format::significant(end, 3));
-        noise.add_row(vec![
-            one.of.as_str().into(),
-            right(format::significant(one.ratio, 3)),
-            right(format!("{low} to {high}")),
-        ]);
-    }
-    shown += &format!("{noise}\n");
-    shown
 }

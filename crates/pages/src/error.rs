@@ -2,6 +2,7 @@
 
 use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::DiagnosisError;
+use gyrocal_plant::PlantError;
 
 /// The reason why the content of a page could not be computed.
 #[derive(Debug, thiserror::Error)]
@@ -13,4 +14,7 @@ pub enum PageError {
     /// A series could not be computed.
     #[error(transparent)]
     Diagnosis(#[from] DiagnosisError),
+    /// A pass over the record of a plant failed.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
 }

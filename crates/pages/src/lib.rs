@@ -12,9 +12,12 @@
 //! | [`of_calibration`] | a calibration |
 //! | [`of_open_loop`] | a fit of the nominal model alone |
 //! | [`of_plan`] | a planned next run |
+//! | [`of_plant`] | a diagnosis of any plant |
 //! | [`of_fleet`] | what a fleet shows |
 //! | [`of_tumble`] | a multi-position test with many stops |
 //! | [`of_allan`] | Allan deviations of a log |
+//!
+//! [`plant_pictures`] are those of any plant, [`Ranked`] draws the ranking of both.
 //!
 //! # What it does not do
 //!
@@ -27,7 +30,10 @@ mod diagnosis;
 mod error;
 mod fleet;
 mod origin;
+mod panels;
 mod plan;
+mod plant;
+mod ranked;
 mod tumble;
 mod uncertainty;
 mod words;
@@ -39,6 +45,8 @@ pub use error::PageError;
 pub use fleet::of_fleet;
 pub use gyrocal_report::page::{Page, Part};
 pub use plan::of_plan;
+pub use plant::{of_plant, plant_pictures};
+pub use ranked::Ranked;
 pub use tumble::of_tumble;
 pub use uncertainty::of_budget;
 

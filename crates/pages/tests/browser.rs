@@ -4,8 +4,9 @@
 use std::path::PathBuf;
 
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_pages::{Part, of_diagnosis, of_result, page};
-use gyrocal_record::{Bench, Record};
+use gyrocal_pages::{Part, of_diagnosis, of_plant, of_result, page};
+use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions};
+use gyrocal_record::{Bench, Manifest, Record};
 use gyrocal_testkit::browser::{A4_PX, Browser};
 use gyrocal_testkit::workspace;
 use serde_json::json;
@@ -67,7 +68,7 @@ fn a_page_answers_on_its_first_screen_zooms_and_prints() {
         browser.set_dark(theme);
         assert_eq!(browser.console_errors(), Vec::<String>::new());
     }
-    zooms(&mut browser);
+    zooms(&mut browser, 3);
     shows_gaps(&mut browser);
     sorts(&mut browser);
     prints(&mut browser);
@@ -81,6 +82,41 @@ fn a_page_answers_on_its_first_screen_zooms_and_prints() {
     open(&mut browser, &path);
     let rows = browser.number("document.querySelectorAll('.overview tbody tr').length");
     assert_eq!(rows, 2.0);
+}
+
+#[test]
+fn the_page_of_a_plant_answers_on_its_first_screen_and_zooms() {
+    let Some(mut browser) = Browser::start(WINDOW) else {
+        return;
+    };
+    let data = workspace().join("examples/duffing");
+    let plant = LoadedPlant::read(&data.join("plant.json")).unwrap();
+    let columns = ColumnMap::read(&data.join("columns.toml")).unwrap();
+    let read = |name: &str| {
+        let path = data.join(name);
+        columns.record(plant.description(), &path).unwrap()
+    };
+    let options = SearchOptions::default();
+    let diagnosed = gyrocal_plant::diagnose(
+        &plant,
+        read("record.csv"),
+        Some(read("later.csv")),
+        &options,
+    );
+    let manifest = Manifest {
+        program: "gyrocal".to_owned(),
+        version: String::new(),
+        model_hash: String::new(),
+        inputs: Vec::new(),
+        seed: 0,
+        command: "gyrocal plant diagnose".to_owned(),
+    };
+    let part = of_plant(&diagnosed.unwrap(), "record.csv", &manifest).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(&folder, "plant.html", vec![part]);
+    open(&mut browser, &path);
+    first_screen(&mut browser, "v_rate.x^3");
+    zooms(&mut browser, 1);
 }
 
 fn first_screen(browser: &mut Browser, word: &str) {
@@ -112,7 +148,8 @@ fn lengths(browser: &mut Browser) -> Vec<f64> {
         .collect()
 }
 
-fn zooms(browser: &mut Browser) {
+/// Zooms the first chart, which has so many panels.
+fn zooms(browser: &mut Browser, panels: usize) {
     let rest = "new Promise((done) => setTimeout(() => done(0), 300))";
     browser.evaluate(
         "document.documentElement.style.scrollBehavior = 'auto';
@@ -120,7 +157,7 @@ fn zooms(browser: &mut Browser) {
     );
     browser.evaluate(rest);
     let whole = lengths(browser);
-    assert_eq!(whole.len(), 3);
+    assert_eq!(whole.len(), panels);
     let frame = browser.evaluate(
         "(() => { const all = document.querySelector('#chart-1 .u-over').getBoundingClientRect();
           return [all.left, all.top, all.width, all.height]; })()",

@@ -1,6 +1,5 @@
-//! The answer of a diagnosis, as data and in sentences.
+//! The answer of a diagnosis, as data.
 
-use gyrocal_statistics::format::{p_value, significant};
 use serde::Serialize;
 
 use crate::identifiability::NullDirection;
@@ -8,12 +7,6 @@ use crate::starts::Starts;
 
 /// A 95 % interval.
 pub type Interval95 = [f64; 2];
-
-/// Gain on a later record, nats, below which nothing is said of it.
-const LEAST_GAIN: f64 = 3.0;
-
-/// A remainder rarer than this is told.
-const RARE: f64 = 0.001;
 
 /// The answer of a diagnosis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,6 +19,12 @@ pub struct Diagnosis {
     pub duration_s: f64,
     /// Effects that were tested.
     pub tested: usize,
+    /// Probability that anything of the catalogue is found in a record without effects.
+    pub false_alarm_probability: f64,
+    /// Statistic from which on an effect is detected in the first search.
+    pub threshold: f64,
+    /// Statistics of the first search, the largest first.
+    pub ranking: Vec<RankedEffect>,
     /// Inputs that never move.
     pub still_inputs: Vec<String>,
     /// Starts of the fit.
@@ -38,8 +37,10 @@ pub struct Diagnosis {
     pub unexplained: Vec<Unexplained>,
     /// Effects of the catalogue that the record cannot show.
     pub left_out: Vec<LeftOut>,
-    /// Parameters and initial states.
+    /// Parameters, and the initial states of a record that is alone.
     pub parameters: Vec<Estimate>,
+    /// The records, if there are several.
+    pub records: Vec<RecordAnswer>,
     /// Estimated noise.
     pub noise: Vec<NoiseLevel>,
     /// Errors of simulations of this record.
@@ -52,9 +53,46 @@ pub struct Diagnosis {
     pub later_record: Option<Comparison>,
 }
 
+/// The statistic of an effect.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RankedEffect {
+    /// Id of the effect.
+    pub effect: String,
+    /// Chi-square of its score, less the penalty of its search.
+    pub statistic: f64,
+}
+
+/// One of several records.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordAnswer {
+    /// Its name.
+    pub name: String,
+    /// Its rows.
+    pub rows: usize,
+    /// Its duration, s.
+    pub duration_s: f64,
+    /// Its initial states.
+    pub initial: Vec<Estimate>,
+    /// Errors of simulations of it with the models of all records.
+    pub errors: Vec<OutputError>,
+    /// The diagnosis of it alone.
+    pub alone: Alone,
+}
+
+/// The diagnosis of a record alone.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Alone {
+    /// Its verdict, a sentence; the reason if it cannot be diagnosed alone.
+    pub verdict: String,
+    /// Detected effects with their sets.
+    pub findings: Vec<Found>,
+}
+
 /// A detected effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Found {
+    /// The record in which a sudden change happens, from one, if there are several.
+    pub record: Option<usize>,
     /// Id of the effect that is named.
     pub effect: String,
     /// Its meaning.
@@ -125,6 +163,8 @@ pub struct Estimate {
     pub declared: f64,
     /// Estimate of the nominal model.
     pub nominal: f64,
+    /// Standard deviation of that estimate.
+    pub nominal_sigma: f64,
     /// Estimate of the model with all findings.
     pub value: f64,
     /// Its standard deviation.
@@ -175,203 +215,4 @@ pub struct Comparison {
     pub horizon_s: f64,
     /// Errors of the simulations.
     pub errors: Vec<OutputError>,
-}
-
-fn list(names: &[String]) -> String {
-    names.join(", ")
-}
-
-impl Diagnosis {
-    /// The answer in sentences, the verdict first.
-    #[must_use]
-    pub fn sentences(&self) -> Vec<String> {
-        let verdict = core::iter::once(self.verdict());
-        let facts = self.facts().into_iter().map(|(_, words)| words);
-        verdict.chain(facts).collect()
-    }
-
-    /// What the answer says after the verdict: sentences with what they are about.
-    #[must_use]
-    pub fn facts(&self) -> Vec<(&'static str, String)> {
-        let mut all = Vec::new();
-        let found = self.findings.iter();
-        all.extend(found.map(|one| ("effect", one.sentence())));
-        let unexplained = self.unexplained.iter();
-        all.extend(unexplained.map(|one| ("unexplained", one.sentence())));
-        all.extend(self.errors.iter().map(|error| {
-            let words = format!(
-                "Simulated over {} s, output {} is off by {} {} rms with the nominal model{}.",
-                significant(self.horizon_s, 4),
-                error.output,
-                significant(error.nominal, 3),
-                error.unit,
-                with_findings(error, self.has_findings()),
-            );
-            ("open loop", words)
-        }));
-        if let Some(later) = &self.later_record {
-            all.push(("later record", later.sentence(self.has_findings())));
-        }
-        let coloured = self.remainder.iter().filter(|one| one.p_value < RARE);
-        all.extend(coloured.map(|one| {
-            let words = format!(
-                "What is left of output {} is not white noise ({}): the model still lacks something, or \
-                 the noise is coloured. Significances rest on white noise, take them as too good.",
-                one.output,
-                p_value(one.p_value)
-            );
-            ("remainder", words)
-        }));
-        let undetermined = self.undetermined.iter();
-        all.extend(undetermined.map(|one| ("undetermined", sentence(&one.sentence()))));
-        if !self.still_inputs.is_empty() {
-            let words = format!(
-                "Input {} never moves in this record: nothing that depends on it can be told from a \
-                 constant. Move it.",
-                list(&self.still_inputs)
-            );
-            all.push(("inputs", words));
-        }
-        all
-    }
-
-    /// Whether anything is found that the model lacks.
-    #[must_use]
-    pub fn has_findings(&self) -> bool {
-        !(self.findings.is_empty() && self.unexplained.is_empty())
-    }
-
-    /// The verdict, a sentence.
-    #[must_use]
-    pub fn verdict(&self) -> String {
-        let (rows, tested) = (self.rows, self.tested);
-        let names: Vec<String> = self.findings.iter().map(|one| one.effect.clone()).collect();
-        match names.len() {
-            0 if self.unexplained.is_empty() => format!(
-                "Nothing is found that {} lacks: {tested} effects were tested on {rows} rows.",
-                self.plant
-            ),
-            0 => format!(
-                "{} lacks something that its catalogue has no term for.",
-                self.plant
-            ),
-            1 => format!("{} lacks one effect: {}.", self.plant, names[0]),
-            count => format!("{} lacks {count} effects: {}.", self.plant, list(&names)),
-        }
-    }
-}
-
-fn with_findings(error: &OutputError, has: bool) -> String {
-    if !has {
-        return String::new();
-    }
-    format!(
-        " and by {} {} with what was found",
-        significant(error.extended, 3),
-        error.unit
-    )
-}
-
-fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters
-        .next()
-        .map(|letter| letter.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str() + "."
-}
-
-impl Found {
-    fn sentence(&self) -> String {
-        let sizes: Vec<String> = self.sizes.iter().map(Size::words).collect();
-        let mut text = format!(
-            "{} ({}): {}; {} standard deviations, {}.",
-            self.effect,
-            self.name,
-            sizes.join(", "),
-            significant(self.z, 3),
-            p_value(self.p_value),
-        );
-        if self.rivals.is_empty() {
-            text += " Its set has no other effect.";
-        } else {
-            let rivals: Vec<String> = self
-                .rivals
-                .iter()
-                .map(|(id, deficit)| format!("{id} ({deficit:.1} nats less likely)"))
-                .collect();
-            text += &format!(" The cause may also be {}.", rivals.join(", "));
-        }
-        if !self.equivalents.is_empty() {
-            text += &format!(" No record tells it from {}.", list(&self.equivalents));
-        }
-        if let Some(none) = self.none_of_these.filter(|none| *none > 0.05) {
-            text += &format!(
-                " With a probability of {} % the cause is outside of the catalogue.",
-                significant(100.0 * none, 2)
-            );
-        }
-        text
-    }
-}
-
-impl Size {
-    fn words(&self) -> String {
-        let unit = if self.unit == "1" { "" } else { &self.unit };
-        let value = match self.sigma {
-            Some(sigma) => gyrocal_statistics::format::estimate(self.value, sigma).join(" ± "),
-            None => significant(self.value, 4),
-        };
-        let text = format!("{} {value} {unit}", self.name);
-        text.trim_end().to_owned()
-    }
-}
-
-impl Unexplained {
-    fn sentence(&self) -> String {
-        format!(
-            "In {}: {}, {} {} (ln p {:.0}).",
-            self.channel,
-            self.form,
-            significant(self.size, 3),
-            self.unit,
-            self.ln_p_value
-        )
-    }
-}
-
-impl Comparison {
-    fn sentence(&self, has: bool) -> String {
-        if !has {
-            return "Nothing was found, so there is no gain on the second record to be measured."
-                .to_owned();
-        }
-        let errors: Vec<String> = self
-            .errors
-            .iter()
-            .map(|error| {
-                format!(
-                    "output {} is off by {} instead of {} {} rms",
-                    error.output,
-                    significant(error.extended, 3),
-                    significant(error.nominal, 3),
-                    error.unit
-                )
-            })
-            .collect();
-        let judged = if self.gain_nats >= LEAST_GAIN {
-            "what was found holds there"
-        } else if self.gain_nats > -LEAST_GAIN {
-            "the second record tells nothing of it"
-        } else {
-            "what was found does not hold there"
-        };
-        format!(
-            "On the second record ({} rows), predicted with the parameters of the first, the gain is {:.1} \
-             nats: {judged}. Simulated over {} s, {}.",
-            self.rows,
-            self.gain_nats,
-            significant(self.horizon_s, 4),
-            errors.join(", ")
-        )
-    }
 }

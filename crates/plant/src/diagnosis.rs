@@ -1,29 +1,31 @@
 //! The diagnosis of a record: what its model lacks, with sets, sizes and the gain on a later record.
 
+use core::ops::Range;
 use std::sync::Arc;
 
 use gyrocal_hypothesis::{
-    EffectEstimate, Finding, FittedModel as _, Pattern, SearchOptions, Searched, Selection,
+    EffectEstimate, Finding, FittedModel as _, Pattern, Ranked, SearchOptions, Searched, Selection,
     Unmodelled, search,
 };
-use gyrocal_statistics::chi_square_tail;
+use gyrocal_statistics::{NORMAL_97_5, chi_square_tail};
 
 use crate::answer::{
     Comparison, Diagnosis, Estimate, Found, Interval95, LeftOut, NoiseLevel, OutputError,
-    Remainder, Size, Unexplained,
+    RankedEffect, Remainder, Size, Unexplained,
 };
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::identifiability::NullDirection;
 use crate::loaded::LoadedPlant;
-use crate::prediction::{Prediction, horizon_rows};
+use crate::prediction::{horizon_s, rms};
 use crate::record::PlantRecord;
+use crate::series::{RecordSeries, correlations, of_output};
 
 /// Lags of the test of whiteness.
 const LAGS: usize = 20;
 
-/// Two-sided 95 % of a normal deviate.
-const NORMAL_95: f64 = 1.96;
+/// Name of the onset among the parameters of an effect.
+const ONSET: &str = "onset_s";
 
 /// A diagnosis with the fits that it rests on.
 pub struct Diagnosed {
@@ -31,6 +33,8 @@ pub struct Diagnosed {
     pub answer: Diagnosis,
     /// The search, with the nominal and the extended model.
     pub searched: Searched<FittedPlant>,
+    /// The later record, predicted by both models.
+    pub later: Option<RecordSeries>,
 }
 
 /// Diagnoses a record; with a later record of the same plant the gain of what was found is measured there.
@@ -43,44 +47,77 @@ pub fn diagnose(
     later: Option<PlantRecord>,
     options: &SearchOptions,
 ) -> Result<Diagnosed, PlantError> {
+    diagnose_from(plant, record, later, options, None)
+}
+
+/// The same from the values of another fit.
+pub(crate) fn diagnose_from(
+    plant: &LoadedPlant,
+    record: PlantRecord,
+    later: Option<PlantRecord>,
+    options: &SearchOptions,
+    start: Option<&[f64]>,
+) -> Result<Diagnosed, PlantError> {
     let still = record.still_inputs(&plant.description);
-    let first = FittedPlant::nominal(plant, record, &[])?;
+    let first = FittedPlant::nominal_from(plant, record, &[], start)?;
     let (held, directions) = first.to_hold()?;
     let nominal = if held.is_empty() {
         first
     } else {
-        FittedPlant::nominal(plant, first.record().clone(), &held)?
+        FittedPlant::nominal_from(plant, first.record().clone(), &held, start)?
     };
     let selection = nominal.selection()?;
     let rows = nominal.rows();
     let searched = search(nominal, rows, &selection, options)?;
-    let mut answer = answer(plant, &searched, &selection, directions)?;
+    let probability = options.false_alarm_probability;
+    let mut answer = answer(plant, &searched, &selection, (directions, probability))?;
     answer.still_inputs = still;
+    let mut series = None;
     if let Some(later) = later {
-        answer.later_record = Some(compare(&searched, later)?);
+        let (comparison, predicted) = compare(&searched, later, answer.has_findings())?;
+        answer.later_record = Some(comparison);
+        series = Some(predicted);
     }
-    Ok(Diagnosed { answer, searched })
-}
-
-/// Both models on a later record.
-fn compare(searched: &Searched<FittedPlant>, later: PlantRecord) -> Result<Comparison, PlantError> {
-    let plant = searched.fitted.loaded();
-    let horizon = horizon_rows(plant, later.len());
-    let last = later.time_s[horizon - 1];
-    let horizon_s = last - later.time_s[0];
-    let later = Arc::new(later);
-    let nominal = searched.nominal.predict(&later)?;
-    let extended = searched.fitted.predict(&later)?;
-    Ok(Comparison {
-        rows: later.len(),
-        gain_nats: extended.log_density - nominal.log_density,
-        horizon_s,
-        errors: errors(plant, &nominal, &extended),
+    Ok(Diagnosed {
+        answer,
+        searched,
+        later: series,
     })
 }
 
-fn errors(plant: &LoadedPlant, nominal: &Prediction, extended: &Prediction) -> Vec<OutputError> {
-    of_outputs(plant, &nominal.rms, &extended.rms)
+/// Both models on a later record.
+fn compare(
+    searched: &Searched<FittedPlant>,
+    later: PlantRecord,
+    has_findings: bool,
+) -> Result<(Comparison, RecordSeries), PlantError> {
+    let plant = searched.fitted.loaded();
+    let later = Arc::new(later);
+    let nominal = searched.nominal.predict(&later)?;
+    let extended = searched.fitted.predict(&later)?;
+    let rows = 0..later.len();
+    let simulated = (&nominal.simulated[..], &extended.simulated[..]);
+    let comparison = Comparison {
+        rows: later.len(),
+        gain_nats: extended.log_density - nominal.log_density,
+        horizon_s: horizon_s(plant, &later),
+        errors: errors(plant, &later, simulated, rows.clone()),
+    };
+    let sigmas = searched.fitted.output_sigmas();
+    let extended = has_findings.then_some(simulated.1);
+    let series = RecordSeries::new(plant, (&later, rows), (simulated.0, extended), &sigmas);
+    Ok((comparison, series))
+}
+
+/// Errors of simulations by the nominal and the extended model over some rows.
+pub(crate) fn errors(
+    plant: &LoadedPlant,
+    record: &PlantRecord,
+    (nominal, extended): (&[f64], &[f64]),
+    rows: Range<usize>,
+) -> Vec<OutputError> {
+    let nominal = rms(record, nominal, rows.clone());
+    of_outputs(plant, &nominal, &rms(record, extended, rows))
 }
 
 fn of_outputs(plant: &LoadedPlant, nominal: &[f64], extended: &[f64]) -> Vec<OutputError> {
@@ -100,11 +137,12 @@ fn answer(
     plant: &LoadedPlant,
     searched: &Searched<FittedPlant>,
     selection: &Selection,
-    directions: Vec<NullDirection>,
+    (directions, false_alarm_probability): (Vec<NullDirection>, f64),
 ) -> Result<Diagnosis, PlantError> {
     let fitted = &searched.fitted;
     let record = fitted.record();
     let scale = record.search_scale();
+    let (nominal, extended) = (searched.nominal.simulated(), fitted.simulated());
     let findings = searched.findings.iter();
     let unmodelled = searched.unmodelled.iter();
     let left_out = selection.unavailable.iter().map(|one| LeftOut {
@@ -116,40 +154,51 @@ fn answer(
         rows: record.len(),
         duration_s: record.duration_s(),
         tested: selection.effects.len(),
+        false_alarm_probability,
+        threshold: searched.threshold,
+        ranking: searched.ranking.iter().map(ranked).collect(),
         still_inputs: Vec::new(),
         starts: searched.nominal.starts().clone(),
         undetermined: directions,
-        findings: findings.map(|one| found(plant, one, scale)).collect(),
+        findings: findings.map(|one| found(fitted, one, scale)).collect(),
         unexplained: unmodelled.map(|one| unexplained(one, scale)).collect(),
         left_out: left_out.collect(),
         parameters: parameters(plant, &searched.nominal, fitted),
+        records: Vec::new(),
         noise: noise(plant, searched),
-        errors: of_outputs(
-            plant,
-            &searched.nominal.simulation_rms(),
-            &fitted.simulation_rms(),
-        ),
-        horizon_s: record.time_s[horizon_rows(plant, record.len()) - 1] - record.time_s[0],
+        errors: errors(plant, record, (&nominal, &extended), 0..record.len()),
+        horizon_s: horizon_s(plant, record),
         remainder: remainder(plant, fitted)?,
         later_record: None,
     })
 }
 
-fn found(plant: &LoadedPlant, finding: &Finding, scale: f64) -> Found {
+fn ranked(one: &Ranked) -> RankedEffect {
+    RankedEffect {
+        effect: one.effect.to_owned(),
+        statistic: one.statistic,
+    }
+}
+
+fn found(fitted: &FittedPlant, finding: &Finding, scale: f64) -> Found {
+    let plant = fitted.loaded();
     let entry = |id: &str| {
         let mut effects = plant.description.effects.iter();
         effects.find(|effect| effect.id == id)
     };
     let own = entry(finding.effect);
-    let sizes = finding
+    let mut sizes: Vec<Size> = finding
         .parameters
         .iter()
-        .map(|one| size(plant, finding.effect, one, scale));
+        .map(|one| size(plant, finding.effect, one, scale))
+        .collect();
+    let record = in_its_record(fitted.record(), &mut sizes);
     Found {
+        record,
         effect: finding.effect.to_owned(),
         name: own.map_or_else(String::new, |own| own.name.clone()),
         formula: own.map_or_else(String::new, |own| own.formula.clone()),
-        sizes: sizes.collect(),
+        sizes,
         z: finding.z,
         p_value: finding.p_value,
         rivals: finding
@@ -166,12 +215,30 @@ fn found(plant: &LoadedPlant, finding: &Finding, scale: f64) -> Found {
     }
 }
 
+/// Puts an onset on the clock of the record that it lies in; gives the number of that record, from one, if
+/// there are several.
+fn in_its_record(record: &PlantRecord, sizes: &mut [Size]) -> Option<usize> {
+    let onset = sizes.iter_mut().find(|size| size.name == ONSET)?;
+    let first_s = record.time_s.first()?;
+    let of_row = |row: &usize| record.time_s[*row] - first_s;
+    let before = record.starts.iter();
+    let before = before.take_while(|row| of_row(row) <= onset.value).count();
+    let start_s = before
+        .checked_sub(1)
+        .map_or(0.0, |last| of_row(&record.starts[last]));
+    onset.value -= start_s;
+    for end in onset.interval.iter_mut().flatten().flatten() {
+        *end -= start_s;
+    }
+    (!record.starts.is_empty()).then_some(before + 1)
+}
+
 /// A size, or an onset, in units of the plant: the search has another unit of time.
 fn size(plant: &LoadedPlant, effect: &str, one: &EffectEstimate, scale: f64) -> Size {
     let mut effects = plant.description.effects.iter();
     let is_ramp =
         effects.any(|entry| entry.id == effect && entry.kind == crate::description::Kind::Ramp);
-    let factor = if one.name == "onset_s" {
+    let factor = if one.name == ONSET {
         scale.recip()
     } else if is_ramp {
         scale
@@ -213,7 +280,10 @@ fn unexplained(one: &Unmodelled, scale: f64) -> Unexplained {
 
 fn parameters(plant: &LoadedPlant, nominal: &FittedPlant, fitted: &FittedPlant) -> Vec<Estimate> {
     let states = plant.description.states.len();
-    let initial = plant.description.states.iter().map(|state| {
+    // Several records have initial states of their own.
+    let only = fitted.record().starts.is_empty();
+    let own = plant.description.states.iter().filter(|_| only);
+    let initial = own.map(|state| {
         let name = format!("initial {}", state.id);
         (name, state.unit.clone(), state.initial)
     });
@@ -226,6 +296,7 @@ fn parameters(plant: &LoadedPlant, nominal: &FittedPlant, fitted: &FittedPlant) 
         declared,
         nominal: declared + nominal.values()[place],
         value: declared + fitted.values()[place],
+        nominal_sigma: nominal.covariance()[(place, place)].sqrt(),
         sigma: fitted.covariance()[(place, place)].sqrt(),
     })
     .collect()
@@ -242,7 +313,7 @@ fn noise(plant: &LoadedPlant, searched: &Searched<FittedPlant>) -> Vec<NoiseLeve
         .chain(driven)
         .zip(ratios[rates..].iter().zip(&sigmas[rates..]))
         .map(|(of, (ratio, sigma))| {
-            let factor = gyrocal_statistics::math::exp(NORMAL_95 * sigma);
+            let factor = gyrocal_statistics::math::exp(NORMAL_97_5 * sigma);
             NoiseLevel {
                 of,
                 ratio: *ratio,
@@ -257,22 +328,17 @@ fn remainder(plant: &LoadedPlant, fitted: &FittedPlant) -> Result<Vec<Remainder>
     let whitened = fitted.whitened()?;
     let outputs = plant.description.outputs.iter().enumerate();
     let all = outputs.map(|(index, output)| {
-        let own: Vec<f64> = whitened
-            .iter()
-            .filter(|(_, output, _)| *output == index)
-            .map(|(.., value)| *value)
-            .collect();
-        let (lags, rows) = (LAGS.min(own.len() / 4), own.len() as f64);
-        let power: f64 = own.iter().map(|value| value * value).sum();
-        let mut statistic = 0.0;
-        for lag in 1..=lags {
-            let pairs = own.iter().zip(&own[lag..]);
-            let correlation = pairs.map(|(a, b)| a * b).sum::<f64>() / power;
-            statistic += correlation * correlation / (rows - lag as f64);
-        }
+        let own = of_output(&whitened, index);
+        let rows = own.len() as f64;
+        let correlations = correlations(&own, LAGS);
+        let lags = correlations.len() as f64;
+        let terms = correlations.iter().zip(1..);
+        let statistic: f64 = terms
+            .map(|(correlation, lag)| correlation * correlation / (rows - f64::from(lag)))
+            .sum();
         Remainder {
             output: output.id.clone(),
-            p_value: chi_square_tail(rows * (rows + 2.0) * statistic, lags as f64).unwrap_or(1.0),
+            p_value: chi_square_tail(rows * (rows + 2.0) * statistic, lags).unwrap_or(1.0),
         }
     });
     Ok(all.collect())

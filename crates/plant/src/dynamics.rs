@@ -81,8 +81,13 @@ impl<'a> Dynamics<'a> {
         (self.record.time_s[row + 1] - self.record.time_s[row]) / self.substeps as f64
     }
 
-    /// States at the next row.
+    /// States at the next row; before a record that begins there those that are declared and their changes.
     pub(crate) fn next(&mut self, row: usize, course: &Course, states: &[f64]) -> Vec<f64> {
+        if self.record.begins(row + 1) {
+            let mut here = self.declared();
+            course.add_jumps(row, &mut here);
+            return here;
+        }
         course.at(row, &mut self.parameters);
         let (n, h) = (self.sizes.states, self.interval_s(row));
         let mut here = states.to_vec();
@@ -113,6 +118,11 @@ impl<'a> Dynamics<'a> {
         }
         course.add_jumps(row, &mut here);
         here
+    }
+
+    fn declared(&self) -> Vec<f64> {
+        let states = self.plant.description.states.iter();
+        states.map(|state| state.initial).collect()
     }
 
     /// Outputs at a row.
@@ -246,8 +256,12 @@ impl<'a> Dynamics<'a> {
         } = self.sizes;
         let columns = n + p + w;
         let h = self.interval_s(row);
-        step.states.copy_from_slice(states);
         step.by_all.fill(0.0);
+        if self.record.begins(row + 1) {
+            step.states = self.declared();
+            return;
+        }
+        step.states.copy_from_slice(states);
         for i in 0..n {
             step.by_all[i * columns + i] = 1.0;
         }

@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 
 use crate::backward;
 use crate::error::PlantError;
+use crate::later_starts::eliminated;
 use crate::lines::{Line, of_parameters};
 use crate::loaded::LoadedPlant;
 use crate::noise::Restricted;
@@ -36,6 +37,8 @@ pub struct FittedPlant {
     /// Standard deviations of the noise over the declared ones: outputs, then noises of rates.
     pub(crate) ratios: Vec<f64>,
     pub(crate) solution: Arc<Solution>,
+    /// Covariance of what the search knows: all unknowns but the initial states of later records.
+    covariance: DMatrix<f64>,
     starts: Starts,
 }
 
@@ -81,13 +84,30 @@ impl FittedPlant {
         problem.substeps = starts::substeps(&problem, &vec![0.0; problem.nominal()]);
         let ratios = vec![1.0; problem.noises()];
         let (solution, starts) = starts::best(&problem, &ratios, first)?;
-        Ok(Self {
-            problem: Arc::new(problem),
-            extension: ModelExtension::default(),
+        let problem = Arc::new(problem);
+        let extension = ModelExtension::default();
+        Ok(Self::of(problem, extension, ratios, solution, starts))
+    }
+
+    fn of(
+        problem: Arc<Problem>,
+        extension: ModelExtension,
+        ratios: Vec<f64>,
+        solution: Solution,
+        starts: Starts,
+    ) -> Self {
+        let shared = solution.at.values.len() - problem.later();
+        Self {
+            covariance: solution
+                .covariance
+                .view((0, 0), (shared, shared))
+                .into_owned(),
+            problem,
+            extension,
             ratios,
             solution: Arc::new(solution),
             starts,
-        })
+        }
     }
 
     /// The plant.
@@ -131,7 +151,6 @@ impl FittedPlant {
     #[must_use]
     pub fn rows(&self) -> Rows {
         Rows {
-            starts: Vec::new(),
             covariates: self.covariates(),
             ..(*self.problem.rows).clone()
         }
@@ -158,7 +177,7 @@ impl FittedPlant {
         let (states, steps) = self.problem.shape();
         let lines = columns.iter();
         lines
-            .map(|column| Line::of(column, states, steps))
+            .map(|column| Line::of(column, states, steps, &self.problem.record.starts))
             .collect()
     }
 
@@ -169,13 +188,52 @@ impl FittedPlant {
         start: Iterate,
     ) -> Result<Self, PlantError> {
         let solver = Solver::new(&self.problem, extension, self.problem.variances(&ratios));
-        Ok(Self {
-            problem: Arc::clone(&self.problem),
-            extension: extension.clone(),
+        let solution = solver.solve(start)?;
+        let problem = Arc::clone(&self.problem);
+        let starts = self.starts.clone();
+        Ok(Self::of(
+            problem,
+            extension.clone(),
             ratios,
-            solution: Arc::new(solver.solve(start)?),
-            starts: self.starts.clone(),
-        })
+            solution,
+            starts,
+        ))
+    }
+
+    /// Values of the initial states of later records, and their standard deviations before the records.
+    fn later(&self) -> (&[f64], Vec<f64>) {
+        let all = &self.solution.at.values;
+        let sigmas = self.problem.sigmas(&self.extension);
+        let first = all.len() - self.problem.later();
+        (&all[first..], sigmas[first..].to_vec())
+    }
+
+    /// Initial states of each record with their standard deviations.
+    #[must_use]
+    pub fn initial_states(&self) -> Vec<Vec<[f64; 2]>> {
+        let description = &self.problem.plant.description;
+        let states = description.states.len();
+        let solution = &self.solution;
+        let later = solution.at.values.len() - self.problem.later();
+        let firsts = core::iter::once(0).chain((later..solution.at.values.len()).step_by(states));
+        firsts
+            .map(|first| {
+                let declared = description.states.iter().zip(first..);
+                declared
+                    .map(|(state, place)| {
+                        let value = state.initial + solution.at.values[place];
+                        [value, solution.covariance[(place, place)].sqrt()]
+                    })
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// The Gram matrix of some lines, with the initial states of later records eliminated.
+    pub(crate) fn shared_gram(&self, mut lines: Vec<Line>) -> Result<DMatrix<f64>, PlantError> {
+        lines.extend(self.problem.later_starts());
+        let (values, sigmas) = self.later();
+        eliminated(self.pass(&lines, Keep::Nothing)?.gram, values, &sigmas)
     }
 
     /// Value of an unknown of another extension in this fit.
@@ -194,6 +252,7 @@ impl FittedPlant {
             let known = own.position(|other| other == column);
             values.push(known.map_or(0.0, |known| at.values[first + known]));
         }
+        values.extend_from_slice(self.later().0);
         Iterate {
             points: at.points.clone(),
             values,
@@ -248,15 +307,18 @@ impl FittedModel for FittedPlant {
     }
 
     fn values(&self) -> &[f64] {
-        &self.solution.at.values
+        let all = &self.solution.at.values;
+        &all[..all.len() - self.problem.later()]
     }
 
     fn covariance(&self) -> &DMatrix<f64> {
-        &self.solution.covariance
+        &self.covariance
     }
 
     fn prior_sigma(&self) -> Vec<f64> {
-        self.problem.sigmas(&self.extension)
+        let mut all = self.problem.sigmas(&self.extension);
+        all.truncate(all.len() - self.problem.later());
+        all
     }
 
     fn cost(&self) -> f64 {
@@ -276,7 +338,7 @@ impl FittedModel for FittedPlant {
         _walking: &[usize],
         absent: &[usize],
     ) -> Result<RateNoiseFit, PlantError> {
-        let (lines, sigmas) = (self.lines(), self.prior_sigma());
+        let (lines, sigmas) = (self.lines(), self.problem.sigmas(&self.extension));
         let restricted = Restricted::new(
             &self.problem,
             &self.solution.lin,
@@ -322,18 +384,25 @@ impl FittedModel for FittedPlant {
         );
         lines.extend(problem.columns(&self.extension));
         lines.extend(self.further(further));
-        Ok(self.pass(&lines, Keep::Nothing)?.gram)
+        self.shared_gram(lines)
     }
 
     fn conditional_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, PlantError> {
         let mut lines = self.lines();
+        lines.truncate(lines.len() - self.problem.later());
         lines.extend(self.further(further));
-        Ok(self.pass(&lines, Keep::Nothing)?.gram)
+        self.shared_gram(lines)
     }
 
     fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, PlantError> {
         let reduced = self.pass(&self.lines(), Keep::All)?;
-        backward::jumps(&self.solution.lin, &reduced.kept, &self.solution.covariance)
-            .ok_or(PlantError::Singular)
+        let (lin, covariance) = (&self.solution.lin, &self.solution.covariance);
+        let mut jumps =
+            backward::jumps(lin, &reduced.kept, covariance).ok_or(PlantError::Singular)?;
+        // The states that a record begins with are free.
+        for start in &self.record().starts {
+            jumps[*start] = None;
+        }
+        Ok(jumps)
     }
 }

@@ -102,10 +102,11 @@ impl FittedPlant {
     /// # Errors
     /// [`PlantError::Singular`], [`PlantError::NotFinite`].
     pub fn null_directions(&self) -> Result<Vec<NullDirection>, PlantError> {
-        let nominal = self.problem.nominal();
-        let lines = &self.lines()[..nominal];
-        let gram = self.pass(lines, Keep::Nothing)?.gram;
-        let information = gram.view((1, 1), (nominal, nominal)).into_owned();
+        let mut lines = self.lines();
+        lines.truncate(self.problem.nominal());
+        lines.extend(self.problem.later_starts());
+        let gram = self.pass(&lines, Keep::Nothing)?.gram;
+        let information = gram.view((1, 1), (lines.len(), lines.len())).into_owned();
         let scales = scales(&information);
         let null = null_space(&scaled(&information, &scales));
         if null.is_empty() {
@@ -160,7 +161,8 @@ impl FittedPlant {
             description.inputs.len(),
             description.outputs.len(),
         );
-        let rows = self.record().len().min(ROWS);
+        let first = self.record().records().next().map_or(0, |rows| rows.end);
+        let rows = first.min(ROWS);
         let range = |place: usize| {
             let own = self.record().inputs.iter().skip(place).step_by(u);
             let ends = [f64::INFINITY, f64::NEG_INFINITY];
@@ -190,6 +192,7 @@ impl FittedPlant {
             inputs,
             outputs: vec![0.0; rows * y],
             regressor_means: Vec::new(),
+            starts: Vec::new(),
             regressors: self
                 .record()
                 .regressors
@@ -225,7 +228,7 @@ impl FittedPlant {
     ) -> NullDirection {
         let description = &self.problem.plant.description;
         let n = description.states.len();
-        let own = direction.rows(n, direction.len() - n).into_owned();
+        let own = direction.rows(n, description.parameters.len()).into_owned();
         let most = SymmetricEigen::new(others.clone()).eigenvalues.max();
         // A direction of initial states alone that is null is one at every input.
         let along = (others * &own).dot(&own);
@@ -237,8 +240,16 @@ impl FittedPlant {
             let value = one.value + self.solution.at.values[n + index];
             (one.id.clone(), value, Some(index))
         });
+        let later = (1..=self.record().starts.len()).flat_map(|record| {
+            let states = description.states.iter();
+            states.map(move |state| {
+                let name = format!("the initial {} of record {}", state.id, record + 1);
+                (name, 0.0, None)
+            })
+        });
         let mut parts: Vec<NullPart> = states
             .chain(parameters)
+            .chain(later)
             .zip(direction.iter().zip(scales.iter()))
             .map(|((name, value, parameter), (part, scale))| {
                 let change = part * scale;

@@ -6,13 +6,15 @@
 //! effects, written by the Python package `gyrocal_plant` (`docs/any-plant.md`). [`LoadedPlant`] interprets
 //! it, or takes generated Rust ([`Generated`]) for its functions. [`diagnose`] fits the nominal model to a
 //! [`PlantRecord`], searches for the effects of the catalogue and returns them with sets, sizes,
-//! significance and, with a later record, their gain.
+//! significance and, with a later record, their gain. [`diagnose_records`] does so for several records of one
+//! plant.
 //!
 //! # How it works
 //!
 //! [`FittedPlant`] is a [`gyrocal_hypothesis::FittedModel`]; the search is that of `gyrocal-hypothesis`.
 //! A record is linearised about a trajectory. A Kalman filter on the states carries the derivatives by
 //! initial states, parameters and effects along as columns. Without noise of the rates it is a simulation.
+//! Records that are joined have a step between them that begins with free states.
 //! Gauss-Newton steps by multiple shooting lead to the fit; noise levels maximise the restricted likelihood.
 //!
 //! # Example
@@ -34,8 +36,7 @@
 //!
 //! # What it does not do
 //!
-//! It draws nothing, and has no random walks. Play and delays are those of inputs. Several records are not fitted
-//! together.
+//! It draws nothing, and has no random walks. Play and delays are those of inputs.
 
 pub mod answer;
 mod backward;
@@ -52,6 +53,7 @@ mod generated;
 mod identifiability;
 mod input_errors;
 mod interpreted;
+mod later_starts;
 mod lines;
 mod loaded;
 mod noise;
@@ -59,6 +61,9 @@ mod pass;
 mod prediction;
 mod problem;
 mod record;
+mod sentences;
+mod series;
+mod several;
 mod solve;
 mod starts;
 mod taken_up;
@@ -76,4 +81,6 @@ pub use identifiability::{NullDirection, NullPart};
 pub use interpreted::Interpreted;
 pub use loaded::LoadedPlant;
 pub use record::PlantRecord;
+pub use series::{OutputCorrelation, OutputSeries, RecordSeries};
+pub use several::{DiagnosedRecords, NamedRecord, diagnose_records};
 pub use starts::Starts;

@@ -25,12 +25,16 @@ pub(crate) enum Line {
 
 impl Line {
     /// A column of the search.
-    pub(crate) fn of(column: &Column, states: usize, steps: usize) -> Self {
+    pub(crate) fn of(column: &Column, states: usize, steps: usize, starts: &[usize]) -> Self {
         match column {
             Column::InitialState { state, .. } => Self::Start(*state),
             Column::StateJump { row, state } => Self::Jump(*row, *state),
             Column::Step { parameter, row } => {
-                let profile = (0..steps).map(|step| f64::from(u8::from(step >= *row)));
+                // A change belongs to the record that it happens in.
+                let end = starts.iter().find(|start| *start > row).copied();
+                let end = end.unwrap_or(steps);
+                let profile =
+                    (0..steps).map(|step| f64::from(u8::from((*row..end).contains(&step))));
                 Self::Profile(parameter - states, profile.collect())
             }
             Column::TimeProfile { parameter, steps } => {
@@ -70,12 +74,27 @@ pub(crate) fn of_parameters(
             (Modulation::Error(error, input), _) => {
                 let inputs = &plant.description.inputs;
                 let interpolate = inputs[input].interpolate;
-                let steps = error.steps(record, inputs.len(), input, interpolate);
+                let steps = in_each(record, |part| {
+                    error.steps(part, inputs.len(), input, interpolate)
+                });
                 Line::Profile(modulated.of, steps)
             }
         }
     };
     wanted.iter().map(line).collect()
+}
+
+/// Numbers for the steps of each record, and zero between two of them.
+fn in_each(record: &PlantRecord, steps: impl Fn(&PlantRecord) -> Arc<[f64]>) -> Arc<[f64]> {
+    if record.starts.is_empty() {
+        return steps(record);
+    }
+    let mut all: Vec<f64> = Vec::with_capacity(record.len());
+    for rows in record.records() {
+        all.resize(rows.start, 0.0);
+        all.extend_from_slice(&steps(&record.part(rows)));
+    }
+    all.into()
 }
 
 /// Parameters along a record: constant ones, and what changes them.

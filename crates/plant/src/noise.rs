@@ -192,8 +192,12 @@ impl<'a> Restricted<'a> {
             inner[(i, i)] += weight(*place);
             cost += weight(*place) * self.values[*place].powi(2);
         }
-        let integrated = self.problem.nominal().min(present.len());
-        let own = inner.view((0, 0), (integrated, integrated)).into_owned();
+        let nominal = self.problem.nominal().min(present.len());
+        let later = present.len().saturating_sub(self.problem.later());
+        let integrated: Vec<usize> = (0..nominal)
+            .chain(later.max(nominal)..present.len())
+            .collect();
+        let own = inner.select_rows(&integrated).select_columns(&integrated);
         let cholesky = Cholesky::new(inner).ok_or(PlantError::Singular)?;
         cost -= cholesky.solve(&gradient).dot(&gradient);
         let own = Cholesky::new(own).ok_or(PlantError::Singular)?;

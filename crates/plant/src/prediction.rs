@@ -1,10 +1,12 @@
 //! A later record predicted by a fit: the density of its outputs with the uncertainty of all parameters, and
 //! errors of simulations over a horizon.
 
+use core::ops::Range;
 use std::sync::Arc;
 
 use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_statistics::math::ln;
+use gyrocal_statistics::rms_of_present;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::catalogue::Modulation;
@@ -12,7 +14,8 @@ use crate::description::Kind;
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
-use crate::lines::{Course, Line};
+use crate::lines::{Course, Line, of_parameters};
+use crate::loaded::LoadedPlant;
 use crate::pass::{Keep, reduce};
 use crate::problem::Problem;
 use crate::record::PlantRecord;
@@ -30,12 +33,12 @@ const WIDE: f64 = 100.0;
 pub(crate) struct Prediction {
     /// Logarithm of the density of the outputs.
     pub(crate) log_density: f64,
-    /// Root mean square error of each output over the horizon.
-    pub(crate) rms: Vec<f64>,
+    /// Simulated outputs, by rows.
+    pub(crate) simulated: Vec<f64>,
 }
 
-/// Rows that simulations go over.
-pub(crate) fn horizon_rows(plant: &crate::loaded::LoadedPlant, rows: usize) -> usize {
+/// Rows that simulations go over; they begin anew with each record.
+fn horizon_rows(plant: &LoadedPlant, rows: usize) -> usize {
     if plant.description.noises.is_empty() {
         rows
     } else {
@@ -43,17 +46,37 @@ pub(crate) fn horizon_rows(plant: &crate::loaded::LoadedPlant, rows: usize) -> u
     }
 }
 
+/// Time that simulations go over, s.
+pub(crate) fn horizon_s(plant: &LoadedPlant, record: &PlantRecord) -> f64 {
+    let horizon = horizon_rows(plant, record.len());
+    if horizon == record.len() {
+        return record.longest_s();
+    }
+    record.time_s[horizon - 1] - record.time_s[0]
+}
+
+/// Root mean square of measured less simulated outputs over some rows, of each output.
+pub(crate) fn rms(record: &PlantRecord, simulated: &[f64], rows: Range<usize>) -> Vec<f64> {
+    let outputs = simulated.len() / record.len().max(1);
+    let of = |output: usize| {
+        let places = rows.clone().map(|row| row * outputs + output);
+        let errors = places.map(|place| record.outputs[place] - simulated[place]);
+        rms_of_present(errors).0
+    };
+    (0..outputs).map(of).collect()
+}
+
 impl FittedPlant {
-    /// Root mean square errors of the outputs of this record in simulations over the horizon.
+    /// Outputs of this record in simulations over the horizon, by rows.
     #[must_use]
-    pub fn simulation_rms(&self) -> Vec<f64> {
+    pub fn simulated(&self) -> Vec<f64> {
         let solver = Solver::new(
             &self.problem,
             self.extension(),
             self.problem.variances(&self.ratios),
         );
-        let course = solver.course(self.values());
-        simulation_rms(&self.problem, &course, self.points())
+        let course = solver.course(&self.solution.at.values);
+        simulated(&self.problem, &course, self.points())
     }
 
     /// The lines of effects and parameters in a later record, with their values, and the rows of this
@@ -96,10 +119,20 @@ impl FittedPlant {
         let kind = of_time.nth(modulated)?.kind;
         let rows = later.len();
         let steps: Vec<f64> = match kind {
+            // With each of several records a drift begins anew.
+            Kind::Ramp if !self.record().starts.is_empty() => {
+                let (scale, first_s) = (self.record().search_scale(), later.time_s[0]);
+                let times = later.time_s.iter();
+                times
+                    .map(|time_s| scale * (time_s - first_s) / 3600.0)
+                    .collect()
+            }
             Kind::Ramp => {
                 let hours = self.problem.rows.duration_s() / 3600.0;
                 vec![hours; rows]
             }
+            // A change stays, but not beyond the record that it happens in.
+            Kind::Step if !self.acts_at_the_end(modulated) => vec![0.0; rows],
             Kind::Regressor(index) => {
                 let means = (
                     self.record().regressor_means.get(index),
@@ -119,6 +152,27 @@ impl FittedPlant {
         Some(match own.output {
             Some(output) => Line::Output(output, steps.into()),
             None => Line::Profile(own.of, steps.into()),
+        })
+    }
+
+    /// Whether a function of time acts in the last step.
+    fn acts_at_the_end(&self, modulated: usize) -> bool {
+        if self.record().starts.is_empty() {
+            return true;
+        }
+        let states = self.problem.plant.description.states.len();
+        let parameters = states + self.problem.plant.functions.sizes().parameters + modulated;
+        let lines = of_parameters(
+            &self.problem.plant,
+            (self.record(), &self.problem.rows),
+            self.extension(),
+            &[parameters],
+        );
+        lines.iter().any(|line| match line {
+            Line::Profile(_, steps) | Line::Output(_, steps) => {
+                steps.last().is_some_and(|last| *last != 0.0)
+            }
+            _ => false,
         })
     }
 
@@ -150,7 +204,7 @@ impl FittedPlant {
         };
         let solution = led_by(&solver, &self.state_sizes())?;
         let course = solver.course(&solution.at.values);
-        let rms = simulation_rms(&problem, &course, &solution.at.points);
+        let simulated = simulated(&problem, &course, &solution.at.points);
         let lines: Vec<Line> = starts
             .into_iter()
             .chain(carried.iter().map(|(line, _)| line.clone()))
@@ -162,7 +216,10 @@ impl FittedPlant {
             .log_density(&reduced.gram, &solution.at, &sigmas, &places)
             .ok_or(PlantError::Singular)?
             - 0.5 * (reduced.log_variance + reduced.values as f64 * ln(core::f64::consts::TAU));
-        Ok(Prediction { log_density, rms })
+        Ok(Prediction {
+            log_density,
+            simulated,
+        })
     }
 
     /// Sizes of the states in this record.
@@ -216,33 +273,21 @@ impl FittedPlant {
     }
 }
 
-/// Errors of simulations from the trajectory over the horizon.
-fn simulation_rms(problem: &Problem, course: &Course, points: &[f64]) -> Vec<f64> {
-    let (n, y) = (
-        problem.plant.description.states.len(),
-        problem.plant.description.outputs.len(),
-    );
+/// Outputs of simulations from the trajectory over the horizon, by rows.
+fn simulated(problem: &Problem, course: &Course, points: &[f64]) -> Vec<f64> {
+    let n = problem.plant.description.states.len();
     let rows = problem.record.len();
     let horizon = horizon_rows(&problem.plant, rows);
     let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
-    let (mut squares, mut counts) = (vec![0.0; y], vec![0_usize; y]);
+    let mut all = Vec::with_capacity(problem.record.outputs.len());
     for first in (0..rows).step_by(horizon) {
         let mut here = points[first * n..(first + 1) * n].to_vec();
         for row in first..rows.min(first + horizon) {
-            let outputs = dynamics.outputs(row, course, &here);
-            let measured = &problem.record.outputs[row * y..(row + 1) * y];
-            for (output, (measured, predicted)) in measured.iter().zip(&outputs).enumerate() {
-                if !measured.is_nan() {
-                    squares[output] += (measured - predicted).powi(2);
-                    counts[output] += 1;
-                }
-            }
+            all.extend(dynamics.outputs(row, course, &here));
             if row + 1 < rows {
                 here = dynamics.next(row, course, &here);
             }
         }
     }
-    let each = squares.iter().zip(&counts);
-    each.map(|(squares, count)| (squares / (*count).max(1) as f64).sqrt())
-        .collect()
+    all
 }

@@ -30,7 +30,7 @@ impl Problem {
         );
         let time_s = record.time_s.iter().map(|time| (time - first) * scale);
         let rows = Rows {
-            starts: Vec::new(),
+            starts: record.starts.clone(),
             time_s: time_s.collect(),
             regressors: record.regressors.clone(),
             covariates: Vec::new(),
@@ -58,7 +58,20 @@ impl Problem {
         let wanted: Vec<usize> = (0..self.nominal()).chain(own).collect();
         let mut lines = of_parameters(&self.plant, (&self.record, &self.rows), extension, &wanted);
         lines.extend(self.columns(extension));
+        lines.extend(self.later_starts());
         lines
+    }
+
+    /// Initial states of the records after the first: changes of the declared ones in the step to each.
+    pub(crate) fn later_starts(&self) -> impl Iterator<Item = Line> + '_ {
+        let states = self.plant.description.states.len();
+        let starts = self.record.starts.iter();
+        starts.flat_map(move |row| (0..states).map(move |state| Line::Jump(row - 1, state)))
+    }
+
+    /// Number of these.
+    pub(crate) fn later(&self) -> usize {
+        self.record.starts.len() * self.plant.description.states.len()
     }
 
     /// The further columns of an extension.
@@ -66,7 +79,7 @@ impl Problem {
         let (states, steps) = self.shape();
         let columns = extension.columns.columns().iter();
         columns
-            .map(|column| Line::of(column, states, steps))
+            .map(|column| Line::of(column, states, steps, &self.record.starts))
             .collect()
     }
 
@@ -78,15 +91,19 @@ impl Problem {
         )
     }
 
-    /// Standard deviations of the unknowns of a model before the record.
+    /// Standard deviations of the unknowns of a model before the record: nominal ones, those of the extension,
+    /// initial states of later records.
     pub(crate) fn sigmas(&self, extension: &ModelExtension) -> Vec<f64> {
         let own = extension.parameters.iter().map(|(_, sigma)| *sigma);
         let columns = extension.columns.sigmas().iter().copied();
+        let states = &self.prior_sigma[..self.plant.description.states.len()];
+        let later = self.record.starts.iter().flat_map(|_| states).copied();
         self.prior_sigma
             .iter()
             .copied()
             .chain(own)
             .chain(columns)
+            .chain(later)
             .collect()
     }
 

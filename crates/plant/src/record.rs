@@ -1,5 +1,7 @@
 //! A record: inputs and outputs of a plant at rising times.
 
+use core::ops::Range;
+
 use gyrocal_statistics::median_interval_s;
 
 use crate::description::Description;
@@ -9,7 +11,11 @@ use crate::error::PlantError;
 /// records of days, and any record is one in some unit of time.
 const SEARCH_INTERVAL_S: f64 = 60.0;
 
-/// Rows of inputs, outputs and logged quantities.
+/// Distance between the clocks of two records that are joined, in usual intervals between rows: to every
+/// test a gap.
+const GAP_INTERVALS: f64 = 10.0;
+
+/// Rows of inputs, outputs and logged quantities, of one record or of several that are joined.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlantRecord {
     /// Time of each row, s.
@@ -22,6 +28,8 @@ pub struct PlantRecord {
     pub regressors: Vec<Vec<f64>>,
     /// Their means, which [`Self::prepared`] takes from them.
     pub regressor_means: Vec<f64>,
+    /// First row of each record after the first; empty of one record.
+    pub starts: Vec<usize>,
 }
 
 impl PlantRecord {
@@ -37,13 +45,94 @@ impl PlantRecord {
         self.time_s.is_empty()
     }
 
-    /// Time from the first row to the last, s.
+    /// Time from the first row to the last, s; the sum over the records that are joined.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
-        match (self.time_s.first(), self.time_s.last()) {
-            (Some(first), Some(last)) => last - first,
+        self.durations_s().sum()
+    }
+
+    /// The duration of the longest record, s.
+    pub(crate) fn longest_s(&self) -> f64 {
+        self.durations_s().fold(0.0, f64::max)
+    }
+
+    fn durations_s(&self) -> impl Iterator<Item = f64> + '_ {
+        self.records().map(|rows| match &self.time_s[rows] {
+            [first, .., last] => last - first,
             _ => 0.0,
+        })
+    }
+
+    /// The rows of each record.
+    pub fn records(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        let firsts = core::iter::once(0).chain(self.starts.iter().copied());
+        let ends = self.starts.iter().copied().chain([self.len()]);
+        firsts.zip(ends).map(|(first, end)| first..end)
+    }
+
+    /// Whether a record after the first begins with a row.
+    pub(crate) fn begins(&self, row: usize) -> bool {
+        self.starts.binary_search(&row).is_ok()
+    }
+
+    /// Some rows as a record.
+    pub(crate) fn part(&self, rows: Range<usize>) -> Self {
+        let per_row = |values: &[f64]| {
+            let width = values.len() / self.len().max(1);
+            values[rows.start * width..rows.end * width].to_vec()
+        };
+        Self {
+            time_s: self.time_s[rows.clone()].to_vec(),
+            inputs: per_row(&self.inputs),
+            outputs: per_row(&self.outputs),
+            regressors: self
+                .regressors
+                .iter()
+                .map(|one| one[rows.clone()].to_vec())
+                .collect(),
+            regressor_means: self.regressor_means.clone(),
+            starts: Vec::new(),
         }
+    }
+
+    /// Records of one plant, one after the other, as one: on a clock that goes on ten intervals after the
+    /// end of each, and with regressors about the mean of all.
+    #[must_use]
+    pub fn joined(records: &[Self]) -> Self {
+        let Some((first, others)) = records.split_first() else {
+            return Self::default();
+        };
+        let mut all = first.clone();
+        for record in others {
+            let last_s = all.time_s.last().copied().unwrap_or(0.0);
+            let first_s = record.time_s.first().copied().unwrap_or(0.0);
+            let offset_s = last_s + GAP_INTERVALS * median_interval_s(&record.time_s) - first_s;
+            let start = all.len();
+            all.starts.push(start);
+            all.starts
+                .extend(record.starts.iter().map(|row| start + row));
+            all.time_s
+                .extend(record.time_s.iter().map(|t| t + offset_s));
+            all.inputs.extend_from_slice(&record.inputs);
+            all.outputs.extend_from_slice(&record.outputs);
+            let means = all.regressor_means.iter().zip(&record.regressor_means);
+            let shifts: Vec<f64> = means.map(|(mean, own)| own - mean).collect();
+            for ((values, own), shift) in all
+                .regressors
+                .iter_mut()
+                .zip(&record.regressors)
+                .zip(shifts)
+            {
+                values.extend(own.iter().map(|value| value + shift));
+            }
+        }
+        let rows = all.len().max(1) as f64;
+        for (values, mean) in all.regressors.iter_mut().zip(&mut all.regressor_means) {
+            let further = values.iter().sum::<f64>() / rows;
+            values.iter_mut().for_each(|value| *value -= further);
+            *mean += further;
+        }
+        all
     }
 
     /// Time of the search over time.

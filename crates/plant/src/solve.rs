@@ -276,7 +276,8 @@ impl<'a> Solver<'a> {
             });
             return (cost, vec![0.0; n]);
         }
-        if w == 0 {
+        // No noise leads from one record to the next.
+        if by_noises.iter().all(|by| *by == 0.0) {
             return (0.0, defect.as_slice().to_vec());
         }
         let Some(cholesky) = Cholesky::new(by_noises.tr_mul(&by_noises)) else {

@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::lines::of_parameters;
-use crate::pass::Keep;
 
 /// Share of the information of an effect that must be left when the nominal unknowns are projected out:
 /// below it, differences to them are those of the linearisation. It is the square of an angle of 1e-3.
@@ -36,7 +35,7 @@ impl FittedPlant {
             &Default::default(),
             &all,
         );
-        let gram = self.pass(&lines, Keep::Nothing)?.gram;
+        let gram = self.shared_gram(lines)?;
         let names: Vec<&str> = tables.parameters[..nominal]
             .iter()
             .map(|one| one.id)

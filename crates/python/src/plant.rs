@@ -167,6 +167,7 @@ impl HeldPlant {
             outputs: by_rows(&outputs),
             regressors,
             regressor_means: Vec::new(),
+            starts: Vec::new(),
             time_s,
         };
         Ok(record.prepared(self.plant.description(), &name)?)

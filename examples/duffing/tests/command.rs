@@ -10,7 +10,7 @@ use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
 fn the_command_of_the_package_gives_the_answer_of_the_library() {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let directory = tempfile::tempdir().unwrap();
-    let json = directory.path().join("d.json");
+    let [json, page] = ["d.json", "r.html"].map(|name| directory.path().join(name));
     let output = Command::new(env!("CARGO_BIN_EXE_gyrocal-example-duffing"))
         .current_dir(here)
         .args([
@@ -21,9 +21,15 @@ fn the_command_of_the_package_gives_the_answer_of_the_library() {
             "--json",
         ])
         .arg(&json)
+        .arg("--report")
+        .arg(&page)
         .output()
         .unwrap();
     assert!(output.status.success(), "{output:?}");
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.contains("Model lacks v_rate.x^3"));
+    // The command that made it, not that of the platform.
+    assert!(page.contains("gyrocal-example-duffing diagnose record.csv"));
     let written: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
 

@@ -69,12 +69,6 @@ fn causes(found: &DiagnosisRun<'_>) -> Option<String> {
     listed(&accepted.map(|cause| &*cause.effect).collect::<Vec<_>>())
 }
 
-/// All reported causes, in the extended model or not.
-fn named(found: &DiagnosisRun<'_>) -> Option<String> {
-    let causes = found.diagnosis.result.causes();
-    listed(&causes.map(|cause| &*cause.effect).collect::<Vec<_>>())
-}
-
 fn listed(ids: &[&str]) -> Option<String> {
     match ids {
         [] => None,

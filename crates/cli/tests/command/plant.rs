@@ -94,3 +94,79 @@ fn a_new_package_is_derived_diagnosed_and_extended() {
     folder.succeed(&["plant", "derive", script]);
     assert_eq!(diagnose("e.json"), 0);
 }
+
+#[test]
+fn several_records_have_one_answer_and_a_report() {
+    let folder = Folder::new();
+    let example = |name: &str| {
+        repository(&format!("examples/duffing/{name}"))
+            .display()
+            .to_string()
+    };
+    let [plant, record, later, columns] =
+        ["plant.json", "record.csv", "later.csv", "columns.toml"].map(example);
+    let common = ["plant", "diagnose", &plant, &record];
+    let with = |more: &[&str]| [&common[..], more, &["--columns", &columns]].concat();
+    folder.succeed(&with(&[
+        &later,
+        "--json",
+        "o.json",
+        "--report",
+        "r.html",
+        "--figures",
+        "f",
+    ]));
+    let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_eq!(answer["findings"][0]["effect"], "v_rate.x^3");
+    let records = answer["records"].as_array().unwrap();
+    // The simulator begins both with 0.2 m.
+    for one in records {
+        let initial = &one["initial"][0];
+        let [value, sigma] = ["value", "sigma"].map(|name| initial[name].as_f64().unwrap());
+        assert!((value - 0.2).abs() < 4.5 * sigma, "{initial}");
+    }
+    assert_eq!(records.len(), 2);
+    let inputs = answer["manifest"]["inputs"].as_array().unwrap();
+    assert_eq!(inputs.len(), 4, "two records, the map and the plant");
+
+    let page = folder.text("r.html");
+    let hash = inputs[1]["sha256"].as_str().unwrap();
+    for word in [
+        "Model lacks v_rate.x^3",
+        hash,
+        "Open-loop residual",
+        "later.csv alone",
+    ] {
+        assert!(page.contains(word), "{word}");
+    }
+    for name in [
+        "residuals",
+        "free-run",
+        "ranking",
+        "parameters",
+        "autocorrelation",
+    ] {
+        let picture = folder.text(&format!("f/{name}.svg"));
+        assert!(picture.starts_with("<svg"), "{name}");
+    }
+
+    // What several records found extends the script as what one did.
+    std::fs::copy(
+        repository("examples/duffing/plant.py"),
+        folder.path("plant.py"),
+    )
+    .unwrap();
+    folder.succeed(&["plant", "extend", "o.json"]);
+    assert!(
+        folder
+            .text("plant.py")
+            .contains("plant.extend(\"v_rate.x^3\"")
+    );
+
+    let twice = folder.fail(&with(&[&record]));
+    assert!(twice.contains("would count twice"), "{twice}");
+    let itself = folder.fail(&with(&["--validate", &record]));
+    assert!(itself.contains("is the record itself"), "{itself}");
+    let lost = folder.fail(&with(&["--report", &record]));
+    assert!(lost.contains("would overwrite"), "{lost}");
+}

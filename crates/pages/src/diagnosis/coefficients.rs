@@ -10,10 +10,10 @@ use gyrocal_report::page::{
     ValueWithSigma,
 };
 
-use super::open_loop::line;
 use super::summary::change;
 use super::{accepted, section as titled};
 use crate::error::PageError;
+use crate::panels::line;
 use crate::words::listed;
 
 /// Points of a curve, evenly over the record.

@@ -7,8 +7,8 @@ use gyrocal_report::page::{
 };
 use gyrocal_statistics::format;
 
-use super::open_loop::line;
 use super::section as titled;
+use crate::panels::line;
 use crate::words::{listed, micro_g};
 
 /// `None` without a cause.

@@ -4,7 +4,7 @@ pub(crate) mod coefficients;
 mod gain;
 mod limits;
 pub(crate) mod open_loop;
-mod ranking;
+pub(crate) mod ranking;
 mod residuals;
 mod summary;
 
@@ -16,6 +16,7 @@ use gyrocal_report::page::{Item, Part, Section};
 use crate::blocks;
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
+use crate::ranked::Ranked;
 use open_loop::Simulated;
 
 /// The page of a diagnosis with its fits.
@@ -32,7 +33,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
         effects: accepted(result),
     };
     let mut sections: Vec<Section> = open_loop::sections(&simulated)?.into();
-    sections.extend(ranking::section(result));
+    sections.extend(ranking::section(Ranked::of_result(result).as_ref()));
     let fits = (&diagnosis.nominal, diagnosis.extended.as_ref());
     let convergence = coefficients::convergence(&diagnosis.record, fits)?;
     sections.extend(coefficients::section(result, convergence));
@@ -51,7 +52,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
 pub fn of_result(result: &DiagnosisResult) -> Part {
     let mut sections = Vec::new();
     if result.verdict != Verdict::Setup {
-        sections.extend(ranking::section(result));
+        sections.extend(ranking::section(Ranked::of_result(result).as_ref()));
         sections.extend(coefficients::section(result, None));
         sections.push(limits::cannot_tell(result));
         sections.push(residuals::section(result, Vec::new()));

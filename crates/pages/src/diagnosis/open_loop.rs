@@ -3,11 +3,12 @@
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_diagnosis::OpenLoopSimulation;
 use gyrocal_record::{Bench, Record};
-use gyrocal_report::page::{Band, Chart, Item, Line, LineKind, Panel, Section, TimeAxis, Tint};
+use gyrocal_report::page::{Chart, Item, Panel, Section, TimeAxis};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
 use super::section;
 use crate::error::PageError;
+use crate::panels;
 use crate::words::{AXES, listed, micro_g};
 
 /// The fits of a record whose simulations are shown.
@@ -65,18 +66,9 @@ fn simulations(
     let before = columns(&nominal.simulated_g);
     let after = extended.map(|run| columns(&run.simulated_g));
     let panels = measured.into_iter().enumerate().map(|(axis, measured)| {
-        let mut lines = vec![
-            line("measured", Tint::Measured, measured),
-            line("nominal model", Tint::Nominal, before[axis].clone()),
-        ];
         let after = after.as_ref().map(|after| after[axis].clone());
-        lines.extend(after.map(|after| line("extended model", Tint::Extended, after)));
-        Panel {
-            name: format!("accelerometer {}", AXES[axis]),
-            abscissa: time.values.clone(),
-            lines,
-            ..Panel::default()
-        }
+        let name = format!("accelerometer {}", AXES[axis]);
+        panels::simulation(name, &time.values, measured, (before[axis].clone(), after))
     });
     Chart {
         title: "Specific force, measured and simulated".to_owned(),
@@ -103,14 +95,7 @@ fn residuals(
     let panels = (0..3).map(|axis| {
         let before = &nominal.residuals_g[axis];
         let after = extended.map(|run| &run.residuals_g[axis]);
-        let mut lines = vec![line("nominal model", Tint::Nominal, before.clone())];
-        let shown = after.map(|after| line("extended model", Tint::Extended, after.clone()));
-        lines.extend(shown);
-        let edge = |sign: f64| {
-            sigma_g
-                .iter()
-                .map(move |row| sign * NORMAL_97_5 * row[axis])
-        };
+        let half_width: Vec<f64> = sigma_g.iter().map(|row| NORMAL_97_5 * row[axis]).collect();
         let rms = |values: &[f64]| micro_g(rms_of_present(values).0);
         Panel {
             name: AXES[axis].to_owned(),
@@ -122,13 +107,11 @@ fn residuals(
                 None => format!("rms {}", rms(before)),
             },
             abscissa: time.values.clone(),
-            bands: vec![Band {
-                label: "95 % band of a right model: accelerometers and gyros".to_owned(),
-                tint: Tint::Expected,
-                lower: edge(-1.0).collect(),
-                upper: edge(1.0).collect(),
-            }],
-            lines,
+            bands: vec![panels::band(
+                "95 % band of a right model: accelerometers and gyros",
+                &half_width,
+            )],
+            lines: panels::of_models(before.clone(), after.cloned()),
             ..Panel::default()
         }
     });
@@ -160,15 +143,6 @@ fn residuals(
         columns: 3,
         height_px: 240,
         ..Chart::default()
-    }
-}
-
-pub(super) fn line(label: &str, tint: Tint, values: Vec<f64>) -> Line {
-    Line {
-        label: label.to_owned(),
-        tint,
-        kind: LineKind::Solid,
-        values,
     }
 }
 

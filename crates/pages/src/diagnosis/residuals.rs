@@ -4,12 +4,11 @@ use gyrocal_diagnosis::result::{ResidualTest, Residuals};
 use gyrocal_diagnosis::{
     ChannelCorrelation, ChannelSpectrum, Diagnosis, DiagnosisResult, ModelVersion,
 };
-use gyrocal_report::page::{
-    Band, Cell, Chart, Column, Item, Level, Line, LineKind, Mark, Panel, Section, Table, Tint,
-};
+use gyrocal_report::page::{Cell, Chart, Column, Item, Level, Mark, Panel, Section, Table, Tint};
 use gyrocal_statistics::format::{self, p_cell};
 
 use super::section as titled;
+use crate::panels::{self, line};
 use crate::words::AXES;
 
 /// Lags of the autocorrelation.
@@ -42,8 +41,8 @@ pub(super) fn charts(diagnosis: &Diagnosis<'_>) -> Vec<Chart> {
 
 fn look(model: ModelVersion) -> (&'static str, Tint) {
     match model {
-        ModelVersion::Nominal => ("nominal model", Tint::Nominal),
-        ModelVersion::Extended => ("extended model", Tint::Extended),
+        ModelVersion::Nominal => (panels::NOMINAL, Tint::Nominal),
+        ModelVersion::Extended => (panels::EXTENDED, Tint::Extended),
     }
 }
 
@@ -68,34 +67,16 @@ fn correlation(channels: Vec<ChannelCorrelation>) -> Chart {
     };
     let panels = (0..3).map(|axis| {
         let of_axis: Vec<_> = channels.iter().filter(|one| one.axis == axis).collect();
-        let lags = of_axis.first().map_or(0, |one| one.correlation.len());
         let half = of_axis.first().map_or(f64::NAN, |one| one.band);
         let lines = of_axis.iter().map(|channel| {
             let (label, tint) = look(channel.model);
-            Line {
-                label: label.to_owned(),
-                tint,
-                kind: LineKind::Solid,
-                values: channel.correlation.clone(),
-            }
+            line(label, tint, channel.correlation.clone())
         });
         let notes = of_axis
             .iter()
             .map(|channel| format!("{} {:+.3}", look(channel.model).0, channel.largest));
-        Panel {
-            name: AXES[axis].to_owned(),
-            note: format!("largest: {}", notes.collect::<Vec<_>>().join(", ")).replace('-', "−"),
-            abscissa: (1..=lags).map(|lag| lag as f64).collect(),
-            bands: vec![Band {
-                label: "95 % band of white innovations".to_owned(),
-                tint: Tint::Expected,
-                lower: vec![-half; lags],
-                upper: vec![half; lags],
-            }],
-            lines: lines.collect(),
-            no_gaps: true,
-            ..Panel::default()
-        }
+        let note = format!("largest: {}", notes.collect::<Vec<_>>().join(", "));
+        panels::correlation(AXES[axis].to_owned(), note, half, lines.collect())
     });
     Chart {
         title,
@@ -150,18 +131,9 @@ fn spectrum(spectra: Vec<ChannelSpectrum>, probability: f64) -> Chart {
         let frequency = of_axis.first().map(|one| &one.periodogram.frequency_hz);
         let lines = of_axis.iter().map(|one| {
             let (label, tint) = look(one.model);
-            Line {
-                label: label.to_owned(),
-                tint,
-                kind: LineKind::Solid,
-                // A logarithmic scale has no place for nothing.
-                values: one
-                    .periodogram
-                    .power
-                    .iter()
-                    .map(|power| power.max(1e-3))
-                    .collect(),
-            }
+            // A logarithmic scale has no place for nothing.
+            let power = one.periodogram.power.iter();
+            line(label, tint, power.map(|power| power.max(1e-3)).collect())
         });
         let level = of_axis.first().map(|one| Level {
             label: format!(

@@ -1,97 +1,18 @@
 //! Effects by test statistic, and the gain of the extended model.
 
-use gyrocal_diagnosis::{prose, result};
+use gyrocal_diagnosis::result;
+use gyrocal_pages::Ranked;
 use gyrocal_report::page::Tint;
 use gyrocal_report::{
-    ComparedEstimate, ComparedQuantity, Comparison, CrossValidation, Omitted, PredictionError,
-    RankedEffect, Ranking, RankingGroup, Role,
+    ComparedEstimate, ComparedQuantity, Comparison, CrossValidation, PredictionError, Ranking,
 };
 
-use super::{DiagnosisRun, causes, named, subtitle};
-
-/// Number of effects shown that are neither reported nor alternatives.
-const OTHERS_SHOWN: usize = 10;
+use super::{DiagnosisRun, causes, subtitle};
 
 /// All effects of the first search by their statistic; `None` if nothing could be searched.
 pub(super) fn ranking(found: &DiagnosisRun<'_>) -> Option<Ranking> {
-    let report = &found.diagnosis.result;
-    let threshold = report.threshold.filter(|threshold| *threshold > 0.0)?;
-    let largest = report.ranking.first()?;
-    let statistic = |effect: &str| {
-        let ranked = report.ranking.iter().find(|r| r.effect == effect);
-        ranked.map_or(f64::NAN, |ranked| ranked.statistic)
-    };
-    let mut groups = Vec::new();
-    let mut shown: Vec<&str> = Vec::new();
-    for finding in report.causes() {
-        let mut effects = vec![RankedEffect {
-            effect: finding.effect.clone(),
-            statistic: statistic(&finding.effect),
-            role: Role::Reported,
-            note: String::new(),
-        }];
-        let equal = finding.equivalents.iter().map(|equivalent| RankedEffect {
-            effect: equivalent.effect.clone(),
-            statistic: statistic(&equivalent.effect),
-            role: Role::Alternative,
-            note: "exact equivalent".to_owned(),
-        });
-        effects.extend(equal.filter(|effect| effect.statistic.is_finite()));
-        effects.extend(finding.alternatives.iter().map(|rival| RankedEffect {
-            effect: rival.effect.clone(),
-            statistic: statistic(&rival.effect),
-            role: Role::Alternative,
-            note: prose::likelihood(rival),
-        }));
-        let label = if effects.len() == 1 {
-            format!("{}, no alternatives", finding.effect)
-        } else {
-            format!("{} and its alternatives", finding.effect)
-        };
-        shown.push(&finding.effect);
-        shown.extend(finding.alternatives.iter().map(|r| r.effect.as_str()));
-        shown.extend(finding.equivalents.iter().map(|e| e.effect.as_str()));
-        groups.push(RankingGroup { label, effects });
-    }
-    let rest: Vec<_> = report
-        .ranking
-        .iter()
-        .filter(|ranked| !shown.contains(&ranked.effect.as_str()))
-        .collect();
-    let others = rest.iter().take(OTHERS_SHOWN).map(|ranked| RankedEffect {
-        effect: ranked.effect.clone(),
-        statistic: ranked.statistic.max(0.0),
-        role: Role::Other,
-        note: String::new(),
-    });
-    groups.push(RankingGroup {
-        label: "not reported".to_owned(),
-        effects: others.collect(),
-    });
-    let title = match named(found) {
-        Some(causes) => format!(
-            "{causes} detected among {} effects tested",
-            report.ranking.len()
-        ),
-        None => format!(
-            "None of {} effects exceeds the detection threshold; the largest statistic is that of {}",
-            report.ranking.len(),
-            largest.effect
-        ),
-    };
-    Some(Ranking {
-        title,
-        subtitle: format!("first search, nominal model; {}", subtitle(found)),
-        statistic: "score statistic (chi-square, penalised for search)".to_owned(),
-        threshold,
-        false_alarm_probability: report.false_alarm_shares.search,
-        tested: report.ranking.len(),
-        groups,
-        omitted: rest.get(OTHERS_SHOWN).map(|next| Omitted {
-            effects: rest.len() - OTHERS_SHOWN,
-            largest: next.statistic,
-        }),
-    })
+    let ranked = Ranked::of_result(&found.diagnosis.result)?;
+    Some(ranked.picture(&subtitle(found)))
 }
 
 /// Gain of the extended model in cross-validation, and its prediction of a later record.

@@ -1,0 +1,232 @@
+//! `gyrocal plant diagnose`, and `diagnose` of a package for one plant.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_pages::{of_plant, plant_pictures};
+use gyrocal_plant::answer::{Diagnosis, Estimate};
+use gyrocal_plant::{
+    ColumnMap, Diagnosed, LoadedPlant, NamedRecord, PlantError, SearchOptions, diagnose_records,
+};
+use gyrocal_record::{Manifest, Outputs, printable_path};
+use gyrocal_statistics::format;
+use miette::miette;
+use serde::Serialize;
+
+use crate::numbers::probability;
+use crate::outputs::{self, manifest, same_file};
+use crate::progress::Progress;
+use crate::tables::{right, table};
+use crate::{Answer, Failure, page, pictures};
+
+/// Find what the model of this plant lacks in a record, or in several.
+#[derive(Debug, Args)]
+pub(super) struct RecordArguments {
+    /// The record (CSV), with a header. Several records of one plant are diagnosed together, each with initial
+    /// states of its own, and each alone.
+    #[arg(value_name = "RECORD.csv", required = true)]
+    records: Vec<PathBuf>,
+    /// Columns of the records for time, inputs and outputs (TOML).
+    #[arg(long, value_name = "MAP.toml")]
+    columns: PathBuf,
+    /// A later record of the same plant, to measure the gain of what is found.
+    #[arg(long, value_name = "LATER.csv")]
+    validate: Option<PathBuf>,
+    /// Columns of the later record, if they differ.
+    #[arg(long, value_name = "MAP.toml", requires = "validate")]
+    validate_columns: Option<PathBuf>,
+    /// Write the result for programs (JSON).
+    #[arg(long, value_name = "OUT.json")]
+    json: Option<PathBuf>,
+    #[arg(long, value_name = "DIR", help = pictures::HELP)]
+    figures: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.html", help = page::HELP)]
+    report: Option<PathBuf>,
+    /// Family-wise false-alarm probability.
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
+    false_alarm: f64,
+}
+
+/// A diagnosis as it is written for programs.
+#[derive(Serialize)]
+struct Written<'a> {
+    manifest: &'a Manifest,
+    #[serde(flatten)]
+    answer: &'a Diagnosis,
+}
+
+/// Runs the command; `file` is that of the plant, if it is read from one.
+pub(super) fn run(
+    file: Option<&Path>,
+    arguments: &RecordArguments,
+    plant: impl FnOnce() -> Result<LoadedPlant, PlantError>,
+) -> Result<Answer, Failure> {
+    let inputs = checked_inputs(file, arguments)?;
+    let plant = plant()?;
+    let columns = ColumnMap::read(&arguments.columns)?;
+    let records = arguments.records.iter().map(|path| {
+        Ok(NamedRecord {
+            name: printable_path(path),
+            record: columns.record(plant.description(), path)?,
+        })
+    });
+    let records: Vec<NamedRecord> = records.collect::<Result<_, PlantError>>()?;
+    let later = match &arguments.validate {
+        Some(path) => {
+            let own = arguments.validate_columns.as_deref().map(ColumnMap::read);
+            let columns = own.transpose()?.unwrap_or(columns);
+            Some(columns.record(plant.description(), path)?)
+        }
+        None => None,
+    };
+    let options = SearchOptions {
+        false_alarm_probability: arguments.false_alarm,
+        ..SearchOptions::default()
+    };
+    let rows = records.iter().map(|one| one.record.len()).sum();
+    let progress = Progress::waiting("diagnosing", rows);
+    let found = diagnose_records(&plant, records, later, &options)?;
+    drop(progress);
+    let manifest = manifest("", options.seed, &inputs)?;
+    let answer = &found.together.answer;
+    let mut shown = Answer::of(screen(answer), details(answer));
+    let mut outputs = Outputs::new();
+    if let Some(folder) = &arguments.figures {
+        let of = &arguments.records[0];
+        let drawn = plant_pictures(&found.together, &name(arguments)).map_err(|reason| {
+            Failure::Work(miette!("{}: no pictures: {reason}", printable_path(of)))
+        })?;
+        let what = pictures::stage(of, &drawn, folder, &mut outputs)?;
+        shown.wrote(folder, &what);
+    }
+    if let Some(path) = &arguments.report {
+        let mut parts = vec![part(
+            &found.together,
+            &name(arguments),
+            arguments,
+            &manifest,
+        )?];
+        for (record, alone) in arguments.records.iter().zip(&found.alone) {
+            if let Ok(alone) = alone {
+                let name = format!("{} alone", file_name(record));
+                parts.push(part(alone, &name, arguments, &manifest)?);
+            }
+        }
+        page::stage(path, parts, &mut outputs)?;
+        shown.wrote(path, page::WHAT);
+    }
+    if let Some(path) = &arguments.json {
+        let written = Written {
+            manifest: &manifest,
+            answer,
+        };
+        outputs.stage_json(path, &written)?;
+        shown.wrote(path, "the result for programs");
+    }
+    outputs.commit()?;
+    Ok(shown)
+}
+
+fn part(
+    diagnosed: &Diagnosed,
+    name: &str,
+    arguments: &RecordArguments,
+    manifest: &Manifest,
+) -> Result<gyrocal_pages::Part, Failure> {
+    page::part(&arguments.records[0], of_plant(diagnosed, name, manifest))
+}
+
+/// Name of what is diagnosed, without folders.
+fn name(arguments: &RecordArguments) -> String {
+    let names: Vec<String> = arguments.records.iter().map(|one| file_name(one)).collect();
+    names.join(", ")
+}
+
+fn file_name(path: &Path) -> String {
+    printable_path(Path::new(path.file_name().unwrap_or(path.as_os_str())))
+}
+
+/// The files that are read. Arguments that contradict each other are refused before that.
+fn checked_inputs<'a>(
+    file: Option<&'a Path>,
+    arguments: &'a RecordArguments,
+) -> Result<Vec<&'a Path>, Failure> {
+    let records = arguments.records.iter().map(PathBuf::as_path);
+    let mut inputs: Vec<&Path> = records.chain([arguments.columns.as_path()]).collect();
+    inputs.extend(file);
+    inputs.extend(arguments.validate.as_deref());
+    inputs.extend(arguments.validate_columns.as_deref());
+    let (json, figures) = (arguments.json.as_deref(), arguments.figures.as_deref());
+    outputs::check(&inputs, json, figures)?;
+    page::check(
+        &inputs,
+        &[("--json", json)],
+        arguments.report.as_deref(),
+        figures,
+    )?;
+    if let Some(later) = &arguments.validate
+        && arguments.records.iter().any(|one| same_file(later, one))
+    {
+        return Err(Failure::Usage(format!(
+            "--validate {} is the record itself: a later one has had no part in the models",
+            printable_path(later)
+        )));
+    }
+    Ok(inputs)
+}
+
+fn screen(answer: &Diagnosis) -> Screen {
+    let (standing, verdict) = if answer.has_findings() {
+        (Standing::Bad, "MODEL LACKS SOMETHING")
+    } else {
+        (Standing::Good, "NOTHING FOUND")
+    };
+    let mut screen = Screen::new(standing, verdict, answer.verdict());
+    for (label, words) in answer.facts() {
+        screen.fact(label, words);
+    }
+    screen
+}
+
+fn details(answer: &Diagnosis) -> String {
+    let mut shown = String::new();
+    shown += &estimates("", &answer.parameters);
+    for one in &answer.records {
+        shown += &estimates(&one.name, &one.initial);
+    }
+    let mut noise = table(vec!["noise", "over the declared one", "95 %"]);
+    for one in &answer.noise {
+        let [low, high] = one.interval.map(|end| format::significant(end, 3));
+        noise.add_row(vec![
+            one.of.as_str().into(),
+            right(format::significant(one.ratio, 3)),
+            right(format!("{low} to {high}")),
+        ]);
+    }
+    shown += &format!("{noise}\n");
+    shown
+}
+
+fn estimates(title: &str, all: &[Estimate]) -> String {
+    let mut shown = table(vec![
+        title,
+        "unit",
+        "declared",
+        "nominal",
+        "with findings",
+        "sigma",
+    ]);
+    for one in all {
+        let number = |value: f64| right(format::significant(value, 5));
+        shown.add_row(vec![
+            one.name.as_str().into(),
+            one.unit.as_str().into(),
+            number(one.declared),
+            number(one.nominal),
+            number(one.value),
+            right(format::significant(one.sigma, 2)),
+        ]);
+    }
+    format!("{shown}\n\n")
+}

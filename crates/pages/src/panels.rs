@@ -1,0 +1,69 @@
+//! Panels that the pages of all models have: measured and simulated values over time, what the models leave
+//! of them, and its correlation over rows.
+
+use gyrocal_report::page::{Band, Line, LineKind, Panel, Tint};
+
+/// Names of the models in legends.
+pub(crate) const NOMINAL: &str = "nominal model";
+pub(crate) const EXTENDED: &str = "extended model";
+
+/// A line drawn through.
+pub(crate) fn line(label: &str, tint: Tint, values: Vec<f64>) -> Line {
+    Line {
+        label: label.to_owned(),
+        tint,
+        kind: LineKind::Solid,
+        values,
+    }
+}
+
+/// Lines of the nominal and of the extended model.
+pub(crate) fn of_models(nominal: Vec<f64>, extended: Option<Vec<f64>>) -> Vec<Line> {
+    let mut lines = vec![line(NOMINAL, Tint::Nominal, nominal)];
+    lines.extend(extended.map(|values| line(EXTENDED, Tint::Extended, values)));
+    lines
+}
+
+/// Measured values with simulations of them.
+pub(crate) fn simulation(
+    name: String,
+    abscissa: &[f64],
+    measured: Vec<f64>,
+    (nominal, extended): (Vec<f64>, Option<Vec<f64>>),
+) -> Panel {
+    let mut lines = vec![line("measured", Tint::Measured, measured)];
+    lines.extend(of_models(nominal, extended));
+    Panel {
+        name,
+        abscissa: abscissa.to_vec(),
+        lines,
+        ..Panel::default()
+    }
+}
+
+/// A symmetric band of what is expected of a right model, from its half width.
+pub(crate) fn band(label: &str, half_width: &[f64]) -> Band {
+    Band {
+        label: label.to_owned(),
+        tint: Tint::Expected,
+        lower: half_width.iter().map(|half| -half).collect(),
+        upper: half_width.to_vec(),
+    }
+}
+
+/// Correlations at the lags from one on.
+pub(crate) fn correlation(name: String, note: String, half_width: f64, lines: Vec<Line>) -> Panel {
+    let lags = lines.first().map_or(0, |line| line.values.len());
+    Panel {
+        name,
+        note: note.replace('-', "−"),
+        abscissa: (1..=lags).map(|lag| lag as f64).collect(),
+        bands: vec![band(
+            "95 % band of white innovations",
+            &vec![half_width; lags],
+        )],
+        lines,
+        no_gaps: true,
+        ..Panel::default()
+    }
+}

@@ -1,0 +1,62 @@
+//! What a record of a plant cannot tell.
+
+use gyrocal_plant::answer::Diagnosis;
+use gyrocal_report::page::{Cell, Column, Item, List, Section, Table};
+
+use crate::diagnosis::section;
+use crate::words::capitalised;
+
+pub(super) fn cannot_tell(answer: &Diagnosis) -> Section {
+    let mut items = Vec::new();
+    let list = |title: &str, entries: Vec<String>| {
+        (!entries.is_empty()).then(|| {
+            Item::List(List {
+                title: title.to_owned(),
+                entries,
+            })
+        })
+    };
+    let directions = |is_gauge: bool| -> Vec<String> {
+        let all = answer.undetermined.iter();
+        let own = all.filter(|one| one.is_gauge == is_gauge);
+        own.map(|one| format!("{}.", capitalised(&one.sentence())))
+            .collect()
+    };
+    items.extend(list(
+        "Gauges: no record of this plant shows them",
+        directions(true),
+    ));
+    items.extend(list("Not excited in this record", directions(false)));
+    let still = answer.still_inputs.iter();
+    items.extend(list(
+        "Inputs that never move",
+        still
+            .map(|input| format!("{input}: nothing that depends on it can be told from a constant"))
+            .collect(),
+    ));
+    if !answer.left_out.is_empty() {
+        let column = |head: &str| Column {
+            head: head.to_owned(),
+            is_number: false,
+        };
+        let rows = answer.left_out.iter();
+        items.push(Item::Table(Table {
+            title: "Effects that were not tested".to_owned(),
+            columns: vec![column("effect"), column("reason")],
+            rows: rows
+                .map(|one| vec![Cell::from(one.effect.clone()), Cell::from(one.why.clone())])
+                .collect(),
+        }));
+    }
+    if items.is_empty() {
+        let all = "The record determines all parameters and initial states, and every effect of the catalogue \
+                   was tested.";
+        items.push(Item::Text(all.to_owned()));
+    }
+    section(
+        "cannot-tell",
+        "What cannot be told apart",
+        "Directions of parameters and initial states without information, and effects that these take up.",
+        items,
+    )
+}

@@ -1,0 +1,79 @@
+//! The page of a diagnosis of any plant, and its pictures.
+
+mod limits;
+mod over_time;
+mod pictures;
+mod summary;
+mod tables;
+
+use gyrocal_diagnosis::prose::counted;
+use gyrocal_plant::Diagnosed;
+use gyrocal_plant::answer::Diagnosis;
+use gyrocal_record::Manifest;
+use gyrocal_report::page::{Item, List, Part};
+use gyrocal_statistics::format;
+
+use crate::diagnosis::{ranking, section};
+use crate::error::PageError;
+use crate::origin::origin;
+use crate::ranked::Ranked;
+
+pub use pictures::plant_pictures;
+
+/// The page of a diagnosis of a plant; `name` is that of its record.
+///
+/// # Errors
+/// [`PageError::Plant`] if a pass over the record fails.
+pub fn of_plant(diagnosed: &Diagnosed, name: &str, manifest: &Manifest) -> Result<Part, PageError> {
+    let answer = &diagnosed.answer;
+    let mut sections: Vec<_> = over_time::sections(diagnosed).into();
+    sections.extend(tables::sets(answer));
+    sections.extend(ranking::section(Ranked::of_plant(answer).as_ref()));
+    sections.push(tables::parameters(answer));
+    sections.extend(tables::records(answer));
+    sections.extend(tables::gain(diagnosed));
+    sections.push(over_time::innovations(diagnosed)?);
+    sections.push(limits::cannot_tell(answer));
+    sections.push(section(
+        "words",
+        "In words",
+        "The answer as the command prints it.",
+        vec![Item::List(List {
+            title: String::new(),
+            entries: answer.sentences(),
+        })],
+    ));
+    Ok(Part {
+        name: name.to_owned(),
+        size: size(answer),
+        summary: summary::summary(answer),
+        sections,
+        origin: origin(manifest),
+    })
+}
+
+/// Rows and duration.
+fn size(answer: &Diagnosis) -> String {
+    let of_records = match answer.records.len() {
+        0 => String::new(),
+        count => format!(" of {}", counted(count, "record")),
+    };
+    format!(
+        "{}{of_records} over {} s",
+        counted(answer.rows, "row"),
+        format::short(answer.duration_s, 4)
+    )
+}
+
+/// The name of each record of an answer; empty of one that is alone.
+fn record_names(answer: &Diagnosis) -> Vec<&str> {
+    let names: Vec<&str> = answer.records.iter().map(|one| one.name.as_str()).collect();
+    if names.is_empty() { vec![""] } else { names }
+}
+
+/// A number with its unit; `1` is no unit.
+fn with_unit(value: f64, unit: &str) -> String {
+    let unit = if unit == "1" { "" } else { unit };
+    let text = format!("{} {unit}", format::short(value, 3));
+    text.trim_end().replace('-', "−")
+}

@@ -1,0 +1,248 @@
+//! Outputs over time, and tests of the innovations.
+
+use gyrocal_plant::answer::Diagnosis;
+use gyrocal_plant::{Diagnosed, OutputCorrelation, OutputSeries, RecordSeries};
+use gyrocal_report::page::{Cell, Chart, Column, Item, Panel, Section, Table, TimeAxis};
+use gyrocal_statistics::format::{self, p_cell};
+use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
+
+use super::{record_names, with_unit};
+use crate::diagnosis::section;
+use crate::error::PageError;
+use crate::panels;
+
+/// Lags of the correlation of the innovations.
+const LAGS: usize = 40;
+
+/// Panels in a row, at most.
+const COLUMNS: usize = 3;
+
+/// The two sections over time: simulation against measurement, and their difference.
+pub(super) fn sections(diagnosed: &Diagnosed) -> [Section; 2] {
+    let answer = &diagnosed.answer;
+    let names = record_names(answer);
+    let series = diagnosed.series();
+    let simulations = names.iter().zip(&series);
+    let simulations = simulations.map(|(name, one)| Item::Chart(simulation(name, one)));
+    let whole = diagnosed.is_simulated_whole();
+    let residuals = names.iter().zip(&series).map(|(name, one)| {
+        let title = of_record(name, &errors(answer));
+        Item::Chart(residual(title, one, whole))
+    });
+    let begins = if whole {
+        "The plant simulated from the first row of each record on, with its inputs and without updates, and \
+         what its sensors measured."
+            .to_owned()
+    } else {
+        format!(
+            "The plant simulated over {} s at a time, as its rates have noise, and what its sensors measured.",
+            format::short(answer.horizon_s, 4)
+        )
+    };
+    let residual_lead = if whole {
+        "Measured less simulated. A right model stays within the band, which holds the noise of the sensor."
+    } else {
+        "Measured less simulated. The band holds the noise of the sensor; noise of the rates comes on top of it."
+    };
+    [
+        section(
+            "simulation",
+            "Simulation against measurement",
+            &begins,
+            simulations.collect(),
+        ),
+        section(
+            "residual",
+            "Open-loop residual",
+            residual_lead,
+            residuals.collect(),
+        ),
+    ]
+}
+
+/// Errors of all outputs in a title.
+fn errors(answer: &Diagnosis) -> String {
+    let of = |error: &gyrocal_plant::answer::OutputError| {
+        let nominal = with_unit(error.nominal, &error.unit);
+        match answer.has_findings() {
+            true => format!(
+                "{}: {nominal} rms for the nominal model, {} with what was found",
+                error.output,
+                with_unit(error.extended, &error.unit)
+            ),
+            false => format!("{}: {nominal} rms", error.output),
+        }
+    };
+    let all: Vec<String> = answer.errors.iter().map(of).collect();
+    all.join("; ")
+}
+
+/// A title with the name of the record, if there are several.
+fn of_record(name: &str, title: &str) -> String {
+    match name {
+        "" => title.to_owned(),
+        name => name.to_owned(),
+    }
+}
+
+fn simulation(name: &str, series: &RecordSeries) -> Chart {
+    let time = TimeAxis::of(&series.time_s);
+    let panel = |one: &OutputSeries| Panel {
+        unit: Some(one.unit.clone()),
+        ..panels::simulation(
+            one.output.clone(),
+            &time.values,
+            one.measured.clone(),
+            (one.nominal.clone(), one.extended.clone()),
+        )
+    };
+    Chart {
+        caption: "Where lines coincide at this scale, drag over a part to see them apart. Values below the \
+                  pointer stand above each panel."
+            .to_owned(),
+        quantity: "output".to_owned(),
+        ..chart(
+            of_record(name, "Outputs, measured and simulated"),
+            &time,
+            series.outputs.iter().map(panel).collect(),
+        )
+    }
+}
+
+/// Measured less simulated, with the band of the sensor's noise.
+pub(super) fn residual(title: String, series: &RecordSeries, whole: bool) -> Chart {
+    let time = TimeAxis::of(&series.time_s);
+    let label = if whole {
+        "95 % band of a right model"
+    } else {
+        "95 % band of the sensor's noise"
+    };
+    let panel = |one: &OutputSeries| {
+        let (before, after) = (one.nominal_residuals(), one.extended_residuals());
+        let rms = |values: &[f64]| with_unit(rms_of_present(values).0, &one.unit);
+        Panel {
+            name: one.output.clone(),
+            note: match &after {
+                Some(after) => format!("rms {} → {}", rms(&before), rms(after)),
+                None => format!("rms {}", rms(&before)),
+            },
+            unit: Some(one.unit.clone()),
+            abscissa: time.values.clone(),
+            bands: vec![panels::band(
+                label,
+                &vec![NORMAL_97_5 * one.sigma; time.values.len()],
+            )],
+            lines: panels::of_models(before, after),
+            ..Panel::default()
+        }
+    };
+    Chart {
+        caption: "The band has the estimated noise of the sensor, not the declared one.".to_owned(),
+        quantity: "residual".to_owned(),
+        ..chart(title, &time, series.outputs.iter().map(panel).collect())
+    }
+}
+
+fn chart(title: String, time: &TimeAxis, panels: Vec<Panel>) -> Chart {
+    Chart {
+        title,
+        abscissa: "time from the first row".to_owned(),
+        abscissa_unit: time.unit.to_owned(),
+        columns: panels.len().clamp(1, COLUMNS),
+        panels,
+        height_px: 240,
+        ..Chart::default()
+    }
+}
+
+/// Tests of the innovations.
+pub(super) fn innovations(diagnosed: &Diagnosed) -> Result<Section, PageError> {
+    let found = diagnosed.correlations(LAGS)?;
+    let found: Vec<OutputCorrelation> = found
+        .into_iter()
+        .filter(|one| !one.nominal.is_empty())
+        .collect();
+    let mut items = vec![Item::Table(tests(&diagnosed.answer))];
+    if !found.is_empty() {
+        items.push(Item::Chart(correlations(&found)));
+    }
+    Ok(section(
+        "residuals",
+        "Innovations",
+        "One-step innovations of a right model are white: no correlation over rows.",
+        items,
+    ))
+}
+
+fn correlations(found: &[OutputCorrelation]) -> Chart {
+    let count = |of: &dyn Fn(&OutputCorrelation) -> Option<&Vec<f64>>| -> usize {
+        let outside = |one: &OutputCorrelation| {
+            let values = of(one).into_iter().flatten();
+            values.filter(|value| value.abs() > one.band).count()
+        };
+        found.iter().map(outside).sum()
+    };
+    let total: usize = found.iter().map(|one| one.nominal.len()).sum();
+    let nominal = count(&|one| Some(&one.nominal));
+    let title = if found.iter().any(|one| one.extended.is_some()) {
+        format!(
+            "{nominal} of {total} autocorrelations outside the 95 % band for the nominal model, {} for the \
+             extended one",
+            count(&|one| one.extended.as_ref())
+        )
+    } else {
+        format!("{nominal} of {total} autocorrelations outside the 95 % band")
+    };
+    let panels = found.iter().map(|one| {
+        let lines = panels::of_models(one.nominal.clone(), one.extended.clone());
+        let note = format!("{} innovations", one.values);
+        panels::correlation(one.output.clone(), note, one.band, lines)
+    });
+    Chart {
+        title,
+        caption: format!(
+            "One in twenty is outside by chance: {} of {total}.",
+            total / 20
+        ),
+        abscissa: "lag".to_owned(),
+        abscissa_unit: "rows".to_owned(),
+        quantity: "correlation".to_owned(),
+        same_scale: true,
+        columns: found.len().clamp(1, COLUMNS),
+        panels: panels.collect(),
+        height_px: 190,
+        ..Chart::default()
+    }
+}
+
+/// Whiteness of what is left, and noise.
+fn tests(answer: &Diagnosis) -> Table {
+    let column = |head: &str, is_number| Column {
+        head: head.to_owned(),
+        is_number,
+    };
+    let rows = answer.noise.iter().map(|noise| {
+        let [low, high] = noise.interval.map(|end| format::short(end, 3));
+        let mut left = answer.remainder.iter();
+        let left = left.find(|one| one.output == noise.of);
+        let cells = [
+            noise.of.clone(),
+            format::short(noise.ratio, 3),
+            format!("{low} to {high}"),
+            left.map_or_else(String::new, |left| p_cell(left.p_value)),
+        ];
+        cells.map(Cell::from).to_vec()
+    });
+    Table {
+        title:
+            "Noise, and correlation over rows that the model with all findings leaves (Ljung-Box)"
+                .to_owned(),
+        columns: vec![
+            column("noise of", false),
+            column("over the declared one", true),
+            column("95 % interval", true),
+            column("p of white innovations", true),
+        ],
+        rows: rows.collect(),
+    }
+}
