@@ -4,7 +4,6 @@ use std::fs;
 use std::path::Path;
 
 use gyrocal_record::{Outputs, printable_path};
-use gyrocal_report::Picture;
 use miette::miette;
 #[cfg(feature = "png")]
 use miette::{IntoDiagnostic as _, WrapErr as _};
@@ -29,8 +28,7 @@ const FORMS: &str = if cfg!(feature = "png") {
 #[cfg(feature = "png")]
 const WIDTH_PX: u32 = 1200;
 
-/// A picture with the name of its files.
-pub(crate) type Named = (&'static str, Box<dyn Picture>);
+pub(crate) use gyrocal_pages::NamedPicture as Named;
 
 /// Whether a file has the name of a picture.
 pub(crate) fn is_one(path: &Path) -> bool {

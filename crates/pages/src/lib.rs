@@ -45,7 +45,7 @@ pub use error::PageError;
 pub use fleet::of_fleet;
 pub use gyrocal_report::page::{Page, Part};
 pub use plan::of_plan;
-pub use plant::{of_plant, plant_pictures};
+pub use plant::{NamedPicture, of_plant, plant_pictures};
 pub use ranked::Ranked;
 pub use tumble::of_tumble;
 pub use uncertainty::of_budget;

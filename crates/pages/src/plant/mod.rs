@@ -18,7 +18,7 @@ use crate::error::PageError;
 use crate::origin::origin;
 use crate::ranked::Ranked;
 
-pub use pictures::plant_pictures;
+pub use pictures::{NamedPicture, plant_pictures};
 
 /// The page of a diagnosis of a plant; `name` is that of its record.
 ///

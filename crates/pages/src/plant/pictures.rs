@@ -19,19 +19,19 @@ const LAGS: usize = 40;
 /// Share of white noise that stays inside the band of a correlation.
 const CONFIDENCE: f64 = 0.95;
 
+/// A picture with the name of its files.
+pub type NamedPicture = (&'static str, Box<dyn Picture>);
+
 /// Pictures of a diagnosis of a plant, with the names of their files. The clock of several records goes on
 /// from one to the next.
 ///
 /// # Errors
 /// [`PageError::Plant`] if a pass over the record fails.
-pub fn plant_pictures(
-    diagnosed: &Diagnosed,
-    name: &str,
-) -> Result<Vec<(&'static str, Box<dyn Picture>)>, PageError> {
+pub fn plant_pictures(diagnosed: &Diagnosed, name: &str) -> Result<Vec<NamedPicture>, PageError> {
     let answer = &diagnosed.answer;
     let subtitle = format!("{name}; {}", verdict(answer));
     let series = diagnosed.joined_series();
-    let mut pictures: Vec<(&'static str, Box<dyn Picture>)> = vec![
+    let mut pictures: Vec<NamedPicture> = vec![
         (
             "residuals",
             Box::new(residuals(answer, &series, &subtitle, "residual")),
