@@ -105,17 +105,22 @@ fn several_records_have_one_answer_and_a_report() {
     };
     let [plant, record, later, columns] =
         ["plant.json", "record.csv", "later.csv", "columns.toml"].map(example);
-    let common = ["plant", "diagnose", &plant, &record];
-    let with = |more: &[&str]| [&common[..], more, &["--columns", &columns]].concat();
-    folder.succeed(&with(&[
-        &later,
-        "--json",
-        "o.json",
-        "--report",
-        "r.html",
-        "--figures",
-        "f",
-    ]));
+    let common = ["plant", "diagnose", &plant, &record, "--columns", &columns];
+    fn with<'a>(common: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+        [common, more].concat()
+    }
+    folder.succeed(&with(
+        &common,
+        &[
+            &later,
+            "--json",
+            "o.json",
+            "--report",
+            "r.html",
+            "--figures",
+            "f",
+        ],
+    ));
     let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(answer["findings"][0]["effect"], "v_rate.x^3");
     let records = answer["records"].as_array().unwrap();
@@ -163,10 +168,10 @@ fn several_records_have_one_answer_and_a_report() {
             .contains("plant.extend(\"v_rate.x^3\"")
     );
 
-    let twice = folder.fail(&with(&[&record]));
+    let twice = folder.fail(&with(&common, &[&record]));
     assert!(twice.contains("would count twice"), "{twice}");
-    let itself = folder.fail(&with(&["--validate", &record]));
+    let itself = folder.fail(&with(&common, &["--validate", &record]));
     assert!(itself.contains("is the record itself"), "{itself}");
-    let lost = folder.fail(&with(&["--report", &record]));
+    let lost = folder.fail(&with(&common, &["--report", &record]));
     assert!(lost.contains("would overwrite"), "{lost}");
 }
