@@ -170,8 +170,14 @@ fn several_records_have_one_answer_and_a_report() {
 
     let twice = folder.fail(&with(&common, &[&record]));
     assert!(twice.contains("would count twice"), "{twice}");
-    let itself = folder.fail(&with(&common, &["--validate", &record]));
-    assert!(itself.contains("is the record itself"), "{itself}");
-    let lost = folder.fail(&with(&common, &["--report", &record]));
-    assert!(lost.contains("would overwrite"), "{lost}");
+    for (more, words) in [
+        (["--validate", &record], "is the record itself"),
+        (["--report", &record], "would overwrite"),
+    ] {
+        let refused = folder.run(&with(&common, &more));
+        let errors = String::from_utf8(refused.stderr).unwrap();
+        // A contradictory command line.
+        assert_eq!(refused.status.code(), Some(2), "{errors}");
+        assert!(errors.contains(words), "{errors}");
+    }
 }
