@@ -23,6 +23,7 @@ use crate::settings::filter_settings;
 use crate::single_run::run_problem;
 use crate::solve::{MAX_ITERATIONS, Solution};
 use crate::uncertainty::Uncertainty;
+use crate::variances::{UncertaintySource, Variances};
 
 /// The runs to be calibrated together, and how.
 struct Task<'a, 'b, D> {
@@ -57,6 +58,53 @@ where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
+    let found = calibrate_with(model, runs, gyro_axes, options, progress, |_, _, _| Ok(()));
+    found.map(|(calibration, ())| calibration)
+}
+
+/// The same with the parts of the variances.
+pub(crate) fn calibrate_with_variances<D, I>(
+    model: &D,
+    runs: &[Run<'_>],
+    options: &Options,
+) -> Result<(Calibration, Variances), CalibrationError>
+where
+    D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
+    I: Conditions,
+{
+    let parts = |solved: &Solved<'_, D, I>, layout: &Layout, uncertainty: &Uncertainty| {
+        let source = |unknown| source_of(layout, unknown);
+        let solution = &solved.solution;
+        solved.problem.variances(solution, uncertainty, source)
+    };
+    calibrate_with(model, runs, None, options, &mut |_| (), parts)
+}
+
+/// Source of the prior of an unknown.
+fn source_of(layout: &Layout, unknown: usize) -> UncertaintySource {
+    if unknown < PARAMETERS {
+        return UncertaintySource::Prior(unknown);
+    }
+    let of_site = layout.quantity(unknown).map(UncertaintySource::Site);
+    let of_turn_on = || layout.turn_on_axis(unknown).map(UncertaintySource::TurnOn);
+    of_site
+        .or_else(of_turn_on)
+        .unwrap_or(UncertaintySource::Effects)
+}
+
+/// Calibrates, and looks at the solution.
+fn calibrate_with<D, I, R>(
+    model: &D,
+    runs: &[Run<'_>],
+    gyro_axes: Option<&[GyroAxes]>,
+    options: &Options,
+    progress: &mut dyn FnMut(usize),
+    look: impl FnOnce(&Solved<'_, D, I>, &Layout, &Uncertainty) -> Result<R, CalibrationError>,
+) -> Result<(Calibration, R), CalibrationError>
+where
+    D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
+    I: Conditions,
+{
     let benches: Vec<_> = runs.iter().map(|run| run.bench).collect();
     let layout = Layout::new(&benches);
     let task = &Task {
@@ -73,12 +121,13 @@ where
     let (problem, solution) = (&solved.problem, &solved.solution);
     let uncertainty = Uncertainty::new(&problem.unknowns, solution)
         .ok_or(CalibrationError::NotPositiveDefinite)?;
+    let seen = look(&solved, &layout, &uncertainty)?;
     let runs = run_results(&solved, &layout, &uncertainty, options)?;
     let last = runs
         .last()
         .map_or([[0.0; 3]; 3], |run| run.last_platform_c_enu);
     let prior_sigma: [f64; PARAMETERS] = core::array::from_fn(|i| problem.unknowns[i].sigma);
-    Ok(Calibration {
+    let calibration = Calibration {
         drift: Drift::from_array(core::array::from_fn(|i| problem.values[i])),
         covariance: core::array::from_fn(|i| core::array::from_fn(|j| uncertainty.total[(i, j)])),
         prior_sigma: Drift::from_array(prior_sigma),
@@ -95,7 +144,8 @@ where
                 .into_owned(),
             &prior_sigma,
         ),
-    })
+    };
+    Ok((calibration, seen))
 }
 
 /// Solves the joint problem.

@@ -1,27 +1,27 @@
 //! Uncertainty budget of a calibration, as the GUM asks (JCGM 100:2008): contributions by their sources,
 //! combined in the sum of their squares, with effective degrees of freedom and a coverage factor.
 //!
-//! The covariance (7) of the [crate documentation](crate) is the sum of what the noise leaves and of what
-//! each considered quantity of the site adds. The part of the declared attitude at the first row is the
-//! difference to the covariance with that attitude exact. Innovations beyond the declared noise are a
-//! remainder that no source explains.
+//! A contribution is the sensitivity of the estimate to a quantity times the standard uncertainty of the
+//! quantity, as equation (8) of the module on variances has them. Innovations beyond the declared noise are
+//! a remainder that no source explains. Errors of the site make innovations larger as well: what its
+//! declared uncertainties explain is no part of the remainder.
 
-use gyrocal::trajectory::angles_rad;
-use gyrocal_record::Bench;
+use gyrocal::{Anchored, Surveyed};
 use gyrocal_statistics::student_probability;
 
-use crate::calibrate::calibrate_runs;
+use crate::batch::calibrate_with_variances;
+use crate::check::check_record;
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
-use crate::layout::SiteQuantity;
+use crate::fit::FitStatistics;
 use crate::options::Options;
-use crate::result::{Calibration, CoefficientEstimate};
+use crate::result::Calibration;
 use crate::run::Run;
-
-/// Sigma that stands for an exact angle, as a share of the declared one.
-const EXACT: f64 = 1e-3;
+use crate::variances::{UncertaintySource, Variances};
 
 /// Degrees of freedom of a standard uncertainty that is known to about a half of itself: equation G.3 of
-/// the GUM, 1/2 (Δu/u)⁻².
+/// the GUM, 1/2 (Δu/u)⁻². Their coverage factor is 4.3: so far off a mean over models is one whose weight
+/// is 5 %, √((1 − w)/w) of their scatter.
 const DOUBTFUL_DEGREES: f64 = 2.0;
 
 /// Probability of the expanded uncertainty's interval.
@@ -32,7 +32,8 @@ const COVERAGE: f64 = 0.95;
 pub struct UncertaintyBudget {
     /// One for each coefficient, in the order of [`Calibration::coefficients`].
     pub coefficients: Vec<CoefficientBudget>,
-    /// Mean normalised innovation squared of a value; 1 is expected.
+    /// Mean normalised innovation squared of a value, the site adjusted within its declared uncertainties; 1
+    /// is expected.
     pub nis_of_value: f64,
     /// Number of records, each a turn-on.
     pub records: usize,
@@ -49,7 +50,7 @@ pub struct CoefficientBudget {
     pub meaning: &'static str,
     /// The estimate, in `unit`.
     pub estimate: f64,
-    /// Unit of the estimate and of the uncertainties.
+    /// Unit of the estimate and of the contributions.
     pub unit: &'static str,
     /// Contributions, those of zero included.
     pub contributions: Vec<Contribution>,
@@ -67,6 +68,26 @@ impl CoefficientBudget {
     pub fn expanded(&self) -> f64 {
         self.coverage_factor * self.combined
     }
+
+    /// Contribution of all quantities that a source holds of, in the unit of the coefficient.
+    #[must_use]
+    pub fn part(&self, holds: impl Fn(UncertaintySource) -> bool) -> f64 {
+        let lines = self.contributions.iter().filter(|line| holds(line.source));
+        lines.map(|line| line.standard.powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Combines the contributions anew.
+    fn combine(&mut self) {
+        let lines = &self.contributions;
+        let squares = lines.iter().map(|line| line.standard.powi(2));
+        self.combined = squares.sum::<f64>().sqrt();
+        let limits = lines.iter().map(|line| {
+            let share = line.standard / self.combined;
+            share.powi(4) / line.degrees_of_freedom
+        });
+        self.degrees_of_freedom = limits.filter(|it| it.is_finite()).sum::<f64>().recip();
+        self.coverage_factor = coverage_factor(self.degrees_of_freedom);
+    }
 }
 
 /// One line of a budget.
@@ -74,188 +95,172 @@ impl CoefficientBudget {
 pub struct Contribution {
     /// Its source.
     pub source: UncertaintySource,
-    /// Its standard uncertainty of the coefficient.
+    /// Standard uncertainty of the quantity, in `quantity_unit`.
+    pub quantity_standard: f64,
+    /// Unit of the quantity.
+    pub quantity_unit: &'static str,
+    /// Derivative of the coefficient by the quantity; of several quantities of one source the root of the
+    /// sum of squares. 1 of a source that is known by its contribution.
+    pub sensitivity: f64,
+    /// Contribution to the standard uncertainty of the coefficient, in its unit.
     pub standard: f64,
     /// Degrees of freedom of that uncertainty; infinite of one that counts as exact.
     pub degrees_of_freedom: f64,
 }
 
-/// Source of uncertainty.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum UncertaintySource {
-    /// Noise of accelerometers and gyros, with the prior of the coefficients.
-    Noise,
-    /// The declared attitude at the first row.
-    Attitude,
-    /// A considered quantity of the site.
-    Site(SiteQuantity),
-    /// Choice of the model: the shift by effects that may be in it or not, as a rectangular distribution.
-    Model,
-    /// Innovations larger than the declared noise makes them.
-    Remainder,
+/// A coefficient as a fit estimates it.
+pub(crate) struct Estimate {
+    pub(crate) id: &'static str,
+    pub(crate) unit: &'static str,
+    pub(crate) meaning: &'static str,
+    pub(crate) value: f64,
+    /// Degrees of freedom of the noise that its uncertainty rests on.
+    pub(crate) noise_degrees: f64,
 }
 
-impl UncertaintySource {
-    /// The source in words.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Noise => "noise of the sensors",
-            Self::Attitude => "attitude at the first row",
-            Self::Site(SiteQuantity::Gravity) => "gravity",
-            Self::Site(SiteQuantity::Latitude) => "latitude",
-            Self::Site(SiteQuantity::EarthRate) => "Earth rate",
-            Self::Model => "choice of the model",
-            Self::Remainder => "unexplained remainder",
+/// A model that a record leaves open, with its estimates of the coefficients.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelEstimate {
+    /// Its share of the likelihood of all models.
+    pub weight: f64,
+    /// Estimates of the coefficients with their standard deviations.
+    pub coefficients: Vec<[f64; 2]>,
+}
+
+impl UncertaintyBudget {
+    pub(crate) fn new(
+        estimates: [Estimate; PARAMETERS],
+        variances: &Variances,
+        fit: &FitStatistics,
+        records: usize,
+    ) -> Self {
+        let squares = fit.nis_sum() - variances.squares_by_considered;
+        let nis_of_value = squares / fit.values() as f64;
+        let [_, high] = fit.nis_band();
+        let beyond = match squares > high * fit.rows() as f64 {
+            true => (nis_of_value - 1.0).max(0.0),
+            false => 0.0,
+        };
+        let budget = |(index, of): (usize, Estimate)| {
+            let noise = variances.noise[index].sqrt();
+            let known = |source: UncertaintySource, standard, degrees_of_freedom| Contribution {
+                source,
+                quantity_standard: standard,
+                quantity_unit: source.unit(of.unit),
+                sensitivity: 1.0,
+                standard,
+                degrees_of_freedom,
+            };
+            let mut contributions = vec![known(UncertaintySource::Noise, noise, of.noise_degrees)];
+            contributions.extend(variances.inputs.iter().map(|input| Contribution {
+                source: input.source,
+                quantity_standard: input.standard,
+                quantity_unit: input.source.unit(of.unit),
+                sensitivity: input.sensitivity[index],
+                standard: (input.sensitivity[index] * input.standard).abs(),
+                degrees_of_freedom: f64::INFINITY,
+            }));
+            contributions.push(known(UncertaintySource::Model, 0.0, DOUBTFUL_DEGREES));
+            contributions.push(known(
+                UncertaintySource::Remainder,
+                beyond.sqrt() * noise,
+                DOUBTFUL_DEGREES,
+            ));
+            let mut one = CoefficientBudget {
+                id: of.id,
+                meaning: of.meaning,
+                estimate: of.value,
+                unit: of.unit,
+                contributions,
+                combined: 0.0,
+                degrees_of_freedom: f64::INFINITY,
+                coverage_factor: 0.0,
+            };
+            one.combine();
+            one
+        };
+        Self {
+            coefficients: estimates.into_iter().enumerate().map(budget).collect(),
+            nis_of_value,
+            records,
+            values: fit.values(),
         }
     }
 
-    /// Whether it was evaluated by statistics of the record (type A of the GUM); else by declared values
-    /// and judgement (type B).
+    /// The budget of the mean over models that the record leaves open, from that of one of them. The scatter
+    /// of their estimates is the contribution of the choice. Other contributions have the shares of the one
+    /// model, and together the mean variance of all.
     #[must_use]
-    pub fn is_type_a(self) -> bool {
-        self == Self::Noise
+    pub fn over_models(mut self, models: &[ModelEstimate]) -> Self {
+        let total: f64 = models.iter().map(|model| model.weight).sum();
+        if models.len() < 2 || total <= 0.0 {
+            return self;
+        }
+        for (index, one) in self.coefficients.iter_mut().enumerate() {
+            let of = |square: &dyn Fn([f64; 2]) -> f64| -> f64 {
+                let values = models.iter().filter_map(|model| {
+                    let found = model.coefficients.get(index)?;
+                    Some(model.weight / total * square(*found))
+                });
+                values.sum()
+            };
+            let mean = of(&|[estimate, _]| estimate);
+            let within = of(&|[_, sigma]| sigma * sigma);
+            let scatter = of(&|[estimate, _]| (estimate - mean).powi(2)).sqrt();
+            let is_within = |source| {
+                !matches!(
+                    source,
+                    UncertaintySource::Model | UncertaintySource::Remainder
+                )
+            };
+            let scale = within.sqrt() / one.part(is_within);
+            for line in &mut one.contributions {
+                if line.source == UncertaintySource::Model {
+                    (line.standard, line.quantity_standard) = (scatter, scatter);
+                    continue;
+                }
+                line.standard *= scale;
+                // What is known by its contribution has no sensitivity that could change.
+                match line.source {
+                    UncertaintySource::Noise | UncertaintySource::Remainder => {
+                        line.quantity_standard = line.standard;
+                    }
+                    _ => line.sensitivity *= scale,
+                }
+            }
+            one.estimate = mean;
+            one.combine();
+        }
+        self
     }
 }
 
-/// The budget of a batch calibration of some runs. `model_shift` is what effects that may be in the model
-/// or not change of each coefficient.
+/// A batch calibration of some runs of one platform, with its budget.
 ///
 /// # Errors
 ///
-/// As of [`calibrate_runs`], which is run once more with exact attitudes if attitudes are declared.
-pub fn uncertainty_budget(
+/// As [`crate::calibrate_runs`].
+pub fn calibrate_with_budget(
     runs: &[Run<'_>],
-    calibration: &Calibration,
     options: &Options,
-    model_shift: Option<&[f64]>,
-) -> Result<UncertaintyBudget, CalibrationError> {
-    let exact = with_exact_attitudes(runs, calibration, options)?;
-    let (fit, values) = (&calibration.fit, calibration.fit.values());
-    let nis_of_value = fit.nis_sum() / values as f64;
-    let beyond = match fit.consistency() {
-        crate::fit::Consistency::Overconfident => (nis_of_value - 1.0).max(0.0),
-        _ => 0.0,
-    };
-    let coefficients = calibration.coefficients();
+) -> Result<(Calibration, UncertaintyBudget), CalibrationError> {
+    for (index, run) in runs.iter().enumerate() {
+        check_record(run.record).map_err(|error| error.of_record(index, runs.len()))?;
+    }
+    let (calibration, variances) = calibrate_with_variances(&Anchored(Surveyed), runs, options)?;
     // Each run has three angles of its own.
-    let unknowns = coefficients.len() + 3 * runs.len();
+    let unknowns = PARAMETERS + 3 * runs.len();
+    let values = calibration.fit.values();
     let noise_degrees = values.saturating_sub(unknowns).max(1) as f64;
-    let budget = |index: usize| {
-        let coefficient = &coefficients[index];
-        let site: Vec<Contribution> = calibration
-            .site_sensitivities
-            .iter()
-            .map(|one| Contribution {
-                source: UncertaintySource::Site(one.quantity),
-                standard: (one.bias_per_unit[index] * one.declared_sigma.unwrap_or(0.0)).abs(),
-                degrees_of_freedom: f64::INFINITY,
-            })
-            .collect();
-        let of_site: f64 = site.iter().map(|line| line.standard.powi(2)).sum();
-        let without_site = calibration.covariance[index][index] - of_site;
-        let with_exact = exact.as_ref().map_or(without_site, |exact| {
-            exact.covariance[index][index] - of_site_of(exact, index)
-        });
-        let noise = with_exact.clamp(0.0, without_site.max(0.0));
-        let line = |source, variance: f64, degrees_of_freedom| Contribution {
-            source,
-            standard: variance.max(0.0).sqrt(),
-            degrees_of_freedom,
-        };
-        let mut contributions = vec![
-            line(UncertaintySource::Noise, noise, noise_degrees),
-            line(
-                UncertaintySource::Attitude,
-                without_site - noise,
-                f64::INFINITY,
-            ),
-        ];
-        contributions.extend(site);
-        let shift = model_shift.and_then(|shift| shift.get(index).copied());
-        let third = shift.unwrap_or(0.0).powi(2) / 3.0;
-        contributions.push(line(UncertaintySource::Model, third, DOUBTFUL_DEGREES));
-        let remainder = beyond * noise;
-        contributions.push(line(
-            UncertaintySource::Remainder,
-            remainder,
-            DOUBTFUL_DEGREES,
-        ));
-        combined(coefficient, contributions)
-    };
-    Ok(UncertaintyBudget {
-        coefficients: (0..coefficients.len()).map(budget).collect(),
-        nis_of_value,
-        records: runs.len(),
-        values,
-    })
-}
-
-/// Variance of a coefficient by the declared uncertainties of the site.
-fn of_site_of(calibration: &Calibration, index: usize) -> f64 {
-    let lines = calibration.site_sensitivities.iter();
-    lines
-        .map(|one| (one.bias_per_unit[index] * one.declared_sigma.unwrap_or(0.0)).powi(2))
-        .sum()
-}
-
-/// The calibration of the same runs with exact attitudes, which are those of the fit; `None` if no attitude is declared.
-fn with_exact_attitudes(
-    runs: &[Run<'_>],
-    calibration: &Calibration,
-    options: &Options,
-) -> Result<Option<Calibration>, CalibrationError> {
-    if runs
-        .iter()
-        .all(|run| run.bench.initial_angles_deg.is_none())
-    {
-        return Ok(None);
-    }
-    let benches: Vec<Bench> = runs
-        .iter()
-        .zip(&calibration.runs)
-        .map(|(run, found)| Bench {
-            initial_angles_deg: run
-                .bench
-                .initial_angles_deg
-                .map(|_| angles_rad(&found.first_platform_c_enu).map(f64::to_degrees)),
-            initial_angles_sigma_deg: run.bench.initial_angles_sigma_deg.map(|it| it * EXACT),
-            ..run.bench.clone()
-        })
-        .collect();
-    let pairs = runs.iter().zip(&benches);
-    let exact: Vec<Run<'_>> = pairs
-        .map(|(run, bench)| Run {
-            record: run.record,
-            bench,
-        })
-        .collect();
-    let options = Options {
-        noise: false,
-        ..*options
-    };
-    calibrate_runs(&exact, &options, |_| ()).map(Some)
-}
-
-fn combined(of: &CoefficientEstimate, contributions: Vec<Contribution>) -> CoefficientBudget {
-    let squares = contributions.iter().map(|line| line.standard.powi(2));
-    let combined = squares.sum::<f64>().sqrt();
-    let limits = contributions.iter().map(|line| {
-        let share = line.standard / combined;
-        share.powi(4) / line.degrees_of_freedom
+    let estimates = calibration.coefficients().map(|one| Estimate {
+        id: one.id,
+        unit: one.unit,
+        meaning: one.meaning,
+        value: one.estimate,
+        noise_degrees,
     });
-    let degrees_of_freedom = limits.filter(|it| it.is_finite()).sum::<f64>().recip();
-    CoefficientBudget {
-        id: of.id,
-        meaning: of.meaning,
-        estimate: of.estimate,
-        unit: of.unit,
-        contributions,
-        combined,
-        degrees_of_freedom,
-        coverage_factor: coverage_factor(degrees_of_freedom),
-    }
+    let budget = UncertaintyBudget::new(estimates, &variances, &calibration.fit, runs.len());
+    Ok((calibration, budget))
 }
 
 /// The factor k with a probability of 95 % between −k and k, by bisection.
@@ -293,20 +298,25 @@ mod tests {
     fn degrees_of_freedom_are_those_of_welch_and_satterthwaite() {
         let line = |standard, degrees_of_freedom| Contribution {
             source: UncertaintySource::Noise,
+            quantity_standard: standard,
+            quantity_unit: "1",
+            sensitivity: 1.0,
             standard,
             degrees_of_freedom,
         };
         // Example G.4.1 of the GUM: relative components 0.25, 0.57, 0.82 with 9, 4, 14 degrees give 19.
         let lines = vec![line(0.25, 9.0), line(0.57, 4.0), line(0.82, 14.0)];
-        let of = CoefficientEstimate {
+        let mut budget = CoefficientBudget {
             id: "c",
-            unit: "1",
             meaning: "",
             estimate: 0.0,
-            sigma: 1.0,
-            determined: true,
+            unit: "1",
+            contributions: lines,
+            combined: 0.0,
+            degrees_of_freedom: 0.0,
+            coverage_factor: 0.0,
         };
-        let budget = combined(&of, lines);
+        budget.combine();
         assert!((budget.combined - 1.03).abs() < 0.005);
         // The example cuts 19.0 to 19; its inputs have two digits.
         assert!(

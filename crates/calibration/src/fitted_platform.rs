@@ -1,5 +1,6 @@
 //! The nominal model with effects of the catalogue, fitted to one record.
 
+mod budget;
 mod evidence;
 mod hypothesis;
 mod noise_model;

@@ -143,6 +143,21 @@ impl Layout {
         unknowns
     }
 
+    /// The quantity of a site that an unknown is.
+    pub(crate) fn quantity(&self, unknown: usize) -> Option<SiteQuantity> {
+        let mut sites = self.sites.iter();
+        sites.find_map(|first| SiteQuantity::ALL.get(unknown.checked_sub(*first)?).copied())
+    }
+
+    /// The axis of the gyro whose turn-on offset an unknown is.
+    pub(crate) fn turn_on_axis(&self, unknown: usize) -> Option<usize> {
+        let mut turn_ons = self.turn_ons.iter().flatten();
+        turn_ons.find_map(|first| {
+            let axis = unknown.checked_sub(*first)?;
+            (axis < BIASES.len()).then_some(axis)
+        })
+    }
+
     /// Index of a quantity of the first run's site among the unknowns.
     pub(crate) fn site_unknown(&self, quantity: SiteQuantity) -> usize {
         self.sites[0]

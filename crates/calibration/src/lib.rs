@@ -127,13 +127,15 @@ mod same_rows;
 mod settings;
 mod single_run;
 mod solve;
+mod spread;
 mod streaming;
 mod uncertainty;
+mod variances;
 mod work;
 
 pub use averaging::{AveragedRecord, SIGNIFICANT_WALK_SHARE, attitude_walk_share, average_record};
 pub use budget::{
-    CoefficientBudget, Contribution, UncertaintyBudget, UncertaintySource, uncertainty_budget,
+    CoefficientBudget, Contribution, ModelEstimate, UncertaintyBudget, calibrate_with_budget,
 };
 pub use calibrate::{calibrate, calibrate_runs, calibrate_strapdown, first_run_sigmas};
 pub use check::check_record;
@@ -159,5 +161,7 @@ pub use result::{
 pub use run::Run;
 pub use same_rows::{SharedRows, shared_rows, times_overlap};
 pub use settings::{declared_attitude, filter_settings};
+pub use spread::{CoefficientSpread, Spread, spread};
 pub use streaming::{FilterWatch, run_factorised_filter};
+pub use variances::UncertaintySource;
 pub use work::work;

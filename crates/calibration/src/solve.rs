@@ -40,6 +40,8 @@ const FLAT_SHARE: f64 = 1e-5;
 pub(crate) struct Solution {
     /// Information matrix of all unknowns from the records, priors not included.
     pub(crate) information: DMatrix<f64>,
+    /// Gradient of half the records' cost by all unknowns, priors not included.
+    pub(crate) gradient: DVector<f64>,
     /// Twice the cost (1): the sum of all squares over their variances.
     pub(crate) cost: f64,
     /// Number of accelerometer values used.
@@ -258,6 +260,7 @@ where
         let count = self.unknowns.len();
         Solution {
             information: point.gram.view((1, 1), (count, count)).into_owned(),
+            gradient: point.gram.column(0).rows(1, count).into_owned(),
             cost: point.trajectory_cost + self.prior_cost(),
             values: point.values,
             rows: point.rows,

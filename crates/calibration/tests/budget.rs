@@ -1,92 +1,198 @@
-//! The uncertainty budget against simulated and calibrated runs.
+//! The uncertainty budget against calibrations with changed inputs.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use gyrocal_calibration::{Options, Run, UncertaintySource, calibrate, uncertainty_budget};
-use gyrocal_record::SiteUncertainty;
-use gyrocal_truth::{Coefficients, Hidden, Scenario, simulate};
+use gyrocal_calibration::{
+    Calibration, ModelEstimate, Options, Run, UncertaintyBudget, UncertaintySource, calibrate,
+    calibrate_with_budget, spread,
+};
+use gyrocal_record::{Bench, SiteUncertainty};
+use gyrocal_truth::{Coefficients, Hidden, Scenario, Simulation, simulate};
 
 /// Declared standard deviations of latitude, Earth rate and gravity.
 const SIGMAS: [f64; 3] = [0.01, 3e-4, 1e-5];
 
-/// Standard normal numbers by the angles of a sequence without repetition, three for a run.
-fn draws(run: u64) -> [f64; 3] {
-    let uniform = |at: u64| {
-        let mut state = at
-            .wrapping_mul(0x9E37_79B9_7F4A_7C15)
-            .wrapping_add(0x1234_5678_9ABC_DEF1);
-        state = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        state = (state ^ (state >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((state ^ (state >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    core::array::from_fn(|axis| {
-        let at = 6 * run + 2 * axis as u64;
-        let radius = (-2.0 * (1.0 - uniform(at)).ln()).sqrt();
-        radius * (core::f64::consts::TAU * uniform(at + 1)).cos()
-    })
-}
-
-/// Errors over combined sigmas of the nine coefficients of one run, and whether its interval covers each.
-fn run(seed: u64) -> [(f64, bool); 9] {
-    let [latitude, rate, gravity] = draws(seed);
-    let hidden = [
-        ("site.latitude", latitude * SIGMAS[0]),
-        ("site.earth_rate", rate * SIGMAS[1]),
-        ("site.gravity", gravity * SIGMAS[2]),
-    ];
-    let scenario = Scenario {
+/// A record of half a day, which leaves much to the prior and to the first attitude.
+fn simulation(seed: u64) -> Simulation {
+    let mut simulation = simulate(&Scenario {
         seed,
         coefficients: Coefficients::PAPER_LIKE,
+        initial_angles_sigma_deg: [0.02, 0.05, 0.03],
         interval_s: 300.0,
-        duration_s: 86_400.0,
-        hidden: hidden
-            .map(|(id, size)| Hidden::new(id, &[("size", size)]).unwrap())
-            .to_vec(),
+        duration_s: 43_200.0,
         ..Scenario::default()
-    };
-    let simulation = simulate(&scenario).unwrap();
-    let mut bench = simulation.bench.clone();
-    bench.uncertainty = SiteUncertainty {
+    })
+    .unwrap();
+    simulation.bench.uncertainty = SiteUncertainty {
         latitude_sigma_deg: Some(SIGMAS[0]),
         earth_rate_relative_sigma: Some(SIGMAS[1]),
         gravity_relative_sigma: Some(SIGMAS[2]),
     };
-    let runs = [Run {
+    simulation
+}
+
+fn budget(simulation: &Simulation) -> (Calibration, UncertaintyBudget) {
+    let run = Run {
         record: &simulation.record,
-        bench: &bench,
-    }];
-    let options = Options::default();
-    let calibration = calibrate(&simulation.record, &bench, &options, |_| ()).unwrap();
-    let budget = uncertainty_budget(&runs, &calibration, &options, None).unwrap();
-    let truth = simulation.truth.coefficients.named();
-    core::array::from_fn(|index| {
-        let one = &budget.coefficients[index];
-        let sigma = calibration.covariance[index][index].sqrt();
-        let remainder = one.contributions.last().unwrap();
-        assert_eq!(remainder.source, UncertaintySource::Remainder);
-        // Without a remainder the contributions are the covariance, to rounding of the differences.
-        let expected = sigma.hypot(remainder.standard);
-        assert!((one.combined / expected - 1.0).abs() < 1e-6, "{}", one.id);
-        let error = one.estimate - truth[index].1;
-        (error / one.combined, error.abs() <= one.expanded())
-    })
+        bench: &simulation.bench,
+    };
+    calibrate_with_budget(&[run], &Options::default()).unwrap()
+}
+
+/// Estimates with another bench.
+fn estimates(simulation: &Simulation, bench: &Bench) -> [f64; 9] {
+    let found = calibrate(&simulation.record, bench, &Options::default(), |_| ()).unwrap();
+    found.coefficients().map(|one| one.estimate)
 }
 
 #[test]
-fn combined_sigmas_are_the_scatter_of_runs_that_draw_noise_site_and_bench() {
-    const RUNS: u64 = 200;
-    let all: Vec<[(f64, bool); 9]> = (1..=RUNS).map(run).collect();
-    let mut covered = 0;
-    for index in 0..9 {
-        let square = all.iter().map(|run| run[index].0.powi(2)).sum::<f64>() / RUNS as f64;
-        // 99.9 % band of chi-square of 200 over 200, for nine coefficients: 0.64 to 1.45.
-        assert!(
-            (0.64..1.45).contains(&square),
-            "coefficient {index}: {square}"
-        );
-        covered += all.iter().filter(|run| run[index].1).count();
+fn contributions_add_up_to_the_covariance() {
+    let (calibration, budget) = budget(&simulation(1));
+    for (index, one) in budget.coefficients.iter().enumerate() {
+        let sigma = calibration.covariance[index][index].sqrt();
+        // Rounding of the differences.
+        assert!((one.combined / sigma - 1.0).abs() < 1e-6, "{}", one.id);
+        assert!(one.part(|source| source == UncertaintySource::Noise) > 0.0);
+        for line in &one.contributions {
+            let product = (line.sensitivity * line.quantity_standard).abs();
+            assert!((product - line.standard).abs() <= 1e-12 * product);
+        }
     }
-    let coverage = covered as f64 / (9 * RUNS) as f64;
-    println!("coverage of 95 % intervals: {coverage:.4}");
-    // The nine are correlated: the standard deviation is at most 1.5 %, that of one coefficient.
-    assert!((0.92..0.98).contains(&coverage), "{coverage}");
+}
+
+#[test]
+fn the_attitude_contributes_what_its_change_does() {
+    let simulation = simulation(2);
+    let (_, budget) = budget(&simulation);
+    let mut squares = [0.0; 9];
+    for axis in 0..3 {
+        let shifted = |share: f64| {
+            let mut bench = simulation.bench.clone();
+            let sigma_deg = bench.initial_angles_sigma_deg[axis];
+            bench.initial_angles_deg.as_mut().unwrap()[axis] += share * sigma_deg;
+            estimates(&simulation, &bench)
+        };
+        let (high, low) = (shifted(0.5), shifted(-0.5));
+        for (index, square) in squares.iter_mut().enumerate() {
+            *square += (high[index] - low[index]).powi(2);
+        }
+    }
+    for (one, square) in budget.coefficients.iter().zip(squares) {
+        let found = one.part(|source| source == UncertaintySource::Attitude);
+        // The last step of a calibration is 1e-4 sigmas of the whole problem long: differences of two
+        // are that uncertain. What is larger agrees to the curvature over a sigma.
+        let allowed = 0.01 * square.sqrt() + 3e-4 * one.combined;
+        assert!(
+            (found - square.sqrt()).abs() < allowed,
+            "{}: {found}, {}",
+            one.id,
+            square.sqrt()
+        );
+    }
+}
+
+#[test]
+fn the_site_contributes_what_its_change_does() {
+    let simulation = simulation(3);
+    let (_, budget) = budget(&simulation);
+    let shifted = |share: f64| {
+        let mut bench = simulation.bench.clone();
+        bench.latitude_deg += share * SIGMAS[0];
+        estimates(&simulation, &bench)
+    };
+    let (high, low) = (shifted(0.5), shifted(-0.5));
+    for (index, one) in budget.coefficients.iter().enumerate() {
+        let change = (high[index] - low[index]).abs();
+        let latitude = gyrocal_calibration::SiteQuantity::Latitude;
+        let found = one.part(|source| source == UncertaintySource::Site(latitude));
+        // As above.
+        let allowed = 0.01 * change + 3e-4 * one.combined;
+        assert!(
+            (found - change).abs() < allowed,
+            "{}: {found}, {change}",
+            one.id
+        );
+    }
+}
+
+#[test]
+fn errors_of_the_site_within_their_uncertainty_are_no_remainder() {
+    let remainder = |declared: bool| {
+        let mut simulation = simulate(&Scenario {
+            seed: 4,
+            coefficients: Coefficients::PAPER_LIKE,
+            interval_s: 300.0,
+            hidden: vec![Hidden::new("site.earth_rate", &[("size", 2e-3)]).unwrap()],
+            ..Scenario::default()
+        })
+        .unwrap();
+        simulation.bench.uncertainty.earth_rate_relative_sigma = declared.then_some(1e-3);
+        let (_, budget) = budget(&simulation);
+        budget.coefficients[2].part(|source| source == UncertaintySource::Remainder)
+    };
+    // The same record: its innovations exceed the noise, which the declared uncertainty explains.
+    assert!(remainder(false) > 0.0);
+    assert_eq!(remainder(true), 0.0);
+}
+
+#[test]
+fn open_models_add_the_scatter_of_their_estimates() {
+    let (_, budget) = budget(&simulation(5));
+    let model = |weight, shift: f64| ModelEstimate {
+        weight,
+        coefficients: budget
+            .coefficients
+            .iter()
+            .map(|one| [one.estimate + shift, 2.0 * one.combined])
+            .collect(),
+    };
+    let over = budget
+        .clone()
+        .over_models(&[model(3.0, 0.0), model(1.0, 0.4)]);
+    for (before, after) in budget.coefficients.iter().zip(&over.coefficients) {
+        // Mean 0.25 of the shift; its standard deviation √(0.25 × 0.75). Rounding of a few operations.
+        assert!((after.estimate - before.estimate - 0.1).abs() < 1e-12);
+        let of_choice = after.part(|source| source == UncertaintySource::Model);
+        assert!((of_choice - 0.4 * 0.1875_f64.sqrt()).abs() < 1e-12);
+        let expected = (2.0 * before.combined).hypot(of_choice);
+        assert!((after.combined / expected - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn runs_of_one_platform_are_consistent_and_those_of_two_are_not() {
+    let of = |seed, bias: f64| {
+        let mut coefficients = Coefficients::PAPER_LIKE;
+        coefficients.bias_deg_per_h[1] += bias;
+        let simulated = simulate(&Scenario {
+            seed,
+            coefficients,
+            interval_s: 300.0,
+            duration_s: 86_400.0,
+            ..Scenario::default()
+        })
+        .unwrap();
+        budget(&simulated).1
+    };
+    let one: Vec<UncertaintyBudget> = (1..=4).map(|seed| of(seed, 0.0)).collect();
+    let stable = spread(&one).unwrap();
+    assert_eq!(stable.runs, 4);
+    assert!(stable.coefficients.iter().all(|one| !one.is_larger));
+    let two: Vec<UncertaintyBudget> = (1..=4)
+        .map(|seed| of(seed, 0.5 * (seed % 2) as f64))
+        .collect();
+    let found = spread(&two).unwrap();
+    let larger: Vec<&str> = found
+        .coefficients
+        .iter()
+        .filter(|one| one.is_larger)
+        .map(|one| one.id)
+        .collect();
+    assert!(larger.contains(&"gyro_y.bias"), "{larger:?}");
+    // 0.5 and 0 by turns.
+    let scatter = found.coefficients[3].standard_deviation;
+    assert!(
+        (scatter / (0.5_f64 / 3.0_f64.sqrt()) - 1.0).abs() < 0.2,
+        "{scatter}"
+    );
+    assert!(spread(&one[..1]).is_none());
 }

@@ -227,6 +227,10 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 19] = [
                 "gyrocal report monday.json tuesday.json --out week.html",
                 "written results, with an overview",
             ],
+            [
+                "gyrocal report monday.csv tuesday.csv --bench bench.toml --uncertainty --json budget.json",
+                "two runs of one platform: uncertainty budgets, and the scatter over runs",
+            ],
         ],
     ),
     (

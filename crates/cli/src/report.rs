@@ -6,10 +6,14 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_calibration::UncertaintyBudget;
 use gyrocal_design::PlanResult;
-use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, Gate, diagnose_gated, result};
-use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result};
-use gyrocal_record::{Bench, CalibrationReport, Outputs, SourceText};
+use gyrocal_diagnosis::{
+    DiagnoseOptions, DiagnosisError, Gate, RecordUncertainty, UncertaintyResult, diagnose_gated,
+    record_uncertainty, result,
+};
+use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread};
+use gyrocal_record::{Bench, CalibrationReport, Outputs, SourceText, printable_path};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 use serde::de::DeserializeOwned;
@@ -34,9 +38,13 @@ pub(crate) struct ReportArguments {
     benches: Vec<PathBuf>,
     #[command(flatten)]
     map: records::Map,
-    /// Add the uncertainty budget of the coefficients of each record, by its sources.
+    /// Add the uncertainty budget of the coefficients of each record, by its sources; of several records
+    /// also the scatter over them: they are runs of one platform.
     #[arg(long)]
     uncertainty: bool,
+    /// Write the uncertainty budgets for programs (JSON).
+    #[arg(long, value_name = "OUT.json", requires = "uncertainty")]
+    json: Option<PathBuf>,
     /// The report to write (HTML).
     #[arg(long, value_name = "OUT.html", default_value = "report.html")]
     out: PathBuf,
@@ -61,8 +69,9 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
     let all = arguments.inputs.iter().chain(&arguments.benches);
     let all = all.map(PathBuf::as_path).chain(arguments.map.path());
     let all: Vec<&Path> = all.collect();
-    refuse_overlap(&all, &[("--out", Some(&arguments.out))])?;
-    refuse_unwritable(&[Some(&arguments.out)], None)?;
+    let json = arguments.json.as_deref();
+    refuse_overlap(&all, &[("--out", Some(&arguments.out)), ("--json", json)])?;
+    refuse_unwritable(&[Some(&arguments.out), json], None)?;
     let mut benches = arguments.benches.iter();
     let mut parts = Vec::with_capacity(arguments.inputs.len());
     let mut budgets = Vec::new();
@@ -72,22 +81,30 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
         } else {
             let bench = benches.next().or(arguments.benches.last());
             let bench = bench.map_or(Path::new(""), PathBuf::as_path);
-            let mut part = of_record(path, bench, &arguments.map)?;
-            if arguments.uncertainty {
-                let budget = budget::of_record(path, bench, &arguments.map)?;
-                part.sections.push(of_budget(&budget));
+            let (mut part, budget) = of_record(path, bench, arguments)?;
+            if let Some(budget) = budget {
+                part.sections.push(of_budget(&budget.0));
                 budgets.push(budget);
             }
             part
         });
     }
+    let mut answer = Answer::default();
     let mut outputs = Outputs::new();
+    if arguments.uncertainty {
+        let manifest = manifest(MODEL_HASH, DiagnoseOptions::default().seed, &all)?;
+        let found = UncertaintyResult::new(manifest, budgets);
+        if let (Some(part), Some(spread)) = (parts.last_mut(), &found.spread) {
+            part.sections.push(of_spread(spread));
+        }
+        answer = Answer::of(budget::screen(&found), budget::text(&found));
+        if let Some(path) = json {
+            outputs.stage_json(path, &found)?;
+            answer.wrote(path, "uncertainty budgets");
+        }
+    }
     page::stage(&arguments.out, parts, &mut outputs)?;
     outputs.commit()?;
-    let mut answer = match &budgets[..] {
-        [] => Answer::default(),
-        all => Answer::of(budget::screen(all), budget::text(all)),
-    };
     answer.wrote(&arguments.out, page::WHAT);
     Ok(answer)
 }
@@ -97,7 +114,16 @@ fn is_result(path: &Path) -> bool {
         .is_some_and(|form| form.eq_ignore_ascii_case("json"))
 }
 
-fn of_record(path: &Path, bench_path: &Path, map: &records::Map) -> Result<Part, Failure> {
+/// Uncertainty of a record, and the budget that it shows.
+type Budget = (RecordUncertainty, UncertaintyBudget);
+
+/// The part of a record, with its uncertainty if that is asked for.
+fn of_record(
+    path: &Path,
+    bench_path: &Path,
+    arguments: &ReportArguments,
+) -> Result<(Part, Option<Budget>), Failure> {
+    let map = &arguments.map;
     let bench = Bench::read(bench_path)?;
     let file = map.read(path)?;
     let options = DiagnoseOptions::default();
@@ -112,13 +138,28 @@ fn of_record(path: &Path, bench_path: &Path, map: &records::Map) -> Result<Part,
     )?;
     match diagnose_gated(gate, &bench, &options) {
         Err(DiagnosisError::Setup { mut result }) => {
+            if arguments.uncertainty {
+                return Err(Failure::Work(miette!(
+                    help = "gyrocal diagnose says what is wrong with it",
+                    "{}: the set-up is wrong, so that there is no uncertainty",
+                    printable_path(path)
+                )));
+            }
             result.manifest = origin;
-            Ok(of_result(&result))
+            Ok((of_result(&result), None))
         }
         Err(source) => Err(NotDiagnosed::new(path, &bench, source).into()),
         Ok(mut diagnosis) => {
             diagnosis.result.manifest = origin;
-            page::part(path, of_diagnosis(&diagnosis, &bench))
+            let names = [path, bench_path].map(|path| path.display().to_string());
+            let of = || {
+                let names = names.each_ref().map(String::as_str);
+                record_uncertainty(names, &diagnosis, &bench, &options.calibration)
+            };
+            let budget = arguments.uncertainty.then(of).transpose();
+            let budget = budget.map_err(|source| NotDiagnosed::new(path, &bench, source))?;
+            let part = page::part(path, of_diagnosis(&diagnosis, &bench))?;
+            Ok((part, budget))
         }
     }
 }

@@ -89,6 +89,7 @@ mod residuals;
 pub mod result;
 mod series;
 mod stage;
+mod uncertainty;
 mod untested;
 mod validation;
 mod watch;
@@ -114,6 +115,13 @@ pub use request::{missing_input, selection};
 pub use result::{DiagnosisResult, Verdict};
 pub use series::Innovations;
 pub use stage::Stage;
+#[cfg(feature = "schema")]
+pub use uncertainty::uncertainty_schema;
+pub use uncertainty::{
+    CoefficientScatter, CoefficientUncertainty, ContributionLine, EvaluationType, NOT_STATED,
+    OpenModel, RecordUncertainty, RunSpread, TestConditions, UNCERTAINTY_SCHEMA_VERSION,
+    UncertaintyResult, by_source, record_uncertainty,
+};
 pub use validation::{AttitudeErrors, LaterPrediction};
 pub use watch::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, watch_record};
 

@@ -26,6 +26,7 @@ mod report;
 mod resumable;
 mod topic_page;
 mod truth;
+mod uncertainty;
 mod values;
 mod watch;
 
@@ -52,7 +53,7 @@ struct Arguments {
     /// Only these parts of the topic (truth).
     #[arg(long = "part", value_name = "PART")]
     parts: Vec<truth::Part>,
-    /// Most records of each population (truth, logs, any-plant, plant-peers, watch): a part of the full version, which goes on from there.
+    /// Most records of each population (truth, logs, any-plant, plant-peers, watch, uncertainty): a part of the full version, which goes on from there.
     #[arg(long, value_name = "COUNT")]
     records: Option<u64>,
     /// Also write the table into this file, with the command that printed it.
@@ -124,6 +125,8 @@ enum Topic {
     Watch,
     /// The paper, reproduced and corrected: docs/paper.md and its pictures.
     Paper,
+    /// The uncertainty budget against simulated and calibrated runs.
+    Uncertainty,
     /// The Python package: its wheel, a first diagnosis with it, fleets of records.
     Fleet,
 }
@@ -153,6 +156,7 @@ fn main() -> ExitCode {
         Topic::Report => report::figures(arguments.small, arguments.write),
         Topic::Truth => truth::figures(extent, &arguments.parts),
         Topic::Watch => watch::figures(extent),
+        Topic::Uncertainty => uncertainty::figures(extent),
         Topic::Paper => paper::figures(arguments.write),
         Topic::Fleet => fleet::figures(arguments.small),
     };

@@ -15,6 +15,7 @@
 //! | [`of_plant`] | a diagnosis of any plant |
 //! | [`of_fleet`] | what a fleet shows |
 //! | [`of_tumble`] | a multi-position test with many stops |
+//! | [`of_budget`], [`of_spread`] | sections of an uncertainty budget, of the scatter over runs |
 //! | [`of_allan`] | Allan deviations of a log |
 //!
 //! [`plant_pictures`] are those of any plant, [`Ranked`] draws the ranking of both.
@@ -48,7 +49,7 @@ pub use plan::of_plan;
 pub use plant::{NamedPicture, of_plant, plant_pictures};
 pub use ranked::Ranked;
 pub use tumble::of_tumble;
-pub use uncertainty::of_budget;
+pub use uncertainty::{of_budget, of_spread};
 
 /// A page of one answer or several.
 #[must_use]

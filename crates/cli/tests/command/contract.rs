@@ -15,6 +15,8 @@ const DIAGNOSIS: &str = "docs/schema/diagnosis.schema.json";
 const PLAN: &str = "docs/schema/plan.schema.json";
 const LOG: &str = "docs/schema/log.schema.json";
 
+const UNCERTAINTY: &str = "docs/schema/uncertainty.schema.json";
+
 /// Checks that a result of a command conforms to a committed schema.
 #[track_caller]
 fn assert_conforms(folder: &Folder, name: &str, schema: &str) {
@@ -41,11 +43,18 @@ pub(crate) fn assert_plan(folder: &Folder, name: &str) {
     assert_conforms(folder, name, PLAN);
 }
 
+/// Checks that an uncertainty budget conforms to its schema.
+#[track_caller]
+pub(crate) fn assert_uncertainty(folder: &Folder, name: &str) {
+    assert_conforms(folder, name, UNCERTAINTY);
+}
+
 #[test]
 fn schemas_that_are_committed_are_those_of_the_types() {
     let schemas = [
         (DIAGNOSIS, gyrocal_diagnosis::result::schema()),
         (PLAN, gyrocal_design::schema()),
+        (UNCERTAINTY, gyrocal_diagnosis::uncertainty_schema()),
         (LOG, gyrocal_instruments::Description::schema()),
     ];
     for (path, schema) in schemas {

@@ -157,3 +157,57 @@ fn results_of_other_versions_and_other_files_are_refused() {
     );
     assert!(!folder.path("report.html").exists());
 }
+
+#[test]
+fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
+    let folder = folder();
+    folder.put_example("three_days.csv");
+    folder.put_example("three_days.bench.toml");
+    let said = folder.succeed(&[
+        "report",
+        RECORD,
+        "three_days.csv",
+        "--bench",
+        BENCH,
+        "--bench",
+        "three_days.bench.toml",
+        "--uncertainty",
+        "--json",
+        "budget.json",
+        "--verbose",
+        "--out",
+        "u.html",
+    ]);
+    crate::contract::assert_uncertainty(&folder, "budget.json");
+    let found: serde_json::Value = serde_json::from_str(&folder.text("budget.json")).unwrap();
+    let records = found["records"].as_array().unwrap();
+    // The hidden fault leaves several models open, whose estimates scatter.
+    assert!(records[0]["models"].as_array().unwrap().len() > 1);
+    let choice = |record: &serde_json::Value| -> f64 {
+        let coefficients = record["coefficients"].as_array().unwrap();
+        let lines = coefficients
+            .iter()
+            .flat_map(|one| one["contributions"].as_array().unwrap());
+        lines
+            .filter(|line| line["source"] == "choice of the model")
+            .map(|line| line["contribution"].as_f64().unwrap())
+            .sum()
+    };
+    assert!(choice(&records[0]) > 0.0);
+    assert_eq!(choice(&records[1]), 0.0);
+    assert_eq!(found["spread"]["runs"], 2);
+    for words in ["Scatter over 2 runs", "D_II", "Only a laboratory certifies"] {
+        assert!(said.contains(words), "{said}");
+    }
+    for line in said.lines() {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+    let words = [
+        "Scatter over runs",
+        "Test conditions",
+        "choice of the model",
+    ];
+    assert_page(&folder, "u.html", &words);
+    let wrong = ["report", RECORD, "--bench", BENCH, "--json", "b.json"];
+    assert!(wrong_usage(&folder, &wrong).contains("--uncertainty"));
+}
