@@ -163,7 +163,7 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     let folder = folder();
     folder.put_example("three_days.csv");
     folder.put_example("three_days.bench.toml");
-    let said = folder.succeed(&[
+    let output = folder.run_on_a_terminal(&[
         "report",
         RECORD,
         "three_days.csv",
@@ -178,6 +178,8 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
         "--out",
         "u.html",
     ]);
+    assert_eq!(output.status.code(), Some(0));
+    let said = String::from_utf8(output.stdout).unwrap();
     crate::contract::assert_uncertainty(&folder, "budget.json");
     let found: serde_json::Value = serde_json::from_str(&folder.text("budget.json")).unwrap();
     let records = found["records"].as_array().unwrap();
