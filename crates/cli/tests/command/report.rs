@@ -161,14 +161,22 @@ fn results_of_other_versions_and_other_files_are_refused() {
 #[test]
 fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     let folder = folder();
-    folder.put_example("three_days.csv");
-    folder.put_example("three_days.bench.toml");
+    for name in [
+        "three_days.csv",
+        "three_days.bench.toml",
+        "rivals.scenario.toml",
+    ] {
+        folder.put_example(name);
+    }
+    let rivals = ["rivals.csv", "--bench-out", "rivals.bench.toml"];
+    let simulate = ["simulate", "rivals.scenario.toml", "--out"];
+    folder.succeed_as_is(&[&simulate[..], &rivals].concat());
     let output = folder.run_on_a_terminal(&[
         "report",
-        RECORD,
+        "rivals.csv",
         "three_days.csv",
         "--bench",
-        BENCH,
+        "rivals.bench.toml",
         "--bench",
         "three_days.bench.toml",
         "--uncertainty",
@@ -183,7 +191,7 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     crate::contract::assert_uncertainty(&folder, "budget.json");
     let found: serde_json::Value = serde_json::from_str(&folder.text("budget.json")).unwrap();
     let records = found["records"].as_array().unwrap();
-    // The hidden fault leaves several models open, whose estimates scatter.
+    // A fault of several explanations leaves models open, whose estimates scatter.
     assert!(records[0]["models"].as_array().unwrap().len() > 1);
     let choice = |record: &serde_json::Value| -> f64 {
         let coefficients = record["coefficients"].as_array().unwrap();
