@@ -8,19 +8,18 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use comfy_table::Cell;
 use gyrocal_instruments::{
-    AllanColumn, AllanSettings, Description, InstrumentError, Log, ResultFile, allan_columns,
-    allan_log,
+    AllanColumn, AllanReport, AllanSettings, Description, InstrumentError, Log, ResultFile,
+    allan_columns, allan_log,
 };
 use gyrocal_pages::{AllanAnswer, of_allan};
 use gyrocal_record::{Outputs, SourceText};
 use gyrocal_statistics::allan::{AllanEstimator, NoiseFit};
 use gyrocal_statistics::format;
-use serde_json::json;
 
 use crate::measured::unusable;
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
-use crate::page;
+use crate::page::Views;
 use crate::tables::{right, table};
 use crate::{Answer, Failure};
 
@@ -69,8 +68,8 @@ pub(crate) struct AllanArguments {
     /// Write the result for programs (JSON), with the fitted curve and its parts for a plot.
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    #[arg(long, value_name = "OUT.html", help = page::HELP)]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    views: Views,
 }
 
 /// Value of `--estimator`.
@@ -98,13 +97,13 @@ impl Estimator {
 pub(crate) fn run(arguments: &AllanArguments) -> Result<Answer, Failure> {
     let mut inputs = vec![&*arguments.log];
     inputs.extend(arguments.log_description.as_deref());
-    outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    let json = ("--json", arguments.json.as_deref());
-    page::check(&inputs, &[json], arguments.report.as_deref(), None)?;
+    let json = arguments.json.as_deref();
+    outputs::check(&inputs, json, arguments.views.figures())?;
+    arguments.views.check(&inputs, &[("--json", json)])?;
     let analysed = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
     let mut answer = Answer::of(screen::first(&analysed), summary(arguments, &analysed));
     let mut outputs = Outputs::new();
-    if let Some(path) = &arguments.report {
+    if arguments.views.are_asked() {
         let shown = AllanAnswer {
             manifest: &manifest("", 0, &inputs)?,
             columns: &analysed.columns,
@@ -112,16 +111,18 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<Answer, Failure> {
             estimator: arguments.estimator.of_library().description(),
             confidence: arguments.confidence,
         };
-        page::stage(path, vec![of_allan(&shown)], &mut outputs)?;
-        answer.wrote(path, page::WHAT);
+        let part = of_allan(&shown);
+        arguments
+            .views
+            .stage(&arguments.log, part, &mut outputs, &mut answer)?;
     }
     if let Some(path) = &arguments.json {
-        let result = json!({
-            "unit": analysed.unit,
-            "confidence": arguments.confidence,
-            "estimator": arguments.estimator.of_library().description(),
-            "columns": analysed.columns,
-        });
+        let result = AllanReport {
+            unit: analysed.unit,
+            confidence: arguments.confidence,
+            estimator: arguments.estimator.of_library().description(),
+            columns: analysed.columns,
+        };
         let result = ResultFile::new(manifest("", 0, &inputs)?, result);
         outputs.stage_json(path, &result)?;
     }

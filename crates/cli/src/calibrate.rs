@@ -28,7 +28,7 @@ use miette::miette;
 
 use crate::numbers::positive;
 use crate::outputs;
-use crate::page;
+use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::{Answer, Failure, exit, records};
 pub use failed::NotCalibrated;
@@ -60,8 +60,8 @@ pub(crate) struct CalibrateArguments {
     /// Write the coefficients as a table: CSV, or Parquet if the name ends in .parquet.
     #[arg(long, value_name = "OUT.csv")]
     coefficients: Option<PathBuf>,
-    #[arg(long, value_name = "OUT.html", help = page::HELP)]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    views: Views,
     /// Average fast records over intervals of this length, 600 s at most: quicker, and without loss
     /// of information while the noise is white.
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
@@ -236,12 +236,14 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     };
     let mut answer = Answer::of(screen::first(&found), prose::summary(&found));
     let mut outputs = Outputs::new();
-    let asked = [&arguments.json, &arguments.report, &arguments.coefficients];
-    if asked.into_iter().any(Option::is_some) {
+    let asked = [&arguments.json, &arguments.coefficients];
+    if asked.into_iter().any(Option::is_some) || arguments.views.are_asked() {
         let report = json::report(&found, &inputs)?;
-        if let Some(path) = &arguments.report {
-            over_time::stage(path, &report, &found, &options, &mut outputs)?;
-            answer.wrote(path, page::WHAT);
+        if arguments.views.are_asked() {
+            let record = &arguments.records[0];
+            let part = over_time::part(record, &report, &found, &options)?;
+            let views = &arguments.views;
+            views.stage(record, part, &mut outputs, &mut answer)?;
         }
         if let Some(path) = &arguments.json {
             outputs.stage_json(path, &report)?;
@@ -264,10 +266,11 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
 /// Refuses outputs that are inputs, or cannot be written.
 fn check_outputs(arguments: &CalibrateArguments, inputs: &[&Path]) -> Result<(), Failure> {
     let (json, table) = (arguments.json.as_deref(), arguments.coefficients.as_deref());
-    outputs::check(inputs, json, None)?;
+    let figures = arguments.views.figures();
+    outputs::check(inputs, json, figures)?;
     let others = [("--json", json), ("--coefficients", table)];
-    page::check(inputs, &others, arguments.report.as_deref(), None)?;
-    outputs::refuse_unwritable(&[table], None)
+    arguments.views.check(inputs, &others)?;
+    outputs::refuse_unwritable(&[table], figures)
 }
 
 /// Writes the result of records whose set-up is wrong; the failure that tells it.
@@ -279,7 +282,8 @@ fn stopped(
     let problems = measurements.iter().flat_map(|one| &one.setup);
     let report = json::of_wrong_setup(arguments.method(), problems.cloned().collect(), inputs)?;
     let mut outputs = Outputs::new();
-    if let Some(path) = &arguments.report {
+    // Nothing was fitted, which leaves nothing to draw.
+    if let Some(path) = arguments.views.report() {
         let part = page::part(&arguments.records[0], of_calibration(&report, &[]))?;
         page::stage(path, vec![part], &mut outputs)?;
     }

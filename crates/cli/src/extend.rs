@@ -8,8 +8,7 @@ use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_diagnosis::result;
-use gyrocal_record::{Manifest, Outputs, SCHEMA_VERSION, printable_path};
-use serde::Serialize;
+use gyrocal_record::{ExtensionReport, LeftOut, Outputs, SCHEMA_VERSION, printable_path};
 
 use crate::outputs::{manifest, refuse_overlap};
 use crate::{Answer, Failure};
@@ -44,22 +43,6 @@ pub(crate) struct ExtendArguments {
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-}
-
-/// The JSON result.
-#[derive(Debug, Serialize)]
-struct ExtensionReport {
-    schema_version: u32,
-    manifest: Manifest,
-    effects: Vec<String>,
-    left_out: Vec<LeftOut>,
-}
-
-/// A finding without a place in the model file.
-#[derive(Debug, Serialize)]
-struct LeftOut {
-    effect: String,
-    why: String,
 }
 
 /// Runs the command; returns the text for stdout.

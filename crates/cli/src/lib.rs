@@ -100,6 +100,26 @@ fn program(arguments: &[OsString]) -> OsString {
     name.unwrap_or_default().to_owned()
 }
 
+/// The commands that write a result for programs with `--json`, each as its words.
+#[must_use]
+pub fn commands_with_json() -> Vec<String> {
+    let mut found = Vec::new();
+    let mut waiting = vec![(String::new(), definition())];
+    while let Some((words, command)) = waiting.pop() {
+        if command
+            .get_arguments()
+            .any(|one| one.get_long() == Some("json"))
+        {
+            found.push(words.trim_start().to_owned());
+        }
+        for own in command.get_subcommands() {
+            waiting.push((format!("{words} {}", own.get_name()), own.clone()));
+        }
+    }
+    found.sort();
+    found
+}
+
 /// Shows help, a version, or what is wrong with a command line.
 fn refused(error: &clap::Error) -> u8 {
     // Help and version are among them, and go to stdout.

@@ -14,11 +14,13 @@ use gyrocal_calibration::Options;
 use gyrocal_evaluation::{
     CalibrationSummary, CalibrationTrial, Campaign, Fingerprint, MonteCarloReport, Outcome, program,
 };
-use gyrocal_record::{SCHEMA_VERSION, printable_path, write_json};
+use gyrocal_pages::of_monte_carlo;
+use gyrocal_record::{Outputs, SCHEMA_VERSION, printable_path};
 use gyrocal_truth::{Population, Scenario};
 use miette::miette;
 
-use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
+use crate::outputs::{manifest, refuse_unwritable};
+use crate::page::Views;
 use crate::{Answer, Failure};
 use progress::SeedProgress;
 
@@ -44,6 +46,8 @@ pub(crate) struct MonteCarloArguments {
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    views: Views,
     /// Draw latitude (up to 80 deg), coefficients, initial attitude and duration (one to fourteen
     /// days) at random; the rest is that of the scenario. Its seed is that of the population, and
     /// --seeds are numbers of scenarios in it.
@@ -59,16 +63,14 @@ const MAX_SEEDS: u64 = 10_000_000;
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Answer, Failure> {
-    refuse_overlap(
-        &[&arguments.scenario],
-        &[
-            ("--results", arguments.results.as_deref()),
-            ("--json", arguments.json.as_deref()),
-        ],
-    )?;
+    let others = [
+        ("--results", arguments.results.as_deref()),
+        ("--json", arguments.json.as_deref()),
+    ];
+    arguments.views.check(&[&arguments.scenario], &others)?;
     let scenario = Scenario::read(&arguments.scenario)?;
     // Checked before hours of work: the folders must exist.
-    refuse_unwritable(&[arguments.json.as_deref()], None)?;
+    refuse_unwritable(&[arguments.json.as_deref()], arguments.views.figures())?;
     let seed = scenario.seed;
     let outcome = outcome(arguments, scenario)?;
     tracing::info!(resumed = outcome.resumed(), "all seeds done");
@@ -88,17 +90,28 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Answer, Failure> {
     if let Some(path) = &arguments.results {
         answer.wrote(path, "results of all runs");
     }
+    if arguments.json.is_none() && !arguments.views.are_asked() {
+        return Ok(answer);
+    }
+    let report = MonteCarloReport {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest(MODEL_HASH, seed, &[&arguments.scenario])?,
+        seeds: [arguments.seeds.start, arguments.seeds.end],
+        population: arguments.population,
+        summary,
+    };
+    let mut outputs = Outputs::new();
+    if arguments.views.are_asked() {
+        let part = of_monte_carlo(&report);
+        arguments
+            .views
+            .stage(&arguments.scenario, part, &mut outputs, &mut answer)?;
+    }
     if let Some(path) = &arguments.json {
-        let report = MonteCarloReport {
-            schema_version: SCHEMA_VERSION,
-            manifest: manifest(MODEL_HASH, seed, &[&arguments.scenario])?,
-            seeds: [arguments.seeds.start, arguments.seeds.end],
-            population: arguments.population,
-            summary,
-        };
-        write_json(path, &report)?;
+        outputs.stage_json(path, &report)?;
         answer.wrote(path, "the result for programs");
     }
+    outputs.commit()?;
     Ok(answer)
 }
 

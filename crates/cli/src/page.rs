@@ -1,13 +1,14 @@
-//! Reports: the answer of a command as one HTML file.
+//! Reports: the answer of a command as one HTML file, and its charts as pictures.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use gyrocal_pages::{PageError, Part, page};
+use clap::Args;
+use gyrocal_pages::{PageError, Part, page, pictures as charts};
 use gyrocal_record::Outputs;
 use miette::miette;
 
-use crate::Failure;
 use crate::outputs::{refuse_overlap, refuse_unwritable};
+use crate::{Answer, Failure, pictures};
 
 /// The help of `--report`.
 pub(crate) const HELP: &str =
@@ -41,4 +42,60 @@ pub(crate) fn stage(path: &Path, parts: Vec<Part>, outputs: &mut Outputs) -> Res
 /// The part of an input, or the reason why there is none.
 pub(crate) fn part(of: &Path, part: Result<Part, PageError>) -> Result<Part, Failure> {
     part.map_err(|reason| Failure::Work(miette!("{}: no report: {reason}", of.display())))
+}
+
+/// Files to look at, of a command whose pictures are the charts of its report.
+#[derive(Debug, Default, Args)]
+pub(crate) struct Views {
+    #[arg(long, value_name = "OUT.html", help = HELP)]
+    report: Option<PathBuf>,
+    #[arg(long, value_name = "DIR", help = pictures::HELP)]
+    figures: Option<PathBuf>,
+}
+
+impl Views {
+    /// The folder of pictures.
+    pub(crate) fn figures(&self) -> Option<&Path> {
+        self.figures.as_deref()
+    }
+
+    /// The report.
+    pub(crate) fn report(&self) -> Option<&Path> {
+        self.report.as_deref()
+    }
+
+    /// Whether there is anything to write.
+    pub(crate) fn are_asked(&self) -> bool {
+        self.report.is_some() || self.figures.is_some()
+    }
+
+    /// Refuses, before the computation, files that could not be written or would overwrite others.
+    pub(crate) fn check(
+        &self,
+        inputs: &[&Path],
+        others: &[(&str, Option<&Path>)],
+    ) -> Result<(), Failure> {
+        let mut others = others.to_vec();
+        others.push(("--figures", self.figures()));
+        check(inputs, &others, self.report(), self.figures())
+    }
+
+    /// Stages report and pictures of an input, and tells of them.
+    pub(crate) fn stage(
+        &self,
+        of: &Path,
+        part: Part,
+        outputs: &mut Outputs,
+        answer: &mut Answer,
+    ) -> Result<(), Failure> {
+        if let Some(folder) = &self.figures {
+            let drawn = charts(part.clone());
+            answer.wrote(folder, &pictures::stage(of, &drawn, folder, outputs)?);
+        }
+        if let Some(path) = &self.report {
+            stage(path, vec![part], outputs)?;
+            answer.wrote(path, WHAT);
+        }
+        Ok(())
+    }
 }

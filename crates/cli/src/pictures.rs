@@ -40,7 +40,7 @@ pub(crate) fn is_one(path: &Path) -> bool {
 /// the folder, for stdout.
 pub(crate) fn stage(
     of: &Path,
-    pictures: &[Named],
+    pictures: &[(impl AsRef<str>, Box<dyn Picture>)],
     folder: &Path,
     outputs: &mut Outputs,
 ) -> Result<String, Failure> {
@@ -53,6 +53,7 @@ pub(crate) fn stage(
     })?;
     let mut names = Vec::new();
     for (name, picture) in pictures {
+        let name = name.as_ref();
         let svg = match picture.to_svg() {
             Ok(svg) => svg,
             Err(reason) => {
@@ -60,7 +61,7 @@ pub(crate) fn stage(
                 continue;
             }
         };
-        names.push(*name);
+        names.push(name);
         outputs.stage(&folder.join(name).with_extension("svg"), svg.as_bytes())?;
         #[cfg(feature = "png")]
         {

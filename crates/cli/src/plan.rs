@@ -16,7 +16,7 @@ use gyrocal_record::{Bench, Outputs};
 use crate::layout::layout;
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
-use crate::page;
+use crate::page::Views;
 use crate::progress::Progress;
 use crate::{Answer, Failure, records};
 pub use failed::NotPlanned;
@@ -43,8 +43,8 @@ pub(crate) struct PlanArguments {
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    #[arg(long, value_name = "OUT.html", help = page::HELP)]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    views: Views,
     /// Durations of the next run, h; default: that of the record.
     #[arg(long, value_name = "H,H", value_delimiter = ',', value_parser = positive)]
     hours: Vec<f64>,
@@ -93,9 +93,9 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     inputs.extend(arguments.diagnosis.as_deref());
     inputs.extend(arguments.map.path());
     refuse_repeated(&arguments.limits)?;
-    outputs::check(&inputs, arguments.json.as_deref(), None)?;
-    let json = ("--json", arguments.json.as_deref());
-    page::check(&inputs, &[json], arguments.report.as_deref(), None)?;
+    let json = arguments.json.as_deref();
+    outputs::check(&inputs, json, arguments.views.figures())?;
+    arguments.views.check(&inputs, &[("--json", json)])?;
     let bench = Bench::read(&arguments.bench)?;
     let file = arguments.map.read(&arguments.record)?;
     let rows = file.record().len();
@@ -125,9 +125,11 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     planned.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
     let mut answer = Answer::of(first_screen(&planned), layout(&prose(&planned)));
     let mut outputs = Outputs::new();
-    if let Some(path) = &arguments.report {
-        page::stage(path, vec![of_plan(&planned)], &mut outputs)?;
-        answer.wrote(path, page::WHAT);
+    if arguments.views.are_asked() {
+        let part = of_plan(&planned);
+        arguments
+            .views
+            .stage(&arguments.record, part, &mut outputs, &mut answer)?;
     }
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, &planned)?;

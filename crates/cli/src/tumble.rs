@@ -14,7 +14,7 @@ use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_instruments::multi_position::{
     FewPositionReport, MultiPositionReport, MultiPositionSettings, PreparedTest, SearchSettings,
-    few_position_test, fewest_stops, multi_position_test, prepare_logs,
+    TumbleResult, few_position_test, fewest_stops, multi_position_test, prepare_logs,
 };
 use gyrocal_instruments::{
     Description, InstrumentError, Log, ResultFile, StopSettings, find_stops, given_stops,
@@ -138,13 +138,9 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
     }
     if let Some(path) = &arguments.json {
         let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
-        let result = match &report {
-            Report::Many(report) => {
-                serde_json::json!({ "sensors": prepared.sensors(), "test": report })
-            }
-            Report::Few(report) => {
-                serde_json::json!({ "sensors": prepared.sensors(), "few_positions": report })
-            }
+        let result = match report {
+            Report::Many(report) => TumbleResult::of_many(&prepared, *report),
+            Report::Few(report) => TumbleResult::of_few(&prepared, report),
         };
         outputs.stage_json(path, &ResultFile::new(manifest, result))?;
     }

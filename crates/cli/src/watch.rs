@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_diagnosis::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, watch_record};
+use gyrocal_diagnosis::{
+    WatchAlarm, WatchCause, WatchOptions, WatchReplay, WatchResult, watch_record,
+};
 use gyrocal_record::{Bench, write_json};
-use serde_json::json;
 
 use crate::diagnose::NotDiagnosed;
 use crate::numbers::{not_negative, probability};
@@ -60,15 +61,10 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Answer, Failure> {
     };
     let replay = watch_record(&record, &bench, &options)
         .map_err(|source| NotDiagnosed::new(&arguments.record, &bench, source))?;
-    if let Some(path) = &arguments.json {
-        let result = json!({
-            "manifest": manifest(MODEL_HASH, 0, &inputs)?,
-            "watch": replay,
-        });
-        write_json(path, &result)?;
-    }
     let mut answer = Answer::of(screen(&replay), text(&replay));
     if let Some(path) = &arguments.json {
+        let manifest = manifest(MODEL_HASH, 0, &inputs)?;
+        write_json(path, &WatchResult::new(manifest, replay))?;
         answer.wrote(path, "the result for programs");
     }
     Ok(answer)

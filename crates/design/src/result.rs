@@ -155,8 +155,5 @@ pub(crate) fn ratio(after: &[Forecast], before: &[Forecast]) -> f64 {
 #[cfg(feature = "schema")]
 #[must_use]
 pub fn schema() -> schemars::Schema {
-    schemars::generate::SchemaSettings::draft2020_12()
-        .for_serialize()
-        .into_generator()
-        .into_root_schema_for::<PlanResult>()
+    gyrocal_record::written_schema::<PlanResult>()
 }

@@ -123,7 +123,7 @@ pub use uncertainty::{
     UncertaintyResult, by_source, record_uncertainty,
 };
 pub use validation::{AttitudeErrors, LaterPrediction};
-pub use watch::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, watch_record};
+pub use watch::{WatchAlarm, WatchCause, WatchOptions, WatchReplay, WatchResult, watch_record};
 
 /// Number of drift coefficients of the nominal model.
 const COEFFICIENTS: usize = gyrocal::Platform::PARAMETERS;

@@ -9,7 +9,7 @@ use gyrocal::{
     SavedNumber, Site,
 };
 use gyrocal_calibration::{CalibrationError, declared_attitude, filter_settings};
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{Bench, Manifest, Record, SCHEMA_VERSION};
 use serde::Serialize;
 
 use crate::error::DiagnosisError;
@@ -40,8 +40,33 @@ impl Default for WatchOptions {
     }
 }
 
+/// Result of `gyrocal watch`.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WatchResult {
+    /// [`SCHEMA_VERSION`] at the time of writing.
+    pub schema_version: u32,
+    /// Program, inputs and command that made the result.
+    pub manifest: Manifest,
+    /// The watch.
+    pub watch: WatchReplay,
+}
+
+impl WatchResult {
+    /// The result of a replay.
+    #[must_use]
+    pub fn new(manifest: Manifest, watch: WatchReplay) -> Self {
+        Self {
+            schema_version: SCHEMA_VERSION,
+            manifest,
+            watch,
+        }
+    }
+}
+
 /// The watch over a record.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WatchReplay {
     /// Rows of the record.
     pub rows: usize,
@@ -59,6 +84,7 @@ pub struct WatchReplay {
 
 /// An alarm.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WatchAlarm {
     /// Row of the alarm, counted from 1.
     pub row: usize,
@@ -79,6 +105,7 @@ pub struct WatchAlarm {
 
 /// An effect that an alarm may stand for.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WatchCause {
     /// Id of the effect in the catalogue.
     pub id: String,

@@ -89,6 +89,7 @@ impl BaselineMethod {
 
 /// Result of a baseline method on one record.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BaselineResult {
     /// `true` if the method rejects the nominal model.
     pub detected: bool,

@@ -17,6 +17,7 @@ const CONFIDENCE: f64 = 0.95;
 
 /// Statistics of the calibration over all runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CalibrationSummary {
     /// Number of runs with a calibration.
     pub runs: usize,
@@ -35,8 +36,27 @@ pub struct CalibrationSummary {
     pub coefficients: Vec<CoefficientSummary>,
 }
 
+impl CalibrationSummary {
+    /// Whether the means of the normalised squares lie in their bands.
+    #[must_use]
+    pub fn is_consistent(&self) -> bool {
+        let bands = [self.nees_determined, self.nis];
+        bands.iter().flatten().all(BandedMean::holds)
+    }
+
+    /// The same in words, without a full stop.
+    #[must_use]
+    pub fn verdict(&self) -> &'static str {
+        match self.is_consistent() {
+            true => "errors are as large as the sigmas say",
+            false => "errors are not as large as the sigmas say",
+        }
+    }
+}
+
 /// Mean of normalised squares with its band for correct covariances.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BandedMean {
     /// The mean.
     pub mean: f64,
@@ -50,6 +70,7 @@ pub struct BandedMean {
 
 /// Measured value with the 95 % confidence interval of the true one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MeasuredValue {
     /// The value.
     pub value: f64,
@@ -59,6 +80,7 @@ pub struct MeasuredValue {
 
 /// Statistics of one coefficient over the runs that determined it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CoefficientSummary {
     /// Public name, such as `gyro_x.bias`.
     pub name: String,

@@ -60,6 +60,7 @@ pub struct Outcome<T> {
 
 /// A seed whose job failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Failure {
     /// The seed.
     pub seed: u64,

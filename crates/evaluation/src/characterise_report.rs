@@ -18,6 +18,7 @@ use crate::record_score::RecordScore;
 
 /// Result of `gyrocal characterise`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CharacteriseReport {
     /// [`SCHEMA_VERSION`](gyrocal_record::SCHEMA_VERSION) at the time of writing.
     pub schema_version: u32,
@@ -29,6 +30,7 @@ pub struct CharacteriseReport {
 
 /// Operating characteristics of one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CellReport {
     /// Name of the cell.
     pub cell: String,

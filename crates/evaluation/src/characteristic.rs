@@ -15,6 +15,7 @@ const MISSED_SIGMAS: f64 = 3.090_232_306_167_813;
 
 /// Target of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Target {
     /// At least this.
@@ -25,6 +26,7 @@ pub enum Target {
 
 /// One measured figure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Characteristic {
     /// Name of the cell.
     pub cell: String,

@@ -12,6 +12,7 @@ pub const OWN_METHOD: &str = "gyrocal";
 
 /// One method on the records of one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComparisonRow {
     /// Name of the method.
     pub method: String,

@@ -8,6 +8,7 @@ use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
 
 /// One family of effects in one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FamilyRow {
     /// Id of the effect with `i`, `j`, `k` for its axes.
     pub family: String,

@@ -7,6 +7,7 @@ use crate::calibration_summary::CalibrationSummary;
 
 /// Result of `gyrocal monte-carlo`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MonteCarloReport {
     /// [`SCHEMA_VERSION`](gyrocal_record::SCHEMA_VERSION) at the time of writing.
     pub schema_version: u32,

@@ -2,6 +2,7 @@
 
 mod first_minutes;
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
@@ -13,6 +14,7 @@ use gyrocal_instruments::{Description, Log, StopSettings, find_stops, read_recor
 use gyrocal_pages::{Part, of_diagnosis, of_open_loop, of_tumble, page};
 use gyrocal_record::{Bench, Input, Manifest, Record};
 use gyrocal_testkit::browser::Browser;
+use gyrocal_testkit::contracts::check_contracts;
 use gyrocal_testkit::dialects::check_dialects;
 use gyrocal_testkit::workspace;
 use gyrocal_truth::{Scenario, simulate};
@@ -96,6 +98,7 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
         figures.push(first_minutes::figure()?);
     }
     figures.push(dialects());
+    figures.push(contracts());
     Ok(figures)
 }
 
@@ -116,6 +119,26 @@ fn dialects() -> Figure {
         [all, all],
         right,
     )
+}
+
+/// Commands whose result for programs conforms to its published schema.
+fn contracts() -> Figure {
+    let commands = gyrocal_cli::commands_with_json();
+    let outcomes = check_contracts(&commands, |arguments| {
+        let words = ["gyrocal", "--quiet"].map(str::to_owned);
+        let words = words.iter().chain(arguments).map(OsString::from);
+        match gyrocal_cli::run(words) {
+            0 => Ok(()),
+            code => Err(format!("exit code {code}")),
+        }
+    });
+    for one in outcomes.iter().filter(|one| !one.fault.is_empty()) {
+        println!("{}: {}", one.command, one.fault);
+    }
+    let valid = outcomes.iter().filter(|one| one.fault.is_empty()).count() as f64;
+    let all = commands.len() as f64;
+    let name = format!("JSON of every command valid by its schema, of {all}");
+    Figure::within(&name, [all, all], valid)
 }
 
 /// The words of an error with its advice.

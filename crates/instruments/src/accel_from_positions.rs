@@ -22,6 +22,7 @@ const UNKNOWNS: usize = 9;
 
 /// Errors of three accelerometers that positions determine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AccelErrors {
     /// The nine coefficients: biases, errors of the scales, misalignments.
     pub coefficients: Vec<AccelCoefficient>,
@@ -41,6 +42,7 @@ pub struct AccelErrors {
 
 /// Error of one accelerometer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AccelCoefficient {
     /// Its name, such as `accel_x.bias`, `accel_x.scale` or `accel_x.misalignment_y`: the component along y of the
     /// input axis of x.

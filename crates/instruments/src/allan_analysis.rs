@@ -27,6 +27,7 @@ pub struct AllanSettings {
 
 /// Allan deviations of one column.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AllanColumn {
     /// Name of the column.
     pub name: String,
@@ -36,8 +37,23 @@ pub struct AllanColumn {
     pub noise: Option<NoiseFit>,
 }
 
+/// Result of `gyrocal allan`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct AllanReport {
+    /// Unit of the scaled values.
+    pub unit: String,
+    /// Confidence level of the intervals of deviations.
+    pub confidence: f64,
+    /// Estimator of the deviations, in words.
+    pub estimator: &'static str,
+    /// The columns.
+    pub columns: Vec<AllanColumn>,
+}
+
 /// Allan deviation at one averaging time.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AllanColumnPoint {
     /// Averaging time \[s\].
     pub tau_s: f64,

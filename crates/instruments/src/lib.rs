@@ -82,7 +82,9 @@ pub mod strapdown;
 
 pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
 pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positions};
-pub use allan_analysis::{AllanColumn, AllanColumnPoint, AllanSettings, allan_columns, allan_log};
+pub use allan_analysis::{
+    AllanColumn, AllanColumnPoint, AllanReport, AllanSettings, allan_columns, allan_log,
+};
 pub use clock::Clock;
 pub use columns::{Columns, read_columns, read_described};
 pub use description::Description;

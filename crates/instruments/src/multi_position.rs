@@ -13,6 +13,7 @@ mod positions;
 mod prepare;
 mod regression;
 mod report;
+mod result;
 mod search;
 mod terms;
 
@@ -26,6 +27,7 @@ pub use negative_controls::{NegativeControls, negative_controls};
 pub use positions::{Instrument, Positions};
 pub use prepare::{PreparedTest, SensorReport, StopReport, prepare, prepare_logs};
 pub use report::{CoefficientReport, FTest, Finding, GyroReport, LawReport, MultiPositionReport};
+pub use result::TumbleResult;
 pub use search::{LEAST_FALSE_ALARM, SearchSettings, SearchStep, search};
 pub use terms::Term;
 

@@ -53,6 +53,7 @@ impl Default for RateSettings {
 
 /// Coefficient of a law.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RateCoefficient {
     /// Name, such as `gyro_x.bias`.
     pub name: String,
@@ -68,6 +69,7 @@ pub struct RateCoefficient {
 
 /// Effect beyond the base law.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RateEffect {
     /// Name of the coefficient in the law.
     pub name: String,
@@ -81,6 +83,7 @@ pub struct RateEffect {
 
 /// Coefficients of the noise of a gyro by IEEE Std 952, as the means over blocks show them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RateNoise {
     /// N \[deg/h sqrt(s)\].
     pub random_walk: f64,
@@ -96,6 +99,7 @@ pub struct RateNoise {
 
 /// Law of one gyro.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GyroRates {
     /// Name of the gyro.
     pub gyro: String,
@@ -113,6 +117,7 @@ pub struct GyroRates {
 
 /// Result of an evaluation in rates.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RateReport {
     /// Each log by its means.
     pub logs: Vec<LogRates>,

@@ -6,6 +6,7 @@ use serde::Serialize;
 /// A result with its manifest. The fields of the result are at the same level as those of this
 /// type.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ResultFile<T> {
     /// [`SCHEMA_VERSION`] at the time of writing.
     pub schema_version: u32,

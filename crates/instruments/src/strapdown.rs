@@ -86,6 +86,7 @@ pub struct Imported {
 
 /// Estimates from a log before its calibration.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ImportReport {
     /// Number of samples of the log.
     pub samples: usize,

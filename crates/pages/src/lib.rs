@@ -16,6 +16,7 @@
 //! | [`of_fleet`] | what a fleet shows |
 //! | [`of_tumble`] | a multi-position test with many stops |
 //! | [`of_budget`], [`of_spread`] | sections of an uncertainty budget, of the scatter over runs |
+//! | [`of_monte_carlo`] | a calibration over many simulated records |
 //! | [`of_allan`] | Allan deviations of a log |
 //!
 //! [`plant_pictures`] are those of any plant, [`Ranked`] draws the ranking of both.
@@ -30,8 +31,10 @@ mod calibration;
 mod diagnosis;
 mod error;
 mod fleet;
+mod monte_carlo;
 mod origin;
 mod panels;
+mod pictures;
 mod plan;
 mod plant;
 mod ranked;
@@ -45,6 +48,8 @@ pub use diagnosis::{of_diagnosis, of_result};
 pub use error::PageError;
 pub use fleet::of_fleet;
 pub use gyrocal_report::page::{Page, Part};
+pub use monte_carlo::of_monte_carlo;
+pub use pictures::pictures;
 pub use plan::of_plan;
 pub use plant::{NamedPicture, of_plant, plant_pictures};
 pub use ranked::Ranked;

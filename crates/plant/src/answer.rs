@@ -10,6 +10,7 @@ pub type Interval95 = [f64; 2];
 
 /// The answer of a diagnosis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Diagnosis {
     /// Name of the plant.
     pub plant: String,
@@ -90,6 +91,7 @@ pub struct Alone {
 
 /// A detected effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Found {
     /// The record in which a sudden change happens, from one, if there are several.
     pub record: Option<usize>,
@@ -115,6 +117,7 @@ pub struct Found {
 
 /// An estimated parameter of an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Size {
     /// `size` or `onset_s`.
     pub name: String,
@@ -130,6 +133,7 @@ pub struct Size {
 
 /// A detected term outside of the catalogue.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Unexplained {
     /// The rate, output or parameter.
     pub channel: String,
@@ -145,6 +149,7 @@ pub struct Unexplained {
 
 /// An effect that was not tested.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeftOut {
     /// Its id.
     pub effect: String,
@@ -154,6 +159,7 @@ pub struct LeftOut {
 
 /// An estimated parameter or initial state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Estimate {
     /// Its name.
     pub name: String,
@@ -173,6 +179,7 @@ pub struct Estimate {
 
 /// An estimated noise.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NoiseLevel {
     /// The output or rate.
     pub of: String,
@@ -184,6 +191,7 @@ pub struct NoiseLevel {
 
 /// Root mean square error of an output in simulations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OutputError {
     /// The output.
     pub output: String,
@@ -197,6 +205,7 @@ pub struct OutputError {
 
 /// Test of what the extended model leaves of an output.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Remainder {
     /// The output.
     pub output: String,
@@ -206,6 +215,7 @@ pub struct Remainder {
 
 /// Both models on a later record, with the parameters of the first.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
     /// Rows of the later record.
     pub rows: usize,

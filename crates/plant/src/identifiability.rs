@@ -42,6 +42,7 @@ const NAMED: f64 = 0.02;
 
 /// A direction that a record does not determine.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NullDirection {
     /// Whether no record determines it; this record does not otherwise.
     pub is_gauge: bool,
@@ -53,6 +54,7 @@ pub struct NullDirection {
 
 /// One name of a direction.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NullPart {
     /// Parameter or initial state.
     pub name: String,

@@ -49,6 +49,7 @@ const MOST_SUBSTEPS: usize = 64;
 
 /// How the best fit was found.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Starts {
     /// Starts that were tried.
     pub tried: usize,

@@ -60,9 +60,12 @@ mod content;
 mod document;
 mod error;
 mod excerpt;
+mod extension_report;
 pub mod fields;
 mod gimbals;
 mod header;
+#[cfg(feature = "schema")]
+mod json_schema;
 mod manifest;
 mod model_file;
 mod module_name;
@@ -87,7 +90,10 @@ pub use bound::Bound;
 pub use content::open_content;
 pub use document::Document;
 pub use error::{Error, InputError, InputErrorKind};
+pub use extension_report::{ExtensionReport, LeftOut};
 pub use gimbals::GimbalLimits;
+#[cfg(feature = "schema")]
+pub use json_schema::written_schema;
 pub use manifest::{Input, Manifest};
 pub use model_file::{KnownEffect, ModelFile, ParameterEstimate, Standing};
 pub use module_name::module_name;

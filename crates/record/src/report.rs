@@ -10,6 +10,7 @@ pub const SCHEMA_VERSION: u32 = 1;
 
 /// Result of `gyrocal calibrate`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CalibrationReport {
     /// [`SCHEMA_VERSION`] at the time of writing.
     pub schema_version: u32,
@@ -92,6 +93,7 @@ impl CalibrationReport {
 
 /// Test of a record for effects that the model lacks: the first detection test of a diagnosis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EffectTest {
     /// The record, as its path was given.
     pub record: String,
@@ -107,6 +109,7 @@ pub struct EffectTest {
 
 /// The drift coefficients with given effects in the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FittedEffects {
     /// The effects, in the order given.
     pub effects: Vec<FittedEffect>,
@@ -121,6 +124,7 @@ pub struct FittedEffects {
 
 /// An effect that was fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FittedEffect {
     /// Its id.
     pub effect: String,
@@ -132,6 +136,7 @@ pub struct FittedEffect {
 
 /// A parameter of an effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FittedParameter {
     /// `size`, `onset_s`, `time_constant_h`, `sine`, `cosine`, ….
     pub name: String,
@@ -147,6 +152,7 @@ pub struct FittedParameter {
 
 /// One estimated coefficient.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Coefficient {
     /// `gyro_x.bias`, `gyro_x.g_x`, `gyro_x.g_xx`, and so on.
     pub name: String,
@@ -163,6 +169,7 @@ pub struct Coefficient {
 
 /// What a calibration says of its records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum FitVerdict {
@@ -180,6 +187,7 @@ pub enum FitVerdict {
 
 /// Method of estimation of the coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum CalibrationMethod {
@@ -193,6 +201,7 @@ pub enum CalibrationMethod {
 
 /// A combination of coefficients that the records do not determine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct UndeterminedReport {
     /// The combination in words, its small parts left out.
     pub text: String,
@@ -204,6 +213,7 @@ pub struct UndeterminedReport {
 
 /// Results for one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunReport {
     /// The record, as its path was given.
     pub record: String,
@@ -230,6 +240,7 @@ pub struct RunReport {
 
 /// Averaging of the rows of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AveragedReport {
     /// Length of the averaging intervals.
     pub interval_s: f64,
@@ -243,6 +254,7 @@ pub struct AveragedReport {
 
 /// Constant drift of a gyro in one turn-on less its mean over turn-ons.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TurnOn {
     /// The estimate \[deg/h\].
     pub estimate: f64,
@@ -252,6 +264,7 @@ pub struct TurnOn {
 
 /// Search for an unknown azimuth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AzimuthReport {
     /// Number of azimuths tried.
     pub starts: usize,
@@ -263,6 +276,7 @@ pub struct AzimuthReport {
 
 /// The best azimuth of those not chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OtherAzimuth {
     /// Angle from the chosen azimuth to this one.
     pub relative_deg: f64,
@@ -292,6 +306,7 @@ pub struct NoiseRatioReport {
 
 /// Sensitivity of the coefficients to an error of a site quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SiteReport {
     /// `latitude`, `earth_rate` or `gravity`.
     pub quantity: String,
@@ -308,6 +323,7 @@ pub struct SiteReport {
 
 /// Result of `gyrocal simulate`: the truth of a record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SimulationReport {
     /// [`SCHEMA_VERSION`] at the time of writing.
     pub schema_version: u32,
@@ -325,6 +341,7 @@ pub struct SimulationReport {
 
 /// One coefficient of a simulated platform.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TrueCoefficient {
     /// `gyro_x.bias`, `gyro_x.g_x`, `gyro_x.g_xx`, and so on.
     pub name: String,

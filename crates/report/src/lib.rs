@@ -18,6 +18,7 @@
 //! | [`CrossValidation`] | gain of an extended model on held-out data and on a later record |
 //! | [`TermContributions`] | partial residuals of single terms of a law |
 //! | [`Comparison`] | estimates of several estimators with error bars |
+//! | [`page::Chart`], [`page::Bars`], [`page::Estimates`] | the same as on a page |
 //!
 //! # Example
 //!
@@ -65,6 +66,7 @@
 
 mod axes;
 mod axis;
+mod bars;
 mod canvas;
 mod check;
 mod comparison;
@@ -78,6 +80,7 @@ mod layout;
 mod number;
 mod open_loop;
 pub mod page;
+mod panels;
 mod picture;
 #[cfg(feature = "png")]
 mod png;

@@ -5,6 +5,7 @@
 //! - `filters`: a platform with any number of states, rounding errors against 400-bit references,
 //!   Kalman filters of other packages, and times of a step.
 //! - `browser`: a headless browser for pages.
+//! - `contracts`: results of all commands against their published schemas.
 //! - `dialects`: a test set of formats and dialects of records.
 //! - `calibration`: dense least squares for short records, and signatures by finite differences of the
 //!   independent simulation.
@@ -29,6 +30,8 @@ pub mod broken_setups;
 #[cfg(feature = "browser")]
 pub mod browser;
 mod command;
+#[cfg(feature = "contracts")]
+pub mod contracts;
 mod copy;
 #[cfg(feature = "calibration")]
 pub mod dense_least_squares;

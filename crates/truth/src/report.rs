@@ -8,6 +8,7 @@ use crate::simulation::Simulation;
 
 /// Truth of a simulated record, hidden effects included.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TruthReport {
     /// Coefficients, rows and attitudes.
     #[serde(flatten)]
@@ -44,6 +45,7 @@ impl TruthReport {
 
 /// One hidden effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HiddenReport {
     /// Its id.
     pub effect: String,
@@ -53,6 +55,7 @@ pub struct HiddenReport {
 
 /// One parameter of a hidden effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ParameterReport {
     /// `size`, `onset_s`, and so on.
     pub name: String,

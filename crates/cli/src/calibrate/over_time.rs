@@ -3,22 +3,21 @@
 use std::path::Path;
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options};
-use gyrocal_pages::{CalibratedRecord, of_calibration};
-use gyrocal_record::{CalibrationReport, Outputs};
+use gyrocal_pages::{CalibratedRecord, Part, of_calibration};
+use gyrocal_record::CalibrationReport;
 use gyrocal_setup::PlatformKind;
 
 use super::CalibrationRun;
 use crate::{Failure, page};
 
-/// Stages the report. A platform that was computed from a log, and a record
-/// that cannot be fitted alone, have no charts over time.
-pub(super) fn stage(
+/// The page of records, the first of which is at `path`. A platform that was computed from a log, and a
+/// record that cannot be fitted alone, have no charts over time.
+pub(super) fn part(
     path: &Path,
     report: &CalibrationReport,
     found: &CalibrationRun,
     options: &Options,
-    outputs: &mut Outputs,
-) -> Result<(), Failure> {
+) -> Result<Part, Failure> {
     let measurements = found.measurements.iter();
     let fits = measurements.filter_map(|measurement| {
         if found.kind != PlatformKind::Stabilised || found.calibration.fit.is_gross() {
@@ -39,6 +38,5 @@ pub(super) fn stage(
         fit,
     });
     let records: Vec<_> = records.collect();
-    let part = page::part(path, of_calibration(report, &records))?;
-    page::stage(path, vec![part], outputs)
+    page::part(path, of_calibration(report, &records))
 }

@@ -5,8 +5,9 @@ use std::path::Path;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::shared_rows;
 use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records, prose};
-use gyrocal_pages::{of_diagnosis, of_result};
+use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
 use gyrocal_record::{Bench, Outputs, RecordFile, printable_path};
+use gyrocal_report::Picture;
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 
@@ -14,7 +15,7 @@ use super::{DiagnoseArguments, NotDiagnosed, exit_code};
 use crate::layout::layout;
 use crate::outputs::manifest;
 use crate::progress::Progress;
-use crate::{Answer, Failure, page};
+use crate::{Answer, Failure, page, pictures};
 
 /// Runs the command; `inputs` are each record with its bench file.
 pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Answer, Failure> {
@@ -54,13 +55,23 @@ pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Ans
         layout(&prose::diagnosis(result)),
     );
     let mut outputs = Outputs::new();
-    if let Some(path) = &arguments.report {
+    if arguments.report.is_some() || arguments.figures.is_some() {
         let mut parts = vec![of_result(result)];
         for ((record, alone), bench) in arguments.records.iter().zip(&found.alone).zip(&benches) {
             parts.push(page::part(record, of_diagnosis(alone, bench))?);
         }
-        page::stage(path, parts, &mut outputs)?;
-        answer.wrote(path, page::WHAT);
+        if let Some(folder) = &arguments.figures {
+            let drawn = drawn(&parts);
+            let record = &arguments.records[0];
+            answer.wrote(
+                folder,
+                &pictures::stage(record, &drawn, folder, &mut outputs)?,
+            );
+        }
+        if let Some(path) = &arguments.report {
+            page::stage(path, parts, &mut outputs)?;
+            answer.wrote(path, page::WHAT);
+        }
     }
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, result)?;
@@ -72,10 +83,23 @@ pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Ans
     Ok(answer)
 }
 
+/// The charts of all parts: those of the answer to all records, and of each record by its number.
+fn drawn(parts: &[Part]) -> Vec<(String, Box<dyn Picture>)> {
+    let of_part = |(place, part): (usize, &Part)| {
+        let of = match place {
+            0 => "together".to_owned(),
+            _ => format!("record-{place}"),
+        };
+        charts(part.clone())
+            .into_iter()
+            .map(move |(name, picture)| (format!("{of}-{name}"), picture))
+    };
+    parts.iter().enumerate().flat_map(of_part).collect()
+}
+
 /// Refuses options that go with one record.
 fn refuse_options(arguments: &DiagnoseArguments) -> Result<(), Failure> {
     let one = [
-        ("--figures", arguments.figures.is_some()),
         ("--validate", arguments.validate.is_some()),
         ("--filter", arguments.filter.is_some()),
     ];

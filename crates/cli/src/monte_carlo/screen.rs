@@ -10,20 +10,15 @@ use super::MonteCarloArguments;
 /// Whether errors are as large as the sigmas say, and by how much they are not.
 pub(super) fn first(arguments: &MonteCarloArguments, summary: &CalibrationSummary) -> Screen {
     let bands = [summary.nees_determined, summary.nis];
-    let holds = bands.iter().flatten().all(BandedMean::holds);
-    let runs = format!("{} runs, {} failed: ", summary.runs, summary.failures.len());
-    let mut screen = if holds {
-        Screen::new(
-            Standing::Good,
-            "CONSISTENT",
-            runs + "errors are as large as the sigmas say",
-        )
-    } else {
-        Screen::new(
-            Standing::Bad,
-            "INCONSISTENT",
-            runs + "errors are not as large as the sigmas say",
-        )
+    let said = format!(
+        "{} runs, {} failed: {}",
+        summary.runs,
+        summary.failures.len(),
+        summary.verdict()
+    );
+    let mut screen = match summary.is_consistent() {
+        true => Screen::new(Standing::Good, "CONSISTENT", said),
+        false => Screen::new(Standing::Bad, "INCONSISTENT", said),
     };
     for (name, banded) in ["errors (NEES)", "innovations (NIS)"]
         .into_iter()

@@ -146,6 +146,7 @@ fn banded_text(banded: &BandedMean) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::page::Views;
 
     fn summary(rmse_over_bound: Option<MeasuredValue>) -> CalibrationSummary {
         let share = MeasuredValue {
@@ -192,6 +193,7 @@ mod tests {
             results: None,
             threads: None,
             json: None,
+            views: Views::default(),
             population: false,
             streaming: false,
         };

@@ -1,9 +1,17 @@
-//! The JSON contracts: their committed schemas, and that results conform to them.
+//! The JSON contracts: their committed schemas, and that results conform to them. `Folder` holds every
+//! result that a test of this package writes against its schema.
 
 use std::fs;
 
-use jsonschema::Validator;
-use serde_json::Value;
+use gyrocal_diagnosis::WatchResult;
+use gyrocal_evaluation::{CharacteriseReport, MonteCarloReport};
+use gyrocal_instruments::multi_position::TumbleResult;
+use gyrocal_instruments::rates::RateReport;
+use gyrocal_instruments::strapdown::ImportReport;
+use gyrocal_instruments::{AllanReport, Description, ResultFile};
+use gyrocal_record::{CalibrationReport, ExtensionReport, written_schema};
+use gyrocal_testkit::contracts::{check_contracts, schema_of, violations};
+use gyrocal_truth::TruthReport;
 
 use crate::folder::{Folder, repository};
 
@@ -11,56 +19,59 @@ use crate::folder::{Folder, repository};
 /// command schema`.
 const WRITE: &str = "GYROCAL_WRITE_SCHEMAS";
 
-const DIAGNOSIS: &str = "docs/schema/diagnosis.schema.json";
-const PLAN: &str = "docs/schema/plan.schema.json";
 const LOG: &str = "docs/schema/log.schema.json";
 
-const UNCERTAINTY: &str = "docs/schema/uncertainty.schema.json";
-
-/// Checks that a result of a command conforms to a committed schema.
+/// Checks the result for programs of a command line, if it asks for one.
 #[track_caller]
-fn assert_conforms(folder: &Folder, name: &str, schema: &str) {
-    let schema = fs::read_to_string(repository(schema)).unwrap();
-    let schema: Value = serde_json::from_str(&schema).unwrap();
-    let validator: Validator = jsonschema::validator_for(&schema).unwrap();
-    let result: Value = serde_json::from_str(&folder.text(name)).unwrap();
-    let errors: Vec<String> = validator
-        .iter_errors(&result)
-        .map(|error| format!("{}: {error}", error.instance_path()))
-        .collect();
-    assert!(errors.is_empty(), "{name}: {}", errors.join("\n"));
-}
-
-/// Checks that a diagnosis conforms to its schema.
-#[track_caller]
-pub(crate) fn assert_diagnosis(folder: &Folder, name: &str) {
-    assert_conforms(folder, name, DIAGNOSIS);
-}
-
-/// Checks that a plan conforms to its schema.
-#[track_caller]
-pub(crate) fn assert_plan(folder: &Folder, name: &str) {
-    assert_conforms(folder, name, PLAN);
-}
-
-/// Checks that an uncertainty budget conforms to its schema.
-#[track_caller]
-pub(crate) fn assert_uncertainty(folder: &Folder, name: &str) {
-    assert_conforms(folder, name, UNCERTAINTY);
+pub(crate) fn assert_conforms(folder: &Folder, arguments: &[&str]) {
+    let json = arguments.iter().position(|one| *one == "--json");
+    let Some(name) = json.and_then(|at| arguments.get(at + 1)) else {
+        return;
+    };
+    let words = [1, 2].map(|count| arguments[..count.min(arguments.len())].join(" "));
+    let schema = words.iter().find_map(|command| schema_of(command)).unwrap();
+    // Devices keep nothing.
+    if folder.path(name).is_file() {
+        let found = violations(&schema, &folder.text(name));
+        assert!(found.is_empty(), "{name}: {found}");
+    }
 }
 
 #[test]
 fn schemas_that_are_committed_are_those_of_the_types() {
     let schemas = [
-        (DIAGNOSIS, gyrocal_diagnosis::result::schema()),
-        (PLAN, gyrocal_design::schema()),
-        (UNCERTAINTY, gyrocal_diagnosis::uncertainty_schema()),
-        (LOG, gyrocal_instruments::Description::schema()),
+        ("allan", written_schema::<ResultFile<AllanReport>>()),
+        ("calibrate", written_schema::<CalibrationReport>()),
+        ("characterise", written_schema::<CharacteriseReport>()),
+        ("diagnose", gyrocal_diagnosis::result::schema()),
+        ("extend", written_schema::<ExtensionReport>()),
+        (
+            "import strapdown",
+            written_schema::<ResultFile<ImportReport>>(),
+        ),
+        ("monte-carlo", written_schema::<MonteCarloReport>()),
+        ("plan", gyrocal_design::schema()),
+        (
+            "plant diagnose",
+            written_schema::<gyrocal_plant::answer::Diagnosis>(),
+        ),
+        ("rates", written_schema::<ResultFile<RateReport>>()),
+        ("report", gyrocal_diagnosis::uncertainty_schema()),
+        ("simulate", written_schema::<TruthReport>()),
+        ("tumble", written_schema::<ResultFile<TumbleResult>>()),
+        ("watch", written_schema::<WatchResult>()),
     ];
-    for (path, schema) in schemas {
+    let commands: Vec<&str> = schemas.iter().map(|(command, _)| *command).collect();
+    assert_eq!(commands, gyrocal_cli::commands_with_json());
+    let mut files: Vec<_> = schemas
+        .into_iter()
+        .map(|(command, schema)| (schema_of(command).unwrap(), schema))
+        .collect();
+    files.push((LOG.to_owned(), Description::schema()));
+    for (path, schema) in files {
         let mut expected = serde_json::to_string_pretty(&schema).unwrap();
         expected.push('\n');
-        let path = repository(path);
+        let path = repository(&path);
         if std::env::var_os(WRITE).is_some() {
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(&path, &expected).unwrap();
@@ -75,9 +86,35 @@ fn schemas_that_are_committed_are_those_of_the_types() {
 }
 
 #[test]
-fn a_result_that_lacks_a_key_does_not_conform() {
-    let schema = fs::read_to_string(repository(DIAGNOSIS)).unwrap();
-    let schema: Value = serde_json::from_str(&schema).unwrap();
-    let validator = jsonschema::validator_for(&schema).unwrap();
-    assert!(!validator.is_valid(&serde_json::json!({ "schema_version": 2 })));
+fn results_of_all_commands_conform_on_the_examples() {
+    let folder = Folder::new();
+    let outcomes = check_contracts(&gyrocal_cli::commands_with_json(), |arguments| {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let output = folder.run(&arguments);
+        match output.status.success() {
+            true => Ok(()),
+            false => Err(String::from_utf8_lossy(&output.stderr).into_owned()),
+        }
+    });
+    for one in outcomes {
+        assert!(one.fault.is_empty(), "{}: {}", one.command, one.fault);
+    }
+}
+
+#[test]
+fn a_result_that_lacks_a_key_or_has_a_wrong_type_does_not_conform() {
+    let schema = schema_of("diagnose").unwrap();
+    let lacking = violations(&schema, "{\"schema_version\": 2}");
+    assert!(lacking.contains("manifest"), "{lacking}");
+    let schema = schema_of("extend").unwrap();
+    let manifest = "{\"program\": \"gyrocal\", \"version\": \"0\", \"model_hash\": \"\", \
+                    \"inputs\": [], \"seed\": 0, \"command\": \"\"}";
+    let of = |effects: &str| {
+        format!(
+            "{{\"schema_version\": 1, \"manifest\": {manifest}, \"effects\": {effects}, \
+             \"left_out\": []}}"
+        )
+    };
+    assert_eq!(violations(&schema, &of("[]")), "");
+    assert!(!violations(&schema, &of("[1]")).is_empty());
 }

@@ -7,6 +7,8 @@ use std::process::Output;
 use assert_cmd::Command;
 use tempfile::TempDir;
 
+use crate::contract::assert_conforms;
+
 /// Temporary folder of one test, in which the command runs.
 pub(crate) struct Folder {
     folder: TempDir,
@@ -105,11 +107,12 @@ impl Folder {
         self.succeed_as_is(&detailed)
     }
 
-    /// Runs a command that must succeed; returns stdout.
+    /// Runs a command that must succeed; returns stdout. A result for programs has to conform to its schema.
     pub(crate) fn succeed_as_is(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(0), "{errors}");
+        assert_conforms(self, arguments);
         String::from_utf8(output.stdout).unwrap()
     }
 

@@ -74,7 +74,10 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
         "p.json",
         "--report",
         "p.html",
+        "--figures",
+        "pictures",
     ]);
+    assert_picture(&folder, "pictures/proposals.svg", &["Proposals"]);
     assert_page(&folder, "p.html", &["Next run: platform angles"]);
 
     folder.succeed(&["report", "d.json", "p.json", "--out", "both.html"]);
@@ -98,7 +101,12 @@ fn reports_of_a_calibration() {
         "c.html",
         "--json",
         "c.json",
+        "--figures",
+        "pictures",
     ]);
+    for name in ["residual", "convergence", "coefficients"] {
+        assert_picture(&folder, &format!("pictures/{name}.svg"), &["gyro"]);
+    }
     let words = [
         "Simulation against measurement",
         "Drift coefficients",
@@ -107,6 +115,52 @@ fn reports_of_a_calibration() {
     assert_page(&folder, "c.html", &words);
     folder.succeed(&["report", "c.json"]);
     assert_page(&folder, "report.html", &["Drift coefficients"]);
+}
+
+#[test]
+fn reports_and_pictures_of_many_runs_and_of_a_noise() {
+    let folder = folder();
+    folder.put_example("hidden_fault.scenario.toml");
+    let arguments = [
+        "monte-carlo",
+        "hidden_fault.scenario.toml",
+        "--seeds",
+        "0..2",
+        "--report",
+        "m.html",
+        "--figures",
+        "runs",
+    ];
+    let said = folder.succeed(&arguments);
+    assert!(said.contains("m.html: the report"), "{said}");
+    let words = ["Runs in their band", "gyro_x.bias", "seeds 0 to 1"];
+    assert_page(&folder, "m.html", &words);
+    assert_picture(
+        &folder,
+        "runs/coefficients.svg",
+        &["Errors over sigmas", "gyro_z.g_zz"],
+    );
+    assert_picture(&folder, "runs/coefficients-2.svg", &["share of runs"]);
+
+    let rows = (0..2000_u32).map(|row| format!("{}\n", row.wrapping_mul(2_654_435_761) >> 8));
+    folder.put("l.csv", "rate\n".to_owned() + &rows.collect::<String>());
+    let line = "allan l.csv --columns rate --rate-hz 10 --report a.html --figures noise";
+    folder.succeed(&line.split(' ').collect::<Vec<_>>());
+    assert_page(&folder, "a.html", &["averaging time"]);
+    assert_picture(
+        &folder,
+        "noise/deviation.svg",
+        &["averaging time [s]", "rate"],
+    );
+}
+
+/// A picture with these words.
+fn assert_picture(folder: &Folder, name: &str, words: &[&str]) {
+    let svg = folder.text(name);
+    assert!(svg.starts_with("<svg") && !svg.contains("NaN"), "{name}");
+    for word in words {
+        assert!(svg.contains(word), "{name} lacks {word}");
+    }
 }
 
 #[test]
@@ -188,7 +242,7 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     ]);
     assert_eq!(output.status.code(), Some(0));
     let said = String::from_utf8(output.stdout).unwrap();
-    crate::contract::assert_uncertainty(&folder, "budget.json");
+    crate::contract::assert_conforms(&folder, &["report", "--json", "budget.json"]);
     let found: serde_json::Value = serde_json::from_str(&folder.text("budget.json")).unwrap();
     let records = found["records"].as_array().unwrap();
     // A fault of several explanations leaves models open, whose estimates scatter.

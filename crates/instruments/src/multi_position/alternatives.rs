@@ -11,6 +11,7 @@ use super::terms::Term;
 
 /// A term in place of a finding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Alternative {
     /// Name of the term.
     pub effect: String,

@@ -10,6 +10,7 @@ use super::terms::Term;
 
 /// Gain of the extended over the nominal laws at held-out stops.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CrossValidation {
     /// Number of successive stops held out together.
     pub left_out: usize,

@@ -25,6 +25,7 @@ const SMALLEST_SHARE: f64 = 0.03;
 
 /// Result of a test with few stops.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FewPositionReport {
     /// Number of stops.
     pub stops: usize,
@@ -36,6 +37,7 @@ pub struct FewPositionReport {
 
 /// Law of one gyro.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FewPositionLaw {
     /// Name of the gyro.
     pub gyro: String,
@@ -57,6 +59,7 @@ pub struct FewPositionLaw {
 
 /// A significant term beyond the nominal law.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FewPositionFinding {
     /// Name of the term.
     pub effect: String,

@@ -10,6 +10,7 @@ use super::terms::Term;
 
 /// Findings in data without effects, or with other ones.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NegativeControls {
     /// Number of data sets with specific forces and times permuted among the stops.
     pub shuffles: usize,

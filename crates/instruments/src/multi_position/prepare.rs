@@ -31,6 +31,7 @@ pub struct PreparedTest {
 
 /// A stop, as it is serialised.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StopReport {
     /// Time of its first sample.
     pub from_s: f64,
@@ -48,6 +49,7 @@ pub struct StopReport {
 
 /// Calibration of the sensors, as it is serialised.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SensorReport {
     /// The stops, in the order of time.
     pub stops: Vec<StopReport>,

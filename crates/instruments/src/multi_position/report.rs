@@ -10,6 +10,7 @@ use super::terms::Term;
 
 /// Result of a multi-position test.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MultiPositionReport {
     /// Number of stops.
     pub stops: usize,
@@ -42,6 +43,7 @@ impl MultiPositionReport {
 
 /// Nominal and extended law of one gyro.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GyroReport {
     /// Name of the gyro.
     pub gyro: String,
@@ -59,6 +61,7 @@ pub struct GyroReport {
 
 /// Fit of one law.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LawReport {
     /// Its coefficients.
     pub coefficients: Vec<CoefficientReport>,
@@ -76,6 +79,7 @@ pub struct LawReport {
 
 /// One coefficient of a law.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CoefficientReport {
     /// Its name.
     pub name: String,
@@ -89,6 +93,7 @@ pub struct CoefficientReport {
 
 /// F test of a law against a larger one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FTest {
     /// The F statistic.
     pub f: f64,
@@ -100,6 +105,7 @@ pub struct FTest {
 
 /// A term that the nominal law lacks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Finding {
     /// Index of the gyro.
     #[serde(skip)]

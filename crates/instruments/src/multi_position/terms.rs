@@ -87,6 +87,7 @@ const INDICES: [Indices; 3] = [
 
 /// One term of the drift of one gyro.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Term {
     /// D_F, D_I or D_II of the nominal law: proportional to this power of specific force along the input
     /// axis.

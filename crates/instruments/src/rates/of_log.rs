@@ -12,6 +12,7 @@ use crate::log::Log;
 
 /// What the means of one log tell. A mean is that of the whole log: what changes slowly is part of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LogRates {
     /// Length of the log.
     pub duration_s: f64,

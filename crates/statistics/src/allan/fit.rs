@@ -30,6 +30,7 @@ pub const COEFFICIENT_CONFIDENCE: f64 = 0.95;
 
 /// Coefficient of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Coefficient {
     /// The part.
     pub part: NoisePart,
@@ -42,6 +43,7 @@ pub struct Coefficient {
 
 /// Fitted Allan deviation at one averaging time, for a plot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FittedPoint {
     /// Averaging time \[s\].
     pub tau_s: f64,
@@ -56,6 +58,7 @@ pub struct FittedPoint {
 
 /// Parts of a noise with a test of fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NoiseFit {
     /// Coefficients in the order of [`NoisePart::ALL`].
     pub coefficients: Vec<Coefficient>,

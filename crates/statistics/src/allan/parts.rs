@@ -8,6 +8,7 @@ use crate::math::ln;
 
 /// A part of the noise of a rate, by the slope of its Allan deviation (IEEE Std 952, annex C).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum NoisePart {

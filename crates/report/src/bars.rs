@@ -1,0 +1,207 @@
+//! Bars and estimates of a page as pictures.
+
+use crate::axis::Axis;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
+use crate::check;
+use crate::comparison::{ComparedEstimate, ComparedQuantity, Comparison};
+use crate::error::Error;
+use crate::figure::{Legend, figure};
+use crate::geometry::Rect;
+use crate::number::short;
+use crate::page::{Bars, Estimates};
+use crate::picture::Picture;
+use crate::span::Span;
+use crate::style::{BELOW, BLACK, BODY, GREY, HAIR, INK, SMALL, THIN, colour};
+use crate::text;
+
+/// Height of a bar with its gap and of the heading of a group, px.
+const PITCH: f64 = 19.0;
+const HEAD: f64 = 24.0;
+
+/// Share of the width that names may take, and the notes beside the bars.
+const NAMES: f64 = 0.4;
+const NOTES: f64 = 0.2;
+
+/// Quantities side by side.
+const IN_A_ROW: usize = 3;
+
+impl Picture for Bars {
+    fn to_svg(&self) -> Result<String, Error> {
+        check::non_empty("the list of groups of bars", &self.groups)?;
+        for bar in self.groups.iter().flat_map(|group| &group.bars) {
+            check::not_infinite(|| format!("the length of {}", bar.label), &[bar.value])?;
+        }
+        let bars: usize = self.groups.iter().map(|group| group.bars.len()).sum();
+        let height = PITCH * bars as f64 + HEAD * self.groups.len() as f64 + BELOW;
+        let threshold = self.threshold.iter();
+        let legend: Vec<Legend> = threshold
+            .map(|(_, name)| Legend::line(LineStyle::dashed(BLACK, THIN), name.as_str()))
+            .collect();
+        Ok(figure(
+            &self.title,
+            &self.omitted,
+            &legend,
+            height,
+            |canvas, body| self.draw(canvas, body),
+        ))
+    }
+}
+
+impl Bars {
+    fn draw(&self, canvas: &mut Canvas, body: Rect) {
+        let bars = || self.groups.iter().flat_map(|group| &group.bars);
+        let widths = bars().map(|bar| text::width_px(&bar.label, SMALL, false));
+        let names_px = (widths.fold(0.0, f64::max) + 8.0).min(NAMES * body.width());
+        let frame = Rect {
+            left: body.left + names_px,
+            right: body.right - NOTES * body.width(),
+            bottom: body.bottom - BELOW,
+            ..body
+        };
+        let ends = bars().map(|bar| bar.value);
+        let threshold = self.threshold.as_ref().map(|(value, _)| *value);
+        let span = Span::of(ends.chain(threshold).chain([0.0]));
+        let span = span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).open();
+        let axis = Axis::linear(span, &self.quantity, "", (frame.width() / 70.0) as usize);
+        let x_of = |value: f64| frame.left + axis.at(value) * frame.width();
+        for (value, label) in &axis.ticks {
+            let x = x_of(*value);
+            canvas.line(
+                &[(x, frame.top), (x, frame.bottom)],
+                LineStyle::solid(GREY, 0.5 * HAIR),
+            );
+            let style = TextStyle::new(SMALL, Align::Middle).colour(INK);
+            canvas.text(label, (x, frame.bottom + 12.0), style);
+        }
+        let title = (frame.centre().0, frame.bottom + 28.0);
+        canvas.text(
+            &axis.title,
+            title,
+            TextStyle::new(SMALL, Align::Middle).colour(INK),
+        );
+        let mut y = frame.top;
+        for group in &self.groups {
+            let style = TextStyle::new(BODY, Align::Start).bold();
+            canvas.text(&group.label, (body.left, y + 0.5 * HEAD), style);
+            y += HEAD;
+            for bar in &group.bars {
+                let middle = y + 0.5 * PITCH;
+                let name = text::fit(&bar.label, SMALL, false, names_px - 8.0);
+                let at = (frame.left - 6.0, middle);
+                canvas.text(&name, at, TextStyle::new(SMALL, Align::End));
+                let end = x_of(if bar.value.is_nan() { 0.0 } else { bar.value });
+                let corners = (
+                    (x_of(0.0).min(end), y + 3.0),
+                    (x_of(0.0).max(end), y + PITCH - 3.0),
+                );
+                canvas.rect(corners.0, corners.1, colour(bar.tint), 1.0);
+                let number = match bar.value.is_nan() {
+                    true => "not determined".to_owned(),
+                    false => short(bar.value, 3),
+                };
+                let words = match bar.note.is_empty() {
+                    true => number,
+                    false => format!("{number}, {}", bar.note),
+                };
+                let words = text::fit(&words, SMALL, false, body.right - end - 8.0);
+                let style = TextStyle::new(SMALL, Align::Start).colour(INK);
+                canvas.text(&words, (end.max(frame.left) + 6.0, middle), style);
+                y += PITCH;
+            }
+        }
+        if let Some(value) = threshold {
+            let x = x_of(value);
+            let style = LineStyle::dashed(BLACK, THIN);
+            canvas.line(&[(x, frame.top), (x, frame.bottom)], style);
+        }
+    }
+}
+
+impl Picture for Estimates {
+    fn to_svg(&self) -> Result<String, Error> {
+        let estimators = self.models.iter().map(|(name, _)| name.clone());
+        let quantities = self.rows.iter().map(|row| ComparedQuantity {
+            name: row.name.clone(),
+            unit: row.unit.clone(),
+            reference: None,
+            estimates: row
+                .values
+                .iter()
+                .map(|one| ComparedEstimate {
+                    value: one.value,
+                    sigma: one.sigma,
+                })
+                .collect(),
+        });
+        let comparison = Comparison {
+            title: self.title.clone(),
+            subtitle: String::new(),
+            estimators: estimators.collect(),
+            tints: self.models.iter().map(|(_, tint)| *tint).collect(),
+            quantities: quantities.collect(),
+            columns: IN_A_ROW,
+            reference_label: String::new(),
+        };
+        comparison.to_svg()
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::page::{Bar, BarGroup, EstimateRow, Tint, ValueWithSigma};
+
+    #[test]
+    fn bars_have_names_numbers_and_their_threshold() {
+        let bar = |label: &str, value| Bar {
+            label: label.to_owned(),
+            value,
+            tint: Tint::Extended,
+            note: String::new(),
+        };
+        let bars = Bars {
+            title: "Ranking".to_owned(),
+            quantity: "statistic".to_owned(),
+            threshold: Some((3.0, "detection threshold".to_owned())),
+            groups: vec![BarGroup {
+                label: "finding 1".to_owned(),
+                bars: vec![bar("gyro_y.g_z", 12.5), bar("gyro_x.ramp", f64::NAN)],
+            }],
+            omitted: "others are left out".to_owned(),
+        };
+        let svg = bars.to_svg().unwrap();
+        for words in [
+            "gyro_y.g_z",
+            "12.5",
+            "not determined",
+            "detection threshold",
+            "others are left out",
+            "finding 1",
+        ] {
+            assert!(svg.contains(words), "{words}");
+        }
+        assert!(!svg.contains("NaN"), "{svg}");
+    }
+
+    #[test]
+    fn estimates_are_compared() {
+        let estimates = Estimates {
+            title: "Coefficients".to_owned(),
+            models: vec![("nominal model".to_owned(), Tint::Nominal)],
+            rows: vec![EstimateRow {
+                name: "gyro_x.bias".to_owned(),
+                unit: "deg/h".to_owned(),
+                values: vec![ValueWithSigma {
+                    value: 0.5,
+                    sigma: 0.1,
+                }],
+                note: String::new(),
+                strong: false,
+            }],
+            note_head: String::new(),
+        };
+        let svg = estimates.to_svg().unwrap();
+        assert!(svg.contains("gyro_x.bias") && svg.contains("nominal model"));
+    }
+}

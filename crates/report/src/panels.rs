@@ -1,0 +1,313 @@
+//! Charts of a page as pictures.
+
+use crate::axes::{Axes, Labels};
+use crate::axis::Axis;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
+use crate::error::Error;
+use crate::figure::{Legend, figure};
+use crate::geometry::Rect;
+use crate::layout::Layout;
+use crate::page::{Chart, Line, LineKind, Panel};
+use crate::picture::Picture;
+use crate::span::Span;
+use crate::style::{BAND_OPACITY, BLACK, DATA, LEGEND_LINE, PURPLE, SMALL, THIN, colour};
+
+/// Least height of a panel, px.
+const LEAST_PX: f64 = 150.0;
+
+/// Room of a tick along the abscissa and the ordinate, px: an axis has as many as fit.
+const TICK_PX: f64 = 70.0;
+const ROW_PX: f64 = 40.0;
+
+/// Most of a bar's width, px.
+const BAR_PX: f64 = 8.0;
+
+impl Picture for Chart {
+    fn to_svg(&self) -> Result<String, Error> {
+        self.check()?;
+        let panel_px = f64::from(self.height_px).clamp(LEAST_PX, 2.0 * LEAST_PX);
+        let layout = Layout::new(self.columns, self.panels.len(), panel_px).with_own_abscissae();
+        Ok(figure(
+            &self.title,
+            &self.caption,
+            &self.legend(),
+            layout.height(),
+            |canvas, body| self.draw(canvas, layout, body),
+        ))
+    }
+}
+
+impl Chart {
+    /// One entry for each name in any panel.
+    fn legend(&self) -> Vec<Legend> {
+        let bands = self.panels.iter().flat_map(|panel| &panel.bands);
+        let bands = bands.map(|band| {
+            let entry = Legend::area(colour(band.tint), BAND_OPACITY, band.label.as_str());
+            (&band.label, entry)
+        });
+        let lines = self.panels.iter().flat_map(|panel| &panel.lines);
+        let lines = lines.map(|line| (&line.label, line.legend()));
+        let levels = self.panels.iter().flat_map(|panel| &panel.levels);
+        let levels = levels.map(|level| {
+            let entry = Legend::line(LineStyle::dashed(BLACK, THIN), level.label.as_str());
+            (&level.label, entry)
+        });
+        let mut shown: Vec<&String> = Vec::new();
+        let mut legend = Vec::new();
+        for (label, entry) in bands.chain(lines).chain(levels) {
+            if !label.is_empty() && !shown.contains(&label) {
+                shown.push(label);
+                legend.push(entry);
+            }
+        }
+        legend
+    }
+
+    fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect) {
+        let ordinates: Vec<Option<Span>> = self
+            .panels
+            .iter()
+            .map(|panel| panel.ordinates(self.logarithmic))
+            .collect();
+        let of_all = ordinates
+            .iter()
+            .copied()
+            .flatten()
+            .reduce(|all, one| all.with(one));
+        let abscissas = self.panels.iter().map(|panel| {
+            let values = panel.abscissa.iter().copied();
+            Span::of(values.filter(|value| !self.logarithmic_abscissa || *value > 0.0))
+        });
+        let abscissas: Vec<Option<Span>> = abscissas.collect();
+        let linked = abscissas
+            .iter()
+            .copied()
+            .flatten()
+            .reduce(|all, one| all.with(one))
+            .filter(|_| !self.unlinked);
+        for (index, panel) in self.panels.iter().enumerate() {
+            let frame = layout.frame(body, index);
+            let along = linked.or(abscissas[index]);
+            let up = if self.same_scale {
+                of_all
+            } else {
+                ordinates[index]
+            };
+            let unit = panel.unit.as_deref().unwrap_or(&self.unit);
+            let axes = Axes {
+                frame,
+                x: axis(
+                    along,
+                    (&self.abscissa, &self.abscissa_unit),
+                    self.logarithmic_abscissa,
+                    (frame.width() / TICK_PX) as usize,
+                ),
+                y: axis(
+                    up.map(|span| match self.logarithmic {
+                        true => span,
+                        false => span.padded(0.05),
+                    }),
+                    (&self.quantity, unit),
+                    self.logarithmic,
+                    (frame.height() / ROW_PX) as usize,
+                ),
+            };
+            let labels = Labels {
+                name: &panel.name,
+                note: &panel.note,
+                abscissa: layout.shows_abscissa(index),
+                ordinate_title: layout.is_first_in_row(index) || panel.unit.is_some(),
+            };
+            let has_data = along.is_some() && up.is_some();
+            axes.draw(canvas, labels, has_data, |axes, canvas| {
+                panel.draw(canvas, axes);
+            });
+        }
+    }
+}
+
+/// A scale of a quantity with its unit; without values from 1 to 10.
+fn axis(
+    span: Option<Span>,
+    (quantity, unit): (&str, &str),
+    logarithmic: bool,
+    ticks: usize,
+) -> Axis {
+    let span = span.unwrap_or(Span { lo: 1.0, hi: 10.0 }).open();
+    match logarithmic && span.lo > 0.0 {
+        true => Axis::logarithmic(span, quantity, unit, ticks),
+        false => Axis::linear(span, quantity, unit, ticks),
+    }
+}
+
+impl Line {
+    fn legend(&self) -> Legend {
+        let colour = colour(self.tint);
+        match self.kind {
+            LineKind::Solid => {
+                Legend::line(LineStyle::solid(colour, LEGEND_LINE), self.label.as_str())
+            }
+            LineKind::Dashed => Legend::line(LineStyle::dashed(colour, THIN), self.label.as_str()),
+            LineKind::Points => Legend::dot(colour, self.label.as_str()),
+            LineKind::Bars => Legend::area(colour, 1.0, self.label.as_str()),
+        }
+    }
+}
+
+impl Panel {
+    /// The span of all that is drawn; `None` without a value that has a place.
+    fn ordinates(&self, logarithmic: bool) -> Option<Span> {
+        let from = self.scale_from.unwrap_or(f64::NEG_INFINITY);
+        let settled = self.abscissa.partition_point(|value| *value < from);
+        let columns = self.columns();
+        let values = columns.flat_map(|column| column.iter().skip(settled).copied());
+        let levels = self.levels.iter().map(|level| level.value);
+        let feet = self.lines.iter().any(|line| line.kind == LineKind::Bars);
+        let feet = feet.then_some(0.0).into_iter();
+        let all = values.chain(levels).chain(feet);
+        Span::of(all.filter(|value| !logarithmic || *value > 0.0))
+    }
+
+    fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
+        for band in &self.bands {
+            let edges = (&*band.lower, &*band.upper);
+            let colour = colour(band.tint);
+            axes.band(canvas, &self.abscissa, edges, colour, BAND_OPACITY);
+        }
+        for level in &self.levels {
+            axes.horizontal_line(canvas, level.value, LineStyle::dashed(BLACK, THIN));
+        }
+        for line in &self.lines {
+            self.draw_line(canvas, axes, line);
+        }
+        for mark in &self.marks {
+            axes.vertical_line(canvas, mark.value, LineStyle::dashed(PURPLE, THIN));
+            let (x, _) = axes.point(mark.value, 0.0);
+            if (axes.frame.left..=axes.frame.right).contains(&x) {
+                let place = (x + 3.0, axes.frame.top + SMALL);
+                let style = TextStyle::new(SMALL, Align::Start).colour(PURPLE);
+                canvas.text(&mark.label, place, style);
+            }
+        }
+    }
+
+    fn draw_line(&self, canvas: &mut Canvas, axes: &Axes, line: &Line) {
+        let colour = colour(line.tint);
+        let style = match line.kind {
+            LineKind::Dashed => LineStyle::dashed(colour, THIN),
+            _ => LineStyle::solid(colour, DATA),
+        };
+        let points = self.abscissa.iter().zip(&line.values);
+        let points = points.map(|(x, y)| (axes.point(*x, *y), *x));
+        let inside = |(x, y): (f64, f64)| {
+            (axes.frame.left..=axes.frame.right).contains(&x)
+                && (axes.frame.top..=axes.frame.bottom).contains(&y)
+        };
+        match line.kind {
+            LineKind::Points => {
+                for (point, _) in points.filter(|(point, _)| inside(*point)) {
+                    canvas.disc(point, 2.0, colour);
+                }
+            }
+            LineKind::Bars => {
+                let apart = axes.frame.width() / self.abscissa.len().max(1) as f64;
+                let style = LineStyle::solid(colour, BAR_PX.min(0.7 * apart));
+                for (point, x) in points.filter(|(point, _)| inside(*point)) {
+                    canvas.line(&[axes.point(x, 0.0), point], style);
+                }
+            }
+            _ if self.no_gaps => {
+                axes.line_bridging(canvas, &self.abscissa, &line.values, style, f64::INFINITY);
+            }
+            _ => axes.line(canvas, &self.abscissa, &line.values, style),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::page::{Band, Level, Mark, Tint};
+
+    fn chart(logarithmic: bool) -> Chart {
+        let line = |label: &str, kind, values: [f64; 3]| Line {
+            label: label.to_owned(),
+            tint: Tint::Nominal,
+            kind,
+            values: values.to_vec(),
+        };
+        Chart {
+            title: "A statement".to_owned(),
+            abscissa: "averaging time".to_owned(),
+            abscissa_unit: "s".to_owned(),
+            logarithmic_abscissa: logarithmic,
+            quantity: "deviation".to_owned(),
+            unit: "deg/h".to_owned(),
+            logarithmic,
+            columns: 1,
+            height_px: 200,
+            panels: vec![Panel {
+                name: "gyro x".to_owned(),
+                abscissa: vec![1.0, 10.0, 100.0],
+                bands: vec![Band {
+                    label: "interval".to_owned(),
+                    tint: Tint::Measured,
+                    lower: vec![0.9, f64::NAN, 0.09],
+                    upper: vec![1.1, 0.4, 0.11],
+                }],
+                lines: vec![
+                    line("through", LineKind::Solid, [1.0, 0.3, 0.1]),
+                    line("points", LineKind::Points, [1.0, 0.3, f64::NAN]),
+                    line("bars", LineKind::Bars, [1.0, 0.3, 0.1]),
+                ],
+                levels: vec![Level {
+                    label: "bound".to_owned(),
+                    value: 0.5,
+                }],
+                marks: vec![Mark {
+                    label: "onset".to_owned(),
+                    value: 10.0,
+                }],
+                no_gaps: true,
+                ..Panel::default()
+            }],
+            ..Chart::default()
+        }
+    }
+
+    #[test]
+    fn all_that_a_chart_holds_is_in_its_picture() {
+        for logarithmic in [false, true] {
+            let svg = chart(logarithmic).to_svg().unwrap();
+            for words in [
+                "A statement",
+                "averaging time [s]",
+                "deviation [deg/h]",
+                "gyro x",
+                "interval",
+                "through",
+                "points",
+                "bars",
+                "bound",
+                "onset",
+            ] {
+                assert!(svg.contains(words), "{words}");
+            }
+            assert!(!svg.contains("NaN"), "{svg}");
+        }
+    }
+
+    #[test]
+    fn a_panel_without_values_says_so() {
+        let mut chart = chart(false);
+        let panel = &mut chart.panels[0];
+        panel.lines.truncate(1);
+        panel.lines[0].values.fill(f64::NAN);
+        panel.bands.clear();
+        panel.levels.clear();
+        assert!(chart.to_svg().unwrap().contains("no data"));
+        chart.panels.clear();
+        assert!(chart.to_svg().is_err());
+    }
+}
