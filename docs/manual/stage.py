@@ -129,7 +129,7 @@ def schema_reference(folder: Path) -> str:
             meaning = " ".join(member.get("description", "").split()).replace("|", "\\|")
             rows.append(f"| `{name}` | {meaning} |")
         page.append(
-            f"## {schema.get('title', path.name)}\n\n{schema.get('description', '')}\n\n"
+            f"## {path.name.removesuffix('.schema.json')}\n\n{schema.get('description', '')}\n\n"
             f"[{path.name}](../schema/{path.name})\n\n" + "\n".join(rows)
         )
     return "\n\n".join(page) + "\n"

@@ -56,6 +56,7 @@ pub struct Diagnosis {
 
 /// The statistic of an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RankedEffect {
     /// Id of the effect.
     pub effect: String,
@@ -65,6 +66,7 @@ pub struct RankedEffect {
 
 /// One of several records.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RecordAnswer {
     /// Its name.
     pub name: String,
@@ -82,6 +84,7 @@ pub struct RecordAnswer {
 
 /// The diagnosis of a record alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Alone {
     /// Its verdict, a sentence; the reason if it cannot be diagnosed alone.
     pub verdict: String,

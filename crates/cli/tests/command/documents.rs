@@ -28,7 +28,12 @@ fn documents() -> Vec<PathBuf> {
 /// A folder with the examples and data of the repository, where commands may write below `target`.
 fn workplace() -> Folder {
     let folder = Folder::new();
-    for name in ["examples/data", "examples/duffing", "tests/data/measured"] {
+    for name in [
+        "examples/data",
+        "examples/duffing",
+        "tests/data/dialects",
+        "tests/data/measured",
+    ] {
         copy(&repository(name), &folder.path(name));
     }
     fs::create_dir(folder.path("target")).unwrap();
