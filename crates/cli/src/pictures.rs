@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use gyrocal_record::{Outputs, printable_path};
+use gyrocal_report::Picture;
 use miette::miette;
 #[cfg(feature = "png")]
 use miette::{IntoDiagnostic as _, WrapErr as _};

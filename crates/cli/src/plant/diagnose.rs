@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_instruments::ResultFile;
 use gyrocal_pages::{of_plant, plant_pictures};
 use gyrocal_plant::answer::{Diagnosis, Estimate};
 use gyrocal_plant::{
@@ -12,7 +13,6 @@ use gyrocal_plant::{
 use gyrocal_record::{Manifest, Outputs, printable_path};
 use gyrocal_statistics::format;
 use miette::miette;
-use serde::Serialize;
 
 use crate::numbers::probability;
 use crate::outputs::{self, manifest, same_file};
@@ -46,14 +46,6 @@ pub(super) struct RecordArguments {
     /// Family-wise false-alarm probability.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
-}
-
-/// A diagnosis as it is written for programs.
-#[derive(Serialize)]
-struct Written<'a> {
-    manifest: &'a Manifest,
-    #[serde(flatten)]
-    answer: &'a Diagnosis,
 }
 
 /// Runs the command; `file` is that of the plant, if it is read from one.
@@ -117,11 +109,7 @@ pub(super) fn run(
         shown.wrote(path, page::WHAT);
     }
     if let Some(path) = &arguments.json {
-        let written = Written {
-            manifest: &manifest,
-            answer,
-        };
-        outputs.stage_json(path, &written)?;
+        outputs.stage_json(path, &ResultFile::new(manifest, answer))?;
         shown.wrote(path, "the result for programs");
     }
     outputs.commit()?;

@@ -53,7 +53,7 @@ fn schemas_that_are_committed_are_those_of_the_types() {
         ("plan", gyrocal_design::schema()),
         (
             "plant diagnose",
-            written_schema::<gyrocal_plant::answer::Diagnosis>(),
+            written_schema::<ResultFile<gyrocal_plant::answer::Diagnosis>>(),
         ),
         ("rates", written_schema::<ResultFile<RateReport>>()),
         ("report", gyrocal_diagnosis::uncertainty_schema()),
