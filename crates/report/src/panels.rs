@@ -140,6 +140,15 @@ fn axis(
     }
 }
 
+/// Where bars begin, px: at zero, or at the bottom of the frame where zero has no place in it.
+fn foot(axes: &Axes) -> f64 {
+    let (_, zero) = axes.point(f64::NAN, 0.0);
+    match zero.is_finite() {
+        true => zero.clamp(axes.frame.top, axes.frame.bottom),
+        false => axes.frame.bottom,
+    }
+}
+
 impl Line {
     fn legend(&self) -> Legend {
         let colour = colour(self.tint);
@@ -212,8 +221,8 @@ impl Panel {
             LineKind::Bars => {
                 let apart = axes.frame.width() / self.abscissa.len().max(1) as f64;
                 let style = LineStyle::solid(colour, BAR_PX.min(0.7 * apart));
-                for (point, x) in points.filter(|(point, _)| inside(*point)) {
-                    canvas.line(&[axes.point(x, 0.0), point], style);
+                for ((x, y), _) in points.filter(|(point, _)| inside(*point)) {
+                    canvas.line(&[(x, foot(axes)), (x, y)], style);
                 }
             }
             _ if self.no_gaps => {
