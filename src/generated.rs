@@ -50,6 +50,17 @@ pub mod catalogue {
     include!(concat!(env!("OUT_DIR"), "/catalogue.rs"));
 }
 
+/// The analytic platform of a strapdown unit with every effect of the catalogue.
+#[cfg(all(feature = "catalogue", not(gyrocal_rederived)))]
+#[rustfmt::skip]
+pub mod strapdown_catalogue;
+
+/// The analytic platform of a strapdown unit with every effect of the catalogue.
+#[cfg(all(feature = "catalogue", gyrocal_rederived))]
+pub mod strapdown_catalogue {
+    include!(concat!(env!("OUT_DIR"), "/strapdown_catalogue.rs"));
+}
+
 /// Hash of what [`platform`] was derived from, as its header says: the symbolic sources, the
 /// pinned tools and the emitter.
 #[cfg(not(gyrocal_rederived))]
@@ -102,6 +113,16 @@ pub const CATALOGUE_PROGRAM: &str = include_str!("generated/catalogue.json");
 /// The program of [`catalogue`], as derived: for interpreters.
 #[cfg(all(feature = "catalogue", feature = "oracle", gyrocal_rederived))]
 pub const CATALOGUE_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/catalogue.json"));
+
+/// The program of [`strapdown_catalogue`], as derived: for interpreters.
+#[cfg(all(feature = "catalogue", feature = "oracle", not(gyrocal_rederived)))]
+pub const STRAPDOWN_CATALOGUE_PROGRAM: &str =
+    include_str!("generated/strapdown_catalogue.json");
+
+/// The program of [`strapdown_catalogue`], as derived: for interpreters.
+#[cfg(all(feature = "catalogue", feature = "oracle", gyrocal_rederived))]
+pub const STRAPDOWN_CATALOGUE_PROGRAM: &str =
+    include_str!(concat!(env!("OUT_DIR"), "/strapdown_catalogue.json"));
 
 /// The program of [`oracle`], as derived: for interpreters.
 #[cfg(all(feature = "oracle", not(gyrocal_rederived)))]

@@ -115,6 +115,8 @@ pub use site::{EARTH_RATE_RAD_PER_S, Site};
 pub mod source;
 
 pub use generated::strapdown::Strapdown;
+#[cfg(feature = "catalogue")]
+pub use generated::strapdown_catalogue::StrapdownCatalogue;
 pub use generated::surveyed::Surveyed;
 pub use gyrocal_scalar::effect::{self, Effect};
 // emit: on

@@ -175,7 +175,7 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
     """Rates of the angles and outputs of the accelerometers.
 
     An analytic platform, held by the outputs of its gyros, rotates by minus their errors
-    (docs/measured-data.md).
+    (docs/measured-data.md). Its accelerometers are fixed to the same body.
     """
     at = At(
         a={}, drift={}, field={},
@@ -193,7 +193,7 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
         at = replace(at, **term(effect))
     force = specific_force(theta.sx, at.f_0)
     field = platform_c_chart(theta.sx) @ field_0.sx
-    along_platform = replace(at, a=by_axis(force))
+    reading = force
     if strapdown:
         # The group has the matrix by rows; CasADi reshapes by columns.
         rotation = ca.reshape(platform_c_gyros.sx, 3, 3).T
@@ -213,12 +213,11 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
     if strapdown:
         omega_d = -rotation @ omega_d
     rates = angle_rates_of(theta.sx, omega_d, at.omega_0)
-    at = along_platform
     for effect in _entering(Enters.TIME, effects):
         rates = term(effect) * rates
     read = _sum(term(effect) for effect in _entering(Enters.OUTPUT, effects))
-    reading = ca.vertcat(*[at.a[i] + sum(read[i]) for i in AXES])
-    return rates, reading
+    errors = ca.vertcat(*[sum(read[i], ca.SX(0)) for i in AXES])
+    return rates, reading + (rotation @ errors if strapdown else errors)
 
 
 def _entering(where: Enters, effects: list[Effect]) -> list[Effect]:

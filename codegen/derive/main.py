@@ -10,6 +10,7 @@ import model_file
 import oracle_program
 import platform_program
 import reference
+import strapdown_catalogue_program
 import strapdown_program
 import surveyed_program
 
@@ -22,6 +23,7 @@ def derive(output: Path) -> None:
         surveyed_program.program(),
         strapdown_program.program(),
         catalogue_program.program(),
+        strapdown_catalogue_program.program(),
     ]
     for program in programs:
         program.write(output / f"{program.name}.json")

@@ -11,8 +11,10 @@ mod rate_noise;
 mod record_sizes;
 mod several;
 
+use std::borrow::Cow;
+
 use gyrocal::estimation::batch::Walk;
-use gyrocal::generated::catalogue::{self, CatalogueInputs};
+use gyrocal::generated::catalogue;
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Chart, Discretisation, FilterSettings};
 use gyrocal_hypothesis::{ExtraColumns, ModelExtension};
@@ -21,7 +23,9 @@ use nalgebra::DMatrix;
 
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
+use crate::gyro_axes::GyroAxes;
 use crate::initial_guess::{Start, best_fit, initial_guess};
+use crate::law::{Law, LawInputs};
 use crate::layout::SiteQuantity;
 use crate::options::Options;
 use crate::platform::PLATFORM;
@@ -92,7 +96,7 @@ struct Parts {
 /// Rows of several records are counted through all of them, one after the other.
 #[derive(Clone)]
 pub struct FittedPlatform<'a> {
-    problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
+    problem: Problem<'a, Anchored<Law>, LawInputs>,
     solution: Solution,
     uncertainty: Uncertainty,
     extension: ModelExtension,
@@ -113,8 +117,22 @@ impl<'a> FittedPlatform<'a> {
         options: &Options,
         noise: &NoiseModel,
     ) -> Result<Self, CalibrationError> {
+        Self::nominal_of_unit(run, None, options, noise)
+    }
+
+    /// The same of a strapdown unit, if the axes of its instruments at each row are given: the law holds in
+    /// these axes, and coefficients and effects are errors of the instruments' outputs.
+    ///
+    /// # Errors
+    /// As [`Self::nominal`], and [`CalibrationError::GyroAxes`] if there is not one attitude for each row.
+    pub fn nominal_of_unit(
+        run: &Run<'a>,
+        axes: Option<&GyroAxes>,
+        options: &Options,
+        noise: &NoiseModel,
+    ) -> Result<Self, CalibrationError> {
         best_fit(
-            |start| Self::nominal_from(run, options, noise, start),
+            |start| Self::nominal_from(run, axes, options, noise, start),
             |fit| (fit.solution.cost, fit.solution.values),
         )
     }
@@ -128,16 +146,18 @@ impl<'a> FittedPlatform<'a> {
         options: &Options,
         noise: &NoiseModel,
     ) -> Result<Self, CalibrationError> {
-        Self::nominal_from(run, options, noise, Start::FILTERED)
-            .or_else(|_| Self::nominal_from(run, options, noise, Start::CAREFUL))
+        Self::nominal_from(run, None, options, noise, Start::FILTERED)
+            .or_else(|_| Self::nominal_from(run, None, options, noise, Start::CAREFUL))
     }
 
     fn nominal_from(
         run: &Run<'a>,
+        axes: Option<&GyroAxes>,
         options: &Options,
         noise: &NoiseModel,
         start: Start,
     ) -> Result<Self, CalibrationError> {
+        let law = Law::of(run, axes)?;
         let settings = filter_settings(run.bench, options.moving_chart());
         // Noise that is believed to be far larger than declared is that of the first guess as well.
         let largest_ratio = noise.accel_ratio.into_iter().fold(1.0, f64::max);
@@ -147,14 +167,15 @@ impl<'a> FittedPlatform<'a> {
         };
         let beginning = initial_guess(run, &guessing, options, start)?;
         let extension = of_site(run.bench);
-        let mut values = beginning.start.drift.to_vec();
+        let mut values = law.starts_from(&beginning.start.drift).to_vec();
         values.resize(PARAMETERS + extension.parameters.len(), 0.0);
         let accel_noise_g = noise
             .accel_ratio
             .map(|ratio| ratio * settings.accel_noise_g);
         let mut rows = WeightedRows::new(run.record, run.record.len(), accel_noise_g);
         rows.weights.clone_from(&noise.weights);
-        let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
+        rows.gyro_axes = axes.cloned().map(Cow::Owned);
+        let mut chart: Chart<f64, LawInputs> = Chart::for_model(settings.site);
         if let Some(field_gauss) = run.bench.magnetic_field_gauss {
             chart.set_field_gauss(field_gauss);
         }
@@ -173,7 +194,7 @@ impl<'a> FittedPlatform<'a> {
             walk_changes: Vec::new(),
         };
         let problem = Problem {
-            model: &Anchored(Catalogue),
+            model: law.anchored(),
             integration: options.discretisation.integration,
             longest_step_s: options.discretisation.longest_step_s,
             unknowns: settings
@@ -203,7 +224,7 @@ impl<'a> FittedPlatform<'a> {
     fn refitted_with(
         &self,
         extension: &ModelExtension,
-        change: impl Fn(&mut RunProblem<'a, CatalogueInputs<f64>>),
+        change: impl Fn(&mut RunProblem<'a, LawInputs>),
         noise: NoiseModel,
     ) -> Result<Self, CalibrationError> {
         let before = self.parameters();
@@ -252,7 +273,7 @@ impl<'a> FittedPlatform<'a> {
     /// As [`Self::refitted`].
     pub fn with_noise(&self, bench: &Bench, noise: &NoiseModel) -> Result<Self, CalibrationError> {
         let density = filter_settings(bench, Discretisation::default()).drift_noise_density();
-        let change = |leg: &mut RunProblem<'a, CatalogueInputs<f64>>| {
+        let change = |leg: &mut RunProblem<'a, LawInputs>| {
             leg.rows
                 .set_noise(noise.accel_ratio.map(|ratio| ratio * bench.accel_noise_g));
             leg.rows.weights.clone_from(&noise.weights);
@@ -264,7 +285,7 @@ impl<'a> FittedPlatform<'a> {
 
     /// `problem` has the unknowns that all records share, and no run has columns yet.
     fn solved(
-        mut problem: Problem<'a, Anchored<Catalogue>, CatalogueInputs<f64>>,
+        mut problem: Problem<'a, Anchored<Law>, LawInputs>,
         extension: ModelExtension,
         Parts { noise, mut several }: Parts,
     ) -> Result<Self, CalibrationError> {
@@ -289,7 +310,7 @@ impl<'a> FittedPlatform<'a> {
             }
             let columns = several::columns_of(several.as_ref(), extension.columns.columns(), run);
             let leg = &mut problem.runs[run];
-            leg.chart.inputs_mut().shapes = shapes(several.as_ref(), &extension, run);
+            leg.chart.inputs_mut().catalogue.shapes = shapes(several.as_ref(), &extension, run);
             leg.parameter_unknowns = sums;
             leg.further = ExtraColumns::new(columns);
             leg.amplitudes = (first..shared).collect();
@@ -333,7 +354,7 @@ impl<'a> FittedPlatform<'a> {
         });
         FittedPlatform {
             problem: Problem {
-                model: &Anchored(Catalogue),
+                model: problem.model.0.anchored(),
                 integration: problem.integration,
                 longest_step_s: problem.longest_step_s,
                 unknowns: problem.unknowns,
@@ -428,6 +449,25 @@ impl<'a> FittedPlatform<'a> {
             self.problem.outputs(run, &leg.points, &parameters)
         })
         .collect()
+    }
+
+    /// Specific force along the axes of the instruments at each row, from that along those of the platform:
+    /// the same, unless the instruments are fixed to a body.
+    pub(crate) fn along_instruments(&self, mut force_g: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+        for (run, rows) in self.record_rows().into_iter().enumerate() {
+            if let Some(axes) = &self.problem.runs[run].rows.gyro_axes {
+                for (row, force_g) in force_g[rows].iter_mut().enumerate() {
+                    *force_g = axes.along_gyros(row, force_g);
+                }
+            }
+        }
+        force_g
+    }
+
+    /// Whether the law holds in the axes of instruments that are fixed to a body.
+    #[must_use]
+    pub fn is_strapdown(&self) -> bool {
+        self.problem.model.0 == Law::Strapdown
     }
 
     /// Specific force that the model gives when it runs by itself from the first attitude, with

@@ -37,6 +37,28 @@ impl GyroAxes {
         self.platform_q_gyros.is_empty()
     }
 
+    /// The attitudes at the rows of a record that has all or some of the rows of another, at the times of
+    /// whose rows these are; `None` if it has others.
+    #[must_use]
+    pub fn of_rows(&self, times_s: &[f64], rows_s: &[f64]) -> Option<Self> {
+        let chosen = rows_s.iter().map(|time_s| {
+            let row = times_s.partition_point(|other| other < time_s);
+            (times_s.get(row) == Some(time_s)).then(|| self.platform_q_gyros.get(row).copied())?
+        });
+        let platform_q_gyros = chosen.collect::<Option<_>>()?;
+        Some(Self { platform_q_gyros })
+    }
+
+    /// Components along the gyros' axes of a vector along those of the platform, at a row.
+    pub(crate) fn along_gyros(&self, row: usize, vector: &[f64; 3]) -> [f64; 3] {
+        let matrix = self.between(row, 0.0);
+        core::array::from_fn(|gyro| {
+            (0..3)
+                .map(|axis| matrix[3 * axis + gyro] * vector[axis])
+                .sum()
+        })
+    }
+
     /// Direction cosine matrix, by rows, at a share of the interval from a row to the next. The
     /// interpolated rotation is uniform to (angle)²/24 of it.
     pub(crate) fn between(&self, row: usize, share: f64) -> [f64; 9] {
@@ -69,6 +91,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn rows_that_are_left_have_their_attitudes() {
+        let turned = |angle: f64| [(0.5 * angle).cos(), 0.0, 0.0, (0.5 * angle).sin()];
+        let axes = GyroAxes::new(&[0.0, 0.1, 0.2, 0.3].map(turned));
+        let times_s = [0.0, 60.0, 120.0, 180.0];
+        let some = axes.of_rows(&times_s, &[60.0, 180.0]);
+        assert_eq!(some, Some(GyroAxes::new(&[0.1, 0.3].map(turned))));
+        assert_eq!(axes.of_rows(&times_s, &[60.0, 90.0]), None);
+    }
+
+    #[test]
     fn a_quarter_turn_about_z_takes_x_to_y_whatever_the_sign() {
         let half = core::f64::consts::FRAC_PI_4;
         for sign in [1.0, -1.0] {
@@ -77,6 +109,8 @@ mod tests {
             let matrix = axes.between(1, 0.0);
             // Columns are the gyros' axes: rounding of some products.
             assert!((matrix[3] - 1.0).abs() < 1e-15 && (matrix[1] + 1.0).abs() < 1e-15);
+            let along = axes.along_gyros(1, &[0.0, 1.0, 0.5]);
+            assert!((along[0] - 1.0).abs() < 1e-15 && (along[2] - 0.5).abs() < 1e-15);
             // Halfway is an eighth.
             let between = axes.between(0, 0.5);
             assert!((between[3] - half.sin()).abs() < 1e-15, "{between:?}");

@@ -1,14 +1,15 @@
 //! Predicted information of a planned run.
 
-use gyrocal::generated::catalogue::{self, CatalogueInputs};
+use gyrocal::generated::catalogue;
 use gyrocal::trajectory::Orientation;
-use gyrocal::{Anchored, Catalogue, Chart};
+use gyrocal::{Anchored, Chart};
 use gyrocal_hypothesis::{Column, Covariate, ExtraColumns};
 use nalgebra::DMatrix;
 
 use crate::attitude::attitude_hypotheses;
 use crate::error::CalibrationError;
 use crate::fitted_platform::NoiseModel;
+use crate::law::{Law, LawInputs};
 use crate::options::Options;
 use crate::platform::covariates;
 use crate::problem::{Problem, RunProblem};
@@ -110,7 +111,7 @@ impl PlannedRun<'_> {
         &self,
         points: Vec<Orientation>,
         options: &Options,
-    ) -> Result<Problem<'_, Anchored<Catalogue>, CatalogueInputs<f64>>, CalibrationError> {
+    ) -> Result<Problem<'_, Anchored<Law>, LawInputs>, CalibrationError> {
         let Run { record, bench } = self.run;
         let settings = filter_settings(bench, options.moving_chart());
         // All hypotheses have the same covariance: it does not depend on azimuth.
@@ -118,18 +119,18 @@ impl PlannedRun<'_> {
             .first()
             .map(|hypothesis| hypothesis.prior.covariance)
             .ok_or(CalibrationError::NotLevelled)?;
-        let mut chart: Chart<f64, CatalogueInputs<f64>> = Chart::for_model(settings.site);
+        let mut chart: Chart<f64, LawInputs> = Chart::for_model(settings.site);
         if let Some(field_gauss) = bench.magnetic_field_gauss {
             chart.set_field_gauss(field_gauss);
         }
-        chart.inputs_mut().shapes = self.shapes;
+        chart.inputs_mut().catalogue.shapes = self.shapes;
         let density = settings.drift_noise_density();
         let noise_g = self
             .noise
             .accel_ratio
             .map(|ratio| ratio * settings.accel_noise_g);
         Ok(Problem {
-            model: &Anchored(Catalogue),
+            model: Law::Platform.anchored(),
             integration: options.discretisation.integration,
             longest_step_s: options.discretisation.longest_step_s,
             unknowns: Vec::new(),

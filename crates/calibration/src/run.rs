@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use gyrocal::estimation::batch::Series;
-use gyrocal::generated::catalogue::{CatalogueInputs, conditions_index};
 use gyrocal::generated::strapdown::StrapdownInputs;
 use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::{Chart, ChartInputs};
@@ -32,14 +31,6 @@ impl Conditions for StrapdownInputs<f64> {
 
     fn set_gyro_axes(&mut self, platform_c_gyros: &[f64; 9]) {
         self.platform_c_gyros = *platform_c_gyros;
-    }
-}
-
-impl Conditions for CatalogueInputs<f64> {
-    fn set_conditions(&mut self, time_s: f64, interval_s: f64, temperature_k: f64) {
-        self.conditions[conditions_index::TIME_S] = time_s;
-        self.conditions[conditions_index::INTERVAL_S] = interval_s;
-        self.conditions[conditions_index::TEMPERATURE_K] = temperature_k;
     }
 }
 
@@ -214,5 +205,8 @@ impl<I: Conditions> Series<Chart<f64, I>, 3> for WeightedRows<'_> {
         inputs
             .inputs_mut()
             .set_conditions(time_s, 1.0, self.temperature_k(row));
+        if let Some(axes) = &self.gyro_axes {
+            inputs.inputs_mut().set_gyro_axes(&axes.between(row, 0.0));
+        }
     }
 }

@@ -2,14 +2,17 @@
 
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{Covariance, Factors};
+use gyrocal::generated::strapdown::StrapdownInputs;
 use gyrocal::{
-    Drift, EstimationError, FilterSettings, InitialAttitude, Innovation, PlatformFilter,
+    Drift, EstimationError, ExtensionFilter, FilterSettings, InitialAttitude, Innovation,
+    PlatformFilter, Strapdown,
 };
 use gyrocal_record::Record;
 
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fit::FitStatistics;
+use crate::gyro_axes::GyroAxes;
 use crate::work;
 
 /// Estimates of the filter after the last row.
@@ -72,6 +75,55 @@ pub fn run_factorised_filter(
     let filter = PlatformFilter::<f64, Factors>::with_form(settings, attitude);
     run_filter(record, record.len(), filter, watch).map(|_| ())
 }
+
+/// Runs the streaming filter of a strapdown unit, whose law holds in the axes of its gyros, over a record.
+/// `watch` gets each row number, specific force along the platform as the filter knows it \[g\], and the
+/// innovation.
+///
+/// # Errors
+/// As [`run_factorised_filter`], and [`CalibrationError::GyroAxes`] if there is not one attitude for each row.
+pub fn run_strapdown_filter(
+    record: &Record,
+    axes: &GyroAxes,
+    settings: &FilterSettings<f64>,
+    attitude: &InitialAttitude<f64>,
+    watch: &mut dyn FnMut(usize, [f64; 3], &Innovation<f64, 3>),
+) -> Result<(), CalibrationError> {
+    let (rows, attitudes) = (record.len(), axes.len());
+    if rows != attitudes {
+        return Err(CalibrationError::GyroAxes { rows, attitudes });
+    }
+    let at = |row: usize| {
+        move |source: EstimationError| CalibrationError::Filter {
+            row: row + 1,
+            time_s: record.time_s[row],
+            source,
+        }
+    };
+    let start = [[0.0, KNOWN]; Strapdown::PARAMETERS - PARAMETERS];
+    let filter = StrapdownFilter::new(Strapdown, start, settings, attitude);
+    let mut filter = filter.map_err(at(0))?;
+    for row in 0..rows {
+        work::count_filtered_row();
+        let interval_s = match row {
+            0 => 0.0,
+            _ => record.time_s[row] - record.time_s[row - 1],
+        };
+        filter.inputs_mut().platform_c_gyros = axes.between(row.saturating_sub(1), 0.5);
+        let innovation = filter
+            .take(interval_s, &record.accel_g[row])
+            .map_err(at(row))?;
+        watch(row, filter.filter().inputs().inputs().f_0, &innovation);
+    }
+    Ok(())
+}
+
+/// The filter of a strapdown unit.
+type StrapdownFilter =
+    ExtensionFilter<f64, Strapdown, StrapdownInputs<f64>, { Strapdown::STATES }>;
+
+/// Standard deviation of a parameter that is known: a filter takes none of zero.
+const KNOWN: f64 = 1e-12;
 
 /// Sees a row number, the filter after the update, and the innovation.
 pub type FilterWatch<'a> =

@@ -30,7 +30,7 @@ use crate::numbers::positive;
 use crate::outputs;
 use crate::page::{self, Views};
 use crate::progress::Progress;
-use crate::{Answer, Failure, exit, records};
+use crate::{Answer, Failure, exit, gyro_axes, records};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
 use inputs::Measurement;
@@ -90,7 +90,7 @@ pub(crate) struct CalibrateArguments {
     /// Estimate the coefficients with these effects of the catalogue in the model too, and print them beside
     /// the nominal ones; for one record.
     #[arg(long, value_name = "EFFECT,EFFECT", value_delimiter = ',',
-          conflicts_with_all = ["gyro_axes", "streaming", "paper"])]
+          conflicts_with_all = ["streaming", "paper"])]
     with: Vec<String>,
     /// Carry the filter's covariance as factors: slower, for very wide priors; with --streaming or
     /// --paper.
@@ -108,11 +108,7 @@ impl CalibrateArguments {
     }
 
     fn kind(&self) -> PlatformKind {
-        if self.gyro_axes.is_empty() {
-            PlatformKind::Stabilised
-        } else {
-            PlatformKind::Computed
-        }
+        gyro_axes::kind(&self.gyro_axes)
     }
 
     fn options(&self) -> Options {
@@ -152,13 +148,7 @@ impl CalibrateArguments {
                 "--with goes with one record, {records} are given: calibrate them one by one"
             ));
         }
-        let axes = self.gyro_axes.len();
-        if axes != 0 && axes != records {
-            return usage(format!(
-                "{axes} of --gyro-axes for {records} of records: give one for each record, in \
-                 their order"
-            ));
-        }
+        gyro_axes::check(&self.gyro_axes, records)?;
         let filter = match self.method() {
             CalibrationMethod::Batch if self.factorised => {
                 return usage(
@@ -205,10 +195,11 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     let rows = measurements.iter().map(|m| m.record.len()).sum();
     tracing::info!(records = measurements.len(), rows, "read");
     let options = arguments.options();
-    let gyro_axes = inputs::gyro_axes(&arguments.gyro_axes, &measurements)?;
+    let records = measurements.iter().map(|measurement| &measurement.record);
+    let gyro_axes = gyro_axes::read(&arguments.gyro_axes, records)?;
     let runs: Vec<Run<'_>> = measurements.iter().map(Measurement::run).collect();
     // First, as it refuses effects that cannot be fitted.
-    let with_effects = with_effects(arguments, &runs)?;
+    let with_effects = with_effects(arguments, &runs, gyro_axes.first())?;
     let mut progress = match arguments.method() {
         // The number of passes is not known beforehand.
         CalibrationMethod::Batch => Progress::waiting("calibrating", rows),
@@ -222,7 +213,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     })?;
     progress.stage("test for effects", FITTED);
     tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
-    let effects = effects(arguments, &measurements);
+    let effects = effects(&measurements, &gyro_axes);
     drop(progress);
     let found = CalibrationRun {
         method: arguments.method(),
@@ -233,6 +224,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         with_effects,
         calibration,
         measurements,
+        gyro_axes,
     };
     let mut answer = Answer::of(screen::first(&found), prose::summary(&found));
     let mut outputs = Outputs::new();
@@ -298,11 +290,12 @@ fn stopped(
 fn with_effects(
     arguments: &CalibrateArguments,
     runs: &[Run<'_>],
+    axes: Option<&GyroAxes>,
 ) -> Result<Option<FittedEffects>, Failure> {
     let Some(run) = runs.first().filter(|_| !arguments.with.is_empty()) else {
         return Ok(None);
     };
-    fit_effects(run, &arguments.with, &DiagnoseOptions::default())
+    fit_effects(run, axes, &arguments.with, &DiagnoseOptions::default())
         .map(Some)
         .map_err(|error| {
             let given = arguments.with.join(",");
@@ -313,15 +306,12 @@ fn with_effects(
         })
 }
 
-/// Tests of the records for effects that the model lacks; none of computed platforms, to which the
-/// catalogue does not apply.
-fn effects(arguments: &CalibrateArguments, measurements: &[Measurement]) -> Vec<EffectTest> {
-    if arguments.kind() != PlatformKind::Stabilised {
-        return Vec::new();
-    }
-    let tests = measurements.iter().filter_map(|measurement| {
+/// Tests of the records for effects that the model lacks.
+fn effects(measurements: &[Measurement], gyro_axes: &[GyroAxes]) -> Vec<EffectTest> {
+    let tests = measurements.iter().enumerate().filter_map(|(index, measurement)| {
         let path = measurement.path.to_string_lossy().into_owned();
-        screen_record(&measurement.run(), &DiagnoseOptions::default())
+        let axes = gyro_axes.get(index);
+        screen_record(&measurement.run(), axes, &DiagnoseOptions::default())
             .inspect_err(|error| tracing::warn!(%error, path, "not tested for effects"))
             .ok()
             .map(|screened| effect_test(&path, &screened))
@@ -334,6 +324,8 @@ struct CalibrationRun {
     method: CalibrationMethod,
     kind: PlatformKind,
     measurements: Vec<Measurement>,
+    /// Axes of the gyros in each record, of a strapdown unit.
+    gyro_axes: Vec<GyroAxes>,
     calibration: Calibration,
     /// Tests of the records for effects that the model lacks.
     effects: Vec<EffectTest>,

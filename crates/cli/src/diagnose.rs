@@ -15,7 +15,6 @@ use gyrocal_diagnosis::{
 };
 use gyrocal_pages::{of_diagnosis, of_result};
 use gyrocal_record::{Bench, Outputs, printable_path};
-use gyrocal_setup::PlatformKind;
 
 use crate::layout::layout;
 use crate::numbers::probability;
@@ -23,7 +22,7 @@ use crate::outputs::{self, manifest, same_file};
 use crate::page;
 use crate::pictures;
 use crate::progress::Progress;
-use crate::{Answer, Failure, exit, records};
+use crate::{Answer, Failure, exit, gyro_axes, records};
 pub use failed::NotDiagnosed;
 
 /// Show what the model gets wrong about a record, and name the cause.
@@ -58,6 +57,14 @@ pub(crate) struct DiagnoseArguments {
     /// Its bench description (TOML); the attitude in it is that of its own first row.
     #[arg(long, value_name = "BENCH.toml", requires = "validate")]
     validate_bench: Option<PathBuf>,
+    /// Axes of the instruments in the platform at each row (CSV), one file for each record: for platforms
+    /// that `import strapdown` computed. Coefficients and effects are then those of gyros and
+    /// accelerometers that are fixed to a body, in their own axes.
+    #[arg(long, value_name = "AXES.csv", action = ArgAction::Append, conflicts_with = "filter")]
+    gyro_axes: Vec<PathBuf>,
+    /// Those of the later record.
+    #[arg(long, value_name = "AXES.csv", requires = "validate", requires = "gyro_axes")]
+    validate_gyro_axes: Option<PathBuf>,
     #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
     #[arg(long, value_name = "OUT.html", help = page::HELP)]
@@ -131,9 +138,10 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
     let mut progress = Progress::waiting("diagnosing", rows);
-    let gate =
-        |file, bench| Gate::of_file(PlatformKind::Stabilised, file, bench, &options.calibration);
-    let checked = gate(&file, &bench)?;
+    let kind = gyro_axes::kind(&arguments.gyro_axes);
+    let gate = |file, bench| Gate::of_file(kind, file, bench, &options.calibration);
+    let axes = gyro_axes::read(&arguments.gyro_axes, [file.record()])?.pop();
+    let checked = gate(&file, &bench)?.with_gyro_axes(axes);
     let mut diagnosis =
         match diagnose_watched(checked, &bench, &options, |stage| progress.at(stage)) {
             Err(DiagnosisError::Setup { result }) => {
@@ -149,7 +157,9 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
             record: file.record(),
             bench: &bench,
         };
-        let checked = gate(later, later_bench)?;
+        let axes = arguments.validate_gyro_axes.as_slice();
+        let axes = gyro_axes::read(axes, [later.record()])?.pop();
+        let checked = gate(later, later_bench)?.with_gyro_axes(axes);
         match diagnosis.validate_gated(&first, checked, later_bench, &options) {
             Err(DiagnosisError::Setup { result }) => {
                 drop(progress);
@@ -180,11 +190,21 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
             if records == 1 { "record" } else { "records" }
         )));
     }
+    gyro_axes::check(&arguments.gyro_axes, records)?;
+    let is_unit = !arguments.gyro_axes.is_empty();
+    if is_unit && arguments.validate.is_some() && arguments.validate_gyro_axes.is_none() {
+        return Err(Failure::Usage(
+            "--gyro-axes with --validate: give those of the later record, --validate-gyro-axes AXES.csv"
+                .to_owned(),
+        ));
+    }
     let inputs: Vec<&Path> = arguments
         .pairs()
         .flat_map(|(record, bench)| [record, bench])
         .chain(&arguments.validate)
         .chain(&arguments.validate_bench)
+        .chain(&arguments.gyro_axes)
+        .chain(&arguments.validate_gyro_axes)
         .map(PathBuf::as_path)
         .chain(arguments.map.path())
         .collect();

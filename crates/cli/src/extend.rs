@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_diagnosis::result;
+use gyrocal_diagnosis::{DiagnosisResult, result};
 use gyrocal_record::{ExtensionReport, LeftOut, Outputs, SCHEMA_VERSION, printable_path};
+use miette::miette;
 
 use crate::outputs::{manifest, refuse_overlap};
 use crate::{Answer, Failure};
@@ -59,7 +60,10 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
         Some(path) => {
             let name = printable_path(path);
             let diagnosis = with_members(result::read(path)?, &arguments.member, &name);
-            diagnosis.and_then(|diagnosis| of_diagnosis(&diagnosis, &name))
+            diagnosis.and_then(|diagnosis| {
+                refuse_strapdown(&diagnosis, &name)?;
+                of_diagnosis(&diagnosis, &name)
+            })
         }
         None => of_list(arguments.effects.as_deref().unwrap_or_default()),
     }
@@ -72,6 +76,18 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
     }
     outputs.commit()?;
     Ok(summary(arguments, &extension))
+}
+
+/// The extended filter is that of a stabilised platform.
+fn refuse_strapdown(diagnosis: &DiagnosisResult, name: &str) -> Result<(), miette::Report> {
+    if !diagnosis.strapdown {
+        return Ok(());
+    }
+    Err(miette!(
+        help = "correct the outputs of the unit by the coefficients, or extend from a diagnosis of a platform",
+        "{name}: found a diagnosis of a strapdown unit (--gyro-axes), expected one of a stabilised platform, \
+         whose filter a model file extends"
+    ))
 }
 
 fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Failure> {

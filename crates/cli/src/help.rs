@@ -11,7 +11,7 @@ const FILES: &str = "Files to write";
 const READ: &str = "Files to read";
 
 /// Ids of options that name files to read.
-const INPUTS: [&str; 8] = [
+const INPUTS: [&str; 9] = [
     "bench",
     "benches",
     "diagnosis",
@@ -20,6 +20,7 @@ const INPUTS: [&str; 8] = [
     "module",
     "validate",
     "validate_bench",
+    "validate_gyro_axes",
 ];
 
 /// Ids of options that name files to write.

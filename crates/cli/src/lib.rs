@@ -21,6 +21,7 @@ mod emit;
 mod error_report;
 mod exit;
 mod extend;
+mod gyro_axes;
 mod help;
 mod import;
 mod layout;

@@ -15,7 +15,9 @@ mod untestable_rows;
 
 use std::borrow::Cow;
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_calibration::{
+    CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run,
+};
 use gyrocal_hypothesis::{ScoreTable, SearchOptions, Searched, Selection};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
@@ -155,13 +157,15 @@ pub fn diagnose_watched<'a>(
     options: &DiagnoseOptions,
     mut watch: impl FnMut(Stage),
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
+    let axes = found.usable_axes()?;
     let (usable, setup) = found.sound(options)?;
     request::check(&options.also, &usable, bench)?;
     let watch: &mut dyn FnMut(Stage) = &mut watch;
+    let axes = axes.as_ref();
     match usable {
-        Cow::Borrowed(record) => diagnose_sound(record, bench, options, setup, watch),
+        Cow::Borrowed(record) => diagnose_sound(record, bench, axes, options, setup, watch),
         Cow::Owned(record) => {
-            diagnose_sound(&record, bench, options, setup, watch).map(Diagnosis::into_owned)
+            diagnose_sound(&record, bench, axes, options, setup, watch).map(Diagnosis::into_owned)
         }
     }
 }
@@ -176,10 +180,12 @@ struct Sound<'e, 'a> {
     shares: FalseAlarmShares,
 }
 
-/// Diagnoses a record without gross errors; `setup` are those that it had.
+/// Diagnoses a record without gross errors; `setup` are those that it had, `axes` those of the instruments
+/// of a strapdown unit.
 fn diagnose_sound<'a>(
     record: &'a Record,
     bench: &'a Bench,
+    axes: Option<&GyroAxes>,
     options: &DiagnoseOptions,
     setup: Vec<SetupProblem>,
     watch: &mut dyn FnMut(Stage),
@@ -188,7 +194,8 @@ fn diagnose_sound<'a>(
     let run = Run { record, bench };
     let shares = shares(options.false_alarm_probability);
     let declared = NoiseModel::default();
-    let audited = noise_audited_fit(&run, &declared, shares.noise_audit, &options.calibration)?;
+    let alpha = shares.noise_audit;
+    let audited = noise_audited_fit(&run, axes, &declared, alpha, &options.calibration)?;
     let accel_noise_g = audited
         .noise_model
         .accel_ratio

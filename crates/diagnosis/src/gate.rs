@@ -4,7 +4,9 @@
 use std::borrow::Cow;
 
 use gyrocal::Platform;
-use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_calibration::{
+    CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run,
+};
 use gyrocal_record::{Bench, Record, RecordFile, SetupProblem};
 use gyrocal_setup::{Correction, PlatformKind, SetupFinding, check_setup_of};
 
@@ -31,6 +33,8 @@ pub struct Gate<'a> {
     /// The record with what can be mended left out or corrected; `None` if an error leaves nothing
     /// sound, so that no model may be fitted.
     pub usable: Option<Cow<'a, Record>>,
+    /// Axes of the instruments at each row of the record as it was given, if they are fixed to a body.
+    pub gyro_axes: Option<GyroAxes>,
 }
 
 impl<'a> Gate<'a> {
@@ -58,7 +62,34 @@ impl<'a> Gate<'a> {
                 false => Cow::Owned(usable),
             }),
             problems,
+            gyro_axes: None,
         }
+    }
+
+    /// The same of a strapdown unit, with the axes of its instruments at each row of the record: the model is
+    /// then that of gyros and accelerometers in these axes.
+    #[must_use]
+    pub fn with_gyro_axes(self, axes: Option<GyroAxes>) -> Self {
+        Self {
+            gyro_axes: axes,
+            ..self
+        }
+    }
+
+    /// The axes at the rows that are left.
+    pub(crate) fn usable_axes(&self) -> Result<Option<GyroAxes>, CalibrationError> {
+        let (Some(axes), Some(usable)) = (&self.gyro_axes, &self.usable) else {
+            return Ok(None);
+        };
+        let (rows, attitudes) = (self.record.len(), axes.len());
+        if rows != attitudes {
+            return Err(CalibrationError::GyroAxes { rows, attitudes });
+        }
+        let left = axes.of_rows(&self.record.time_s, &usable.time_s);
+        let attitudes = 0;
+        let rows = usable.len();
+        left.map(Some)
+            .ok_or(CalibrationError::GyroAxes { rows, attitudes })
     }
 
     /// The same of a record in a file, whose problems then have file and lines.

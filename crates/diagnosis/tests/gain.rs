@@ -74,7 +74,7 @@ fn predicted(found: &Diagnosis<'_>, first: &Simulation, later: &Simulation) -> L
     });
     let models = [&found.nominal, found.extended.as_ref().unwrap()];
     let options = DiagnoseOptions::default();
-    predict_later(models, &found.noise_model, &first, &later, &options).unwrap()
+    predict_later(models, &found.noise_model, &first, (&later, None), &options).unwrap()
 }
 
 /// A record of hours does not determine its own attitude: no model can be compared with it.

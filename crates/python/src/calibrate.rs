@@ -300,7 +300,7 @@ fn with_effects(request: &Request, runs: &[Run<'_>]) -> Outcome<Option<FittedEff
             "calibrate the records one by one",
         ));
     }
-    let fitted = fit_effects(run, &request.effects, &DiagnoseOptions::default());
+    let fitted = fit_effects(run, None, &request.effects, &DiagnoseOptions::default());
     fitted.map(Some).map_err(|error| Failure {
         message: format!("effects: {error}"),
         advice: Some("`diagnose` finds which effects the record shows".to_owned()),
@@ -311,7 +311,7 @@ fn with_effects(request: &Request, runs: &[Run<'_>]) -> Outcome<Option<FittedEff
 /// Tests of the records for effects that the model lacks.
 fn effects(names: &[String], runs: &[Run<'_>]) -> Vec<EffectTest> {
     let tests = names.iter().zip(runs).filter_map(|(name, run)| {
-        let screened = screen_record(run, &DiagnoseOptions::default()).ok()?;
+        let screened = screen_record(run, None, &DiagnoseOptions::default()).ok()?;
         Some(effect_test(name, &screened))
     });
     tests.collect()

@@ -4,10 +4,11 @@ use gyrocal_hypothesis::{
     Column, Covariate, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Singular,
     StateJump,
 };
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::FittedPlatform;
 use crate::error::CalibrationError;
+use crate::gyro_axes::GyroAxes;
 use crate::platform::{PLATFORM, covariates};
 use crate::work::work;
 
@@ -29,7 +30,7 @@ impl FittedModel for FittedPlatform<'_> {
     }
 
     fn covariates(&self) -> Vec<Covariate> {
-        covariates(&self.predicted_g())
+        covariates(&self.along_instruments(self.predicted_g()))
     }
 
     fn values(&self) -> &[f64] {
@@ -85,6 +86,33 @@ impl FittedModel for FittedPlatform<'_> {
     }
 
     fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, CalibrationError> {
-        self.jumps()
+        let mut jumps = self.jumps()?;
+        for (run, rows) in self.record_rows().into_iter().enumerate() {
+            let Some(axes) = &self.problem.runs[run].rows.gyro_axes else {
+                continue;
+            };
+            for (row, jump) in jumps[rows].iter_mut().enumerate() {
+                if let Some(jump) = jump {
+                    turn(jump, axes, row);
+                }
+            }
+        }
+        Ok(jumps)
     }
+}
+
+/// A jump about the axes of the instruments, from one about those of the platform.
+fn turn(jump: &mut StateJump, axes: &GyroAxes, row: usize) {
+    let along = |vector: &DVector<f64>| {
+        let turned = axes.along_gyros(row, &[vector[0], vector[1], vector[2]]);
+        DVector::from_row_slice(&turned)
+    };
+    jump.score = along(&jump.score);
+    jump.outputs = along(&jump.outputs);
+    let half = DMatrix::from_columns(&[0, 1, 2].map(|i| {
+        let column = jump.information.column(i).into_owned();
+        along(&column)
+    }));
+    let whole = half.transpose();
+    jump.information = DMatrix::from_columns(&[0, 1, 2].map(|i| along(&whole.column(i).into_owned())));
 }

@@ -82,10 +82,15 @@ impl FittedPlatform<'_> {
         let leg = &self.problem.runs[0];
         let accel_g = leg.rows.declared_noise_g();
         let square = |rate: f64| rate * RAD_PER_S * RAD_PER_S;
-        let white = leg.noise_density.map(square);
+        let mut white = leg.noise_density.map(square);
         let mut walk = [0.0; AXES];
         for (axis, size) in self.noise.gyro_walk_deg_per_h_per_sqrt_h.iter().enumerate() {
             walk[axis] = square(size * size / S_PER_H);
+        }
+        if self.is_strapdown() {
+            // The axes of the gyros turn in the platform.
+            let mean = |of: [f64; AXES]| [of.iter().sum::<f64>() / AXES as f64; AXES];
+            (white, walk) = (mean(white), mean(walk));
         }
         let turns: Vec<DMatrix<f64>> = knots
             .rows

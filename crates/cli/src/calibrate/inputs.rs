@@ -3,12 +3,9 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use gyrocal_calibration::{
-    GyroAxes, Options, Run, attitude_walk_share, average_record, shared_rows,
-};
+use gyrocal_calibration::{Options, Run, attitude_walk_share, average_record, shared_rows};
 use gyrocal_diagnosis::Gate;
-use gyrocal_instruments::strapdown::read_axes;
-use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, SourceText, printable_path};
+use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, printable_path};
 use miette::miette;
 
 use super::CalibrateArguments;
@@ -87,19 +84,6 @@ pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, F
         }
     }
     Ok(measurements)
-}
-
-/// Axes of the gyros in each record, if files of them are given.
-pub(super) fn gyro_axes(
-    paths: &[PathBuf],
-    measurements: &[Measurement],
-) -> Result<Vec<GyroAxes>, Failure> {
-    let pairs = paths.iter().zip(measurements);
-    let read = pairs.map(|(path, measurement)| {
-        let quaternions = read_axes(&SourceText::read(path)?, &measurement.record)?;
-        Ok(GyroAxes::new(&quaternions))
-    });
-    read.collect()
 }
 
 fn refuse_twins(records: &[PathBuf]) -> Result<(), Failure> {

@@ -5,13 +5,12 @@ use std::path::Path;
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options};
 use gyrocal_pages::{CalibratedRecord, Part, of_calibration};
 use gyrocal_record::CalibrationReport;
-use gyrocal_setup::PlatformKind;
 
 use super::CalibrationRun;
 use crate::{Failure, page};
 
-/// The page of records, the first of which is at `path`. A platform that was computed from a log, and a
-/// record that cannot be fitted alone, have no charts over time.
+/// The page of records, the first of which is at `path`. A record that cannot be fitted alone has no charts
+/// over time.
 pub(super) fn part(
     path: &Path,
     report: &CalibrationReport,
@@ -19,11 +18,12 @@ pub(super) fn part(
     options: &Options,
 ) -> Result<Part, Failure> {
     let measurements = found.measurements.iter();
-    let fits = measurements.filter_map(|measurement| {
-        if found.kind != PlatformKind::Stabilised || found.calibration.fit.is_gross() {
+    let fits = measurements.enumerate().filter_map(|(index, measurement)| {
+        if found.calibration.fit.is_gross() {
             return None;
         }
-        let fit = FittedPlatform::nominal(&measurement.run(), options, &NoiseModel::default());
+        let (axes, noise) = (found.gyro_axes.get(index), NoiseModel::default());
+        let fit = FittedPlatform::nominal_of_unit(&measurement.run(), axes, options, &noise);
         fit.inspect_err(
             |error| tracing::warn!(%error, "no charts of {}", measurement.path.display()),
         )

@@ -8,14 +8,13 @@ use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records, prose};
 use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
 use gyrocal_record::{Bench, Outputs, RecordFile, printable_path};
 use gyrocal_report::Picture;
-use gyrocal_setup::PlatformKind;
 use miette::miette;
 
 use super::{DiagnoseArguments, NotDiagnosed, exit_code};
 use crate::layout::layout;
 use crate::outputs::manifest;
 use crate::progress::Progress;
-use crate::{Answer, Failure, page, pictures};
+use crate::{Answer, Failure, gyro_axes, page, pictures};
 
 /// Runs the command; `inputs` are each record with its bench file.
 pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Answer, Failure> {
@@ -35,11 +34,14 @@ pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Ans
     tracing::info!(rows, records = files.len(), "read");
     let mut progress = Progress::waiting("diagnosing", rows);
     let mut checked = Vec::with_capacity(files.len());
+    let kind = gyro_axes::kind(&arguments.gyro_axes);
+    let records = files.iter().map(RecordFile::record);
+    let mut axes = gyro_axes::read(&arguments.gyro_axes, records)?.into_iter();
     for ((path, file), bench) in arguments.records.iter().zip(&files).zip(&benches) {
-        let kind = PlatformKind::Stabilised;
+        let gate = Gate::of_file(kind, file, bench, &options.calibration)?;
         checked.push(RecordToDiagnose {
             name: printable_path(path),
-            gate: Gate::of_file(kind, file, bench, &options.calibration)?,
+            gate: gate.with_gyro_axes(axes.next()),
             bench,
         });
     }

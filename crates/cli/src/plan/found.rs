@@ -76,6 +76,13 @@ fn written<'a>(
             diagnosis.records.len()
         )));
     }
+    if diagnosis.strapdown {
+        return Err(Failure::Usage(format!(
+            "{} is of a strapdown unit (--gyro-axes): a run is planned of a stabilised platform. The next log \
+             of a unit is best one in another attitude",
+            printable_path(path)
+        )));
+    }
     check_inputs(path, &diagnosis, arguments)?;
     let named = NamedCause::all(&diagnosis);
     let noise = noise_of(&diagnosis);

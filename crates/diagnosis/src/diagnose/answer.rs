@@ -63,6 +63,7 @@ impl Evidence<'_, '_> {
             manifest: manifest(self.options.seed),
             record: record_summary(self.run.record),
             records: Vec::new(),
+            strapdown: self.nominal.is_strapdown(),
             later_record: None,
             verdict,
             false_alarm_probability: self.options.false_alarm_probability,

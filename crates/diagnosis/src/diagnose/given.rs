@@ -3,7 +3,7 @@
 use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_calibration::{DETERMINED, FittedPlatform, NoiseModel, Run, rows};
+use gyrocal_calibration::{DETERMINED, FittedPlatform, GyroAxes, NoiseModel, Run, rows};
 use gyrocal_hypothesis::{FittedModel, Selection, fit_with};
 use gyrocal_record::{Coefficient, FittedEffect, FittedEffects, FittedParameter};
 
@@ -14,13 +14,14 @@ use crate::error_budget::shares;
 use crate::request;
 
 /// Estimates the drift coefficients with effects of the catalogue in the model, without a test of whether
-/// the record has them: noise as a diagnosis estimates it, onsets and time constants with all sizes.
+/// the record has them, of a strapdown unit in the axes of its instruments: noise as a diagnosis estimates it, onsets and time constants with all sizes.
 ///
 /// # Errors
 /// [`DiagnosisError`]: effects that are in no catalogue, that this record cannot show, that are in the
 /// list twice, or that the record does not determine beside each other.
 pub fn fit_effects(
     run: &Run<'_>,
+    axes: Option<&GyroAxes>,
     effects: &[String],
     options: &DiagnoseOptions,
 ) -> Result<FittedEffects, DiagnosisError> {
@@ -48,7 +49,7 @@ pub fn fit_effects(
     }
     let shares = shares(options.false_alarm_probability);
     let declared = NoiseModel::default();
-    let audited = noise_audited_fit(run, &declared, shares.noise_audit, &options.calibration)?;
+    let audited = noise_audited_fit(run, axes, &declared, shares.noise_audit, &options.calibration)?;
     let rows = rows(run.record, audited.nominal.covariates());
     let search = search_options(options, &shares);
     let found = fit_with(audited.nominal, rows, &selection, &search)?;

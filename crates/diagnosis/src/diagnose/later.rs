@@ -1,6 +1,6 @@
 //! Validation of a diagnosis on a later record of the same platform.
 
-use gyrocal_calibration::{FittedPlatform, NoiseModel, Run};
+use gyrocal_calibration::{FittedPlatform, GyroAxes, NoiseModel, Run};
 use gyrocal_record::{Bench, SetupProblem};
 use gyrocal_setup::PlatformKind;
 
@@ -44,6 +44,7 @@ impl Diagnosis<'_> {
         options: &DiagnoseOptions,
     ) -> Result<(), DiagnosisError> {
         self.result.later_record = Some(record_summary(later.record));
+        let axes = later.usable_axes()?;
         let (usable, setup) = later.sound(options)?;
         self.result.setup.extend(setup.into_iter().map(of_later));
         let later = &Run {
@@ -59,6 +60,7 @@ impl Diagnosis<'_> {
             return Ok(());
         };
         let models = [&self.nominal, extended];
+        let later = (later, axes.as_ref());
         let prediction = predict_later(models, &self.noise_model, first, later, options)?;
         if let Some(gain) = &mut self.result.gain {
             gain.validation = Some(validation(&prediction));
@@ -70,7 +72,7 @@ impl Diagnosis<'_> {
 
 /// Predicts a later record with the nominal and an extended model of a first one, which were fitted
 /// with the noise `assumed`. The gyros are taken to be as noisy in the later record; its outliers
-/// are left out.
+/// are left out. The axes are those of the instruments in the later record, of a strapdown unit.
 ///
 /// # Errors
 /// [`DiagnosisError`], of the later record.
@@ -78,7 +80,7 @@ pub fn predict_later(
     [nominal, extended]: [&FittedPlatform<'_>; 2],
     assumed: &NoiseModel,
     first: &Run<'_>,
-    later: &Run<'_>,
+    (later, axes): (&Run<'_>, Option<&GyroAxes>),
     options: &DiagnoseOptions,
 ) -> Result<LaterPrediction, DiagnosisError> {
     request::check(&[], later.record, later.bench)?;
@@ -88,7 +90,7 @@ pub fn predict_later(
         ..NoiseModel::default()
     };
     let alpha = shares(options.false_alarm_probability).noise_audit;
-    let fitted = noise_audited_fit(later, &assumed, alpha, &options.calibration)?.nominal;
+    let fitted = noise_audited_fit(later, axes, &assumed, alpha, &options.calibration)?.nominal;
     Ok(predict(nominal, extended, first, &fitted, later)?)
 }
 

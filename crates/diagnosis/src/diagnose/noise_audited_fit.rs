@@ -1,8 +1,9 @@
 //! Noise audit, and the nominal model fitted with the noise that it found.
 
-use gyrocal::{Discretisation, Drift, FilterSettings, InitialAttitude};
+use gyrocal::{Discretisation, Drift, FilterSettings, InitialAttitude, Innovation};
 use gyrocal_calibration::{
-    FittedPlatform, NoiseModel, Options, Run, filter_settings, gross_errors, run_factorised_filter,
+    FittedPlatform, GyroAxes, NoiseModel, Options, Run, filter_settings, gross_errors,
+    run_factorised_filter, run_strapdown_filter,
 };
 use gyrocal_record::{Bench, Record};
 use gyrocal_setup::shown_noise_g;
@@ -32,9 +33,10 @@ pub(super) struct AuditedFit<'a> {
 }
 
 /// Audits the noise of a record and fits the nominal model with what it finds; `before` is the noise
-/// assumed until then.
+/// assumed until then, `axes` are those of the instruments of a strapdown unit.
 pub(super) fn noise_audited_fit<'a>(
     run: &Run<'a>,
+    axes: Option<&GyroAxes>,
     before: &NoiseModel,
     false_alarm: f64,
     options: &Options,
@@ -48,9 +50,9 @@ pub(super) fn noise_audited_fit<'a>(
     let mut noise_model = before.clone();
     leave_out(&mut noise_model, record.len(), &whole);
     noise_model.accel_ratio = first_ratio(&noise_model, run);
-    let first = FittedPlatform::nominal(run, options, &noise_model)?;
+    let first = FittedPlatform::nominal_of_unit(run, axes, options, &noise_model)?;
     let mut screened = record.without(whole.iter().copied());
-    let mut seen = innovations(&screened, bench, &first)?;
+    let mut seen = innovations(&screened, bench, axes, &first)?;
     let mut audit = audit_noise(
         &screened,
         &seen,
@@ -78,7 +80,7 @@ pub(super) fn noise_audited_fit<'a>(
             audit.cleaned.keep[*row][*axis] = false;
         }
         screened = screened.without(places);
-        seen = innovations(&screened, bench, &first)?;
+        seen = innovations(&screened, bench, axes, &first)?;
     }
     let nominal = if noise_model == *before {
         first
@@ -158,6 +160,7 @@ fn noise_from_audit(audit: &NoiseAudit, record: &Record) -> NoiseModel {
 fn innovations(
     record: &Record,
     bench: &Bench,
+    axes: Option<&GyroAxes>,
     fitted: &FittedPlatform<'_>,
 ) -> Result<Innovations, DiagnosisError> {
     let settings = FilterSettings {
@@ -170,27 +173,24 @@ fn innovations(
     };
     let mut innovations = Innovations::default();
     let mut refused = None;
-    run_factorised_filter(
-        record,
-        &settings,
-        &attitude,
-        &mut |row, filter, innovation| {
-            let residual_g = core::array::from_fn(|axis| {
-                if innovation.observed[axis] {
-                    innovation.residual[axis]
-                } else {
-                    f64::NAN
-                }
-            });
-            let pushed = innovations.push(
-                record.time_s[row],
-                residual_g,
-                &innovation.covariance(),
-                filter.kernel().inputs().inputs().f_0,
-            );
-            refused = refused.take().or(pushed.err());
-        },
-    )?;
+    let mut push = |row: usize, force_g: [f64; 3], innovation: &Innovation<f64, 3>| {
+        let residual_g = core::array::from_fn(|axis| {
+            if innovation.observed[axis] {
+                innovation.residual[axis]
+            } else {
+                f64::NAN
+            }
+        });
+        let covariance = innovation.covariance();
+        let pushed = innovations.push(record.time_s[row], residual_g, &covariance, force_g);
+        refused = refused.take().or(pushed.err());
+    };
+    match axes {
+        Some(axes) => run_strapdown_filter(record, axes, &settings, &attitude, &mut push),
+        None => run_factorised_filter(record, &settings, &attitude, &mut |row, filter, innovation| {
+            push(row, filter.kernel().inputs().inputs().f_0, innovation);
+        }),
+    }?;
     if let Some(error) = refused {
         return Err(error);
     }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_calibration::{FittedPlatform, NoiseModel, Run, joined_record};
+use gyrocal_calibration::{FittedPlatform, GyroAxes, NoiseModel, Run, joined_record};
 use gyrocal_record::{Bench, Record, SetupProblem};
 
 use super::answer::record_summary;
@@ -46,6 +46,7 @@ struct SoundRecord<'a> {
     name: String,
     record: Cow<'a, Record>,
     bench: &'a Bench,
+    axes: Option<GyroAxes>,
     setup: Vec<SetupProblem>,
 }
 
@@ -66,7 +67,8 @@ pub fn diagnose_records(
     let mut alone = Vec::with_capacity(sound.len());
     for one in &sound {
         let setup = one.setup.clone();
-        let own = diagnose_sound(&one.record, one.bench, options, setup, watch)
+        let axes = one.axes.as_ref();
+        let own = diagnose_sound(&one.record, one.bench, axes, options, setup, watch)
             .map_err(|error| of(&one.name, error))?;
         alone.push(own.into_owned());
     }
@@ -111,12 +113,15 @@ fn sound_records<'a>(
 ) -> Result<Vec<SoundRecord<'a>>, DiagnosisError> {
     let mut sound = Vec::with_capacity(records.len());
     for RecordToDiagnose { name, gate, bench } in records {
+        let axes = gate.usable_axes();
+        let axes = axes.map_err(|error| of(&name, error.into()))?;
         let (record, setup) = gate.sound(options).map_err(|error| of(&name, error))?;
         request::check(&options.also, &record, bench).map_err(|error| of(&name, error))?;
         sound.push(SoundRecord {
             name,
             record,
             bench,
+            axes,
             setup,
         });
     }
@@ -149,9 +154,9 @@ fn jointly(
             record: &one.record,
             bench: one.bench,
         };
-        let audited =
-            noise_audited_fit(&run, &NoiseModel::default(), of_audit, &options.calibration)
-                .map_err(|error| of(&one.name, error))?;
+        let (axes, declared) = (one.axes.as_ref(), NoiseModel::default());
+        let audited = noise_audited_fit(&run, axes, &declared, of_audit, &options.calibration)
+            .map_err(|error| of(&one.name, error))?;
         let noise_g = audited
             .noise_model
             .accel_ratio

@@ -20,10 +20,14 @@ impl<'a> Gate<'a> {
         self,
         options: &DiagnoseOptions,
     ) -> Result<(Cow<'a, Record>, Vec<SetupProblem>), DiagnosisError> {
+        let strapdown = self.gyro_axes.is_some();
         match self.usable {
             Some(usable) => Ok((usable, self.problems)),
             None => Err(DiagnosisError::Setup {
-                result: Box::new(result(self.record, options, self.problems)),
+                result: Box::new(DiagnosisResult {
+                    strapdown,
+                    ..result(self.record, options, self.problems)
+                }),
             }),
         }
     }
@@ -36,6 +40,7 @@ fn result(record: &Record, options: &DiagnoseOptions, setup: Vec<SetupProblem>) 
         manifest: manifest(options.seed),
         record: record_summary(record),
         records: Vec::new(),
+        strapdown: false,
         later_record: None,
         verdict: Verdict::Setup,
         false_alarm_probability: options.false_alarm_probability,

@@ -22,6 +22,10 @@ const PROBLEMS_SHOWN: usize = 2;
 /// Probability of none of the catalogue from which on it is told.
 const TOLD: f64 = 0.2;
 
+/// What coefficients and effects of a strapdown unit are.
+const STRAPDOWN: &str = "coefficients and effects are errors of the outputs of instruments that are fixed to a body, \
+                         in their own axes";
+
 /// The first screen: verdict, size, significance, alternatives, effect on the coefficients, next step.
 #[must_use]
 pub fn first_screen(result: &DiagnosisResult) -> Screen {
@@ -31,6 +35,9 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
         Verdict::Setup => wrong_setup(result),
         Verdict::Clean => clean(result),
     };
+    if result.strapdown {
+        screen.fact("axes", STRAPDOWN);
+    }
     if result.verdict != Verdict::Setup {
         let problems = result.setup.iter().take(PROBLEMS_SHOWN);
         for problem in problems {

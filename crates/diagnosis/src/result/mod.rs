@@ -68,6 +68,10 @@ pub struct DiagnosisResult {
     /// on which each record follows the one before.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<RecordResult>,
+    /// Whether coefficients and effects are those of gyros and accelerometers that are fixed to a body, in
+    /// their own axes: of a platform that was computed from a strapdown unit.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub strapdown: bool,
     /// Size of the later record, if one was given.
     pub later_record: Option<RecordSummary>,
     /// The answer in one word.
@@ -116,6 +120,11 @@ pub struct DiagnosisResult {
     pub search_complete: bool,
     /// Consistency test of another filter, if one was asked for.
     pub filter: Option<FilterTest>,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+fn is_false(value: &bool) -> bool {
+    !*value
 }
 
 /// Searches of earlier versions had no budget.

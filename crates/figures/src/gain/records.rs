@@ -200,7 +200,7 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     let options = DiagnoseOptions::default();
     let predicted = |extended: &FittedPlatform<'_>| {
         let models = [&found.nominal, extended];
-        predict_later(models, &found.noise_model, &one, &other, &options)
+        predict_later(models, &found.noise_model, &one, (&other, None), &options)
     };
     let of_found = found.extended.as_ref().map(predicted).transpose()?;
     let named = NamedCause {
