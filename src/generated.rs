@@ -116,8 +116,7 @@ pub const CATALOGUE_PROGRAM: &str = include_str!(concat!(env!("OUT_DIR"), "/cata
 
 /// The program of [`strapdown_catalogue`], as derived: for interpreters.
 #[cfg(all(feature = "catalogue", feature = "oracle", not(gyrocal_rederived)))]
-pub const STRAPDOWN_CATALOGUE_PROGRAM: &str =
-    include_str!("generated/strapdown_catalogue.json");
+pub const STRAPDOWN_CATALOGUE_PROGRAM: &str = include_str!("generated/strapdown_catalogue.json");
 
 /// The program of [`strapdown_catalogue`], as derived: for interpreters.
 #[cfg(all(feature = "catalogue", feature = "oracle", gyrocal_rederived))]

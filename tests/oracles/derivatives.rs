@@ -127,6 +127,7 @@ fn table() -> Vec<(&'static str, &'static str, &'static str, By)> {
         extended!("surveyed").0,
         extended!("strapdown").0,
         extended!("catalogue").0,
+        extended!("strapdown_catalogue").0,
     ]
     .concat();
     [&NOMINAL[..], &extended].concat()
@@ -138,6 +139,7 @@ pub(crate) fn values() -> Vec<(&'static str, &'static str, &'static str)> {
         extended!("surveyed").1,
         extended!("strapdown").1,
         extended!("catalogue").1,
+        extended!("strapdown_catalogue").1,
     ]
     .concat();
     [&NOMINAL_VALUES[..], &extended].concat()

@@ -1,6 +1,6 @@
 //! The generated functions, and a check that the list is complete.
 
-use gyrocal::generated::{catalogue, oracle, platform, strapdown, surveyed};
+use gyrocal::generated::{catalogue, oracle, platform, strapdown, strapdown_catalogue, surveyed};
 use gyrocal_oracle::nonzeros::Nonzeros;
 use gyrocal_scalar::Scalar;
 
@@ -38,6 +38,7 @@ macro_rules! generated {
     (@group $module:ident $group:ident) => { stringify!($group) };
     (@lanes oracle $flat:ident) => { None };
     (@lanes catalogue $flat:ident) => { None };
+    (@lanes strapdown_catalogue $flat:ident) => { None };
     (@lanes $module:ident $flat:ident) => { Some($flat) };
     (@dual $flat:ident) => { Some($flat) };
     (@dual $flat:ident [$($output:ident),*]) => { None };
@@ -99,6 +100,21 @@ generated! {
     catalogue::accelerometers_at_origin_jacobian(parameters, f_0, conditions)
         -> [reading, reading_d_theta, reading_d_parameters];
     catalogue::weights(force, conditions, shapes);
+    strapdown_catalogue::dynamics(
+        theta, parameters, omega_0, f_0, east_0, field_0, platform_c_gyros, conditions, shapes);
+    strapdown_catalogue::dynamics_jacobian(
+        theta, parameters, omega_0, f_0, east_0, field_0, platform_c_gyros, conditions, shapes)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
+    strapdown_catalogue::accelerometers(theta, parameters, f_0, platform_c_gyros, conditions);
+    strapdown_catalogue::accelerometers_jacobian(
+        theta, parameters, f_0, platform_c_gyros, conditions)
+        -> [reading, reading_d_theta, reading_d_parameters];
+    strapdown_catalogue::dynamics_at_origin_jacobian(
+        parameters, omega_0, f_0, east_0, field_0, platform_c_gyros, conditions, shapes)
+        -> [theta_dot, theta_dot_d_theta, theta_dot_d_parameters, theta_dot_d_drift_noise];
+    strapdown_catalogue::accelerometers_at_origin_jacobian(
+        parameters, f_0, platform_c_gyros, conditions)
+        -> [reading, reading_d_theta, reading_d_parameters];
 }
 
 /// The generated function called `name`.

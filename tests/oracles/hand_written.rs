@@ -1,6 +1,6 @@
 //! Hand-written functions whose derivatives are generated, where the function itself is not.
 
-use gyrocal::generated::{catalogue, platform, strapdown, surveyed};
+use gyrocal::generated::{catalogue, platform, strapdown, strapdown_catalogue, surveyed};
 use gyrocal_scalar::Scalar;
 
 use crate::callable::{Callable, callable, take};
@@ -30,6 +30,11 @@ pub(crate) fn hand_written() -> Vec<Callable> {
              "conditions", "catalogue::shapes"];
         "catalogue::accelerometers_from_origin" = catalogue_accelerometers,
             ["origin", "catalogue::parameters", "f_0", "conditions"];
+        "strapdown_catalogue::dynamics_from_origin" = strapdown_catalogue_dynamics,
+            ["origin", "strapdown_catalogue::parameters", "omega_0", "f_0", "east_0", "field_0",
+             "platform_c_gyros", "conditions", "strapdown_catalogue::shapes"];
+        "strapdown_catalogue::accelerometers_from_origin" = strapdown_catalogue_accelerometers,
+            ["origin", "strapdown_catalogue::parameters", "f_0", "platform_c_gyros", "conditions"];
     }
 }
 
@@ -131,4 +136,25 @@ fn catalogue_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
     let mut rest = inputs;
     let (theta, parameters) = (take(&mut rest), take(&mut rest));
     catalogue::accelerometers(theta, parameters, take(&mut rest), take(&mut rest)).to_vec()
+}
+
+/// Rates of the analytic platform with all effects at angles near zero.
+fn strapdown_catalogue_dynamics<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let (theta, parameters) = (take(&mut rest), take(&mut rest));
+    let (omega_0, f_0, east_0) = (take(&mut rest), take(&mut rest), take(&mut rest));
+    let (field_0, gyros) = (take(&mut rest), take(&mut rest));
+    let (conditions, shapes) = (take(&mut rest), take(&mut rest));
+    strapdown_catalogue::dynamics(
+        theta, parameters, omega_0, f_0, east_0, field_0, gyros, conditions, shapes,
+    )
+    .to_vec()
+}
+
+/// Outputs of the accelerometers of the analytic platform with all effects at angles near zero.
+fn strapdown_catalogue_accelerometers<T: Scalar>(inputs: &[T]) -> Vec<T> {
+    let mut rest = inputs;
+    let (theta, parameters) = (take(&mut rest), take(&mut rest));
+    let (f_0, gyros) = (take(&mut rest), take(&mut rest));
+    strapdown_catalogue::accelerometers(theta, parameters, f_0, gyros, take(&mut rest)).to_vec()
 }

@@ -1,6 +1,6 @@
 //! Layout of arrays in generated code, against the programs.
 
-use gyrocal::generated::{catalogue, oracle, platform, strapdown, surveyed};
+use gyrocal::generated::{catalogue, oracle, platform, strapdown, strapdown_catalogue, surveyed};
 use gyrocal_oracle::points::{Purpose, State, states};
 use gyrocal_oracle::program::Output;
 use gyrocal_scalar::Element;
@@ -26,7 +26,7 @@ fn sparse_outputs() -> Vec<Sparse> {
     let state = &states(Purpose::ScalarTypes, 1)[0];
     let (theta, drift) = (&state.theta, &state.drift);
     let (omega_0, f_0, step) = (&state.omega_0, &state.f_0, &state.step);
-    let east_0 = &state.east_0;
+    let (east_0, gyros) = (&state.east_0, &state.platform_c_gyros);
     let (field_0, conditions) = (&state.field_0, &state.conditions);
     let (surveyed, catalogue) = (parameters(state), parameters(state));
     let names = catalogue::SHAPES.map(|shape| shape.name.to_owned());
@@ -97,6 +97,21 @@ fn sparse_outputs() -> Vec<Sparse> {
         catalogue::accelerometers_at_origin_jacobian(&catalogue, f_0, conditions)
             -> AccelerometersAtOriginJacobian:
             reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        strapdown_catalogue::dynamics_jacobian(
+            theta, &catalogue, omega_0, f_0, east_0, field_0, gyros, conditions, &shapes)
+            -> DynamicsJacobian:
+            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense.
+        strapdown_catalogue::accelerometers_jacobian(theta, &catalogue, f_0, gyros, conditions)
+            -> AccelerometersJacobian:
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
+        strapdown_catalogue::dynamics_at_origin_jacobian(
+            &catalogue, omega_0, f_0, east_0, field_0, gyros, conditions, &shapes)
+            -> DynamicsAtOriginJacobian:
+            theta_dot_d_parameters, THETA_DOT_D_PARAMETERS, theta_dot_d_parameters_dense.
+        strapdown_catalogue::accelerometers_at_origin_jacobian(
+            &catalogue, f_0, gyros, conditions)
+            -> AccelerometersAtOriginJacobian:
+            reading_d_parameters, READING_D_PARAMETERS, reading_d_parameters_dense.
     }
 }
 
@@ -146,7 +161,7 @@ fn sparse_outputs_stand_where_the_program_has_them() {
 
 #[test]
 fn groups_have_the_elements_of_the_program() {
-    let generated: [(&str, &[Element]); 31] = [
+    let generated: [(&str, &[Element]); 40] = [
         ("theta", &platform::THETA),
         ("drift", &platform::DRIFT),
         ("omega_0", &platform::OMEGA_0),
@@ -178,6 +193,18 @@ fn groups_have_the_elements_of_the_program() {
         ("conditions", &catalogue::CONDITIONS),
         ("force", &catalogue::FORCE),
         ("catalogue::shapes", &catalogue::SHAPES),
+        ("theta", &strapdown_catalogue::THETA),
+        (
+            "strapdown_catalogue::parameters",
+            &strapdown_catalogue::PARAMETERS,
+        ),
+        ("omega_0", &strapdown_catalogue::OMEGA_0),
+        ("f_0", &strapdown_catalogue::F_0),
+        ("east_0", &strapdown_catalogue::EAST_0),
+        ("field_0", &strapdown_catalogue::FIELD_0),
+        ("platform_c_gyros", &strapdown_catalogue::PLATFORM_C_GYROS),
+        ("conditions", &strapdown_catalogue::CONDITIONS),
+        ("strapdown_catalogue::shapes", &strapdown_catalogue::SHAPES),
     ];
     let programs = programs();
     let mut seen = Vec::new();

@@ -28,7 +28,8 @@ mod scalar_types;
 mod strapdown;
 
 use gyrocal::generated::{
-    CATALOGUE_PROGRAM, ORACLE_PROGRAM, PLATFORM_PROGRAM, STRAPDOWN_PROGRAM, SURVEYED_PROGRAM,
+    CATALOGUE_PROGRAM, ORACLE_PROGRAM, PLATFORM_PROGRAM, STRAPDOWN_CATALOGUE_PROGRAM,
+    STRAPDOWN_PROGRAM, SURVEYED_PROGRAM,
 };
 use gyrocal_oracle::compare::{Comparison, Mismatch};
 use gyrocal_oracle::program::{Function, Program};
@@ -48,6 +49,7 @@ fn programs() -> Vec<Program> {
         SURVEYED_PROGRAM,
         STRAPDOWN_PROGRAM,
         CATALOGUE_PROGRAM,
+        STRAPDOWN_CATALOGUE_PROGRAM,
     ];
     texts
         .map(|text| qualified(Program::from_json(text).unwrap()))

@@ -25,7 +25,7 @@ pub struct PlannedRun<'a> {
     pub run: Run<'a>,
     /// Attitude at the first row.
     pub start: Orientation,
-    /// All parameters of [`Catalogue`].
+    /// All parameters of [`gyrocal::Catalogue`].
     pub parameters: &'a [f64],
     /// Onsets and time constants, as [`Catalogue`] takes them.
     pub shapes: [f64; catalogue::SHAPES.len()],
@@ -71,7 +71,7 @@ impl PlannedRun<'_> {
     }
 
     /// Information of the rows from `first` on, given the earlier ones, on the parameters `active`
-    /// of [`Catalogue`] and on further columns, along the trajectory `points`.
+    /// of [`gyrocal::Catalogue`] and on further columns, along the trajectory `points`.
     ///
     /// # Errors
     /// As [`crate::cramer_rao_bound`].

@@ -119,8 +119,7 @@ pub fn run_strapdown_filter(
 }
 
 /// The filter of a strapdown unit.
-type StrapdownFilter =
-    ExtensionFilter<f64, Strapdown, StrapdownInputs<f64>, { Strapdown::STATES }>;
+type StrapdownFilter = ExtensionFilter<f64, Strapdown, StrapdownInputs<f64>, { Strapdown::STATES }>;
 
 /// Standard deviation of a parameter that is known: a filter takes none of zero.
 const KNOWN: f64 = 1e-12;

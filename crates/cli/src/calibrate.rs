@@ -308,14 +308,17 @@ fn with_effects(
 
 /// Tests of the records for effects that the model lacks.
 fn effects(measurements: &[Measurement], gyro_axes: &[GyroAxes]) -> Vec<EffectTest> {
-    let tests = measurements.iter().enumerate().filter_map(|(index, measurement)| {
-        let path = measurement.path.to_string_lossy().into_owned();
-        let axes = gyro_axes.get(index);
-        screen_record(&measurement.run(), axes, &DiagnoseOptions::default())
-            .inspect_err(|error| tracing::warn!(%error, path, "not tested for effects"))
-            .ok()
-            .map(|screened| effect_test(&path, &screened))
-    });
+    let tests = measurements
+        .iter()
+        .enumerate()
+        .filter_map(|(index, measurement)| {
+            let path = measurement.path.to_string_lossy().into_owned();
+            let axes = gyro_axes.get(index);
+            screen_record(&measurement.run(), axes, &DiagnoseOptions::default())
+                .inspect_err(|error| tracing::warn!(%error, path, "not tested for effects"))
+                .ok()
+                .map(|screened| effect_test(&path, &screened))
+        });
     tests.collect()
 }
 

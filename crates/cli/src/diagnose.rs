@@ -63,7 +63,12 @@ pub(crate) struct DiagnoseArguments {
     #[arg(long, value_name = "AXES.csv", action = ArgAction::Append, conflicts_with = "filter")]
     gyro_axes: Vec<PathBuf>,
     /// Those of the later record.
-    #[arg(long, value_name = "AXES.csv", requires = "validate", requires = "gyro_axes")]
+    #[arg(
+        long,
+        value_name = "AXES.csv",
+        requires = "validate",
+        requires = "gyro_axes"
+    )]
     validate_gyro_axes: Option<PathBuf>,
     #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,

@@ -15,9 +15,7 @@ mod untestable_rows;
 
 use std::borrow::Cow;
 
-use gyrocal_calibration::{
-    CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run,
-};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run};
 use gyrocal_hypothesis::{ScoreTable, SearchOptions, Searched, Selection};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;

@@ -1,8 +1,9 @@
 //! Distinguishability: effects around a finding that the record does not separate, and experiments
 //! that would.
 
-use gyrocal::effect::{self, Enters, Need};
+use gyrocal::effect::{self, EffectKind, Enters, Need};
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_record::Record;
 
 use crate::prose;
 use crate::result::{Experiment, ExperimentKind, Finding, Indistinguishable, Relation};
@@ -57,6 +58,52 @@ pub(crate) fn indistinguishable(
     }
     groups
 }
+
+/// Correlation of time and temperature from which on their effects are not told apart.
+const TOGETHER: f64 = 0.9;
+
+/// Correlation of temperature and time in a record; `None` without temperature, or if it does not change.
+pub(crate) fn time_and_temperature(record: &Record) -> Option<f64> {
+    let temperature = about_mean(record.temperature_c.as_ref()?);
+    let time = about_mean(&record.time_s);
+    let sum = |one: &[f64], other: &[f64]| -> f64 {
+        let pairs = one.iter().zip(other);
+        pairs.map(|(a, b)| a * b).sum()
+    };
+    let norms = (sum(&temperature, &temperature) * sum(&time, &time)).sqrt();
+    (norms > 0.0).then(|| sum(&temperature, &time) / norms)
+}
+
+fn about_mean(values: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    values.iter().map(|value| value - mean).collect()
+}
+
+/// Says of sets with effects of temperature and of time that the two went together in the record.
+pub(crate) fn tell_together(groups: &mut [Indistinguishable], correlation: f64) {
+    if correlation.abs() < TOGETHER {
+        return;
+    }
+    let of_kind = |group: &Indistinguishable, kinds: &[EffectKind]| {
+        let mut rows = group.members.iter().filter_map(|id| row(id));
+        rows.any(|row| kinds.contains(&row.kind))
+    };
+    for group in groups {
+        if of_kind(group, &[EffectKind::Regressor]) && of_kind(group, &OF_TIME) {
+            group.why += &prose::time_is_temperature(correlation);
+        }
+    }
+}
+
+/// Effects that are functions of time.
+const OF_TIME: [EffectKind; 6] = [
+    EffectKind::Step,
+    EffectKind::FromOnset,
+    EffectKind::Exponential,
+    EffectKind::Ramp,
+    EffectKind::Periodic,
+    EffectKind::RandomWalk,
+];
 
 fn group(
     relation: Relation,
@@ -174,6 +221,27 @@ mod tests {
             gain_nats: Some(20.0),
             accepted: Some(true),
         }
+    }
+
+    #[test]
+    fn sets_say_that_temperature_went_with_time() {
+        let record = |temperature: fn(f64) -> f64| Record {
+            time_s: (0..100).map(f64::from).collect(),
+            accel_g: vec![[0.0, 0.0, 1.0]; 100],
+            temperature_c: Some((0..100).map(|row| temperature(f64::from(row))).collect()),
+        };
+        let rising = time_and_temperature(&record(|t| 20.0 + 0.1 * t + (0.3 * t).sin()));
+        let turning = time_and_temperature(&record(|t| 20.0 + (0.3 * t).sin()));
+        assert_eq!(time_and_temperature(&record(|_| 20.0)), None);
+        let told = |effect: &str, other: &str, correlation: Option<f64>| {
+            let mut groups = indistinguishable(&finding(effect, &[other], &[]), &[], false);
+            tell_together(&mut groups, correlation.unwrap());
+            groups[0].why.contains("time and temperature go together")
+        };
+        assert!(told("gyro_x.temperature", "gyro_x.ramp", rising));
+        assert!(told("gyro_x.ramp", "gyro_x.temperature", rising));
+        assert!(!told("gyro_x.ramp", "gyro_x.step", rising));
+        assert!(!told("gyro_x.temperature", "gyro_x.ramp", turning));
     }
 
     #[test]

@@ -4,9 +4,7 @@
 use std::borrow::Cow;
 
 use gyrocal::Platform;
-use gyrocal_calibration::{
-    CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run,
-};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run};
 use gyrocal_record::{Bench, Record, RecordFile, SetupProblem};
 use gyrocal_setup::{Correction, PlatformKind, SetupFinding, check_setup_of};
 

@@ -114,5 +114,6 @@ fn turn(jump: &mut StateJump, axes: &GyroAxes, row: usize) {
         along(&column)
     }));
     let whole = half.transpose();
-    jump.information = DMatrix::from_columns(&[0, 1, 2].map(|i| along(&whole.column(i).into_owned())));
+    jump.information =
+        DMatrix::from_columns(&[0, 1, 2].map(|i| along(&whole.column(i).into_owned())));
 }

@@ -202,6 +202,54 @@ fn its_diagnosis_names_no_physical_cause_and_says_what_would_pass_unseen() {
 }
 
 #[test]
+fn it_is_diagnosed_in_the_axes_of_its_gyros() {
+    let folder = Folder::new();
+    let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
+    folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
+    let diagnose = ["diagnose", "r.csv", "--bench", "b.toml"];
+    let with = |more: &[&'static str]| [&diagnose[..], more].concat();
+    let said = folder.succeed(&with(&["--gyro-axes", "a.csv", "--json", "d.json"]));
+    assert!(said.contains("fixed to a body"), "{said}");
+    let json: serde_json::Value = serde_json::from_str(&folder.text("d.json")).unwrap();
+    assert_eq!(json["strapdown"], true);
+    for finding in json["findings"].as_array().unwrap() {
+        // As without the axes: the vehicle rocks.
+        let effect = finding["effect"].as_str().unwrap();
+        assert!(
+            effect == "accel.outliers" || effect.ends_with(".noise"),
+            "{effect}"
+        );
+    }
+    let refused = |arguments: &[&str], code: i32, words: &str| {
+        let output = folder.run(arguments);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{errors}");
+        assert!(errors.contains(words), "{words}\nis not in\n{errors}");
+    };
+    let twice = with(&["--gyro-axes", "a.csv", "--gyro-axes", "a.csv"]);
+    refused(&twice, 2, "one for each record");
+    let euler = with(&["--gyro-axes", "a.csv", "--filter", "euler"]);
+    refused(&euler, 2, "--filter");
+    let later = ["--validate", "r.csv", "--validate-bench", "b.toml"];
+    refused(
+        &[&twice[..6], &later[..]].concat(),
+        2,
+        "--validate-gyro-axes",
+    );
+    let plan = [
+        "plan",
+        "r.csv",
+        "--bench",
+        "b.toml",
+        "--diagnosis",
+        "d.json",
+    ];
+    refused(&plan, 2, "strapdown unit");
+    let extend = ["extend", "--diagnosis", "d.json", "--out", "model.toml"];
+    refused(&extend, 1, "strapdown unit");
+}
+
+#[test]
 fn a_heading_that_is_none_is_refused_as_an_option() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
@@ -250,7 +298,9 @@ fn a_computed_platform_is_checked_as_far_as_it_is_one() {
     ];
     folder.succeed(&calibrate);
     let report: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
-    assert!(report.setup.is_empty() && report.effects.is_empty());
+    assert!(report.setup.is_empty());
+    assert_eq!(report.effects.len(), 1);
+    assert!(!report.effects[0].significant, "{:?}", report.effects);
     let change = |change: &dyn Fn(usize, &mut Vec<f64>)| {
         let mut lines = sound.lines();
         let mut text = lines.next().unwrap().to_owned();

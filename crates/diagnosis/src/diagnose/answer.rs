@@ -8,7 +8,7 @@ use gyrocal_statistics::{self as statistics, NoiseCourse};
 
 use super::coefficients::coefficients;
 use super::{DiagnoseOptions, findings};
-use crate::distinguishability::indistinguishable;
+use crate::distinguishability::{indistinguishable, tell_together, time_and_temperature};
 use crate::filter_test::Tested;
 use crate::magnitude_test;
 use crate::noise::{NoiseAudit, NoiseFinding, gaps};
@@ -119,10 +119,14 @@ impl Evidence<'_, '_> {
     fn indistinguishable(&self, findings: &[Finding]) -> Vec<Indistinguishable> {
         let field_is_known = self.run.bench.magnetic_field_gauss.is_some();
         let searched: Vec<&str> = self.searched.ranking.iter().map(|r| r.effect).collect();
-        findings
+        let mut groups: Vec<Indistinguishable> = findings
             .iter()
             .flat_map(|finding| indistinguishable(finding, &searched, field_is_known))
-            .collect()
+            .collect();
+        if let Some(correlation) = time_and_temperature(self.run.record) {
+            tell_together(&mut groups, correlation);
+        }
+        groups
     }
 
     /// Effects that a short record could not show, then those that were not tested.

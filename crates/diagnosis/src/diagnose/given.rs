@@ -49,7 +49,13 @@ pub fn fit_effects(
     }
     let shares = shares(options.false_alarm_probability);
     let declared = NoiseModel::default();
-    let audited = noise_audited_fit(run, axes, &declared, shares.noise_audit, &options.calibration)?;
+    let audited = noise_audited_fit(
+        run,
+        axes,
+        &declared,
+        shares.noise_audit,
+        &options.calibration,
+    )?;
     let rows = rows(run.record, audited.nominal.covariates());
     let search = search_options(options, &shares);
     let found = fit_with(audited.nominal, rows, &selection, &search)?;

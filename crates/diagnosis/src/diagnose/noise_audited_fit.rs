@@ -187,9 +187,14 @@ fn innovations(
     };
     match axes {
         Some(axes) => run_strapdown_filter(record, axes, &settings, &attitude, &mut push),
-        None => run_factorised_filter(record, &settings, &attitude, &mut |row, filter, innovation| {
-            push(row, filter.kernel().inputs().inputs().f_0, innovation);
-        }),
+        None => run_factorised_filter(
+            record,
+            &settings,
+            &attitude,
+            &mut |row, filter, innovation| {
+                push(row, filter.kernel().inputs().inputs().f_0, innovation);
+            },
+        ),
     }?;
     if let Some(error) = refused {
         return Err(error);

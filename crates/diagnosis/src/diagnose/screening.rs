@@ -56,7 +56,13 @@ fn screen_rows(
 ) -> Result<Screened, DiagnosisError> {
     let shares = shares(options.false_alarm_probability);
     let declared = NoiseModel::default();
-    let audited = noise_audited_fit(run, axes, &declared, shares.noise_audit, &options.calibration)?;
+    let audited = noise_audited_fit(
+        run,
+        axes,
+        &declared,
+        shares.noise_audit,
+        &options.calibration,
+    )?;
     let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
     let selection = request::selection(run.record, run.bench, &also);
     let nominal = audited.nominal;

@@ -59,6 +59,15 @@ pub fn why_not_distinguished(coverage: Option<f64>) -> String {
     )
 }
 
+/// What is to be added where time and temperature went together in the record.
+#[must_use]
+pub fn time_is_temperature(correlation: f64) -> String {
+    format!(
+        "; time and temperature go together in this record (correlation {correlation:.2}), so that effects of \
+         the two are told apart by a run with the temperature held or changed otherwise"
+    )
+}
+
 /// Reason why near twins are not distinguished.
 #[must_use]
 pub fn near_twins() -> String {

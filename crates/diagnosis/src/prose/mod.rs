@@ -24,7 +24,9 @@ pub use catalogue::{explained, tested, typical_size};
 pub use findings::{likelihood, parameter_values};
 pub use first_screen::{first_screen, may_also_be};
 pub use format::counted;
-pub use limits::{near_twins, not_tested, why_not_distinguished, would_distinguish};
+pub use limits::{
+    near_twins, not_tested, time_is_temperature, why_not_distinguished, would_distinguish,
+};
 pub use screen::{Fact, NextStep, Screen, Standing, few, record_and_bench};
 pub use tests::residual_description;
 pub use verdict::setup;

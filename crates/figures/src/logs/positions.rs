@@ -1,6 +1,6 @@
 //! Tests of six and of twelve positions.
 
-use gyrocal_instruments::multi_position::{few_position_test, prepare_logs};
+use gyrocal_instruments::multi_position::{Term, few_position_test, prepare_logs};
 use gyrocal_instruments::{Description, InstrumentError, Log};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{NORMAL_97_5, Proportion};
@@ -127,9 +127,11 @@ fn test(count: usize, seed: u64) -> Result<Test, InstrumentError> {
         |truth: f64, estimate: f64, sigma: f64| (estimate - truth).abs() <= NORMAL_97_5 * sigma;
     let of_gyros = report.gyros.iter().enumerate().flat_map(|(gyro, law)| {
         let unit = &unit;
-        law.coefficients.iter().map(move |coefficient| {
-            let truth = of_gyro(unit, gyro, &coefficient.name) / DEG_PER_H;
-            contains(truth, coefficient.estimate, coefficient.sigma)
+        law.coefficients.iter().filter_map(move |coefficient| {
+            let mut terms = Term::NOMINAL.into_iter().chain(Term::catalogue(gyro));
+            let term = terms.find(|term| term.id(gyro) == coefficient.name)?;
+            let truth = of_gyro(unit, gyro, term) / DEG_PER_H;
+            Some(contains(truth, coefficient.estimate, coefficient.sigma))
         })
     });
     let truths = of_accelerometers(&unit);
@@ -172,11 +174,9 @@ fn unit(noise: f64, draw: &mut Draw) -> UnitErrors {
 }
 
 /// True coefficient of a gyro \[rad/s and g\].
-fn of_gyro(unit: &UnitErrors, gyro: usize, name: &str) -> f64 {
-    let axes = name.rsplit('_').next().unwrap_or("");
-    let axis = |letter: char| "xyz".find(letter);
-    match axes.chars().filter_map(axis).collect::<Vec<usize>>()[..] {
-        _ if name.ends_with("bias") => unit.gyro_bias[gyro],
+fn of_gyro(unit: &UnitErrors, gyro: usize, term: Term) -> f64 {
+    match term.factors(gyro)[..] {
+        [] if term == Term::Nominal(0) => unit.gyro_bias[gyro],
         [axis] => unit.gyro_g[(gyro, axis)],
         [one, other] if one == gyro && other == gyro => unit.gyro_gg[gyro],
         _ => 0.0,
