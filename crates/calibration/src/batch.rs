@@ -213,12 +213,16 @@ where
                 problem.values[i] += (start.drift[i] - problem.values[i]) * weight / *sum;
             }
         }
+        let points = match task.gyro_axes {
+            Some(axes) => axes[index].trajectory(run.record, &guess.prior.orientation),
+            None => start.points,
+        };
         let mut run_problem = run_problem(
             run,
             run.record.len(),
             &settings,
             &guess.prior,
-            start.points,
+            points,
             layout.parameter_unknowns(index),
         );
         run_problem.rows.gyro_axes = task

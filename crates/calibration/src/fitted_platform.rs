@@ -186,7 +186,10 @@ impl<'a> FittedPlatform<'a> {
             noise_density: noise.gyro_ratio.map(|ratio| ratio * ratio * density),
             prior: beginning.prior.orientation,
             prior_covariance: beginning.prior.covariance,
-            points: beginning.start.points,
+            points: match axes {
+                Some(axes) => axes.trajectory(run.record, &beginning.prior.orientation),
+                None => beginning.start.points,
+            },
             parameter_unknowns: Vec::new(),
             further: ExtraColumns::default(),
             amplitudes: Vec::new(),

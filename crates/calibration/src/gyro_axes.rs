@@ -1,5 +1,8 @@
 //! Axes of strapdown gyros in the platform that is computed from their outputs.
 
+use gyrocal::trajectory::Orientation;
+use gyrocal_record::Record;
+
 /// Rotation from the gyros' axes to those of the platform at each row of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GyroAxes {
@@ -49,6 +52,35 @@ impl GyroAxes {
         Some(Self { platform_q_gyros })
     }
 
+    /// Attitudes of the platform at the rows if the gyros' axes rest on the Earth, from about `first`: the mean
+    /// specific force along these axes is up. The first that is given, turned, where no row has all components.
+    pub(crate) fn trajectory(&self, record: &Record, first: &Orientation) -> Vec<Orientation> {
+        let [north, up] = first.map(|vector| self.along_gyros(0, &vector));
+        let mut sum = [0.0; 3];
+        for (row, force) in record.accel_g.iter().enumerate().take(self.len()) {
+            if force.iter().all(|value| value.is_finite()) {
+                let along = self.along_gyros(row, force);
+                sum = core::array::from_fn(|axis| sum[axis] + along[axis]);
+            }
+        }
+        let up = unit(&sum).unwrap_or(up);
+        let along_up: f64 = (0..3).map(|axis| north[axis] * up[axis]).sum();
+        let level = core::array::from_fn(|axis| north[axis] - along_up * up[axis]);
+        let north = unit(&level).unwrap_or(north);
+        (0..self.len())
+            .map(|row| {
+                let matrix = self.between(row, 0.0);
+                [north, up].map(|vector| {
+                    core::array::from_fn(|axis| {
+                        (0..3)
+                            .map(|gyro| matrix[3 * axis + gyro] * vector[gyro])
+                            .sum()
+                    })
+                })
+            })
+            .collect()
+    }
+
     /// Components along the gyros' axes of a vector along those of the platform, at a row.
     pub(crate) fn along_gyros(&self, row: usize, vector: &[f64; 3]) -> [f64; 3] {
         let matrix = self.between(row, 0.0);
@@ -82,6 +114,11 @@ impl GyroAxes {
     }
 }
 
+fn unit(vector: &[f64; 3]) -> Option<[f64; 3]> {
+    let norm = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    (norm > 0.0).then(|| vector.map(|component| component / norm))
+}
+
 fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -89,6 +126,28 @@ fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_body_at_rest_turns_in_the_platform() {
+        let turned = |angle: f64| [(0.5 * angle).cos(), (0.5 * angle).sin(), 0.0, 0.0];
+        let axes = GyroAxes::new(&[0.0, 0.5].map(turned));
+        let up = |angle: f64| [0.0, -angle.sin(), angle.cos()];
+        let record = Record {
+            time_s: vec![0.0, 60.0],
+            accel_g: vec![up(0.0), up(0.5)],
+            temperature_c: None,
+        };
+        // The first attitude is off by some degrees about east, which the rows correct.
+        let first = [[0.0, 0.05_f64.cos(), 0.05_f64.sin()], up(0.05)];
+        let points = axes.trajectory(&record, &first);
+        for (point, angle) in points.iter().zip([0.0, 0.5_f64]) {
+            let expected = [[0.0, angle.cos(), angle.sin()], up(angle)];
+            for (found, expected) in point.as_flattened().iter().zip(expected.as_flattened()) {
+                // Some roundings of numbers up to one.
+                assert!((found - expected).abs() < 1e-14, "{point:?}");
+            }
+        }
+    }
 
     #[test]
     fn rows_that_are_left_have_their_attitudes() {
