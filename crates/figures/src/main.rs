@@ -37,6 +37,7 @@ use clap::{Parser, ValueEnum};
 
 use error::Error;
 use figure::{Figure, table};
+use topic_page::Origin;
 
 #[derive(Parser)]
 #[command(
@@ -61,8 +62,9 @@ struct Arguments {
     out: Option<PathBuf>,
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
     /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper
-    /// and catalogue: their page and its pictures; all others: docs/figures/TOPIC.md).
-    #[arg(long, conflicts_with_all = ["small", "parts", "records"])]
+    /// and catalogue: their page and its pictures; truth: the sections of its parts; all others:
+    /// docs/figures/TOPIC.md).
+    #[arg(long, conflicts_with_all = ["small", "records"])]
     write: bool,
 }
 
@@ -74,9 +76,7 @@ impl Arguments {
             extent.push_str(" --small");
         }
         for part in &self.parts {
-            if let Some(value) = part.to_possible_value() {
-                extent = format!("{extent} --part {}", value.get_name());
-            }
+            extent = format!("{extent} --part {}", part.name());
         }
         if let Some(records) = self.records {
             extent = format!("{extent} --records {records}");
@@ -137,6 +137,7 @@ fn main() -> ExitCode {
         small: arguments.small,
         most: arguments.records,
     };
+    let origin = Origin::now(&arguments.topic.name(), &arguments.extent());
     let figures = match arguments.topic {
         Topic::AnyPlant => any_plant::figures(extent),
         Topic::PlantPeers => plant_peers::figures(extent),
@@ -154,7 +155,20 @@ fn main() -> ExitCode {
         Topic::Measured => measured::figures(arguments.write),
         Topic::Logs => logs::figures(extent),
         Topic::Report => report::figures(arguments.small, arguments.write),
-        Topic::Truth => truth::figures(extent, &arguments.parts),
+        Topic::Truth => truth::figures(extent, &arguments.parts, |part, figures| {
+            let path = topic_page::path(&origin.topic);
+            let table = table(figures).to_string();
+            match arguments.write {
+                true => topic_page::write_part(
+                    &path,
+                    &origin,
+                    &part.name(),
+                    &truth::Part::names(),
+                    &table,
+                ),
+                false => Ok(()),
+            }
+        }),
         Topic::Watch => watch::figures(extent),
         Topic::Uncertainty => uncertainty::figures(extent),
         Topic::Paper => paper::figures(arguments.write),
@@ -162,7 +176,7 @@ fn main() -> ExitCode {
     };
     match figures {
         Ok(mut figures) => {
-            let written = written(&arguments, &figures);
+            let written = written(&arguments, &origin, &figures);
             if arguments.small {
                 figures.extend(compared(arguments.topic, &figures));
             }
@@ -196,17 +210,22 @@ impl Topic {
         value.map_or_else(String::new, |value| value.get_name().to_owned())
     }
 
-    /// `true` if `--write` renews the page of figures and not other measurements.
+    /// `true` if `--write` renews the page of figures as a whole and no other measurements.
     fn writes_its_page(self) -> bool {
         !matches!(
             self,
-            Self::Kernel | Self::House | Self::Measured | Self::Paper | Self::Catalogue
+            Self::Kernel
+                | Self::House
+                | Self::Measured
+                | Self::Paper
+                | Self::Catalogue
+                | Self::Truth
         )
     }
 }
 
 /// Writes the figures into the pages that were asked for.
-fn written(arguments: &Arguments, figures: &[Figure]) -> Result<(), Error> {
+fn written(arguments: &Arguments, origin: &Origin, figures: &[Figure]) -> Result<(), Error> {
     let topic = arguments.topic;
     let own = (arguments.write && topic.writes_its_page()).then(|| topic_page::path(&topic.name()));
     let introduction = match topic {
@@ -216,13 +235,7 @@ fn written(arguments: &Arguments, figures: &[Figure]) -> Result<(), Error> {
     };
     let table = table(figures).to_string();
     for path in own.iter().chain(&arguments.out) {
-        topic_page::write(
-            path,
-            &topic.name(),
-            &arguments.extent(),
-            &introduction,
-            &table,
-        )?;
+        topic_page::write(path, origin, &introduction, &table)?;
     }
     Ok(())
 }
@@ -233,6 +246,7 @@ fn compared(topic: Topic, figures: &[Figure]) -> Vec<Figure> {
     let renewed_by = match topic {
         // Their pages are compared as a whole, in any version.
         Topic::Measured | Topic::Paper | Topic::Catalogue => return Vec::new(),
+        Topic::Truth => format!("cargo figures {name} --write"),
         _ if topic.writes_its_page() => format!("cargo figures {name} --write"),
         _ => format!("cargo figures {name} --out docs/figures/{name}.md"),
     };

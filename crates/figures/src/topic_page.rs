@@ -1,5 +1,5 @@
-//! Pages of figures, `docs/figures/TOPIC.md`: written by the full version of a topic, and compared with
-//! by the small one.
+//! Pages of figures, `docs/figures/TOPIC.md`: written by the full version of a topic or, a section each, of
+//! its parts, and compared with by the small one.
 
 use std::path::{Path, PathBuf};
 
@@ -24,32 +24,124 @@ pub(crate) fn path(topic: &str) -> PathBuf {
         .with_extension("md")
 }
 
-/// Writes the printed table as a page of the documentation, below an introduction. `extent` are the
-/// options of the command beside the topic.
+/// How a table was made.
+#[derive(Clone, Debug)]
+pub(crate) struct Origin {
+    pub(crate) topic: String,
+    /// Options of the command beside the topic.
+    extent: String,
+    commit: String,
+}
+
+impl Origin {
+    /// Of a command of the present commit. What is written into the tree later changes it no more.
+    pub(crate) fn now(topic: &str, extent: &str) -> Self {
+        Self {
+            topic: topic.to_owned(),
+            extent: extent.to_owned(),
+            commit: house::commit(&gyrocal_testkit::workspace()),
+        }
+    }
+
+    /// The same origin of one part of the topic.
+    pub(crate) fn of_part(&self, part: &str) -> Self {
+        let option = format!(" --part {part}");
+        let others = self
+            .extent
+            .split(" --part ")
+            .enumerate()
+            .map(|(place, text)| {
+                // The first is before any part; each other begins with the name of one.
+                match place {
+                    0 => text,
+                    _ => text.find(' ').map_or("", |end| &text[end..]),
+                }
+            });
+        Self {
+            extent: option + &others.collect::<String>(),
+            ..self.clone()
+        }
+    }
+
+    fn sentence(&self) -> String {
+        let processor = gyrocal_testkit::timing::processor();
+        let Self {
+            topic,
+            extent,
+            commit,
+        } = self;
+        format!(
+            "Printed by `cargo figures {topic}{extent}` of commit {commit} on {processor}. Times and \
+             ratios of times are those of that machine, and instruction counts those of its compiler. \
+             All else differs by rounding at most: where the target fuses multiplication and addition, \
+             last bits differ."
+        )
+    }
+}
+
+/// Writes the printed table as a page of the documentation, below an introduction.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub(crate) fn write(
     path: &Path,
-    topic: &str,
-    extent: &str,
+    origin: &Origin,
     introduction: &str,
     table: &str,
 ) -> Result<(), Error> {
-    let processor = gyrocal_testkit::timing::processor();
-    let commit = house::commit(&gyrocal_testkit::workspace());
     let introduction = match introduction {
         "" => String::new(),
         text => format!("{text}\n\n"),
     };
+    let sentence = origin.sentence();
     let page = format!(
-        "# Figures: {topic}\n\nPrinted by `cargo figures {topic}{extent}` of commit {commit} on \
-         {processor}. Times and ratios of times are those of that machine, and instruction counts \
-         those of its compiler. All else differs by rounding at most: where the target fuses \
-         multiplication and addition, last bits differ.\n\n{introduction}{table}\n"
+        "# Figures: {}\n\n{sentence}\n\n{introduction}{table}\n",
+        origin.topic
     );
     gyrocal_record::write_whole(path, page.as_bytes())?;
     Ok(())
+}
+
+/// Renews the section of a part in the page of its topic. The other sections keep what they are: each says
+/// which commit it was measured at. Sections stand in the order of `parts`.
+///
+/// # Errors
+/// If the file cannot be read or written.
+pub(crate) fn write_part(
+    path: &Path,
+    origin: &Origin,
+    part: &str,
+    parts: &[String],
+    table: &str,
+) -> Result<(), Error> {
+    let page = match std::fs::read_to_string(path) {
+        Ok(page) => page,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
+        Err(error) => return Err(format!("{}: {error}", path.display()).into()),
+    };
+    let body = format!("{}\n\n{table}\n", origin.of_part(part).sentence());
+    let page = with_section(&page, &origin.topic, part, parts, &body);
+    gyrocal_record::write_whole(path, page.as_bytes())?;
+    Ok(())
+}
+
+/// A page with the section of a part replaced or added.
+fn with_section(page: &str, topic: &str, part: &str, parts: &[String], body: &str) -> String {
+    let sections = page.split("\n## ").skip(1);
+    let sections: Vec<(&str, &str)> = sections
+        .filter_map(|section| section.split_once("\n\n"))
+        .collect();
+    let mut renewed = format!("# Figures: {topic}\n");
+    for name in parts {
+        let kept = sections.iter().find(|(heading, _)| heading == name);
+        let body = match kept {
+            _ if name == part => body,
+            Some((_, body)) => body.trim_end(),
+            None => continue,
+        };
+        renewed = format!("{renewed}\n## {name}\n\n{}\n", body.trim_end());
+    }
+    renewed
 }
 
 /// Comparison of the figures of a small run with the committed page of the topic: each share of this run
@@ -146,30 +238,30 @@ impl Row {
     }
 }
 
-/// The rows of the table of figures of a page; other tables are passed over.
+/// The rows of the tables of figures of a page; other tables are passed over.
 fn rows(page: &str) -> Vec<Row> {
     let cells = |line: &str| -> Vec<String> {
         let line = line.trim().trim_matches('|');
         line.split('|').map(|cell| cell.trim().to_owned()).collect()
     };
-    page.lines()
-        .skip_while(|line| {
-            !cells(line)
-                .iter()
-                .zip(HEADER)
-                .all(|(cell, word)| cell == word)
-        })
-        .skip(2)
-        .take_while(|line| line.starts_with('|'))
-        .filter_map(|line| match cells(line).as_slice() {
-            [name, _, measured, runs, ..] => Some(Row {
+    let mut rows = Vec::new();
+    let mut inside = false;
+    for line in page.lines() {
+        let cells = cells(line);
+        let is_header = cells.iter().zip(HEADER).all(|(cell, word)| cell == word);
+        inside = (inside || (is_header && cells.len() > HEADER.len())) && line.starts_with('|');
+        if let [name, _, measured, runs, ..] = cells.as_slice()
+            && inside
+            && let Ok(runs) = runs.parse()
+        {
+            rows.push(Row {
                 name: name.clone(),
                 measured: measured.clone(),
-                runs: runs.parse().ok()?,
-            }),
-            _ => None,
-        })
-        .collect()
+                runs,
+            });
+        }
+    }
+    rows
 }
 
 #[cfg(test)]
@@ -260,8 +352,38 @@ mod tests {
         assert!(none[0].holds.is_none() && none[0].measured.contains("there is none"));
     }
 
-    /// Each committed page names its command and the commit that it was measured at, and has figures
-    /// with unique names.
+    #[test]
+    fn a_section_is_renewed_in_its_place() {
+        let parts = ["one", "two", "three"].map(str::to_owned);
+        let body = |word: &str| format!("{word}\n\n{}\n", table(&[share(word, 1, 2)]));
+        let page = with_section("", "x", "three", &parts, &body("c"));
+        let page = with_section(&page, "x", "one", &parts, &body("a"));
+        let renewed = with_section(&page, "x", "three", &parts, &body("d"));
+        assert_eq!(page.replace("c", "d"), renewed.replace("c", "d"));
+        let names: Vec<String> = rows(&renewed).into_iter().map(|row| row.name).collect();
+        assert_eq!(names, ["a", "d"]);
+        assert_eq!(renewed.matches("\n## ").count(), 2);
+    }
+
+    #[test]
+    fn a_part_has_its_own_command() {
+        let origin = |extent: &str| Origin {
+            topic: "x".to_owned(),
+            extent: extent.to_owned(),
+            commit: "c0".to_owned(),
+        };
+        for (given, own) in [
+            ("", " --part two"),
+            (" --part one --part two", " --part two"),
+            (" --part one --records 7", " --part two --records 7"),
+            (" --records 7", " --part two --records 7"),
+        ] {
+            assert_eq!(origin(given).of_part("two").extent, own, "{given}");
+        }
+    }
+
+    /// Each committed page names its command and the commit that it was measured at, in every section, and
+    /// has figures with unique names.
     #[test]
     fn committed_pages_name_their_commit_and_can_be_read() {
         let pages = std::fs::read_dir(page::docs().join("figures")).expect("it is committed");
@@ -272,13 +394,20 @@ mod tests {
                 .file_stem()
                 .and_then(|stem| stem.to_str())
                 .expect("a name");
-            let commit = text
-                .split_once(&format!("Printed by `cargo figures {topic}"))
-                .and_then(|(_, rest)| rest.split_once("` of commit "))
-                .map(|(_, rest)| rest.chars().take_while(char::is_ascii_hexdigit).count());
+            let printed_by = format!("Printed by `cargo figures {topic}");
+            let origins = text.split(&printed_by);
+            let commits: Vec<usize> = origins
+                .skip(1)
+                .map(|origin| {
+                    let commit = origin.split_once("` of commit ").map(|(_, rest)| rest);
+                    let commit = commit.unwrap_or_default().chars();
+                    commit.take_while(char::is_ascii_hexdigit).count()
+                })
+                .collect();
+            let tables = text.lines().filter(|line| line.starts_with("| figure "));
             assert!(
-                commit.is_some_and(|digits| digits >= 7),
-                "{topic} names no commit"
+                commits.len() == tables.count() && commits.iter().all(|digits| *digits >= 7),
+                "{topic}: a table names no commit"
             );
             let mut names: Vec<String> = rows(&text).into_iter().map(|row| row.name).collect();
             assert!(!names.is_empty(), "{topic} has no figures");

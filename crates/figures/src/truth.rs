@@ -52,23 +52,49 @@ pub(crate) enum Part {
     Outside,
 }
 
-/// All figures of the topic, or of some parts of it.
-pub(crate) fn figures(extent: Extent, parts: &[Part]) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
+impl Part {
+    /// Its name on the command line and its heading on the page.
+    pub(crate) fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// The names of all parts, in their order.
+    pub(crate) fn names() -> Vec<String> {
+        Self::value_variants()
+            .iter()
+            .map(|part| part.name())
+            .collect()
+    }
+
+    fn figures(self, extent: Extent) -> Result<Vec<Figure>, Error> {
+        match self {
+            Self::Setup => setup::figures(extent.small),
+            Self::Hostile => hostile::figures(extent.small),
+            Self::Shapes => shapes::figures(extent),
+            Self::Causes => causes::figures(extent),
+            Self::Noise => noise::figures(extent),
+            Self::Together => together::figures(extent),
+            Self::Outside => outside::figures(extent),
+        }
+    }
+}
+
+/// All figures of the topic, or of some parts of it. `measured` has those of each part as soon as they are
+/// there: the full version takes hours.
+pub(crate) fn figures(
+    extent: Extent,
+    parts: &[Part],
+    measured: impl Fn(Part, &[Figure]) -> Result<(), Error>,
+) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for part in Part::value_variants() {
         if !(parts.is_empty() || parts.contains(part)) {
             continue;
         }
-        figures.extend(match part {
-            Part::Setup => setup::figures(small)?,
-            Part::Hostile => hostile::figures(small)?,
-            Part::Shapes => shapes::figures(extent)?,
-            Part::Causes => causes::figures(extent)?,
-            Part::Noise => noise::figures(extent)?,
-            Part::Together => together::figures(extent)?,
-            Part::Outside => outside::figures(extent)?,
-        });
+        let of_part = part.figures(extent)?;
+        measured(*part, &of_part)?;
+        figures.extend(of_part);
     }
     Ok(figures)
 }
