@@ -1,7 +1,9 @@
 //! Steps of a plant from row to row, with their exact derivatives.
 
+use std::sync::Arc;
+
 use crate::error::PlantError;
-use crate::functions::{OutputsAt, Point, RatesAt, Sizes, Workspace};
+use crate::functions::{Functions, OutputsAt, Point, RatesAt, Sizes, Workspace};
 use crate::lines::Course;
 use crate::loaded::LoadedPlant;
 use crate::record::PlantRecord;
@@ -18,9 +20,11 @@ const STAGES: [(f64, f64); 4] = [
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Linearised {
     pub(crate) sizes: Option<Sizes>,
+    /// Parameters that there are derivatives by, in the order of their columns.
+    pub(crate) parameters: Arc<[usize]>,
     /// For each step the derivative of the next states by the states, by rows.
     pub(crate) by_states: Vec<f64>,
-    /// By the parameters.
+    /// By these parameters.
     pub(crate) by_parameters: Vec<f64>,
     /// By the noises, each held over the step.
     pub(crate) by_noises: Vec<f64>,
@@ -30,7 +34,7 @@ pub(crate) struct Linearised {
     pub(crate) residuals: Vec<f64>,
     /// Derivative of the outputs by the states.
     pub(crate) out_by_states: Vec<f64>,
-    /// By the parameters.
+    /// By these parameters.
     pub(crate) out_by_parameters: Vec<f64>,
     /// Length of each step, s.
     pub(crate) step_s: Vec<f64>,
@@ -39,6 +43,9 @@ pub(crate) struct Linearised {
 /// Evaluation of a plant along a record.
 pub(crate) struct Dynamics<'a> {
     plant: &'a LoadedPlant,
+    functions: Arc<dyn Functions>,
+    /// Parameters that derivatives are taken by.
+    wanted: Arc<[usize]>,
     record: &'a PlantRecord,
     /// Runge-Kutta steps between rows.
     substeps: usize,
@@ -50,7 +57,39 @@ pub(crate) struct Dynamics<'a> {
 }
 
 impl<'a> Dynamics<'a> {
+    /// With derivatives by all parameters.
     pub(crate) fn new(plant: &'a LoadedPlant, record: &'a PlantRecord, substeps: usize) -> Self {
+        let all = (0..plant.functions.sizes().parameters).collect();
+        Self::of(plant, record, substeps, (Arc::clone(&plant.functions), all))
+    }
+
+    /// Of courses that change no parameters but the wanted ones and those that `course` has; with
+    /// derivatives by the wanted ones alone.
+    pub(crate) fn narrowed(
+        plant: &'a LoadedPlant,
+        record: &'a PlantRecord,
+        substeps: usize,
+        (course, wanted): (&Course, &[usize]),
+    ) -> Self {
+        let mut is_wanted = vec![false; plant.functions.sizes().parameters];
+        for index in wanted {
+            is_wanted[*index] = true;
+        }
+        let parameters = is_wanted.iter().enumerate();
+        let is_zero: Vec<bool> = parameters
+            .map(|(index, wanted)| !wanted && course.is_zero(index))
+            .collect();
+        let functions = plant.functions.narrowed(&is_zero, &is_wanted);
+        let functions = functions.unwrap_or_else(|| Arc::clone(&plant.functions));
+        Self::of(plant, record, substeps, (functions, wanted.into()))
+    }
+
+    fn of(
+        plant: &'a LoadedPlant,
+        record: &'a PlantRecord,
+        substeps: usize,
+        (functions, wanted): (Arc<dyn Functions>, Arc<[usize]>),
+    ) -> Self {
         let sizes = plant.functions.sizes();
         let inputs = plant.description.inputs.iter();
         Self {
@@ -58,7 +97,9 @@ impl<'a> Dynamics<'a> {
             record,
             substeps,
             sizes,
-            workspace: plant.functions.workspace(),
+            workspace: functions.workspace(),
+            functions,
+            wanted,
             inputs: vec![0.0; sizes.inputs],
             interpolate: inputs.map(|input| input.interpolate).collect(),
             parameters: vec![0.0; sizes.parameters],
@@ -105,9 +146,7 @@ impl<'a> Dynamics<'a> {
                     parameters: &self.parameters,
                     inputs: &self.inputs,
                 };
-                self.plant
-                    .functions
-                    .rates(at, &mut self.workspace, &mut rates);
+                self.functions.rates(at, &mut self.workspace, &mut rates);
                 for (sum, rate) in sum.iter_mut().zip(&rates) {
                     *sum += weight * rate;
                 }
@@ -135,8 +174,7 @@ impl<'a> Dynamics<'a> {
             parameters: &self.parameters,
             inputs: &self.inputs,
         };
-        self.plant
-            .functions
+        self.functions
             .outputs(at, &mut self.workspace, &mut outputs);
         course.add_to_outputs(row, &mut outputs);
         outputs
@@ -180,14 +218,16 @@ impl<'a> Dynamics<'a> {
     ) -> Result<Linearised, PlantError> {
         let Sizes {
             states: n,
-            parameters: p,
             outputs: y,
             noises: w,
             ..
         } = self.sizes;
+        let wanted = Arc::clone(&self.wanted);
+        let p = wanted.len();
         let rows = self.record.len();
         let mut lin = Linearised {
             sizes: Some(self.sizes),
+            parameters: Arc::clone(&wanted),
             by_states: Vec::with_capacity(rows * n * n),
             by_parameters: Vec::with_capacity(rows * n * p),
             by_noises: Vec::with_capacity(rows * n * w),
@@ -198,7 +238,7 @@ impl<'a> Dynamics<'a> {
             step_s: Vec::with_capacity(rows),
         };
         let mut out = OutputsAt::new(self.sizes);
-        let mut step = StepMemory::new(self.sizes);
+        let mut step = StepMemory::new(self.sizes, p);
         for row in 0..rows {
             let here = &points[row * n..(row + 1) * n];
             course.at(row, &mut self.parameters);
@@ -208,8 +248,7 @@ impl<'a> Dynamics<'a> {
                 parameters: &self.parameters,
                 inputs: &self.inputs,
             };
-            self.plant
-                .functions
+            self.functions
                 .outputs_with(at, &mut self.workspace, &mut out);
             let first = lin.residuals.len();
             let measured = &self.record.outputs[row * y..(row + 1) * y];
@@ -222,7 +261,10 @@ impl<'a> Dynamics<'a> {
             }
             debug_assert_eq!(lin.residuals.len(), first + y);
             lin.out_by_states.extend_from_slice(&out.by_states);
-            lin.out_by_parameters.extend_from_slice(&out.by_parameters);
+            for by in out.by_parameters.chunks_exact(self.sizes.parameters.max(1)) {
+                lin.out_by_parameters
+                    .extend(wanted.iter().map(|index| by[*index]));
+            }
             if row + 1 == rows {
                 break;
             }
@@ -248,13 +290,8 @@ impl<'a> Dynamics<'a> {
 
     /// A step with its derivatives: the variational equation by the same stages.
     fn step_with(&mut self, row: usize, states: &[f64], step: &mut StepMemory) {
-        let Sizes {
-            states: n,
-            parameters: p,
-            noises: w,
-            ..
-        } = self.sizes;
-        let columns = n + p + w;
+        let n = self.sizes.states;
+        let columns = n + self.wanted.len() + self.sizes.noises;
         let h = self.interval_s(row);
         step.by_all.fill(0.0);
         if self.record.begins(row + 1) {
@@ -287,10 +324,9 @@ impl<'a> Dynamics<'a> {
                     parameters: &self.parameters,
                     inputs: &self.inputs,
                 };
-                self.plant
-                    .functions
+                self.functions
                     .rates_with(at, &mut self.workspace, &mut step.rates);
-                step.set_slope(n, p, w);
+                step.set_slope(self.sizes, &self.wanted);
                 for (sum, rate) in sum.iter_mut().zip(&step.rates.values) {
                     *sum += weight * rate;
                 }
@@ -320,9 +356,9 @@ struct StepMemory {
 }
 
 impl StepMemory {
-    fn new(sizes: Sizes) -> Self {
+    fn new(sizes: Sizes, wanted: usize) -> Self {
         let n = sizes.states;
-        let all = vec![0.0; n * (n + sizes.parameters + sizes.noises)];
+        let all = vec![0.0; n * (n + wanted + sizes.noises)];
         Self {
             states: vec![0.0; n],
             stage: vec![0.0; n],
@@ -335,12 +371,17 @@ impl StepMemory {
     }
 
     /// Derivatives of the rates along the moved derivatives of the states.
-    fn set_slope(&mut self, n: usize, p: usize, w: usize) {
+    fn set_slope(&mut self, sizes: Sizes, wanted: &[usize]) {
+        let (n, w) = (sizes.states, sizes.noises);
+        let p = wanted.len();
         let columns = n + p + w;
         for i in 0..n {
             let slope = &mut self.slope[i * columns..(i + 1) * columns];
             slope[..n].fill(0.0);
-            slope[n..n + p].copy_from_slice(&self.rates.by_parameters[i * p..(i + 1) * p]);
+            let by = &self.rates.by_parameters[i * sizes.parameters..(i + 1) * sizes.parameters];
+            for (slope, index) in slope[n..n + p].iter_mut().zip(wanted) {
+                *slope = by[*index];
+            }
             slope[n + p..].copy_from_slice(&self.rates.by_noises[i * w..(i + 1) * w]);
             for j in 0..n {
                 let by = self.rates.by_states[i * n + j];

@@ -8,6 +8,7 @@ use gyrocal_hypothesis::{
 use nalgebra::DMatrix;
 
 use crate::backward;
+use crate::dynamics::{Dynamics, Linearised};
 use crate::error::PlantError;
 use crate::later_starts::eliminated;
 use crate::lines::{Line, of_parameters};
@@ -170,7 +171,27 @@ impl FittedPlant {
 
     pub(crate) fn pass(&self, lines: &[Line], keep: Keep) -> Result<Reduced, PlantError> {
         let noise = self.problem.variances(&self.ratios);
-        reduce(&self.solution.lin, &noise, lines, keep).ok_or(PlantError::Singular)
+        let lin = self.linearised(lines)?;
+        reduce(lin, &noise, lines, keep).ok_or(PlantError::Singular)
+    }
+
+    /// The model about its fit, with derivatives by the parameters of some lines.
+    fn linearised(&self, lines: &[Line]) -> Result<&Linearised, PlantError> {
+        let solution = &self.solution;
+        let own = &solution.lin.parameters;
+        let mut parameters = lines.iter().filter_map(Line::parameter);
+        if parameters.all(|one| own.binary_search(&one).is_ok()) {
+            return Ok(&solution.lin);
+        }
+        if let Some(whole) = solution.whole.get() {
+            return Ok(whole);
+        }
+        let problem = &*self.problem;
+        let noise = problem.variances(&self.ratios);
+        let course = Solver::new(problem, &self.extension, noise).course(&solution.at.values);
+        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+        let whole = dynamics.linearise(&course, &solution.at.points)?;
+        Ok(solution.whole.get_or_init(|| whole))
     }
 
     fn further(&self, columns: &[Column]) -> Vec<Line> {

@@ -1,5 +1,7 @@
 //! The functions of a plant, with sizes that are known at run time.
 
+use std::sync::Arc;
+
 /// Sizes of a plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
@@ -88,6 +90,13 @@ pub struct Workspace {
 pub trait Functions: Send + Sync {
     /// Sizes.
     fn sizes(&self) -> Sizes;
+
+    /// The same functions for a model in which some parameters are zero and derivatives by some are wanted,
+    /// by the index of a parameter; others may be left as they are. `None` if that saves nothing.
+    fn narrowed(&self, is_zero: &[bool], wanted: &[bool]) -> Option<Arc<dyn Functions>> {
+        let _ = (is_zero, wanted);
+        None
+    }
 
     /// A workspace for evaluations.
     fn workspace(&self) -> Workspace;

@@ -14,7 +14,6 @@ use gyrocal_statistics::format::significant;
 use gyrocal_statistics::math::exp;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::dynamics::Dynamics;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::pass::{Keep, reduce};
@@ -211,7 +210,7 @@ impl FittedPlant {
             values[index] = somewhere * exp(SPREAD * draw.normal()) - state.initial;
         }
         let course = solver.course(&values);
-        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+        let mut dynamics = solver.dynamics();
         let points = dynamics.simulate(&course, &problem.initial(&values));
         if !points.iter().all(|value| value.is_finite()) {
             return Ok(None);

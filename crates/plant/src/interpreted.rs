@@ -1,5 +1,7 @@
 //! The functions of a plant, interpreted from its program.
 
+use std::sync::Arc;
+
 use gyrocal_codegen::Program;
 use gyrocal_codegen::program::{Model, ModelFunction};
 
@@ -100,12 +102,46 @@ impl Interpreted {
         }
     }
 
+    /// The functions with parameters that are zero folded away, and the derivatives by those that are wanted.
+    fn of_parameters(&self, is_zero: &[bool], wanted: &[bool]) -> Self {
+        let functions = self.functions.each_ref();
+        Self {
+            sizes: self.sizes,
+            functions: functions.map(|own| own.of_parameters(is_zero, wanted)),
+        }
+    }
+
     fn derivative(&self, index: usize, of: &Derivative, workspace: &Workspace, to: &mut [f64]) {
         let Some((output, places)) = of else { return };
         let array = &workspace.tapes[index];
         let tape = &self.functions[index].tape;
         for (from, place) in tape.output(*output).iter().zip(places) {
             to[*place] = array[*from];
+        }
+    }
+}
+
+impl Compiled {
+    fn of_parameters(&self, is_zero: &[bool], wanted: &[bool]) -> Self {
+        let columns = wanted.len();
+        let read = [&self.by_states, &self.by_noises];
+        let read: Vec<usize> = read.into_iter().flatten().map(|own| own.0).collect();
+        let is_wanted = |place: &usize| wanted[place % columns];
+        let tape = self.tape.narrowed(
+            |group, element| matches!(self.parts[group], Part::Parameters) && is_zero[element],
+            |output, index| match &self.by_parameters {
+                Some((own, places)) if *own == output => is_wanted(&places[index]),
+                _ => output == 0 || read.contains(&output),
+            },
+        );
+        let by_parameters = self.by_parameters.as_ref().map(|(output, places)| {
+            let places = places.iter().copied().filter(is_wanted);
+            (*output, places.collect())
+        });
+        Self {
+            tape,
+            by_parameters,
+            ..self.clone()
         }
     }
 }
@@ -152,6 +188,10 @@ fn compile(program: &Program, model: &Model, index: usize) -> Option<Compiled> {
 impl Functions for Interpreted {
     fn sizes(&self) -> Sizes {
         self.sizes
+    }
+
+    fn narrowed(&self, is_zero: &[bool], wanted: &[bool]) -> Option<Arc<dyn Functions>> {
+        Some(Arc::new(self.of_parameters(is_zero, wanted)))
     }
 
     fn workspace(&self) -> Workspace {

@@ -24,6 +24,22 @@ pub(crate) enum Line {
 }
 
 impl Line {
+    /// The parameter that it changes.
+    pub(crate) fn parameter(&self) -> Option<usize> {
+        match self {
+            Self::Parameter(index) | Self::Profile(index, _) => Some(*index),
+            Self::Start(_) | Self::Jump(..) | Self::Output(..) => None,
+        }
+    }
+
+    /// The parameters that some lines change.
+    pub(crate) fn parameters(lines: &[Self]) -> Vec<usize> {
+        let mut all: Vec<usize> = lines.iter().filter_map(Self::parameter).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
     /// A column of the search.
     pub(crate) fn of(column: &Column, states: usize, steps: usize, starts: &[usize]) -> Self {
         match column {
@@ -134,6 +150,12 @@ impl Course {
                 self.outputs.push((*output, amplitude, Arc::clone(change)));
             }
         }
+    }
+
+    /// Whether a parameter is zero in every row.
+    pub(crate) fn is_zero(&self, parameter: usize) -> bool {
+        let changes = self.profiles.iter().any(|(own, ..)| *own == parameter);
+        self.constant[parameter] == 0.0 && !changes
     }
 
     /// Parameters in the step after a row; of the last row those of the step before it.

@@ -75,6 +75,8 @@ struct Filter<'a> {
     lin: &'a Linearised,
     noise: &'a Variances,
     lines: &'a [Line],
+    /// For each line the column of its parameter among the derivatives.
+    places: Vec<usize>,
     sizes: Sizes,
     /// Deviation and columns, a row for each state.
     deviations: Vec<f64>,
@@ -92,7 +94,7 @@ pub(crate) fn reduce(
     let sizes = lin.sizes?;
     let (n, y) = (sizes.states, sizes.outputs);
     let width = 1 + lines.len();
-    let mut filter = Filter::new(lin, noise, lines, sizes);
+    let mut filter = Filter::new(lin, noise, lines, sizes)?;
     let mut gram = Gram::new(lines.len());
     let mut reduced = Reduced {
         gram: DMatrix::zeros(0, 0),
@@ -151,7 +153,17 @@ pub(crate) fn reduce(
 }
 
 impl<'a> Filter<'a> {
-    fn new(lin: &'a Linearised, noise: &'a Variances, lines: &'a [Line], sizes: Sizes) -> Self {
+    fn new(
+        lin: &'a Linearised,
+        noise: &'a Variances,
+        lines: &'a [Line],
+        sizes: Sizes,
+    ) -> Option<Self> {
+        let place = |line: &Line| match line.parameter() {
+            Some(parameter) => lin.parameters.binary_search(&parameter).ok(),
+            None => Some(0),
+        };
+        let places = lines.iter().map(place).collect::<Option<_>>()?;
         let (n, width) = (sizes.states, 1 + lines.len());
         let mut deviations = vec![0.0; n * width];
         for (column, line) in lines.iter().enumerate() {
@@ -159,15 +171,16 @@ impl<'a> Filter<'a> {
                 deviations[state * width + column + 1] = 1.0;
             }
         }
-        Self {
+        Some(Self {
             lin,
             noise,
             lines,
+            places,
             sizes,
             memory: vec![0.0; n * width.max(n)],
             deviations,
             covariance: vec![0.0; n * n],
-        }
+        })
     }
 
     /// Whether states have any noise.
@@ -183,18 +196,20 @@ impl<'a> Filter<'a> {
         innovation: &mut [f64],
         gain: &mut [f64],
     ) -> f64 {
-        let (n, y, p) = (self.sizes.states, self.sizes.outputs, self.sizes.parameters);
+        let (n, y) = (self.sizes.states, self.sizes.outputs);
+        let p = self.lin.parameters.len();
         let width = innovation.len();
         let place = row * y + output;
         let by_states = &self.lin.out_by_states[place * n..(place + 1) * n];
         let by_parameters = &self.lin.out_by_parameters[place * p..(place + 1) * p];
         innovation[0] = self.lin.residuals[place];
-        for (value, line) in innovation[1..].iter_mut().zip(self.lines) {
+        let lines = self.lines.iter().zip(&self.places);
+        for (value, (line, place)) in innovation[1..].iter_mut().zip(lines) {
             *value = match line {
                 Line::Start(_) | Line::Jump(..) => 0.0,
-                Line::Parameter(index) => -by_parameters[*index],
-                Line::Profile(index, steps) => {
-                    let by = by_parameters[*index];
+                Line::Parameter(_) => -by_parameters[*place],
+                Line::Profile(_, steps) => {
+                    let by = by_parameters[*place];
                     if by == 0.0 {
                         0.0
                     } else {
@@ -238,12 +253,8 @@ impl<'a> Filter<'a> {
 
     /// Predicts to the next row.
     fn predict(&mut self, row: usize) {
-        let Sizes {
-            states: n,
-            parameters: p,
-            noises: w,
-            ..
-        } = self.sizes;
+        let (n, w) = (self.sizes.states, self.sizes.noises);
+        let p = self.lin.parameters.len();
         let width = 1 + self.lines.len();
         let by_states = &self.lin.by_states[row * n * n..(row + 1) * n * n];
         let by_parameters = &self.lin.by_parameters[row * n * p..(row + 1) * n * p];
@@ -253,12 +264,13 @@ impl<'a> Filter<'a> {
             let deviations = &mut self.deviations[i * width..(i + 1) * width];
             deviations[0] -= self.lin.defects[row * n + i];
             let own = &by_parameters[i * p..(i + 1) * p];
-            for (value, line) in deviations[1..].iter_mut().zip(self.lines) {
+            let lines = self.lines.iter().zip(&self.places);
+            for (value, (line, place)) in deviations[1..].iter_mut().zip(lines) {
                 match line {
                     Line::Start(_) | Line::Output(..) => {}
-                    Line::Parameter(index) => *value += own[*index],
-                    Line::Profile(index, steps) => {
-                        *value += own[*index] * steps.get(row).copied().unwrap_or(0.0);
+                    Line::Parameter(_) => *value += own[*place],
+                    Line::Profile(_, steps) => {
+                        *value += own[*place] * steps.get(row).copied().unwrap_or(0.0);
                     }
                     Line::Jump(step, state) => {
                         *value += f64::from(u8::from(*step == row && *state == i));

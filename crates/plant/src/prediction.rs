@@ -190,6 +190,10 @@ impl FittedPlant {
             base.add(line, self.values()[*place]);
         }
         let starts: Vec<Line> = (0..n).map(Line::Start).collect();
+        let mut parameters: Vec<usize> =
+            carried.iter().filter_map(|one| one.0.parameter()).collect();
+        parameters.sort_unstable();
+        parameters.dedup();
         let sigmas: Vec<f64> = problem.prior_sigma[..n]
             .iter()
             .zip(&plant.description.states)
@@ -201,6 +205,7 @@ impl FittedPlant {
             sigmas: sigmas.clone(),
             noise: problem.variances(&self.ratios),
             base,
+            parameters,
         };
         let solution = led_by(&solver, &self.state_sizes())?;
         let course = solver.course(&solution.at.values);
@@ -278,7 +283,8 @@ fn simulated(problem: &Problem, course: &Course, points: &[f64]) -> Vec<f64> {
     let n = problem.plant.description.states.len();
     let rows = problem.record.len();
     let horizon = horizon_rows(&problem.plant, rows);
-    let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+    let (plant, record) = (&problem.plant, &problem.record);
+    let mut dynamics = Dynamics::narrowed(plant, record, problem.substeps, (course, &[]));
     let mut all = Vec::with_capacity(problem.record.outputs.len());
     for first in (0..rows).step_by(horizon) {
         let mut here = points[first * n..(first + 1) * n].to_vec();

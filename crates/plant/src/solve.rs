@@ -4,6 +4,8 @@
 //! astray within a record, or that is unstable, is still led by its data at every row. What no noise
 //! explains of a step is a defect, which a penalty larger than its multiplier removes.
 
+use std::sync::OnceLock;
+
 use gyrocal_hypothesis::ModelExtension;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -49,7 +51,10 @@ pub(crate) struct Iterate {
 #[derive(Clone, Debug)]
 pub(crate) struct Solution {
     pub(crate) at: Iterate,
+    /// By the parameters of the model.
     pub(crate) lin: Linearised,
+    /// By all parameters, once it is asked for.
+    pub(crate) whole: OnceLock<Linearised>,
     /// Covariance of the unknowns.
     pub(crate) covariance: DMatrix<f64>,
     pub(crate) cost: f64,
@@ -63,6 +68,8 @@ pub(crate) struct Solver<'a> {
     pub(crate) noise: Variances,
     /// Parameters that the unknowns are added to.
     pub(crate) base: Course,
+    /// Parameters that derivatives are taken by: those of the lines, in their order.
+    pub(crate) parameters: Vec<usize>,
 }
 
 /// A Gauss-Newton step.
@@ -77,9 +84,11 @@ struct Step {
 
 impl<'a> Solver<'a> {
     pub(crate) fn new(problem: &'a Problem, extension: &ModelExtension, noise: Variances) -> Self {
+        let lines = problem.lines(extension);
         Self {
             problem,
-            lines: problem.lines(extension),
+            parameters: Line::parameters(&lines),
+            lines,
             sigmas: problem.sigmas(extension),
             noise,
             base: Course::declared(&problem.plant),
@@ -97,10 +106,20 @@ impl<'a> Solver<'a> {
         course
     }
 
+    /// The plant in this model.
+    pub(crate) fn dynamics(&self) -> Dynamics<'a> {
+        let problem = self.problem;
+        Dynamics::narrowed(
+            &problem.plant,
+            &problem.record,
+            problem.substeps,
+            (&self.base, &self.parameters),
+        )
+    }
+
     /// Steps until none is promised to gain.
     pub(crate) fn solve(&self, start: Iterate) -> Result<Solution, PlantError> {
-        let problem = self.problem;
-        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+        let mut dynamics = self.dynamics();
         let mut at = start;
         at.values.resize(self.lines.len(), 0.0);
         for index in 0..=MAX_STEPS {
@@ -134,6 +153,7 @@ impl<'a> Solver<'a> {
                         covariance: step.covariance,
                         cost: step.promised,
                         lin,
+                        whole: OnceLock::new(),
                         at,
                     });
                 }

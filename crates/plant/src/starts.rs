@@ -122,7 +122,7 @@ fn simulated(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Soluti
     let extension = ModelExtension::default();
     let solver = Solver::new(problem, &extension, problem.variances(ratios));
     let course = solver.course(values);
-    let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+    let mut dynamics = solver.dynamics();
     let points = dynamics.simulate(&course, &problem.initial(values));
     if let Some(place) = points.iter().position(|value| !value.is_finite()) {
         let row = place / problem.plant.description.states.len();
@@ -181,6 +181,7 @@ pub(crate) fn led_by(solver: &Solver<'_>, sizes: &[f64]) -> Result<Solution, Pla
             lines: solver.lines.clone(),
             sigmas: solver.sigmas.clone(),
             base: solver.base.clone(),
+            parameters: solver.parameters.clone(),
             noise: Variances {
                 loose: Some(loose),
                 ..solver.noise.clone()
@@ -193,7 +194,7 @@ pub(crate) fn led_by(solver: &Solver<'_>, sizes: &[f64]) -> Result<Solution, Pla
     solver.solve(at.clone()).or_else(|error| {
         // A trajectory that was led may be better as a simulation.
         let course = solver.course(&at.values);
-        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+        let mut dynamics = solver.dynamics();
         let points = dynamics.simulate(&course, &problem.initial(&at.values));
         if !points.iter().all(|value| value.is_finite()) {
             return Err(error);
@@ -213,7 +214,7 @@ fn state_sizes(problem: &Problem, values: &[f64]) -> Vec<f64> {
         problem.variances(&vec![1.0; problem.noises()]),
     );
     let course = solver.course(values);
-    let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+    let mut dynamics = solver.dynamics();
     let points = dynamics.simulate(&course, &problem.initial(values));
     let states = &problem.plant.description.states;
     let (n, rows) = (states.len(), problem.record.len() as f64);
@@ -294,7 +295,8 @@ pub(crate) fn substeps(problem: &Problem, values: &[f64]) -> usize {
     let course = solver.course(values);
     let initial = problem.initial(values);
     let outputs = |substeps: usize| {
-        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, substeps);
+        let (plant, record) = (&problem.plant, &problem.record);
+        let mut dynamics = Dynamics::narrowed(plant, record, substeps, (&course, &[]));
         let points = dynamics.simulate(&course, &initial);
         let n = initial.len();
         let rows = points.chunks_exact(n).enumerate();

@@ -3,6 +3,8 @@
 //! It is compiled once. An array holds constants, then inputs, then the value of each operation; the
 //! constants are written when the array is made, so that an evaluation copies inputs and runs the list.
 
+mod narrowed;
+
 use gyrocal_codegen::ir::{Binary, Expressions, Node, Unary, lower};
 use gyrocal_codegen::program::Function;
 use gyrocal_codegen::simplify;
@@ -111,22 +113,28 @@ impl Tape {
         }
         let first = first + self.inputs.len();
         for (index, operation) in self.operations.iter().enumerate() {
-            let at = |place: u32| array[place as usize];
-            array[first + index] = match *operation {
-                Operation::Add(x, y) => at(x) + at(y),
-                Operation::Sub(x, y) => at(x) - at(y),
-                Operation::Mul(x, y) => at(x) * at(y),
-                Operation::Div(x, y) => at(x) / at(y),
-                Operation::Negate(x) => -at(x),
-                Operation::Unary(function, x) => unary(function, at(x)),
-                Operation::Binary(function, x, y) => binary(function, at(x), at(y)),
-            };
+            array[first + index] = value(*operation, array);
         }
     }
 
     /// Places of the nonzeros of an output.
     pub(crate) fn output(&self, index: usize) -> &[usize] {
         &self.outputs[index]
+    }
+}
+
+/// The value of an operation.
+#[inline(always)]
+fn value(operation: Operation, array: &[f64]) -> f64 {
+    let at = |place: u32| array[place as usize];
+    match operation {
+        Operation::Add(x, y) => at(x) + at(y),
+        Operation::Sub(x, y) => at(x) - at(y),
+        Operation::Mul(x, y) => at(x) * at(y),
+        Operation::Div(x, y) => at(x) / at(y),
+        Operation::Negate(x) => -at(x),
+        Operation::Unary(function, x) => unary(function, at(x)),
+        Operation::Binary(function, x, y) => binary(function, at(x), at(y)),
     }
 }
 
