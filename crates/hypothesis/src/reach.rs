@@ -5,13 +5,18 @@
 //! signal d = √l_h, the normalised scores are z ~ N(d R_h, R) with R the correlation of the signatures, and
 //! its deficit is max_b (z_b² − q_b) − (z_h² − q_h). A hypothesis belongs to the set if its own deficit lies
 //! within the 95 % quantile of this, drawn; this inverts the test of each hypothesis.
+//!
+//! Where many belong to the set by that, most of them for the same record are unlikely together: of those the
+//! set has the smallest part that holds nearly all of the likelihood, all effects being as probable before
+//! the record. That is the smallest set of its coverage, averaged over effects.
 
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::math::exp;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::bank::ScoreBank;
 use crate::hypothesis::Hypothesis;
-use crate::result::CONFIDENCE_SET_DEVIANCE;
+use crate::result::{Alternative, CONFIDENCE_SET_DEVIANCE};
 use crate::score::Scores;
 
 /// Deficit beyond which a hypothesis is in no set: the 95 % point of chi-square with three degrees of
@@ -26,6 +31,32 @@ const COVERAGE: f64 = 0.95;
 
 /// Purpose of the deviates.
 const PURPOSE: u64 = 7;
+
+/// Share of the likelihood of all members that the set holds. The reaches leave out true effects as well, so
+/// that it is a little smaller than [`COVERAGE`] would suggest only where a set is large: over 200 simulated
+/// records of five plants it took one true effect of 139 out of its set, and a tenth of the size of sets.
+const MASS: f64 = 0.92;
+
+/// Deficits of the log-likelihood that differ by less are those of the same signature.
+const SAME: f64 = 1e-6;
+
+/// Leaves of the alternatives, the most likely first, those that the likelihood of the set needs; the named
+/// effect lacks nothing.
+pub(crate) fn keep_likely(alternatives: &mut Vec<Alternative>) {
+    let likelihood = |other: &Alternative| exp(-other.log_likelihood_deficit);
+    let all = 1.0 + alternatives.iter().map(likelihood).sum::<f64>();
+    let (mut held, mut last) = (1.0, 0.0);
+    let mut kept = 0;
+    for other in alternatives.iter() {
+        if held >= MASS * all && other.log_likelihood_deficit > last + SAME {
+            break;
+        }
+        held += likelihood(other);
+        last = other.log_likelihood_deficit;
+        kept += 1;
+    }
+    alternatives.truncate(kept);
+}
 
 /// The largest deficit with which each hypothesis belongs to the set of the named one: never less than
 /// [`CONFIDENCE_SET_DEVIANCE`].

@@ -12,7 +12,7 @@ use crate::hypothesis::{Hypothesis, HypothesisSet, Variant};
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::rate_noise::RateNoiseFit;
-use crate::reach::reaches;
+use crate::reach::{keep_likely, reaches};
 use crate::rows::Rows;
 use crate::score::{Best, NESTED_MODEL_CHI2, Scores};
 use crate::shape::ShapeScale;
@@ -218,25 +218,25 @@ pub(crate) fn evaluate<F: FittedModel>(
         .and_then(|(other, advantage)| Some((scores.best[other]?, advantage)));
     let effect = set.hypotheses[own.hypothesis].effect;
     let ln_others = scores.ln_likelihood_of_all(own.hypothesis, penalised);
+    let count = context.plant.nominal_parameters;
+    let estimates = |columns: &[usize]| stage.products.estimates(&places.values, columns, count);
+    let mut alternatives = alternatives(
+        &scores,
+        &hypotheses,
+        (own.hypothesis, penalised, &reaches),
+        estimates,
+    );
+    if stage.fitted.sets_need_fits() {
+        keep_likely(&mut alternatives);
+    }
     Ok(ConditionalResult {
         finding: Finding {
             effect: effect.id,
             parameters: parameters_of(stage, set, accepted, index),
             z: statistic.max(0.0).sqrt(),
             p_value: own.p_value,
-            alternatives: alternatives(
-                &scores,
-                &hypotheses,
-                (own.hypothesis, penalised, &reaches),
-                |columns| {
-                    let count = context.plant.nominal_parameters;
-                    stage.products.estimates(&places.values, columns, count)
-                },
-            ),
-            exact_equivalents: exact_equivalents(&stage.fitted, effect, &bank, |columns| {
-                let count = context.plant.nominal_parameters;
-                stage.products.estimates(&places.values, columns, count)
-            }),
+            alternatives,
+            exact_equivalents: exact_equivalents(&stage.fitted, effect, &bank, estimates),
             none_of_these: None,
         },
         ln_others,
