@@ -21,7 +21,7 @@ use crate::kernel::instructions::output;
 use crate::truth::Extent;
 
 /// Seeds that nothing was tuned on.
-const SEEDS: u64 = 500_000;
+const SEEDS: u64 = 640_000;
 
 /// Rows of a record.
 const ROWS: usize = 600;

@@ -80,7 +80,7 @@ pub(super) fn figures() -> Result<Vec<Figure>, Error> {
 }
 
 /// A plant that is derived from a script beside this file.
-fn script(name: &str) -> Result<LoadedPlant, Error> {
+pub(super) fn script(name: &str) -> Result<LoadedPlant, Error> {
     let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src/any_plant")).join(name);
     let derived = derive(&path, settings_of_a_command())?;
     Ok(LoadedPlant::parse(&derived.program, name)?)

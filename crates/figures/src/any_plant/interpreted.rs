@@ -31,13 +31,20 @@ pub(super) fn figures(interpreted: &LoadedPlant, records: u64) -> Result<Vec<Fig
         for (one, other) in one.parameters.iter().zip(&other.parameters) {
             worst = worst.max((one.value - other.value).abs() / one.sigma);
         }
+        let sizes = |answer: &Diagnosis| -> Vec<(f64, Option<f64>)> {
+            let sizes = answer.findings.iter().flat_map(|found| &found.sizes);
+            sizes.map(|size| (size.value, size.sigma)).collect()
+        };
+        for ((one, sigma), (other, _)) in sizes(&one).into_iter().zip(sizes(&other)) {
+            worst = worst.max((one - other).abs() / sigma.unwrap_or(f64::NAN));
+        }
     }
     let mut setting = Setting::random(Kind::Duffing, HIDDEN, LONG);
     setting.hidden = effects[0];
     let interpreted_s = timed(interpreted, &setting)?.1;
     let generated_s = timed(&generated, &setting)?.1;
     let seeds = format!("{HIDDEN} to {}", HIDDEN + records - 1);
-    let name = "any plant: interpreted over generated, largest difference of a parameter";
+    let name = "any plant: interpreted over generated, largest difference of a parameter or size";
     Ok(vec![
         Figure::truth(
             "any plant: interpreted and generated, equal names and sets",
