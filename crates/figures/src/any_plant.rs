@@ -6,14 +6,17 @@ mod interpreted;
 mod oracle;
 mod second;
 
-use gyrocal_plant::answer::{Diagnosis, Found};
+use gyrocal_evaluation::Progress;
+use gyrocal_plant::answer::Found;
 use gyrocal_plant::{FittedPlant, LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
 use gyrocal_plant_truth::{Kind, Run, Setting, Stream, simulate, strength, with_strength};
 use gyrocal_statistics::Proportion;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::resumable::campaign;
 use crate::truth::Extent;
 
 /// Seeds of clean records, of those with a hidden effect, and of starts; no constant was tuned on them.
@@ -37,10 +40,11 @@ const LONG: usize = 4096;
 /// Costs within this of the least are those of the best fit.
 const SAME_FIT: f64 = 1.0;
 
-/// A record with a hidden effect, diagnosed.
+/// A record with a hidden effect, diagnosed; one that cannot be diagnosed is one of any strength that is missed.
+#[derive(Clone, Default, Serialize, Deserialize)]
 struct Outcome {
-    kind: Kind,
-    strength: f64,
+    /// `None` of a record that cannot be diagnosed.
+    strength: Option<f64>,
     detected: bool,
     holds: bool,
     first: bool,
@@ -58,8 +62,8 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         .into_iter()
         .map(|kind| Ok((kind, loaded(kind)?)))
         .collect::<Result<_, PlantError>>()?;
-    let mut figures = clean(&plants, extent.records(400, 2));
-    figures.extend(hidden(&plants, extent.records(200, 3)));
+    let mut figures = clean(&plants, extent)?;
+    figures.extend(hidden(&plants, extent)?);
     figures.extend(gauges::figures()?);
     figures.push(starts(&plants, extent.records(100, 2))?);
     figures.push(effort::lines()?);
@@ -90,26 +94,18 @@ fn prepared(plant: &LoadedPlant, run: Run) -> Result<PlantRecord, PlantError> {
 
 /// False alarms on clean records; the noise of every second one is misdeclared. A record that cannot be
 /// fitted counts as an alarm.
-fn clean(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
+fn clean(plants: &[(Kind, LoadedPlant)], extent: Extent) -> Result<Vec<Figure>, Error> {
+    let records = extent.records(400, 2);
     let mut figures = Vec::new();
     let mut all = Proportion { hits: 0, trials: 0 };
     let seeds = format!("{CLEAN} to {}", CLEAN + records - 1);
     for (kind, plant) in plants {
-        let alarms: Vec<bool> = (CLEAN..CLEAN + records)
-            .into_par_iter()
-            .map(|seed| {
-                let mut setting = Setting::random(*kind, seed, ROWS);
-                if seed % 2 == 1 {
-                    setting.noise = Stream::new(seed, 9).log_between(0.5, 2.0);
-                }
-                let answer = record(plant, &setting)
-                    .and_then(|record| diagnose(plant, record, None, &SearchOptions::default()));
-                let is_silent = |answer: &Diagnosis| {
-                    answer.findings.is_empty() && answer.unexplained.is_empty()
-                };
-                !answer.is_ok_and(|diagnosed| is_silent(&diagnosed.answer))
-            })
-            .collect();
+        let cell = format!("clean {kind:?}");
+        let range = CLEAN..CLEAN + records;
+        let outcome = campaign("any-plant", &cell, range, extent.small)?
+            .run(|seed| is_silent(*kind, plant, seed), told(&cell))?;
+        let silent = outcome.successes().map(|(_, silent)| !*silent);
+        let alarms = silent.chain(outcome.failures().map(|_| true));
         let own = Proportion::of(alarms);
         all.hits += own.hits;
         all.trials += own.trials;
@@ -123,7 +119,27 @@ fn clean(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
         ..pooled
     };
     figures.insert(0, pooled.judged(all.at_most(0.02)));
-    figures
+    Ok(figures)
+}
+
+/// Tells how far a cell is.
+fn told(cell: &str) -> impl FnMut(Progress) + Send {
+    move |progress| {
+        if progress.done % 50 == 0 {
+            eprintln!("{cell}: {} of {}", progress.done, progress.total);
+        }
+    }
+}
+
+/// Whether nothing is found in a clean record.
+fn is_silent(kind: Kind, plant: &LoadedPlant, seed: u64) -> Result<bool, PlantError> {
+    let mut setting = Setting::random(kind, seed, ROWS);
+    if seed % 2 == 1 {
+        setting.noise = Stream::new(seed, 9).log_between(0.5, 2.0);
+    }
+    let record = record(plant, &setting)?;
+    let answer = diagnose(plant, record, None, &SearchOptions::default())?.answer;
+    Ok(answer.findings.is_empty() && answer.unexplained.is_empty())
 }
 
 fn one_hidden(kind: Kind, plant: &LoadedPlant, seed: u64) -> Result<Outcome, PlantError> {
@@ -169,8 +185,7 @@ fn one_hidden(kind: Kind, plant: &LoadedPlant, seed: u64) -> Result<Outcome, Pla
     let better = better.filter(|later| named && second.true_gain(later) >= second::LEAST_GAIN);
     let better = better.map(second::is_better);
     Ok(Outcome {
-        kind,
-        strength,
+        strength: Some(strength),
         beside_oracle,
         detected: !(answer.findings.is_empty() && answer.unexplained.is_empty()),
         holds: answer.findings.iter().any(is_in),
@@ -186,31 +201,31 @@ fn one_hidden(kind: Kind, plant: &LoadedPlant, seed: u64) -> Result<Outcome, Pla
     })
 }
 
-/// Records with one hidden effect. One that cannot be diagnosed counts as missed.
-fn hidden(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
+/// Records with one hidden effect.
+fn hidden(plants: &[(Kind, LoadedPlant)], extent: Extent) -> Result<Vec<Figure>, Error> {
+    let records = extent.records(200, 3);
     let seeds = format!("{HIDDEN} to {}", HIDDEN + records - 1);
-    let outcomes: Vec<Outcome> = plants
-        .iter()
-        .flat_map(|(kind, plant)| {
-            let all = (HIDDEN..HIDDEN + records).into_par_iter();
-            all.map(|seed| {
-                one_hidden(*kind, plant, seed).unwrap_or(Outcome {
-                    kind: *kind,
-                    strength: f64::INFINITY,
-                    detected: false,
-                    holds: false,
-                    first: false,
-                    set: 0,
-                    beside_oracle: None,
-                    better: None,
-                })
-            })
-            .collect::<Vec<_>>()
-        })
-        .collect();
-    let strong = || outcomes.iter().filter(|one| one.strength >= DETECTABLE);
+    let mut outcomes: Vec<(Kind, Outcome)> = Vec::new();
+    for (kind, plant) in plants {
+        let cell = format!("hidden {kind:?}");
+        let range = HIDDEN..HIDDEN + records;
+        let found = campaign("any-plant", &cell, range, extent.small)?
+            .run(|seed| one_hidden(*kind, plant, seed), told(&cell))?;
+        let found_each = found.successes().map(|(_, one)| one.clone());
+        let missed = found.failures().map(|_| Outcome::default());
+        outcomes.extend(found_each.chain(missed).map(|one| (*kind, one)));
+    }
+    Ok(of_hidden(&outcomes, &seeds))
+}
+
+fn of_hidden(outcomes: &[(Kind, Outcome)], seeds: &str) -> Vec<Figure> {
+    let from = |least: f64| {
+        let all = outcomes.iter();
+        all.filter(move |(_, one)| one.strength.is_none_or(|own| own >= least))
+    };
+    let strong = || from(DETECTABLE).map(|(_, one)| one);
     let at_least = |name: &str, share: Proportion, least: f64| {
-        let figure = Figure::note_share(name, share, seeds.clone());
+        let figure = Figure::note_share(name, share, seeds);
         let figure = Figure {
             target: format!(">= {least}"),
             ..figure
@@ -220,28 +235,28 @@ fn hidden(plants: &[(Kind, LoadedPlant)], records: u64) -> Vec<Figure> {
     let detected = Proportion::of(strong().map(|one| one.detected));
     let holds = Proportion::of(strong().map(|one| one.holds));
     let first = Proportion::of(strong().map(|one| one.first));
-    let better = outcomes.iter().filter(|one| one.strength >= PREDICTIVE);
-    let better = Proportion::of(better.filter_map(|one| one.better));
+    let better = Proportion::of(from(PREDICTIVE).filter_map(|(_, one)| one.better));
     let mut figures = vec![
         at_least("any plant: effect of d >= 8 detected", detected, 0.99),
         at_least("any plant: set holds the effect of d >= 8", holds, 0.95),
         Figure::note_share(
             "any plant: first name of d >= 8 is the effect",
             first,
-            seeds.clone(),
+            seeds,
         ),
         at_least(&second::name(ROWS), better, 0.95),
     ];
-    figures.push(set_sizes(strong(), &seeds));
+    figures.push(set_sizes(strong(), seeds));
     for kind in Kind::ALL {
-        let own = || strong().filter(move |one| one.kind == kind);
-        let holds = Proportion::of(own().map(|one| one.holds));
-        let size = own().map(|one| one.set as f64).sum::<f64>() / holds.trials.max(1) as f64;
+        let of_kind = from(DETECTABLE).filter(|(other, _)| *other == kind);
+        let own: Vec<&Outcome> = of_kind.map(|(_, one)| one).collect();
+        let holds = Proportion::of(own.iter().map(|one| one.holds));
+        let size = own.iter().map(|one| one.set as f64).sum::<f64>() / holds.trials.max(1) as f64;
         let name = format!("any plant: set holds the effect, {kind:?}");
-        figures.push(Figure::note_share(&name, holds, seeds.clone()));
+        figures.push(Figure::note_share(&name, holds, seeds));
         let name = format!("any plant: mean size of the set, {kind:?}");
         let note = Figure::note(&name, format!("{size:.2}"));
-        figures.push(note.over(holds.trials as usize, seeds.clone()));
+        figures.push(note.over(holds.trials as usize, seeds));
     }
     figures
 }

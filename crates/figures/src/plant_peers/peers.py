@@ -33,6 +33,8 @@ NAMES = {"p": [("l", 1), ("dp", -1), ("j", 1)], "q": [("m", 1), ("dq", -1), ("j"
 WINDOW = 40
 # Lengths of smoothing, rows; each method takes the one whose model simulates its own record best.
 SMOOTHING = (5, 7, 9, 13)
+# Half widths of the windows of the weak form, s, and their number; the best is taken in the same way.
+HALF_WIDTHS_S, WINDOWS = (0.2, 0.4, 0.8), 400
 
 
 def read(path):
@@ -60,9 +62,9 @@ def centred(torques):
     return 0.5 * (torques + np.concatenate([torques[:1], torques[:-1]]))
 
 
-def smoothed(method, record):
-    """Names and model of a method by its best smoothing."""
-    tried = [method(length) for length in SMOOTHING]
+def best_operon(record, seconds, seed):
+    """By its best smoothing."""
+    tried = [operon(record, length, seconds, seed) for length in SMOOTHING]
     return min(tried, key=lambda one: later_error(one[1], record))
 
 
@@ -101,36 +103,61 @@ def later_error(rates, record):
     return error if np.isfinite(error) else 1e9
 
 
-def sindy(record, length):
-    """STLSQ on smoothed differences; its threshold by the error on the last third."""
+def weak(record, half_width_s):
+    """Terms and rates of p, q and r integrated over windows with smooth weights, which needs no derivatives of
+    noisy data: the weak form that pysindy's documentation advises for these. The middle of each window too."""
+    time_s, states, torques = measured(record)
+    table = columns(states, centred(torques))
+    library = ps.WeakPDELibrary(ps.IdentityLibrary(), spatiotemporal_grid=time_s, K=WINDOWS,
+                                H_xt=[half_width_s], is_uniform=True)
+    np.random.seed(0)
+    library.fit(matrix(table, list(table)))
+    terms = np.asarray(library.transform(matrix(table, list(table))))
+    driven = ps.AxesArray(states[:, 3:], {"ax_time": 0, "ax_coord": 1})
+    middles = np.array([np.mean(places[0]) for places in library.inds_k])
+    return dict(zip(table, terms.T)), np.asarray(library.convert_u_dot_integral(driven)), middles
+
+
+def differences(record, length):
+    """The same by smoothed differences, row by row."""
     time_s, states, torques = measured(record)
     smoother = ps.SmoothedFiniteDifference(smoother_kws={"window_length": length, "polyorder": 3})
     slopes = smoother._differentiate(states, time_s)
-    table = columns(smoother.smoothed_x_, centred(torques))
-    cut, found, ranked = 2 * len(states) // 3, {}, []
+    return columns(smoother.smoothed_x_, centred(torques)), slopes[:, 3:], np.arange(len(states))
+
+
+def sindy(table, rates, middles):
+    """STLSQ of columns of length one; its threshold by Schwarz's criterion on the last third, its factors by
+    least squares over all."""
+    first, found, ranked = middles < np.quantile(middles, 2 / 3), {}, []
     for index, axis in enumerate("pqr"):
         terms = NOMINAL[axis] + list(CATALOGUE[axis].values())
-        theta, target = matrix(table, terms), slopes[:, 3 + index]
+        theta, target = matrix(table, terms), rates[:, index]
         scale = np.sqrt(np.mean(theta**2, axis=0))
         best = None
-        for threshold in np.logspace(-3, 1, 41):
+        for threshold in np.logspace(-4, 0, 41) * np.sqrt(np.mean(target**2)):
             optimizer = ps.STLSQ(threshold=threshold, alpha=1e-9)
-            optimizer.fit(theta[:cut] / scale, target[:cut, None])
+            optimizer.fit(theta[first] / scale, target[first, None])
             factors = np.ravel(optimizer.coef_) / scale
-            rest = target[cut:] - theta[cut:] @ factors
-            rows = len(rest)
-            aic = rows * np.log(np.mean(rest**2)) + 2 * np.count_nonzero(factors)
-            if best is None or aic < best[0]:
-                best = aic, np.flatnonzero(factors)
+            rest = (target - theta @ factors)[~first]
+            score = len(rest) * np.log(np.mean(rest**2)) + np.log(len(rest)) * np.count_nonzero(factors)
+            if best is None or score < best[0]:
+                best = score, np.flatnonzero(factors)
         factors = np.zeros(len(terms))
         if len(best[1]):
             factors[best[1]] = np.linalg.lstsq(theta[:, best[1]], target, rcond=None)[0]
         found[axis] = dict(zip(terms, factors))
         rest = np.std(target - theta @ factors)
-        ranked += [(abs(found[axis][term]) * np.std(table[term]) / rest if term != "1"
-                    else abs(found[axis][term]) / rest, name)
+        ranked += [(abs(found[axis][term]) * np.sqrt(np.mean(table[term] ** 2)) / rest, name)
                    for name, term in CATALOGUE[axis].items() if found[axis][term]]
     return [name for _, name in sorted(ranked, reverse=True)], linear(found)
+
+
+def best_sindy(record):
+    """By the form whose model simulates its own record best: weak, or by differences."""
+    forms = [weak(record, half_width_s) for half_width_s in HALF_WIDTHS_S]
+    forms += [differences(record, length) for length in SMOOTHING]
+    return min((sindy(*form) for form in forms), key=lambda one: later_error(one[1], record))
 
 
 def operon(record, length, seconds, seed):
@@ -189,10 +216,10 @@ def main():
         record, later = read(directory / entry["record"]), read(directory / entry["later"])
         row = {"ours": {"names": entry["names"], "error": later_error(ours(entry), later),
                         "seconds": entry["seconds"]}}
-        for name, method in (("pysindy", lambda length: sindy(record, length)),
-                             ("pyoperon", lambda length: operon(record, length, entry["seconds"], 1 + index))):
+        for name, method in (("pysindy", lambda: best_sindy(record)),
+                             ("pyoperon", lambda: best_operon(record, entry["seconds"], 1 + index))):
             began = time.perf_counter()
-            names, rates = smoothed(method, record)
+            names, rates = method()
             row[name] = {"names": names, "seconds": time.perf_counter() - began,
                          "error": later_error(rates, later)}
         results.append(row)
