@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gyrocal_plant::{ColumnMap, FittedPlant, LoadedPlant, PlantRecord};
+use gyrocal_plant::{ColumnMap, FittedPlant, LoadedPlant, PlantRecord, SearchOptions, diagnose};
 use gyrocal_plant_truth::{Kind, Setting, simulate};
 
 fn example(plant: &str, file: &str) -> PathBuf {
@@ -55,11 +55,21 @@ fn an_input_that_never_moves_is_weak_excitation_and_no_gauge() {
     still.inputs.fill(0.0);
     still.outputs = run.outputs.concat();
     assert_eq!(still.still_inputs(plant.description()), ["u"]);
-    let fit = FittedPlant::nominal(&plant, still, &[]).unwrap();
+    let fit = FittedPlant::nominal(&plant, still.clone(), &[]).unwrap();
     let directions = fit.null_directions().unwrap();
     assert_eq!(directions.len(), 1, "{directions:?}");
     assert!(!directions[0].is_gauge, "{directions:?}");
     assert_eq!(directions[0].parts[0].name, "g");
+    let options = SearchOptions::default();
+    let sentences = diagnose(&plant, still, None, &options).unwrap();
+    let sentences: Vec<String> = sentences.answer.sentences();
+    for words in [
+        "Input u never moves in this record",
+        "with another input it would",
+    ] {
+        let says = |sentence: &String| sentence.contains(words);
+        assert!(sentences.iter().any(says), "{words}: {sentences:?}");
+    }
 }
 
 #[test]
