@@ -112,13 +112,12 @@ fn dialects() -> Figure {
     let right = outcomes.iter().filter(|one| one.fault.is_empty()).count() as f64;
     let refused = outcomes.iter().filter(|one| one.refused).count();
     let all = outcomes.len() as f64;
-    Figure::within(
-        &format!(
-            "formats and dialects read right or refused with the line to add, of {all} ({refused} refused: Parquet not built in)"
-        ),
-        [all, all],
-        right,
-    )
+    let of_features = match refused {
+        0 => String::new(),
+        _ => format!(" ({refused} refused with the feature to build: Parquet, MCAP)"),
+    };
+    let what = "formats and dialects read right or refused with the line to add";
+    Figure::within(&format!("{what}, of {all}{of_features}"), [all, all], right)
 }
 
 /// Commands whose result for programs conforms to its published schema.

@@ -12,6 +12,7 @@ use crate::error::{InstrumentError, Unfit};
 use crate::file_format::{FileFormat, Only};
 use crate::log_lines::{LogLine, log_lines};
 use crate::remedy;
+use crate::typed_file::TypedFile;
 
 /// Columns of a text file.
 #[derive(Debug, Clone, PartialEq)]
@@ -235,20 +236,20 @@ impl FileColumns {
         }
     }
 
-    /// Reads the columns `names` of a file of any format.
+    /// Reads the columns `names` of a file of any format. Time stamps of typed columns are in units of `unit_s`.
     pub(crate) fn read(
         path: &Path,
         format: &FileFormat,
         names: &[&str],
         dated: Option<usize>,
+        unit_s: f64,
     ) -> Result<Self, InstrumentError> {
-        match &format.binary {
-            Some(binary) => Ok(Self {
-                values: read_binary(path, binary, format.only.as_ref(), names)?,
-                text: None,
-            }),
-            None => Self::of_text(SourceText::read(path)?, format, names, dated),
-        }
+        let values = match (&format.binary, TypedFile::of(path)?) {
+            (Some(binary), _) => read_binary(path, binary, format.only.as_ref(), names)?,
+            (None, Some(typed)) => typed.columns(path, format, names, dated, unit_s)?,
+            (None, None) => return Self::of_text(SourceText::read(path)?, format, names, dated),
+        };
+        Ok(Self { values, text: None })
     }
 
     pub(crate) fn of_text(

@@ -66,6 +66,9 @@ mod gyro_from_turns;
 mod least_squares;
 mod log;
 mod log_lines;
+mod matlab_file;
+#[cfg(feature = "mcap")]
+mod mcap_file;
 pub mod multi_position;
 #[cfg(feature = "parquet")]
 mod parquet_file;
@@ -76,9 +79,12 @@ mod proposal;
 pub mod rates;
 mod remedy;
 mod result_file;
+#[cfg(feature = "mcap")]
+mod ros_message;
 mod stop_means;
 mod stops;
 pub mod strapdown;
+mod typed_file;
 
 pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
 pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positions};

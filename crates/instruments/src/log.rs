@@ -54,7 +54,9 @@ impl Log {
     /// [`Unfit::NoScale`].
     pub fn read(path: &Path, description: &Description) -> Result<Self, InstrumentError> {
         let names = names(description)?;
-        let file = FileColumns::read(path, &description.file, &names, dated(description))?;
+        let unit_s = description.time.numeric_unit_s();
+        let dated = dated(description);
+        let file = FileColumns::read(path, &description.file, &names, dated, unit_s)?;
         Self::from_columns(file, description)
     }
 

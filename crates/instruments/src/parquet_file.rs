@@ -1,58 +1,24 @@
-//! Records of a stable platform in files of Parquet.
+//! Columns of files of Parquet.
 
 use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
-use gyrocal_record::{Error, Record};
+use gyrocal_record::Error;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use parquet::schema::types::Type;
 
-use crate::description::Description;
-use crate::error::{InstrumentError, Unfit};
-use crate::platform_row::{Cell, PlatformRow, Row};
+use crate::error::InstrumentError;
+use crate::platform_row::Cell;
+use crate::typed_file::{TakeCells, no_column, unfit};
 
-/// First bytes of a file of Parquet.
-const PARQUET: &[u8] = b"PAR1";
-
-/// Whether a file is one of Parquet.
-pub(crate) fn is_one(path: &Path) -> Result<bool, InstrumentError> {
-    let mut first = [0; PARQUET.len()];
-    let read = open(path)?.read_exact(&mut first);
-    Ok(read.is_ok() && first == PARQUET)
-}
-
-/// The record of a file, and its name.
-pub(crate) fn read_record(
+/// Hands the cells of the columns `names` of each row to `take`; a group of its rows is in memory at a time.
+pub(crate) fn read(
     path: &Path,
-    description: &Description,
-) -> Result<(Record, String), InstrumentError> {
-    let mut record = Record::default();
-    for_each_row(path, description, |row| {
-        row.push_to(&mut record);
-        Ok(())
-    })?;
-    let name = path.display().to_string();
-    if record.is_empty() {
-        return Err(unfit(
-            path,
-            "no rows",
-            "samples",
-            "check the program that wrote it",
-        ));
-    }
-    Ok((record, name))
-}
-
-/// Hands each row of a file to `take`; a group of its rows is in memory at a time.
-pub(crate) fn for_each_row(
-    path: &Path,
-    description: &Description,
-    mut take: impl FnMut(Row) -> Result<(), InstrumentError>,
+    names: &[&str],
+    take: &mut TakeCells<'_>,
 ) -> Result<(), InstrumentError> {
-    let platform_row = PlatformRow::new(description)?;
     let damaged = |reason: ParquetError| {
         let found = format!("what no reader of Parquet accepts ({reason})");
         unfit(
@@ -64,11 +30,11 @@ pub(crate) fn for_each_row(
     };
     let reader = SerializedFileReader::new(open(path)?).map_err(damaged)?;
     let schema = reader.metadata().file_metadata().schema();
-    let projection = projection(path, schema, platform_row.names())?;
+    let projection = projection(path, schema, names)?;
     let rows = reader.get_row_iter(Some(projection)).map_err(damaged)?;
     for (number, row) in rows.enumerate() {
         let row = row.map_err(damaged)?;
-        let cells = platform_row.names().iter().map(|name| {
+        let cells = names.iter().map(|name| {
             let mut columns = row.get_column_iter();
             let field = columns
                 .find(|(title, _)| title == name)
@@ -83,16 +49,7 @@ pub(crate) fn for_each_row(
                 "name other columns in the map",
             ));
         };
-        let row = platform_row.of(&cells, number).map_err(|fault| {
-            let name = platform_row.names()[fault.column];
-            let found = format!(
-                "{:?} in the column `{name}` of row {}",
-                cells[fault.column],
-                number + 1
-            );
-            unfit(path, &found, fault.expected, &fault.advice)
-        })?;
-        take(row)?;
+        take(&cells)?;
     }
     Ok(())
 }
@@ -110,12 +67,7 @@ fn projection(path: &Path, schema: &Type, names: &[&str]) -> Result<Type, Instru
     for name in names {
         if !fields.iter().any(|field| field.name() == *name) {
             let there: Vec<&str> = fields.iter().map(|field| field.name()).collect();
-            return Err(unfit(
-                path,
-                &format!("the columns {}", there.join(", ")),
-                &format!("a column `{name}`"),
-                "name the columns in a map (`--columns MAP.toml`)",
-            ));
+            return Err(no_column(path, name, &there.join(", ")));
         }
     }
     let fields = fields.iter().filter(|field| names.contains(&field.name()));
@@ -144,9 +96,4 @@ fn cell(field: &Field) -> Option<Cell<'_>> {
         Field::TimestampMicros(value) => Cell::Seconds(*value as f64 * 1e-6),
         _ => return None,
     })
-}
-
-fn unfit(path: &Path, found: &str, expected: &str, advice: &str) -> InstrumentError {
-    let found = format!("{}: {found}", path.display());
-    InstrumentError::unfit(Unfit::Binary, found, expected, advice)
 }

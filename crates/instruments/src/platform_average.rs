@@ -9,6 +9,7 @@ use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
 use crate::platform_record::{RowReader, finished};
 use crate::platform_row::Row;
+use crate::typed_file::TypedFile;
 
 /// Longest interval of such means, s. The mean of a platform that turns with the Earth exceeds the value at
 /// its middle by T² a''/24, which is 2e-8 g at 10 s; over longer intervals `average_record` corrects it,
@@ -51,10 +52,9 @@ pub fn average_file(
         ));
     }
     let name = path.display().to_string();
-    #[cfg(feature = "parquet")]
-    if crate::parquet_file::is_one(path)? {
+    if let Some(typed) = TypedFile::of(path)? {
         let mut means = Means::new(interval_s);
-        crate::parquet_file::for_each_row(path, description, |row| {
+        typed.for_each_row(path, description, |row| {
             means.add(row).map_err(|last_s| {
                 let found = format!("{name}: time {} s after {last_s} s", row.time_s);
                 let advice = "sort the rows by time";

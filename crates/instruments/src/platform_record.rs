@@ -12,6 +12,7 @@ use crate::file_format::FileFormat;
 use crate::log_lines::{LogLine, log_lines};
 use crate::platform_row::{Cell, PlatformRow, Row};
 use crate::proposal::propose_map;
+use crate::typed_file::TypedFile;
 
 /// Intervals longer than this many median ones are gaps, which are not interpolated.
 const GAP: f64 = 1.5;
@@ -24,18 +25,15 @@ const GAP: f64 = 1.5;
 ///
 /// [`InstrumentError::File`] at its place, with the line that the description lacks where that is plain.
 pub fn read_record(path: &Path, description: &Description) -> Result<RecordFile, InstrumentError> {
-    #[cfg(feature = "parquet")]
-    if crate::parquet_file::is_one(path)? {
-        let (record, name) = crate::parquet_file::read_record(path, description)?;
-        return Ok(RecordFile::of_record(finished(record, description), &name));
+    if let Some(typed) = TypedFile::of(path)? {
+        let record = finished(typed.record(path, description)?, description);
+        return Ok(RecordFile::of_record(record, &path.display().to_string()));
     }
-    #[cfg(not(feature = "parquet"))]
-    refuse_parquet(path)?;
     parse_record(SourceText::read(path)?, description)
 }
 
 /// Reads the record of a stable platform as [`RecordFile::read`] does, or by a description. Without one a file
-/// of Parquet has the columns of a record, and the error of another header says what to describe.
+/// of Parquet or MATLAB has the columns of a record, and the error of another header says what to describe.
 ///
 /// # Errors
 ///
@@ -47,12 +45,9 @@ pub fn read_any(
     if let Some(description) = description {
         return read_record(path, description);
     }
-    #[cfg(feature = "parquet")]
-    if crate::parquet_file::is_one(path)? {
+    if TypedFile::of(path)?.is_some() {
         return read_record(path, &Description::of_records()?);
     }
-    #[cfg(not(feature = "parquet"))]
-    refuse_parquet(path)?;
     let source = SourceText::read(path)?;
     let text = source.clone();
     RecordFile::of(source).map_err(|error| match error {
@@ -247,21 +242,4 @@ fn resampled(record: &Record) -> Record {
         row.push_to(&mut even);
     }
     even
-}
-
-/// Refuses Parquet where its reader is not built in.
-#[cfg(not(feature = "parquet"))]
-fn refuse_parquet(path: &Path) -> Result<(), InstrumentError> {
-    use std::io::Read as _;
-    let mut first = Vec::new();
-    let opened = gyrocal_record::open_content(path)?;
-    if opened.take(4).read_to_end(&mut first).is_ok() && first == b"PAR1" {
-        return Err(InstrumentError::unfit(
-            crate::Unfit::Binary,
-            format!("{}: a file of Parquet", path.display()),
-            "text, as this program was built without Parquet",
-            "build it with `cargo install gyrocal-cli --features parquet`, or write the log as CSV",
-        ));
-    }
-    Ok(())
 }

@@ -1,5 +1,7 @@
 //! One row of a stable platform's record from the cells of a described file.
 
+use core::fmt::{Display, Formatter};
+
 use gyrocal_record::{InputErrorKind, Record};
 
 use crate::date_time::seconds_of;
@@ -11,18 +13,44 @@ use crate::remedy;
 
 /// A cell of a file.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(
+    not(any(feature = "parquet", feature = "mcap")),
+    allow(
+        dead_code,
+        reason = "MATLAB has neither time stamps nor missing values"
+    )
+)]
 pub(crate) enum Cell<'a> {
     /// A text.
     Text(&'a str),
     /// A number of a typed column.
-    #[cfg(feature = "parquet")]
     Number(f64),
     /// A time stamp of a typed column, s.
-    #[cfg(feature = "parquet")]
     Seconds(f64),
     /// A missing value of a typed column.
-    #[cfg(feature = "parquet")]
     Missing,
+}
+
+impl Cell<'_> {
+    /// Whether it is what a text says: this text, or its number.
+    pub(crate) fn is(&self, text: &str) -> bool {
+        match self {
+            Self::Text(own) => *own == text,
+            Self::Number(own) => text.parse() == Ok(*own),
+            Self::Seconds(_) | Self::Missing => false,
+        }
+    }
+}
+
+impl Display for Cell<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Text(text) => write!(f, "`{text}`"),
+            Self::Number(value) => write!(f, "{value}"),
+            Self::Seconds(_) => write!(f, "a time stamp"),
+            Self::Missing => write!(f, "no value"),
+        }
+    }
 }
 
 /// One row of a record.
@@ -148,13 +176,10 @@ impl<'a> PlatformRow<'a> {
                     fault(column, "a time in numbers", remedy::of_time(format, text))
                 })
             }
-            #[cfg(feature = "parquet")]
             Cell::Number(value) if value.is_finite() => Ok(value),
-            #[cfg(feature = "parquet")]
             _ => Err(fault(column, "a time in every row", None)),
         };
         match cells[column] {
-            #[cfg(feature = "parquet")]
             Cell::Seconds(seconds) => return Ok(seconds),
             Cell::Text(text) if time.is_text() => {
                 return seconds_of(text).ok_or_else(|| {
@@ -190,11 +215,8 @@ impl<'a> PlatformRow<'a> {
                         advice: remedy::of_value(format, text, row).unwrap_or_default(),
                     })
             }
-            #[cfg(feature = "parquet")]
             Cell::Number(value) => Ok(value),
-            #[cfg(feature = "parquet")]
             Cell::Missing => Ok(f64::NAN),
-            #[cfg(feature = "parquet")]
             Cell::Seconds(_) => Err(Fault {
                 column,
                 kind: InputErrorKind::WrongType,

@@ -188,6 +188,6 @@ fn not_utf8(bytes: &[u8], name: &str, lines_before: usize) -> Error {
         offset..offset,
         found,
         "UTF-8 text",
-        "save the file as UTF-8; spreadsheets and binary files are not read, but for Parquet",
+        "save the file as UTF-8; spreadsheets and binary files are not read, but for MATLAB, Parquet and MCAP",
     )
 }

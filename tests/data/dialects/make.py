@@ -1,18 +1,26 @@
 """Writes the test set of formats and dialects: one record, as other programs would have written it.
 
 Each case is a file, its map, and maybe the line of the map without which the file has to be refused, naming
-that line. The values are those of `truth.csv`. Run with pyarrow and zstandard installed.
+that line. The values are those of `truth.csv`. Run with pyarrow, zstandard, scipy, mcap, mcap-ros1-support and
+mcap-ros2-support installed.
 """
 
 import datetime
 import gzip
+import io
 import json
 import math
 import pathlib
 
+import mcap.writer
+import mcap_ros1.writer
+import mcap_ros2.writer
+import numpy
 import pyarrow
 import pyarrow.parquet
+import scipy.io
 import zstandard
+from mcap_ros1._vendor.genpy import dynamic
 
 HERE = pathlib.Path(__file__).parent
 GRAVITY = 9.80665
@@ -153,6 +161,100 @@ def parquet(name, columns, **options):
 axes = {f"a{axis}": [row[index] for row in ACCEL] for index, axis in enumerate("xyz")}
 parquet("parquet", {"t": TIME, **axes})
 parquet("parquet_stamps", {"t": pyarrow.array(stamps, pyarrow.timestamp("us", "UTC")), **axes}, since_first=True)
+
+
+def matlab(name, variables, compressed=False, **options):
+    content = io.BytesIO()
+    scipy.io.savemat(content, variables, do_compression=compressed, oned_as="column")
+    # Without the date.
+    content = b"MATLAB 5.0 MAT-file".ljust(124) + content.getvalue()[124:]
+    case(name, content, form="mat", **options)
+
+
+values = numpy.array(ACCEL)
+matlab("matlab", {"note": "a bench", "t": numpy.array(TIME), "accel": values},
+       accel='columns = ["accel(:,1)", "accel(:,2)", "accel(:,3)"]\nunit = "g"')
+log = {"t": numpy.array([int(t * 1000) for t in TIME], "int32"), "a": values.T.astype("float32"),
+       "on": {"rate": 1.0}}
+matlab("matlab_structure", {"log": log, "other": numpy.eye(3)}, compressed=True, time='column = "log.t"\nunit = "ms"',
+       accel='columns = ["log.a(1,:)", "log.a(2,:)", "log.a(3,:)"]\nunit = "g"')
+
+VECTOR = "float64 x\nfloat64 y\nfloat64 z\n"
+IMU = """# This is a message to hold data from an IMU
+{header}/Header header
+geometry_msgs/Quaternion orientation
+float64[9] orientation_covariance # row major about x, y, z axes
+geometry_msgs/Vector3 angular_velocity
+float64[9] angular_velocity_covariance
+geometry_msgs/Vector3 linear_acceleration
+float64[9] linear_acceleration_covariance
+"""
+LINE = "=" * 80 + "\n"
+PARTS = (LINE + "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
+         + LINE + "MSG: geometry_msgs/Vector3\n" + VECTOR)
+ROS2 = (IMU.format(header="std_msgs") + PARTS + LINE
+        + "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+        + LINE + "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n")
+ROS1 = (IMU.format(header="std_msgs") + PARTS + LINE
+        + "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n")
+ROS_AXES = 'columns = ["linear_acceleration.x", "linear_acceleration.y", "linear_acceleration.z"]\nunit = "m/s2"'
+ROS_MORE = f"[site]\ngravity_m_per_s2 = {GRAVITY}\n"
+
+
+def vector(row):
+    return dict(zip("xyz", row))
+
+
+def imu(stamp, row):
+    return {
+        "header": {"stamp": stamp, "frame_id": "bench"}, "orientation": {**vector([0.0] * 3), "w": 1.0},
+        "orientation_covariance": [0.0] * 9, "angular_velocity": vector([0.0] * 3),
+        "angular_velocity_covariance": [0.0] * 9, "linear_acceleration": vector([GRAVITY * a for a in row]),
+        "linear_acceleration_covariance": [0.0] * 9,
+    }
+
+
+nanoseconds = [int(stamp.timestamp()) * 10**9 for stamp in stamps]
+content = io.BytesIO()
+writer = mcap_ros2.writer.Writer(content)
+schema = writer.register_msgdef("sensor_msgs/msg/Imu", ROS2)
+other = writer.register_msgdef("std_msgs/msg/Float64", "float64 data\n")
+for at, row in zip(nanoseconds, ACCEL):
+    message = imu({"sec": at // 10**9, "nanosec": 0}, row)
+    writer.write_message("/imu/data", schema, message, log_time=at + 500, publish_time=at)
+    writer.write_message("/pressure", other, {"data": 1e5}, log_time=at, publish_time=at)
+writer.finish()
+case("mcap_ros2", content.getvalue(), form="mcap", time='column = "header.stamp"', accel=ROS_AXES, more=ROS_MORE,
+     since_first=True)
+
+
+Imu = dynamic.generate_dynamic("sensor_msgs/Imu", ROS1)["sensor_msgs/Imu"]
+content = io.BytesIO()
+writer = mcap_ros1.writer.Writer(content, compression=mcap.writer.CompressionType.NONE)
+for at, row in zip(nanoseconds, ACCEL):
+    message = Imu()
+    message.header.frame_id = "bench"
+    message.linear_acceleration.x, message.linear_acceleration.y, message.linear_acceleration.z = (
+        GRAVITY * a for a in row)
+    writer.write_message("/imu/data", message, log_time=at, publish_time=at)
+writer.finish()
+case("mcap_ros1", content.getvalue(), form="mcap", time='column = "log_time"', accel=ROS_AXES, more=ROS_MORE,
+     since_first=True)
+
+content = io.BytesIO()
+writer = mcap.writer.Writer(content, compression=mcap.writer.CompressionType.LZ4)
+writer.start()
+for topic in ["/upper", "/lower"]:
+    schema = writer.register_schema(topic, "jsonschema", b"{}")
+    channel = writer.register_channel(topic, "json", schema)
+    sign = 1.0 if topic == "/upper" else -1.0
+    for at, t, row in zip(nanoseconds, TIME, ACCEL):
+        message = {"t": t, "acc": [sign * a for a in row], "state": None}
+        writer.add_message(channel, at, json.dumps(message).encode(), at)
+writer.finish()
+only = 'only = { column = "topic", equals = "/upper" }'
+case("mcap_json", content.getvalue(), form="mcap", file=only, line=only,
+     accel='columns = ["acc.0", "acc.1", "acc.2"]\nunit = "g"')
 
 (HERE / "truth.csv").write_text(
     rows("time_s,accel_x_g,accel_y_g,accel_z_g,temperature_c",

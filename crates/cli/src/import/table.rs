@@ -12,13 +12,14 @@ use crate::numbers::positive;
 use crate::outputs::refuse_overlap;
 use crate::{Answer, Failure};
 
-/// A table of a stable platform in another format: CSV of any dialect, plain or compressed, or Parquet.
+/// A table of a stable platform in another format: CSV of any dialect, plain or compressed, MATLAB, Parquet,
+/// MCAP.
 ///
 /// Columns, units, axes and the dialect are those of the map. With --average the file is read in pieces, so
 /// that it may be larger than memory.
 #[derive(Debug, Args)]
 pub(super) struct TableArguments {
-    /// The table: CSV, also compressed by gzip or Zstandard, or Parquet.
+    /// The table: CSV, also compressed by gzip or Zstandard; MATLAB; with their features Parquet and MCAP.
     log: PathBuf,
     /// Map of its columns (TOML); docs/formats.md has every key.
     #[arg(long, value_name = "MAP.toml")]

@@ -1,0 +1,162 @@
+//! Logs in files whose columns have types: MATLAB and, by features, MCAP.
+#![allow(clippy::unwrap_used)]
+
+use std::path::PathBuf;
+
+use gyrocal_instruments::{Description, InstrumentError, Log, average_file, read_any, read_record};
+use gyrocal_testkit::workspace;
+
+fn words(error: impl Into<InstrumentError>) -> String {
+    let error = error.into();
+    format!("{error}; {}", error.advice())
+}
+
+fn case(name: &str) -> PathBuf {
+    workspace().join("tests/data/dialects").join(name)
+}
+
+fn map(time: &str, accel: &str) -> Description {
+    let text = format!("[time]\n{time}\n[accel]\ncolumns = [{accel}]\nunit = \"g\"\n");
+    Description::parse(&text, "map.toml").unwrap()
+}
+
+/// A file of MATLAB with one matrix, its values column by column, most significant bytes first.
+fn big_endian(name: &str, [rows, columns]: [u32; 2], values: &[f64]) -> Vec<u8> {
+    let element = |kind: u32, content: Vec<u8>| {
+        let mut bytes = [kind, content.len() as u32].map(u32::to_be_bytes).concat();
+        bytes.extend(content);
+        bytes.resize(bytes.len().next_multiple_of(8), 0);
+        bytes
+    };
+    let words = |two: [u32; 2]| two.map(u32::to_be_bytes).concat();
+    let numbers = values.iter().flat_map(|value| value.to_be_bytes());
+    let parts = [
+        element(6, words([6, 0])),
+        element(5, words([rows, columns])),
+        element(1, name.as_bytes().to_vec()),
+        element(9, numbers.collect()),
+    ];
+    let mut file = vec![b' '; 124];
+    file.extend([1, 0, b'M', b'I']);
+    file.extend(element(14, parts.concat()));
+    file
+}
+
+#[test]
+fn a_log_of_six_sensors_is_read_from_a_matrix() {
+    let rows = 200;
+    let column = |column: usize| (0..rows).map(move |row| (row * 7 + column) as f64 / 64.0);
+    let values: Vec<f64> = (0..6)
+        .flat_map(column)
+        .chain((0..rows).map(|row| row as f64))
+        .collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mat");
+    std::fs::write(&path, big_endian("log", [rows as u32, 7], &values)).unwrap();
+    let text = "[time]\ncolumn = \"log(:,7)\"\n[gyro]\ncolumns = [\"log(:,1)\", \"log(:,2)\", \"log(:,3)\"]\n\
+                unit = \"rad/s\"\n[accel]\ncolumns = [\"log(:,4)\", \"log(:,5)\", \"log(:,6)\"]\nunit = \"g\"\n";
+    let log = Log::read(&path, &Description::parse(text, "log.toml").unwrap()).unwrap();
+    assert_eq!((log.len(), log.interval_s), (rows, 1.0));
+    for row in 0..rows {
+        let first = (row * 7) as f64;
+        assert_eq!(log.gyro[row], [0.0, 1.0, 2.0].map(|at| (first + at) / 64.0));
+        assert_eq!(
+            log.accel[row],
+            [3.0, 4.0, 5.0].map(|at| (first + at) / 64.0)
+        );
+    }
+}
+
+#[test]
+fn columns_that_a_file_of_matlab_lacks_are_told_with_those_that_it_has() {
+    let description = map(
+        "column = \"t\"",
+        r#""accel(:,1)", "accel(:,2)", "accel(:,4)""#,
+    );
+    let refused = words(read_record(&case("matlab.mat"), &description).unwrap_err());
+    for part in [
+        "matlab.mat",
+        "t, accel(:,1) to (:,3)",
+        "`accel(:,4)`",
+        "--columns MAP.toml",
+    ] {
+        assert!(refused.contains(part), "{refused} lacks {part}");
+    }
+    let refused = words(read_any(&case("matlab.mat"), None).unwrap_err());
+    assert!(refused.contains("a column `accel_x_g`"), "{refused}");
+    let description = map(
+        "column = \"log.t\"",
+        r#""log.a(1,:)", "log.a(2,:)", "other(:,3)""#,
+    );
+    let refused = words(read_record(&case("matlab_structure.mat"), &description).unwrap_err());
+    assert!(refused.contains("3 values in `other(:,3)`"), "{refused}");
+}
+
+#[test]
+fn a_file_of_matlab_that_is_cut_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let description = map(
+        "column = \"t\"",
+        r#""accel(:,1)", "accel(:,2)", "accel(:,3)""#,
+    );
+    for name in ["matlab.mat", "matlab_structure.mat"] {
+        let whole = std::fs::read(case(name)).unwrap();
+        for length in 128..whole.len() {
+            let path = folder.path().join("cut.mat");
+            std::fs::write(&path, &whole[..length]).unwrap();
+            assert!(read_record(&path, &description).is_err(), "{length} bytes");
+        }
+    }
+    let path = folder.path().join("later.mat");
+    std::fs::write(&path, "MATLAB 7.3 MAT-file, Platform: GLNXA64").unwrap();
+    let refused = words(read_record(&path, &description).unwrap_err());
+    assert!(refused.contains("'-v7'"), "{refused}");
+}
+
+#[test]
+fn means_of_a_file_of_matlab_are_those_of_its_rows() {
+    let description = map(
+        "column = \"t\"\nunit_s = 0.05",
+        r#""accel(:,1)", "accel(:,2)", "accel(:,3)""#,
+    );
+    let averaged = average_file(&case("matlab.mat"), &description, 6.0).unwrap();
+    // Rows every 3 s: two in each mean.
+    assert_eq!((averaged.rows, averaged.record.len()), (24, 12));
+}
+
+#[cfg(feature = "mcap")]
+#[test]
+fn columns_that_a_file_of_mcap_lacks_are_told_with_its_topics() {
+    let description = map("column = \"t\"", r#""acc.0", "acc.1", "acc.3""#);
+    let refused = words(read_record(&case("mcap_json.mcap"), &description).unwrap_err());
+    for part in ["topic /upper (", "acc.0", "`acc.3`"] {
+        assert!(refused.contains(part), "{refused} lacks {part}");
+    }
+    let description = map("column = \"header.stamp\"", r#""x", "y", "z""#);
+    let refused = words(read_record(&case("mcap_ros2.mcap"), &description).unwrap_err());
+    for part in ["topic /pressure (data)", "linear_acceleration.x", "`x`"] {
+        assert!(refused.contains(part), "{refused} lacks {part}");
+    }
+}
+
+#[cfg(feature = "mcap")]
+#[test]
+fn a_file_of_mcap_that_is_cut_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(case("mcap_ros1.map.toml")).unwrap();
+    let description = Description::parse(&text, "map.toml").unwrap();
+    let whole = std::fs::read(case("mcap_ros1.mcap")).unwrap();
+    for length in (8..whole.len()).step_by(13) {
+        let path = folder.path().join("cut.mcap");
+        std::fs::write(&path, &whole[..length]).unwrap();
+        assert!(read_record(&path, &description).is_err(), "{length} bytes");
+    }
+}
+
+#[cfg(not(feature = "mcap"))]
+#[test]
+fn a_file_of_mcap_is_refused_with_the_feature_to_build() {
+    let description = map("column = \"t\"", r#""acc.0", "acc.1", "acc.2""#);
+    let refused = words(read_record(&case("mcap_json.mcap"), &description).unwrap_err());
+    assert!(refused.contains("--features mcap"), "{refused}");
+}
