@@ -240,12 +240,21 @@ impl Messages<'_> {
 }
 
 impl Topic {
-    /// Its name and fields.
+    /// Its name and fields; of an array the first element stands for all.
     fn described(&self) -> String {
+        let place = |name: &str| name.rsplit('.').next()?.parse::<usize>().ok();
+        let later = |name: &&String| place(name).is_some_and(|at| at > 0);
+        let names = self.fields.iter().filter(|name| !later(name));
+        let names: Vec<String> = names
+            .map(|name| match place(name) {
+                Some(_) => format!("{name} and on"),
+                None => name.clone(),
+            })
+            .collect();
         let fields = match &self.encoding {
             Encoding::Other(encoding) => format!("{encoding}: only JSON and ROS are read"),
-            _ if self.fields.len() > LISTED => format!("{}, …", self.fields[..LISTED].join(", ")),
-            _ => self.fields.join(", "),
+            _ if names.len() > LISTED => format!("{}, …", names[..LISTED].join(", ")),
+            _ => names.join(", "),
         };
         format!("of topic {} ({fields})", self.name)
     }
