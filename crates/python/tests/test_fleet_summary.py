@@ -97,6 +97,10 @@ def test_reports_of_other_results(results, tmp_path, simulated, diagnosed):
     planned = gyrocal.plan(simulated.record, simulated.bench, diagnosis=diagnosed, hours=12)
     planned.report(page)
     assert "Next run" in page.read_text()
+    calibrated = gyrocal.calibrate(simulated.record, simulated.bench)
+    calibrated.report(page)
+    text = page.read_text()
+    assert "gyro_x.bias" in text and "<html" in text
     with pytest.raises(gyrocal.InputError, match="Simulation"):
         simulated.report(page)
     assert diagnosed.scores and pickle.loads(pickle.dumps(diagnosed)).scores == diagnosed.scores

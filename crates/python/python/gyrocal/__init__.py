@@ -25,6 +25,7 @@ from ._results import (
     PlantDiagnosis,
     Result,
     Simulation,
+    report,
 )
 
 __all__ = [
@@ -50,5 +51,6 @@ __all__ = [
     "characterise",
     "diagnose",
     "plan",
+    "report",
     "simulate",
 ]

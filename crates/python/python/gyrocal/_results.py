@@ -6,13 +6,14 @@ import html
 import json
 import os
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _gyrocal
+from ._errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,6 +30,7 @@ __all__ = [
     "PlantDiagnosis",
     "Result",
     "Simulation",
+    "report",
 ]
 
 #: Columns of a line of text.
@@ -132,9 +134,7 @@ class Result(Fields):
         Raises:
             InputError: There is no page of such a result.
         """
-        page = _gyrocal.report(type(self).__name__, self._text)
-        with open(path, "w", encoding="utf-8", newline="\n") as file:
-            file.write(page)
+        report([self], path)
 
     def _rows(self) -> list[dict[str, Any]]:
         raise NotImplementedError
@@ -151,6 +151,38 @@ class Result(Fields):
 
     def _repr_html_(self) -> str:
         return "\n".join(map(_block_html, self._shown()))
+
+
+def report(results: Result | Iterable[Result], path: str | os.PathLike[str]) -> None:
+    """Writes results as one HTML page, one file that needs no network.
+
+    Args:
+        results: A result, or several in the order of the page: of :func:`gyrocal.calibrate`,
+            :func:`gyrocal.diagnose`, :func:`gyrocal.plan` and :func:`gyrocal.fleet.summarise`.
+        path: The file to write.
+
+    Raises:
+        InputError: There is no page of such a result, or there is no result.
+    """
+    given = [results] if isinstance(results, Result) else list(results)
+    for one in given:
+        if not isinstance(one, Result):
+            raise InputError(
+                f"report: found a {type(one).__name__}, expected results",
+                found=type(one).__name__,
+                expected="results",
+                advice="give what calibrate, diagnose, plan or fleet.summarise returned",
+            )
+    if not given:
+        raise InputError(
+            "report: found no result, expected one or more",
+            found="no result",
+            expected="one or more",
+            advice="give what calibrate, diagnose, plan or fleet.summarise returned",
+        )
+    page = _gyrocal.report([(type(one).__name__, one.to_json()) for one in given])
+    with open(path, "w", encoding="utf-8", newline="\n") as file:
+        file.write(page)
 
 
 class Diagnosis(Result):
