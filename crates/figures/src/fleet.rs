@@ -1,6 +1,7 @@
 //! What a fleet shows, and the Python package: size of its wheel, import, first diagnosis without Rust,
 //! overhead over the command, fleets of records on workers.
 
+mod engine;
 mod levels;
 mod recurring;
 mod whole;
@@ -22,11 +23,14 @@ const BENCH: &str = "examples/data/hidden_fault.bench.toml";
 /// Exit code of the command with `--exit-code` if effects were found.
 const EFFECTS_FOUND: i32 = 3;
 
-/// Records of the fleet.
-const RECORDS: usize = 400;
-
 /// All figures.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+    if std::env::var_os("TRY").is_some() {
+        return recurring::figures(false);
+    }
+    if std::env::var_os("TRY_LEVELS").is_some() {
+        return levels::figures(false);
+    }
     let mut figures = levels::figures(small)?;
     figures.extend(recurring::figures(small)?);
     if !small {
@@ -52,7 +56,7 @@ fn of_package(small: bool) -> Result<Vec<Figure>, Error> {
     if !small {
         figures.push(spark(RECORDS_OF_SPARK)?);
         figures.push(overhead(15)?);
-        figures.extend(fleet(RECORDS)?);
+        figures.extend(engine::figures()?);
     }
     Ok(figures)
 }
@@ -192,139 +196,4 @@ fn overhead(rounds: usize) -> Result<Figure, Error> {
         ..Figure::within(name, [f64::NEG_INFINITY, 5.0], percent)
     }
     .over(rounds, ""))
-}
-
-/// A fleet of short records.
-#[derive(Deserialize)]
-struct Fleet {
-    records: usize,
-    rows_of_a_record: usize,
-    library_s: f64,
-    batches_s: f64,
-    two_workers_s: f64,
-    equal: bool,
-    runs: usize,
-    worker_mb: f64,
-    growth_mb: f64,
-    largest_sent_bytes: f64,
-    kills: usize,
-    lost: usize,
-    repeated: usize,
-    read_s: f64,
-    records_s: f64,
-    diagnosis_s: f64,
-    write_s: f64,
-    summary_s: f64,
-    summary_mb: f64,
-    bytes_in: f64,
-    bytes_out: f64,
-}
-
-fn fleet(records: usize) -> Result<Vec<Figure>, Error> {
-    let found: Fleet = measured(&["fleet", &records.to_string()])?;
-    let records = found.records;
-    let seeds = format!("0..{records}");
-    let rate = found.library_s / found.two_workers_s;
-    let overhead = 100.0 * (found.batches_s / found.library_s - 1.0);
-    let name = "two workers: records a second over the library in one process with one thread";
-    let batches = "batches of Arrow over the library, one process: overhead a record";
-    let equal = format!(
-        "1, 2, 4 workers, three partitionings, killed workers ({} runs): equal bits",
-        found.runs
-    );
-    let killed = format!(
-        "workers killed {} times: lost, and repeated after it",
-        found.kills
-    );
-    let lost = found.lost + found.repeated;
-    let mut figures = vec![
-        Figure::within(name, [1.6, f64::INFINITY], rate),
-        Figure::at_most(batches, 5.0, overhead, "%"),
-        Figure::truth(&equal, found.equal),
-        Figure {
-            target: "0 and 0".to_owned(),
-            measured: format!("{} and {}", found.lost, found.repeated),
-            ..Figure::within(&killed, [0.0, 0.0], lost as f64)
-        },
-        Figure::at_most("memory of a worker, most", 1000.0, found.worker_mb, "MB"),
-        Figure::at_most(
-            "memory of a process, second half of the records over the first",
-            10.0,
-            found.growth_mb,
-            "MB",
-        ),
-        Figure::at_most(
-            "result and scores of a record, most bytes",
-            200.0,
-            found.largest_sent_bytes / 1e3,
-            "kB",
-        ),
-    ];
-    figures.extend(scale(&found));
-    let over = figures
-        .into_iter()
-        .map(|figure| figure.over(records, seeds.clone()));
-    Ok(over.collect())
-}
-
-/// A million records.
-const MILLION: f64 = 1e6;
-
-/// An assumed price of an hour of a core, in any currency: results are proportional to it.
-const CORE_HOUR: f64 = 0.05;
-
-/// An assumed rate at which a shared store serves all workers together, bytes/s.
-const STORE_RATE: f64 = 1e9;
-
-/// Costs of a record, and what follows from them for a million.
-fn scale(found: &Fleet) -> Vec<Figure> {
-    let records = found.records as f64;
-    let each = |name: &str, seconds: f64| {
-        let milliseconds = 1e3 * seconds / records;
-        Figure::note(name, format!("{milliseconds:.2} ms a record"))
-    };
-    let total_s = found.read_s + found.records_s + found.diagnosis_s + found.write_s;
-    let (bytes_in, bytes_out) = (found.bytes_in / records, found.bytes_out / records);
-    let hours = total_s / records * MILLION / 3600.0;
-    // Workers that the store feeds: beyond them, more do not help.
-    let workers = STORE_RATE / ((bytes_in + bytes_out) / (total_s / records));
-    let rows = found.rows_of_a_record;
-    vec![
-        Figure::note("rows of a record", format!("{rows}")),
-        each("stage: read Parquet", found.read_s),
-        each("stage: columns to a record", found.records_s),
-        each(
-            "stage: diagnosis, with its result as JSON",
-            found.diagnosis_s,
-        ),
-        each("stage: write Parquet", found.write_s),
-        each("stage: summary of the fleet, one process", found.summary_s),
-        Figure::note(
-            "summary of the fleet: memory",
-            format!("{:.2} MB a record", found.summary_mb / records),
-        ),
-        Figure::note(
-            "bytes of a record in and out",
-            format!("{:.1} kB and {:.1} kB", bytes_in / 1e3, bytes_out / 1e3),
-        ),
-        Figure::note(
-            &format!("a million such records: core-hours, price at {CORE_HOUR} an hour of a core"),
-            format!("{hours:.1} h, {:.2}", CORE_HOUR * hours),
-        ),
-        Figure::note(
-            "a million such records: bytes in and out",
-            format!(
-                "{:.1} GB and {:.1} GB",
-                bytes_in * MILLION / 1e9,
-                bytes_out * MILLION / 1e9
-            ),
-        ),
-        Figure::note(
-            &format!(
-                "workers that a store of {} GB/s feeds: beyond, no linear scaling",
-                STORE_RATE / 1e9
-            ),
-            format!("{workers:.0}"),
-        ),
-    ]
 }

@@ -96,13 +96,14 @@ def test_a_row_is_the_result_of_its_record(records, expected):
 
 
 def test_wrong_records_are_rows_and_the_others_go_on(records, expected):
-    rows = records.slice(0, 6).to_pylist()
+    rows = records.slice(0, 7).to_pylist()
     for column in ("accel_x_g", "accel_y_g", "accel_z_g"):
         rows[0][column] = [9.81 * value for value in rows[0][column]]
     rows[1]["bench"] = rows[1]["bench"].replace("39.1", "91.0")
     rows[2]["time_s"] = None
     rows[3]["accel_y_g"] = rows[3]["accel_y_g"][:-1]
     rows[4]["accel_z_g"][5] = float("inf")
+    rows[5] |= {"time_s": [float("nan"), *rows[5]["time_s"][1:]]}
     found = diagnosed([pa.RecordBatch.from_pylist(rows, fleet.INPUT)]).to_pylist()
     found = {row["record"]: row for row in found}
     # A gross error of the set-up is an answer.
@@ -112,11 +113,12 @@ def test_wrong_records_are_rows_and_the_others_go_on(records, expected):
         ("run-2", ["unit-2/run-2", "time_s"]),
         ("run-3", ["unit-3/run-3", "lengths"]),
         ("run-4", ["accel_z_g", "row 5", "inf"]),
+        ("run-5", ["time_s", "row 0", "NaN"]),
     ]:
         assert found[name]["status"] == "failed"
         assert all(word in found[name]["error"] for word in words), found[name]["error"]
         assert found[name]["advice"] or name == "run-1"
-    assert found["run-5"] == next(row for row in expected.to_pylist() if row["record"] == "run-5")
+    assert found["run-6"] == next(row for row in expected.to_pylist() if row["record"] == "run-6")
     with pytest.raises(gyrocal.InputError, match="bench"):
         list(fleet.diagnose_batches([records.drop_columns(["bench"])]))
     other = records.set_column(3, "time_s", pa.array(["a"] * RECORDS))
@@ -151,6 +153,46 @@ def test_partitions_are_done_once(tmp_path, records, expected):
     assert fleet.diagnose_partitions(source, out, false_alarm=0.02)["computed_partitions"] == 4
     with pytest.raises(gyrocal.InputError, match="no partition"):
         fleet.diagnose_partitions(tmp_path, out)
+
+
+class GivingUp:
+    """A cluster whose workers die of one partition, as often as it is tried."""
+
+    def __init__(self, poison):
+        self.poison = poison
+
+    def map(self, function, paths, *, pure, retries, **settings):
+        return [self.Task(function, path, settings, self.poison) for path in paths]
+
+    def gather(self, tasks, errors):
+        assert errors == "skip"
+
+    class Task:
+        def __init__(self, function, path, settings, poison):
+            self.status = "error" if path.name == poison else "finished"
+            if self.status == "finished":
+                function(path, **settings)
+
+        def exception(self):
+            return RuntimeError("the worker died")
+
+
+def test_a_partition_that_kills_its_workers_is_named_and_the_others_go_on(tmp_path, records):
+    source, out = tmp_path / "in", tmp_path / "out"
+    write_partitions(source, records.slice(0, 6), 3)
+    manifest = fleet.diagnose_partitions(source, out, client=GivingUp("part-01.parquet"))
+    assert manifest["done"] == 4
+    (lost,) = manifest["unreadable"]
+    assert lost["partition"] == "part-01.parquet" and "the worker died" in lost["error"]
+    # A later call tries it again, and nothing else.
+    manifest = fleet.diagnose_partitions(source, out)
+    assert (manifest["done"], manifest["unreadable"], manifest["computed_partitions"]) == (6, [], 1)
+
+
+def test_columns_of_other_names_are_refused_in_words(records):
+    columns = ["accel_x_mg" if name == "accel_x_g" else name for name in records.schema.names]
+    with pytest.raises(gyrocal.InputError, match="accel_x_mg.*accel_x_g"):
+        list(fleet.diagnose_batches([records.rename_columns(columns)]))
 
 
 def test_killed_workers_lose_and_repeat_nothing(tmp_path, records, expected):

@@ -90,6 +90,21 @@ def test_wrong_records_are_named(results):
         fleet.summarise(results, false_discovery_rate=1.5)
 
 
+def test_a_unit_with_one_record_has_a_level_and_no_change(results):
+    rows = [row for row in results.to_pylist() if (row["unit"], row["record"]) != ("unit-0", "run-1")]
+    found = fleet.summarise([pa.RecordBatch.from_pylist(rows, fleet.OUTPUT)])
+    assert (found.units, found.records, found.problems) == (UNITS, 2 * UNITS - 1, [])
+    bias = next(one for one in found.coefficients if one.name == "gyro_x.bias")
+    own = next(level for level in bias.levels if level.unit == "unit-0")
+    assert own.slope is None and abs(own.estimate - 0.4) < 0.01
+    # A fleet of one unit with one record has no mean and no spread, and says so with null.
+    found = fleet.summarise([pa.RecordBatch.from_pylist(rows[:1], fleet.OUTPUT)])
+    assert (found.units, found.records) == (1, 1)
+    assert all(one.mean is None and one.spread is None for one in found.coefficients)
+    assert found.recurring == [] and found.groups == []
+    assert "1 unit" in str(found)
+
+
 def test_reports_of_other_results(results, tmp_path, simulated, diagnosed):
     page = tmp_path / "diagnosis.html"
     diagnosed.report(page)
@@ -101,6 +116,13 @@ def test_reports_of_other_results(results, tmp_path, simulated, diagnosed):
     calibrated.report(page)
     text = page.read_text()
     assert "gyro_x.bias" in text and "<html" in text
+    together = fleet.summarise(results)
+    gyrocal.report([calibrated, diagnosed, planned, together], page)
+    text = page.read_text()
+    assert all(word in text for word in ("gyro_x.bias", "gyro_y.g_z", "Next run"))
+    for wrong in ([], [1], simulated.record):
+        with pytest.raises((gyrocal.InputError, TypeError)):
+            gyrocal.report(wrong, page)
     with pytest.raises(gyrocal.InputError, match="Simulation"):
         simulated.report(page)
     assert diagnosed.scores and pickle.loads(pickle.dumps(diagnosed)).scores == diagnosed.scores

@@ -138,7 +138,8 @@ impl Pooled {
         })
     }
 
-    fn ln_evidence(&self) -> f64 {
+    /// Logarithm of the evidence of one size in all units.
+    pub(crate) fn ln_evidence(&self) -> f64 {
         let square = self.whitened.norm_squared();
         let all = COMMON.map(|d| ln(in_random_direction(self.whitened.len(), square, d)));
         ln_mean_exp(&all)

@@ -1,18 +1,16 @@
 //! Causes that recur in many units below each one's threshold.
 //!
 //! Every effect has the evidence E that it is in some share of the units (`mixture`) and the p-value of that
-//! evidence. Signatures overlap, so that one cause raises the evidence of its twins. The effect with the largest
-//! evidence is named; what has no evidence of its own with it in the model of each unit is an alternative
-//! to it, and what has is named in turn.
+//! evidence (`null`). The effect with the largest evidence of those with p ≤ q/m, of m effects, is named first: a
+//! fleet without a cause names one with at most the probability q, whatever depends on whatever.
 //!
-//! The k-th name of m effects needs p ≤ k q/m, the critical values of Benjamini and Hochberg (J. R. Statist.
-//! Soc. B 57, 289, 1995) taken step by step: twins, which are no names, do not raise them. That keeps the
-//! false discovery rate below q where statistics are independent or depend positively on one another, which the
-//! scores of overlapping signatures do to a good approximation; `cargo figures fleet` measures it with
-//! signatures of real records. That E itself passes, E ≥ m/(k q), which holds whatever the dependence (Wang,
-//! Ramdas, J. R. Statist. Soc. B 84, 822, 2022), is told with each discovery: it costs power, as
-//! P(E ≥ 1/α) is below α.
+//! Signatures overlap, so that one cause raises the evidence of others too. Further names need evidence beside
+//! those that are named (`beside`), E ≥ m/(k q) of the k-th: the critical values of Benjamini and Hochberg (J. R.
+//! Statist. Soc. B 57, 289, 1995) for such ratios, which hold under any dependence (Wang, Ramdas, J. R. Statist.
+//! Soc. B 84, 822, 2022). A name that the later ones leave without evidence is taken back. Alternatives of a name
+//! are effects with evidence of their own, with which in its place it has none left.
 
+mod beside;
 mod given;
 mod mixture;
 mod naming;
@@ -63,9 +61,9 @@ impl Default for RecurrenceOptions {
 pub struct Discovery {
     /// Public id of the effect.
     pub effect: String,
-    /// Logarithm of its evidence E.
+    /// Logarithm of its evidence E, beside the others that are named.
     pub ln_e: f64,
-    /// P-value of the evidence.
+    /// P-value of the evidence; where others are named, the bound 1/E.
     pub p_value: f64,
     /// Whether it is a discovery by E alone, whatever depends on whatever.
     pub by_e_value: bool,
@@ -93,13 +91,12 @@ pub fn recurring(units: &[UnitRecords<'_>], options: &RecurrenceOptions) -> Vec<
         .map(|id| Tested::of(units, id, options))
         .collect();
     tested.sort_by(|a, b| b.evidence.ln_e.total_cmp(&a.evidence.ln_e));
-    let mut naming = Naming {
-        first_limit: options.false_discovery_rate / tested.len() as f64,
+    let naming = Naming {
+        units,
+        tested: &tested,
         options,
-        found: Vec::new(),
     };
-    naming.name(units, tested);
-    naming.found
+    naming.discoveries()
 }
 
 /// Ids of all effects that some record shows, in the order of the first record that shows each.

@@ -2,9 +2,10 @@
 
 use gyrocal_hypothesis::ScoreTable;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_statistics::math::exp;
+use gyrocal_statistics::math::{exp, ln};
 
-use super::mixture::{Evidence, Pooled};
+use super::beside::Named;
+use super::mixture::{Evidence, Pooled, ln_mean_exp};
 use super::null::p_value;
 use super::scores::{UnitScores, of_unit};
 use super::{Discovery, RecurrenceOptions, UnitRecords, given};
@@ -51,72 +52,123 @@ pub(super) fn scores(units: &[UnitRecords<'_>], id: &str) -> Vec<UnitScores> {
 
 /// Naming of effects, the one with the most evidence first.
 pub(super) struct Naming<'o> {
-    /// Largest p-value of the first discovery.
-    pub(super) first_limit: f64,
+    pub(super) units: &'o [UnitRecords<'o>],
+    /// All effects, in falling order of their evidence.
+    pub(super) tested: &'o [Tested],
     pub(super) options: &'o RecurrenceOptions,
-    pub(super) found: Vec<Discovery>,
 }
 
 impl Naming<'_> {
-    /// Largest p-value of the next discovery.
-    fn limit(&self) -> f64 {
-        self.first_limit * (self.found.len() as f64 + 1.0)
+    /// Largest p-value of the `count`-th name.
+    fn limit(&self, count: usize) -> f64 {
+        self.options.false_discovery_rate * count as f64 / self.tested.len() as f64
     }
 
-    /// Names the first of `tested`, which are in falling order of their evidence, and goes on with those that
-    /// have evidence of their own with it in the model.
-    pub(super) fn name(&mut self, units: &[UnitRecords<'_>], tested: Vec<Tested>) {
-        let limit = self.limit();
-        let Some(best) = tested.iter().find(|one| one.p_value <= limit) else {
-            return;
+    /// The effects that recur.
+    pub(super) fn discoveries(&self) -> Vec<Discovery> {
+        let first = self.limit(1);
+        let Some(best) = self.tested.iter().find(|one| one.p_value <= first) else {
+            return Vec::new();
         };
-        let mut discovery = self.describe(units, best);
-        // What may be named next.
-        let next = limit + self.first_limit;
-        let open: Vec<&str> = tested
+        let mut named = vec![best];
+        while let Some(next) = self.next(&named) {
+            named.push(next);
+        }
+        let own = self.needed(&named);
+        own.iter().map(|one| self.describe(one, &own)).collect()
+    }
+
+    /// The effect with the most evidence beside those that are named, if it is enough.
+    fn next<'t>(&'t self, named: &[&Tested]) -> Option<&'t Tested> {
+        let limit = self.limit(named.len() + 1);
+        let open = self
+            .tested
             .iter()
-            .filter(|one| one.p_value <= next && one.id != best.id)
-            .map(|one| one.id.as_str())
-            .collect();
-        let left: Vec<Vec<ScoreTable>> = units
+            .filter(|one| one.p_value <= limit && named.iter().all(|other| other.id != one.id));
+        let most = open
+            .map(|one| (one, self.beside(one, named)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (most.1 >= -ln(limit)).then_some(most.0)
+    }
+
+    /// The named effects without those that are not needed beside the others.
+    fn needed<'t>(&self, named: &[&'t Tested]) -> Vec<&'t Tested> {
+        let mut left = named.to_vec();
+        for one in named {
+            let others: Vec<&Tested> = left.iter().copied().filter(|o| o.id != one.id).collect();
+            if !others.is_empty() && self.beside(one, &others) < ALTERNATIVE {
+                left = others;
+            }
+        }
+        left
+    }
+
+    /// Effects that leave no evidence for a named one, and have some themselves.
+    fn alternatives(&self, named: &Tested, all: &[&Tested]) -> Vec<String> {
+        let next = self.limit(all.len() + 1);
+        let is_other = |one: &&Tested| all.iter().all(|other| other.id != one.id);
+        let has_some = |one: &&Tested| {
+            one.p_value <= next || named.evidence.ln_e - one.evidence.ln_e < ALTERNATIVE
+        };
+        let others = self.tested.iter().filter(is_other).filter(has_some);
+        let explains = |one: &&Tested| self.beside(named, &[one]) < ALTERNATIVE;
+        others.filter(explains).map(|one| one.id.clone()).collect()
+    }
+
+    /// Logarithm of the evidence of an effect beside others.
+    fn beside(&self, one: &Tested, others: &[&Tested]) -> f64 {
+        let evidences = others.iter().map(|other| &other.evidence);
+        let random = Named::of(self.units.len(), evidences).ln_evidence(&one.evidence);
+        if one.evidence.ln_common.is_none() {
+            return random;
+        }
+        let common = self.pooled_beside(one, others);
+        let common = common.map_or(f64::NEG_INFINITY, |pooled| pooled.ln_evidence());
+        ln_mean_exp(&[random, common])
+    }
+
+    /// Scores of all units added, with the others in the model of each unit.
+    fn pooled_beside(&self, one: &Tested, others: &[&Tested]) -> Option<Pooled> {
+        if others.is_empty() {
+            return Pooled::of(&scores(self.units, &one.id));
+        }
+        let mut ids: Vec<&str> = others.iter().map(|other| other.id.as_str()).collect();
+        ids.push(&one.id);
+        let scores: Vec<UnitScores> = self
+            .units
             .iter()
             .map(|unit| {
-                let tables = unit.tables.iter();
-                tables
-                    .map(|table| given::given(table, &best.id, &open))
-                    .collect()
+                let tables = unit.tables.iter().map(|table| {
+                    let first = given::given(table, ids[0], &ids[1..]);
+                    (1..others.len()).fold(first, |left, place| {
+                        given::given(&left, ids[place], &ids[place + 1..])
+                    })
+                });
+                let tables: Vec<ScoreTable> = tables.collect();
+                of_unit(&one.id, tables.iter())
             })
             .collect();
-        let beside: Vec<UnitRecords<'_>> = units
-            .iter()
-            .zip(&left)
-            .map(|(unit, tables)| UnitRecords {
-                unit: unit.unit,
-                tables: tables.iter().collect(),
-            })
-            .collect();
-        let mut again: Vec<Tested> = open
-            .iter()
-            .map(|id| Tested::of(&beside, id, self.options))
-            .filter(|one| one.p_value <= next)
-            .collect();
-        let has_own = |id: &str| again.iter().any(|own| own.id == id);
-        let near = |one: &&Tested| best.evidence.ln_e - one.evidence.ln_e < ALTERNATIVE;
-        discovery.alternatives = tested
-            .iter()
-            .filter(|one| one.id != best.id && !has_own(&one.id))
-            .filter(|one| one.p_value <= next || near(one))
-            .map(|one| one.id.clone())
-            .collect();
-        self.found.push(discovery);
-        again.sort_by(|a, b| b.evidence.ln_e.total_cmp(&a.evidence.ln_e));
-        self.name(&beside, again);
+        Pooled::of(&scores)
     }
 
-    fn describe(&self, units: &[UnitRecords<'_>], tested: &Tested) -> Discovery {
-        let evidence = &tested.evidence;
+    fn describe(&self, tested: &Tested, all: &[&Tested]) -> Discovery {
+        let (units, evidence) = (self.units, &tested.evidence);
+        let others: Vec<&Tested> = all
+            .iter()
+            .copied()
+            .filter(|other| other.id != tested.id)
+            .collect();
+        let (ln_e, p_value) = match others.is_empty() {
+            true => (evidence.ln_e, tested.p_value),
+            false => {
+                let ln_e = self.beside(tested, &others);
+                // P(E ≥ 1/α) ≤ α.
+                (ln_e, exp(-ln_e).clamp(tested.p_value, 1.0))
+            }
+        };
         let (share, strength) = evidence.share_and_strength();
-        let pooled = Pooled::of(&scores(units, &tested.id)).filter(|pooled| pooled.size.len() == 1);
+        let pooled = self.pooled_beside(tested, &others);
+        let pooled = pooled.filter(|pooled| pooled.size.len() == 1);
         let mut likely: Vec<(String, f64)> = units
             .iter()
             .enumerate()
@@ -129,16 +181,16 @@ impl Naming<'_> {
         let unit = effects.find(|effect| effect.id == tested.id);
         Discovery {
             effect: tested.id.clone(),
-            ln_e: evidence.ln_e,
-            p_value: tested.p_value,
-            by_e_value: exp(-evidence.ln_e) <= self.limit(),
+            ln_e,
+            p_value,
+            by_e_value: exp(-ln_e) <= self.limit(all.len()),
             share,
             strength,
             is_common: evidence.is_common(),
             size: pooled.map(|pooled| (pooled.size[0], pooled.covariance[(0, 0)].sqrt())),
             unit: unit.map_or_else(String::new, |effect| effect.unit.clone()),
             units: likely,
-            alternatives: Vec::new(),
+            alternatives: self.alternatives(tested, all),
         }
     }
 }

@@ -168,7 +168,10 @@ def diagnose_partitions(
         tasks = client.map(
             _diagnose_partition, left, out=out, false_alarm=false_alarm, pure=False, retries=100
         )
-        client.gather(tasks)
+        client.gather(tasks, errors="skip")
+        for path, task in zip(left, tasks):
+            if task.status == "error":
+                _note_failure(path, out, false_alarm, task.exception())
     # What workers that died had begun.
     for unfinished in out.glob(".*.tmp"):
         unfinished.unlink(missing_ok=True)
@@ -186,7 +189,7 @@ def summarise(
     results: str | os.PathLike[str] | pa.Table | Iterable[pa.RecordBatch],
     *,
     false_discovery_rate: float = 0.05,
-    group_probability: float = 0.02,
+    group_probability: float = 0.015,
     outlier_probability: float = 0.01,
     seed: int = 0,
 ) -> Fleet:
@@ -355,6 +358,14 @@ def _diagnose_partition(path: Path, out: Path, false_alarm: float) -> None:
         note |= {"status": "unreadable", "error": str(error)}
     finally:
         temporary.unlink(missing_ok=True)
+    _write_whole(_note(path, out), json.dumps(note).encode())
+
+
+def _note_failure(path: Path, out: Path, false_alarm: float, error: BaseException) -> None:
+    """Notes that the engine gave a partition up, as one does whose workers die again and again."""
+    if _is_done(path, out, false_alarm):
+        return
+    note = {"partition": path.name, "status": "unreadable", "error": f"{type(error).__name__}: {error}"}
     _write_whole(_note(path, out), json.dumps(note).encode())
 
 

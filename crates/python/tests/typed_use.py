@@ -1,0 +1,53 @@
+"""What a user writes, as a type checker reads it; `test_typed.py` checks it. Nothing here runs."""
+
+from pathlib import Path
+from typing import assert_type
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+from numpy.typing import NDArray
+
+import gyrocal
+from gyrocal import fleet
+
+simulated = gyrocal.simulate("scenario.toml", seed=3)
+assert_type(simulated, gyrocal.Simulation)
+assert_type(simulated.record, gyrocal.Record)
+assert_type(simulated.record.accel_g, NDArray[np.float64])
+assert_type(simulated.record.temperature_c, NDArray[np.float64] | None)
+bench = gyrocal.Bench({"site": {"latitude_deg": 39.1}})
+assert_type(bench.latitude_deg, float)
+
+calibrated = gyrocal.calibrate(simulated.record, bench)
+assert_type(calibrated, gyrocal.Calibration)
+assert_type(calibrated.covariance, NDArray[np.float64])
+assert_type(calibrated.to_dataframe(), pd.DataFrame)
+
+diagnosed = gyrocal.diagnose(pd.DataFrame(), Path("bench.toml"), false_alarm=0.01)
+assert_type(diagnosed, gyrocal.Diagnosis)
+assert_type(diagnosed.verdict, str)
+assert_type(diagnosed.scores, bytes | None)
+planned = gyrocal.plan(simulated.record, bench, diagnosis=diagnosed, hours=24)
+assert_type(planned, gyrocal.Plan)
+gyrocal.report([calibrated, diagnosed, planned], "page.html")
+gyrocal.report(diagnosed, Path("page.html"))
+
+plant = gyrocal.Plant("plant.json")
+assert_type(plant.inputs, list[str])
+assert_type(plant.diagnose("record.csv", "columns.toml"), gyrocal.PlantDiagnosis)
+
+for batch in fleet.diagnose_batches([pa.RecordBatch.from_pylist([], fleet.INPUT)]):
+    assert_type(fleet.summarise([batch]), gyrocal.Fleet)
+
+try:
+    gyrocal.characterise("clean", runs=2)
+except gyrocal.SetupError as error:
+    assert_type(error.line, int | None)
+    assert_type(error.advice, str | None)
+
+# What is wrong is told: each of these comments is needed, or the checker says so.
+gyrocal.diagnose(simulated.record)  # type: ignore[call-arg]
+gyrocal.diagnose(simulated.record, bench, false_alarm="0.01")  # type: ignore[arg-type]
+gyrocal.simulate(3)  # type: ignore[arg-type]
+gyrocal.report(3, "page.html")  # type: ignore[arg-type]
