@@ -15,6 +15,7 @@ use serde::Deserialize;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::kernel::instructions::{output, root};
+use crate::truth::Extent;
 
 const PACKAGE: &str = "crates/python";
 const RECORD: &str = "examples/data/hidden_fault.csv";
@@ -23,20 +24,16 @@ const BENCH: &str = "examples/data/hidden_fault.bench.toml";
 /// Exit code of the command with `--exit-code` if effects were found.
 const EFFECTS_FOUND: i32 = 3;
 
-/// All figures.
-pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    if std::env::var_os("TRY").is_some() {
-        return recurring::figures(false);
+/// All figures; with a number of records the statistics alone, over as many fleets of each kind at most.
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let mut figures = levels::figures(extent)?;
+    figures.extend(recurring::figures(extent)?);
+    if !extent.small {
+        figures.extend(whole::figures(extent)?);
     }
-    if std::env::var_os("TRY_LEVELS").is_some() {
-        return levels::figures(false);
+    if extent.most.is_none() {
+        figures.extend(of_package(extent.small)?);
     }
-    let mut figures = levels::figures(small)?;
-    figures.extend(recurring::figures(small)?);
-    if !small {
-        figures.extend(whole::figures()?);
-    }
-    figures.extend(of_package(small)?);
     Ok(figures)
 }
 

@@ -54,7 +54,7 @@ struct Arguments {
     /// Only these parts of the topic (truth).
     #[arg(long = "part", value_name = "PART")]
     parts: Vec<truth::Part>,
-    /// Most records of each population (truth, logs, any-plant, plant-peers, watch, uncertainty): a part of the full version, which goes on from there.
+    /// Most records of each population (truth, logs, any-plant, plant-peers, watch, uncertainty; fleet: without the Python package): a part of the full version, which goes on from there.
     #[arg(long, value_name = "COUNT")]
     records: Option<u64>,
     /// Also write the table into this file, with the command that printed it.
@@ -172,7 +172,7 @@ fn main() -> ExitCode {
         Topic::Watch => watch::figures(extent),
         Topic::Uncertainty => uncertainty::figures(extent),
         Topic::Paper => paper::figures(arguments.write),
-        Topic::Fleet => fleet::figures(arguments.small),
+        Topic::Fleet => fleet::figures(extent),
     };
     match figures {
         Ok(mut figures) => {

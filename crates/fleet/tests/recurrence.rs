@@ -123,6 +123,44 @@ fn a_twin_is_told_as_an_alternative() {
 }
 
 #[test]
+fn two_causes_are_both_named_and_nothing_that_looks_like_one_of_them() {
+    let simulator = simulator();
+    for seed in 0..3 {
+        let mut draw = Draw::new(seed, 7);
+        let tables: Vec<ScoreTable> = (0..UNITS)
+            .map(|unit| {
+                let own = match unit % 5 {
+                    0 => Some(("constant", 4.0)),
+                    1 => Some(("step", 4.0)),
+                    _ => None,
+                };
+                simulator.draw(own, &mut draw).unwrap()
+            })
+            .collect();
+        let found = found(&tables);
+        assert_eq!(found.len(), 2, "{found:?}");
+        for cause in ["constant", "step"] {
+            let is_it = |one: &&Discovery| {
+                one.effect == cause || one.alternatives.iter().any(|o| o == cause)
+            };
+            assert_eq!(found.iter().filter(is_it).count(), 1, "{cause} {found:?}");
+        }
+        // Each beside the other, by evidence that holds whatever depends on whatever.
+        assert!(found.iter().all(|one| one.by_e_value), "{found:?}");
+    }
+}
+
+#[test]
+fn a_cause_with_unknown_onsets_leaves_no_second_name() {
+    // Its best onset is not the true one in every unit: what is left must not be named.
+    for seed in 200..210 {
+        let found = found(&fleet(Some(("step", 3.0, 4)), seed));
+        assert_eq!(found.len(), 1, "{seed} {found:?}");
+        assert_eq!(found[0].effect, "step");
+    }
+}
+
+#[test]
 fn one_small_size_in_all_units_is_told_as_one() {
     // A size of half a sigma of each unit, with the same sign: 5.5 sigmas of the fleet.
     let mut tables = fleet(None, 3);

@@ -8,9 +8,12 @@ use gyrocal_fleet::{
 use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::figure::{Figure, coverage};
+use crate::resumable;
+use crate::truth::Extent;
 
 /// Band of the coverage of 95 % intervals.
 const BAND: [f64; 2] = [0.93, 0.97];
@@ -36,16 +39,19 @@ const BATCHES: u64 = 12;
 const SITES: u64 = 4;
 const ODD_BATCH: u64 = 30;
 
+/// Such fleets, with a batch that differs and without.
+const GROUPED: u64 = 3000;
+
 /// Coefficients of such a fleet.
 const COEFFICIENTS: usize = 9;
 
 /// First seed; constants were chosen on seeds below it.
 const FIRST_SEED: u64 = 30_000;
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let mut figures = coverages(if small { 150 } else { 2000 })?;
-    figures.push(course(if small { 60 } else { 600 })?);
-    figures.extend(groups(if small { 12 } else { 3000 })?);
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let mut figures = coverages(extent.records(2000, 150))?;
+    figures.push(course(extent.records(600, 60))?);
+    figures.extend(groups(extent)?);
     Ok(figures)
 }
 
@@ -166,6 +172,7 @@ fn course(fleets: u64) -> Result<Figure, Error> {
 }
 
 /// What became of a fleet with batches and sites.
+#[derive(Clone, Copy, Serialize, Deserialize)]
 struct Grouped {
     found: bool,
     /// Whether a batch or site is told that does not hold the units that differ.
@@ -174,7 +181,7 @@ struct Grouped {
 }
 
 /// Where a batch differs, and where it went.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Odd {
     Nothing,
     Batch,
@@ -233,16 +240,18 @@ fn grouped(odd: Odd, seed: u64) -> Result<Grouped, Error> {
     })
 }
 
-fn groups(fleets: u64) -> Result<Vec<Figure>, Error> {
+fn groups(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let fleets = extent.records(GROUPED, 12);
     let seeds = FIRST_SEED..FIRST_SEED + fleets;
-    let run = |odd: Odd, fleets: u64| -> Result<Vec<Grouped>, Error> {
-        (FIRST_SEED..FIRST_SEED + fleets.max(3))
-            .into_par_iter()
-            .map(|seed| grouped(odd, seed))
-            .collect()
+    let run = |odd: Odd, last: u64| -> Result<Vec<Grouped>, Error> {
+        let cell = format!("groups {odd:?}");
+        let campaign = resumable::campaign("fleet", &cell, seeds.start..last, extent.small)?;
+        let outcome = campaign.run(|seed| grouped(odd, seed), |_| ())?;
+        Ok(outcome.successes().map(|(_, one)| *one).collect())
     };
-    let (none, batch) = (run(Odd::Nothing, fleets)?, run(Odd::Batch, fleets)?);
-    let together = run(Odd::BatchWithItsSite, fleets / 10)?;
+    let none = run(Odd::Nothing, seeds.end)?;
+    let batch = run(Odd::Batch, seeds.end)?;
+    let together = run(Odd::BatchWithItsSite, seeds.start + fleets / 10 + 2)?;
     let told = format!("{}..{}", seeds.start, seeds.end);
     let found = Proportion::of(batch.iter().map(|one| one.found));
     let wrong = Proportion::of(none.iter().chain(&batch).map(|one| one.is_false));

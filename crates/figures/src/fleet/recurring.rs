@@ -5,6 +5,8 @@
 //! and tests the likelihood ratio of the one cause at the level q/m that the search demands of a single
 //! discovery among m effects.
 
+use core::ops::Range;
+
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_fleet::recurrence::{
     Injected, RecurrenceOptions, ScoreSimulator, UnitRecords, oracle_finds, recurring,
@@ -14,9 +16,12 @@ use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Judgement, Proportion};
 use gyrocal_truth::{Population, Scenario, simulate};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::resumable;
+use crate::truth::Extent;
 
 const UNITS: usize = 200;
 const STRENGTHS: [f64; 3] = [1.0, 2.0, 3.0];
@@ -66,7 +71,7 @@ fn effects(simulators: &[ScoreSimulator]) -> Vec<String> {
 }
 
 /// What became of a fleet.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 struct Outcome {
     found: bool,
     oracle: bool,
@@ -132,22 +137,29 @@ fn fleet(
     })
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let simulators = simulators(if small { 2 } else { 16 })?;
+/// Fleets of each share and strength, and fleets without a cause.
+const FLEETS: u64 = 60;
+const CLEAN: u64 = 200;
+
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let simulators = simulators(if extent.small { 2 } else { 16 })?;
     let effects = effects(&simulators);
-    let (fleets, clean) = if small { (1, 3) } else { (60, 200) };
+    let run = |cell: &str, share: Option<f64>, seeds: Range<u64>| -> Result<Vec<Outcome>, Error> {
+        let campaign = resumable::campaign("fleet", cell, seeds, extent.small)?;
+        let job = |seed: u64| {
+            let strength = STRENGTHS[(seed % STRENGTHS.len() as u64) as usize];
+            let cause = share.map(|share| (strength, share));
+            fleet(&simulators, &effects, cause, seed)
+        };
+        let outcome = campaign.run(job, |_| ())?;
+        Ok(outcome.successes().map(|(_, one)| *one).collect())
+    };
     let mut figures = Vec::new();
     let mut all = Vec::new();
     for (row, share) in SHARES.into_iter().enumerate() {
         let first = FIRST_SEED + 1000 * row as u64;
-        let last = first + STRENGTHS.len() as u64 * fleets;
-        let own: Vec<Outcome> = (first..last)
-            .into_par_iter()
-            .map(|seed| {
-                let strength = STRENGTHS[(seed % STRENGTHS.len() as u64) as usize];
-                fleet(&simulators, &effects, Some((strength, share)), seed)
-            })
-            .collect::<Result<_, Error>>()?;
+        let last = first + STRENGTHS.len() as u64 * extent.records(FLEETS, 1);
+        let own = run(&format!("share {share}"), Some(share), first..last)?;
         figures.push(power(
             &format!(
                 "200 units, a cause of 1, 2 or 3 sigmas in {:.0} % of them",
@@ -165,11 +177,9 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         "those".to_owned(),
     ));
     let first = FIRST_SEED + 5000;
-    let none: Vec<Outcome> = (first..first + clean)
-        .into_par_iter()
-        .map(|seed| fleet(&simulators, &effects, None, seed))
-        .collect::<Result<_, Error>>()?;
-    let seeds = format!("{first}..{}", first + clean);
+    let last = first + extent.records(CLEAN, 3);
+    let none = run("without a cause", None, first..last)?;
+    let seeds = format!("{first}..{last}");
     figures.push(Figure::note_share(
         "fleets without a cause that name one; their rate is set to 5 %",
         Proportion::of(none.iter().map(|one| one.discoveries > 0)),

@@ -7,11 +7,13 @@ use gyrocal_fleet::{FleetOptions, FleetRecord, RecordName, summarise, to_bytes};
 use gyrocal_record::SourceText;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Scenario, simulate};
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::recurring::scenario;
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::resumable;
+use crate::truth::Extent;
 
 const UNITS: u64 = 200;
 
@@ -25,10 +27,11 @@ const CAUSE: &str = "gyro_y.g_z";
 /// First record; those of the scores that other fleets are drawn from are below.
 const FIRST: u64 = 1000;
 
-/// A diagnosed record and what was sent.
+/// What a diagnosed record sends.
+#[derive(Clone, Serialize, Deserialize)]
 struct Sent {
-    record: FleetRecord,
-    bytes: usize,
+    result: String,
+    scores: Vec<u8>,
 }
 
 fn sent(number: u64, with_cause: bool) -> Result<Sent, Error> {
@@ -49,30 +52,40 @@ fn sent(number: u64, with_cause: bool) -> Result<Sent, Error> {
     let diagnosed = diagnose(&simulated.record, &simulated.bench, &options)?;
     let result = serde_json::to_string(&diagnosed.result)?;
     let scores = to_bytes(&diagnosed.scores);
-    let bytes = result.len() + scores.len();
     // What arrives is what was sent.
     read_text(&SourceText::new(&result, "result")?)?;
-    let name = RecordName {
-        unit: format!("{number}"),
-        record: "1".to_owned(),
-        ..RecordName::default()
-    };
-    Ok(Sent {
-        record: FleetRecord::read(name, &result, Some(&scores))?,
-        bytes,
-    })
+    Ok(Sent { result, scores })
 }
 
-pub(super) fn figures() -> Result<Vec<Figure>, Error> {
-    let fleet = |with_cause: bool| -> Result<Vec<Sent>, Error> {
-        let numbers = (0..UNITS).into_par_iter();
-        numbers.map(|number| sent(number, with_cause)).collect()
+impl Sent {
+    fn record(&self, number: u64) -> Result<FleetRecord, Error> {
+        let name = RecordName {
+            unit: format!("{number}"),
+            record: "1".to_owned(),
+            ..RecordName::default()
+        };
+        Ok(FleetRecord::read(name, &self.result, Some(&self.scores))?)
+    }
+}
+
+pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let units = extent.records(UNITS, UNITS);
+    let fleet = |cell: &str, with_cause: bool| -> Result<Vec<(u64, Sent)>, Error> {
+        let campaign = resumable::campaign("fleet", cell, 0..units, extent.small)?;
+        let outcome = campaign.run(|number| sent(number, with_cause), |_| ())?;
+        let all = outcome.successes();
+        Ok(all.map(|(number, one)| (number, one.clone())).collect())
     };
-    let (with, without) = (fleet(true)?, fleet(false)?);
-    let bytes = with.iter().chain(&without).map(|one| one.bytes).max();
-    let bytes = bytes.unwrap_or_default();
-    let recurring = |sent: Vec<Sent>| -> Result<Vec<(String, Vec<String>)>, Error> {
-        let records: Vec<FleetRecord> = sent.into_iter().map(|one| one.record).collect();
+    let (with, without) = (
+        fleet("whole with a cause", true)?,
+        fleet("whole without", false)?,
+    );
+    let bytes = with.iter().chain(&without);
+    let bytes = bytes.map(|(_, one)| one.result.len() + one.scores.len());
+    let bytes = bytes.max().unwrap_or_default();
+    let recurring = |sent: Vec<(u64, Sent)>| -> Result<Vec<(String, Vec<String>)>, Error> {
+        let records = sent.iter().map(|(number, one)| one.record(*number));
+        let records: Vec<FleetRecord> = records.collect::<Result<_, _>>()?;
         let found = summarise(&records, &FleetOptions::default())?.recurring;
         Ok(found
             .into_iter()
@@ -83,8 +96,8 @@ pub(super) fn figures() -> Result<Vec<Figure>, Error> {
     let named = |(effect, alternatives): &(String, Vec<String>)| {
         effect == CAUSE || alternatives.iter().any(|other| other == CAUSE)
     };
-    let seeds = format!("{FIRST}..{}", FIRST + UNITS);
-    let of = |figure: Figure| figure.over(UNITS as usize, seeds.clone());
+    let seeds = format!("{FIRST}..{}", FIRST + units);
+    let of = |figure: Figure| figure.over(units as usize, seeds.clone());
     Ok(vec![
         of(Figure::truth(
             "200 simulated records, `gyro_y.g_z` of 2.5 sigmas in a fifth of them: it alone recurs",

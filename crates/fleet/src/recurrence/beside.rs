@@ -120,3 +120,42 @@ impl Cell {
             .sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recurrence::mixture::{UnitRatios, in_random_direction};
+
+    /// An effect of one size with these scores in the units.
+    fn effect(scores: &[f64]) -> Evidence {
+        let ratios = |z: &f64| -> UnitRatios {
+            STRENGTHS.map(|strength| in_random_direction(1, z * z, strength))
+        };
+        Evidence::of_ratios(scores.iter().map(ratios).collect(), None)
+    }
+
+    /// Scores of 3.5 in every `each`-th of forty units, of 0.5 in the others.
+    fn scores(each: usize, first: usize) -> Vec<f64> {
+        let of = |unit: usize| if unit % each == first { 3.5 } else { 0.5 };
+        (0..40).map(of).collect()
+    }
+
+    #[test]
+    fn beside_nothing_it_is_the_evidence_itself() {
+        let one = effect(&scores(5, 0));
+        let alone = Named::of(40, std::iter::empty()).ln_evidence(&one);
+        assert!((alone - one.ln_e).abs() < 1e-9, "{alone} {}", one.ln_e);
+    }
+
+    #[test]
+    fn a_twin_explains_nothing_more_and_another_cause_does() {
+        let (one, other) = (effect(&scores(5, 0)), effect(&scores(5, 1)));
+        let named = Named::of(40, std::iter::once(&one));
+        assert!(named.ln_evidence(&one) < 0.0);
+        assert!(named.ln_evidence(&other) > 0.5 * other.ln_e);
+        assert!(other.ln_e > 10.0);
+        // Beside both, neither is left.
+        let named = Named::of(40, [&one, &other].into_iter());
+        assert!(named.ln_evidence(&one) < 0.0 && named.ln_evidence(&other) < 0.0);
+    }
+}

@@ -174,10 +174,14 @@ pub(crate) struct Evidence {
 
 impl Evidence {
     pub(crate) fn of(units: &[UnitScores]) -> Self {
-        let ratios: Vec<UnitRatios> = units.iter().map(ratios).collect();
+        let ln_common = Pooled::of(units).map(|pooled| pooled.ln_evidence());
+        Self::of_ratios(units.iter().map(ratios).collect(), ln_common)
+    }
+
+    /// From the likelihood ratios of the units and the evidence of one size in all.
+    pub(crate) fn of_ratios(ratios: Vec<UnitRatios>, ln_common: Option<f64>) -> Self {
         let cells = cells(&ratios);
         let random = ln_mean_exp(&cells);
-        let ln_common = Pooled::of(units).map(|pooled| pooled.ln_evidence());
         Self {
             ln_e: ln_common.map_or(random, |common| ln_mean_exp(&[random, common])),
             ln_common,
