@@ -245,7 +245,7 @@ fn it_is_diagnosed_in_the_axes_of_its_gyros() {
         "d.json",
     ];
     refused(&plan, 2, "strapdown unit");
-    let extend = ["extend", "--diagnosis", "d.json", "--out", "model.toml"];
+    let extend = ["extend", "d.json", "--out", "x.model.toml"];
     refused(&extend, 1, "strapdown unit");
 }
 

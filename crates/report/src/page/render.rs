@@ -13,9 +13,10 @@ use crate::error::Error;
 use crate::number::{count, readable_unit};
 
 /// The templates, all HTML: minijinja escapes by the name.
-const TEMPLATES: [(&str, &str); 3] = [
+const TEMPLATES: [(&str, &str); 4] = [
     ("page.html", include_str!("../../assets/page.html")),
     ("summary.html", include_str!("../../assets/summary.html")),
+    ("command.html", include_str!("../../assets/command.html")),
     ("items.html", include_str!("../../assets/items.html")),
 ];
 
