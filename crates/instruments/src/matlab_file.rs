@@ -102,7 +102,6 @@ pub(crate) fn read(
         })?;
     let Some(order) = byte_order(&bytes) else {
         return Err(unfit(
-            path,
             "a MAT file of version 7.3, which is HDF5",
             "one of version 5",
             "write it with `save(name, variables, '-v7')`",
@@ -110,16 +109,15 @@ pub(crate) fn read(
     };
     let matrices = matrices(&bytes[HEADER..], order).ok_or_else(|| {
         let advice = "copy the file again; it ends early, or is damaged";
-        unfit(path, "an element that is not whole", "a whole file", advice)
+        unfit("an element that is not whole", "a whole file", advice)
     })?;
     let columns = names
         .iter()
-        .map(|name| column(&matrices, name).ok_or_else(|| no_column(path, name, &list(&matrices))))
+        .map(|name| column(&matrices, name).ok_or_else(|| no_column(name, &list(&matrices))))
         .collect::<Result<Vec<Vec<f64>>, InstrumentError>>()?;
     let rows = columns.first().map_or(0, Vec::len);
     if let Some(at) = columns.iter().position(|column| column.len() != rows) {
         return Err(unfit(
-            path,
             &format!("{} values in `{}`", columns[at].len(), names[at]),
             &format!("{rows} values, as `{}` has", names[0]),
             "name columns of one log in the map",

@@ -57,13 +57,12 @@ pub(crate) fn read(
     let damaged = |reason: McapError| {
         let found = format!("what no reader of MCAP accepts ({reason})");
         let advice = "copy the file again; `mcap recover` of its project saves what is whole";
-        unfit(path, &found, "a whole file", advice)
+        unfit(&found, "a whole file", advice)
     };
     let mut content = open_content(path)?;
     let options = LinearReaderOptions::default().with_record_length_limit(LONGEST);
     let mut reader = LinearReader::new_with_options(options);
     let mut messages = Messages {
-        path,
         names,
         schemas: HashMap::new(),
         topics: HashMap::new(),
@@ -90,7 +89,6 @@ pub(crate) fn read(
 
 /// Channels of a file so far.
 struct Messages<'a> {
-    path: &'a Path,
     names: &'a [&'a str],
     /// Encoding and definition of each schema.
     schemas: HashMap<u16, (String, Vec<u8>)>,
@@ -172,7 +170,7 @@ impl Messages<'_> {
         };
         let damaged = || {
             let found = format!("a message on `{}` that is not whole", topic.name);
-            unfit(self.path, &found, "a message as its definition says", "")
+            unfit(&found, "a message as its definition says", "")
         };
         let of_fields = match &topic.encoding {
             Encoding::Json => {
@@ -200,7 +198,7 @@ impl Messages<'_> {
         if !self.names.contains(&TOPIC) {
             match &self.read {
                 Some(other) if *other != topic.name => {
-                    return Err(two_topics(self.path, [other, &topic.name]));
+                    return Err(two_topics([other, &topic.name]));
                 }
                 Some(_) => {}
                 None => self.read = Some(topic.name.clone()),
@@ -235,7 +233,7 @@ impl Messages<'_> {
             !is_stamp(name) && !fields.any(|field| field == *name)
         });
         let missing = missing.or(self.names.first()).copied().unwrap_or_default();
-        Err(no_column(self.path, missing, &list.join("; ")))
+        Err(no_column(missing, &list.join("; ")))
     }
 }
 
@@ -264,9 +262,8 @@ fn is_stamp(name: &str) -> bool {
     [TOPIC, LOG_TIME, PUBLISH_TIME].contains(&name)
 }
 
-fn two_topics(path: &Path, [one, other]: [&str; 2]) -> InstrumentError {
+fn two_topics([one, other]: [&str; 2]) -> InstrumentError {
     unfit(
-        path,
         &format!("the columns on the topics `{one}` and `{other}`"),
         "one of them",
         &format!(

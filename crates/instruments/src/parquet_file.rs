@@ -22,7 +22,6 @@ pub(crate) fn read(
     let damaged = |reason: ParquetError| {
         let found = format!("what no reader of Parquet accepts ({reason})");
         unfit(
-            path,
             &found,
             "a whole file",
             "copy the file again, or write it without zstd",
@@ -30,7 +29,7 @@ pub(crate) fn read(
     };
     let reader = SerializedFileReader::new(open(path)?).map_err(damaged)?;
     let schema = reader.metadata().file_metadata().schema();
-    let projection = projection(path, schema, names)?;
+    let projection = projection(schema, names)?;
     let rows = reader.get_row_iter(Some(projection)).map_err(damaged)?;
     for (number, row) in rows.enumerate() {
         let row = row.map_err(damaged)?;
@@ -43,7 +42,6 @@ pub(crate) fn read(
         });
         let Some(cells) = cells.collect::<Option<Vec<Cell<'_>>>>() else {
             return Err(unfit(
-                path,
                 &format!("a nested or binary value in row {}", number + 1),
                 "columns of numbers, times and texts",
                 "name other columns in the map",
@@ -62,19 +60,19 @@ fn open(path: &Path) -> Result<File, Error> {
 }
 
 /// The schema with the columns `names` alone.
-fn projection(path: &Path, schema: &Type, names: &[&str]) -> Result<Type, InstrumentError> {
+fn projection(schema: &Type, names: &[&str]) -> Result<Type, InstrumentError> {
     let fields = schema.get_fields();
     for name in names {
         if !fields.iter().any(|field| field.name() == *name) {
             let there: Vec<&str> = fields.iter().map(|field| field.name()).collect();
-            return Err(no_column(path, name, &there.join(", ")));
+            return Err(no_column(name, &there.join(", ")));
         }
     }
     let fields = fields.iter().filter(|field| names.contains(&field.name()));
     Type::group_type_builder(schema.name())
         .with_fields(fields.cloned().collect())
         .build()
-        .map_err(|reason| unfit(path, &reason.to_string(), "a schema", ""))
+        .map_err(|reason| unfit(&reason.to_string(), "a schema", ""))
 }
 
 /// The cell of a field; `None` of a kind that is no number, time or text.

@@ -60,7 +60,6 @@ impl TypedFile {
                 let name = platform_row.names()[fault.column];
                 let cell = cells[fault.column];
                 unfit(
-                    path,
                     &format!("{cell} in the column `{name}` of row {}", number + 1),
                     fault.expected,
                     &fault.advice,
@@ -83,7 +82,7 @@ impl TypedFile {
             Ok(())
         })?;
         match record.is_empty() {
-            true => Err(no_rows(path)),
+            true => Err(no_rows()),
             false => Ok(record),
         }
     }
@@ -111,7 +110,6 @@ impl TypedFile {
                 let Some(number) = number.filter(|value| value.is_finite()) else {
                     let row = column.len() + 1;
                     return Err(unfit(
-                        path,
                         &format!("{cell} in the column `{}` of row {row}", names[at]),
                         "a finite number",
                         "cut the log before the first sample that is missing",
@@ -122,7 +120,7 @@ impl TypedFile {
             Ok(())
         })?;
         match values.first().is_none_or(Vec::is_empty) {
-            true => Err(no_rows(path)),
+            true => Err(no_rows()),
             false => Ok(values),
         }
     }
@@ -156,35 +154,32 @@ impl TypedFile {
             #[cfg(feature = "parquet")]
             Self::Parquet => crate::parquet_file::read(path, names, take),
             #[cfg(not(feature = "parquet"))]
-            Self::Parquet => Err(not_built_in(path, "Parquet", "parquet")),
+            Self::Parquet => Err(not_built_in("Parquet", "parquet")),
             Self::Matlab => matlab_file::read(path, names, take),
             #[cfg(feature = "mcap")]
             Self::Mcap => crate::mcap_file::read(path, names, take),
             #[cfg(not(feature = "mcap"))]
-            Self::Mcap => Err(not_built_in(path, "MCAP", "mcap")),
+            Self::Mcap => Err(not_built_in("MCAP", "mcap")),
         }
     }
 }
 
 /// The error of a file that its description does not fit.
-pub(crate) fn unfit(path: &Path, found: &str, expected: &str, advice: &str) -> InstrumentError {
-    let found = format!("{}: {found}", path.display());
+pub(crate) fn unfit(found: &str, expected: &str, advice: &str) -> InstrumentError {
     InstrumentError::unfit(Unfit::Binary, found, expected, advice)
 }
 
 /// The error of a column that a file lacks, which has those `there`.
-pub(crate) fn no_column(path: &Path, name: &str, there: &str) -> InstrumentError {
+pub(crate) fn no_column(name: &str, there: &str) -> InstrumentError {
     unfit(
-        path,
         &format!("the columns {there}"),
         &format!("a column `{name}`"),
         "name the columns in a map (`--columns MAP.toml`)",
     )
 }
 
-fn no_rows(path: &Path) -> InstrumentError {
+fn no_rows() -> InstrumentError {
     unfit(
-        path,
         "no rows",
         "samples",
         "check the program that wrote it, and `only` of the map",
@@ -192,9 +187,8 @@ fn no_rows(path: &Path) -> InstrumentError {
 }
 
 #[cfg(not(all(feature = "parquet", feature = "mcap")))]
-fn not_built_in(path: &Path, what: &str, feature: &str) -> InstrumentError {
+fn not_built_in(what: &str, feature: &str) -> InstrumentError {
     unfit(
-        path,
         &format!("a file of {what}"),
         &format!("text, as this program was built without {what}"),
         &format!(

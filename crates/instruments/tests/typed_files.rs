@@ -75,7 +75,6 @@ fn columns_that_a_file_of_matlab_lacks_are_told_with_those_that_it_has() {
     );
     let refused = words(read_record(&case("matlab.mat"), &description).unwrap_err());
     for part in [
-        "matlab.mat",
         "t, accel(:,1) to (:,3)",
         "`accel(:,4)`",
         "--columns MAP.toml",
