@@ -2,8 +2,8 @@
 
 measure.py import               seconds of the import, in this process
 measure.py diagnosis            seconds of one diagnosis of the example from a frame
-measure.py fleet RECORDS        a fleet on Dask whose workers are killed; cost of each stage
-measure.py many RECORDS HOURS   many short records on two workers and in one process
+measure.py fleet KILLED STAGED  records on Dask whose workers are killed; cost of each stage of records
+measure.py many RECORDS         many short records on two workers and in one process
 measure.py spark RECORDS        the same rows by Spark, by the lines of docs/python.md; needs Java and pyspark
 """
 
@@ -47,7 +47,7 @@ def measure_spark(count):
     os.environ.setdefault("PYSPARK_PYTHON", sys.executable)
     page = Path("docs/python.md").read_text()
     (lines,) = [block.partition("```")[0] for block in page.split("```python\n")[1:] if "mapInArrow" in block]
-    batch = simulated(range(count))
+    batch = simulated(range(count), 12.0)
     expected = in_order(pa.Table.from_batches(fleet.diagnose_batches([batch]), fleet.OUTPUT))
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
@@ -70,8 +70,8 @@ def measured(kind, arguments):
     import measure_fleet
 
     if kind == "many":
-        return measure_fleet.measure_many(int(arguments[0]), float(arguments[1]))
-    return measure_fleet.measure_fleet(int(arguments[0]))
+        return measure_fleet.measure_many(int(arguments[0]))
+    return measure_fleet.measure_fleet(*map(int, arguments))
 
 
 if __name__ == "__main__":

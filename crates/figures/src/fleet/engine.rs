@@ -7,12 +7,15 @@ use super::measured;
 use crate::error::Error;
 use crate::figure::Figure;
 
-/// Records whose workers are killed.
-const KILLED: usize = 1600;
+/// Short records whose workers are killed, and records of three days whose stages are timed.
+const KILLED: usize = 600;
+const STAGED: usize = 100;
 
-/// Short records on two workers, and their length, hours.
+/// Short records on two workers.
 const MANY: usize = 100_000;
-const HOURS: f64 = 6.0;
+
+/// Another number of them.
+const RECORDS: &str = "GYROCAL_FLEET_RECORDS";
 
 /// Fewest kills.
 const KILLS: usize = 20;
@@ -21,6 +24,7 @@ const KILLS: usize = 20;
 #[derive(Deserialize)]
 struct Fleet {
     records: usize,
+    killed_records: usize,
     rows_of_a_record: usize,
     equal: bool,
     runs: usize,
@@ -53,11 +57,13 @@ struct Many {
 }
 
 pub(super) fn figures() -> Result<Vec<Figure>, Error> {
-    let mut figures = many(&measured(&["many", &MANY.to_string(), &HOURS.to_string()])?);
-    let found: Fleet = measured(&["fleet", &KILLED.to_string()])?;
+    let records = std::env::var(RECORDS).unwrap_or_else(|_| MANY.to_string());
+    let mut figures = many(&measured(&["many", &records])?);
+    let found: Fleet = measured(&["fleet", &KILLED.to_string(), &STAGED.to_string()])?;
+    figures.extend(killed(&found));
     let seeds = format!("0..{}", found.records);
-    let of_fleet = killed(&found).into_iter().chain(scale(&found));
-    figures.extend(of_fleet.map(|figure| figure.over(found.records, seeds.clone())));
+    let stages = scale(&found).into_iter();
+    figures.extend(stages.map(|figure| figure.over(found.records, seeds.clone())));
     Ok(figures)
 }
 
@@ -91,7 +97,7 @@ fn many(found: &Many) -> Vec<Figure> {
                 "{}, {}, {:.2} ms",
                 found.rows_of_a_record,
                 found.rows_of_a_partition,
-                1e3 * found.library_s / found.records as f64
+                1e3 * found.library_s
             ),
         ),
     ];
@@ -110,7 +116,7 @@ fn killed(found: &Fleet) -> Vec<Figure> {
     let lost = found.lost + found.repeated;
     let enough = found.kills >= KILLS;
     let killed = Figure::within("", [0.0, 0.0], lost as f64);
-    vec![
+    let figures = [
         Figure::truth(&equal, found.equal),
         Figure {
             name: format!(
@@ -123,13 +129,12 @@ fn killed(found: &Fleet) -> Vec<Figure> {
             too_few: !enough,
             ..killed
         },
-        Figure::at_most(
-            "result and scores of a record, most bytes",
-            200.0,
-            found.largest_sent_bytes / 1e3,
-            "kB",
-        ),
-    ]
+    ];
+    let seeds = format!("0..{}", found.killed_records);
+    let figures = figures.into_iter();
+    figures
+        .map(|figure| figure.over(found.killed_records, seeds.clone()))
+        .collect()
 }
 
 /// A million records.
@@ -163,7 +168,14 @@ fn scale(found: &Fleet) -> Vec<Figure> {
     let workers = STORE_RATE / ((bytes_in + bytes_out) / (total_s / records));
     let summary = 1e3 * found.summary_s / records;
     let summary_mb = found.summary_mb / records;
+    let sent = found.largest_sent_bytes / 1e3;
     vec![
+        Figure::at_most(
+            "records of three days: most bytes of result and scores",
+            200.0,
+            sent,
+            "kB",
+        ),
         Figure::note("rows of a record", format!("{}", found.rows_of_a_record)),
         each("stage: read Parquet", found.read_s),
         each("stage: columns to a record", found.records_s),

@@ -138,8 +138,8 @@ fn fleet(
 }
 
 /// Fleets of each share and strength, and fleets without a cause.
-const FLEETS: u64 = 60;
-const CLEAN: u64 = 200;
+const FLEETS: u64 = 30;
+const CLEAN: u64 = 100;
 
 pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let simulators = simulators(if extent.small { 2 } else { 16 })?;
