@@ -35,6 +35,11 @@ const LAST_SHARE: f64 = 1e-6;
 /// cost by a part in 1e10.
 const FLAT_SHARE: f64 = 1e-5;
 
+/// The same length, in standard deviations of the whole problem: a hundredth of one changes no result. Along
+/// directions that only the prior determines, as most are of a strapdown unit in one attitude, the slope of
+/// the cost is smaller than the error of the linearised one.
+const FLAT_STEP: f64 = 0.01;
+
 /// The records linearised about the solution.
 #[derive(Clone)]
 pub(crate) struct Solution {
@@ -117,7 +122,7 @@ where
                     return Err(moved.err().unwrap_or(CalibrationError::NotPositiveDefinite));
                 }
                 if halvings == MAX_HALVINGS {
-                    if step.length > FLAT_SHARE * cost.sqrt() {
+                    if step.length > FLAT_STEP.max(FLAT_SHARE * cost.sqrt()) {
                         return Err(CalibrationError::NoDescent { iterations });
                     }
                     self.apply(&step, 0.0, &before, &values);
