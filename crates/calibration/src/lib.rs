@@ -163,6 +163,6 @@ pub use run::Run;
 pub use same_rows::{SharedRows, shared_rows, times_overlap};
 pub use settings::{declared_attitude, filter_settings};
 pub use spread::{CoefficientSpread, Spread, spread};
-pub use streaming::{FilterWatch, run_factorised_filter, run_strapdown_filter};
+pub use streaming::{FilterWatch, StrapdownWatch, run_factorised_filter, run_strapdown_filter};
 pub use variances::UncertaintySource;
 pub use work::work;

@@ -87,7 +87,7 @@ pub fn run_strapdown_filter(
     axes: &GyroAxes,
     settings: &FilterSettings<f64>,
     attitude: &InitialAttitude<f64>,
-    watch: &mut dyn FnMut(usize, [f64; 3], &Innovation<f64, 3>),
+    watch: &mut StrapdownWatch<'_>,
 ) -> Result<(), CalibrationError> {
     let (rows, attitudes) = (record.len(), axes.len());
     if rows != attitudes {
@@ -117,6 +117,9 @@ pub fn run_strapdown_filter(
     }
     Ok(())
 }
+
+/// Sees a row number, specific force along the platform \[g\], and the innovation.
+pub type StrapdownWatch<'a> = dyn FnMut(usize, [f64; 3], &Innovation<f64, 3>) + 'a;
 
 /// The filter of a strapdown unit.
 type StrapdownFilter = ExtensionFilter<f64, Strapdown, StrapdownInputs<f64>, { Strapdown::STATES }>;

@@ -235,7 +235,7 @@ mod tests {
         assert_eq!(time_and_temperature(&record(|_| 20.0)), None);
         let told = |effect: &str, other: &str, correlation: Option<f64>| {
             let mut groups = indistinguishable(&finding(effect, &[other], &[]), &[], false);
-            tell_together(&mut groups, correlation.unwrap());
+            tell_together(&mut groups, correlation.unwrap_or(0.0));
             groups[0].why.contains("time and temperature go together")
         };
         assert!(told("gyro_x.temperature", "gyro_x.ramp", rising));
