@@ -11,21 +11,20 @@ use crate::tables::{right, table};
 
 /// The first screen of some budgets.
 pub(super) fn screen(found: &UncertaintyResult) -> Screen {
-    let mut screen = Screen::new(
-        Standing::Neutral,
-        "UNCERTAINTY",
-        "95 % intervals of the coefficients",
-    );
-    for record in &found.records {
-        for one in &record.coefficients {
+    let what = match &found.spread {
+        None => "95 % intervals of the coefficients".to_owned(),
+        Some(spread) => format!("coefficients over {} runs", spread.runs),
+    };
+    let mut screen = Screen::new(Standing::Neutral, "UNCERTAINTY", what);
+    if found.spread.is_none() {
+        for one in found.records.iter().flat_map(|record| &record.coefficients) {
             let sources = by_source(one);
             let largest = sources.iter().max_by(|a, b| a.3.total_cmp(&b.3));
             screen.fact(
                 &one.name,
                 format!(
-                    "{} ± {} {} (k = {}), most by {}",
-                    format::short(one.estimate, 6),
-                    format::short(one.expanded, 2),
+                    "{} {} (k = {}), most by {}",
+                    format::with_sigma(one.estimate, one.expanded),
                     one.unit,
                     format::short(one.coverage_factor, 3),
                     largest.map_or("", |line| line.0),
@@ -34,6 +33,18 @@ pub(super) fn screen(found: &UncertaintyResult) -> Screen {
         }
     }
     if let Some(spread) = &found.spread {
+        // Intervals of each run are in the tables: those of many do not fit on a screen.
+        for one in &spread.coefficients {
+            let [mean, deviation] = format::estimate(one.mean, one.standard_deviation);
+            screen.fact(
+                &one.name,
+                format!(
+                    "mean {mean} {}, deviation {deviation} ({} expected)",
+                    one.unit,
+                    format::short(one.expected, 2),
+                ),
+            );
+        }
         let larger = spread.coefficients.iter().filter(|one| one.is_larger);
         let names: Vec<&str> = larger.map(|one| one.name.as_str()).collect();
         let words = match names.is_empty() {

@@ -262,6 +262,11 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     assert!(choice(&records[0]) > 0.0);
     assert_eq!(choice(&records[1]), 0.0);
     assert_eq!(found["spread"]["runs"], 2);
+    let head: Vec<&str> = said.lines().take(3).collect();
+    assert!(
+        head[0].contains("coefficients over 2 runs") && head[1].contains("mean "),
+        "{said}"
+    );
     for words in ["Scatter over 2 runs", "D_II", "Only a laboratory certifies"] {
         assert!(said.contains(words), "{said}");
     }
