@@ -35,13 +35,13 @@ pub(super) fn screen(found: &UncertaintyResult) -> Screen {
     if let Some(spread) = &found.spread {
         // Intervals of each run are in the tables: those of many do not fit on a screen.
         for one in &spread.coefficients {
-            let [mean, deviation] = format::estimate(one.mean, one.standard_deviation);
+            let [mean, expected] = format::estimate(one.mean, one.expected);
             screen.fact(
                 &one.name,
                 format!(
-                    "mean {mean} {}, deviation {deviation} ({} expected)",
+                    "mean {mean} {}, deviation {} ({expected} expected)",
                     one.unit,
-                    format::short(one.expected, 2),
+                    format::short(one.standard_deviation, 2),
                 ),
             );
         }
