@@ -33,6 +33,8 @@ NAMES = {"p": [("l", 1), ("dp", -1), ("j", 1)], "q": [("m", 1), ("dq", -1), ("j"
 WINDOW = 40
 # Lengths of smoothing, rows; each method takes the one whose model simulates its own record best.
 SMOOTHING = (5, 7, 9, 13)
+# A state, rad or rad/s, beyond which a model has left a record, and the error of such a model.
+LOST, DIVERGED = 1e3, 1e9
 # Half widths of the windows of the weak form, s, and their number; the best is taken in the same way.
 HALF_WIDTHS_S, WINDOWS = (0.2, 0.4, 0.8), 400
 
@@ -97,10 +99,10 @@ def later_error(rates, record):
         k3 = slope(here + step / 2 * k2, u)
         k4 = slope(here + step * k3, u)
         here = here + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        if not np.all(np.abs(here) < LOST):
+            return DIVERGED
         squares.append(((here - states[starts + index + 1]) / SIGMAS) ** 2)
-    with np.errstate(all="ignore"):
-        error = float(np.sqrt(np.mean(squares)))
-    return error if np.isfinite(error) else 1e9
+    return float(np.sqrt(np.mean(squares)))
 
 
 def weak(record, half_width_s):
