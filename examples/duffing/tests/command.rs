@@ -29,7 +29,9 @@ fn the_command_of_the_package_gives_the_answer_of_the_library() {
     let page = std::fs::read_to_string(page).unwrap();
     assert!(page.contains("Model lacks v_rate.x^3"));
     // The command that made it, not that of the platform.
-    assert!(page.contains("gyrocal-example-duffing diagnose record.csv"));
+    assert!(page.contains(
+        "<span>gyrocal-example-duffing</span> <span>diagnose</span> <span>record.csv</span>"
+    ));
     let written: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
 
