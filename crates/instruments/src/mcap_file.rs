@@ -121,12 +121,10 @@ impl Messages<'_> {
                 let schema = (header.encoding, data.into_owned());
                 self.schemas.entry(header.id).or_insert(schema);
             }
-            Record::Channel(channel) => {
-                // The summary has them again.
-                if !self.topics.contains_key(&channel.id) {
-                    let topic = self.topic(&channel);
-                    self.topics.insert(channel.id, topic);
-                }
+            // The summary has them again.
+            Record::Channel(channel) if !self.topics.contains_key(&channel.id) => {
+                let topic = self.topic(&channel);
+                self.topics.insert(channel.id, topic);
             }
             Record::Message { header, data } => self.message(&header, &data, take)?,
             _ => {}
