@@ -27,7 +27,7 @@ pub struct PlannedRun<'a> {
     pub start: Orientation,
     /// All parameters of [`gyrocal::Catalogue`].
     pub parameters: &'a [f64],
-    /// Onsets and time constants, as [`Catalogue`] takes them.
+    /// Onsets and time constants, as [`gyrocal::Catalogue`] takes them.
     pub shapes: [f64; catalogue::SHAPES.len()],
     /// The expected noise; weights are not used.
     pub noise: &'a NoiseModel,

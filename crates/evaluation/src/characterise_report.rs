@@ -20,7 +20,7 @@ use crate::record_score::RecordScore;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CharacteriseReport {
-    /// [`SCHEMA_VERSION`](gyrocal_record::SCHEMA_VERSION) at the time of writing.
+    /// `SCHEMA_VERSION` of `gyrocal-record` at the time of writing.
     pub schema_version: u32,
     /// Program, inputs and command that made the result.
     pub manifest: Manifest,

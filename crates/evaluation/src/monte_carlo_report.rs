@@ -9,7 +9,7 @@ use crate::calibration_summary::CalibrationSummary;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MonteCarloReport {
-    /// [`SCHEMA_VERSION`](gyrocal_record::SCHEMA_VERSION) at the time of writing.
+    /// `SCHEMA_VERSION` of `gyrocal-record` at the time of writing.
     pub schema_version: u32,
     /// Program, inputs and command that made the result.
     pub manifest: Manifest,

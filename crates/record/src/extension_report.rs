@@ -8,7 +8,7 @@ use crate::manifest::Manifest;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExtensionReport {
-    /// [`SCHEMA_VERSION`](crate::SCHEMA_VERSION) at the time of writing.
+    /// `SCHEMA_VERSION` of `gyrocal-record` at the time of writing.
     pub schema_version: u32,
     /// Origin of the result.
     pub manifest: Manifest,
