@@ -4,10 +4,11 @@
 use crate::accepted::Accepted;
 use crate::bank::ScoreBank;
 use crate::context::SearchContext;
+use crate::finding::CONFIDENCE_SET_DEVIANCE;
+use crate::fitted_stage::FittedStage;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::pattern::Unmodelled;
-use crate::result::{CONFIDENCE_SET_DEVIANCE, FittedStage};
 use crate::score::Scores;
 
 /// Share of the statistic of the named effect by which a score may misjudge that of a rival: rivals that

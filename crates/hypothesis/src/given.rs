@@ -5,11 +5,13 @@ use gyrocal_scalar::effect::{Effect, EffectKind};
 use crate::accepted::Accepted;
 use crate::bank::ScoreBank;
 use crate::context::{SearchContext, SearchOptions};
+use crate::finding::EffectEstimate;
+use crate::fitted_stage::FittedStage;
 use crate::hypothesis::{Hypothesis, Selection};
 use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::result::{EffectEstimate, FittedStage, add_shape_intervals, parameters_of};
+use crate::result::{add_shape_intervals, parameters_of};
 use crate::rows::Rows;
 use crate::state::{settled, stage};
 

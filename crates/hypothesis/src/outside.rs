@@ -31,10 +31,12 @@ use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use crate::bank::ScoreBank;
 use crate::column::Column;
 use crate::context::SearchContext;
+use crate::finding::Finding;
+use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::pattern::{ChannelIndex, Unmodelled};
 use crate::plant::Plant;
-use crate::result::{ConditionalResult, Finding, FittedStage};
+use crate::result::ConditionalResult;
 use crate::rows::Rows;
 use crate::smooth_functions::{Sampling, families};
 

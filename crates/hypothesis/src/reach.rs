@@ -15,8 +15,8 @@ use gyrocal_statistics::math::exp;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::bank::ScoreBank;
+use crate::finding::{Alternative, CONFIDENCE_SET_DEVIANCE};
 use crate::hypothesis::Hypothesis;
-use crate::result::{Alternative, CONFIDENCE_SET_DEVIANCE};
 use crate::score::Scores;
 
 /// Deficit beyond which a hypothesis is in no set: the 95 % point of chi-square with three degrees of

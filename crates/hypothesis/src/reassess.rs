@@ -78,31 +78,44 @@ pub(crate) fn reassess<F: FittedModel>(
                     replaced.push(found);
                     continue;
                 }
-                for (index, result) in results.iter_mut().enumerate() {
-                    let finding = &mut result.finding;
-                    add_shape_intervals(
-                        &state.stage,
-                        context,
-                        &state.accepted,
-                        index,
-                        &mut finding.parameters,
-                        draws,
-                    )?;
-                    let hypothesis = state.accepted[index].hypothesis;
-                    for other in replaced.iter().filter(|other| other.by == hypothesis) {
-                        other.add_to(&mut finding.alternatives);
-                    }
-                    let own = rivals.iter().filter(|rival| rival.of.contains(&hypothesis));
-                    for rival in own {
-                        finding
-                            .alternatives
-                            .extend(rival.alternatives.iter().cloned());
-                    }
-                }
+                complete(context, state, (rivals, &replaced), &mut results, draws)?;
                 return Ok(results);
             }
         }
     }
+}
+
+/// Adds to the results of the effects that remain what no swap changes any more: intervals of their shapes,
+/// and the effects that they replaced and rival.
+fn complete<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &SearchState<F>,
+    (rivals, replaced): (&[Rival], &[Replaced]),
+    results: &mut [ConditionalResult],
+    draws: &mut GaussianDraws,
+) -> Result<(), F::Error> {
+    for (index, result) in results.iter_mut().enumerate() {
+        let finding = &mut result.finding;
+        add_shape_intervals(
+            &state.stage,
+            context,
+            &state.accepted,
+            index,
+            &mut finding.parameters,
+            draws,
+        )?;
+        let hypothesis = state.accepted[index].hypothesis;
+        for other in replaced.iter().filter(|other| other.by == hypothesis) {
+            other.add_to(&mut finding.alternatives);
+        }
+        let own = rivals.iter().filter(|rival| rival.of.contains(&hypothesis));
+        for rival in own {
+            finding
+                .alternatives
+                .extend(rival.alternatives.iter().cloned());
+        }
+    }
+    Ok(())
 }
 
 /// Puts another effect in the place of an accepted one. An error leaves the state unchanged.

@@ -4,9 +4,9 @@
 
 use crate::accepted::value_places;
 use crate::context::SearchContext;
+use crate::finding::Alternative;
 use crate::model::FittedModel;
 use crate::null_distribution::DETECTION_PENALTY_FRACTION;
-use crate::result::Alternative;
 use crate::state::{SearchState, stage};
 
 /// Correlation of the errors of two sizes beyond which one effect may do the work of both: the part of one

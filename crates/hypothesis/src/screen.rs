@@ -4,13 +4,13 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::accepted::{Accepted, value_places};
 use crate::context::{SearchContext, SearchOptions};
+use crate::fitted_stage::FittedStage;
 use crate::forward::WORTH_FITTING;
 use crate::hypothesis::{Hypothesis, Selection};
 use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::rate_noise::degrees_of_freedom;
-use crate::result::FittedStage;
 use crate::rows::Rows;
 use crate::score::Scores;
 use crate::state::{settled, stage};

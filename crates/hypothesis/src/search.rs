@@ -4,6 +4,7 @@ use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::{Accepted, value_places};
 use crate::context::{MOST_EFFECTS, SearchContext, SearchOptions, extension};
+use crate::finding::Finding;
 use crate::forward::{Beside, FirstRound, forward, open_hypotheses};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
@@ -13,7 +14,6 @@ use crate::pattern::Unmodelled;
 use crate::plant::Plant;
 use crate::rate_noise::RateNoiseFit;
 use crate::reassess::reassess;
-use crate::result::Finding;
 use crate::rows::Rows;
 use crate::score::Ranked;
 use crate::score_table::ScoreTable;

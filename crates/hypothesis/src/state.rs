@@ -2,9 +2,9 @@
 
 use crate::accepted::Accepted;
 use crate::context::SearchContext;
+use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::pattern::Unmodelled;
-use crate::result::FittedStage;
 use crate::shape::estimate_shapes;
 
 /// Current model and accepted effects.

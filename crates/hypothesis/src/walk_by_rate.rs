@@ -6,10 +6,11 @@
 use crate::accepted::{Accepted, value_places};
 use crate::bank::NominalEstimate;
 use crate::context::{MOST_EFFECTS, SearchContext};
+use crate::finding::Alternative;
+use crate::fitted_stage::FittedStage;
 use crate::forward::{Beside, forward};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::result::{Alternative, FittedStage};
 use crate::state::{SearchState, settled};
 use crate::walk_candidates::{
     BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, alternatives, needed,

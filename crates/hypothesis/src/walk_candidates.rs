@@ -5,9 +5,10 @@ use gyrocal_statistics::chi_square_tail;
 
 use crate::bank::NominalEstimate;
 use crate::context::SearchContext;
+use crate::finding::Alternative;
+use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::rate_noise::RateNoiseFit;
-use crate::result::{Alternative, FittedStage};
 use crate::score::Ranked;
 use crate::state::SearchState;
 

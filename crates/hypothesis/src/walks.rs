@@ -8,10 +8,11 @@ use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::value_places;
 use crate::context::SearchContext;
+use crate::finding::{Alternative, EffectEstimate, Finding};
+use crate::fitted_stage::FittedStage;
 use crate::forward::{Beside, FirstRound, forward};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::result::{Alternative, EffectEstimate, Finding, FittedStage};
 use crate::score::Ranked;
 use crate::state::{SearchState, settled, stage};
 use crate::walk_by_rate::{ByRate, replaced};

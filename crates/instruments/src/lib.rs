@@ -54,6 +54,7 @@ mod accel_from_norm;
 mod accel_from_positions;
 mod allan_analysis;
 mod binary_file;
+mod cell;
 mod clock;
 mod columns;
 mod covariates;
@@ -81,6 +82,7 @@ mod remedy;
 mod result_file;
 #[cfg(feature = "mcap")]
 mod ros_message;
+mod scale;
 mod stop_means;
 mod stops;
 pub mod strapdown;

@@ -9,8 +9,9 @@ use crate::clock::{Clock, resampled, steady_clock};
 use crate::columns::FileColumns;
 use crate::covariates::{refuse_saturated, temperatures_c};
 use crate::description::time::WEEK_S;
-use crate::description::{CountScale, Description, Direction, Gyro, GyroUnit, Jitter, Time};
+use crate::description::{Description, Direction, Gyro, Jitter, Time};
 use crate::error::{InstrumentError, Unfit};
+use crate::scale::{accel_scale, gyro_scale};
 
 /// Samples of six sensors; all vectors have the same length.
 #[derive(Debug, Clone, PartialEq)]
@@ -335,51 +336,6 @@ fn gyro_of(description: &Description) -> Result<&Gyro, InstrumentError> {
              names and the unit of the log; only the record of a stable platform has no gyros",
         )
     })
-}
-
-/// Factor from counts above zero to rad/s; `None` if turns are to determine it.
-fn gyro_scale(gyro: &Gyro) -> Result<Option<[f64; 3]>, InstrumentError> {
-    let per_hour = 1.0_f64.to_radians() / 3600.0;
-    match (gyro.unit, gyro.counts_per_rad_per_s) {
-        (GyroUnit::RadPerS, _) => Ok(Some([1.0; 3])),
-        (GyroUnit::DegPerS, _) => Ok(Some([1.0_f64.to_radians(); 3])),
-        (GyroUnit::DegPerH, _) => Ok(Some([per_hour; 3])),
-        (GyroUnit::Counts, Some(scale)) => Ok(per_unit(scale)),
-        (GyroUnit::Counts, None) => Err(no_scale("gyro", "counts_per_rad_per_s", "from-turns")),
-    }
-}
-
-/// Factor from counts above zero to g; `None` if stops are to determine it.
-pub(crate) fn accel_scale(description: &Description) -> Result<Option<[f64; 3]>, InstrumentError> {
-    let gravity = description.site.gravity_m_per_s2.unwrap_or(f64::NAN);
-    match (
-        description.accel.unit.in_g(gravity),
-        description.accel.counts_per_g,
-    ) {
-        (Some(factor), _) => Ok(Some([factor; 3])),
-        (None, Some(scale)) => Ok(per_unit(scale)),
-        (None, None) => Err(no_scale("accel", "counts_per_g", "from-stops")),
-    }
-}
-
-fn per_unit(scale: CountScale) -> Option<[f64; 3]> {
-    match scale {
-        CountScale::Same(counts) => Some([1.0 / counts; 3]),
-        CountScale::Each(counts) => Some(counts.map(|counts| 1.0 / counts)),
-        CountScale::Estimate(_) => None,
-    }
-}
-
-fn no_scale(table: &str, key: &str, estimate: &str) -> InstrumentError {
-    InstrumentError::unfit(
-        Unfit::NoScale,
-        format!("`[{table}]` in counts without `{key}`"),
-        "what a count is",
-        format!(
-            "give `{key}`, or `{key} = \"{estimate}\"` for a log with static stops in many \
-             attitudes"
-        ),
-    )
 }
 
 fn refuse_backwards(file: &FileColumns, time_s: &[f64]) -> Result<(), InstrumentError> {

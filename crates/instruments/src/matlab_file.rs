@@ -13,10 +13,9 @@ use std::path::Path;
 use flate2::read::ZlibDecoder;
 use gyrocal_record::{Error, open_content};
 
+use crate::cell::{Cell, TakeCells, no_column, unfit};
 use crate::error::InstrumentError;
 use crate::file_format::{ByteOrder, NumberType};
-use crate::platform_row::Cell;
-use crate::typed_file::{TakeCells, no_column, unfit};
 
 /// Bytes before the first element.
 pub(crate) const HEADER: usize = 128;

@@ -11,10 +11,9 @@ use mcap::records::{Channel, MessageHeader, Record};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde_json::Value;
 
+use crate::cell::{Cell, Held, TakeCells, no_column, unfit};
 use crate::error::InstrumentError;
-use crate::platform_row::Cell;
 use crate::ros_message::RosMessage;
-use crate::typed_file::{TakeCells, no_column, unfit};
 
 /// Columns beside the fields of a message: its topic, and when it was logged and published.
 const TOPIC: &str = "topic";
@@ -26,26 +25,6 @@ const LONGEST: usize = 1 << 28;
 
 /// Most names of fields that an error lists of a topic.
 const LISTED: usize = 20;
-
-/// A value of a message.
-#[derive(Debug, Clone)]
-pub(crate) enum Held {
-    Number(f64),
-    Seconds(f64),
-    Text(String),
-    Missing,
-}
-
-impl Held {
-    fn cell(&self) -> Cell<'_> {
-        match self {
-            Self::Number(value) => Cell::Number(*value),
-            Self::Seconds(value) => Cell::Seconds(*value),
-            Self::Text(text) => Cell::Text(text),
-            Self::Missing => Cell::Missing,
-        }
-    }
-}
 
 /// Hands the cells of the columns `names` of each message that has them to `take`, in the order of the file; a
 /// chunk of it is in memory at a time.

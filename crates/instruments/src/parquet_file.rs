@@ -9,9 +9,8 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use parquet::schema::types::Type;
 
+use crate::cell::{Cell, TakeCells, no_column, unfit};
 use crate::error::InstrumentError;
-use crate::platform_row::Cell;
-use crate::typed_file::{TakeCells, no_column, unfit};
 
 /// Hands the cells of the columns `names` of each row to `take`; a group of its rows is in memory at a time.
 pub(crate) fn read(

@@ -5,12 +5,13 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, Record, RecordFile, SourceText};
 use gyrocal_statistics::median_interval_s;
 
+use crate::cell::Cell;
 use crate::columns::Selection;
 use crate::description::{Description, Jitter};
 use crate::error::InstrumentError;
 use crate::file_format::FileFormat;
 use crate::log_lines::{LogLine, log_lines};
-use crate::platform_row::{Cell, PlatformRow, Row};
+use crate::platform_row::{PlatformRow, Row};
 use crate::proposal::propose_map;
 use crate::typed_file::TypedFile;
 

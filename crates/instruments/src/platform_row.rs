@@ -1,57 +1,14 @@
 //! One row of a stable platform's record from the cells of a described file.
 
-use core::fmt::{Display, Formatter};
-
 use gyrocal_record::{InputErrorKind, Record};
 
+use crate::cell::Cell;
 use crate::date_time::seconds_of;
 use crate::description::time::WEEK_S;
 use crate::description::{Accel, Description};
 use crate::error::{InstrumentError, Unfit};
-use crate::log::accel_scale;
 use crate::remedy;
-
-/// A cell of a file.
-#[derive(Debug, Clone, Copy)]
-#[cfg_attr(
-    not(any(feature = "parquet", feature = "mcap")),
-    allow(
-        dead_code,
-        reason = "MATLAB has neither time stamps nor missing values"
-    )
-)]
-pub(crate) enum Cell<'a> {
-    /// A text.
-    Text(&'a str),
-    /// A number of a typed column.
-    Number(f64),
-    /// A time stamp of a typed column, s.
-    Seconds(f64),
-    /// A missing value of a typed column.
-    Missing,
-}
-
-impl Cell<'_> {
-    /// Whether it is what a text says: this text, or its number.
-    pub(crate) fn is(&self, text: &str) -> bool {
-        match self {
-            Self::Text(own) => *own == text,
-            Self::Number(own) => text.parse() == Ok(*own),
-            Self::Seconds(_) | Self::Missing => false,
-        }
-    }
-}
-
-impl Display for Cell<'_> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Text(text) => write!(f, "`{text}`"),
-            Self::Number(value) => write!(f, "{value}"),
-            Self::Seconds(_) => write!(f, "a time stamp"),
-            Self::Missing => write!(f, "no value"),
-        }
-    }
-}
+use crate::scale::accel_scale;
 
 /// One row of a record.
 #[derive(Debug, Clone, Copy)]

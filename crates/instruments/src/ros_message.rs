@@ -3,8 +3,8 @@
 
 use std::collections::HashMap;
 
+use crate::cell::Held;
 use crate::file_format::{ByteOrder, NumberType};
-use crate::mcap_file::Held;
 
 /// Messages within messages.
 const DEEPEST: usize = 16;

@@ -5,19 +5,17 @@ use std::path::Path;
 
 use gyrocal_record::{Record, open_content};
 
+use crate::cell::{Cell, TakeCells, unfit};
 use crate::date_time::seconds_of;
 use crate::description::Description;
-use crate::error::{InstrumentError, Unfit};
+use crate::error::InstrumentError;
 use crate::file_format::{FileFormat, Only};
 use crate::matlab_file;
-use crate::platform_row::{Cell, PlatformRow, Row};
+use crate::platform_row::{PlatformRow, Row};
 
 /// First bytes of a file of Parquet and of MCAP.
 const PARQUET: &[u8] = b"PAR1";
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
-
-/// Takes the cells of one row; an error ends the reading.
-pub(crate) type TakeCells<'t> = dyn FnMut(&[Cell<'_>]) -> Result<(), InstrumentError> + 't;
 
 /// Kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -162,20 +160,6 @@ impl TypedFile {
             Self::Mcap => Err(not_built_in("MCAP", "mcap")),
         }
     }
-}
-
-/// The error of a file that its description does not fit.
-pub(crate) fn unfit(found: &str, expected: &str, advice: &str) -> InstrumentError {
-    InstrumentError::unfit(Unfit::Binary, found, expected, advice)
-}
-
-/// The error of a column that a file lacks, which has those `there`.
-pub(crate) fn no_column(name: &str, there: &str) -> InstrumentError {
-    unfit(
-        &format!("the columns {there}"),
-        &format!("a column `{name}`"),
-        "name the columns in a map (`--columns MAP.toml`)",
-    )
 }
 
 fn no_rows() -> InstrumentError {

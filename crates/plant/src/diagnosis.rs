@@ -13,6 +13,7 @@ use crate::answer::{
     Comparison, Diagnosis, Estimate, Found, Interval95, LeftOut, NoiseLevel, OutputError,
     RankedEffect, Remainder, Size, Unexplained,
 };
+use crate::diagnosed::Diagnosed;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::identifiability::NullDirection;
@@ -26,16 +27,6 @@ const LAGS: usize = 20;
 
 /// Name of the onset among the parameters of an effect.
 const ONSET: &str = "onset_s";
-
-/// A diagnosis with the fits that it rests on.
-pub struct Diagnosed {
-    /// The answer.
-    pub answer: Diagnosis,
-    /// The search, with the nominal and the extended model.
-    pub searched: Searched<FittedPlant>,
-    /// The later record, predicted by both models.
-    pub later: Option<RecordSeries>,
-}
 
 /// Diagnoses a record; with a later record of the same plant the gain of what was found is measured there.
 ///

@@ -43,6 +43,7 @@ mod backward;
 mod catalogue;
 mod columns;
 pub mod description;
+mod diagnosed;
 mod diagnosis;
 mod dynamics;
 mod error;
@@ -70,7 +71,8 @@ mod taken_up;
 mod tape;
 
 pub use columns::ColumnMap;
-pub use diagnosis::{Diagnosed, diagnose};
+pub use diagnosed::Diagnosed;
+pub use diagnosis::diagnose;
 pub use error::PlantError;
 pub use extension::{Extension, ExtensionTerm, WrittenDiagnosis, WrittenFinding, WrittenSize};
 pub use fitted::FittedPlant;

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use gyrocal_hypothesis::{FittedModel as _, SearchOptions};
 
 use crate::answer::{Alone, Estimate, RecordAnswer};
-use crate::diagnosis::{Diagnosed, diagnose, diagnose_from, errors};
+use crate::diagnosed::Diagnosed;
+use crate::diagnosis::{diagnose, diagnose_from, errors};
 use crate::error::PlantError;
 use crate::loaded::LoadedPlant;
 use crate::record::PlantRecord;
