@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use gyrocal_calibration::shared_rows;
 use gyrocal_instruments::{Description, read_any};
-use gyrocal_record::{Outputs, RecordFile, ResultTable};
+use gyrocal_record::{Outputs, Record, RecordFile, ResultTable, printable_path};
+use miette::miette;
 
 use crate::measured::unusable;
 use crate::{Answer, Failure, terminal};
@@ -32,6 +34,28 @@ impl Map {
         }
         Ok(file)
     }
+}
+
+/// Refuses records of which two have rows in common: each row counts once.
+pub(crate) fn refuse_shared_rows(records: &[(&Path, &Record)]) -> Result<(), Failure> {
+    for (index, (path, record)) in records.iter().enumerate() {
+        for (earlier_path, earlier) in &records[..index] {
+            let Some(shared) = shared_rows(earlier, record) else {
+                continue;
+            };
+            return Err(Failure::Work(miette!(
+                help = "leave one of them out, or cut the rows that both have from one",
+                "{}: found {} consecutive rows that {} has too, from row {} of the data (t = {} s) on, \
+                 expected rows of its own: they would count twice",
+                printable_path(path),
+                shared.rows,
+                printable_path(earlier_path),
+                shared.first + 1,
+                record.time_s[shared.first],
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Stages a table, if it is asked for.

@@ -13,7 +13,9 @@ use gyrocal_diagnosis::{
     record_uncertainty, result,
 };
 use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread};
-use gyrocal_record::{Bench, CalibrationReport, Outputs, SourceText, printable_path};
+use gyrocal_record::{
+    Bench, CalibrationReport, Outputs, Record, RecordFile, SourceText, printable_path,
+};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 use serde::de::DeserializeOwned;
@@ -21,6 +23,7 @@ use serde::de::DeserializeOwned;
 use crate::diagnose::NotDiagnosed;
 use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
 use crate::progress::Progress;
+use crate::records::refuse_shared_rows;
 use crate::{Answer, Failure, page, records};
 
 /// Make a report of records or results: one HTML file that opens in any browser, offline.
@@ -75,13 +78,20 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
     let mut benches = arguments.benches.iter();
     let mut parts = Vec::with_capacity(arguments.inputs.len());
     let mut budgets = Vec::new();
+    let mut read: Vec<(&Path, Record)> = Vec::new();
     for path in &arguments.inputs {
         parts.push(if is_result(path) {
             of_file(path)?
         } else {
             let bench = benches.next().or(arguments.benches.last());
             let bench = bench.map_or(Path::new(""), PathBuf::as_path);
-            let (mut part, budget) = of_record(path, bench, arguments)?;
+            let file = arguments.map.read(path)?;
+            if arguments.uncertainty {
+                read.push((path, file.record().clone()));
+                let named: Vec<_> = read.iter().map(|(path, record)| (*path, record)).collect();
+                refuse_shared_rows(&named)?;
+            }
+            let (mut part, budget) = of_record(path, &file, bench, arguments)?;
             if let Some(budget) = budget {
                 part.sections.push(of_budget(&budget.0));
                 budgets.push(budget);
@@ -120,22 +130,17 @@ type Budget = (RecordUncertainty, UncertaintyBudget);
 /// The part of a record, with its uncertainty if that is asked for.
 fn of_record(
     path: &Path,
+    file: &RecordFile,
     bench_path: &Path,
     arguments: &ReportArguments,
 ) -> Result<(Part, Option<Budget>), Failure> {
     let map = &arguments.map;
     let bench = Bench::read(bench_path)?;
-    let file = map.read(path)?;
     let options = DiagnoseOptions::default();
     let inputs: Vec<&Path> = [path, bench_path].into_iter().chain(map.path()).collect();
     let origin = manifest(MODEL_HASH, options.seed, &inputs)?;
     let _progress = Progress::waiting("diagnosing", file.record().len());
-    let gate = Gate::of_file(
-        PlatformKind::Stabilised,
-        &file,
-        &bench,
-        &options.calibration,
-    )?;
+    let gate = Gate::of_file(PlatformKind::Stabilised, file, &bench, &options.calibration)?;
     match diagnose_gated(gate, &bench, &options) {
         Err(DiagnosisError::Setup { mut result }) => {
             if arguments.uncertainty {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use gyrocal_calibration::{Options, Run, attitude_walk_share, average_record, shared_rows};
+use gyrocal_calibration::{Options, Run, attitude_walk_share, average_record};
 use gyrocal_diagnosis::Gate;
 use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, printable_path};
 use miette::miette;
@@ -71,11 +71,11 @@ pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, F
             setup: found.problems,
         });
     }
-    for (index, one) in measurements.iter().enumerate() {
-        for other in &measurements[index + 1..] {
-            refuse_shared_rows(one, other)?;
-        }
-    }
+    let named: Vec<_> = measurements
+        .iter()
+        .map(|one| (&*one.path, &one.record))
+        .collect();
+    refuse_shared_rows(&named)?;
     if let Some(interval_s) = average_s
         && !measurements.iter().any(|measurement| measurement.stops)
     {
@@ -130,22 +130,6 @@ fn refuse_differing(paths: &[PathBuf], benches: &[Bench]) -> Result<(), Failure>
         }
     }
     Ok(())
-}
-
-fn refuse_shared_rows(one: &Measurement, other: &Measurement) -> Result<(), Failure> {
-    let Some(shared) = shared_rows(&one.record, &other.record) else {
-        return Ok(());
-    };
-    Err(Failure::Work(miette!(
-        help = "leave one of them out, or cut the rows that both have from one",
-        "{}: found {} consecutive rows that {} has too, from row {} of the data (t = {} s) on, \
-         expected rows of its own: they would count twice",
-        printable_path(&other.path),
-        shared.rows,
-        printable_path(&one.path),
-        shared.first + 1,
-        other.record.time_s[shared.first],
-    )))
 }
 
 fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Failure> {

@@ -1,9 +1,8 @@
 //! `gyrocal diagnose` of several records of one platform.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_calibration::shared_rows;
 use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records, prose};
 use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
 use gyrocal_record::{Bench, Outputs, RecordFile, printable_path};
@@ -14,6 +13,7 @@ use super::{DiagnoseArguments, NotDiagnosed, exit_code};
 use crate::layout::layout;
 use crate::outputs::manifest;
 use crate::progress::Progress;
+use crate::records::refuse_shared_rows;
 use crate::{Answer, Failure, gyro_axes, page, pictures};
 
 /// Runs the command; `inputs` are each record with its bench file.
@@ -28,7 +28,14 @@ pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Ans
         .iter()
         .map(|path| arguments.map.read(path))
         .collect::<Result<_, _>>()?;
-    refuse_twins(arguments, &files)?;
+    let records = files.iter().map(RecordFile::record);
+    let named: Vec<_> = arguments
+        .records
+        .iter()
+        .map(PathBuf::as_path)
+        .zip(records)
+        .collect();
+    refuse_shared_rows(&named)?;
     let options = arguments.options();
     let rows = files.iter().map(|file| file.record().len()).sum();
     tracing::info!(rows, records = files.len(), "read");
@@ -112,25 +119,4 @@ fn refuse_options(arguments: &DiagnoseArguments) -> Result<(), Failure> {
         ))),
         None => Ok(()),
     }
-}
-
-/// Refuses a record that is given twice, in whole or in part.
-fn refuse_twins(arguments: &DiagnoseArguments, files: &[RecordFile]) -> Result<(), Failure> {
-    for (index, one) in files.iter().enumerate() {
-        for (other_index, other) in files.iter().enumerate().skip(index + 1) {
-            if let Some(shared) = shared_rows(one.record(), other.record()) {
-                return Err(Failure::Work(miette!(
-                    help = "leave one of them out, or cut the rows that both have from one",
-                    "{}: found {} consecutive rows that {} has too, from row {} of the data (t = {} s) on, \
-                     expected rows of its own: they would count twice",
-                    printable_path(&arguments.records[other_index]),
-                    shared.rows,
-                    printable_path(&arguments.records[index]),
-                    shared.first + 1,
-                    other.record().time_s[shared.first],
-                )));
-            }
-        }
-    }
-    Ok(())
 }

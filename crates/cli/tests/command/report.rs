@@ -281,4 +281,19 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     assert_page(&folder, "u.html", &words);
     let wrong = ["report", RECORD, "--bench", BENCH, "--json", "b.json"];
     assert!(wrong_usage(&folder, &wrong).contains("--uncertainty"));
+
+    // A record is one run, also under another name.
+    folder.put("copy.csv", folder.text("rivals.csv"));
+    let twice = folder.fail(&[
+        "report",
+        "rivals.csv",
+        "copy.csv",
+        "--bench",
+        "rivals.bench.toml",
+        "--uncertainty",
+    ]);
+    assert!(
+        twice.contains("copy.csv: found 4321 consecutive rows that rivals.csv has too"),
+        "{twice}"
+    );
 }

@@ -5,7 +5,7 @@ use gyrocal_report::page::{Card, Cell, Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
 
 use super::section;
-use super::summary::shortened;
+use super::summary::first_of;
 use crate::origin::argument;
 use crate::words::listed;
 
@@ -108,7 +108,7 @@ fn advice(result: &DiagnosisResult) -> String {
 pub(super) fn next_card(result: &DiagnosisResult) -> Card {
     Card {
         title: "Next step".to_owned(),
-        text: vec![shortened(&advice(result))],
+        text: vec![first_of(&advice(result))],
         command: plan_command(result),
         columns: if result.coefficients.is_some() { 4 } else { 12 },
         ..Card::default()

@@ -12,8 +12,8 @@ use crate::words::{capitalised, listed, micro_g};
 const ALTERNATIVES: usize = 3;
 /// A change of a coefficient from which on it is marked, in claimed sigmas.
 const NOTABLE: f64 = 2.0;
-/// Letters of an explanation on the first screen.
-const SHORT: usize = 150;
+/// Letters of proposals that a card of the first screen has room for.
+const ROOM: usize = 300;
 
 pub(super) fn summary(result: &DiagnosisResult) -> Summary {
     let blocks = prose::diagnosis(result);
@@ -350,12 +350,18 @@ pub(super) fn change(shifts: &[CoefficientShift], name: &str) -> Cell {
     }
 }
 
-/// The start of an explanation, cut at a mark of punctuation where it is long.
-pub(super) fn shortened(text: &str) -> String {
-    if text.chars().count() <= SHORT {
-        return text.to_owned();
+/// The first of some proposals, separated by semicolons, as many as a card has room for; the section of the
+/// next run has all.
+pub(super) fn first_of(proposals: &str) -> String {
+    let mut text = String::new();
+    for proposal in proposals.split("; ") {
+        if !text.is_empty() {
+            if text.chars().count() + proposal.chars().count() > ROOM {
+                return text + "; and others below.";
+            }
+            text.push_str("; ");
+        }
+        text.push_str(proposal);
     }
-    let start: String = text.chars().take(SHORT).collect();
-    let end = start.rfind([';', ',', ':']).or_else(|| start.rfind(' '));
-    format!("{}…", &start[..end.unwrap_or(start.len())])
+    text
 }
