@@ -33,7 +33,7 @@ impl Default for FleetOptions {
     fn default() -> Self {
         Self {
             false_discovery_rate: 0.05,
-            group_probability: 0.015,
+            group_probability: 0.018,
             outlier_probability: 0.01,
             seed: 0,
         }

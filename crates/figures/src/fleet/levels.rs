@@ -40,7 +40,7 @@ const SITES: u64 = 4;
 const ODD_BATCH: u64 = 30;
 
 /// Such fleets, with a batch that differs and without.
-const GROUPED: u64 = 3000;
+const GROUPED: u64 = 12_000;
 
 /// Coefficients of such a fleet.
 const COEFFICIENTS: usize = 9;
