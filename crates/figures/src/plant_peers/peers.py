@@ -31,7 +31,8 @@ CATALOGUE = {
 NAMES = {"p": [("l", 1), ("dp", -1), ("j", 1)], "q": [("m", 1), ("dq", -1), ("j", -1)],
          "r": [("n", 1), ("dr", -1)]}
 WINDOW = 40
-# Lengths of smoothing, rows; each method takes the one whose model simulates its own record best.
+# Lengths of smoothing, rows. Each method takes the one whose model of the first two thirds of its record
+# simulates the last third best, and is fitted with it to the whole record.
 SMOOTHING = (5, 7, 9, 13)
 # A state, rad or rad/s, beyond which a model has left a record, and the error of such a model.
 LOST, DIVERGED = 1e3, 1e9
@@ -64,10 +65,17 @@ def centred(torques):
     return 0.5 * (torques + np.concatenate([torques[:1], torques[:-1]]))
 
 
+def by_held_out(ways, record):
+    """What the way gives whose model of the first two thirds simulates the last third best."""
+    split = 2 * len(record) // 3
+    first, last = record[:split], record[split:]
+    return min(ways, key=lambda way: later_error(way(first)[1], last))(record)
+
+
 def best_operon(record, seconds, seed):
     """By its best smoothing."""
-    tried = [operon(record, length, seconds, seed) for length in SMOOTHING]
-    return min(tried, key=lambda one: later_error(one[1], record))
+    return by_held_out([lambda part, length=length: operon(part, length, seconds, seed)
+                        for length in SMOOTHING], record)
 
 
 def linear(coefficients):
@@ -156,10 +164,10 @@ def sindy(table, rates, middles):
 
 
 def best_sindy(record):
-    """By the form whose model simulates its own record best: weak, or by differences."""
-    forms = [weak(record, half_width_s) for half_width_s in HALF_WIDTHS_S]
-    forms += [differences(record, length) for length in SMOOTHING]
-    return min((sindy(*form) for form in forms), key=lambda one: later_error(one[1], record))
+    """By its best form: weak, or by differences."""
+    forms = [lambda part, width=width: sindy(*weak(part, width)) for width in HALF_WIDTHS_S]
+    forms += [lambda part, length=length: sindy(*differences(part, length)) for length in SMOOTHING]
+    return by_held_out(forms, record)
 
 
 def operon(record, length, seconds, seed):
