@@ -1,12 +1,14 @@
 //! Any plant, by its program file: its functions are interpreted.
 
+use gyrocal_instruments::ResultFile;
 use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
+use gyrocal_record::{Input, Manifest};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 use crate::diagnose::Answer;
 use crate::error::{Class, Failure, Outcome};
-use crate::origin::json;
+use crate::origin::{json, manifest};
 
 /// A plant that is ready to be fitted.
 #[pyclass(frozen, name = "Plant", module = "gyrocal._gyrocal")]
@@ -69,6 +71,22 @@ impl From<PlantError> for Failure {
     }
 }
 
+/// Settings of a diagnosis.
+fn options(false_alarm: f64) -> Outcome<SearchOptions> {
+    if !(false_alarm > 0.0 && false_alarm < 1.0) {
+        return Err(Failure::of_value(
+            "false_alarm",
+            format!("{false_alarm}"),
+            "a probability between 0 and 1",
+            "",
+        ));
+    }
+    Ok(SearchOptions {
+        false_alarm_probability: false_alarm,
+        ..SearchOptions::default()
+    })
+}
+
 #[pymethods]
 impl HeldPlant {
     /// Of the text of a program file.
@@ -111,38 +129,41 @@ impl HeldPlant {
         effects.map(|effect| effect.id).collect()
     }
 
-    /// Diagnoses a record: the result (JSON), and its sentences (JSON).
+    /// Diagnoses a record: the result (JSON), and its sentences (JSON). `inputs` are names and hashes, and
+    /// `command` is the call, both for the manifest.
     fn diagnose(
         &self,
         py: Python<'_>,
         record: GivenColumns<'_>,
         later: Option<GivenColumns<'_>>,
         false_alarm: f64,
+        inputs: Vec<(String, String)>,
+        command: &str,
     ) -> PyResult<Answer> {
         let record = record.columns();
         let later = later.map(|later| later.columns());
-        Ok(py.detach(|| self.answer(record, later, false_alarm))?)
+        let options = options(false_alarm)?;
+        let inputs = inputs
+            .into_iter()
+            .map(|(path, sha256)| Input { path, sha256 });
+        let manifest = manifest("", options.seed, inputs.collect(), command);
+        Ok(py.detach(|| self.answer(record, later, &options, manifest))?)
     }
 }
 
 impl HeldPlant {
-    fn answer(&self, record: Columns, later: Option<Columns>, false_alarm: f64) -> Outcome<Answer> {
-        if !(false_alarm > 0.0 && false_alarm < 1.0) {
-            return Err(Failure::of_value(
-                "false_alarm",
-                format!("{false_alarm}"),
-                "a probability between 0 and 1",
-                "",
-            ));
-        }
+    fn answer(
+        &self,
+        record: Columns,
+        later: Option<Columns>,
+        options: &SearchOptions,
+        manifest: Manifest,
+    ) -> Outcome<Answer> {
         let record = self.record(record)?;
         let later = later.map(|later| self.record(later)).transpose()?;
-        let options = SearchOptions {
-            false_alarm_probability: false_alarm,
-            ..SearchOptions::default()
-        };
-        let answer = diagnose(&self.plant, record, later, &options)?.answer;
-        Ok((json(&answer)?, json(&answer.sentences())?))
+        let answer = diagnose(&self.plant, record, later, options)?.answer;
+        let sentences = json(&answer.sentences())?;
+        Ok((json(&ResultFile::new(manifest, answer))?, sentences))
     }
 
     fn record(&self, columns: Columns) -> Outcome<PlantRecord> {

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import gyrocal
-from conftest import run_command
+from conftest import run_command, without_command_line
 
 FOLDER = Path("examples/duffing")
 COLUMNS = {"time": "time_s", "inputs": {"u": "drive_n"}, "outputs": {"y": "displacement_m"}}
@@ -29,7 +29,9 @@ def found():
 def test_numbers_and_names_are_those_of_the_command(tmp_path, found):
     arguments = ["plant", "diagnose", FOLDER / "plant.json", FOLDER / "record.csv"]
     arguments += ["--columns", FOLDER / "columns.toml", "--validate", FOLDER / "later.csv"]
-    assert found.to_dict() == run_command(arguments, tmp_path)
+    by_command = run_command(arguments, tmp_path)
+    assert without_command_line(found.to_dict()) == without_command_line(by_command)
+    assert found.manifest.command.startswith("gyrocal.Plant.diagnose('examples/duffing/record.csv'")
     assert len(found.findings) == 1
     frame = found.to_dataframe()
     assert list(frame.effect) == [found.findings[0].effect]
@@ -47,6 +49,9 @@ def test_a_declared_plant_takes_frames(found):
     frame = pd.read_csv(FOLDER / "record.csv")
     again = plant.diagnose(frame, COLUMNS)
     assert again.findings == found.findings
+    # Values and declarations have no files: their hashes are of what they hold.
+    assert [one.path for one in again.manifest.inputs] == ["<DataFrame>", "<columns>", "<Declared>"]
+    assert again.manifest.inputs[2].sha256 == found.manifest.inputs[2].sha256
     # Other units of the same numbers: factors of two change no bit.
     doubled = frame.assign(displacement_m=2.0 * frame.displacement_m)
     columns = COLUMNS | {"outputs": {"y": {"column": "displacement_m", "factor": 0.5}}}

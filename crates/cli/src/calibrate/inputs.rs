@@ -10,6 +10,7 @@ use miette::miette;
 
 use super::CalibrateArguments;
 use crate::Failure;
+use crate::records::refuse_shared_rows;
 
 /// One record with the bench that it was taken on.
 pub(super) struct Measurement {

@@ -7,7 +7,6 @@ use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records, prose};
 use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
 use gyrocal_record::{Bench, Outputs, RecordFile, printable_path};
 use gyrocal_report::Picture;
-use miette::miette;
 
 use super::{DiagnoseArguments, NotDiagnosed, exit_code};
 use crate::layout::layout;

@@ -66,7 +66,12 @@ class Plant:
     @property
     def effects(self) -> list[str]: ...
     def diagnose(
-        self, record: dict[str, Any], later: dict[str, Any] | None, false_alarm: float
+        self,
+        record: dict[str, Any],
+        later: dict[str, Any] | None,
+        false_alarm: float,
+        inputs: list[tuple[str, str]],
+        command: str,
     ) -> tuple[str, str]: ...
 
 def command(arguments: list[str]) -> int: ...

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,14 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _gyrocal
+from ._calls import _call
 from ._errors import InputError
-from ._record import _column
+from ._record import _column, _json
 from ._results import PlantDiagnosis
 
 __all__ = ["Plant"]
 
 #: A column of a record: its name, or a mapping with ``column``, ``factor`` and ``offset``.
 Source = Union[str, Mapping[str, Any]]
+
+#: An input by its name and the hash of its content.
+Input = tuple[str, str]
 
 
 class Plant:
@@ -36,10 +41,7 @@ class Plant:
     def __init__(self, declared: Any) -> None:
         if isinstance(declared, (str, os.PathLike)):
             name = os.fspath(declared)
-            try:
-                text = Path(declared).read_text(encoding="utf-8")
-            except OSError as error:
-                raise InputError(f"{name}: cannot be read: {error.strerror}", file=name) from error
+            text = _text(_read(declared), name)
         elif hasattr(declared, "to_json"):
             name, text = f"<{type(declared).__name__}>", declared.to_json()
         else:
@@ -103,14 +105,19 @@ class Plant:
             InputError: A record, a column or an argument is wrong.
             ComputationError: The plant could not be fitted.
         """
-        given = self._columns(record, columns)
+        given, own = self._columns(record, columns)
+        program, name = self._program
+        inputs = [own, *_input_of_map(columns), (name, _sha256(program.encode()))]
         other = None
         if later is not None:
-            other = self._columns(later, columns if later_columns is None else later_columns)
-        return PlantDiagnosis(*self._held.diagnose(given, other, false_alarm))
+            other, own = self._columns(later, columns if later_columns is None else later_columns)
+            inputs += [own, *_input_of_map(later_columns)]
+        command = _call("Plant.diagnose", record, columns, later=later, false_alarm=false_alarm)
+        return PlantDiagnosis(*self._held.diagnose(given, other, false_alarm, inputs, command))
 
-    def _columns(self, record: Any, columns: Any) -> dict[str, Any]:
-        frame, name = _frame(record)
+    def _columns(self, record: Any, columns: Any) -> tuple[dict[str, Any], Input]:
+        """The columns of a record by the names of the plant, and what is told of it in the manifest."""
+        frame, name, content = _frame(record)
         places = self._map(columns)
 
         def group(kind: str, names: list[str]) -> list[NDArray[np.float64]]:
@@ -131,13 +138,17 @@ class Plant:
                 )
             return [_values(frame, known[one], name) for one in names]
 
-        return {
+        found = {
             "name": name,
             "time_s": _values(frame, _time(places), name),
             "inputs": group("inputs", self.inputs),
             "outputs": group("outputs", self.outputs),
             "regressors": group("regressors", self.regressors),
         }
+        if content is None:
+            values = [found["time_s"], *found["inputs"], *found["outputs"], *found["regressors"]]
+            content = b"".join(column.tobytes() for column in values)
+        return found, (name, _sha256(content))
 
     def _map(self, columns: Any) -> Mapping[str, Any]:
         if columns is None:
@@ -175,15 +186,40 @@ def _time(places: Mapping[str, Any]) -> Source:
     return places["time"]
 
 
-def _frame(record: Any) -> tuple[Any, str]:
-    """Columns by name, and the name of the record."""
+def _frame(record: Any) -> tuple[Any, str, bytes | None]:
+    """Columns by name, the name of the record, and the bytes of its file."""
     if isinstance(record, (str, os.PathLike)):
-        name = os.fspath(record)
-        try:
-            return _csv(Path(record).read_text(encoding="utf-8"), name), name
-        except OSError as error:
-            raise InputError(f"{name}: cannot be read: {error.strerror}", file=name) from error
-    return record, f"<{type(record).__name__}>"
+        name, content = os.fspath(record), _read(record)
+        return _csv(_text(content, name), name), name, content
+    return record, f"<{type(record).__name__}>", None
+
+
+def _read(path: str | os.PathLike[str]) -> bytes:
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        name = os.fspath(path)
+        raise InputError(f"{name}: cannot be read: {error.strerror}", file=name) from error
+
+
+def _text(content: bytes, name: str) -> str:
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{name}: found a byte that is no text: {error}", file=name) from error
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _input_of_map(columns: Any) -> list[Input]:
+    """What the manifest tells of a map of columns, if there is one."""
+    if columns is None:
+        return []
+    if isinstance(columns, Mapping):
+        return [("<columns>", _sha256(_json(columns, "<columns>").encode()))]
+    return [(os.fspath(columns), _sha256(_read(columns)))]
 
 
 def _csv(text: str, name: str) -> dict[str, NDArray[np.float64]]:
