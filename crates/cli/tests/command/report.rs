@@ -293,7 +293,7 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
         "--uncertainty",
     ]);
     assert!(
-        twice.contains("copy.csv: found 4321 consecutive rows that rivals.csv has too"),
+        twice.contains("copy.csv: found 1081 consecutive rows that rivals.csv has too"),
         "{twice}"
     );
 }
