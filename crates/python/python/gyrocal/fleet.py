@@ -189,7 +189,7 @@ def summarise(
     results: str | os.PathLike[str] | pa.Table | Iterable[pa.RecordBatch],
     *,
     false_discovery_rate: float = 0.05,
-    group_probability: float = 0.015,
+    group_probability: float = 0.018,
     outlier_probability: float = 0.01,
     seed: int = 0,
 ) -> Fleet:
