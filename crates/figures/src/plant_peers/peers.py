@@ -95,10 +95,11 @@ def later_error(rates, record):
     here, squares = smooth[starts].copy(), []
 
     def slope(x, u):
-        roll, pitch, _, p, q, r = x.T
+        # What is lost goes no further: formulas take no infinite numbers.
+        roll, pitch, yaw, p, q, r = np.clip(np.nan_to_num(x, nan=10 * LOST), -10 * LOST, 10 * LOST).T
         turn = (np.sin(roll) * q + np.cos(roll) * r) / np.cos(pitch)
         return np.stack([p + turn * np.sin(pitch), np.cos(roll) * q - np.sin(roll) * r, turn,
-                         *rates(x, u)], 1)
+                         *rates(np.stack([roll, pitch, yaw, p, q, r], 1), u)], 1)
 
     for index in range(WINDOW):
         u = torques[starts + index]
