@@ -46,10 +46,10 @@ impl Display for Cell<'_> {
     }
 }
 
-/// The value of a cell with a text of its own.
+/// A cell that owns its text.
 #[cfg(feature = "mcap")]
 #[derive(Debug, Clone)]
-pub(crate) enum Held {
+pub(crate) enum OwnedCell {
     Number(f64),
     Seconds(f64),
     Text(String),
@@ -57,8 +57,8 @@ pub(crate) enum Held {
 }
 
 #[cfg(feature = "mcap")]
-impl Held {
-    /// The cell of it.
+impl OwnedCell {
+    /// It, borrowed.
     pub(crate) fn cell(&self) -> Cell<'_> {
         match self {
             Self::Number(value) => Cell::Number(*value),

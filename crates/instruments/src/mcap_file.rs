@@ -11,7 +11,7 @@ use mcap::records::{Channel, MessageHeader, Record};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde_json::Value;
 
-use crate::cell::{Cell, Held, TakeCells, no_column, unfit};
+use crate::cell::{Cell, OwnedCell, TakeCells, no_column, unfit};
 use crate::error::InstrumentError;
 use crate::ros_message::RosMessage;
 
@@ -152,7 +152,7 @@ impl Messages<'_> {
         let of_fields = match &topic.encoding {
             Encoding::Json => {
                 let value: Value = serde_json::from_slice(data).map_err(|_| damaged())?;
-                let found: Vec<Option<Held>> = self
+                let found: Vec<Option<OwnedCell>> = self
                     .names
                     .iter()
                     .map(|name| of_json(&value, name))
@@ -181,19 +181,19 @@ impl Messages<'_> {
                 None => self.read = Some(topic.name.clone()),
             }
         }
-        let values: Vec<Held> = self
+        let values: Vec<OwnedCell> = self
             .names
             .iter()
             .zip(of_fields)
             .map(|(name, value)| match (value, *name) {
                 (Some(value), _) => value,
-                (None, TOPIC) => Held::Text(topic.name.clone()),
-                (None, LOG_TIME) => Held::Seconds(header.log_time as f64 * 1e-9),
-                (None, PUBLISH_TIME) => Held::Seconds(header.publish_time as f64 * 1e-9),
-                (None, _) => Held::Missing,
+                (None, TOPIC) => OwnedCell::Text(topic.name.clone()),
+                (None, LOG_TIME) => OwnedCell::Seconds(header.log_time as f64 * 1e-9),
+                (None, PUBLISH_TIME) => OwnedCell::Seconds(header.publish_time as f64 * 1e-9),
+                (None, _) => OwnedCell::Missing,
             })
             .collect();
-        let cells: Vec<Cell<'_>> = values.iter().map(Held::cell).collect();
+        let cells: Vec<Cell<'_>> = values.iter().map(OwnedCell::cell).collect();
         take(&cells)
     }
 
@@ -250,7 +250,7 @@ fn two_topics([one, other]: [&str; 2]) -> InstrumentError {
 }
 
 /// The value at a path of keys and places.
-fn of_json(value: &Value, name: &str) -> Option<Held> {
+fn of_json(value: &Value, name: &str) -> Option<OwnedCell> {
     let mut at = value;
     for key in name.split('.') {
         at = match at {
@@ -259,13 +259,13 @@ fn of_json(value: &Value, name: &str) -> Option<Held> {
         };
     }
     Some(match at {
-        Value::Number(number) => Held::Number(number.as_f64()?),
-        Value::String(text) => Held::Text(text.clone()),
-        Value::Null => Held::Missing,
+        Value::Number(number) => OwnedCell::Number(number.as_f64()?),
+        Value::String(text) => OwnedCell::Text(text.clone()),
+        Value::Null => OwnedCell::Missing,
         Value::Object(parts) => {
             let part = |names: [&str; 2]| names.iter().find_map(|name| parts.get(*name)?.as_f64());
             let nanoseconds = part(["nsec", "nanosec"])?;
-            Held::Seconds(part(["sec", "secs"])? + nanoseconds * 1e-9)
+            OwnedCell::Seconds(part(["sec", "secs"])? + nanoseconds * 1e-9)
         }
         Value::Bool(_) | Value::Array(_) => return None,
     })

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use crate::cell::Held;
+use crate::cell::OwnedCell;
 use crate::file_format::{ByteOrder, NumberType};
 
 /// Messages within messages.
@@ -89,7 +89,7 @@ impl RosMessage {
     }
 
     /// The values of the columns in a message, of which there are so many; `None` if it is not whole.
-    pub(crate) fn values(&self, data: &[u8], columns: usize) -> Option<Vec<Option<Held>>> {
+    pub(crate) fn values(&self, data: &[u8], columns: usize) -> Option<Vec<Option<OwnedCell>>> {
         let (bytes, order) = match (self.is_aligned, data) {
             (false, _) => (data, ByteOrder::Little),
             (true, [0, 0, _, _, rest @ ..]) => (rest, ByteOrder::Big),
@@ -223,7 +223,7 @@ struct Reader<'a> {
     at: usize,
     order: ByteOrder,
     is_aligned: bool,
-    found: Vec<Option<Held>>,
+    found: Vec<Option<OwnedCell>>,
 }
 
 impl Reader<'_> {
@@ -248,15 +248,15 @@ impl Reader<'_> {
                         self.message(inner)?;
                         continue;
                     }
-                    Kind::Number(kind) => Held::Number(self.number(*kind)?),
+                    Kind::Number(kind) => OwnedCell::Number(self.number(*kind)?),
                     Kind::Time => {
                         let seconds = self.number(match self.is_aligned {
                             true => NumberType::I32,
                             false => NumberType::U32,
                         })?;
-                        Held::Seconds(seconds + self.number(NumberType::U32)? * 1e-9)
+                        OwnedCell::Seconds(seconds + self.number(NumberType::U32)? * 1e-9)
                     }
-                    Kind::Text => Held::Text(self.text()?),
+                    Kind::Text => OwnedCell::Text(self.text()?),
                 };
                 if let Some(column) = field.columns.get(element).copied().flatten() {
                     self.found[column] = Some(value);
