@@ -13,9 +13,7 @@ use gyrocal_diagnosis::{
     record_uncertainty, result,
 };
 use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread};
-use gyrocal_record::{
-    Bench, CalibrationReport, Outputs, Record, RecordFile, SourceText, printable_path,
-};
+use gyrocal_record::{Bench, CalibrationReport, Outputs, RecordFile, SourceText, printable_path};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 use serde::de::DeserializeOwned;
@@ -75,28 +73,31 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
     let json = arguments.json.as_deref();
     refuse_overlap(&all, &[("--out", Some(&arguments.out)), ("--json", json)])?;
     refuse_unwritable(&[Some(&arguments.out), json], None)?;
+    let files = arguments.inputs.iter().map(|path| {
+        let file = (!is_result(path)).then(|| arguments.map.read(path));
+        Ok((path.as_path(), file.transpose()?))
+    });
+    let files: Vec<(&Path, Option<RecordFile>)> = files.collect::<Result<_, Failure>>()?;
+    if arguments.uncertainty {
+        let records = files.iter();
+        let records = records.filter_map(|(path, file)| Some((*path, file.as_ref()?.record())));
+        refuse_shared_rows(&records.collect::<Vec<_>>())?;
+    }
     let mut benches = arguments.benches.iter();
-    let mut parts = Vec::with_capacity(arguments.inputs.len());
+    let mut parts = Vec::with_capacity(files.len());
     let mut budgets = Vec::new();
-    let mut read: Vec<(&Path, Record)> = Vec::new();
-    for path in &arguments.inputs {
-        parts.push(if is_result(path) {
-            of_file(path)?
-        } else {
+    for (path, file) in &files {
+        parts.push(if let Some(file) = file {
             let bench = benches.next().or(arguments.benches.last());
             let bench = bench.map_or(Path::new(""), PathBuf::as_path);
-            let file = arguments.map.read(path)?;
-            if arguments.uncertainty {
-                read.push((path, file.record().clone()));
-                let named: Vec<_> = read.iter().map(|(path, record)| (*path, record)).collect();
-                refuse_shared_rows(&named)?;
-            }
-            let (mut part, budget) = of_record(path, &file, bench, arguments)?;
+            let (mut part, budget) = of_record(path, file, bench, arguments)?;
             if let Some(budget) = budget {
                 part.sections.push(of_budget(&budget.0));
                 budgets.push(budget);
             }
             part
+        } else {
+            of_file(path)?
         });
     }
     let mut answer = Answer::default();

@@ -384,12 +384,30 @@ fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
 fn a_gyro_noise_out_of_proportion_is_told() {
     let folder = Folder::new();
     folder.put("r.csv", record(200));
-    // 1e-9 still ends at the values of 1e-7; from 1e-10 the linearised cost is rounding error.
+    // From 1e-10 on, the linearised cost is rounding error.
     folder.put("b.toml", bench().replace("= 0.002", "= 1e-12"));
     for command in ["calibrate", "diagnose"] {
         let errors = folder.fail(&[command, "r.csv", "--bench", "b.toml"]);
         assert_says(&errors, "no shorter step fits");
         assert_says(&errors, "`gyro_deg_per_h` in [noise] is out of proportion");
+    }
+}
+
+#[test]
+fn a_fit_on_a_flat_cost_ends_at_the_values_of_a_larger_noise() {
+    let folder = Folder::new();
+    folder.put("r.csv", record(200));
+    let [coarse, fine] = ["= 1e-7", "= 1e-9"].map(|noise| {
+        folder.put("b.toml", bench().replace("= 0.002", noise));
+        folder.succeed(&JSON);
+        let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+        report.coefficients
+    });
+    assert_eq!(coarse.len(), 9);
+    for (coarse, fine) in coarse.iter().zip(&fine) {
+        // A fit may end within a hundredth of a sigma of the least cost.
+        let difference = (coarse.estimate - fine.estimate).abs();
+        assert!(difference < 0.01 * coarse.sigma, "{coarse:?} {fine:?}");
     }
 }
 
