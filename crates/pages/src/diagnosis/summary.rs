@@ -365,3 +365,23 @@ pub(super) fn first_of(proposals: &str) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_card_has_whole_proposals() {
+        let one =
+            "a second run from another initial attitude, which does far more than a longer run";
+        let all = [one; 3].join("; ") + ".";
+        assert!(all.len() <= ROOM);
+        assert_eq!(first_of(&all), all);
+        let more = [one; 5].join("; ") + ".";
+        let shown = [one; 3].join("; ") + "; and others below.";
+        assert_eq!(first_of(&more), shown);
+        // The first stands whole, however long it is.
+        let long = "x".repeat(2 * ROOM);
+        assert_eq!(first_of(&long), long);
+    }
+}
