@@ -31,16 +31,19 @@ pub struct FleetOptions {
 
 impl Default for FleetOptions {
     fn default() -> Self {
-        Self {
-            false_discovery_rate: 0.05,
-            group_probability: 0.018,
-            outlier_probability: 0.01,
-            seed: 0,
-        }
+        Self::DEFAULT
     }
 }
 
 impl FleetOptions {
+    /// The settings unless others are given.
+    pub const DEFAULT: Self = Self {
+        false_discovery_rate: 0.05,
+        group_probability: 0.018,
+        outlier_probability: 0.01,
+        seed: 0,
+    };
+
     fn check(&self) -> Result<(), FleetError> {
         let all = [
             ("the false discovery rate", self.false_discovery_rate),

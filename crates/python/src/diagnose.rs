@@ -89,14 +89,7 @@ pub(crate) fn options(
     false_alarm: f64,
     euler_filter: bool,
 ) -> Outcome<DiagnoseOptions> {
-    if !(false_alarm > 0.0 && false_alarm < 1.0) {
-        return Err(Failure::of_value(
-            "false_alarm",
-            format!("{false_alarm}"),
-            "a probability between 0 and 1",
-            "",
-        ));
-    }
+    let false_alarm = Failure::unless_probability("false_alarm", false_alarm)?;
     if effects.iter().any(|id| id == FILTER_EFFECT) {
         return Err(Failure::of_value(
             "effects",

@@ -59,6 +59,19 @@ impl Failure {
         }
     }
 
+    /// Refuses a number that is no probability between 0 and 1.
+    pub(crate) fn unless_probability(place: &str, value: f64) -> Outcome<f64> {
+        match value > 0.0 && value < 1.0 {
+            true => Ok(value),
+            false => Err(Self::of_value(
+                place,
+                format!("{value}"),
+                "a probability between 0 and 1",
+                "",
+            )),
+        }
+    }
+
     /// A failed computation, with its code, causes and advice.
     pub(crate) fn of_work(error: &dyn Diagnostic) -> Self {
         let mut causes = Vec::new();

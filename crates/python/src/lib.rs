@@ -21,13 +21,20 @@ mod record;
 mod report;
 mod simulate;
 
+use mimalloc::MiMalloc;
 use pyo3::prelude::*;
+
+/// That of the system gives memory back after each step of a search, under the settings of a Dask worker
+/// and beside Arrow's tables; a sixth of a diagnosis went into getting it again.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// The computations of the package.
 #[pymodule]
 mod _gyrocal {
     use std::ffi::OsString;
 
+    use gyrocal_fleet::FleetOptions;
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -60,6 +67,18 @@ mod _gyrocal {
     /// Hash of the symbolic model.
     #[pymodule_export]
     const MODEL_HASH: &str = gyrocal::generated::MODEL_HASH;
+
+    /// Share of false ones among the causes that recur.
+    #[pymodule_export]
+    const FALSE_DISCOVERY_RATE: f64 = FleetOptions::DEFAULT.false_discovery_rate;
+
+    /// Family-wise probability that a fleet without differences shows a batch or site.
+    #[pymodule_export]
+    const GROUP_PROBABILITY: f64 = FleetOptions::DEFAULT.group_probability;
+
+    /// Family-wise probability that a coefficient without outliers shows one.
+    #[pymodule_export]
+    const OUTLIER_PROBABILITY: f64 = FleetOptions::DEFAULT.outlier_probability;
 
     /// Runs the command `gyrocal` with its arguments, the first of which is the name of the program;
     /// the exit code.

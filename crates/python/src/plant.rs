@@ -73,16 +73,8 @@ impl From<PlantError> for Failure {
 
 /// Settings of a diagnosis.
 fn options(false_alarm: f64) -> Outcome<SearchOptions> {
-    if !(false_alarm > 0.0 && false_alarm < 1.0) {
-        return Err(Failure::of_value(
-            "false_alarm",
-            format!("{false_alarm}"),
-            "a probability between 0 and 1",
-            "",
-        ));
-    }
     Ok(SearchOptions {
-        false_alarm_probability: false_alarm,
+        false_alarm_probability: Failure::unless_probability("false_alarm", false_alarm)?,
         ..SearchOptions::default()
     })
 }

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 VERSION: str
 MODEL_HASH: str
+FALSE_DISCOVERY_RATE: float
+GROUP_PROBABILITY: float
+OUTLIER_PROBABILITY: float
 
 @final
 class Record:

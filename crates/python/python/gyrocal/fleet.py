@@ -188,9 +188,9 @@ def read_manifest(out: str | os.PathLike[str]) -> dict[str, Any]:
 def summarise(
     results: str | os.PathLike[str] | pa.Table | Iterable[pa.RecordBatch],
     *,
-    false_discovery_rate: float = 0.05,
-    group_probability: float = 0.018,
-    outlier_probability: float = 0.01,
+    false_discovery_rate: float = _gyrocal.FALSE_DISCOVERY_RATE,
+    group_probability: float = _gyrocal.GROUP_PROBABILITY,
+    outlier_probability: float = _gyrocal.OUTLIER_PROBABILITY,
     seed: int = 0,
 ) -> Fleet:
     """Shows what the records of a fleet show together and none of them by itself.
