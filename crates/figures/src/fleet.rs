@@ -6,10 +6,12 @@ mod levels;
 mod recurring;
 mod whole;
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
+use gyrocal_record::Outputs;
 use serde::Deserialize;
 
 use crate::error::Error;
@@ -91,6 +93,29 @@ fn measured_by<T: for<'a> Deserialize<'a>>(python: &Path, arguments: &[&str]) ->
     Ok(serde_json::from_str(
         json.ok_or("no measurement was printed")?,
     )?)
+}
+
+/// The same of a measurement that takes minutes: what was measured of this wheel by these scripts is kept.
+fn measured_once<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Error> {
+    let mut measures = DefaultHasher::new();
+    let scripts = ["measure.py", "measure_fleet.py"].map(|name| root().join(PACKAGE).join(name));
+    for file in scripts.iter().chain([&wheel()?]) {
+        std::fs::read(file)?.hash(&mut measures);
+    }
+    let name = format!(
+        "fleet-{}-{:016x}.json",
+        arguments.join("-"),
+        measures.finish()
+    );
+    let kept = root().join("target/figures").join(name);
+    if let Ok(text) = std::fs::read_to_string(&kept) {
+        return Ok(serde_json::from_str(&text)?);
+    }
+    let found: serde_json::Value = measured(arguments)?;
+    let mut outputs = Outputs::new();
+    outputs.stage(&kept, &serde_json::to_vec(&found)?)?;
+    outputs.commit()?;
+    Ok(serde_json::from_value(found)?)
 }
 
 /// Records that Spark maps.

@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use super::measured;
+use super::measured_once;
 use crate::error::Error;
 use crate::figure::Figure;
 
@@ -58,8 +58,8 @@ struct Many {
 
 pub(super) fn figures() -> Result<Vec<Figure>, Error> {
     let records = std::env::var(RECORDS).unwrap_or_else(|_| MANY.to_string());
-    let mut figures = many(&measured(&["many", &records])?);
-    let found: Fleet = measured(&["fleet", &KILLED.to_string(), &STAGED.to_string()])?;
+    let mut figures = many(&measured_once(&["many", &records])?);
+    let found: Fleet = measured_once(&["fleet", &KILLED.to_string(), &STAGED.to_string()])?;
     figures.extend(killed(&found));
     let seeds = format!("0..{}", found.records);
     let stages = scale(&found).into_iter();
