@@ -28,7 +28,7 @@ BLOCKS = 20
 HOURS = 3.0
 
 #: Part of a block that the library works on, and one worker alone.
-SAMPLE = 4
+SAMPLE = 8
 
 #: Kills in the run that is killed most, and in the others.
 KILLS, KILLS_OF_OTHERS = 20, 2
