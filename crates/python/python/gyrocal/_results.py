@@ -100,7 +100,7 @@ class Result(Fields):
     """
 
     __slots__ = ("_blocks", "_text")
-    _blocks: list[dict[str, Any]] | None
+    _blocks: str | None
     _text: str
     schema_version: int
     manifest: Fields
@@ -108,11 +108,10 @@ class Result(Fields):
     def __init__(self, text: str, blocks: str | None = None) -> None:
         super().__init__(json.loads(text))
         object.__setattr__(self, "_text", text)
-        object.__setattr__(self, "_blocks", None if blocks is None else json.loads(blocks))
+        object.__setattr__(self, "_blocks", blocks)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        blocks = None if self._blocks is None else json.dumps(self._blocks)
-        return type(self), (self._text, blocks)
+        return type(self), (self._text, self._blocks)
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain data, equal to the JSON that the command writes."""
@@ -141,7 +140,7 @@ class Result(Fields):
 
     def _shown(self) -> list[dict[str, Any]]:
         """Sentences and tables."""
-        return self._blocks or []
+        return json.loads(self._blocks or "[]")
 
     def __str__(self) -> str:
         return "\n\n".join(filter(None, map(_block_text, self._shown())))
@@ -410,15 +409,9 @@ class PlantDiagnosis(Result):
     undetermined: list[Fields]
     later_record: Fields | None
 
-    def __init__(self, text: str, sentences: str | None = None) -> None:
-        super().__init__(text)
-        said = [] if sentences is None else json.loads(sentences)
-        blocks = [{"paragraph": sentence} for sentence in said]
-        object.__setattr__(self, "_blocks", blocks)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        said = [block["paragraph"] for block in self._blocks or []]
-        return type(self), (self._text, json.dumps(said))
+    def _shown(self) -> list[dict[str, Any]]:
+        """Sentences."""
+        return [{"paragraph": sentence} for sentence in super()._shown()]
 
     def _rows(self) -> list[dict[str, Any]]:
         """One row a finding; its sizes are columns."""

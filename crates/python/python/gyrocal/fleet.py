@@ -81,6 +81,9 @@ OUTPUT = pa.schema(
     ]
 )
 
+#: Columns whose values are often the same.
+_REPEATED = ["status", "verdict", "effects.list.element"]
+
 #: Records that are read, diagnosed and written at a time.
 BATCH_ROWS = 64
 
@@ -249,9 +252,9 @@ def _records(batch: pa.RecordBatch) -> Iterator[dict[str, Any]]:
                 expected=field.name,
                 advice="fleet.INPUT has the columns and their types",
             )
-    columns = {field.name: _cast(batch, field) for field in INPUT if field.name in names}
+    columns = {field.name: _cells(_cast(batch, field)) for field in INPUT if field.name in names}
     for row in range(batch.num_rows):
-        yield {name: _cell(column, row) for name, column in columns.items()}
+        yield {name: cells[row] for name, cells in columns.items()}
 
 
 def _cast(batch: pa.RecordBatch, field: pa.Field) -> pa.Array:
@@ -273,13 +276,16 @@ def _other_type(column: pa.Array, field: pa.Field) -> InputError:
     )
 
 
-def _cell(column: pa.Array, row: int) -> Any:
-    scalar = column[row]
-    if not scalar.is_valid:
-        return None
-    if pa.types.is_list(column.type):
-        return scalar.values.to_numpy(zero_copy_only=False)
-    return scalar.as_py()
+def _cells(column: pa.Array) -> list[Any]:
+    """The values of a column; lists of numbers are views of its buffer."""
+    if not pa.types.is_list(column.type) or len(column) == 0:
+        return column.to_pylist()
+    ends = column.offsets.to_numpy()
+    # A batch may be a part of a larger buffer.
+    ends, first = ends - ends[0], ends[0]
+    numbers = column.values.slice(first, ends[-1]).to_numpy(zero_copy_only=False)
+    known = column.is_valid().to_pylist()
+    return [numbers[a:b] if is_known else None for a, b, is_known in zip(ends, ends[1:], known)]
 
 
 def _row(given: dict[str, Any], false_alarm: float) -> dict[str, Any]:
@@ -291,7 +297,7 @@ def _row(given: dict[str, Any], false_alarm: float) -> dict[str, Any]:
     except GyrocalError as error:
         row.update(error=": ".join([error.message, *error.causes]), advice=error.advice)
         return row
-    findings = found.to_dict()["findings"]
+    findings = found.findings
     row.update(
         status="done",
         verdict=found.verdict,
@@ -343,7 +349,9 @@ def _diagnose_partition(path: Path, out: Path, false_alarm: float) -> None:
     names: list[list[str | None]] = []
     failed: list[dict[str, Any]] = []
     try:
-        with pq.ParquetFile(path) as file, pq.ParquetWriter(temporary, OUTPUT) as writer:
+        with pq.ParquetFile(path) as file, pq.ParquetWriter(
+            temporary, OUTPUT, use_dictionary=_REPEATED
+        ) as writer:
             for batch in diagnose_batches(file.iter_batches(BATCH_ROWS), false_alarm=false_alarm):
                 writer.write_batch(batch)
                 for row in batch.select(["unit", "record", "status", "error"]).to_pylist():
