@@ -1,6 +1,7 @@
 //! Functions that a cause outside of the catalogue may follow: of covariates and regressors, their products,
 //! their past and time.
 
+use gyrocal_statistics::followed_with_play;
 use gyrocal_statistics::math::exp;
 
 use crate::rows::Rows;
@@ -155,7 +156,7 @@ fn switches(values: &[f64]) -> Vec<Vec<f64>> {
 /// behind.
 fn memory(time_s: &[f64], values: &[f64]) -> Vec<Vec<f64>> {
     let half = 0.5 * range(values);
-    let plays = WIDTHS.map(|width| play(values, width * half));
+    let plays = WIDTHS.map(|width| followed_with_play(values, width * half));
     // The narrowest play tells the direction.
     let first = direction(values, &plays[0]);
     let mut all = vec![first];
@@ -177,16 +178,6 @@ fn direction(values: &[f64], other: &[f64]) -> Vec<f64> {
     let differences = difference(values, other);
     let sign = |value: &f64| if *value == 0.0 { 0.0 } else { value.signum() };
     differences.iter().map(sign).collect()
-}
-
-/// Output of a play of this half-width.
-fn play(values: &[f64], half_width: f64) -> Vec<f64> {
-    let mut state = values.first().copied().unwrap_or(0.0);
-    let next = |value: &f64| {
-        state = state.clamp(value - half_width, value + half_width);
-        state
-    };
-    values.iter().map(next).collect()
 }
 
 /// A first-order low-pass of a series.
@@ -220,13 +211,6 @@ fn products(values: &[Vec<f64>]) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_play_follows_outside_of_its_width() {
-        // By hand: a play of half-width one stays until the input is one away, then follows.
-        let inputs = [0.0, 0.5, 2.0, 1.5, 0.0, -1.0];
-        assert_eq!(play(&inputs, 1.0), vec![0.0, 0.0, 1.0, 1.0, 1.0, 0.0]);
-    }
 
     #[test]
     fn hats_add_up_to_one_and_bend_at_their_knots() {

@@ -10,6 +10,7 @@
 //! - [`Proportion`], [`chi_square_band`] and others: exact intervals of proportions and of mean
 //!   squares.
 //! - [`median`], [`quantile`], [`robust_sigma`] and others: descriptive statistics.
+//! - [`local_slopes`], [`followed_with_play`]: slope and hysteresis of a series.
 //! - [`deviates`]: normal deviates from a seed.
 //! - [`mod@format`]: p-values, estimates and rounded numbers as text.
 //! - [`math`]: exponential, logarithm, sine and others, the same on every machine.
@@ -49,6 +50,7 @@ mod descriptive;
 pub mod deviates;
 mod error;
 pub mod format;
+mod history;
 pub mod math;
 mod periodogram;
 mod probability;
@@ -64,6 +66,7 @@ pub use descriptive::{
     mean, median, quantile, rms_of_present, root_mean_square, standard_error, upper_median,
 };
 pub use error::StatisticsError;
+pub use history::{PLAY_OF_HYSTERESIS, followed_with_play, local_slopes};
 pub use periodogram::{
     FrequencySearch, Periodogram, SpectralLine, fourier_powers, periodogram, strongest_line,
 };

@@ -1,6 +1,7 @@
 //! Terms of the law of a gyro's output in rates, as columns of a linear regression.
 
 use gyrocal::generated::catalogue::RATES;
+use gyrocal_statistics::{PLAY_OF_HYSTERESIS, followed_with_play, local_slopes};
 use nalgebra::DVector;
 
 use super::blocks::Blocks;
@@ -23,9 +24,6 @@ pub(super) enum RateTerm {
     /// Change at a time \[s\] of a log.
     Step { log: usize, time_s: f64 },
 }
-
-/// Play of the hysteresis over the range of temperature.
-const PLAY: f64 = 0.25;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -90,14 +88,16 @@ impl RateTerm {
             Self::TemperatureRate => {
                 let changes = of_logs(logs, |log| {
                     let temperature = log.temperature_c.as_ref()?;
-                    Some(slopes(temperature, log.block_s / 60.0))
+                    Some(local_slopes(&log.time_s, temperature, 0.0))
                 })?;
-                Some(DVector::from_vec(changes))
+                Some(60.0 * DVector::from_vec(changes))
             }
             Self::Hysteresis => {
                 let all = temperature(logs)?;
-                let play = 0.5 * PLAY * (all.max() - all.min());
-                let lagging = of_logs(logs, |log| Some(lag(log.temperature_c.as_ref()?, play)))?;
+                let half = 0.5 * PLAY_OF_HYSTERESIS * (all.max() - all.min());
+                let lagging = of_logs(logs, |log| {
+                    Some(followed_with_play(log.temperature_c.as_ref()?, half))
+                })?;
                 let lagging = centred(DVector::from_vec(lagging));
                 Some(all - lagging)
             }
@@ -165,27 +165,4 @@ fn of_logs<T>(logs: &[Blocks], values: impl Fn(&Blocks) -> Option<Vec<T>>) -> Op
 fn centred(values: DVector<f64>) -> DVector<f64> {
     let mean = values.mean();
     values.add_scalar(-mean)
-}
-
-/// Slopes over three neighbours, two at the ends.
-fn slopes(values: &[f64], step: f64) -> Vec<f64> {
-    let last = values.len().saturating_sub(1);
-    (0..values.len())
-        .map(|at| {
-            let (from, to) = (at.saturating_sub(1), (at + 1).min(last));
-            (values[to] - values[from]) / ((to - from).max(1) as f64 * step)
-        })
-        .collect()
-}
-
-/// Values followed with a play of `half` to either side.
-fn lag(values: &[f64], half: f64) -> Vec<f64> {
-    let mut at = values.first().copied().unwrap_or(0.0);
-    values
-        .iter()
-        .map(|value| {
-            at = at.clamp(value - half, value + half);
-            at
-        })
-        .collect()
 }
