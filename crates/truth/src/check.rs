@@ -148,7 +148,7 @@ impl Scenario {
     fn conflict_of(&self, index: usize, hidden: &Hidden) -> Option<(&'static str, String, String)> {
         let id = hidden.id();
         let onset_s = match hidden.effect() {
-            Effect::GyroTemperature(_) | Effect::AccelTemperature(_)
+            Effect::GyroTemperature { .. } | Effect::AccelTemperature { .. }
                 if self.temperature.is_none() =>
             {
                 return Some((

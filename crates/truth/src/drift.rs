@@ -7,6 +7,7 @@ use libm::{cos, exp, sin};
 use crate::coefficients::Coefficients;
 use crate::effect::Effect;
 use crate::hidden::Hidden;
+use crate::temperature::OfTemperature;
 use crate::term::{Moment, Term};
 
 /// Drift as a function of the moment.
@@ -41,7 +42,8 @@ enum Part {
     },
     Wave(Wave),
     Temperature {
-        per_k: f64,
+        size: f64,
+        of: OfTemperature,
     },
     Magnetic {
         per_gauss: f64,
@@ -234,7 +236,7 @@ impl Part {
                 (gyro, Self::Wave(Wave::new(size, hidden.value(1), DAY_S)))
             }
             Effect::GyroTone(gyro) => (gyro, Self::Wave(Wave::tone(hidden))),
-            Effect::GyroTemperature(gyro) => (gyro, Self::Temperature { per_k: size }),
+            Effect::GyroTemperature { gyro, of } => (gyro, Self::Temperature { size, of }),
             Effect::GyroMagnetic(gyro) => {
                 let (per_gauss, axis) = (size, gyro);
                 (gyro, Self::Magnetic { per_gauss, axis })
@@ -273,7 +275,7 @@ impl Part {
                 time_constant_s,
             } => size * exp(-moment.time_s / time_constant_s),
             Self::Wave(wave) => wave.at(moment.time_s),
-            Self::Temperature { per_k } => per_k * moment.temperature_k,
+            Self::Temperature { size, of } => size * of.at(moment),
             Self::Magnetic { per_gauss, axis } => per_gauss * moment.field_gauss[*axis],
             Self::Step { size, on, .. } => f64::from(*on) * size,
             Self::Sign { size, negative, .. } => {

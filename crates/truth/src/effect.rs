@@ -2,6 +2,8 @@
 
 use gyrocal_record::Bound;
 
+use crate::temperature::OfTemperature;
+
 /// An effect; gyros, accelerometers and axes are 0, 1, 2 for x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Effect {
@@ -14,7 +16,10 @@ pub(crate) enum Effect {
     GyroStep(usize),
     GyroWarmup(usize),
     GyroDiurnal(usize),
-    GyroTemperature(usize),
+    GyroTemperature {
+        gyro: usize,
+        of: OfTemperature,
+    },
     GyroMagnetic(usize),
     GyroTone(usize),
     GyroSign {
@@ -31,7 +36,10 @@ pub(crate) enum Effect {
     AccelBias(usize),
     AccelScale(usize),
     AccelQuadratic(usize),
-    AccelTemperature(usize),
+    AccelTemperature {
+        axis: usize,
+        of: OfTemperature,
+    },
     AccelRamp(usize),
     AccelTone(usize),
     AccelSign(usize),
@@ -124,7 +132,11 @@ impl Effect {
                 ]
             }
             Self::GyroDiurnal(_) => vec![part("sine", "deg/h"), part("cosine", "deg/h")],
-            Self::GyroTemperature(_) => vec![size("deg/h/K")],
+            Self::GyroTemperature { of, .. } => vec![size(match of {
+                OfTemperature::Itself | OfTemperature::Hysteresis => "deg/h/K",
+                OfTemperature::Square => "deg/h/K^2",
+                OfTemperature::Rate => "deg/h/(K/h)",
+            })],
             Self::GyroMagnetic(_) => vec![size("deg/h/gauss")],
             Self::GyroTone(_) => vec![size("deg/h"), PERIOD, PHASE],
             Self::GyroSign { .. } => vec![size("deg/h")],
@@ -137,7 +149,11 @@ impl Effect {
                 vec![small("1")]
             }
             Self::AccelQuadratic(_) => vec![size("g/g^2")],
-            Self::AccelTemperature(_) => vec![size("g/K")],
+            Self::AccelTemperature { of, .. } => vec![size(match of {
+                OfTemperature::Itself | OfTemperature::Hysteresis => "g/K",
+                OfTemperature::Square => "g/K^2",
+                OfTemperature::Rate => "g/(K/h)",
+            })],
             Self::AccelRamp(_) => vec![size("g/day")],
             Self::AccelTone(_) => vec![size("g"), PERIOD, PHASE],
             Self::AccelDeadZone(_) => vec![not_negative("g")],
@@ -186,12 +202,15 @@ impl Effect {
                 let name = format!("gyro_{letter}.{}", product_name(powers));
                 all.push((name, Self::GyroProduct { gyro, powers }));
             }
-            let single: [(&str, Self); 10] = [
+            for of in OfTemperature::ALL {
+                let effect = Self::GyroTemperature { gyro, of };
+                all.push((format!("gyro_{letter}.{}", of.name()), effect));
+            }
+            let single: [(&str, Self); 9] = [
                 ("ramp", Self::GyroRamp(gyro)),
                 ("step", Self::GyroStep(gyro)),
                 ("warmup", Self::GyroWarmup(gyro)),
                 ("diurnal", Self::GyroDiurnal(gyro)),
-                ("temperature", Self::GyroTemperature(gyro)),
                 ("random_walk", Self::GyroRandomWalk(gyro)),
                 ("noise", Self::GyroNoise(gyro)),
                 ("magnetic", Self::GyroMagnetic(gyro)),
@@ -212,11 +231,14 @@ impl Effect {
             }
         }
         for (axis, letter) in LETTERS.into_iter().enumerate() {
-            let single: [(&str, Self); 10] = [
+            for of in OfTemperature::ALL {
+                let effect = Self::AccelTemperature { axis, of };
+                all.push((format!("accel_{letter}.{}", of.name()), effect));
+            }
+            let single: [(&str, Self); 9] = [
                 ("bias", Self::AccelBias(axis)),
                 ("scale", Self::AccelScale(axis)),
                 ("quadratic", Self::AccelQuadratic(axis)),
-                ("temperature", Self::AccelTemperature(axis)),
                 ("noise", Self::AccelNoise(axis)),
                 ("quantisation", Self::AccelQuantisation(axis)),
                 ("ramp", Self::AccelRamp(axis)),

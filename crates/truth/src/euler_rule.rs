@@ -37,7 +37,7 @@ pub fn euler_rule(scenario: &Scenario) -> Result<Simulation, Error> {
     let up_enu_g = [0.0, 0.0, platform.specific_force_at_rest_g];
     let mut angles_rad = platform.initial_platform_c_enu.angles_rad();
     let mut gyro_noise = GyroNoise::new(scenario);
-    let mut sampling = Sampling::new(scenario, &[], scenario.temperature_course_c());
+    let mut sampling = Sampling::new(scenario, &[], scenario.temperature_course());
     let mut truth = Truth {
         coefficients: scenario.coefficients,
         hidden: Vec::new(),

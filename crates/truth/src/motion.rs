@@ -10,6 +10,7 @@ use crate::earth_rotation::{EarthAngle, EarthRotation};
 use crate::effect::Effect;
 use crate::platform::{EARTH_RATE_RAD_PER_S, Platform};
 use crate::scenario::Scenario;
+use crate::temperature::Thermal;
 use crate::term::{Moment, Term};
 
 /// A platform at one moment.
@@ -21,7 +22,7 @@ pub(crate) struct Motion<'a> {
     longest_step_s: f64,
     /// Onsets and knocks at known times, in falling order.
     events: Vec<Event>,
-    temperature: Line,
+    thermal: Line,
     state: State,
 }
 
@@ -41,12 +42,46 @@ struct Event {
     turn_rad: [f64; 3],
 }
 
-/// A temperature that is linear in time.
+/// A temperature that is linear in time, with its rate and hysteresis.
 #[derive(Debug, Clone, Copy)]
 struct Line {
     start_s: f64,
-    start_k: f64,
-    k_per_s: f64,
+    start: Thermal,
+    /// Changes per second.
+    change: Thermal,
+}
+
+impl Line {
+    fn at(&self, time_s: f64) -> Thermal {
+        let (start, change) = (&self.start, &self.change);
+        let since_s = time_s - self.start_s;
+        Thermal {
+            temperature_k: start.temperature_k + change.temperature_k * since_s,
+            rate_k_per_h: start.rate_k_per_h + change.rate_k_per_h * since_s,
+            hysteresis_k: start.hysteresis_k + change.hysteresis_k * since_s,
+        }
+    }
+
+    /// From one value to another.
+    fn between(start_s: f64, start: Thermal, end_s: f64, end: Thermal) -> Self {
+        let duration_s = end_s - start_s;
+        let per_s = |end: f64, start: f64| {
+            if duration_s > 0.0 {
+                (end - start) / duration_s
+            } else {
+                0.0
+            }
+        };
+        Self {
+            start_s,
+            start,
+            change: Thermal {
+                temperature_k: per_s(end.temperature_k, start.temperature_k),
+                rate_k_per_h: per_s(end.rate_k_per_h, start.rate_k_per_h),
+                hysteresis_k: per_s(end.hysteresis_k, start.hysteresis_k),
+            },
+        }
+    }
 }
 
 impl<'a> Motion<'a> {
@@ -59,11 +94,12 @@ impl<'a> Motion<'a> {
             platform.specific_force_at_rest_g,
             None,
         );
-        Self::start(platform.initial_platform_c_enu, law, earth, Vec::new(), 0.0)
+        let initial = platform.initial_platform_c_enu;
+        Self::start(initial, law, earth, Vec::new(), Thermal::default())
     }
 
     /// The platform of a scenario with its hidden effects.
-    pub(crate) fn of(scenario: &Scenario, terms: &'a [Term], temperature_k: f64) -> Self {
+    pub(crate) fn of(scenario: &Scenario, terms: &'a [Term], thermal: Thermal) -> Self {
         let platform = scenario.platform();
         let law = DriftLaw::new(platform.coefficients, &scenario.hidden, terms);
         let mut earth_rate = EARTH_RATE_RAD_PER_S;
@@ -92,7 +128,7 @@ impl<'a> Motion<'a> {
             scenario.magnetic_field_gauss,
         );
         let initial = platform.initial_platform_c_enu;
-        Self::start(initial, law, earth, events, temperature_k)
+        Self::start(initial, law, earth, events, thermal)
     }
 
     fn start(
@@ -100,7 +136,7 @@ impl<'a> Motion<'a> {
         law: DriftLaw<'a>,
         earth: EarthRotation,
         events: Vec<Event>,
-        temperature_k: f64,
+        thermal: Thermal,
     ) -> Self {
         let mut motion = Self {
             has_switches: law.has_switches(),
@@ -114,11 +150,7 @@ impl<'a> Motion<'a> {
             law,
             earth,
             events,
-            temperature: Line {
-                start_s: 0.0,
-                start_k: temperature_k,
-                k_per_s: 0.0,
-            },
+            thermal: Line::between(0.0, thermal, 0.0, thermal),
         };
         motion.update_modes();
         motion.apply_events();
@@ -147,23 +179,9 @@ impl<'a> Motion<'a> {
 
     /// Integrates to a later time with a held noise of the gyros and a temperature that changes
     /// linearly to the given one.
-    pub(crate) fn advance_to(
-        &mut self,
-        time_s: f64,
-        noise_deg_per_h: [f64; 3],
-        temperature_k: f64,
-    ) {
-        let now = &self.state.moment;
-        let duration_s = time_s - now.time_s;
-        self.temperature = Line {
-            start_s: now.time_s,
-            start_k: now.temperature_k,
-            k_per_s: if duration_s > 0.0 {
-                (temperature_k - now.temperature_k) / duration_s
-            } else {
-                0.0
-            },
-        };
+    pub(crate) fn advance_to(&mut self, time_s: f64, noise_deg_per_h: [f64; 3], thermal: Thermal) {
+        let now_s = self.state.moment.time_s;
+        self.thermal = Line::between(now_s, self.thermal.at(now_s), time_s, thermal);
         while let Some(event) = self.events.last().filter(|event| event.time_s <= time_s) {
             let event_s = event.time_s;
             self.steps_to(event_s, noise_deg_per_h);
@@ -194,11 +212,13 @@ impl<'a> Motion<'a> {
         platform_c_inertial: Attitude,
     ) -> Moment {
         let field = self.earth.field_inertial_gauss(earth_angle);
-        let line = &self.temperature;
+        let thermal = self.thermal.at(time_s);
         Moment {
             time_s,
             accel_g: platform_c_inertial.resolve(self.earth.up_inertial_g(earth_angle)),
-            temperature_k: line.start_k + line.k_per_s * (time_s - line.start_s),
+            temperature_k: thermal.temperature_k,
+            temperature_rate_k_per_h: thermal.rate_k_per_h,
+            temperature_hysteresis_k: thermal.hysteresis_k,
             field_gauss: field.map_or([0.0; 3], |field| platform_c_inertial.resolve(field)),
         }
     }

@@ -3,6 +3,7 @@
 use crate::attitude::Attitude;
 use crate::motion::Motion;
 use crate::platform::Platform;
+use crate::temperature::Thermal;
 
 impl Platform {
     /// Readings of ideal accelerometers in platform axes \[g\] at times since time zero.
@@ -27,7 +28,7 @@ impl Platform {
             if *time_s < motion.moment().time_s {
                 motion = Motion::new(self);
             }
-            motion.advance_to(*time_s, [0.0; 3], 0.0);
+            motion.advance_to(*time_s, [0.0; 3], Thermal::default());
             see(&motion)
         };
         times_s.iter().map(advance).collect()

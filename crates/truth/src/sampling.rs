@@ -6,6 +6,7 @@ use libm::rint;
 use crate::effect::Effect;
 use crate::random::{Purpose, Stream};
 use crate::scenario::Scenario;
+use crate::temperature::Point;
 use crate::term::Term;
 
 /// The logger: samples with noise, gaps and missing components.
@@ -14,7 +15,7 @@ pub(crate) struct Sampling<'a> {
     terms: &'a [Term],
     noise: AccelNoise,
     missing: Stream,
-    temperature_c: Option<Vec<f64>>,
+    temperature: Option<Vec<Point>>,
     record: Record,
     outliers: Vec<[bool; 3]>,
 }
@@ -40,7 +41,7 @@ impl<'a> Sampling<'a> {
     pub(crate) fn new(
         scenario: &'a Scenario,
         terms: &'a [Term],
-        temperature_c: Option<Vec<f64>>,
+        temperature: Option<Vec<Point>>,
     ) -> Self {
         let rows = scenario.grid_rows();
         Self {
@@ -51,9 +52,9 @@ impl<'a> Sampling<'a> {
             record: Record {
                 time_s: Vec::with_capacity(rows),
                 accel_g: Vec::with_capacity(rows),
-                temperature_c: temperature_c.as_ref().map(|_| Vec::with_capacity(rows)),
+                temperature_c: temperature.as_ref().map(|_| Vec::with_capacity(rows)),
             },
-            temperature_c,
+            temperature,
             outliers: Vec::new(),
         }
     }
@@ -80,9 +81,8 @@ impl<'a> Sampling<'a> {
             .time_s
             .push(self.scenario.start_s + since_first_s);
         self.record.accel_g.push(sample);
-        if let (Some(column), Some(course)) = (&mut self.record.temperature_c, &self.temperature_c)
-        {
-            column.extend(course.get(row));
+        if let (Some(column), Some(course)) = (&mut self.record.temperature_c, &self.temperature) {
+            column.extend(course.get(row).map(|point| point.temperature_c));
         }
         self.outliers.push(outliers);
         true

@@ -8,7 +8,7 @@ use crate::effect::Effect;
 use crate::hidden::Hidden;
 use crate::platform::Platform;
 use crate::random::{Purpose, Stream};
-use crate::temperature::Temperature;
+use crate::temperature::{Point, Temperature};
 
 /// A scenario to be simulated: a platform, its bench, and the sampling of its record.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,9 +155,9 @@ impl Scenario {
     }
 
     /// The temperature at each row of the regular grid, if the scenario has one.
-    pub(crate) fn temperature_course_c(&self) -> Option<Vec<f64>> {
+    pub(crate) fn temperature_course(&self) -> Option<Vec<Point>> {
         self.temperature
-            .map(|temperature| temperature.course_c(self.seed, self.grid_s()))
+            .map(|temperature| temperature.course(self.seed, self.grid_s()))
     }
 
     /// True if the logger writes a row at this time since the first.

@@ -3,6 +3,7 @@
 use crate::drift::Wave;
 use crate::effect::Effect;
 use crate::hidden::Hidden;
+use crate::temperature::OfTemperature;
 use crate::term::{Moment, Term};
 
 /// Errors of the three accelerometers, axes 0, 1, 2.
@@ -23,7 +24,8 @@ enum Part {
     },
     Temperature {
         axis: usize,
-        per_k: f64,
+        size: f64,
+        of: OfTemperature,
     },
     Ramp {
         axis: usize,
@@ -80,7 +82,7 @@ impl Part {
             Effect::AccelBias(axis) => power(axis, 0),
             Effect::AccelScale(axis) => power(axis, 1),
             Effect::AccelQuadratic(axis) => power(axis, 2),
-            Effect::AccelTemperature(axis) => Self::Temperature { axis, per_k: size },
+            Effect::AccelTemperature { axis, of } => Self::Temperature { axis, size, of },
             Effect::AccelRamp(axis) => Self::Ramp {
                 axis,
                 per_s: size / DAY_S,
@@ -102,9 +104,7 @@ impl Part {
             Self::Power { axis, size, power } => {
                 output_g[*axis] += (0..*power).fold(*size, |product, _| product * accel_g[*axis]);
             }
-            Self::Temperature { axis, per_k } => {
-                output_g[*axis] += per_k * moment.temperature_k;
-            }
+            Self::Temperature { axis, size, of } => output_g[*axis] += size * of.at(moment),
             Self::Ramp { axis, per_s } => output_g[*axis] += per_s * moment.time_s,
             Self::Wave { axis, wave } => output_g[*axis] += wave.at(moment.time_s),
             Self::Sign { axis, size } => {

@@ -12,6 +12,7 @@ use crate::motion::Motion;
 use crate::sampling::Sampling;
 use crate::scenario::Scenario;
 use crate::sensing::Sensing;
+use crate::temperature::{Thermal, thermal_course};
 use crate::term::Term;
 
 /// A record, its bench description and the truth.
@@ -100,22 +101,28 @@ fn run(
     rows_done: &mut dyn FnMut(usize),
 ) -> Result<Simulation, Error> {
     scenario.check()?;
-    let temperature_c = scenario.temperature_course_c();
-    let temperature_k = about_mean(scenario, temperature_c.as_deref());
-    let temperature_at = |row: usize| temperature_k.get(row).copied().unwrap_or(0.0);
+    let temperature = scenario.temperature_course();
+    let logged: Vec<bool> = scenario
+        .grid_s()
+        .map(|time_s| scenario.logs(time_s))
+        .collect();
+    let thermal = temperature
+        .as_deref()
+        .map(|course| thermal_course(course, &logged));
+    let thermal_at = |row: usize| thermal.as_ref().map_or(Thermal::default(), |all| all[row]);
     let clock = Clock::new(scenario, terms);
 
-    let mut motion = Motion::of(scenario, terms, temperature_at(0));
+    let mut motion = Motion::of(scenario, terms, thermal_at(0));
     let mut gyro_noise = GyroNoise::new(scenario);
     let sensing = Sensing::new(&scenario.hidden, terms);
-    let mut sampling = Sampling::new(scenario, terms, temperature_c);
+    let mut sampling = Sampling::new(scenario, terms, temperature);
     let rows = scenario.grid_rows();
     let mut platform_c_enu = Vec::with_capacity(rows);
     let mut drift_deg_per_h = Vec::with_capacity(rows);
     for (row, clock_s) in scenario.grid_s().enumerate() {
         if row > 0 {
             let noise = gyro_noise.next_deg_per_h(scenario.interval_s);
-            motion.advance_to(clock.true_time_s(clock_s), noise, temperature_at(row));
+            motion.advance_to(clock.true_time_s(clock_s), noise, thermal_at(row));
         }
         if sampling.log(row, clock_s, sensing.output_g(motion.moment())) {
             platform_c_enu.push(motion.platform_c_enu());
@@ -135,21 +142,6 @@ fn run(
             outliers,
         },
     })
-}
-
-/// The temperature of each row of the grid about its mean over the rows that are logged.
-fn about_mean(scenario: &Scenario, temperature_c: Option<&[f64]>) -> Vec<f64> {
-    let Some(course_c) = temperature_c else {
-        return Vec::new();
-    };
-    let logged = scenario.grid_s().zip(course_c);
-    let (sum, count) = logged
-        .filter(|(time_s, _)| scenario.logs(*time_s))
-        .fold((0.0, 0_u32), |(sum, count), (_, value)| {
-            (sum + value, count + 1)
-        });
-    let mean_c = sum / f64::from(count.max(1));
-    course_c.iter().map(|value| value - mean_c).collect()
 }
 
 /// Conversion from the record's clock to true time.

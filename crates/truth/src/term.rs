@@ -10,6 +10,11 @@ pub struct Moment {
     pub accel_g: [f64; 3],
     /// Temperature about its mean over the rows of the record; 0 if none is logged.
     pub temperature_k: f64,
+    /// Rate of change of the temperature \[K/h\].
+    pub temperature_rate_k_per_h: f64,
+    /// Part of the temperature by which its ways up and down differ \[K\]: what a friction holds that
+    /// slips at an eighth of the range over the rows of the record, about its mean.
+    pub temperature_hysteresis_k: f64,
     /// The Earth's magnetic field in platform axes \[gauss\]; 0 if the scenario has none.
     pub field_gauss: [f64; 3],
 }

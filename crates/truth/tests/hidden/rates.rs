@@ -9,6 +9,7 @@ struct Row {
     time_s: f64,
     accel_g: [f64; 3],
     temperature_k: f64,
+    hysteresis_k: f64,
     field_gauss: [f64; 3],
     /// The whole rate of the platform.
     rate_deg_per_h: [f64; 3],
@@ -17,7 +18,7 @@ struct Row {
 type Case<'a> = (&'a str, &'a [(&'a str, f64)], usize, fn(&Row) -> f64);
 
 /// Effect, parameters, gyro, and the addition to its drift \[deg/h\].
-const CASES: [Case<'_>; 18] = [
+const CASES: [Case<'_>; 20] = [
     ("gyro_x.bias", &[("size", 0.05)], 0, |_| 0.05),
     ("gyro_y.g_y", &[("size", 0.05)], 1, |r| 0.05 * r.accel_g[1]),
     ("gyro_x.g_y", &[("size", 0.05)], 0, |r| 0.05 * r.accel_g[1]),
@@ -69,6 +70,12 @@ const CASES: [Case<'_>; 18] = [
     ("gyro_x.temperature", &[("size", 0.05)], 0, |r| {
         0.05 * r.temperature_k
     }),
+    ("gyro_y.temperature_square", &[("size", 0.05)], 1, |r| {
+        0.05 * r.temperature_k * r.temperature_k
+    }),
+    ("gyro_z.temperature_hysteresis", &[("size", 0.5)], 2, |r| {
+        0.5 * r.hysteresis_k
+    }),
     ("gyro_z.magnetic", &[("size", 0.05)], 2, |r| {
         0.05 * r.field_gauss[2]
     }),
@@ -91,12 +98,14 @@ fn an_effect_adds_to_the_drift_what_its_definition_says() {
         let truth = &simulation.truth;
         let temperature_c = simulation.record.temperature_c.as_ref().unwrap();
         let mean_c = temperature_c.iter().sum::<f64>() / temperature_c.len() as f64;
+        let hysteresis_k = hysteresis_k(temperature_c);
         let mut largest: f64 = 0.0;
         for (index, platform_c_enu) in truth.platform_c_enu.iter().enumerate() {
             let row = Row {
                 time_s: simulation.record.time_s[index],
                 accel_g: platform_c_enu.resolve([0.0, 0.0, 1.0]),
                 temperature_k: temperature_c[index] - mean_c,
+                hysteresis_k: hysteresis_k[index],
                 field_gauss: platform_c_enu.resolve(FIELD_GAUSS),
                 rate_deg_per_h: truth.drift_deg_per_h[index],
             };
@@ -114,6 +123,53 @@ fn an_effect_adds_to_the_drift_what_its_definition_says() {
         }
         assert!(largest > 0.005, "{id} is never seen: {largest}");
     }
+}
+
+/// Distance of the temperature from a float that it drags along where it is an eighth of its range away,
+/// about its mean.
+fn hysteresis_k(temperature_c: &[f64]) -> Vec<f64> {
+    let most = temperature_c.iter().copied().fold(f64::MIN, f64::max);
+    let least = temperature_c.iter().copied().fold(f64::MAX, f64::min);
+    let half_k = (most - least) / 8.0;
+    let mut float_c = temperature_c[0];
+    let distance_k = temperature_c.iter().map(|temperature_c| {
+        float_c = float_c
+            .max(temperature_c - half_k)
+            .min(temperature_c + half_k);
+        temperature_c - float_c
+    });
+    let distance_k: Vec<f64> = distance_k.collect();
+    let mean_k = distance_k.iter().sum::<f64>() / distance_k.len() as f64;
+    distance_k
+        .iter()
+        .map(|distance_k| distance_k - mean_k)
+        .collect()
+}
+
+#[test]
+fn the_rate_of_temperature_is_its_derivative() {
+    let nominal = quiet(Coefficients::PAPER_LIKE);
+    let size = [("size", 0.05)];
+    let of_gyro = simulate(&with(&nominal, "gyro_x.temperature_rate", &size)).unwrap();
+    let of_accel = simulate(&with(&nominal, "accel_y.temperature_rate", &size)).unwrap();
+    let temperature_c = of_gyro.record.temperature_c.as_ref().unwrap();
+    let mut largest: f64 = 0.0;
+    for row in 2..temperature_c.len() - 2 {
+        // Of fourth order: wrong by the fourth power of 60 s times the fastest wave's rate, 2.9e-4
+        // rad/s, over 30: 3e-9 of 3 K/h.
+        let near: [f64; 5] = core::array::from_fn(|place| temperature_c[row + place - 2]);
+        let per_row = (8.0 * (near[3] - near[1]) - (near[4] - near[0])) / 12.0;
+        let expected = 0.05 * 60.0 * per_row;
+        let force_g = of_gyro.truth.platform_c_enu[row].resolve([0.0, 0.0, 1.0]);
+        let nominal_drift = nominal.coefficients.drift_deg_per_h(force_g)[0];
+        let added = of_gyro.truth.drift_deg_per_h[row][0] - nominal_drift;
+        assert!((added - expected).abs() < 1e-9, "{row}: {added} {expected}");
+        let force_g = of_accel.truth.platform_c_enu[row].resolve([0.0, 0.0, 1.0]);
+        let added = of_accel.record.accel_g[row][1] - force_g[1];
+        assert!((added - expected).abs() < 1e-9, "{row}: {added} {expected}");
+        largest = largest.max(expected.abs());
+    }
+    assert!(largest > 0.005, "{largest}");
 }
 
 #[test]

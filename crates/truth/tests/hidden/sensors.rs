@@ -11,7 +11,7 @@ type Case<'a> = (
 );
 
 /// Effect, parameters, and the error of the output at a time, specific force and temperature.
-const CASES: [Case<'_>; 11] = [
+const CASES: [Case<'_>; 12] = [
     ("accel_x.bias", &[("size", 1e-3)], |_, _, _| {
         [1e-3, 0.0, 0.0]
     }),
@@ -33,6 +33,11 @@ const CASES: [Case<'_>; 11] = [
     ("accel_z.temperature", &[("size", 1e-3)], |_, _, k| {
         [0.0, 0.0, 1e-3 * k]
     }),
+    (
+        "accel_x.temperature_square",
+        &[("size", 1e-3)],
+        |_, _, k| [1e-3 * k * k, 0.0, 0.0],
+    ),
     ("accel_y.ramp", &[("size", 1e-3)], |t, _, _| {
         [0.0, 1e-3 * t / DAY_S, 0.0]
     }),
