@@ -4,6 +4,7 @@ use gyrocal_scalar::{Model, NamedInputs};
 use crate::anchor::{Anchored, Chart};
 use crate::generated::platform::Platform;
 use crate::initial_attitude::InitialAttitude;
+use crate::regressors::Regressors;
 use crate::settings::FilterSettings;
 
 /// The filter underneath: three angles, the nine coefficients and the parameters of the effects.
@@ -67,7 +68,7 @@ where
                 expected: "a start value for each parameter of the effects",
             });
         }
-        Ok(Self {
+        let mut this = Self {
             filter: Filter::new(
                 Anchored(model),
                 chart,
@@ -81,7 +82,9 @@ where
             drift_density: [settings.drift_noise_density(); 3],
             time_s: zero,
             model,
-        })
+        };
+        this.set_regressors(&Regressors::from_array([zero; 3]));
+        Ok(this)
     }
 
     /// Predicts over `interval_s` without a sample.
@@ -139,7 +142,17 @@ where
             .output(&moving, &state[3..], self.filter.inputs().inputs())
     }
 
-    /// The inputs of the model, for shapes and measured quantities.
+    /// Sets what follows from the measured temperature, for the next steps and samples; zero before. Does
+    /// nothing in a model that does not use it.
+    pub fn set_regressors(&mut self, regressors: &Regressors<T>) {
+        if let Some([_, _, own @ ..]) = self.inputs_mut().group_mut("conditions") {
+            for (own, given) in own.iter_mut().zip(regressors.to_array()) {
+                *own = given;
+            }
+        }
+    }
+
+    /// The inputs of the model, for shapes.
     pub fn inputs_mut(&mut self) -> &mut I {
         self.filter.inputs_mut().inputs_mut()
     }
@@ -150,11 +163,10 @@ where
         &self.filter
     }
 
-    /// Sets the conditions of models that use them: the time, and the mean of the temperature. Replace
-    /// it by the measured temperature if the model uses it.
+    /// Sets the time of models that use it.
     fn condition(&mut self, time_s: T, interval_s: T) {
-        if let Some([time, interval, temperature_k]) = self.inputs_mut().group_mut("conditions") {
-            (*time, *interval, *temperature_k) = (time_s, interval_s, T::from_f64(0.0));
+        if let Some([time, interval, ..]) = self.inputs_mut().group_mut("conditions") {
+            (*time, *interval) = (time_s, interval_s);
         }
     }
 }

@@ -82,6 +82,7 @@ mod filter;
 pub mod generated;
 mod initial_attitude;
 mod orientation;
+mod regressors;
 mod rotation;
 mod saved;
 mod settings;
@@ -106,6 +107,7 @@ pub use gyrocal_estimation::{
 };
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
 pub use initial_attitude::{ChartAngles, InitialAttitude};
+pub use regressors::Regressors;
 pub use saved::{SavedForm, SavedNumber};
 pub use settings::{Discretisation, FilterSettings};
 pub use site::{EARTH_RATE_RAD_PER_S, Site};

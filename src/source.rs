@@ -18,6 +18,7 @@ pub const FILES: &[(&str, &str)] = files![
     "initial_attitude.rs",
     "lib.rs",
     "orientation.rs",
+    "regressors.rs",
     "rotation.rs",
     "saved.rs",
     "settings.rs",

@@ -11,7 +11,8 @@ use gyrocal::generated::platform::PlatformInputs;
 use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::scalar::{Model, Recentre};
 use gyrocal::{
-    Anchored, Catalogue, Chart, ChartInputs, Integration, Platform, Recentring, Site, Surveyed,
+    Anchored, Catalogue, Chart, ChartInputs, Drift, ExtensionFilter, FilterSettings,
+    InitialAttitude, Integration, Platform, Recentring, Regressors, Site, Surveyed,
 };
 
 const LATITUDE_DEG: f64 = 39.1;
@@ -134,6 +135,48 @@ fn a_chart_carries_all_that_is_fixed_to_the_earth() {
         }
     }
     assert_eq!(inputs.conditions[conditions_index::TIME_S], 1234.5);
+}
+
+#[test]
+fn a_filter_with_effects_of_temperature_takes_what_follows_from_it() {
+    const STATES: usize = Catalogue::STATES;
+    type Extended = ExtensionFilter<f64, Catalogue, CatalogueInputs<f64>, STATES>;
+    let sizes = [
+        (parameters_index::GYRO_X_TEMPERATURE, 0.01),
+        (parameters_index::GYRO_X_TEMPERATURE_SQUARE, 0.002),
+        (parameters_index::GYRO_X_TEMPERATURE_RATE, 0.03),
+        (parameters_index::GYRO_X_TEMPERATURE_HYSTERESIS, 0.05),
+    ];
+    let start = (Platform::PARAMETERS..Catalogue::PARAMETERS).map(|place| {
+        let own = sizes.iter().find(|(index, _)| *index == place);
+        [own.map_or(0.0, |(_, size)| *size), NOTHING]
+    });
+    let settings = FilterSettings {
+        drift_sigma: Drift::from_array([NOTHING; 9]),
+        ..FilterSettings::at_site(site())
+    };
+    let attitude = InitialAttitude::Angles {
+        angles_rad: [0.0; 3],
+        sigma_rad: [1e-5; 3],
+    };
+    let mut filter = Extended::new(Catalogue, start, &settings, &attitude).unwrap();
+    let up = [0.0, 0.0, 1.0];
+    filter.take(0.0, &up).unwrap();
+    // Without a temperature the effects are silent.
+    assert!(filter.drift_deg_per_h(&up)[0].abs() < 1e-12);
+    filter.set_regressors(&Regressors {
+        temperature_k: 3.0,
+        temperature_rate_k_per_h: -0.5,
+        temperature_hysteresis_k: 0.2,
+    });
+    let expected = 0.01 * 3.0 + 0.002 * 9.0 - 0.03 * 0.5 + 0.05 * 0.2;
+    for _ in 0..2 {
+        // To the sigma that the sizes are given, and rounding.
+        let drift = filter.drift_deg_per_h(&up)[0];
+        assert!((drift - expected).abs() < 1e-10, "{drift} {expected}");
+        // A step keeps them.
+        filter.coast(60.0).unwrap();
+    }
 }
 
 #[test]

@@ -185,6 +185,43 @@ EFFECTS = [
     ],
     *[
         Effect(
+            f"gyro_{i}.temperature_square", Kind.REGRESSOR, Enters.RATE,
+            f"square of temperature in the drift of gyro {i}",
+            _size("deg/h/K^2"), 0.0005, "",
+            lambda p, at, i=i: {i: p["size"] * at.temperature_k**2},
+            power=2,
+            near_twins=(f"gyro_{i}.temperature",),
+            family="gyro_i.temperature_square",
+        )
+        for i in AXES
+    ],
+    *[
+        Effect(
+            f"gyro_{i}.temperature_rate", Kind.REGRESSOR, Enters.RATE,
+            f"drift of gyro {i} by the rate of change of temperature: thermal gradients, transients",
+            _size("deg/h/(K/h)"), 0.005, NOISE_STANDARD,
+            lambda p, at, i=i: {i: p["size"] * at.temperature_rate_k_per_h},
+            # The rate of a daily wave is one, that of an exponential approach an exponential.
+            near_twins=(f"gyro_{i}.diurnal", f"gyro_{i}.warmup"),
+            family="gyro_i.temperature_rate",
+        )
+        for i in AXES
+    ],
+    *[
+        Effect(
+            f"gyro_{i}.temperature_hysteresis", Kind.REGRESSOR, Enters.RATE,
+            f"thermal hysteresis of the drift of gyro {i}: it differs between rising and falling "
+            "temperature",
+            _size("deg/h/K"), 0.005, "",
+            lambda p, at, i=i: {i: p["size"] * at.temperature_hysteresis_k},
+            near_twins=(f"gyro_{i}.temperature", f"gyro_{i}.temperature_rate",
+                        f"gyro_{i}.diurnal"),
+            family="gyro_i.temperature_hysteresis",
+        )
+        for i in AXES
+    ],
+    *[
+        Effect(
             f"gyro_{i}.random_walk", Kind.RANDOM_WALK, Enters.RATE, f"rate random walk of gyro {i} (K)",
             _size("deg/h/sqrt(h)"), 0.001, NOISE_STANDARD, axes=(i,),
             family="gyro_i.random_walk",
@@ -237,6 +274,41 @@ EFFECTS = [
             _size("g/K"), 1e-5, ACCELEROMETER_STANDARD,
             lambda p, at, i=i: {i: p["size"] * at.temperature_k},
             family="accel_i.temperature",
+        )
+        for i in AXES
+    ],
+    *[
+        Effect(
+            f"accel_{i}.temperature_square", Kind.REGRESSOR, Enters.OUTPUT,
+            f"square of temperature in the bias of accelerometer {i}",
+            _size("g/K^2"), 1e-6, "",
+            lambda p, at, i=i: {i: p["size"] * at.temperature_k**2},
+            power=2,
+            near_twins=(f"accel_{i}.temperature",),
+            family="accel_i.temperature_square",
+        )
+        for i in AXES
+    ],
+    *[
+        Effect(
+            f"accel_{i}.temperature_rate", Kind.REGRESSOR, Enters.OUTPUT,
+            f"bias of accelerometer {i} by the rate of change of temperature: thermal gradients, "
+            "transients",
+            _size("g/(K/h)"), 1e-5, "",
+            lambda p, at, i=i: {i: p["size"] * at.temperature_rate_k_per_h},
+            family="accel_i.temperature_rate",
+        )
+        for i in AXES
+    ],
+    *[
+        Effect(
+            f"accel_{i}.temperature_hysteresis", Kind.REGRESSOR, Enters.OUTPUT,
+            f"thermal hysteresis of the bias of accelerometer {i}: it differs between rising and "
+            "falling temperature",
+            _size("g/K"), 1e-5, "",
+            lambda p, at, i=i: {i: p["size"] * at.temperature_hysteresis_k},
+            near_twins=(f"accel_{i}.temperature", f"accel_{i}.temperature_rate"),
+            family="accel_i.temperature_hysteresis",
         )
         for i in AXES
     ],

@@ -27,7 +27,8 @@ class Kind(Enum):
     PERIODIC = "Periodic"
     """Periodic in time, with `period_s`."""
     REGRESSOR = "Regressor"
-    """Proportional to a logged quantity: temperature."""
+    """Proportional to a power of what follows from a logged quantity: temperature, its rate of
+    change, its hysteresis."""
     RANDOM_WALK = "RandomWalk"
     """Integral of white noise."""
     STATE_JUMP = "StateJump"
@@ -148,6 +149,11 @@ class At:
     """Length of the step."""
     temperature_k: ca.SX
     """Temperature above its mean over the record."""
+    temperature_rate_k_per_h: ca.SX
+    """Rate of change of the temperature."""
+    temperature_hysteresis_k: ca.SX
+    """Temperature less what follows it with a play of a quarter of its range over the record: it
+    differs between the way up and the way down."""
     omega_0: ca.SX
     """Earth rate in chart axes, rad/s."""
     f_0: ca.SX
@@ -182,6 +188,8 @@ class Effect:
     """Onset (`onset_s`) or time constant (`time_constant_h`): the term is not linear in it."""
     period_s: float | None = None
     """Period of a periodic effect."""
+    power: int = 1
+    """Power of the regressors that a term of a regressor is proportional to."""
     noise: NoiseProperty | None = None
     """Property of the noise, for a noise effect."""
     equivalents: tuple[str, ...] = ()

@@ -11,7 +11,7 @@ from casadi_program import ExportError
 from effect import (
     KINDS_WITH_TERM, KINDS_WITH_WEIGHT, At, Continuation, Effect, Enters, Kind, by_axis, rust_name,
 )
-from layout import AXES
+from layout import AXES, REGRESSORS
 
 FILE = "codegen/derive/catalogue.py"
 
@@ -41,10 +41,11 @@ class Symbols:
 
         self.force, self.field, self.drift = vector("a"), vector("b"), vector("omega_d")
         self.time_s, self.interval_s = ca.SX.sym("time_s"), ca.SX.sym("interval_s")
-        self.temperature_k = ca.SX.sym("temperature_k")
+        self.regressors = ca.vertcat(*[ca.SX.sym(name) for name in REGRESSORS])
         self.at = At(
             a=by_axis(self.force), drift=by_axis(self.drift), field=by_axis(self.field),
-            time_s=self.time_s, interval_s=self.interval_s, temperature_k=self.temperature_k,
+            time_s=self.time_s, interval_s=self.interval_s,
+            **dict(zip(REGRESSORS, ca.vertsplit(self.regressors))),
             omega_0=vector("omega_0"), f_0=vector("f_0"), east_0=vector("east_0"),
         )
         self.parameters = {p.name: ca.SX.sym(rust_name(effect.state_id(p)))
@@ -58,7 +59,7 @@ class Symbols:
         except AttributeError as error:
             raise _error(
                 effect, f"its term asks for `{error.name}`",
-                "the quantities of `At` (a, drift, field, time_s, interval_s, temperature_k, "
+                f"the quantities of `At` (a, drift, field, time_s, interval_s, {', '.join(REGRESSORS)}, "
                 "omega_0, f_0, east_0)",
                 "use one of them, or add the quantity to `At` and to the inputs of the model",
             ) from None
@@ -114,6 +115,10 @@ def _check_kind(effect: Effect) -> None:
     if (kind is Kind.PERIODIC) != (effect.period_s is not None):
         raise _error(effect, f"kind {kind.name} with period_s {effect.period_s}",
                      "a period for kind PERIODIC and for no other", "give `period_s` in seconds")
+    if effect.power != 1 and kind is not Kind.REGRESSOR or effect.power < 1:
+        raise _error(effect, f"kind {kind.name} with the power {effect.power}",
+                     "a power of one or more for kind REGRESSOR, and for no other kind",
+                     "take `power` out or give another kind")
     if effect.continuation is Continuation.GOES_ON and kind not in KINDS_WITH_WEIGHT:
         raise _error(effect, f"kind {kind.name} that goes on in a later record",
                      "a function of time or of a regressor", "give another continuation")
@@ -136,7 +141,7 @@ def _check_term(effect: Effect) -> None:
                          "linear in each of `parameters`",
                          "give what it is not linear in as a shape")
     of_time = ca.depends_on(expression, ca.vertcat(symbols.time_s, symbols.interval_s))
-    of_temperature = ca.depends_on(expression, symbols.temperature_k)
+    of_temperature = ca.depends_on(expression, symbols.regressors)
     if effect.kind is Kind.CONSTANT and (of_time or of_temperature):
         raise _error(
             effect, f"kind CONSTANT with a term of {'time' if of_time else 'temperature'}",
@@ -145,7 +150,8 @@ def _check_term(effect: Effect) -> None:
         )
     if effect.kind is Kind.REGRESSOR and not of_temperature:
         raise _error(effect, "kind REGRESSOR without a regressor in its term",
-                     "`at.temperature_k` in its term", "use the regressor or give another kind")
+                     " or ".join(f"`at.{name}`" for name in REGRESSORS) + " in its term",
+                     "use a regressor or give another kind")
     if effect.kind in KINDS_WITH_WEIGHT - {Kind.REGRESSOR} and not of_time:
         raise _error(effect, f"kind {effect.kind.name} without time in its term",
                      "`at.time_s` in its term", "use time, or declare Kind.CONSTANT")
@@ -164,15 +170,16 @@ def _check_term(effect: Effect) -> None:
 def _check_course(effect: Effect, symbols: Symbols, expression: ca.SX, sizes: ca.SX) -> None:
     """Evaluates the weights at random points: they must go as the kind says."""
     shapes = list(symbols.shapes.values())
-    inputs = [symbols.force, symbols.time_s, symbols.interval_s, symbols.temperature_k, *shapes]
+    inputs = [symbols.force, symbols.time_s, symbols.interval_s, symbols.regressors, *shapes]
     weights = ca.Function("weights", inputs, [ca.densify(ca.jacobian(expression, sizes))])
     rng = random.Random(0)
     for _ in range(8):
         force = [rng.uniform(-1, 1) for _ in AXES]
-        time_s, interval_s, kelvin = rng.uniform(1e4, 1e5), rng.uniform(1, 100), rng.uniform(1, 5)
+        time_s, interval_s = rng.uniform(1e4, 1e5), rng.uniform(1, 100)
+        given = ca.DM([rng.uniform(1, 5) for _ in REGRESSORS])
         if effect.kind in (Kind.STEP, Kind.FROM_ONSET):
-            before = weights(force, time_s, interval_s, kelvin, time_s + interval_s)
-            after = weights(force, time_s, interval_s, kelvin, time_s - interval_s)
+            before = weights(force, time_s, interval_s, given, time_s + interval_s)
+            after = weights(force, time_s, interval_s, given, time_s - interval_s)
             if not ca.norm_inf(ca.vec(before)) == 0:
                 raise _error(effect, "a term that acts before its onset", "zero before it",
                              "multiply it with the share of the step after the onset")
@@ -180,15 +187,16 @@ def _check_course(effect: Effect, symbols: Symbols, expression: ca.SX, sizes: ca
                 raise _error(effect, f"kind STEP with the weight {after} after the onset",
                              "one", "declare Kind.FROM_ONSET")
         elif effect.kind is Kind.RAMP:
-            once, twice = (weights(force, t, interval_s, kelvin) for t in (time_s, 2 * time_s))
+            once, twice = (weights(force, t, interval_s, given) for t in (time_s, 2 * time_s))
             _equal(effect, twice, 2 * once, "proportional to time")
         elif effect.kind is Kind.PERIODIC:
-            later = weights(force, time_s + effect.period_s, interval_s, kelvin)
-            now = weights(force, time_s, interval_s, kelvin)
+            later = weights(force, time_s + effect.period_s, interval_s, given)
+            now = weights(force, time_s, interval_s, given)
             _equal(effect, later, now, "the same after `period_s`")
         elif effect.kind is Kind.REGRESSOR:
-            once, twice = (weights(force, time_s, interval_s, k) for k in (kelvin, 2 * kelvin))
-            _equal(effect, twice, 2 * once, "proportional to temperature")
+            once, twice = (weights(force, time_s, interval_s, r) for r in (given, 2 * given))
+            _equal(effect, twice, 2**effect.power * once,
+                   f"proportional to the power {effect.power} of the regressors")
 
 
 def _equal(effect: Effect, found, expected, what: str) -> None:

@@ -198,7 +198,7 @@ def _formula(effect: Effect) -> tuple[str, list[Variant], list[str]]:
     axes = list(term) if isinstance(term, dict) else []
     everything = ca.veccat(*(term.values() if isinstance(term, dict) else [term]))
     needs = [need for need, symbol in (
-        (Variant("Need::Column", ("temperature_c",)), symbols.temperature_k),
+        (Variant("Need::Column", ("temperature_c",)), symbols.regressors),
         (Variant("Need::Key", ("magnetic_field_gauss",)), symbols.field),
     ) if ca.depends_on(everything, symbol)]
     if effect.formula:

@@ -11,8 +11,8 @@ from frames import platform_c_chart
 from functions import AWAY_FROM_GIMBAL_LOCK, at_origin, with_jacobian
 from kinematics import angle_rates_of
 from layout import (
-    AXES, conditions, drift, drift_noise, east_0, f_0, field_0, force, omega_0, platform_c_gyros,
-    theta,
+    AXES, REGRESSORS, conditions, drift, drift_noise, east_0, f_0, field_0, force, omega_0,
+    platform_c_gyros, theta,
 )
 from specific_force import specific_force
 
@@ -95,7 +95,7 @@ def shape_elements(effects: list[Effect]) -> list[Element]:
 
 
 def weighted(effects: list[Effect]) -> list[tuple[Effect, Parameter]]:
-    """The parameters of terms that are functions of time, of the temperature or of a shape."""
+    """The parameters of terms that are functions of time, of a regressor or of a shape."""
     return [(effect, p) for effect in _output_first(effects)
             if effect.kind in KINDS_WITH_WEIGHT for p in effect.parameters]
 
@@ -108,7 +108,7 @@ def _weights(effects: list[Effect], shapes: Group | None) -> Function:
         given = {p.name: shapes[rust_name(effect.shape_id(p))] for p in effect.shapes}
         at = At(
             a=by_axis(force.sx), drift={}, field={}, time_s=conditions["time_s"],
-            interval_s=conditions["interval_s"], temperature_k=conditions["temperature_k"],
+            interval_s=conditions["interval_s"], **{name: conditions[name] for name in REGRESSORS},
             omega_0=omega_0.sx, f_0=f_0.sx, east_0=east_0.sx,
         )
         (expression,) = effect.term(own | given, at).values()
@@ -120,8 +120,8 @@ def _weights(effects: list[Effect], shapes: Group | None) -> Function:
     )
     return Function(
         "weights",
-        "Addition to its channel of a unit of each parameter whose term is a function of time, of the "
-        "temperature or of a shape.",
+        "Addition to its channel of a unit of each parameter whose term is a function of time, of a "
+        "regressor or of a shape.",
         "the terms of the catalogue", [force, conditions, *([shapes] if shapes else [])],
         [output], "time constants and the interval greater than zero, all other inputs finite",
     )
@@ -180,7 +180,7 @@ def _expressions(effects: list[Effect], parameters: Group, shapes: Group | None,
     at = At(
         a={}, drift={}, field={},
         time_s=conditions["time_s"], interval_s=conditions["interval_s"],
-        temperature_k=conditions["temperature_k"],
+        **{name: conditions[name] for name in REGRESSORS},
         omega_0=omega_0.sx, f_0=f_0.sx, east_0=east_0.sx,
     )
 

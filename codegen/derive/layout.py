@@ -89,8 +89,13 @@ conditions = Group(
                 "the sample for outputs"),
         Element("interval_s", "s", "length of the step, greater than zero"),
         Element("temperature_k", "K", "temperature above its mean over the record"),
+        Element("temperature_rate_k_per_h", "K/h", "rate of change of the temperature"),
+        Element("temperature_hysteresis_k", "K", "temperature less what follows it with a play"),
     ],
 )
+
+REGRESSORS = ("temperature_k", "temperature_rate_k_per_h", "temperature_hysteresis_k")
+"""Elements of `conditions` that follow from the logged temperature."""
 
 
 @dataclass(frozen=True)

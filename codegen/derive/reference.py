@@ -13,6 +13,7 @@ import casadi as ca
 
 from casadi_program import Element, Function, Group, Program
 from frames import platform_c_chart
+from layout import REGRESSORS
 
 POINTS = 200
 SEED = 20150101
@@ -40,7 +41,8 @@ def _point(rng: random.Random) -> dict[str, list[float]]:
         "step": [rng.uniform(1, 120)],
         "east_0": _unit_vector(rng),
         "field_0": [rng.uniform(-0.6, 0.6) for _ in range(3)],
-        "conditions": [rng.uniform(0, 3 * DAY_S), rng.uniform(1, 120), rng.uniform(-5, 5)],
+        "conditions": [rng.uniform(0, 3 * DAY_S), rng.uniform(1, 120),
+                       *(rng.uniform(-5, 5) for _ in REGRESSORS)],
     }
 
 
@@ -54,7 +56,7 @@ def _rotation(rng: random.Random) -> list[float]:
 def _own(group: Group, point: dict[str, list[float]], rng: random.Random) -> list[float]:
     """Parameters and shapes, which differ between programs. Effects are as large as drifts, so
     that a wrong one shows, and most onsets lie inside the step or near it."""
-    time_s, interval_s, _ = point["conditions"]
+    time_s, interval_s = point["conditions"][:2]
 
     def scalar(element: Element) -> float:
         if element.name.endswith("_onset_s"):

@@ -61,7 +61,7 @@ fn cross(a: &Vector, b: &Vector) -> Vector {
 /// The equations: inertial rate minus Earth rate in platform axes, deg/h, and outputs of the
 /// accelerometers.
 fn by_hand(state: &State, p: &Named<'_>, shapes: &Named<'_>) -> [Vector; 2] {
-    let [time_s, interval_s, temperature_k] = state.conditions;
+    let [time_s, interval_s, kelvin, kelvin_per_h, hysteresis] = state.conditions;
     let (sine, cosine) = p.get("site.latitude").to_radians().sin_cos();
     let turned = cross(&state.east_0, &state.omega_0);
     let earth_rate: Vector = core::array::from_fn(|i| {
@@ -75,7 +75,10 @@ fn by_hand(state: &State, p: &Named<'_>, shapes: &Named<'_>) -> [Vector; 2] {
     let drift: Vector = core::array::from_fn(|i| {
         let of = |name: &str| p.get(&format!("gyro_{}.{name}", AXES[i]));
         let shape = |name: &str| shapes.get(&format!("gyro_{}.{name}", AXES[i]));
-        let mut drift = of("bias") + of("ramp") * days + of("temperature") * temperature_k;
+        let mut drift = of("bias") + of("ramp") * days;
+        drift += of("temperature") * kelvin + of("temperature_square") * kelvin * kelvin;
+        drift += of("temperature_rate") * kelvin_per_h;
+        drift += of("temperature_hysteresis") * hysteresis;
         for j in 0..3 {
             drift += of(&format!("g_{}", AXES[j])) * a[j];
             for k in j..3 {
@@ -109,7 +112,10 @@ fn by_hand(state: &State, p: &Named<'_>, shapes: &Named<'_>) -> [Vector; 2] {
         a[i] + of("bias")
             + of("scale") * a[i]
             + of("quadratic") * a[i] * a[i]
-            + of("temperature") * temperature_k
+            + of("temperature") * kelvin
+            + of("temperature_square") * kelvin * kelvin
+            + of("temperature_rate") * kelvin_per_h
+            + of("temperature_hysteresis") * hysteresis
             + of("ramp") * days
             + others.sum::<f64>()
     });
@@ -262,8 +268,8 @@ fn weights_are_ratios_of_derivatives() {
             }
         }
     }
-    // Ramp, step, warm-up, temperature and two of the diurnal wave, of three gyros in three rates.
-    assert_eq!(compared, 100 * 6 * 3 * 3);
+    // Ramp, step, warm-up, four of temperature and two of the diurnal wave, of three gyros in three rates.
+    assert_eq!(compared, 100 * 9 * 3 * 3);
 }
 
 #[test]
@@ -321,7 +327,11 @@ fn the_table_of_effects_is_complete_and_names_what_is_there() {
         assert!(ids.contains(&id), "{id}");
     }
     let needs = |id: &str| catalogue::EFFECTS[ids.iter().position(|x| *x == id).unwrap()].needs;
-    assert_eq!(needs("gyro_y.temperature"), [Need::Column("temperature_c")]);
+    for name in ["", "_square", "_rate", "_hysteresis"] {
+        for id in ["gyro_y", "accel_z"].map(|channel| format!("{channel}.temperature{name}")) {
+            assert_eq!(needs(&id), [Need::Column("temperature_c")], "{id}");
+        }
+    }
     assert_eq!(
         needs("gyro_z.magnetic"),
         [Need::Key("magnetic_field_gauss")]

@@ -17,7 +17,7 @@ use gyrocal::generated::catalogue;
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Catalogue, Discretisation};
 use gyrocal_hypothesis::{ExtraColumns, ModelExtension};
-use gyrocal_record::Bench;
+use gyrocal_record::{Bench, Record};
 use nalgebra::DMatrix;
 
 use crate::coefficients::PARAMETERS;
@@ -28,6 +28,7 @@ use crate::platform::PLATFORM;
 use crate::problem::{Problem, RunProblem, Unknown};
 use crate::settings::filter_settings;
 use crate::solve::{MAX_ITERATIONS, Solution};
+use crate::temperature::TemperatureScale;
 use crate::uncertainty::Uncertainty;
 
 pub use noise_model::NoiseModel;
@@ -110,6 +111,22 @@ impl<'a> FittedPlatform<'a> {
     /// [`CalibrationError::NotPositiveDefinite`], [`CalibrationError::Pass`].
     pub fn refitted(&self, extension: &ModelExtension) -> Result<Self, CalibrationError> {
         self.refitted_with(extension, |_| (), self.noise.clone())
+    }
+
+    /// The same with the play of the temperature's hysteresis in another record of the same platform.
+    ///
+    /// # Errors
+    /// As [`Self::refitted`].
+    pub fn refitted_with_play_of(
+        &self,
+        extension: &ModelExtension,
+        other: &Record,
+    ) -> Result<Self, CalibrationError> {
+        let change = |run: &mut RunProblem<'a, LawInputs>| {
+            let scale = TemperatureScale::with_play_of(run.rows.record(), other);
+            run.rows.set_temperature_scale(scale);
+        };
+        self.refitted_with(extension, change, self.noise.clone())
     }
 
     fn refitted_with(

@@ -3,7 +3,7 @@
 use gyrocal::generated::catalogue::{CatalogueInputs, conditions_index};
 use gyrocal::generated::strapdown_catalogue::StrapdownCatalogueInputs;
 use gyrocal::scalar::{Model, NamedInputs, RatesJacobian};
-use gyrocal::{Anchored, Catalogue, StrapdownCatalogue};
+use gyrocal::{Anchored, Catalogue, Regressors, StrapdownCatalogue};
 
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
@@ -99,11 +99,15 @@ impl NamedInputs<f64> for LawInputs {
 }
 
 impl Conditions for LawInputs {
-    fn set_conditions(&mut self, time_s: f64, interval_s: f64, temperature_k: f64) {
+    fn set_conditions(&mut self, time_s: f64, interval_s: f64, regressors: &Regressors<f64>) {
         let conditions = &mut self.catalogue.conditions;
         conditions[conditions_index::TIME_S] = time_s;
         conditions[conditions_index::INTERVAL_S] = interval_s;
-        conditions[conditions_index::TEMPERATURE_K] = temperature_k;
+        conditions[conditions_index::TEMPERATURE_K] = regressors.temperature_k;
+        conditions[conditions_index::TEMPERATURE_RATE_K_PER_H] =
+            regressors.temperature_rate_k_per_h;
+        conditions[conditions_index::TEMPERATURE_HYSTERESIS_K] =
+            regressors.temperature_hysteresis_k;
     }
 
     fn set_gyro_axes(&mut self, platform_c_gyros: &[f64; 9]) {

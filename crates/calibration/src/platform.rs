@@ -5,6 +5,7 @@ use gyrocal_hypothesis::{Covariate, Plant, Rows, WeightInputs};
 use gyrocal_record::Record;
 
 use crate::coefficients;
+use crate::temperature::{REGRESSORS, TemperatureCourse, TemperatureScale};
 
 /// Sidereal day, s: the Earth turns under the platform in it.
 const SIDEREAL_DAY_S: f64 = core::f64::consts::TAU / gyrocal::EARTH_RATE_RAD_PER_S;
@@ -21,7 +22,7 @@ const LEAST_RANGE_G: f64 = 0.02;
 
 /// The platform: its moving states are a rotation of the attitude about the platform axes, rad, its
 /// covariates the components of specific force along them, g, its regressor the temperature about
-/// its mean, K.
+/// its mean, K, from which rate of change, K/h, and hysteresis, K, derive.
 pub static PLATFORM: Plant = Plant {
     effects: &EFFECTS,
     parameters: &PARAMETERS,
@@ -37,7 +38,10 @@ pub static PLATFORM: Plant = Plant {
 };
 
 /// The generated weights, of specific force, conditions and shapes.
-type Weights<const N: usize> = fn(&[f64; 3], &[f64; 3], &[f64; SHAPES.len()]) -> [f64; N];
+type Weights<const N: usize> = fn(&[f64; 3], &[f64; CONDITIONS], &[f64; SHAPES.len()]) -> [f64; N];
+
+/// Number of conditions: time, interval and regressors.
+const CONDITIONS: usize = 2 + REGRESSORS;
 
 /// Number of outputs of the generated weights.
 const fn weight_count<const N: usize>(_: Weights<N>) -> usize {
@@ -46,8 +50,12 @@ const fn weight_count<const N: usize>(_: Weights<N>) -> usize {
 
 fn weights(inputs: &WeightInputs<'_>, weights: &mut [f64]) {
     let force = core::array::from_fn(|axis| inputs.covariates.get(axis).copied().unwrap_or(0.0));
-    let temperature_k = inputs.regressors.first().copied().unwrap_or(0.0);
-    let conditions = [inputs.time_s, inputs.interval_s, temperature_k];
+    let regressor = |place: usize| inputs.regressors.get(place).copied().unwrap_or(0.0);
+    let conditions = core::array::from_fn(|place| match place {
+        0 => inputs.time_s,
+        1 => inputs.interval_s,
+        _ => regressor(place - 2),
+    });
     let shapes = core::array::from_fn(|index| inputs.shapes[index]);
     weights.copy_from_slice(&catalogue::weights(&force, &conditions, &shapes));
 }
@@ -55,16 +63,28 @@ fn weights(inputs: &WeightInputs<'_>, weights: &mut [f64]) {
 /// Rows of a record of the platform, along a trajectory with these covariates.
 #[must_use]
 pub fn rows(record: &Record, covariates: Vec<Covariate>) -> Rows {
-    let about_mean = |logged: &Vec<f64>| {
-        let mean = logged.iter().sum::<f64>() / logged.len().max(1) as f64;
-        logged.iter().map(|value| value - mean).collect()
-    };
-    Rows {
+    rows_of(record, Vec::new(), covariates)
+}
+
+/// The same of several records, with the first rows of the later ones.
+pub(crate) fn rows_of(record: &Record, starts: Vec<usize>, covariates: Vec<Covariate>) -> Rows {
+    let mut rows = Rows {
         time_s: record.time_s.clone(),
-        starts: Vec::new(),
-        regressors: record.temperature_c.iter().map(about_mean).collect(),
+        starts,
         covariates,
+        ..Rows::default()
+    };
+    let mut all = TemperatureCourse::default();
+    let scale = TemperatureScale::of(record, &rows.starts);
+    for one in rows.records() {
+        let course = scale.and_then(|scale| TemperatureCourse::of_rows(record, one, scale));
+        all.append(course.unwrap_or_default());
     }
+    if scale.is_some() {
+        rows.regressors = vec![all.temperature_k];
+        rows.derived = vec![all.rate_k_per_h, all.hysteresis_k];
+    }
+    rows
 }
 
 /// The components of specific force at each row.

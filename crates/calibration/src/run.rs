@@ -1,21 +1,23 @@
 //! A run, and its rows as the batch estimator reads them.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use gyrocal::estimation::batch::Series;
 use gyrocal::generated::strapdown::StrapdownInputs;
 use gyrocal::generated::surveyed::SurveyedInputs;
-use gyrocal::{Chart, ChartInputs};
+use gyrocal::{Chart, ChartInputs, Regressors};
 use gyrocal_record::{Bench, Record};
 
 use crate::gyro_axes::GyroAxes;
+use crate::temperature::{TemperatureCourse, TemperatureScale};
 use crate::work;
 
 /// Model inputs that may depend on time, temperature and the axes of the gyros.
 pub(crate) trait Conditions: ChartInputs<f64> {
     /// Sets time since the first row (of the middle of an interval, or of a row), the length of
-    /// the interval, and temperature about its mean.
-    fn set_conditions(&mut self, time_s: f64, interval_s: f64, temperature_k: f64);
+    /// the interval, and what follows from the temperature.
+    fn set_conditions(&mut self, time_s: f64, interval_s: f64, regressors: &Regressors<f64>);
 
     /// Sets the matrix, by rows, from components along the gyros' axes to components along the
     /// platform's; does nothing in models whose gyros lie along the platform's axes.
@@ -23,11 +25,11 @@ pub(crate) trait Conditions: ChartInputs<f64> {
 }
 
 impl Conditions for SurveyedInputs<f64> {
-    fn set_conditions(&mut self, _: f64, _: f64, _: f64) {}
+    fn set_conditions(&mut self, _: f64, _: f64, _: &Regressors<f64>) {}
 }
 
 impl Conditions for StrapdownInputs<f64> {
-    fn set_conditions(&mut self, _: f64, _: f64, _: f64) {}
+    fn set_conditions(&mut self, _: f64, _: f64, _: &Regressors<f64>) {}
 
     fn set_gyro_axes(&mut self, platform_c_gyros: &[f64; 9]) {
         self.platform_c_gyros = *platform_c_gyros;
@@ -51,8 +53,8 @@ pub(crate) struct WeightedRows<'a> {
     rows: usize,
     /// Variance of a value of weight 1, g².
     variance_g2: [f64; 3],
-    /// Mean temperature over the record, if it was logged.
-    mean_temperature_c: f64,
+    /// What follows from the temperature at each row, if it was logged.
+    temperature: Option<Arc<TemperatureCourse>>,
     /// Weight of each value if not all are 1: a value of weight 0 is left out.
     pub(crate) weights: Option<Vec<[f64; 3]>>,
     /// Axes of the gyros, if not those of the platform.
@@ -66,9 +68,7 @@ impl<'a> WeightedRows<'a> {
             record: Cow::Borrowed(record),
             rows,
             variance_g2: noise_g.map(|sigma| sigma * sigma),
-            mean_temperature_c: record.temperature_c.as_ref().map_or(0.0, |temperature| {
-                temperature.iter().sum::<f64>() / temperature.len().max(1) as f64
-            }),
+            temperature: TemperatureCourse::of(record).map(Arc::new),
             weights: None,
             gyro_axes: None,
         }
@@ -80,20 +80,10 @@ impl<'a> WeightedRows<'a> {
             record: Cow::Owned(self.record.into_owned()),
             rows: self.rows,
             variance_g2: self.variance_g2,
-            mean_temperature_c: self.mean_temperature_c,
+            temperature: self.temperature,
             weights: self.weights,
             gyro_axes: self.gyro_axes.map(|axes| Cow::Owned(axes.into_owned())),
         }
-    }
-
-    /// Temperature at a row about its mean; zero if it was not logged.
-    fn temperature_k(&self, row: usize) -> f64 {
-        self.record
-            .temperature_c
-            .as_ref()
-            .map_or(0.0, |temperature| {
-                temperature[row] - self.mean_temperature_c
-            })
     }
 
     /// Times of the rows, s.
@@ -134,9 +124,16 @@ impl<'a> WeightedRows<'a> {
         &self.record
     }
 
-    /// Sets the temperature that temperatures are taken about: that of several records.
-    pub(crate) fn set_mean_temperature_c(&mut self, mean_temperature_c: f64) {
-        self.mean_temperature_c = mean_temperature_c;
+    /// Whether temperature was logged.
+    pub(crate) fn has_temperature(&self) -> bool {
+        self.temperature.is_some()
+    }
+
+    /// Relates temperatures to those of several records; `None` if one has none.
+    pub(crate) fn set_temperature_scale(&mut self, scale: Option<TemperatureScale>) {
+        let rows = 0..self.record.len();
+        let course = scale.and_then(|scale| TemperatureCourse::of_rows(&self.record, rows, scale));
+        self.temperature = course.map(Arc::new);
     }
 
     /// Sets the standard deviation of values of weight 1.
@@ -184,15 +181,17 @@ impl<I: Conditions> Series<Chart<f64, I>, 3> for WeightedRows<'_> {
 
     fn over(&self, row: usize, from_s: f64, to_s: f64, inputs: &mut Chart<f64, I>) {
         let first_s = self.record.time_s[0];
-        // Temperature between rows lies on the straight line; the middle stands for the mean.
+        // The middle stands for the mean.
         let (before_s, after_s) = (self.record.time_s[row], self.record.time_s[row + 1]);
         let middle_s = 0.5 * (from_s + to_s);
         let share = (middle_s - before_s) / (after_s - before_s);
-        let temperature_k =
-            (1.0 - share) * self.temperature_k(row) + share * self.temperature_k(row + 1);
+        let regressors = match &self.temperature {
+            Some(course) => course.between(row, share),
+            None => Regressors::default(),
+        };
         inputs
             .inputs_mut()
-            .set_conditions(middle_s - first_s, to_s - from_s, temperature_k);
+            .set_conditions(middle_s - first_s, to_s - from_s, &regressors);
         if let Some(axes) = &self.gyro_axes {
             let platform_c_gyros = axes.between(row, share);
             inputs.inputs_mut().set_gyro_axes(&platform_c_gyros);
@@ -202,9 +201,11 @@ impl<I: Conditions> Series<Chart<f64, I>, 3> for WeightedRows<'_> {
     fn at(&self, row: usize, inputs: &mut Chart<f64, I>) {
         let time_s = self.record.time_s[row] - self.record.time_s[0];
         // No output depends on the length of an interval.
-        inputs
-            .inputs_mut()
-            .set_conditions(time_s, 1.0, self.temperature_k(row));
+        let regressors = match &self.temperature {
+            Some(course) => course.at(row),
+            None => Regressors::default(),
+        };
+        inputs.inputs_mut().set_conditions(time_s, 1.0, &regressors);
         if let Some(axes) = &self.gyro_axes {
             inputs.inputs_mut().set_gyro_axes(&axes.between(row, 0.0));
         }

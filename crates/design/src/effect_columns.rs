@@ -3,7 +3,7 @@
 use gyrocal::Effect;
 use gyrocal::effect::{Continuation, EffectKind, Role};
 use gyrocal::generated::catalogue::RATES;
-use gyrocal_calibration::PLATFORM;
+use gyrocal_calibration::{PLATFORM, REGRESSORS};
 use gyrocal_hypothesis::{Phase, RecordOffset, continued};
 
 use crate::design_column::DesignColumn;
@@ -41,7 +41,7 @@ pub(crate) fn offset_after(duration_s: f64) -> RecordOffset {
     RecordOffset {
         elapsed_s: duration_s,
         phase: Phase::Same,
-        regressors: vec![0.0],
+        regressors: vec![0.0; REGRESSORS],
     }
 }
 

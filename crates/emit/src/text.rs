@@ -69,7 +69,7 @@ pub(crate) fn extended(number: Number, module: &str, model: &str) -> String {
         "\
 pub use gyrocal::{{
     Discretisation, Drift, EstimationError, ExtensionFilter, FilterSettings, InitialAttitude, Innovation,
-    Site,
+    Regressors, Site,
 }};
 pub use {module}::{{{model}, {model}Inputs, START}};
 

@@ -93,7 +93,8 @@ const REGRESSORS: [f64; 6] = [0.7, -1.3, 2.9, -0.4, 1.9, -2.3];
 const ROUNDING: f64 = 1e-9;
 
 /// The weight of a parameter at a later time as a sum of the weights of its effect and of a
-/// constant: w(t + T, r + R) = Σ c_j w_j(t, r) + c. Empty where it is no such sum.
+/// constant, and, of a regressor's effect, of those of its channel's other regressors:
+/// w(t + T, r + R) = Σ c_j w_j(t, r) + c. Empty where it is no such sum.
 fn shifted(
     plant: &Plant,
     effect: &Effect,
@@ -105,58 +106,93 @@ fn shifted(
         (EffectKind::Periodic, Phase::Same) => 0.0,
         _ => offset.elapsed_s,
     };
-    let own: Vec<(usize, usize)> = effect
-        .parameters
-        .iter()
-        .filter_map(|parameter| match (parameter.role, parameter.weight) {
-            (Role::Parameter(index), Some(weight)) => Some((index, weight)),
-            _ => None,
-        })
-        .collect();
+    let mut terms: Vec<(usize, usize)> = weighted(effect).collect();
+    let courses = Courses::new(plant, elapsed_s, &offset.regressors);
     let constant = constant(plant, effect);
-    let targets: Vec<usize> = own
-        .iter()
-        .map(|(index, _)| *index)
-        .chain(constant)
-        .collect();
-    let shapes = vec![1.0; plant.shapes.len()];
-    let mut weights = vec![0.0; plant.weight_count];
-    let mut design = DMatrix::from_element(TIMES_S.len(), targets.len(), 1.0);
-    let mut later = DVector::zeros(TIMES_S.len());
-    let at = |time_s: f64, regressors: &[f64], weights: &mut Vec<f64>| {
-        let inputs = WeightInputs {
-            time_s,
-            interval_s: 1.0,
-            regressors,
-            covariates: &[],
-            shapes: &shapes,
+    if let Some(factors) = courses.as_sum(weight, &terms, constant) {
+        return factors;
+    }
+    if effect.kind == EffectKind::Regressor {
+        let others = plant.effects.iter().filter(|other| {
+            other.kind == effect.kind && other.enters == effect.enters && other.id != effect.id
+        });
+        let further = others.flat_map(weighted);
+        terms.extend(further.filter(|(_, weight)| !courses.is_zero(*weight)));
+    }
+    courses.as_sum(weight, &terms, constant).unwrap_or_default()
+}
+
+/// Parameters of an effect with their weights.
+fn weighted(effect: &Effect) -> impl Iterator<Item = (usize, usize)> {
+    let parameters = effect.parameters.iter();
+    parameters.filter_map(|parameter| match (parameter.role, parameter.weight) {
+        (Role::Parameter(index), Some(weight)) => Some((index, weight)),
+        _ => None,
+    })
+}
+
+/// All weights of a plant at [`TIMES_S`], and at these times in a later record.
+struct Courses {
+    first: Vec<Vec<f64>>,
+    later: Vec<Vec<f64>>,
+}
+
+impl Courses {
+    fn new(plant: &Plant, elapsed_s: f64, changes: &[f64]) -> Self {
+        let shapes = vec![1.0; plant.shapes.len()];
+        let at = |time_s: f64, regressors: &[f64]| {
+            let inputs = WeightInputs {
+                time_s,
+                interval_s: 1.0,
+                regressors,
+                covariates: &[],
+                shapes: &shapes,
+            };
+            let mut weights = vec![0.0; plant.weight_count];
+            (plant.weights)(&inputs, &mut weights);
+            weights
         };
-        (plant.weights)(&inputs, weights);
-    };
-    for (point, time_s) in TIMES_S.into_iter().enumerate() {
-        let places = 0..offset.regressors.len();
-        let mut regressors: Vec<f64> = places
-            .map(|place| REGRESSORS[(point + place) % REGRESSORS.len()])
-            .collect();
-        at(time_s, &regressors, &mut weights);
-        for (column, (_, weight)) in own.iter().enumerate() {
-            design[(point, column)] = weights[*weight];
+        let (mut first, mut later) = (Vec::new(), Vec::new());
+        for (point, time_s) in TIMES_S.into_iter().enumerate() {
+            let places = 0..changes.len();
+            let mut regressors: Vec<f64> = places
+                .map(|place| REGRESSORS[(point + place) % REGRESSORS.len()])
+                .collect();
+            first.push(at(time_s, &regressors));
+            for (regressor, change) in regressors.iter_mut().zip(changes) {
+                *regressor += change;
+            }
+            later.push(at(time_s + elapsed_s, &regressors));
         }
-        for (regressor, change) in regressors.iter_mut().zip(&offset.regressors) {
-            *regressor += change;
+        Self { first, later }
+    }
+
+    fn is_zero(&self, weight: usize) -> bool {
+        self.first.iter().all(|weights| weights[weight] == 0.0)
+    }
+
+    /// A weight in the later record as a sum of those of terms and of a constant in the first.
+    fn as_sum(
+        &self,
+        weight: usize,
+        terms: &[(usize, usize)],
+        constant: Option<usize>,
+    ) -> Option<Vec<(usize, f64)>> {
+        let parameters = terms.iter().map(|(parameter, _)| *parameter);
+        let targets: Vec<usize> = parameters.chain(constant).collect();
+        let design = DMatrix::from_fn(TIMES_S.len(), targets.len(), |point, column| {
+            terms
+                .get(column)
+                .map_or(1.0, |(_, weight)| self.first[point][*weight])
+        });
+        let later = DVector::from_fn(TIMES_S.len(), |point, _| self.later[point][weight]);
+        let inverse = (design.transpose() * &design).try_inverse()?;
+        let factors = inverse * design.transpose() * &later;
+        if (&design * &factors - &later).amax() > ROUNDING * later.amax().max(1.0) {
+            return None;
         }
-        at(time_s + elapsed_s, &regressors, &mut weights);
-        later[point] = weights[weight];
+        let factors = targets.into_iter().zip(factors.iter().copied());
+        let present = factors.filter(|(_, factor)| factor.abs() > ROUNDING);
+        Some(present.collect())
     }
-    let Some(inverse) = (design.transpose() * &design).try_inverse() else {
-        return Vec::new();
-    };
-    let factors = inverse * design.transpose() * &later;
-    if (&design * &factors - &later).amax() > ROUNDING * later.amax().max(1.0) {
-        return Vec::new();
-    }
-    let factors = targets.into_iter().zip(factors.iter().copied());
-    factors
-        .filter(|(_, factor)| factor.abs() > ROUNDING)
-        .collect()
 }

@@ -10,7 +10,7 @@ pub struct WeightInputs<'a> {
     pub time_s: f64,
     /// Length of the step, s; one for a row.
     pub interval_s: f64,
-    /// Regressors about their means over the record.
+    /// Regressors about their means over the record, then what derives from them.
     pub regressors: &'a [f64],
     /// Covariates: known functions of the moving states, such as specific force.
     pub covariates: &'a [f64],

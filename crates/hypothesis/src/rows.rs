@@ -33,6 +33,9 @@ pub struct Rows {
     pub starts: Vec<usize>,
     /// Logged regressors about their means, in the order of the plant's; empty if not logged.
     pub regressors: Vec<Vec<f64>>,
+    /// What terms depend on that derives from the regressors, such as their rates of change; the plant's
+    /// weights have it after them.
+    pub derived: Vec<Vec<f64>>,
     /// Covariates, in the order of the plant's; empty where no trajectory is known.
     pub covariates: Vec<Covariate>,
 }
@@ -104,7 +107,7 @@ impl Rows {
             |step, first_s, inputs| {
                 inputs.time_s = 0.5 * (self.time_s[step] + self.time_s[step + 1]) - first_s;
                 inputs.interval_s = self.time_s[step + 1] - self.time_s[step];
-                for (target, values) in inputs.regressors.iter_mut().zip(&self.regressors) {
+                for (target, values) in inputs.regressors.iter_mut().zip(self.all_regressors()) {
                     *target = middle(values, step);
                 }
                 for (target, covariate) in inputs.covariates.iter_mut().zip(&self.covariates) {
@@ -120,13 +123,18 @@ impl Rows {
         self.evaluate(plant, weight, shapes, self.len(), |row, first_s, inputs| {
             inputs.time_s = self.time_s[row] - first_s;
             inputs.interval_s = 1.0;
-            for (target, values) in inputs.regressors.iter_mut().zip(&self.regressors) {
+            for (target, values) in inputs.regressors.iter_mut().zip(self.all_regressors()) {
                 *target = values[row];
             }
             for (target, covariate) in inputs.covariates.iter_mut().zip(&self.covariates) {
                 *target = covariate.values[row];
             }
         })
+    }
+
+    /// The regressors, then what derives from them.
+    fn all_regressors(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.regressors.iter().chain(&self.derived)
     }
 
     fn evaluate(
@@ -140,7 +148,7 @@ impl Rows {
         let mut point = Point {
             time_s: 0.0,
             interval_s: 1.0,
-            regressors: vec![0.0; self.regressors.len()],
+            regressors: vec![0.0; self.all_regressors().count()],
             covariates: vec![0.0; self.covariates.len()],
         };
         let mut weights = vec![0.0; plant.weight_count];

@@ -51,8 +51,8 @@ pub struct State {
     /// Platform axes from axes of gyros that are fixed to a body, by rows: any rotation.
     pub platform_c_gyros: [f64; 9],
     /// Time since the first row in s, to three days; length of the step in s; temperature
-    /// above its mean in K, to ±5.
-    pub conditions: [f64; 3],
+    /// above its mean in K, its rate in K/h and its hysteresis in K, to ±5.
+    pub conditions: [f64; 5],
     /// Numbers within ±1 from which parameters and shapes of extended models are computed.
     pub free: [f64; 128],
 }
@@ -96,7 +96,7 @@ impl State {
     /// If a name has not the ending of a shape.
     #[must_use]
     pub fn shapes(&self, names: &[String]) -> Vec<f64> {
-        let [time_s, interval_s, _] = self.conditions;
+        let [time_s, interval_s, ..] = self.conditions;
         let numbers = self.free.iter().rev().cycle();
         names
             .iter()
@@ -149,6 +149,8 @@ fn state(rng: &mut ChaCha8Rng, turned: bool) -> State {
         conditions: [
             rng.random_range(0.0..=3.0 * 86_400.0),
             rng.random_range(1.0..=120.0),
+            within(rng, 5.0),
+            within(rng, 5.0),
             within(rng, 5.0),
         ],
         free: core::array::from_fn(|_| within(rng, 1.0)),

@@ -33,7 +33,7 @@ impl Problem {
             starts: record.starts.clone(),
             time_s: time_s.collect(),
             regressors: record.regressors.clone(),
-            covariates: Vec::new(),
+            ..Rows::default()
         };
         let description = &plant.description;
         let states = description.states.iter().map(|state| state.sigma);

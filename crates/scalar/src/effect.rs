@@ -62,7 +62,7 @@ pub enum EffectKind {
     Ramp,
     /// Periodic in time.
     Periodic,
-    /// Proportional to a logged quantity.
+    /// Proportional to a power of a logged quantity, or of what derives from it.
     Regressor,
     /// Integral of white noise.
     RandomWalk,

@@ -74,7 +74,7 @@ impl FittedModel for FittedPlatform<'_> {
     }
 
     fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, CalibrationError> {
-        Ok(self.signatures(further, |_| ())?.gram)
+        self.gram_of_signatures(further)
     }
 
     fn conditional_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, CalibrationError> {

@@ -1,7 +1,8 @@
 //! Passes over a record with a fitted model: what signatures, sudden changes and noise would say.
 
+use gyrocal::effect::Need;
 use gyrocal::estimation::batch::{Linearisation, NoiseScore, Reduced, Tape, Whitened};
-use gyrocal::{Catalogue, EstimationError};
+use gyrocal::{Catalogue, EFFECTS, Effect, EstimationError};
 use gyrocal_hypothesis::{Column, ExtraColumns, StateJump};
 use nalgebra::{DMatrix, DVector};
 
@@ -94,9 +95,45 @@ impl FittedPlatform<'_> {
         mut watch: impl FnMut(&Whitened<'_>),
     ) -> Result<Reduced<3>, CalibrationError> {
         let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
+        self.signatures_of(&all, further, &mut watch)
+    }
+
+    /// The Gram matrix of [`Self::signatures`]. Where no record has a temperature, its columns are zero
+    /// without a pass.
+    pub(super) fn gram_of_signatures(
+        &self,
+        further: &[Column],
+    ) -> Result<DMatrix<f64>, CalibrationError> {
+        let mut runs = self.problem.runs.iter();
+        if runs.any(|run| run.rows.has_temperature()) {
+            return Ok(self.signatures(further, |_| ())?.gram);
+        }
+        let count = Catalogue::PARAMETERS;
+        let zero: Vec<usize> = of_logged_quantities().collect();
+        let active: Vec<usize> = (0..count).filter(|place| !zero.contains(place)).collect();
+        let part = self.signatures_of(&active, further, &mut |_| ())?.gram;
+        let residual = core::iter::once(0);
+        let parameters = active.iter().map(|place| place + 1);
+        let size = part.ncols() + zero.len();
+        let places: Vec<usize> = residual.chain(parameters).chain(1 + count..size).collect();
+        let mut gram = DMatrix::zeros(size, size);
+        for (from, column) in places.iter().enumerate() {
+            for (row, value) in places.iter().zip(part.column(from).iter()) {
+                gram[(*row, *column)] = *value;
+            }
+        }
+        Ok(gram)
+    }
+
+    fn signatures_of(
+        &self,
+        active: &[usize],
+        further: &[Column],
+        watch: &mut dyn FnMut(&Whitened<'_>),
+    ) -> Result<Reduced<3>, CalibrationError> {
         let mut total: Option<Reduced<3>> = None;
         for run in 0..self.records() {
-            let mut own = self.reduced(run, &all, None, further, &mut watch)?;
+            let mut own = self.reduced(run, active, None, further, watch)?;
             own.gram = self.without_offsets(own.gram, run)?;
             add(&mut total, own);
         }
@@ -198,6 +235,18 @@ impl FittedPlatform<'_> {
         })
         .map_err(|error: EstimationError| CalibrationError::pass(0, error))
     }
+}
+
+/// Parameters of effects that need a logged quantity.
+fn of_logged_quantities() -> impl Iterator<Item = usize> {
+    let needs_one = |effect: &&Effect| {
+        let mut needs = effect.needs.iter();
+        needs.any(|need| matches!(need, Need::Column(_)))
+    };
+    EFFECTS
+        .iter()
+        .filter(needs_one)
+        .flat_map(Effect::model_parameters)
 }
 
 /// Adds a pass over another record, whose columns are the same.

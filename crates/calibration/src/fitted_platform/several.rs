@@ -12,9 +12,10 @@ use nalgebra::{Cholesky, DMatrix};
 use super::{FittedPlatform, NoiseModel, Parts, of_site};
 use crate::coefficients::{BIASES, PARAMETERS};
 use crate::error::CalibrationError;
-use crate::platform::{PLATFORM, rows};
+use crate::platform::{PLATFORM, rows_of};
 use crate::problem::{Problem, Unknown};
 use crate::settings::filter_settings;
+use crate::temperature::TemperatureScale;
 
 /// Distance between the clocks of two records, in usual intervals between rows: to every test a gap.
 const GAP_INTERVALS: f64 = 10.0;
@@ -114,8 +115,8 @@ impl<'a> FittedPlatform<'a> {
             .map(|part| part.problem.runs[0].rows.record())
             .collect();
         let (record, starts) = joined_record(&records);
-        let mut clock = rows(&record, Vec::new());
-        clock.starts = starts;
+        let scale = TemperatureScale::of(&record, &starts);
+        let clock = rows_of(&record, starts, Vec::new());
         let noise = joined_noise(parts);
         let mut values: Vec<f64> = (0..PARAMETERS).map(|i| mean_value(parts, i)).collect();
         values.resize(count, 0.0);
@@ -126,7 +127,7 @@ impl<'a> FittedPlatform<'a> {
             let density =
                 filter_settings(bench, gyrocal::Discretisation::default()).drift_noise_density();
             run.noise_density = [density; 3];
-            run.rows.set_mean_temperature_c(mean_temperature_c(&record));
+            run.rows.set_temperature_scale(scale);
             runs.push(run);
         }
         let problem = Problem {
@@ -170,11 +171,8 @@ impl<'a> FittedPlatform<'a> {
     #[must_use]
     pub fn rows(&self, record: &Record) -> Rows {
         let covariates = crate::platform::covariates(&self.predicted_g());
-        let mut rows = rows(record, covariates);
-        if let Some(several) = &self.several {
-            rows.starts.clone_from(&several.clock.starts);
-        }
-        rows
+        let starts = self.several.as_ref().map(|several| &several.clock.starts);
+        rows_of(record, starts.cloned().unwrap_or_default(), covariates)
     }
 
     /// Columns over the rows of all records, as one of them has them.
@@ -251,13 +249,6 @@ fn contradiction(benches: &[&Bench]) -> Option<(usize, &'static str)> {
         let (key, _) = differs.into_iter().find(|(_, differs)| *differs)?;
         Some((record, key))
     })
-}
-
-fn mean_temperature_c(record: &Record) -> f64 {
-    let Some(logged) = &record.temperature_c else {
-        return 0.0;
-    };
-    logged.iter().sum::<f64>() / logged.len().max(1) as f64
 }
 
 /// Mean of an estimate of all fits, each weighted by its information.

@@ -192,7 +192,7 @@ pub(crate) fn response(gyro: usize, force_g: &[f64; 3], time_s: f64) -> [f64; PA
         force_g,
         &[1.0, 0.0, 0.0],
         &[0.0; 3],
-        &[time_s, 1.0, 0.0],
+        &[time_s, 1.0, 0.0, 0.0, 0.0],
         &shapes,
     );
     let per_deg_per_h = 3600.0 * 1.0_f64.to_degrees();
