@@ -240,6 +240,13 @@ mod tests {
         };
         assert!(told("gyro_x.temperature", "gyro_x.ramp", rising));
         assert!(told("gyro_x.ramp", "gyro_x.temperature", rising));
+        assert!(told("gyro_x.temperature_square", "gyro_x.ramp", rising));
+        assert!(told("gyro_x.warmup", "gyro_x.temperature_rate", rising));
+        assert!(told(
+            "accel_x.ramp",
+            "accel_x.temperature_hysteresis",
+            rising
+        ));
         assert!(!told("gyro_x.ramp", "gyro_x.step", rising));
         assert!(!told("gyro_x.temperature", "gyro_x.ramp", turning));
     }

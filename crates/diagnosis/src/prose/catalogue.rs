@@ -92,7 +92,7 @@ fn course(kind: EffectKind) -> &'static str {
         EffectKind::Exponential => "decays with a time constant from the start of the record",
         EffectKind::Ramp => "proportional to time",
         EffectKind::Periodic => "periodic",
-        EffectKind::Regressor => "proportional to a logged quantity",
+        EffectKind::Regressor => "a function of a logged quantity",
         EffectKind::RandomWalk => "random walk: the integral of white noise",
         EffectKind::StateJump => "sudden change of the attitude at an onset",
         EffectKind::InitialState => "wrong attitude at the first row",

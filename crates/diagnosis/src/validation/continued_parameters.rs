@@ -4,7 +4,8 @@ use core::f64::consts::SQRT_2;
 
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal_calibration::{
-    BIASES, CalibrationError, Expectation, FittedPlatform, PLATFORM, Run, WalkEnd,
+    BIASES, CalibrationError, Expectation, FittedPlatform, PLATFORM, REGRESSORS, Run, WalkEnd,
+    regressor_means,
 };
 use gyrocal_hypothesis::{Column, Phase, RecordOffset, continued, continued_shapes};
 use gyrocal_record::Record;
@@ -122,10 +123,6 @@ fn offset_between(first: &Record, later: &Record) -> RecordOffset {
     };
     let ([from_s, to_s], [later_s, _]) = (ends(first), ends(later));
     let goes_on = later_s > to_s;
-    let mean = |record: &Record| {
-        let logged = record.temperature_c.as_ref()?;
-        Some(logged.iter().sum::<f64>() / logged.len().max(1) as f64)
-    };
     RecordOffset {
         elapsed_s: if goes_on { later_s } else { to_s } - from_s,
         phase: if goes_on {
@@ -133,10 +130,10 @@ fn offset_between(first: &Record, later: &Record) -> RecordOffset {
         } else {
             Phase::Unknown
         },
-        regressors: vec![match (mean(first), mean(later)) {
-            (Some(first), Some(later)) => later - first,
-            _ => 0.0,
-        }],
+        regressors: match (regressor_means(first, first), regressor_means(later, first)) {
+            (Some(first), Some(later)) => (0..REGRESSORS).map(|i| later[i] - first[i]).collect(),
+            _ => vec![0.0; REGRESSORS],
+        },
     }
 }
 
@@ -203,6 +200,22 @@ mod tests {
         assert_continued("gyro_x.ramp", &offset, &ramp);
         let warmer = [("accel_x.bias", 3.0), ("accel_x.temperature", 1.0)];
         assert_continued("accel_x.temperature", &offset, &warmer);
+        // (t + 3)² = t² + 6 t + 9.
+        let square = [
+            ("accel_x.bias", 9.0),
+            ("accel_x.temperature", 6.0),
+            ("accel_x.temperature_square", 1.0),
+        ];
+        assert_continued("accel_x.temperature_square", &offset, &square);
+        let of_gyro = [
+            ("gyro_y.bias", 9.0),
+            ("gyro_y.temperature", 6.0),
+            ("gyro_y.temperature_square", 1.0),
+        ];
+        assert_continued("gyro_y.temperature_square", &offset, &of_gyro);
+        for itself in ["gyro_z.temperature_rate", "gyro_z.temperature_hysteresis"] {
+            assert_continued(itself, &offset, &[(itself, 1.0)]);
+        }
     }
 
     #[test]

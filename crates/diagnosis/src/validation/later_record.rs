@@ -3,6 +3,7 @@
 use gyrocal::trajectory::{Orientation, rotation_between};
 use gyrocal_calibration::{CalibrationError, Expectation, FittedPlatform, Run};
 use gyrocal_hypothesis::ModelExtension;
+use gyrocal_record::Record;
 
 use super::continued_parameters::{ContinuedParameters, factor};
 
@@ -84,7 +85,7 @@ pub(crate) fn predict(
 ) -> Result<LaterPrediction, CalibrationError> {
     let continued = |fit| ContinuedParameters::new(fit, first, later.record);
     let (of_nominal, of_extended) = (continued(nominal)?, continued(extended)?);
-    let own = own_fit(fitted, &of_extended)?;
+    let own = own_fit(fitted, first.record, &of_extended)?;
     let expected = [
         of_nominal.expectation(nominal)?,
         of_extended.expectation(extended)?,
@@ -101,6 +102,7 @@ pub(crate) fn predict(
 /// The later record's own fit, with all that the extended model says it may show.
 fn own_fit<'b>(
     fitted: &FittedPlatform<'b>,
+    first: &Record,
     continued_parameters: &ContinuedParameters,
 ) -> Result<FittedPlatform<'b>, CalibrationError> {
     let mut extension = ModelExtension {
@@ -115,8 +117,8 @@ fn own_fit<'b>(
     }
     // What the later record cannot show is not free in it.
     fitted
-        .refitted(&extension)
-        .or_else(|_| fitted.refitted(&plain))
+        .refitted_with_play_of(&extension, first)
+        .or_else(|_| fitted.refitted_with_play_of(&plain, first))
 }
 
 fn attitude_errors(

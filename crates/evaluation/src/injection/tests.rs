@@ -28,6 +28,9 @@ fn the_strength_agrees_with_the_information_of_the_diagnosis() {
         "gyro_z.warmup",
         "gyro_x.diurnal",
         "accel_x.temperature",
+        "gyro_y.temperature_square",
+        "gyro_z.temperature_rate",
+        "accel_y.temperature_hysteresis",
         "platform.knock",
         "platform.initial_attitude",
     ] {
