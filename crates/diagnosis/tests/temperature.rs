@@ -70,19 +70,19 @@ fn found(seed: u64, effect: &str, size: f64) {
 
 #[test]
 fn the_square_of_temperature_is_found() {
-    found(1, "gyro_x.temperature_square", 0.01);
+    found(1, "gyro_x.temperature_square", 0.002);
     found(2, "accel_y.temperature_square", 5e-6);
 }
 
 #[test]
 fn the_rate_of_temperature_is_found() {
-    found(3, "gyro_y.temperature_rate", 0.04);
+    found(3, "gyro_y.temperature_rate", 0.01);
     found(4, "accel_z.temperature_rate", 3e-5);
 }
 
 #[test]
 fn the_hysteresis_of_temperature_is_found() {
-    found(5, "gyro_z.temperature_hysteresis", 0.04);
+    found(5, "gyro_z.temperature_hysteresis", 0.01);
     found(6, "accel_x.temperature_hysteresis", 2e-5);
 }
 
