@@ -41,8 +41,7 @@ def _point(rng: random.Random) -> dict[str, list[float]]:
         "step": [rng.uniform(1, 120)],
         "east_0": _unit_vector(rng),
         "field_0": [rng.uniform(-0.6, 0.6) for _ in range(3)],
-        "conditions": [rng.uniform(0, 3 * DAY_S), rng.uniform(1, 120),
-                       *(rng.uniform(-5, 5) for _ in REGRESSORS)],
+        "conditions": [rng.uniform(0, 3 * DAY_S), rng.uniform(1, 120), rng.uniform(-5, 5)],
     }
 
 
@@ -85,8 +84,11 @@ def write(programs: list[Program], path: Path) -> None:
         for group in function.inputs
         if group.name in OWN_GROUPS
     }
+    # Streams of their own: more effects and conditions leave the points as they are.
+    rotations, regressors = random.Random(SEED + 2), random.Random(SEED + 3)
     for point in points:
-        point["platform_c_gyros"] = _rotation(rng)
+        point["conditions"] += [regressors.uniform(-5, 5) for _ in REGRESSORS[1:]]
+        point["platform_c_gyros"] = _rotation(rotations)
         point.update({key: _own(group, point, rng) for key, group in own.items()})
     forces = random.Random(SEED + 1)
     for point in points:
