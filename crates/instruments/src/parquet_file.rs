@@ -4,6 +4,7 @@ use std::fs::File;
 use std::path::Path;
 
 use gyrocal_record::Error;
+use parquet::basic::{LogicalType, TimeUnit};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
@@ -29,7 +30,15 @@ pub(crate) fn read(
     let reader = SerializedFileReader::new(open(path)?).map_err(damaged)?;
     let schema = reader.metadata().file_metadata().schema();
     let projection = projection(schema, names)?;
-    let rows = reader.get_row_iter(Some(projection)).map_err(damaged)?;
+    let nanoseconds: Vec<&str> = projection
+        .get_fields()
+        .iter()
+        .filter(|field| has_nanoseconds(field))
+        .map(|field| field.name())
+        .collect();
+    let rows = reader
+        .get_row_iter(Some(projection.clone()))
+        .map_err(damaged)?;
     for (number, row) in rows.enumerate() {
         let row = row.map_err(damaged)?;
         let cells = names.iter().map(|name| {
@@ -37,12 +46,21 @@ pub(crate) fn read(
             let field = columns
                 .find(|(title, _)| title == name)
                 .map(|(_, field)| field);
-            field.map_or(Some(Cell::Missing), cell)
+            match field {
+                None => Some(Cell::Missing),
+                Some(Field::Long(stamp)) if nanoseconds.contains(name) => {
+                    Some(Cell::Seconds(seconds(*stamp, 1_000_000_000)))
+                }
+                Some(field) => cell(field),
+            }
         });
         let Some(cells) = cells.collect::<Option<Vec<Cell<'_>>>>() else {
             return Err(unfit(
-                &format!("a nested or binary value in row {}", number + 1),
-                "columns of numbers, times and texts",
+                &format!(
+                    "a value that is nested, binary or of another type in row {}",
+                    number + 1
+                ),
+                "columns of numbers, time stamps and texts",
                 "name other columns in the map",
             ));
         };
@@ -74,6 +92,20 @@ fn projection(schema: &Type, names: &[&str]) -> Result<Type, InstrumentError> {
         .map_err(|reason| unfit(&reason.to_string(), "a schema", ""))
 }
 
+/// Whether a column has time stamps in nanoseconds, which the rows hand over as plain numbers.
+fn has_nanoseconds(field: &Type) -> bool {
+    matches!(
+        field.get_basic_info().logical_type_ref(),
+        Some(LogicalType::Timestamp(stamp)) if stamp.unit == TimeUnit::NANOS
+    )
+}
+
+/// A number of parts of a second, as one number rounded once.
+fn seconds(parts: i64, parts_per_s: i64) -> f64 {
+    let whole = parts.div_euclid(parts_per_s);
+    whole as f64 + parts.rem_euclid(parts_per_s) as f64 / parts_per_s as f64
+}
+
 /// The cell of a field; `None` of a kind that is no number, time or text.
 fn cell(field: &Field) -> Option<Cell<'_>> {
     Some(match field {
@@ -89,8 +121,8 @@ fn cell(field: &Field) -> Option<Cell<'_>> {
         Field::Float(value) => Cell::Number(f64::from(*value)),
         Field::Double(value) => Cell::Number(*value),
         Field::Str(text) => Cell::Text(text),
-        Field::TimestampMillis(value) => Cell::Seconds(*value as f64 * 1e-3),
-        Field::TimestampMicros(value) => Cell::Seconds(*value as f64 * 1e-6),
+        Field::TimestampMillis(value) => Cell::Seconds(seconds(*value, 1_000)),
+        Field::TimestampMicros(value) => Cell::Seconds(seconds(*value, 1_000_000)),
         _ => return None,
     })
 }

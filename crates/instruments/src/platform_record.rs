@@ -7,7 +7,8 @@ use gyrocal_statistics::median_interval_s;
 
 use crate::cell::Cell;
 use crate::columns::Selection;
-use crate::description::{Description, Jitter};
+use crate::description::temperature::TemperatureUnit;
+use crate::description::{Description, Jitter, Temperature};
 use crate::error::InstrumentError;
 use crate::file_format::FileFormat;
 use crate::log_lines::{LogLine, log_lines};
@@ -17,6 +18,9 @@ use crate::typed_file::TypedFile;
 
 /// Intervals longer than this many median ones are gaps, which are not interpolated.
 const GAP: f64 = 1.5;
+
+/// The column of the temperature in a record.
+const TEMPERATURE: &str = "temperature_c";
 
 /// Reads the record of a stable platform from a file of a described format: time, three accelerometers and
 /// the temperature, if there is one. Values are as they stand, as of [`RecordFile::read`]; a check of the
@@ -46,8 +50,13 @@ pub fn read_any(
     if let Some(description) = description {
         return read_record(path, description);
     }
-    if TypedFile::of(path)?.is_some() {
-        return read_record(path, &Description::of_records()?);
+    if let Some(typed) = TypedFile::of(path)? {
+        let mut description = Description::of_records()?;
+        description.temperature = typed.has(path, TEMPERATURE).then(|| Temperature {
+            column: TEMPERATURE.to_owned(),
+            unit: TemperatureUnit::default(),
+        });
+        return read_record(path, &description);
     }
     let source = SourceText::read(path)?;
     let text = source.clone();

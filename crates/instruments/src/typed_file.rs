@@ -123,6 +123,17 @@ impl TypedFile {
         }
     }
 
+    /// Whether it has a column of this name, and a row.
+    pub(crate) fn has(self, path: &Path, name: &str) -> bool {
+        let mut seen = false;
+        // What is wrong with the file is told when it is read.
+        let _ = self.read(path, &[name], &mut |_| {
+            seen = true;
+            Err(no_rows())
+        });
+        seen
+    }
+
     /// Hands the cells of the columns `names` of each row to `take`, of one sensor if `only` names it.
     fn for_each(
         self,
