@@ -187,14 +187,8 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
 
 /// The files that are read. Arguments that contradict each other are refused before that.
 fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> {
-    let (records, benches) = (arguments.records.len(), arguments.benches.len());
-    if benches != 1 && benches != records {
-        return Err(Failure::Usage(format!(
-            "{benches} bench files for {records} {}: give --bench once for all records, or once for each in \
-             their order",
-            if records == 1 { "record" } else { "records" }
-        )));
-    }
+    let records = arguments.records.len();
+    records::check_benches(arguments.benches.len(), records)?;
     gyro_axes::check(&arguments.gyro_axes, records)?;
     let is_unit = !arguments.gyro_axes.is_empty();
     if is_unit && arguments.validate.is_some() && arguments.validate_gyro_axes.is_none() {

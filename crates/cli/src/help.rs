@@ -181,6 +181,10 @@ const EXAMPLES: [(&str, &[[&str; 2]]); 19] = [
                 "gyrocal plan record.csv --bench bench.toml --limits x=-30..30,y=-60..60",
                 "within the limits of the gimbals",
             ],
+            [
+                "gyrocal plan a.csv b.csv --bench a.toml --bench b.toml --diagnosis both.json",
+                "from several records and their joint diagnosis",
+            ],
         ],
     ),
     (

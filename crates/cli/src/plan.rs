@@ -1,17 +1,18 @@
-//! `gyrocal plan`: the most informative next run for a record.
+//! `gyrocal plan`: the most informative next run after a record, or after several.
 
 mod failed;
 mod found;
 mod options;
+mod several;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{ArgAction, Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
 use gyrocal_design::{Aim, PlanOptions, first_screen, plan, prose};
 use gyrocal_pages::of_plan;
-use gyrocal_record::{Bench, Outputs};
+use gyrocal_record::{Bench, Outputs, RecordFile};
 
 use crate::layout::layout;
 use crate::numbers::{positive, probability};
@@ -25,19 +26,20 @@ use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 /// Find the attitude and duration of the most informative next run.
 ///
 /// Searches the attitudes within the gimbal limits for the run that reduces the confidence sets of
-/// the findings most, or the sigmas of the coefficients, and predicts the joint result of record
-/// and run. The record is diagnosed first unless a diagnosis is given.
+/// the findings most, or the sigmas of the coefficients, and predicts the joint result of records
+/// and run. The records are diagnosed first unless a diagnosis is given.
 #[derive(Debug, Args)]
 pub(crate) struct PlanArguments {
-    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and optionally temperature_c.
-    #[arg(value_name = "RECORD.csv")]
-    record: PathBuf,
-    /// The bench description (TOML).
-    #[arg(long, value_name = "BENCH.toml")]
-    bench: PathBuf,
+    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and optionally temperature_c. Of several
+    /// records of one platform the run follows the last.
+    #[arg(value_name = "RECORD.csv", required = true)]
+    records: Vec<PathBuf>,
+    /// The bench description (TOML), one for all records or one for each, in their order.
+    #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
+    benches: Vec<PathBuf>,
     #[command(flatten)]
     map: records::Map,
-    /// Result of `gyrocal diagnose --json` for this record; without it the record is diagnosed.
+    /// Result of `gyrocal diagnose --json` for these records; without it they are diagnosed.
     #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["effects", "false_alarm"])]
     diagnosis: Option<PathBuf>,
     /// Write the result for programs (JSON).
@@ -45,7 +47,7 @@ pub(crate) struct PlanArguments {
     json: Option<PathBuf>,
     #[command(flatten)]
     views: Views,
-    /// Durations of the next run, h; default: that of the record.
+    /// Durations of the next run, h; default: that of the last record.
     #[arg(long, value_name = "H,H", value_delimiter = ',', value_parser = positive)]
     hours: Vec<f64>,
     /// Limits of the platform angles during the whole run, deg: x=-30..30,y=-60..60. They override
@@ -67,12 +69,20 @@ pub(crate) struct PlanArguments {
     /// Also find the shortest run after which one effect stays in each confidence set, with 95 %.
     #[arg(long)]
     one_name: bool,
-    /// Also test these effects (not in the default search) when the record is diagnosed.
+    /// Also test these effects (not in the default search) when the records are diagnosed.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     effects: Vec<String>,
     /// Family-wise false-alarm probability of the diagnosis.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
+}
+
+impl PlanArguments {
+    /// Each record with its bench file.
+    fn pairs(&self) -> impl Iterator<Item = (&PathBuf, &PathBuf)> {
+        let benches = self.benches.iter().cycle();
+        self.records.iter().zip(benches)
+    }
 }
 
 /// Criterion of the ranking.
@@ -89,28 +99,38 @@ const DIAGNOSED: f64 = 0.5;
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
-    let mut inputs = vec![arguments.record.as_path(), arguments.bench.as_path()];
+    records::check_benches(arguments.benches.len(), arguments.records.len())?;
+    let mut inputs: Vec<&Path> = arguments
+        .pairs()
+        .flat_map(|(record, bench)| [record.as_path(), bench.as_path()])
+        .collect();
     inputs.extend(arguments.diagnosis.as_deref());
     inputs.extend(arguments.map.path());
     refuse_repeated(&arguments.limits)?;
     let json = arguments.json.as_deref();
     outputs::check(&inputs, json, arguments.views.figures())?;
     arguments.views.check(&inputs, &[("--json", json)])?;
-    let bench = Bench::read(&arguments.bench)?;
-    let file = arguments.map.read(&arguments.record)?;
-    let rows = file.record().len();
-    tracing::info!(rows, "read");
+    let benches = arguments.pairs().map(|(_, bench)| Bench::read(bench));
+    let benches: Vec<Bench> = benches.collect::<Result<_, _>>()?;
+    let files = arguments.records.iter();
+    let files: Vec<RecordFile> = files
+        .map(|path| arguments.map.read(path))
+        .collect::<Result<_, _>>()?;
+    let rows = files.iter().map(|file| file.record().len()).sum();
+    tracing::info!(rows, records = files.len(), "read");
     let mut progress = Progress::waiting("planning", rows);
-    let known = found::known(arguments, &file, &bench, &mut progress)?;
+    let known = found::known(arguments, &files, &benches, &mut progress)?;
     progress.stage("comparing runs", DIAGNOSED);
+    // The next run follows the last record on its bench.
+    let bench = &benches[benches.len() - 1];
     let run = Run {
         record: &known.record,
-        bench: &bench,
+        bench,
     };
     tracing::info!(named = known.named.len(), "known");
     let options = PlanOptions {
         durations_s: durations_s(&arguments.hours),
-        limits: limits(&arguments.limits, &bench),
+        limits: limits(&arguments.limits, bench),
         aim: arguments.aim.map(|aim| match aim {
             AimArgument::Set => Aim::Set,
             AimArgument::Sigmas => Aim::Sigmas,
@@ -119,7 +139,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
         ..PlanOptions::default()
     };
     let mut planned = plan(&known.fitted, &run, &known.noise, &known.named, &options)
-        .map_err(|source| NotPlanned::new(&arguments.record, source))?;
+        .map_err(|source| NotPlanned::new(&arguments.records[0], source))?;
     drop(progress);
     planned.setup.clone_from(&known.setup);
     planned.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
@@ -129,7 +149,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
         let part = of_plan(&planned);
         arguments
             .views
-            .stage(&arguments.record, part, &mut outputs, &mut answer)?;
+            .stage(&arguments.records[0], part, &mut outputs, &mut answer)?;
     }
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, &planned)?;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_calibration::shared_rows;
+use gyrocal_diagnosis::prose::counted;
 use gyrocal_instruments::{Description, read_any};
 use gyrocal_record::{Outputs, Record, RecordFile, ResultTable, printable_path};
 use miette::miette;
@@ -34,6 +35,17 @@ impl Map {
         }
         Ok(file)
     }
+}
+
+/// Refuses a number of bench files that is neither one nor that of the records.
+pub(crate) fn check_benches(benches: usize, records: usize) -> Result<(), Failure> {
+    if benches == 1 || benches == records {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "{benches} bench files for {}: give --bench once for all records, or once for each in their order",
+        counted(records, "record")
+    )))
 }
 
 /// Refuses records of which two have rows in common: each row counts once.

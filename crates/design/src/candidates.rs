@@ -1,7 +1,7 @@
 //! Candidates: the members of the confidence sets with the onsets and time constants that fit best.
 
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_calibration::{FittedPlatform, PLATFORM, Run, rows as rows_of};
+use gyrocal_calibration::{FittedPlatform, PLATFORM};
 use gyrocal_diagnosis::{missing_input, selection};
 use gyrocal_hypothesis::{HypothesisSet, Variant};
 use gyrocal_record::Record;
@@ -11,6 +11,7 @@ use crate::effect_columns::Times;
 use crate::error::DesignError;
 use crate::joint_unknowns::{Candidate, ConfidenceSet, JointUnknowns};
 use crate::named_cause::{NamedCause, is_walk, row};
+use crate::past::Past;
 use crate::run_information::RunInformation;
 use crate::set_comparison::{Comparison, stays};
 
@@ -21,12 +22,12 @@ const PLAUSIBLE: f64 = 10.0;
 /// plan asks whether a walk or an effect is likelier, not how large a walk is.
 const WALK_ONSETS: usize = 5;
 
-/// Durations of the record and of a next run.
-pub(crate) fn times(run: &Run<'_>, next_s: f64) -> Times {
-    let rows = rows_of(run.record, Vec::new());
+/// Durations of the records and of a next run.
+pub(crate) fn times(past: &Past<'_>, next_s: f64) -> Times {
+    let rows = past.rows();
     let set = HypothesisSet::new(&PLATFORM, &rows, &[]);
     Times {
-        first_s: duration_s(run.record),
+        first_s: duration_s(past.run().record),
         next_s,
         onsets_s: set
             .onset_rows()
@@ -49,15 +50,16 @@ pub(crate) fn duration_s(record: &Record) -> f64 {
 /// default search are among them if they explain as much with a plausible size.
 pub(crate) fn candidates(
     fitted: &FittedPlatform<'_>,
-    run: &Run<'_>,
+    past: &Past<'_>,
     named: &[NamedCause],
 ) -> Result<Vec<Vec<Candidate>>, DesignError> {
     let mut drafts = Vec::with_capacity(named.len());
     for named in named {
-        drafts.push(draft(named, run)?);
+        drafts.push(draft(named, past)?);
     }
-    let times = times(run, duration_s(run.record));
-    let unknowns = JointUnknowns::new(fitted, run, &drafts, &times);
+    let run = past.run();
+    let times = times(past, duration_s(run.record));
+    let unknowns = JointUnknowns::new(fitted, &run, &drafts, &times);
     let information = unknowns.of_first(&RunInformation::of_record(
         fitted,
         run.record,
@@ -71,7 +73,8 @@ pub(crate) fn candidates(
 }
 
 /// All candidates: of an effect with an onset or a time constant one for each variant of the search.
-fn draft(named: &NamedCause, run: &Run<'_>) -> Result<Vec<Candidate>, DesignError> {
+fn draft(named: &NamedCause, past: &Past<'_>) -> Result<Vec<Candidate>, DesignError> {
+    let run = past.run();
     let mut rows = Vec::with_capacity(named.rivals.len());
     for (id, _) in &named.rivals {
         rows.push(row(id)?);
@@ -90,9 +93,11 @@ fn draft(named: &NamedCause, run: &Run<'_>) -> Result<Vec<Candidate>, DesignErro
     }
     let also: Vec<&str> = rows.iter().map(|row| row.id).collect();
     let selection = selection(run.record, run.bench, &also);
-    let rows_of_run = rows_of(run.record, Vec::new());
-    let set = HypothesisSet::new(&PLATFORM, &rows_of_run, &selection.effects);
-    let mut candidates = vec![candidate(own, named.shape.filter(|_| !is_walk(own)))];
+    let set = HypothesisSet::new(&PLATFORM, &past.rows(), &selection.effects);
+    let mut candidates = vec![Candidate {
+        turn_on_sigmas: named.turn_on_sigmas.clone(),
+        ..candidate(own, named.shape.filter(|_| !is_walk(own)))
+    }];
     for row in rows {
         // What no run tells from one that is there already is one with it.
         if let Some(same) = candidates
@@ -124,6 +129,7 @@ fn candidate(row: &'static Effect, shape: Option<f64>) -> Candidate {
         equivalents: row.equivalents.to_vec(),
         variance: 0.0,
         handicap: 0.0,
+        turn_on_sigmas: Vec::new(),
     }
 }
 

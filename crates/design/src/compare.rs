@@ -6,6 +6,7 @@ use crate::candidates::{candidates, duration_s, times};
 use crate::error::DesignError;
 use crate::joint_unknowns::{ConfidenceSet, JointUnknowns};
 use crate::named_cause::{NamedCause, fitted_alone};
+use crate::past::Past;
 use crate::result::Forecast;
 use crate::run_information::RunInformation;
 use crate::set_comparison::{Comparison, deficits, stays};
@@ -47,8 +48,9 @@ pub fn compare(
     named: &[NamedCause],
     options: &Options,
 ) -> Result<Compared, DesignError> {
-    let sets = candidates(fitted, first, named)?;
-    let times = times(first, duration_s(second.record));
+    let past = Past::new(fitted, first);
+    let sets = candidates(fitted, &past, named)?;
+    let times = times(&past, duration_s(second.record));
     let unknowns = JointUnknowns::new(fitted, first, &sets, &times);
     // Values that the first record's noise has no trust in are no rows of the second.
     let noise = NoiseModel {

@@ -1,6 +1,7 @@
 //! Evaluation of one attitude and duration.
 
 use gyrocal::Discretisation;
+use gyrocal::effect::Continuation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
 use gyrocal_calibration::{
     CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, PlannedRun, Run,
@@ -11,9 +12,11 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::attitude::of_angles;
 use crate::candidates::duration_s as duration_s_of;
+use crate::design_column::begins;
 use crate::effect_columns::offset_after;
 use crate::expected_sets::{Deviates, Posteriors, expected};
 use crate::joint_unknowns::JointUnknowns;
+use crate::past::Past;
 use crate::result::{Forecast, Outlook, SetForecast, ratio};
 use crate::run_information::{RunInformation, predicted_information};
 use crate::sigma::sigmas;
@@ -37,12 +40,14 @@ pub(crate) struct Evaluator<'a> {
     noise: &'a NoiseModel,
     limits: GimbalLimits,
     options: Options,
-    /// In the record, and in the next run, which begins with what a step or a ramp has come to.
+    /// In the last record, and in the next run, which begins with what a step or a ramp has come to.
     parameters: Vec<f64>,
     next_parameters: Vec<f64>,
     shapes: Vec<f64>,
     next_shapes: Vec<f64>,
     start: Orientation,
+    /// Start of the record that goes on, on the clock of all, s.
+    start_s: f64,
     now: RunInformation,
     before: Vec<Forecast>,
     posteriors: Vec<Posteriors>,
@@ -64,7 +69,7 @@ impl<'a> Evaluator<'a> {
     pub(crate) fn new(
         unknowns: &'a JointUnknowns,
         fitted: &FittedPlatform<'_>,
-        run: Run<'a>,
+        past: &'a Past<'_>,
         noise: &'a NoiseModel,
         information: &RunInformation,
         limits: GimbalLimits,
@@ -78,9 +83,17 @@ impl<'a> Evaluator<'a> {
             .iter()
             .map(|case| Posteriors::new(case, &unknowns.list, &now))
             .collect();
-        let parameters = fitted.parameters();
-        let shapes = fitted.extension().all_shapes(&PLATFORM);
-        let offset = offset_after(duration_s_of(run.record));
+        let last = past.records() - 1;
+        let run = past.last();
+        let shapes = fitted.shapes_in(last);
+        let (next_parameters, next_shapes) = if past.is_several() {
+            let next = one_more(unknowns, fitted.shared_parameters());
+            (next, shapes.clone())
+        } else {
+            let offset = offset_after(duration_s_of(run.record));
+            let next = next_parameters(unknowns, &fitted.parameters(), &offset);
+            (next, continued_shapes(&PLATFORM, &shapes, &offset))
+        };
         Some(Self {
             unknowns,
             run,
@@ -93,11 +106,12 @@ impl<'a> Evaluator<'a> {
                 },
                 ..options
             },
-            next_parameters: next_parameters(unknowns, &parameters, &offset),
-            parameters,
-            next_shapes: continued_shapes(&PLATFORM, &shapes, &offset),
+            next_parameters,
+            parameters: fitted.parameters_in(last),
+            next_shapes,
             shapes,
-            start: *fitted.points().first()?,
+            start: *fitted.points().get(past.first_row())?,
+            start_s: past.start_s,
             now,
             before,
             posteriors,
@@ -163,7 +177,7 @@ impl<'a> Evaluator<'a> {
             .map_or(Evaluation::Stopped(0.0), Evaluation::At))
     }
 
-    /// Forecast for continuing the record for the duration of the next run.
+    /// Forecast for continuing the last record for the duration of the next run.
     pub(crate) fn continued(&self) -> Result<Option<Outlook>, CalibrationError> {
         let first_s = duration_s_of(self.run.record);
         let (mut record, noise_factor) = self.rows(first_s + self.duration_s);
@@ -185,8 +199,9 @@ impl<'a> Evaluator<'a> {
         let points = planned.trajectory(&self.options)?;
         let from = record.time_s.partition_point(|t| *t <= first_s);
         // A fit's own columns, which are of the record's own rows, say nothing here.
-        let columns = &self.unknowns.first;
-        let information = predicted_information(&planned, columns, from, points, &self.options)?;
+        let columns = self.unknowns.first.iter();
+        let columns: Vec<_> = columns.map(|column| column.in_last(self.start_s)).collect();
+        let information = predicted_information(&planned, &columns, from, points, &self.options)?;
         let next = self.unknowns.of_first(&silent(information)).information;
         Ok(self.outlook(&next))
     }
@@ -306,6 +321,21 @@ fn next_parameters(
         }
     }
     next
+}
+
+/// Parameters of one more record of the platform: without what began in one of those so far.
+fn one_more(unknowns: &JointUnknowns, mut parameters: Vec<f64>) -> Vec<f64> {
+    let named = unknowns
+        .cases
+        .iter()
+        .filter_map(|case| case.members.first());
+    for row in named.map(|named| named.candidate.row) {
+        if begins(row) || row.continuation == Continuation::ThisRecord {
+            row.model_parameters()
+                .for_each(|parameter| parameters[parameter] = 0.0);
+        }
+    }
+    parameters
 }
 
 /// The usual interval of a record, s.

@@ -1,9 +1,9 @@
 //! The first screen of a plan.
 
 use gyrocal_diagnosis::prose::{Screen, Standing, counted, few, record_and_bench};
-use gyrocal_record::printable_line;
+use gyrocal_record::shell_quoted;
 
-use crate::prose::{attitude, hours, percent, undecided};
+use crate::prose::{attitude, hours, known, percent, undecided};
 use crate::result::{Aim, PlanResult, Proposal};
 
 /// Names of a list that are shown.
@@ -54,25 +54,35 @@ pub fn first_screen(plan: &PlanResult) -> Screen {
             format!("{} (exact equivalents)", few(&classes, SHOWN)),
         );
     }
-    let path = plan.manifest.inputs.first();
-    screen.fact(
-        "record",
-        format!(
-            "{}: {} over {:.2} days",
-            path.map_or("record".into(), |input| printable_line(&input.path)),
-            counted(plan.record.rows, "row"),
-            plan.record.duration_s / 86_400.0
-        ),
-    );
-    let files = record_and_bench(&plan.manifest.inputs).replacen(" --", " next.csv --", 1);
-    screen.then(
-        format!("gyrocal calibrate {files} --bench next.toml"),
-        "both runs, once the next is recorded",
-    );
+    screen.fact("record", known(plan));
+    let what = match plan.records.is_empty() {
+        true => "both runs, once the next is recorded",
+        false => "all runs, once the next is recorded",
+    };
+    screen.then(format!("gyrocal calibrate {}", with_next(plan)), what);
     screen
 }
 
-/// What the record leaves open.
+/// The records and the next one with their bench files, as arguments of a command.
+fn with_next(plan: &PlanResult) -> String {
+    let inputs = &plan.manifest.inputs;
+    let count = plan.records.len();
+    if count == 0 || inputs.len() < 2 * count {
+        let files = record_and_bench(inputs).replacen(" --", " next.csv --", 1);
+        return format!("{files} --bench next.toml");
+    }
+    let quoted = |first: usize| -> Vec<String> {
+        let files = inputs[..2 * count].iter().skip(first).step_by(2);
+        files.map(|input| shell_quoted(&input.path)).collect()
+    };
+    format!(
+        "{} next.csv --bench {} --bench next.toml",
+        quoted(0).join(" "),
+        quoted(1).join(" --bench ")
+    )
+}
+
+/// What the records leave open.
 fn question(plan: &PlanResult) -> String {
     let sets = undecided(&plan.now).map(|set| {
         let others: Vec<&str> = set.members[1..].iter().map(|m| &*m.effect).collect();

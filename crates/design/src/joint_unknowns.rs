@@ -1,6 +1,7 @@
 //! All unknowns of a record and the run after it.
 
 use gyrocal::Effect;
+use gyrocal::effect::Continuation;
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal_calibration::{BIASES, FittedPlatform, Run, SiteQuantity};
 use gyrocal_hypothesis::Column;
@@ -9,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::COEFFICIENTS;
 use crate::design_column::DesignColumn;
-use crate::effect_columns::{Combination, Times, size_columns};
+use crate::effect_columns::{Combination, SizeColumns, Times, size_columns};
 use crate::result::{SetForecast, SetMember};
 use crate::run_information::RunInformation;
 
@@ -35,6 +36,8 @@ pub(crate) struct Candidate {
     pub(crate) variance: f64,
     /// Penalty subtracted from its statistic.
     pub(crate) handicap: f64,
+    /// Standard deviations of its sizes over turn-ons; empty if they are the same in each record.
+    pub(crate) turn_on_sigmas: Vec<f64>,
 }
 
 /// A candidate with its unknowns.
@@ -92,7 +95,7 @@ pub(crate) struct JointUnknowns {
     pub(crate) next: Vec<DesignColumn>,
     /// Unknowns of the site, which sigmas take as considered.
     pub(crate) site: [usize; 3],
-    /// Turn-ons, and what is in the model without a name.
+    /// Turn-ons, what is in the model without a name, and sizes of the next run alone.
     pub(crate) common: Vec<usize>,
     pub(crate) cases: Vec<ConfidenceSet>,
 }
@@ -135,7 +138,7 @@ impl JointUnknowns {
             all.add_turn_ons(prior);
         }
         all.add_unmodelled(fitted);
-        all.add_sets(sets, times);
+        all.add_sets(sets, times, fitted.records() > 1);
         all
     }
 
@@ -150,17 +153,18 @@ impl JointUnknowns {
         }
     }
 
-    /// The turn-on of each run beside the mean.
+    /// The turn-ons of the last record and of the next run beside the mean.
     fn add_turn_ons(&mut self, prior: &Prior) {
         for next in [false, true] {
             for (axis, bias) in BIASES.into_iter().enumerate() {
                 // A gyro whose turn-ons are equal has next to nothing to add.
                 let sigma = prior.turn_on_sigma_deg_per_h[axis].max(1e-9);
-                let (own, none) = (both(bias), Combination::new());
+                let none = Combination::new();
                 let place = if next {
-                    self.add(&none, &own, sigma)
+                    self.add(&none, &both(bias), sigma)
                 } else {
-                    self.add(&own, &none, sigma)
+                    // Those of earlier records are eliminated from their information.
+                    self.add(&vec![(DesignColumn::OfLast(bias), 1.0)], &none, sigma)
                 };
                 self.common.push(place);
             }
@@ -178,12 +182,12 @@ impl JointUnknowns {
         }
     }
 
-    fn add_sets(&mut self, sets: &[Vec<Candidate>], times: &Times) {
+    fn add_sets(&mut self, sets: &[Vec<Candidate>], times: &Times, several: bool) {
         let members: Vec<Vec<Member>> = sets
             .iter()
             .map(|set| {
                 set.iter()
-                    .map(|candidate| self.member(candidate, times))
+                    .map(|candidate| self.member(candidate, times, several))
                     .collect()
             })
             .collect();
@@ -236,15 +240,25 @@ impl JointUnknowns {
         RunInformation { information, score }
     }
 
-    fn member(&mut self, candidate: &Candidate, times: &Times) -> Member {
+    fn member(&mut self, candidate: &Candidate, times: &Times, several: bool) -> Member {
         // A random walk has a prior: the variance of its increments.
         let sigma = if candidate.variance > 0.0 {
             candidate.variance.sqrt()
         } else {
             f64::INFINITY
         };
+        let mut sizes = size_columns(candidate.row, candidate.shape, times);
+        if several {
+            let sizes = sizes.iter_mut();
+            sizes.for_each(|size| in_another_record(size, candidate.row));
+        }
+        for (size, sigma) in sizes.iter_mut().zip(&candidate.turn_on_sigmas) {
+            let own = core::mem::take(&mut size.next);
+            let place = self.add(&Combination::new(), &own, *sigma);
+            self.common.push(place);
+        }
         Member {
-            places: size_columns(candidate.row, candidate.shape, times)
+            places: sizes
                 .iter()
                 .map(|size| self.add(&size.first, &size.next, sigma))
                 .collect(),
@@ -260,6 +274,19 @@ impl JointUnknowns {
         };
         self.list.push(unknown);
         self.list.len() - 1
+    }
+}
+
+/// Makes the columns of the next run those of one more record with a clock of its own: what begins at one time
+/// begins in one record. Increments of a walk that are the next run's own stay.
+fn in_another_record(size: &mut SizeColumns, effect: &Effect) {
+    if size.first.is_empty() {
+        return;
+    }
+    size.next.clear();
+    if effect.continuation != Continuation::ThisRecord {
+        let again = size.first.iter().filter(|(column, _)| column.recurs());
+        size.next.extend(again.cloned());
     }
 }
 

@@ -37,6 +37,11 @@
 //! run. All other effects continue as the table of effects declares: a warm-up begins anew, a ramp and
 //! a step go on, a knock and an error of the first attitude belong to their run.
 //!
+//! Of several records J₁ is the sum of their information, each with its attitudes, its clock and its turn-on.
+//! The next run is one more of them: an effect is in it as it is in each record, and what began in one
+//! record stays there. A cause that a joint diagnosis gives a size for each turn-on has another size in the
+//! next run, of which only the scale over the records is known.
+//!
 //! # Features
 //!
 //! - `schema`: the JSON Schema of the results.
@@ -58,6 +63,7 @@ mod goal;
 mod joint_unknowns;
 mod named_cause;
 mod options;
+mod past;
 mod plan;
 mod planner;
 mod prose;
@@ -72,7 +78,7 @@ pub use compare::{Compared, ComparedMember, compare};
 pub use error::DesignError;
 pub use first_screen::first_screen;
 pub use goal::Goal;
-pub use named_cause::{NamedCause, noise_of};
+pub use named_cause::{NamedCause, fitted_to_records, noise_of};
 pub use options::PlanOptions;
 pub use plan::plan;
 pub use prose::prose;

@@ -1,15 +1,16 @@
 //! Named causes of a record.
 
-use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
+use gyrocal::effect::{EffectKind, EffectParameter, Enters, NoiseProperty};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{
-    CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, Run, rows,
+    CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, Run, joined_record,
 };
-use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension, recurs};
+use gyrocal_hypothesis::{HypothesisSet, ModelExtension, RateNoise, recurs};
+use gyrocal_record::{Bench, Record};
 
 use crate::error::DesignError;
 use gyrocal_diagnosis::missing_input;
-use gyrocal_diagnosis::result::{DiagnosisResult, Finding};
+use gyrocal_diagnosis::result::{DiagnosisResult, Finding, SizeChoice};
 
 /// A named cause with its confidence set.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,9 @@ pub struct NamedCause {
     pub shape: Option<f64>,
     /// Ids of the rest of its set, with the differences of log-likelihoods.
     pub rivals: Vec<(String, f64)>,
+    /// Standard deviations of its sizes over turn-ons, in the unit of the model, where several records have
+    /// shown a size for each; empty where the size is one.
+    pub turn_on_sigmas: Vec<f64>,
 }
 
 impl NamedCause {
@@ -49,6 +53,7 @@ impl NamedCause {
                 .iter()
                 .map(|other| (other.effect.clone(), other.log_likelihood_deficit))
                 .collect(),
+            turn_on_sigmas: row.map_or_else(Vec::new, |row| turn_on_sigmas(row, finding)),
         }
     }
 
@@ -82,6 +87,67 @@ impl NamedCause {
             nominal.refitted(&extension)?
         })
     }
+}
+
+/// The model that has some causes, fitted to several records of one platform by their joint diagnosis: where
+/// [`super::plan`] starts from, with the joint record beside it. Accelerometer noise is that found in each
+/// record, noise of the gyros that found in all.
+///
+/// # Errors
+/// As [`NamedCause::fitted`], and [`CalibrationError::UnlikeBenches`].
+pub fn fitted_to_records(
+    diagnosis: &DiagnosisResult,
+    runs: &[Run<'_>],
+    options: &Options,
+) -> Result<(FittedPlatform<'static>, Record), DesignError> {
+    let named = NamedCause::all(diagnosis);
+    let gyros = with_walks(&noise_of(diagnosis), &named)?;
+    let mut parts = Vec::with_capacity(runs.len());
+    for (run, one) in runs.iter().zip(&diagnosis.records) {
+        let noise = NoiseModel {
+            accel_ratio: noise_of(&one.alone).accel_ratio,
+            ..NoiseModel::default()
+        };
+        parts.push(FittedPlatform::nominal(run, options, &noise)?);
+    }
+    let benches: Vec<&Bench> = runs.iter().map(|run| run.bench).collect();
+    let records: Vec<&Record> = runs.iter().map(|run| run.record).collect();
+    let (record, _) = joined_record(&records);
+    let mut fitted = FittedPlatform::joined(&parts, &benches)?;
+    let noise = RateNoise {
+        white: gyros.gyro_ratio.to_vec(),
+        walk: gyros.gyro_walk_deg_per_h_per_sqrt_h.to_vec(),
+    };
+    if noise != fitted.rate_noise() {
+        fitted = fitted.with_rate_noise(&noise)?;
+    }
+    if let Some(last) = runs.last() {
+        let run = Run {
+            record: &record,
+            bench: last.bench,
+        };
+        let extension = extension(&named, &run, &fitted)?;
+        if extension != *fitted.extension() {
+            fitted = fitted.refitted(&extension)?;
+        }
+    }
+    Ok((fitted.into_owned(), record))
+}
+
+/// Root mean squares of the sizes of each record, in the unit of the model, where there is one for each
+/// turn-on; else none.
+fn turn_on_sigmas(row: &Effect, finding: &Finding) -> Vec<f64> {
+    let found = finding.by_record.as_ref();
+    let Some(found) = found.filter(|found| found.choice == SizeChoice::PerTurnOn) else {
+        return Vec::new();
+    };
+    let of_size = |(index, size): (usize, &EffectParameter)| {
+        let estimates = found.sizes.iter().map(|one| one.estimates[index].estimate);
+        let squares: f64 = estimates.map(|estimate| estimate * estimate).sum();
+        (squares / found.sizes.len() as f64).sqrt() * size.scale
+    };
+    let sizes = found.sizes.first().map_or(0, |one| one.estimates.len());
+    row.sizes().take(sizes).enumerate().map(of_size).collect()
 }
 
 /// Noise other than declared, where a diagnosis found it: that of the accelerometers and of the gyros.
@@ -140,7 +206,7 @@ pub(crate) fn extension(
             effects.push(effect);
         }
     }
-    let rows = rows(run.record, nominal.covariates());
+    let rows = nominal.rows(run.record);
     let set = HypothesisSet::new(&PLATFORM, &rows, &effects);
     let mut extension = FittedPlatform::extension(nominal).clone();
     for named in named {

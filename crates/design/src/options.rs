@@ -7,7 +7,7 @@ use crate::result::Aim;
 /// Settings of the search for the next run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanOptions {
-    /// Durations of the run, s; none stands for that of the record.
+    /// Durations of the run, s; none stands for that of the last record.
     pub durations_s: Vec<f64>,
     /// Limits of the gimbals over the whole run.
     pub limits: GimbalLimits,

@@ -1,12 +1,13 @@
 //! The next run.
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Run};
-use gyrocal_diagnosis::{manifest, record_summary};
+use gyrocal_diagnosis::manifest;
 
 use crate::candidates::duration_s;
 use crate::error::DesignError;
 use crate::named_cause::NamedCause;
 use crate::options::PlanOptions;
+use crate::past::Past;
 use crate::planner::{FINE, Planner};
 use crate::result::{PlanResult, Proposal, Reached, SCHEMA_VERSION};
 use crate::shortest_run::reach;
@@ -15,7 +16,9 @@ use crate::shortest_run::reach;
 const MOST_S: f64 = 366.0 * 86_400.0;
 
 /// Searches for the next run with the smallest expected confidence sets or standard deviations, given
-/// a fit with the causes that were named in its record.
+/// a fit with the causes that were named in its record. Of a fit to several records `run` has the record of
+/// [`gyrocal_calibration::joined_record`] and the bench of the last: the next run is one more record of the
+/// platform, with a clock and a turn-on of its own.
 ///
 /// # Errors
 /// [`DesignError`].
@@ -27,8 +30,9 @@ pub fn plan(
     options: &PlanOptions,
 ) -> Result<PlanResult, DesignError> {
     options.goal.check()?;
-    let planner = Planner::new(fitted, *run, noise, named, options)?;
-    let own = [duration_s(run.record)];
+    let past = Past::new(fitted, run);
+    let planner = Planner::new(fitted, &past, noise, named, options)?;
+    let own = [duration_s(past.last().record)];
     let durations_s = if options.durations_s.is_empty() {
         &own[..]
     } else {
@@ -72,7 +76,8 @@ pub fn plan(
     Ok(PlanResult {
         schema_version: SCHEMA_VERSION,
         manifest: manifest(options.seed),
-        record: record_summary(run.record),
+        record: past.summary(),
+        records: past.summaries(),
         setup: Vec::new(),
         aim: planner.aim,
         now,

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Run};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel};
 use rayon::prelude::*;
 
 use crate::attitude::{apart_deg, beside, first};
@@ -12,6 +12,7 @@ use crate::evaluator::{Detail, Evaluation, Evaluator, interval_s};
 use crate::joint_unknowns::{Candidate, JointUnknowns};
 use crate::named_cause::NamedCause;
 use crate::options::PlanOptions;
+use crate::past::Past;
 use crate::result::{Aim, Outlook, Proposal};
 use crate::run_information::RunInformation;
 
@@ -43,11 +44,11 @@ const SIGMAS_IN_SETS: f64 = 0.2;
 /// Everything but attitude and duration.
 pub(crate) struct Planner<'a, 'b> {
     fitted: &'b FittedPlatform<'a>,
-    run: Run<'b>,
+    past: &'b Past<'b>,
     noise: &'b NoiseModel,
     pub(crate) options: &'b PlanOptions,
     sets: Vec<Vec<Candidate>>,
-    /// Information of the record on the columns, which are the same for all durations.
+    /// Information of the records on the columns, which are the same for all durations.
     information: RunInformation,
     pub(crate) aim: Aim,
 }
@@ -55,13 +56,14 @@ pub(crate) struct Planner<'a, 'b> {
 impl<'a, 'b> Planner<'a, 'b> {
     pub(crate) fn new(
         fitted: &'b FittedPlatform<'a>,
-        run: Run<'b>,
+        past: &'b Past<'b>,
         noise: &'b NoiseModel,
         named: &[NamedCause],
         options: &'b PlanOptions,
     ) -> Result<Self, DesignError> {
-        let sets = candidates(fitted, &run, named)?;
-        let own = times(&run, duration_s(run.record));
+        let sets = candidates(fitted, past, named)?;
+        let run = past.run();
+        let own = times(past, duration_s(run.record));
         let unknowns = JointUnknowns::new(fitted, &run, &sets, &own);
         let information = RunInformation::of_record(fitted, run.record, &unknowns.first)?;
         let aim = options
@@ -73,7 +75,7 @@ impl<'a, 'b> Planner<'a, 'b> {
             });
         Ok(Self {
             fitted,
-            run,
+            past,
             noise,
             options,
             sets,
@@ -97,7 +99,7 @@ impl<'a, 'b> Planner<'a, 'b> {
 
     /// The shortest run, s.
     pub(crate) fn least_s(&self) -> f64 {
-        LEAST_ROWS * interval_s(self.run.record)
+        LEAST_ROWS * interval_s(self.past.last().record)
     }
 
     /// With everything but the attitude.
@@ -107,12 +109,12 @@ impl<'a, 'b> Planner<'a, 'b> {
         detail: Detail,
         ask: impl FnOnce(&Evaluator<'_>) -> Result<R, DesignError>,
     ) -> Result<R, DesignError> {
-        let times = times(&self.run, duration_s);
-        let unknowns = JointUnknowns::new(self.fitted, &self.run, &self.sets, &times);
+        let times = times(self.past, duration_s);
+        let unknowns = JointUnknowns::new(self.fitted, &self.past.run(), &self.sets, &times);
         let evaluator = Evaluator::new(
             &unknowns,
             self.fitted,
-            self.run,
+            self.past,
             self.noise,
             &self.information,
             self.options.limits,

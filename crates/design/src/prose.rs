@@ -14,15 +14,9 @@ const NOT_DISTINGUISHED: f64 = 0.5;
 /// The whole plan in reading order.
 #[must_use]
 pub fn prose(plan: &PlanResult) -> Vec<Block> {
-    let path = plan.manifest.inputs.first();
     let mut blocks = vec![
-        Block::Paragraph(format!(
-            "{}: {} over {:.2} days",
-            path.map_or("record".into(), |input| printable_line(&input.path)),
-            counted(plan.record.rows, "row"),
-            plan.record.duration_s / 86_400.0
-        )),
-        Block::Paragraph(question(plan.aim, &plan.now)),
+        Block::Paragraph(known(plan)),
+        Block::Paragraph(question(plan)),
     ];
     blocks.extend(setup(&plan.setup));
     for (index, duration_s) in durations(plan).into_iter().enumerate() {
@@ -32,7 +26,7 @@ pub fn prose(plan: &PlanResult) -> Vec<Block> {
         };
         let sets = undecided(&best.outlook).map(set_forecast);
         blocks.push(Block::List {
-            title: recommendation(best, index == 0),
+            title: recommendation(plan, best, index == 0),
             entries: sets.chain([sigma_forecast(&best.outlook)]).collect(),
         });
         if let Some(going_on) = plan.going_on.iter().find(of_it) {
@@ -51,6 +45,30 @@ pub fn prose(plan: &PlanResult) -> Vec<Block> {
     blocks
 }
 
+/// The records that the run is planned from, with their size.
+pub(crate) fn known(plan: &PlanResult) -> String {
+    let inputs = &plan.manifest.inputs;
+    let size = format!(
+        "{} over {:.2} days",
+        counted(plan.record.rows, "row"),
+        plan.record.duration_s / 86_400.0
+    );
+    let count = plan.records.len();
+    if count == 0 {
+        let path = inputs.first();
+        let name = path.map_or("record".into(), |input| printable_line(&input.path));
+        return format!("{name}: {size}");
+    }
+    // Each is followed by its bench file.
+    let names = inputs.iter().step_by(2).take(count);
+    let names: Vec<_> = names.map(|input| printable_line(&input.path)).collect();
+    let named = match names.is_empty() {
+        true => String::new(),
+        false => format!(" ({})", names.join(", ")),
+    };
+    format!("{count} records together{named}: {size}")
+}
+
 /// Durations in the order in which they were asked for.
 fn durations(plan: &PlanResult) -> Vec<f64> {
     let mut durations: Vec<f64> = plan.proposals.iter().map(|p| p.duration_s).collect();
@@ -63,24 +81,29 @@ pub(crate) fn undecided(outlook: &Outlook) -> impl Iterator<Item = &SetForecast>
     outlook.sets.iter().filter(|set| set.members.len() > 1)
 }
 
-fn question(aim: Aim, now: &Outlook) -> String {
+fn question(plan: &PlanResult) -> String {
+    let now = &plan.now;
+    let these = match plan.records.is_empty() {
+        true => "this record",
+        false => "these records",
+    };
     let sets = undecided(now).map(|set| {
         let others: Vec<&str> = set.members[1..].iter().map(|m| &*m.effect).collect();
         format!("{} (alternatives {})", set.effect, others.join(", "))
     });
     let sets: Vec<String> = sets.collect();
     let reported: Vec<&str> = now.sets.iter().map(|set| &*set.effect).collect();
-    let ranked = match aim {
+    let ranked = match plan.aim {
         Aim::Set => "Runs are ranked by the expected size of these sets, then by the sigmas.",
         Aim::Sigmas => "Runs are ranked by the sigmas of the nine coefficients.",
     };
     if !sets.is_empty() {
         format!(
-            "Not distinguished by this record: {}. {ranked}",
+            "Not distinguished by {these}: {}. {ranked}",
             sets.join("; ")
         )
     } else if reported.is_empty() {
-        format!("The diagnosis of this record has no findings. {ranked}")
+        format!("The diagnosis of {these} has no findings. {ranked}")
     } else {
         format!(
             "Findings without alternatives: {}. {ranked}",
@@ -89,9 +112,13 @@ fn question(aim: Aim, now: &Outlook) -> String {
     }
 }
 
-fn recommendation(best: &Proposal, first: bool) -> String {
+fn recommendation(plan: &PlanResult, best: &Proposal, first: bool) -> String {
+    let records = match plan.records.is_empty() {
+        true => "record",
+        false => "records",
+    };
     format!(
-        "{} {} from {}. Expected result of record and run together:",
+        "{} {} from {}. Expected result of {records} and run together:",
         if first {
             "Recommended next run:"
         } else {

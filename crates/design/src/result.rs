@@ -21,8 +21,11 @@ pub struct PlanResult {
     pub schema_version: u32,
     /// Program, inputs and command that made the result.
     pub manifest: Manifest,
-    /// Size of the record so far.
+    /// Size of the record so far; of several records that of all together.
     pub record: RecordSummary,
+    /// Sizes of the records, if the run is planned from several, in the order of the inputs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<RecordSummary>,
     /// Gross errors of its set-up that were mended.
     #[serde(default)]
     pub setup: Vec<SetupProblem>,

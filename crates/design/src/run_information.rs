@@ -3,7 +3,6 @@
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal::trajectory::Orientation;
 use gyrocal_calibration::{CalibrationError, FittedPlatform, Options, PlannedRun, rows};
-use gyrocal_hypothesis::FittedModel;
 use gyrocal_record::Record;
 use nalgebra::{DMatrix, DVector};
 
@@ -18,36 +17,25 @@ pub(crate) struct RunInformation {
 }
 
 impl RunInformation {
-    /// Of a record, linearised about a fit.
+    /// Of the records of a fit, linearised about it; `record` is theirs, or
+    /// [`gyrocal_calibration::joined_record`].
     pub(crate) fn of_record(
         fitted: &FittedPlatform<'_>,
         record: &Record,
         columns: &[DesignColumn],
     ) -> Result<Self, CalibrationError> {
-        let rows = rows(record, fitted.covariates());
+        let rows = fitted.rows(record);
         let further: Vec<_> = columns
             .iter()
             .filter_map(|column| column.column(&rows))
             .collect();
-        let gram = fitted.signatures(&further, |_| ())?.gram;
+        let [earlier, last] = fitted.earlier_and_last(&further)?;
         let own = fitted.extension().columns.columns().len();
-        let mut next = 1 + PARAMETERS.len() + own;
-        let places: Vec<usize> = columns
-            .iter()
-            .map(|column| match column {
-                DesignColumn::Parameter(parameter) => 1 + parameter,
-                DesignColumn::Fitted(index) => 1 + PARAMETERS.len() + index,
-                _ => {
-                    next += 1;
-                    next - 1
-                }
-            })
-            .collect();
+        let places = places(columns, own);
         // What the fit has: its score was taken there and is wanted at zero.
-        let mut values = fitted.parameters();
-        let amplitudes = fitted.values().len() - own;
-        values.extend_from_slice(&fitted.values()[amplitudes..]);
-        let score_at = |place: usize| {
+        let further = &fitted.values()[fitted.values().len() - own..];
+        let score_of = |gram: &DMatrix<f64>, mut values: Vec<f64>, place: usize| {
+            values.extend_from_slice(further);
             let shift: f64 = values
                 .iter()
                 .enumerate()
@@ -56,12 +44,41 @@ impl RunInformation {
             // Columns are derivatives of the innovations, hence the sign.
             shift - gram[(0, place)]
         };
+        let score = |i: usize| {
+            let of_last = fitted.parameters_in(fitted.records() - 1);
+            let of_last = score_of(&last, of_last, places[i]);
+            if columns[i].is_of_last() || fitted.records() == 1 {
+                return of_last;
+            }
+            of_last + score_of(&earlier, fitted.shared_parameters(), places[i])
+        };
+        let information = |i: usize, j: usize| {
+            let at = (places[i], places[j]);
+            if columns[i].is_of_last() || columns[j].is_of_last() {
+                return last[at];
+            }
+            earlier[at] + last[at]
+        };
         let count = columns.len();
         Ok(Self {
-            information: DMatrix::from_fn(count, count, |i, j| gram[(places[i], places[j])]),
-            score: DVector::from_fn(count, |i, _| score_at(places[i])),
+            information: DMatrix::from_fn(count, count, information),
+            score: DVector::from_fn(count, |i, _| score(i)),
         })
     }
+}
+
+/// Places of design columns among those of a pass over the records of a fit, which has `own` further columns.
+fn places(columns: &[DesignColumn], own: usize) -> Vec<usize> {
+    let mut next = 1 + PARAMETERS.len() + own;
+    let place = |column: &DesignColumn| match column {
+        DesignColumn::Parameter(parameter) | DesignColumn::OfLast(parameter) => 1 + parameter,
+        DesignColumn::Fitted(index) => 1 + PARAMETERS.len() + index,
+        _ => {
+            next += 1;
+            next - 1
+        }
+    };
+    columns.iter().map(place).collect()
 }
 
 /// Predicted information of a run on the amplitudes of design columns, from a row on.

@@ -1,10 +1,15 @@
 //! Planned runs, simulated: their results agree with the predictions.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
-use gyrocal_design::{
-    Aim, DesignError, Goal, NamedCause, PlanOptions, PlanResult, Proposal, compare, plan,
+use gyrocal_calibration::{
+    FittedPlatform, NoiseModel, Options, Run, calibrate_runs, joined_record,
 };
+use gyrocal_design::{
+    Aim, DesignError, Goal, NamedCause, PlanOptions, PlanResult, Proposal, compare, first_screen,
+    fitted_to_records, plan,
+};
+use gyrocal_diagnosis::result::{DiagnosisResult, SizeChoice};
+use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose_records};
 use gyrocal_record::{GimbalLimits, Prior};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
@@ -51,6 +56,7 @@ fn named(effect: &str, rivals: &[(&str, f64)]) -> NamedCause {
     NamedCause {
         effect: effect.to_owned(),
         shape: None,
+        turn_on_sigmas: Vec::new(),
         rivals: rivals
             .iter()
             .map(|(id, d)| ((*id).to_owned(), *d))
@@ -231,4 +237,199 @@ fn what_makes_no_sense_is_refused() {
     let noise = [named("accel_x.noise", &[])];
     let error = planned(&first, &noise, &PlanOptions::default()).unwrap_err();
     assert!(matches!(error, DesignError::NotPlannable { .. }), "{error}");
+}
+
+/// Two records of one platform in two attitudes, two samples in ten minutes.
+fn two_records(turn_on_deg_per_h: f64, sizes: [f64; 2]) -> [Simulation; 2] {
+    [(41, [5.0, 10.0, 20.0]), (42, [60.0, -30.0, 120.0])].map(|(seed, angles_deg)| {
+        let size = sizes[seed as usize - 41];
+        simulate(&Scenario {
+            initial: InitialAttitude::AnglesDeg(angles_deg),
+            prior: Prior {
+                turn_on_sigma_deg_per_h: [turn_on_deg_per_h; 3],
+                ..Prior::default()
+            },
+            interval_s: 300.0,
+            duration_s: 86_400.0,
+            hidden: match size {
+                0.0 => Vec::new(),
+                size => vec![Hidden::new("gyro_y.g_z", &[("size", size)]).unwrap()],
+            },
+            ..scenario(seed)
+        })
+        .unwrap()
+    })
+}
+
+/// The plan from a fit to two records without causes.
+fn planned_from(records: &[Simulation; 2]) -> PlanResult {
+    let noise = NoiseModel::default();
+    let fits = records.each_ref().map(|record| {
+        FittedPlatform::nominal(&run(record), &Options::default(), &noise).unwrap()
+    });
+    let benches = records.each_ref().map(|record| &record.bench);
+    let fitted = FittedPlatform::joined(&fits, &benches).unwrap();
+    let (record, _) = joined_record(&records.each_ref().map(|record| &record.record));
+    let run = Run {
+        record: &record,
+        bench: benches[1],
+    };
+    plan(&fitted, &run, &noise, &[], &PlanOptions::default()).unwrap()
+}
+
+#[test]
+fn sigmas_of_several_records_and_of_the_run_after_them_are_those_of_a_joint_calibration() {
+    for turn_on in [0.0, 0.02] {
+        let records = two_records(turn_on, [0.0; 2]);
+        let planned = planned_from(&records);
+        assert_eq!(planned.records.len(), 2);
+        assert_eq!(planned.record.rows, 2 * planned.records[0].rows);
+        let runs = records.each_ref().map(run);
+        let found = calibrate_runs(&runs, &Options::default(), |_| ()).unwrap();
+        for (now, found) in planned.now.coefficients.iter().zip(found.coefficients()) {
+            let ratio = found.sigma / now.sigma;
+            // The same records about the same fit.
+            assert!((0.999..1.001).contains(&ratio), "{} {ratio}", found.id);
+        }
+        let best = &planned.proposals[0];
+        assert_eq!(best.duration_s, records[1].record.duration_s());
+        assert!(best.outlook.sigma_ratio < planned.going_on[0].outlook.sigma_ratio);
+        let third = simulate(&Scenario {
+            seed: 43,
+            initial: InitialAttitude::AnglesDeg(best.angles_deg.unwrap()),
+            interval_s: 300.0,
+            duration_s: best.duration_s,
+            prior: records[0].bench.prior,
+            ..scenario(43)
+        })
+        .unwrap();
+        let runs = [run(&records[0]), run(&records[1]), run(&third)];
+        let found = calibrate_runs(&runs, &Options::default(), |_| ()).unwrap();
+        for (predicted, found) in best.outlook.coefficients.iter().zip(found.coefficients()) {
+            let ratio = found.sigma / predicted.sigma;
+            // As of one record: the trajectory goes by what the records left uncertain.
+            assert!((0.98..1.02).contains(&ratio), "{} {ratio}", found.id);
+        }
+    }
+}
+
+#[test]
+fn going_on_with_the_last_record_is_a_longer_last_record() {
+    for turn_on in [0.0, 0.02] {
+        let records = two_records(turn_on, [0.0; 2]);
+        let planned = planned_from(&records);
+        let longer = simulate(&Scenario {
+            initial: InitialAttitude::AnglesDeg([60.0, -30.0, 120.0]),
+            interval_s: 300.0,
+            duration_s: 2.0 * 86_400.0,
+            prior: records[0].bench.prior,
+            ..scenario(42)
+        })
+        .unwrap();
+        let runs = [run(&records[0]), run(&longer)];
+        let found = calibrate_runs(&runs, &Options::default(), |_| ()).unwrap();
+        let going_on = planned.going_on[0].outlook.coefficients.iter();
+        for (predicted, found) in going_on.zip(found.coefficients()) {
+            let ratio = found.sigma / predicted.sigma;
+            assert!((0.97..1.03).contains(&ratio), "{} {ratio}", found.id);
+        }
+    }
+}
+
+/// The joint diagnosis of two records, as it is written.
+fn diagnosed(records: &[Simulation; 2]) -> (DiagnosisResult, PlanResult) {
+    let options = DiagnoseOptions::default();
+    let given = records.iter().enumerate().map(|(index, one)| {
+        let kind = gyrocal_setup::PlatformKind::Stabilised;
+        RecordToDiagnose {
+            name: format!("{index}.csv"),
+            gate: Gate::new(kind, &run(one), &Options::default()),
+            bench: &one.bench,
+        }
+    });
+    let found = diagnose_records(given.collect(), &options, |_| ()).unwrap();
+    let together = found.together;
+    let run = Run {
+        record: &together.record,
+        bench: &records[1].bench,
+    };
+    let named = NamedCause::all(&together.result);
+    let fitted = together.extended.as_ref().unwrap_or(&together.nominal);
+    let short = PlanOptions {
+        durations_s: vec![21_600.0],
+        ..PlanOptions::default()
+    };
+    let planned = plan(fitted, &run, &together.noise_model, &named, &short).unwrap();
+    (together.result, planned)
+}
+
+#[test]
+fn a_plan_from_a_written_joint_diagnosis_is_that_from_the_diagnosis() {
+    let records = two_records(0.0, [0.01; 2]);
+    let (result, from_diagnosis) = diagnosed(&records);
+    let named = NamedCause::all(&result);
+    assert_eq!(named[0].effect, "gyro_y.g_z");
+    assert!(named[0].turn_on_sigmas.is_empty());
+    let runs = records.each_ref().map(run);
+    let (fitted, record) = fitted_to_records(&result, &runs, &Options::default()).unwrap();
+    let run = Run {
+        record: &record,
+        bench: &records[1].bench,
+    };
+    let options = PlanOptions {
+        durations_s: vec![21_600.0],
+        ..PlanOptions::default()
+    };
+    let written = plan(&fitted, &run, fitted.noise_model(), &named, &options).unwrap();
+    let [one, other] = [&written, &from_diagnosis].map(|plan| &plan.now.coefficients);
+    for (one, other) in one.iter().zip(other) {
+        // The noise of the accelerometers is that of each diagnosis alone, a little beside that of both.
+        assert!((one.sigma / other.sigma - 1.0).abs() < 0.02, "{one:?} {other:?}");
+    }
+    assert_eq!(written.now.sizes[0].name, "gyro_y.g_z size");
+    assert_eq!(written.records, from_diagnosis.records);
+    let screen = first_screen(&written);
+    let record = screen.facts.iter().find(|fact| fact.label == "record");
+    let words = &record.unwrap().words;
+    assert!(words.contains("2 records together: 578 rows"), "{words}");
+}
+
+#[test]
+fn a_cause_with_a_size_for_each_turn_on_has_another_in_the_next_run() {
+    let records = two_records(0.0, [0.02, -0.015]);
+    let (mut result, _) = diagnosed(&records);
+    let chosen = |result: &DiagnosisResult, choice: SizeChoice| {
+        let mut result = result.clone();
+        for finding in &mut result.findings {
+            if let Some(found) = &mut finding.by_record {
+                found.choice = choice;
+            }
+        }
+        NamedCause::all(&result)
+    };
+    result.findings.retain(|finding| finding.by_record.is_some());
+    let [shared, own] =
+        [SizeChoice::Shared, SizeChoice::PerTurnOn].map(|choice| chosen(&result, choice));
+    let named = own.iter().find(|one| !one.turn_on_sigmas.is_empty());
+    assert!(named.is_some(), "{own:?}");
+    let runs = records.each_ref().map(run);
+    let (fitted, record) = fitted_to_records(&result, &runs, &Options::default()).unwrap();
+    let run = Run {
+        record: &record,
+        bench: &records[1].bench,
+    };
+    let options = PlanOptions {
+        durations_s: vec![21_600.0],
+        aim: Some(Aim::Sigmas),
+        ..PlanOptions::default()
+    };
+    let [shared, own] = [shared, own]
+        .map(|named| plan(&fitted, &run, fitted.noise_model(), &named, &options).unwrap());
+    for (one, other) in shared.now.coefficients.iter().zip(&own.now.coefficients) {
+        // The past is the same; one more unknown of the next run costs nothing before it.
+        assert!((one.sigma / other.sigma - 1.0).abs() < 1e-6, "{one:?} {other:?}");
+    }
+    let after = |plan: &PlanResult| plan.proposals[0].outlook.sizes[0].sigma;
+    // A run of another size tells less of that so far.
+    assert!(after(&own) > after(&shared), "{} {}", after(&own), after(&shared));
 }

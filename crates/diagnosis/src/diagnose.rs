@@ -41,7 +41,10 @@ pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
-pub use records::{RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together};
+pub use records::{
+    RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together, problems_of,
+    records_summary,
+};
 pub use screening::screen_record;
 use shared_or_own::sizes_by_record;
 use untestable_rows::detect_outliers;

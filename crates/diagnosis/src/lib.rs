@@ -99,7 +99,7 @@ pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_te
 pub use diagnose::{
     DiagnoseOptions, Diagnosis, RecordToDiagnose, RecordsDiagnosis, diagnose, diagnose_gated,
     diagnose_records, diagnose_together, diagnose_watched, fit_effects, manifest, predict_later,
-    record_summary, screen_record,
+    problems_of, record_summary, records_summary, screen_record,
 };
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};

@@ -39,7 +39,10 @@ pub fn of_plan(plan: &PlanResult) -> Part {
         blocks::items(&blocks),
     ));
     Part {
-        name: file_name(&plan.manifest, 0, "record"),
+        name: match plan.records.len() {
+            0 => file_name(&plan.manifest, 0, "record"),
+            several => counted(several, "record"),
+        },
         size: format!(
             "{} over {:.2} days",
             counted(plan.record.rows, "row"),

@@ -140,6 +140,30 @@ impl FittedPlatform<'_> {
         total.ok_or(CalibrationError::NoRecords)
     }
 
+    /// The Gram matrices of [`Self::signatures`] in two parts: of all records but the last, the offsets of their
+    /// turn-ons eliminated, and of the last by itself, with that of its turn-on among its parameters. The
+    /// residuals of the last are at [`Self::parameters_in`] it, those of the others at
+    /// [`Self::shared_parameters`].
+    ///
+    /// # Errors
+    /// [`CalibrationError::Pass`].
+    pub fn earlier_and_last(
+        &self,
+        further: &[Column],
+    ) -> Result<[DMatrix<f64>; 2], CalibrationError> {
+        let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
+        let of_run = |run| {
+            let reduced = self.reduced(run, &all, None, further, &mut |_| ())?;
+            Ok::<_, CalibrationError>(reduced.gram)
+        };
+        let last = of_run(self.records() - 1)?;
+        let mut earlier = DMatrix::zeros(last.nrows(), last.ncols());
+        for run in 0..self.records() - 1 {
+            earlier += self.without_offsets(of_run(run)?, run)?;
+        }
+        Ok([earlier, last])
+    }
+
     /// The same with the parameters of the fit as columns only, in the order of
     /// [`Self::values`], then the extension's own further columns, then `further`.
     ///

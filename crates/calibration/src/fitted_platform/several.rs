@@ -175,6 +175,32 @@ impl<'a> FittedPlatform<'a> {
         rows_of(record, starts.cloned().unwrap_or_default(), covariates)
     }
 
+    /// All parameters of [`gyrocal::Catalogue`] without the offset of any turn-on.
+    #[must_use]
+    pub fn shared_parameters(&self) -> Vec<f64> {
+        let shared = |unknowns: &Vec<usize>| {
+            let unknowns = unknowns.iter().filter(|unknown| **unknown < self.shared);
+            unknowns.map(|unknown| self.problem.values[*unknown]).sum()
+        };
+        self.problem.runs[0]
+            .parameter_unknowns
+            .iter()
+            .map(shared)
+            .collect()
+    }
+
+    /// All parameters of [`gyrocal::Catalogue`] in one record, with the offset of its turn-on.
+    #[must_use]
+    pub fn parameters_in(&self, record: usize) -> Vec<f64> {
+        self.problem.parameters(record)
+    }
+
+    /// Onsets and time constants on the clock of one record.
+    #[must_use]
+    pub fn shapes_in(&self, record: usize) -> Vec<f64> {
+        shapes_of(self.several.as_ref(), &self.extension, record)
+    }
+
     /// Columns over the rows of all records, as one of them has them.
     pub(super) fn columns_of(&self, columns: &[Column], run: usize) -> Vec<Column> {
         columns_of(self.several.as_ref(), columns, run)

@@ -78,8 +78,8 @@ impl Diagnostic for OtherInput {
 
     fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
         Some(Box::new(
-            "diagnose this record with this bench file, or leave --diagnosis out: the command \
-             then diagnoses it",
+            "diagnose these records with these bench files, in this order, or leave --diagnosis out: the \
+             command then diagnoses them",
         ))
     }
 }

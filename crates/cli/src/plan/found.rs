@@ -1,15 +1,16 @@
-//! Findings of the record: read from a diagnosis file, or by a diagnosis.
+//! Findings of the records: read from a diagnosis file, or by a diagnosis.
 
 use std::borrow::Cow;
 use std::path::Path;
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
 use gyrocal_design::{NamedCause, noise_of};
+use gyrocal_diagnosis::prose::counted;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_watched, result};
 use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem, printable_path};
 use gyrocal_setup::PlatformKind;
 
-use super::PlanArguments;
+use super::{PlanArguments, several};
 use super::failed::{NotPlanned, OtherInput};
 use crate::Failure;
 use crate::diagnose::NotDiagnosed;
@@ -28,15 +29,27 @@ pub(super) struct Known<'a> {
 
 pub(super) fn known<'a>(
     arguments: &PlanArguments,
-    file: &'a RecordFile,
-    bench: &'a Bench,
+    files: &'a [RecordFile],
+    benches: &'a [Bench],
     progress: &mut Progress,
 ) -> Result<Known<'a>, Failure> {
+    let ([file], [bench]) = (files, benches) else {
+        return several::known(arguments, files, benches, progress);
+    };
     let kind = PlatformKind::Stabilised;
     let checked = Gate::of_file(kind, file, bench, &Options::default())?;
     match &arguments.diagnosis {
         Some(path) => written(path, arguments, checked, bench),
         None => made(arguments, checked, bench, progress),
+    }
+}
+
+/// Settings of a diagnosis that the command makes.
+pub(super) fn options(arguments: &PlanArguments) -> DiagnoseOptions {
+    DiagnoseOptions {
+        false_alarm_probability: arguments.false_alarm,
+        also: arguments.effects.clone(),
+        ..DiagnoseOptions::default()
     }
 }
 
@@ -46,13 +59,9 @@ fn made<'a>(
     bench: &'a Bench,
     progress: &mut Progress,
 ) -> Result<Known<'a>, Failure> {
-    let options = DiagnoseOptions {
-        false_alarm_probability: arguments.false_alarm,
-        also: arguments.effects.clone(),
-        ..DiagnoseOptions::default()
-    };
+    let options = options(arguments);
     let found = diagnose_watched(checked, bench, &options, |stage| progress.at(stage))
-        .map_err(|source| NotDiagnosed::new(&arguments.record, bench, source))?;
+        .map_err(|source| NotDiagnosed::new(&arguments.records[0], bench, source))?;
     Ok(Known {
         named: NamedCause::all(&found.result),
         noise: found.noise_model,
@@ -69,33 +78,20 @@ fn written<'a>(
     bench: &'a Bench,
 ) -> Result<Known<'a>, Failure> {
     let diagnosis = result::read(path)?;
-    if !diagnosis.records.is_empty() {
-        return Err(Failure::Usage(format!(
-            "{} is a result of {} records: a run is planned from one, give the diagnosis of that one",
-            printable_path(path),
-            diagnosis.records.len()
-        )));
-    }
-    if diagnosis.strapdown {
-        return Err(Failure::Usage(format!(
-            "{} is of a strapdown unit (--gyro-axes): a run is planned of a stabilised platform. The next log \
-             of a unit is best one in another attitude",
-            printable_path(path)
-        )));
-    }
+    refuse(path, &diagnosis, 1)?;
     check_inputs(path, &diagnosis, arguments)?;
     let named = NamedCause::all(&diagnosis);
     let noise = noise_of(&diagnosis);
     let (record, setup) = checked
         .sound(&DiagnoseOptions::default())
-        .map_err(|source| NotDiagnosed::new(&arguments.record, bench, source))?;
+        .map_err(|source| NotDiagnosed::new(&arguments.records[0], bench, source))?;
     let fitted = {
         let run = Run {
             record: &record,
             bench,
         };
         let fitted = NamedCause::fitted(&named, &run, &noise, &Options::default())
-            .map_err(|source| NotPlanned::new(&arguments.record, source))?;
+            .map_err(|source| NotPlanned::new(&arguments.records[0], source))?;
         fitted.into_owned()
     };
     Ok(Known {
@@ -107,18 +103,48 @@ fn written<'a>(
     })
 }
 
-/// The inputs of a diagnosis are its record and bench file; a later record and its bench file may
+/// Refuses a diagnosis of another number of records, and of what is no stabilised platform.
+pub(super) fn refuse(
+    path: &Path,
+    diagnosis: &DiagnosisResult,
+    given: usize,
+) -> Result<(), Failure> {
+    let found = diagnosis.records.len().max(1);
+    if found != given {
+        return Err(Failure::Usage(format!(
+            "{} is a result of {}, and {} given: give what was diagnosed, in the same order",
+            printable_path(path),
+            counted(found, "record"),
+            match given {
+                1 => "one is".to_owned(),
+                more => format!("{more} are"),
+            }
+        )));
+    }
+    if diagnosis.strapdown {
+        return Err(Failure::Usage(format!(
+            "{} is of a strapdown unit (--gyro-axes): a run is planned of a stabilised platform. The next log \
+             of a unit is best one in another attitude",
+            printable_path(path)
+        )));
+    }
+    Ok(())
+}
+
+/// The inputs of a diagnosis are each record with its bench file; a later record and its bench file may
 /// follow.
-fn check_inputs(
+pub(super) fn check_inputs(
     path: &Path,
     diagnosis: &DiagnosisResult,
     arguments: &PlanArguments,
 ) -> Result<(), Failure> {
-    let given = [
-        (&arguments.record, "of another record"),
-        (&arguments.bench, "with another bench file"),
-    ];
-    for (place, (given, other)) in given.into_iter().enumerate() {
+    let given = arguments.pairs().flat_map(|(record, bench)| {
+        [
+            (record, "of another record"),
+            (bench, "with another bench file"),
+        ]
+    });
+    for (place, (given, other)) in given.enumerate() {
         let expected = Input::of(given)?.sha256;
         let found = diagnosis.manifest.inputs.get(place);
         if found.is_none_or(|input| input.sha256 != expected) {

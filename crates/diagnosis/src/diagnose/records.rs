@@ -91,7 +91,8 @@ pub fn diagnose_records(
             alone: alone.result.clone(),
         })
         .collect();
-    together.result.record = summary(&together.result.records);
+    let sizes = together.result.records.iter().map(|one| &one.record);
+    together.result.record = records_summary(sizes);
     Ok(RecordsDiagnosis { together, alone })
 }
 
@@ -185,7 +186,10 @@ fn jointly(
             record: &record,
             bench: first.bench,
         },
-        setup: sound.iter().flat_map(located).collect(),
+        setup: sound
+            .iter()
+            .flat_map(|one| problems_of(&one.name, one.setup.clone()))
+            .collect(),
         magnitude: least(magnitudes, count),
         audited,
         shares,
@@ -193,11 +197,11 @@ fn jointly(
     Ok(concluded(sound, options, watch)?.into_owned())
 }
 
-/// The problems of the set-up of a record, with its name.
-fn located(one: &SoundRecord<'_>) -> Vec<SetupProblem> {
-    let mut problems = one.setup.clone();
+/// Problems of the set-up of one of several records, with its name.
+#[must_use]
+pub fn problems_of(name: &str, mut problems: Vec<SetupProblem>) -> Vec<SetupProblem> {
     for problem in &mut problems {
-        problem.description = format!("{}: {}", one.name, problem.description);
+        problem.description = format!("{name}: {}", problem.description);
     }
     problems
 }
@@ -330,15 +334,15 @@ fn append(all: &mut Innovations, one: Innovations) {
     all.specific_force_g.extend(one.specific_force_g);
 }
 
-/// Size of all records together.
-fn summary(records: &[RecordResult]) -> RecordSummary {
+/// Size of several records together.
+#[must_use]
+pub fn records_summary<'a>(records: impl IntoIterator<Item = &'a RecordSummary>) -> RecordSummary {
     let mut all = RecordSummary {
         rows: 0,
         duration_s: 0.0,
         gaps: Gaps::default(),
     };
-    for one in records {
-        let own = &one.record;
+    for own in records {
         all.gaps = both(&all.gaps, all.rows as f64, &own.gaps, own.rows as f64);
         all.rows += own.rows;
         all.duration_s += own.duration_s;

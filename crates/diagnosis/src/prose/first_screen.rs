@@ -228,7 +228,7 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
         .map(|finding| &*finding.effect)
         .collect();
     let is_one = result.records.is_empty();
-    if groups && is_one {
+    if groups {
         screen.then(
             format!("gyrocal plan {files}"),
             "the run that would distinguish them",
@@ -326,12 +326,10 @@ fn clean(result: &DiagnosisResult) -> Screen {
         format!("gyrocal calibrate {files}"),
         "the nine coefficients with their sigmas",
     );
-    if result.records.is_empty() {
-        screen.then(
-            format!("gyrocal plan {files}"),
-            "the run that reduces the sigmas most",
-        );
-    }
+    screen.then(
+        format!("gyrocal plan {files}"),
+        "the run that reduces the sigmas most",
+    );
     screen
 }
 

@@ -204,6 +204,7 @@ pub(super) fn second(seed: u64, least: f64) -> Result<Second, Error> {
     };
     let of_found = found.extended.as_ref().map(predicted).transpose()?;
     let named = NamedCause {
+        turn_on_sigmas: Vec::new(),
         effect: injected.effect.id.to_owned(),
         shape: injected.shape,
         rivals: Vec::new(),

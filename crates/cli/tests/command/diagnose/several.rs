@@ -1,5 +1,6 @@
 //! `gyrocal diagnose` of several records.
 
+use gyrocal_design::PlanResult;
 use gyrocal_diagnosis::Verdict;
 use gyrocal_diagnosis::result::SizeChoice;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
@@ -65,18 +66,7 @@ fn two_records_are_told_together_and_alone() {
     assert_eq!(result.records.len(), 2);
     let by_record = result.findings[0].by_record.as_ref().unwrap();
     assert_eq!(by_record.choice, SizeChoice::Shared);
-    let said = refused(
-        &folder,
-        &[
-            "plan",
-            "a.csv",
-            "--bench",
-            "a.bench.toml",
-            "--diagnosis",
-            "o.json",
-        ],
-    );
-    assert!(said.contains("a result of 2 records"), "{said}");
+    a_run_is_planned(&folder);
     // A model file is made from it as from one record.
     folder.succeed(&["extend", "o.json", "--out", "both.model.toml"]);
     assert!(folder.text("both.model.toml").contains("gyro_y.g_z"));
@@ -93,4 +83,63 @@ fn what_goes_with_one_record_is_refused() {
     let three = ["--bench", "b.bench.toml", "--bench", "a.bench.toml"];
     let said = refused(&folder, &[&both[..], &three].concat());
     assert!(said.contains("3 bench files for 2 records"), "{said}");
+}
+
+/// The next run is planned from the joint diagnosis `o.json`, and from nothing else.
+fn a_run_is_planned(folder: &Folder) {
+    let with = |records: &[&'static str], more: &[&'static str]| {
+        let plan = ["plan"].iter().chain(records).copied();
+        let benches = ["--bench", "a.bench.toml", "--bench", "b.bench.toml"];
+        let arguments = plan.chain(benches).chain(["--diagnosis", "o.json"]);
+        arguments.chain(more.iter().copied()).collect::<Vec<_>>()
+    };
+    let more = ["--hours", "6", "--json", "p.json"];
+    let said = folder.succeed(&with(&["a.csv", "b.csv"], &more));
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "2 records together (a.csv, b.csv): 578 rows over 2.00 days",
+        "Expected result of records and run together",
+    ] {
+        assert!(said.contains(part), "{said} lacks {part}");
+    }
+    let short = folder.run(&with(&["a.csv", "b.csv"], &["--hours", "6"]));
+    let short = String::from_utf8(short.stdout).unwrap();
+    let short = short.replace("\\\n", " ");
+    let short = short.split_whitespace().collect::<Vec<_>>().join(" ");
+    let next = "gyrocal calibrate a.csv b.csv next.csv --bench a.bench.toml --bench b.bench.toml --bench \
+                next.toml";
+    assert!(short.contains(next), "{short}");
+    let plan: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+    assert_eq!((plan.records.len(), plan.record.rows), (2, 578));
+    assert_eq!(plan.now.sizes[0].name, "gyro_y.g_z size");
+    assert_eq!(plan.manifest.inputs.len(), 5);
+    // In another order they are other records.
+    let said = folder.fail(&with(&["b.csv", "a.csv"], &[]));
+    assert!(said.contains("a diagnosis of another record"), "{said}");
+    let one = ["plan", "a.csv", "--bench", "a.bench.toml", "--diagnosis", "o.json"];
+    let said = refused(folder, &one);
+    assert!(said.contains("o.json is a result of 2 records, and one is given"), "{said}");
+}
+
+#[test]
+fn records_that_were_not_diagnosed_are_planned_from_after_a_joint_diagnosis() {
+    let folder = folder();
+    let records = ["plan", "a.csv", "b.csv"];
+    let benches = ["--bench", "a.bench.toml", "--bench", "b.bench.toml"];
+    let short = ["--hours", "6", "--json", "p.json", "--report", "p.html"];
+    folder.succeed(&[&records[..], &benches, &short].concat());
+    let plan: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+    assert_eq!(plan.now.sizes[0].name, "gyro_y.g_z size");
+    assert!(folder.text("p.html").contains("2 records"));
+    let said = folder.fail(&["plan", "a.csv", "a.csv", "--bench", "a.bench.toml"]);
+    assert!(said.contains("consecutive rows"), "{said}");
+    let three = ["--bench", "a.bench.toml"];
+    let said = refused(&folder, &[&records[..], &benches, &three].concat());
+    assert!(said.contains("3 bench files for 2 records"), "{said}");
+    let text = folder.text("b.bench.toml");
+    let other = text.replace("bias_sigma_deg_per_h = ", "bias_sigma_deg_per_h = 3.0 # ");
+    assert_ne!(other, text);
+    folder.put("b.bench.toml", other);
+    let said = folder.fail(&[&records[..], &benches].concat());
+    assert!(said.contains("[prior]"), "{said}");
 }

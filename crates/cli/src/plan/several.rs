@@ -1,0 +1,85 @@
+//! What several records of one platform tell together: read from a joint diagnosis, or by one.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use gyrocal_calibration::{Options, Run};
+use gyrocal_design::{NamedCause, fitted_to_records};
+use gyrocal_diagnosis::{
+    DiagnoseOptions, DiagnosisError, Gate, RecordToDiagnose, diagnose_together, problems_of, result,
+};
+use gyrocal_record::{Bench, Record, RecordFile, printable_path};
+use gyrocal_setup::PlatformKind;
+
+use super::PlanArguments;
+use super::failed::NotPlanned;
+use super::found::{Known, check_inputs, options, refuse};
+use crate::Failure;
+use crate::diagnose::NotDiagnosed;
+use crate::progress::Progress;
+use crate::records::refuse_shared_rows;
+
+pub(super) fn known<'a>(
+    arguments: &PlanArguments,
+    files: &'a [RecordFile],
+    benches: &'a [Bench],
+    progress: &mut Progress,
+) -> Result<Known<'a>, Failure> {
+    let paths = arguments.records.iter();
+    let named: Vec<(&Path, &Record)> = paths
+        .zip(files)
+        .map(|(path, file)| (path.as_path(), file.record()))
+        .collect();
+    refuse_shared_rows(&named)?;
+    let kind = PlatformKind::Stabilised;
+    let mut checked = Vec::with_capacity(files.len());
+    for ((path, file), bench) in arguments.records.iter().zip(files).zip(benches) {
+        checked.push(RecordToDiagnose {
+            name: printable_path(path),
+            gate: Gate::of_file(kind, file, bench, &Options::default())?,
+            bench,
+        });
+    }
+    let failed = |source| NotDiagnosed::new(&arguments.records[0], &benches[0], source);
+    let Some(path) = &arguments.diagnosis else {
+        let options = options(arguments);
+        let found =
+            diagnose_together(checked, &options, |stage| progress.at(stage)).map_err(failed)?;
+        return Ok(Known {
+            named: NamedCause::all(&found.result),
+            noise: found.noise_model,
+            fitted: found.extended.unwrap_or(found.nominal),
+            record: found.record,
+            setup: found.result.setup,
+        });
+    };
+    let diagnosis = result::read(path)?;
+    refuse(path, &diagnosis, files.len())?;
+    check_inputs(path, &diagnosis, arguments)?;
+    let mut setup = Vec::new();
+    let mut sound: Vec<Cow<'_, Record>> = Vec::with_capacity(files.len());
+    for RecordToDiagnose { name, gate, .. } in checked {
+        let of_record = |source| {
+            failed(DiagnosisError::OfRecord {
+                name: name.clone(),
+                source: Box::new(source),
+            })
+        };
+        let (record, problems) = gate
+            .sound(&DiagnoseOptions::default())
+            .map_err(of_record)?;
+        setup.extend(problems_of(&name, problems));
+        sound.push(record);
+    }
+    let runs = sound.iter().zip(benches);
+    let runs: Vec<Run<'_>> = runs.map(|(record, bench)| Run { record, bench }).collect();
+    let (fitted, record) = fitted_to_records(&diagnosis, &runs, &Options::default())
+        .map_err(|source| NotPlanned::new(&arguments.records[0], source))?;
+    Ok(Known {
+        record: Cow::Owned(record),
+        setup,
+        noise: fitted.noise_model().clone(),
+        fitted,
+        named: NamedCause::all(&diagnosis),
+    })
+}
