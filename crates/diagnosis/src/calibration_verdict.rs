@@ -37,10 +37,10 @@ pub fn calibration_verdict(fit: &FitStatistics, effects: &[EffectTest]) -> Calib
     };
     let shown: Vec<&EffectTest> = effects.iter().filter(|test| test.significant).collect();
     if shown.is_empty() || fit.is_gross() {
-        let none = if effects.is_empty() || fit.is_gross() {
-            ""
-        } else {
-            " No effect of the catalogue is significant."
+        let none = match fit.is_gross() {
+            true => several_platforms(effects),
+            false if effects.is_empty() => String::new(),
+            false => " No effect of the catalogue is significant.".to_owned(),
         };
         return CalibrationVerdict {
             verdict: of_size,
@@ -65,6 +65,20 @@ pub fn calibration_verdict(fit: &FitStatistics, effects: &[EffectTest]) -> Calib
             fit.nis_mean(),
         ),
     }
+}
+
+/// What a gross misfit of several records may come from.
+fn several_platforms(effects: &[EffectTest]) -> String {
+    if effects.len() < 2 {
+        return String::new();
+    }
+    let names = effects.iter().map(|test| printable_line(&test.record));
+    let names: Vec<_> = names.collect();
+    format!(
+        " Records of several platforms are not fitted together: calibrate {} one by one. If each is consistent, \
+         keep them apart, or declare `turn_on_sigma_deg_per_h` in [prior] if only their turn-ons differ.",
+        names.join(", ")
+    )
 }
 
 fn sentence(test: &EffectTest, several: bool) -> String {

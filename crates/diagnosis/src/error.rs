@@ -65,7 +65,9 @@ pub enum DiagnosisError {
     },
     /// Records whose coefficients no platform has together.
     #[error(
-        "{name}: {coefficient} differs from that of {first} by {sigmas:.0} standard deviations; diagnose records          of several platforms one by one, or declare `turn_on_sigma_deg_per_h` in [prior] if only the turn-on          differs"
+        "{name}: {coefficient} differs from that of {first} by {sigmas:.0} standard deviations; diagnose records \
+         of several platforms one by one, or declare `turn_on_sigma_deg_per_h` in [prior] if only the turn-on \
+         differs"
     )]
     SeveralPlatforms {
         /// Name of the record.

@@ -28,7 +28,7 @@ mod windows;
 use gyrocal_record::{Bench, Record};
 use serde::Serialize;
 
-pub use axes_file::{axes_csv, read_axes};
+pub use axes_file::{axes_csv, read_axes, wrong_norm};
 pub use integrate::{PlatformRow, integrate};
 pub use rotation_fit::{RotationFit, fit_rotation};
 

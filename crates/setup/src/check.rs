@@ -7,7 +7,7 @@ use crate::platform_kind::PlatformKind;
 use crate::samples::Samples;
 use crate::{
     clipped, clock_order, coded, duplicated, gravity, jump, missing, motion, repeated, rotation,
-    scale, stuck, unit,
+    scale, stuck, temperature, unit,
 };
 
 /// What a record shows of its set-up.
@@ -67,7 +67,7 @@ pub fn check_setup_of(kind: PlatformKind, record: &Record, bench: &Bench) -> Set
     let usable = match (stops, findings.is_empty()) {
         (true, _) => None,
         (false, true) => Some(record.clone()),
-        (false, false) => Some(samples.to_record(record)),
+        (false, false) => Some(samples.to_record()),
     };
     SetupCheck {
         findings,
@@ -87,9 +87,10 @@ const HELD: &[PlatformKind] = &[PlatformKind::Stabilised];
 /// before it took out. Magnitudes say the same of every platform. Those that follow the direction of
 /// gravity take the drift to be that of gyros that the priors describe, and the fine errors of
 /// accelerometers to be those of a laboratory.
-const TESTS: [(&[PlatformKind], Test); 12] = [
+const TESTS: [(&[PlatformKind], Test); 13] = [
     (ANY, missing::find),
     (ANY, coded::find),
+    (ANY, temperature::find),
     (ANY, unit::find),
     (ANY, clipped::find),
     (ANY, stuck::find),

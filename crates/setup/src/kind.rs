@@ -10,6 +10,8 @@ pub enum SetupKind {
     Missing,
     /// Missing values are written as numbers.
     MissingCoded,
+    /// Temperature is in another unit, or none.
+    Temperature,
     /// Specific force is in another unit.
     Unit,
     /// An accelerometer repeats one value.
@@ -42,10 +44,11 @@ pub enum SetupKind {
 
 impl SetupKind {
     /// All kinds, in the order in which they are looked for.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Clock,
         Self::Missing,
         Self::MissingCoded,
+        Self::Temperature,
         Self::Unit,
         Self::Stuck,
         Self::Clipped,
@@ -69,6 +72,7 @@ impl SetupKind {
             Self::Clock => "clock",
             Self::Missing => "missing",
             Self::MissingCoded => "missing-coded",
+            Self::Temperature => "temperature",
             Self::Unit => "unit",
             Self::Stuck => "stuck",
             Self::Clipped => "clipped",

@@ -64,6 +64,7 @@ mod samples;
 mod scale;
 mod signed_axes;
 mod stuck;
+mod temperature;
 mod text;
 mod turn;
 mod unit;

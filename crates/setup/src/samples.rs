@@ -12,6 +12,8 @@ pub(crate) struct Samples<'a> {
     pub(crate) time_s: &'a [f64],
     /// Specific force; `NaN` is missing, or taken out.
     pub(crate) accel_g: Vec<Vector>,
+    /// Temperature of each row, if it was logged.
+    pub(crate) temperature_c: Option<Vec<f64>>,
     /// Specific force at rest as the bench description says, in the record's unit.
     pub(crate) rest_g: f64,
     /// Noise of each column as the record shows it.
@@ -47,6 +49,10 @@ impl<'a> Samples<'a> {
                 .iter()
                 .map(|row| row.map(finite))
                 .collect(),
+            temperature_c: record
+                .temperature_c
+                .as_ref()
+                .map(|column| column[..rows.min(column.len())].to_vec()),
             rest_g: if rest_g > 0.0 && rest_g.is_finite() {
                 rest_g
             } else {
@@ -141,11 +147,11 @@ impl<'a> Samples<'a> {
     }
 
     /// The record with what was taken out missing, cut where it jumps.
-    pub(crate) fn to_record(&self, record: &Record) -> Record {
+    pub(crate) fn to_record(&self) -> Record {
         Record {
             time_s: self.time_s[..self.end].to_vec(),
             accel_g: self.accel_g[..self.end].to_vec(),
-            temperature_c: record
+            temperature_c: self
                 .temperature_c
                 .as_ref()
                 .map(|column| column[..self.end.min(column.len())].to_vec()),

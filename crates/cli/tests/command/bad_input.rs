@@ -237,6 +237,37 @@ fn a_record_in_another_unit_is_suspected_of_it() {
 }
 
 #[test]
+fn a_temperature_in_kelvins_is_told_with_its_lines_and_converted() {
+    let folder = Folder::new();
+    let whole = record(300);
+    let with = |shift: f64| {
+        let lines = whole.lines().enumerate().map(|(line, text)| match line {
+            0 => format!("{text},temperature_c\n"),
+            _ => format!("{text},{}\n", 20.0 + (line / 64) as f64 / 4.0 + shift),
+        });
+        lines.collect::<String>()
+    };
+    folder.put("r.csv", with(273.15));
+    folder.put("b.toml", bench());
+    let said = folder.succeed(&JSON).replace('\n', " ");
+    assert_says(&said, "It seems to be in K");
+    assert_says(&said, "r.csv:2-301");
+    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let [problem] = &report.setup[..] else {
+        panic!("{:?}", report.setup)
+    };
+    assert_eq!((&*problem.kind, problem.stops), ("temperature", false));
+    assert_eq!(problem.lines, Some([2, 301]));
+    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
+    let told: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
+    assert_eq!(told.setup, report.setup);
+    folder.put("r.csv", with(0.0));
+    folder.succeed(&JSON);
+    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_eq!(report.setup, []);
+}
+
+#[test]
 fn files_that_are_not_text_are_refused() {
     let mut bytes = record(20).into_bytes();
     bytes.extend(b"1200.0,0.4\xff,0.1,0.9\n");

@@ -25,6 +25,15 @@ pub fn axes_csv(record: &Record, platform_q_body: &[[f64; 4]]) -> String {
     text
 }
 
+/// The norm of a quaternion that is no rotation.
+#[must_use]
+pub fn wrong_norm(quaternion: &[f64; 4]) -> Option<f64> {
+    let squares: f64 = quaternion.iter().map(|part| part.powi(2)).sum();
+    let norm = squares.sqrt();
+    let is_unit = (norm - 1.0).abs() <= UNIT;
+    (!is_unit).then_some(norm)
+}
+
 /// Reads the file that belongs to a record.
 ///
 /// # Errors
@@ -52,6 +61,7 @@ pub fn read_axes(source: &SourceText, record: &Record) -> Result<Vec<[f64; 4]>, 
             "record and axes are written together: gyrocal import strapdown",
         ));
     }
+    let quaternion = |row: usize| core::array::from_fn(|i| columns[i + 1][row]);
     for (row, (time_s, of_record_s)) in columns[0].iter().zip(&record.time_s).enumerate() {
         if (time_s - of_record_s).abs() > SAME_TIME_S {
             return Err(source.error(
@@ -62,8 +72,7 @@ pub fn read_axes(source: &SourceText, record: &Record) -> Result<Vec<[f64; 4]>, 
                 "record and axes are written together: gyrocal import strapdown",
             ));
         }
-        let norm = (1..5).map(|i| columns[i][row].powi(2)).sum::<f64>().sqrt();
-        if (norm - 1.0).abs() > UNIT {
+        if let Some(norm) = wrong_norm(&quaternion(row)) {
             return Err(source.error(
                 InputErrorKind::Norm,
                 at_line(row),
@@ -73,6 +82,5 @@ pub fn read_axes(source: &SourceText, record: &Record) -> Result<Vec<[f64; 4]>, 
             ));
         }
     }
-    let quaternion = |row: usize| core::array::from_fn(|i| columns[i + 1][row]);
     Ok((0..rows).map(quaternion).collect())
 }

@@ -1,5 +1,7 @@
 //! Records and bench files that do not go together, or not with an option.
 
+use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};
+
 use super::{JSON, assert_says, bench, record};
 use crate::folder::Folder;
 
@@ -115,4 +117,65 @@ fn a_record_that_is_too_slow_to_average_is_told_so() {
         &folder.fail(&arguments),
         "the record has 5 rows with a value",
     );
+}
+
+/// Records `a.csv` and `b.csv` of two platforms, each with its bench file.
+fn two_platforms() -> Folder {
+    let folder = Folder::new();
+    for (name, seed, coefficients) in [
+        ("a", 51, Coefficients::PAPER_LIKE),
+        ("b", 52, Coefficients::default()),
+    ] {
+        let made = simulate(&Scenario {
+            seed,
+            coefficients,
+            initial: InitialAttitude::AnglesDeg([5.0, 10.0, seed as f64]),
+            duration_s: 86_400.0,
+            interval_s: 300.0,
+            ..Scenario::default()
+        })
+        .unwrap();
+        let path = |end: &str| folder.path(&format!("{name}.{end}"));
+        made.record.write(&path("csv")).unwrap();
+        made.bench.write(&path("toml")).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn records_of_several_platforms_are_not_taken_for_those_of_one() {
+    let folder = two_platforms();
+    let both = ["a.csv", "b.csv", "--bench", "a.toml", "--bench", "b.toml"];
+    let words = |text: &str| text.replace(['│', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    for command in ["diagnose", "plan"] {
+        let errors = words(&folder.fail(&[&[command], &both[..]].concat()));
+        for part in [
+            "b.csv: gyro_",
+            "differs from that of a.csv by",
+            "diagnose records of several platforms one by one",
+            "help: give the records of one platform",
+        ] {
+            assert_says(&errors, part);
+        }
+    }
+    let output = folder.run(&[&["calibrate", "--verbose"], &both[..]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    let said = words(&String::from_utf8(output.stdout).unwrap());
+    assert_says(&said, "Records of several platforms are not fitted together");
+    assert_says(&said, "calibrate a.csv, b.csv one by one");
+}
+
+#[test]
+fn benches_that_contradict_each_other_are_told_by_every_command_of_several_records() {
+    let folder = two_platforms();
+    let text = folder.text("b.toml");
+    let other = text.replace("bias_sigma_deg_per_h = ", "bias_sigma_deg_per_h = 3.0 # ");
+    assert_ne!(other, text);
+    folder.put("b.toml", other);
+    let both = ["a.csv", "b.csv", "--bench", "a.toml", "--bench", "b.toml"];
+    for command in ["calibrate", "diagnose", "plan"] {
+        let errors = folder.fail(&[&[command], &both[..]].concat());
+        assert_says(&errors, "[prior]");
+        assert_says(&errors, "help: ");
+    }
 }
