@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_calibration::{Options, Run, average_record, calibrate_runs, shared_rows};
+use gyrocal_calibration::{
+    GyroAxes, Options, Run, average_record, calibrate_runs, calibrate_strapdown, shared_rows,
+};
 use gyrocal_cli::NotCalibrated;
 use gyrocal_diagnosis::{
     CalibratedRecord, CalibrationEvidence, DiagnoseOptions, Gate, calibration_report,
@@ -15,6 +17,7 @@ use gyrocal_record::{
 };
 use pyo3::prelude::*;
 
+use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
 use crate::diagnose::Given;
 use crate::error::{Class, Failure, Outcome};
@@ -49,7 +52,7 @@ impl Request {
 
 /// Estimates the coefficients; the result (JSON).
 #[pyfunction]
-#[pyo3(signature = (runs, method, factorised, noise, average_s, robust_sigmas, effects, command))]
+#[pyo3(signature = (runs, axes, method, factorised, noise, average_s, robust_sigmas, effects, command))]
 #[expect(
     clippy::too_many_arguments,
     reason = "the module in Python calls it, with defaults"
@@ -57,6 +60,7 @@ impl Request {
 pub(crate) fn calibrate(
     py: Python<'_>,
     runs: Vec<(Bound<'_, HeldRecord>, Bound<'_, HeldBench>)>,
+    axes: Vec<GivenAxes<'_>>,
     method: &str,
     factorised: bool,
     noise: bool,
@@ -65,11 +69,15 @@ pub(crate) fn calibrate(
     effects: Vec<String>,
     command: &str,
 ) -> PyResult<String> {
+    let axes = axes.iter().map(GivenAxes::take);
+    let axes: Vec<Axes> = axes.collect::<Outcome<_>>()?;
     let given: Vec<Given<'_>> = runs
         .iter()
-        .map(|(record, bench)| Given {
+        .enumerate()
+        .map(|(index, (record, bench))| Given {
             record: record.get(),
             bench: bench.get(),
+            axes: axes.get(index),
         })
         .collect();
     let request = Request {
@@ -111,23 +119,28 @@ struct Sound<'a> {
 
 fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<CalibrationReport> {
     refuse_differing(given)?;
-    let manifest = origin(given, command);
+    let manifest = origin(given, command)?;
     let sound = sound(given, request, &manifest)?;
     let runs: Vec<Run<'_>> = sound.iter().map(Sound::run).collect();
     let options = request.options();
-    let with_effects = with_effects(request, &runs)?;
+    let axes = gyro_axes(&sound)?;
+    let with_effects = with_effects(request, &runs, axes.first())?;
     let names: Vec<String> = given
         .iter()
         .map(|one| one.record.input.path.clone())
         .collect();
     let (method, factorised) = (request.method, request.factorised);
-    let calibration = calibrate_runs(&runs, &options, |_| ()).map_err(|source| {
+    let calibration = match &axes[..] {
+        [] => calibrate_runs(&runs, &options, |_| ()),
+        axes => calibrate_strapdown(&runs, axes, &options, |_| ()),
+    };
+    let calibration = calibration.map_err(|source| {
         Failure::of_work(&NotCalibrated::new(
             &names, &runs, method, factorised, source,
         ))
     })?;
-    let effects = effects(&names, &runs);
-    let first = gyrocal_calibration::first_run_sigmas(&runs, &[], &options);
+    let effects = effects(&names, &runs, &axes);
+    let first = gyrocal_calibration::first_run_sigmas(&runs, &axes, &options);
     let evidence = CalibrationEvidence {
         method,
         records: sound.iter().map(Sound::calibrated).collect(),
@@ -141,15 +154,24 @@ fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<Cali
     Ok(calibration_report(evidence, manifest))
 }
 
-/// Inputs in the order of the command: all records, then each bench description once.
-fn origin(given: &[Given<'_>], command: &str) -> Manifest {
+/// Inputs in the order of the command: all records, then each bench description once, then the axes.
+fn origin(given: &[Given<'_>], command: &str) -> Outcome<Manifest> {
     let mut inputs: Vec<_> = given.iter().map(|one| one.record.input.clone()).collect();
     let one_bench = given
         .windows(2)
         .all(|pair| pair[0].bench.input == pair[1].bench.input);
     let benches = given.iter().map(|one| one.bench.input.clone());
     inputs.extend(benches.take(if one_bench { 1 } else { given.len() }));
-    manifest(MODEL_HASH, 0, inputs, command)
+    for axes in given.iter().filter_map(|one| one.axes) {
+        inputs.push(axes.input()?);
+    }
+    Ok(manifest(MODEL_HASH, 0, inputs, command))
+}
+
+/// Axes of the instruments in each record, of a strapdown unit.
+fn gyro_axes(sound: &[Sound<'_>]) -> Outcome<Vec<GyroAxes>> {
+    let given = sound.iter().filter_map(|one| Some((one, one.given.axes?)));
+    given.map(|(one, axes)| axes.of(&one.record)).collect()
 }
 
 impl<'a> Sound<'a> {
@@ -288,7 +310,11 @@ fn refuse_shared_rows(sound: &[Sound<'_>]) -> Outcome<()> {
 }
 
 /// The coefficients of the first record with the effects asked for; `None` without such.
-fn with_effects(request: &Request, runs: &[Run<'_>]) -> Outcome<Option<FittedEffects>> {
+fn with_effects(
+    request: &Request,
+    runs: &[Run<'_>],
+    axes: Option<&GyroAxes>,
+) -> Outcome<Option<FittedEffects>> {
     let Some(run) = runs.first().filter(|_| !request.effects.is_empty()) else {
         return Ok(None);
     };
@@ -300,7 +326,7 @@ fn with_effects(request: &Request, runs: &[Run<'_>]) -> Outcome<Option<FittedEff
             "calibrate the records one by one",
         ));
     }
-    let fitted = fit_effects(run, None, &request.effects, &DiagnoseOptions::default());
+    let fitted = fit_effects(run, axes, &request.effects, &DiagnoseOptions::default());
     fitted.map(Some).map_err(|error| Failure {
         message: format!("effects: {error}"),
         advice: Some("`diagnose` finds which effects the record shows".to_owned()),
@@ -309,9 +335,11 @@ fn with_effects(request: &Request, runs: &[Run<'_>]) -> Outcome<Option<FittedEff
 }
 
 /// Tests of the records for effects that the model lacks.
-fn effects(names: &[String], runs: &[Run<'_>]) -> Vec<EffectTest> {
-    let tests = names.iter().zip(runs).filter_map(|(name, run)| {
-        let screened = screen_record(run, None, &DiagnoseOptions::default()).ok()?;
+fn effects(names: &[String], runs: &[Run<'_>], axes: &[GyroAxes]) -> Vec<EffectTest> {
+    let pairs = names.iter().zip(runs).enumerate();
+    let tests = pairs.filter_map(|(index, (name, run))| {
+        let axes = axes.get(index);
+        let screened = screen_record(run, axes, &DiagnoseOptions::default()).ok()?;
         Some(effect_test(name, &screened))
     });
     tests.collect()

@@ -10,6 +10,7 @@ use gyrocal_diagnosis::{
 use gyrocal_setup::PlatformKind;
 use pyo3::prelude::*;
 
+use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
 use crate::error::{Failure, Outcome};
 use crate::origin::{json, manifest};
@@ -20,6 +21,8 @@ use crate::record::HeldRecord;
 pub(crate) struct Given<'a> {
     pub(crate) record: &'a HeldRecord,
     pub(crate) bench: &'a HeldBench,
+    /// Axes of the instruments, of a strapdown unit.
+    pub(crate) axes: Option<&'a Axes>,
 }
 
 impl<'a> Given<'a> {
@@ -32,7 +35,10 @@ impl<'a> Given<'a> {
 
     /// The check of the set-up.
     pub(crate) fn gate(&self, options: &DiagnoseOptions) -> Outcome<Gate<'a>> {
-        let kind = PlatformKind::Stabilised;
+        let kind = match self.axes {
+            None => PlatformKind::Stabilised,
+            Some(_) => PlatformKind::Computed,
+        };
         let bench = &self.bench.bench;
         Ok(Gate::of_file(
             kind,
@@ -40,6 +46,12 @@ impl<'a> Given<'a> {
             bench,
             &options.calibration,
         )?)
+    }
+
+    /// The same with the axes of the instruments.
+    fn gate_with_axes(&self, options: &DiagnoseOptions) -> Outcome<Gate<'a>> {
+        let axes = self.axes.map(|axes| axes.of(self.record.file.record()));
+        Ok(self.gate(options)?.with_gyro_axes(axes.transpose()?))
     }
 
     pub(crate) fn no_diagnosis(&self, source: DiagnosisError) -> Failure {
@@ -56,7 +68,7 @@ pub(crate) type Scored = (String, String, Option<Vec<u8>>);
 
 /// Diagnoses a record.
 #[pyfunction]
-#[pyo3(signature = (record, bench, later, effects, false_alarm, euler_filter, command))]
+#[pyo3(signature = (record, bench, later, axes, later_axes, effects, false_alarm, euler_filter, command))]
 #[expect(
     clippy::too_many_arguments,
     reason = "the module in Python calls it, with defaults"
@@ -66,18 +78,24 @@ pub(crate) fn diagnose(
     record: &Bound<'_, HeldRecord>,
     bench: &Bound<'_, HeldBench>,
     later: Option<(Bound<'_, HeldRecord>, Bound<'_, HeldBench>)>,
+    axes: Option<GivenAxes<'_>>,
+    later_axes: Option<GivenAxes<'_>>,
     effects: Vec<String>,
     false_alarm: f64,
     euler_filter: bool,
     command: &str,
 ) -> PyResult<Scored> {
+    let axes = axes.map(|axes| axes.take()).transpose()?;
+    let later_axes = later_axes.map(|axes| axes.take()).transpose()?;
     let given = Given {
         record: record.get(),
         bench: bench.get(),
+        axes: axes.as_ref(),
     };
     let later = later.as_ref().map(|(record, bench)| Given {
         record: record.get(),
         bench: bench.get(),
+        axes: later_axes.as_ref(),
     });
     let options = options(effects, false_alarm, euler_filter)?;
     Ok(py.detach(|| answer(given, later, &options, command))?)
@@ -113,9 +131,13 @@ fn answer(
     command: &str,
 ) -> Outcome<Scored> {
     let (mut result, scores) = result(given, later, options)?;
-    let inputs = [Some(given), later].into_iter().flatten();
-    let inputs = inputs.flat_map(|one| [one.record.input.clone(), one.bench.input.clone()]);
-    result.manifest = manifest(MODEL_HASH, options.seed, inputs.collect(), command);
+    let both = || [Some(given), later].into_iter().flatten();
+    let pairs = both().flat_map(|one| [one.record.input.clone(), one.bench.input.clone()]);
+    let mut inputs: Vec<_> = pairs.collect();
+    for axes in both().filter_map(|one| one.axes) {
+        inputs.push(axes.input()?);
+    }
+    result.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
     let blocks = json(&prose::diagnosis(&result))?;
     Ok((json(&result)?, blocks, scores))
 }
@@ -130,13 +152,13 @@ fn result(
         return Err(given.no_diagnosis(CalibrationError::NoAttitude.into()));
     }
     let diagnosed: Result<Diagnosis<'_>, _> =
-        diagnose_gated(given.gate(options)?, &given.bench.bench, options);
+        diagnose_gated(given.gate_with_axes(options)?, &given.bench.bench, options);
     let mut diagnosis = match diagnosed {
         Err(DiagnosisError::Setup { result }) => return Ok((*result, None)),
         found => found.map_err(|source| given.no_diagnosis(source))?,
     };
     if let Some(later) = later {
-        let gate = later.gate(options)?;
+        let gate = later.gate_with_axes(options)?;
         match diagnosis.validate_gated(&given.run(), gate, &later.bench.bench, options) {
             Err(DiagnosisError::Setup { result }) => return Ok((*result, None)),
             validated => validated.map_err(|source| later.no_diagnosis(source))?,

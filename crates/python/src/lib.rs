@@ -7,6 +7,7 @@
 
 mod arrow_abi;
 mod arrow_stream;
+mod axes;
 mod bench;
 mod calibrate;
 mod characterise;

@@ -51,6 +51,7 @@ pub(crate) fn plan(
     let given = Given {
         record: record.get(),
         bench: bench.get(),
+        axes: None,
     };
     let request = Request {
         diagnosis,

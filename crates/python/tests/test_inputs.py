@@ -275,3 +275,31 @@ def test_work_that_fails_says_what_to_do(simulated):
         gyrocal.calibrate([GOOD, GOOD], [BENCH, BENCH, BENCH])
     with pytest.raises(gyrocal.InputError, match="count twice"):
         gyrocal.calibrate([simulated.record, simulated.record], simulated.bench)
+
+
+def test_gyro_axes_that_do_not_fit_are_refused(simulated):
+    record, bench = simulated.record, simulated.bench
+    rows = len(record)
+    identity = np.tile([1.0, 0.0, 0.0, 0.0], (rows, 1))
+    doubled = identity.copy()
+    doubled[5] *= 2.0
+    unknown = identity.copy()
+    unknown[3, 0] = np.nan
+    later = (record, bench)
+    cases = [
+        (gyrocal.diagnose, {"gyro_axes": identity[:, :3]}, "(rows, 4)"),
+        (gyrocal.diagnose, {"gyro_axes": identity[1:]}, f"{rows}, as many as the record has"),
+        (gyrocal.diagnose, {"gyro_axes": doubled}, "row 5: found a quaternion of norm 2.0000"),
+        (gyrocal.diagnose, {"gyro_axes": unknown}, "row 3"),
+        (gyrocal.diagnose, {"gyro_axes": identity, "filter": "euler"}, "filter"),
+        (gyrocal.diagnose, {"gyro_axes": identity, "later": later}, "later_gyro_axes: found none"),
+        (gyrocal.diagnose, {"later_gyro_axes": identity}, "later_gyro_axes: found some"),
+        (gyrocal.calibrate, {"gyro_axes": doubled}, "norm 2.0000"),
+        (gyrocal.calibrate, {"gyro_axes": [identity, identity]}, "2 for 1 records"),
+        (gyrocal.calibrate, {"gyro_axes": identity, "method": "streaming"}, "batch estimator"),
+        (gyrocal.calibrate, {"gyro_axes": identity, "average_s": 600.0}, "without average_s"),
+    ]
+    for function, options, message in cases:
+        with pytest.raises(gyrocal.InputError) as raised:
+            function(record, bench, **options)
+        assert message in str(raised.value)

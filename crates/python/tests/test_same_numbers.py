@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gyrocal
-from conftest import DATA, run_command, without_command_line
+from conftest import DATA, ROOT, run_command, without_command_line
 
 FAULT = ["examples/data/hidden_fault.csv", "examples/data/hidden_fault.bench.toml"]
 THREE_DAYS = ["examples/data/three_days.csv", "examples/data/three_days.bench.toml"]
@@ -57,6 +57,67 @@ def test_several_records(tmp_path):
     found = gyrocal.calibrate(records, [THREE_DAYS[1], FAULT[1]])
     assert without_command_line(found.to_dict()) == without_command_line(by_command)
     assert len(found.runs) == 2
+
+
+@pytest.fixture(scope="module")
+def strapdown(tmp_path_factory):
+    """A record computed from the log of a strapdown unit at rest, its bench file and its axes."""
+    folder = tmp_path_factory.mktemp("strapdown")
+    record, bench, axes = (folder / name for name in ("r.csv", "b.toml", "a.csv"))
+    log = ROOT / "tests/data/measured/ring_laser_static"
+    call = ["import", "strapdown", log / "imu.csv", "--log-description", log / "log.toml"]
+    run_command([*call, "--out", record, "--bench-out", bench, "--axes-out", axes], folder)
+    return record, bench, axes
+
+
+def test_gyro_axes(tmp_path, strapdown):
+    record, bench, file = strapdown
+    quaternions = np.loadtxt(file, delimiter=",", skiprows=1)[:, 1:]
+    for function, options, more in (
+        (gyrocal.diagnose, {}, []),
+        (gyrocal.calibrate, {"effects": ["gyro_y.g_z"]}, ["--with", "gyro_y.g_z"]),
+    ):
+        call = [function.__name__, record, "--bench", bench, "--gyro-axes", file, *more]
+        by_command = run_command(call, tmp_path)
+        found = function(record, bench, gyro_axes=file, **options)
+        assert without_command_line(found.to_dict()) == without_command_line(by_command)
+        # The values of an array are those of the file; where they come from is another thing.
+        of_array = function(record, bench, gyro_axes=quaternions, **options).to_dict()
+        assert of_array["manifest"]["inputs"][2]["path"] == "<gyro_axes>"
+        for result in (of_array, by_command):
+            del result["manifest"]
+        assert of_array == by_command
+    assert by_command["schema_version"]
+
+
+def test_gyro_axes_of_a_later_record(tmp_path, strapdown):
+    record, bench, file = strapdown
+    held = gyrocal.Record.read(record)
+    quaternions = np.loadtxt(file, delimiter=",", skiprows=1)[:, 1:]
+    half = len(held) // 2
+    parts = []
+    for name, rows in (("first", slice(None, half)), ("later", slice(half, None))):
+        part, axes = tmp_path / f"{name}.csv", tmp_path / f"{name}.axes.csv"
+        gyrocal.Record(held.time_s[rows], held.accel_g[rows]).to_csv(part)
+        lines = file.read_text().splitlines()
+        axes.write_text("\n".join([lines[0], *lines[1:][rows]]) + "\n")
+        parts.append((part, axes, quaternions[rows]))
+    tables = gyrocal.Bench.read(bench).to_dict()
+    # The later half begins in another attitude.
+    for key in ("initial_angles_deg", "initial_angles_sigma_deg"):
+        tables.get("platform", {}).pop(key, None)
+    free = tmp_path / "free.toml"
+    gyrocal.Bench(tables).write(free)
+    (first, first_file, first_axes), (later, later_file, later_axes) = parts
+    call = ["diagnose", first, "--bench", free, "--gyro-axes", first_file]
+    call += ["--validate", later, "--validate-bench", free, "--validate-gyro-axes", later_file]
+    by_command = run_command(call, tmp_path)
+    found = gyrocal.diagnose(
+        first, free, later=(later, free), gyro_axes=first_axes, later_gyro_axes=later_axes
+    ).to_dict()
+    for result in (found, by_command):
+        del result["manifest"]
+    assert found == by_command
 
 
 def test_simulation(tmp_path):

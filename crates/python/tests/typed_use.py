@@ -24,6 +24,10 @@ assert_type(calibrated, gyrocal.Calibration)
 assert_type(calibrated.covariance, NDArray[np.float64])
 assert_type(calibrated.to_dataframe(), pd.DataFrame)
 
+of_unit = gyrocal.calibrate(simulated.record, bench, gyro_axes=np.zeros((3, 4)))
+assert_type(of_unit, gyrocal.Calibration)
+gyrocal.diagnose(simulated.record, bench, gyro_axes="axes.csv")
+
 diagnosed = gyrocal.diagnose(pd.DataFrame(), Path("bench.toml"), false_alarm=0.01)
 assert_type(diagnosed, gyrocal.Diagnosis)
 assert_type(diagnosed.verdict, str)

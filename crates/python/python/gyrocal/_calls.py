@@ -6,9 +6,21 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, Union
 
+import numpy as np
+
 from . import _gyrocal
 from ._errors import InputError, SetupError
-from ._record import Bench, BenchLike, Record, RecordLike, _json, as_bench, as_record
+from ._record import (
+    AxesLike,
+    Bench,
+    BenchLike,
+    Record,
+    RecordLike,
+    _json,
+    as_axes,
+    as_bench,
+    as_record,
+)
 from ._results import Calibration, Characteristics, Diagnosis, Plan, Simulation
 
 __all__ = ["calibrate", "characterise", "diagnose", "plan", "simulate"]
@@ -45,6 +57,7 @@ def calibrate(
     records: RecordLike | Sequence[RecordLike],
     bench: BenchLike | Sequence[BenchLike],
     *,
+    gyro_axes: AxesLike | Sequence[AxesLike] | None = None,
     method: Literal["batch", "streaming", "paper"] = "batch",
     effects: Iterable[str] = (),
     average_s: float | None = None,
@@ -57,6 +70,9 @@ def calibrate(
     Args:
         records: A record, or a list of them.
         bench: The bench description, one for all records or a list of one for each.
+        gyro_axes: Axes of the instruments of a strapdown unit in the computed platform: for each row of the
+            record a unit quaternion (w, x, y, z), as an array of four columns or a file of them; of several
+            records a list of one for each. Coefficients are then those of the gyros in their own axes.
         method: ``batch`` estimates from whole records, ``streaming`` is the filter that a controller
             embeds, ``paper`` the paper's.
         effects: Effects of the catalogue that are estimated too; for one record.
@@ -82,11 +98,23 @@ def calibrate(
             found=str(len(benches)),
             expected=str(len(given)),
         )
+    axes = _several_axes(gyro_axes)
+    if axes and len(axes) != len(given):
+        raise InputError(
+            f"gyro_axes: found {len(axes)} for {len(given)} records, expected one for each, in their order",
+            found=str(len(axes)),
+            expected=str(len(given)),
+        )
+    if axes and (method != "batch" or average_s is not None):
+        raise InputError(
+            "gyro_axes: they go with the batch estimator, without average_s",
+            advice="average the log where it is imported: gyrocal import strapdown --average",
+        )
     _check_calibration(method, len(given), average_s, robust_sigmas, noise, factorised)
     runs = [(one._held, other._held) for one, other in zip(given, benches)]
     try:
         text = _gyrocal.calibrate(
-            runs, method, factorised, noise, average_s, robust_sigmas, list(effects), command
+            runs, axes, method, factorised, noise, average_s, robust_sigmas, list(effects), command
         )
     except SetupError as error:
         error.result = Calibration(error.result)
@@ -99,6 +127,8 @@ def diagnose(
     bench: BenchLike,
     *,
     later: tuple[RecordLike, BenchLike] | None = None,
+    gyro_axes: AxesLike | None = None,
+    later_gyro_axes: AxesLike | None = None,
     effects: Iterable[str] = (),
     false_alarm: float = 0.01,
     filter: Literal["euler"] | None = None,
@@ -113,6 +143,10 @@ def diagnose(
         bench: The bench description.
         later: A later record of the same platform with its bench description, to be predicted with the
             nominal and with the extended model.
+        gyro_axes: Axes of the instruments of a strapdown unit in the computed platform: for each row of the
+            record a unit quaternion (w, x, y, z), as an array of four columns or a file of them. Coefficients
+            and effects are then those of the instruments in their own axes.
+        later_gyro_axes: Those of the later record.
         effects: Effects to test that are not in the default set.
         false_alarm: Family-wise probability of a false alarm.
         filter: ``euler`` also tests the consistency of the paper's filter.
@@ -123,12 +157,22 @@ def diagnose(
     """
     if filter not in (None, "euler"):
         raise InputError(f"filter: found {filter!r}, expected 'euler' or None", expected="euler")
+    if gyro_axes is not None and filter is not None:
+        raise InputError("filter: it is that of a platform, not of a unit with gyro_axes")
+    if (later_gyro_axes is not None) != (gyro_axes is not None and later is not None):
+        raise InputError(
+            f"later_gyro_axes: found {'none' if later_gyro_axes is None else 'some'}, expected them if later "
+            "and gyro_axes are given, and only then",
+            advice="give the axes of the later record beside those of the record",
+        )
     command = _call("diagnose", record, bench=bench, effects=tuple(effects), false_alarm=false_alarm)
     other = None if later is None else (as_record(later[0])._held, as_bench(later[1])._held)
     answer = _gyrocal.diagnose(
         as_record(record)._held,
         as_bench(bench)._held,
         other,
+        None if gyro_axes is None else as_axes(gyro_axes),
+        None if later_gyro_axes is None else as_axes(later_gyro_axes),
         list(effects),
         false_alarm,
         filter is not None,
@@ -230,6 +274,18 @@ def characterise(
 
 def _several(value: Any) -> list[Any]:
     return list(value) if isinstance(value, (list, tuple)) else [value]
+
+
+def _several_axes(value: Any) -> list[Any]:
+    if value is None:
+        return []
+    # An array, or the rows of one, is that of one record.
+    is_list = isinstance(value, (list, tuple)) and not _is_rows(value)
+    return [as_axes(one) for one in (value if is_list else [value])]
+
+
+def _is_rows(value: Sequence[Any]) -> bool:
+    return len(value) > 0 and not isinstance(value[0], (str, os.PathLike)) and np.ndim(value[0]) == 1
 
 
 def _check_calibration(

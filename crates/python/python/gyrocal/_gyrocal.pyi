@@ -84,6 +84,7 @@ def simulate(
 ) -> tuple[Record, Bench, str]: ...
 def calibrate(
     runs: list[tuple[Record, Bench]],
+    axes: list[NDArray[np.float64] | str],
     method: str,
     factorised: bool,
     noise: bool,
@@ -96,6 +97,8 @@ def diagnose(
     record: Record,
     bench: Bench,
     later: tuple[Record, Bench] | None,
+    axes: NDArray[np.float64] | str | None,
+    later_axes: NDArray[np.float64] | str | None,
     effects: list[str],
     false_alarm: float,
     euler_filter: bool,

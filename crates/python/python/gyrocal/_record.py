@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
@@ -16,7 +16,17 @@ from ._errors import InputError
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["COLUMNS", "Bench", "BenchLike", "Record", "RecordLike", "as_bench", "as_record"]
+__all__ = [
+    "COLUMNS",
+    "AxesLike",
+    "Bench",
+    "BenchLike",
+    "Record",
+    "RecordLike",
+    "as_axes",
+    "as_bench",
+    "as_record",
+]
 
 #: The columns of a record; the last one is optional.
 COLUMNS = ("time_s", "accel_x_g", "accel_y_g", "accel_z_g", "temperature_c")
@@ -223,6 +233,7 @@ def _bench_of_text(text: str, name: str) -> Bench:
 
 RecordLike = Union[Record, str, "os.PathLike[str]", Mapping[str, Any], Any]
 BenchLike = Union[Bench, str, "os.PathLike[str]", Mapping[str, Any]]
+AxesLike = Union[str, "os.PathLike[str]", NDArray[Any], Sequence[Sequence[float]]]
 
 
 def as_record(record: RecordLike) -> Record:
@@ -246,6 +257,19 @@ def as_bench(bench: BenchLike) -> Bench:
         "bench", f"a {type(bench).__name__}", "a path, a Bench or the tables of a bench file",
         "give {'site': {...}, 'platform': {...}, 'noise': {...}}",
     )
+
+
+def as_axes(axes: AxesLike) -> NDArray[np.float64] | str:
+    """The path of a file of axes, or the quaternions as an array of two dimensions."""
+    if isinstance(axes, (str, os.PathLike)):
+        return os.fspath(axes)
+    array = _numbers(axes, "q", "gyro_axes")
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise _refusal(
+            "gyro_axes", f"the shape {array.shape}", "(rows, 4)",
+            "give one quaternion a row: np.column_stack([q_w, q_x, q_y, q_z])",
+        )
+    return array
 
 
 def _of_structured(array: NDArray[Any], name: str) -> _gyrocal.Record:
