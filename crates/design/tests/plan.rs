@@ -264,9 +264,9 @@ fn two_records(turn_on_deg_per_h: f64, sizes: [f64; 2]) -> [Simulation; 2] {
 /// The plan from a fit to two records without causes.
 fn planned_from(records: &[Simulation; 2]) -> PlanResult {
     let noise = NoiseModel::default();
-    let fits = records.each_ref().map(|record| {
-        FittedPlatform::nominal(&run(record), &Options::default(), &noise).unwrap()
-    });
+    let fits = records
+        .each_ref()
+        .map(|record| FittedPlatform::nominal(&run(record), &Options::default(), &noise).unwrap());
     let benches = records.each_ref().map(|record| &record.bench);
     let fitted = FittedPlatform::joined(&fits, &benches).unwrap();
     let (record, _) = joined_record(&records.each_ref().map(|record| &record.record));
@@ -384,7 +384,10 @@ fn a_plan_from_a_written_joint_diagnosis_is_that_from_the_diagnosis() {
     let [one, other] = [&written, &from_diagnosis].map(|plan| &plan.now.coefficients);
     for (one, other) in one.iter().zip(other) {
         // The noise of the accelerometers is that of each diagnosis alone, a little beside that of both.
-        assert!((one.sigma / other.sigma - 1.0).abs() < 0.02, "{one:?} {other:?}");
+        assert!(
+            (one.sigma / other.sigma - 1.0).abs() < 0.02,
+            "{one:?} {other:?}"
+        );
     }
     assert_eq!(written.now.sizes[0].name, "gyro_y.g_z size");
     assert_eq!(written.records, from_diagnosis.records);
@@ -407,7 +410,9 @@ fn a_cause_with_a_size_for_each_turn_on_has_another_in_the_next_run() {
         }
         NamedCause::all(&result)
     };
-    result.findings.retain(|finding| finding.by_record.is_some());
+    result
+        .findings
+        .retain(|finding| finding.by_record.is_some());
     let [shared, own] =
         [SizeChoice::Shared, SizeChoice::PerTurnOn].map(|choice| chosen(&result, choice));
     let named = own.iter().find(|one| !one.turn_on_sigmas.is_empty());
@@ -427,9 +432,17 @@ fn a_cause_with_a_size_for_each_turn_on_has_another_in_the_next_run() {
         .map(|named| plan(&fitted, &run, fitted.noise_model(), &named, &options).unwrap());
     for (one, other) in shared.now.coefficients.iter().zip(&own.now.coefficients) {
         // The past is the same; one more unknown of the next run costs nothing before it.
-        assert!((one.sigma / other.sigma - 1.0).abs() < 1e-6, "{one:?} {other:?}");
+        assert!(
+            (one.sigma / other.sigma - 1.0).abs() < 1e-6,
+            "{one:?} {other:?}"
+        );
     }
     let after = |plan: &PlanResult| plan.proposals[0].outlook.sizes[0].sigma;
     // A run of another size tells less of that so far.
-    assert!(after(&own) > after(&shared), "{} {}", after(&own), after(&shared));
+    assert!(
+        after(&own) > after(&shared),
+        "{} {}",
+        after(&own),
+        after(&shared)
+    );
 }

@@ -382,17 +382,15 @@ fn with(rate: impl Fn(usize) -> f64, temperature: impl Fn(usize) -> f64) -> Stri
     let mut text = "w,v,u,ms,p,q,r,T\n".to_owned();
     for row in 0..400 {
         let (rate, temperature) = (rate(row), temperature(row));
-        text += &format!(
-            "4100,100,100,{},{rate},180,-90,{temperature}\n",
-            10 * row
-        );
+        text += &format!("4100,100,100,{},{rate},180,-90,{temperature}\n", 10 * row);
     }
     text
 }
 
 #[test]
 fn temperatures_in_another_unit_are_told_with_their_line() {
-    let description = |unit: &str| format!("{DESCRIPTION}[temperature]\ncolumn = \"T\"\nunit = \"{unit}\"\n");
+    let description =
+        |unit: &str| format!("{DESCRIPTION}[temperature]\ncolumn = \"T\"\nunit = \"{unit}\"\n");
     let rate = |row: usize| (row as f64).sin();
     let (kind, told) = refused(&with(rate, |_| 293.15), &description("C"));
     assert_eq!(kind, None);
@@ -401,9 +399,16 @@ fn temperatures_in_another_unit_are_told_with_their_line() {
         "{told}"
     );
     let error = parse(&with(rate, |_| 293.15), &description("C")).unwrap_err();
-    assert!(error.advice().contains("`unit = \"K\"`"), "{}", error.advice());
+    assert!(
+        error.advice().contains("`unit = \"K\"`"),
+        "{}",
+        error.advice()
+    );
     // Degrees Celsius as kelvins lie below all cold.
-    let (_, told) = refused(&with(rate, |row| 20.0 + row as f64 / 100.0), &description("K"));
+    let (_, told) = refused(
+        &with(rate, |row| 20.0 + row as f64 / 100.0),
+        &description("K"),
+    );
     assert!(told.contains("a temperature of -253.15"), "{told}");
     for (unit, value) in [("C", 20.0), ("K", 293.15), ("F", 68.0)] {
         parse(&with(rate, |_| value), &description(unit)).unwrap();
@@ -418,8 +423,15 @@ fn saturated_gyros_are_told_with_the_line_where_they_begin_to_be() {
     let first = (0..400).position(|row| rate(row) == 240.0).unwrap();
     // The header is line 1.
     assert!(told.contains(&format!("log.csv:{}:", first + 2)), "{told}");
-    assert!(told.contains("samples of `p` at the end of its range, 240"), "{told}");
+    assert!(
+        told.contains("samples of `p` at the end of its range, 240"),
+        "{told}"
+    );
     assert!(error.advice().contains("cut the log"), "{}", error.advice());
     // A gyro that reaches the end for a moment is not saturated.
-    parse(&with(|row| 250.0 * (row as f64 / 40.0).sin(), |_| 20.0), DESCRIPTION).unwrap();
+    parse(
+        &with(|row| 250.0 * (row as f64 / 40.0).sin(), |_| 20.0),
+        DESCRIPTION,
+    )
+    .unwrap();
 }

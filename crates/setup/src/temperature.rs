@@ -42,7 +42,8 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         for value in column.iter_mut() {
             *value -= ZERO_C_K;
         }
-        interpolate(column, &implausible(column));
+        let rest = implausible(column);
+        interpolate(column, &rest);
         let finding = SetupFinding::new(SetupKind::Temperature, description, evidence);
         return vec![finding.at(span(&wrong))];
     }

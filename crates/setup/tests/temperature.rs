@@ -42,7 +42,10 @@ fn kelvins_are_told_and_converted() {
     let [finding] = &check.findings[..] else {
         panic!("{:?}", check.findings)
     };
-    assert_eq!((finding.kind, finding.stops), (SetupKind::Temperature, false));
+    assert_eq!(
+        (finding.kind, finding.stops),
+        (SetupKind::Temperature, false)
+    );
     for words in ["seems to be in K", "subtract 273.15", "--columns MAP.toml"] {
         assert!(finding.description.contains(words), "{finding:?}");
     }
@@ -56,12 +59,21 @@ fn kelvins_are_told_and_converted() {
 
 #[test]
 fn values_that_are_no_temperatures_are_interpolated_or_left_out() {
-    let (check, _) = checked(|row| if (50..60).contains(&row) { -999.0 } else { course(row) });
+    let (check, _) = checked(|row| {
+        if (50..60).contains(&row) {
+            -999.0
+        } else {
+            course(row)
+        }
+    });
     let [finding] = &check.findings[..] else {
         panic!("{:?}", check.findings)
     };
     assert_eq!(finding.rows, Some(50..60));
-    assert!(finding.evidence.contains("-999.0 in row 51; 10 rows"), "{finding:?}");
+    assert!(
+        finding.evidence.contains("-999.0 in row 51; 10 rows"),
+        "{finding:?}"
+    );
     let mended = temperatures(&check).expect("a temperature");
     let [before, after] = [course(49), course(60)];
     for (step, row) in (50..60).enumerate() {

@@ -10,8 +10,8 @@ use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_watched
 use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem, printable_path};
 use gyrocal_setup::PlatformKind;
 
-use super::{PlanArguments, several};
 use super::failed::{NotPlanned, OtherInput};
+use super::{PlanArguments, several};
 use crate::Failure;
 use crate::diagnose::NotDiagnosed;
 use crate::progress::Progress;

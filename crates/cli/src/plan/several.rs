@@ -65,9 +65,7 @@ pub(super) fn known<'a>(
                 source: Box::new(source),
             })
         };
-        let (record, problems) = gate
-            .sound(&DiagnoseOptions::default())
-            .map_err(of_record)?;
+        let (record, problems) = gate.sound(&DiagnoseOptions::default()).map_err(of_record)?;
         setup.extend(problems_of(&name, problems));
         sound.push(record);
     }

@@ -146,7 +146,12 @@ fn two_platforms() -> Folder {
 fn records_of_several_platforms_are_not_taken_for_those_of_one() {
     let folder = two_platforms();
     let both = ["a.csv", "b.csv", "--bench", "a.toml", "--bench", "b.toml"];
-    let words = |text: &str| text.replace(['│', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    let words = |text: &str| {
+        text.replace(['│', '\n'], " ")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
     for command in ["diagnose", "plan"] {
         let errors = words(&folder.fail(&[&[command], &both[..]].concat()));
         for part in [
@@ -161,7 +166,10 @@ fn records_of_several_platforms_are_not_taken_for_those_of_one() {
     let output = folder.run(&[&["calibrate", "--verbose"], &both[..]].concat());
     assert_eq!(output.status.code(), Some(1));
     let said = words(&String::from_utf8(output.stdout).unwrap());
-    assert_says(&said, "Records of several platforms are not fitted together");
+    assert_says(
+        &said,
+        "Records of several platforms are not fitted together",
+    );
     assert_says(&said, "calibrate a.csv, b.csv one by one");
 }
 

@@ -116,9 +116,19 @@ fn a_run_is_planned(folder: &Folder) {
     // In another order they are other records.
     let said = folder.fail(&with(&["b.csv", "a.csv"], &[]));
     assert!(said.contains("a diagnosis of another record"), "{said}");
-    let one = ["plan", "a.csv", "--bench", "a.bench.toml", "--diagnosis", "o.json"];
+    let one = [
+        "plan",
+        "a.csv",
+        "--bench",
+        "a.bench.toml",
+        "--diagnosis",
+        "o.json",
+    ];
     let said = refused(folder, &one);
-    assert!(said.contains("o.json is a result of 2 records, and one is given"), "{said}");
+    assert!(
+        said.contains("o.json is a result of 2 records, and one is given"),
+        "{said}"
+    );
 }
 
 #[test]
