@@ -56,7 +56,7 @@ impl DesignColumn {
                 shape: Some(shape),
                 index,
             } if begins(effect) && own(*shape) => Self::Signature {
-                effect: *effect,
+                effect,
                 shape: Some(shape - start_s),
                 index: *index,
             },

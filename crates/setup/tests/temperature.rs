@@ -1,4 +1,5 @@
 //! Temperatures in another unit, and values that are none.
+#![allow(clippy::unwrap_used, missing_docs)] // a test stops at what fails
 
 use gyrocal_record::Record;
 use gyrocal_setup::{SetupCheck, SetupKind, check_setup};
@@ -12,7 +13,7 @@ fn checked(temperature_c: impl Fn(usize) -> f64) -> (SetupCheck, Record) {
         interval_s: 300.0,
         ..Scenario::default()
     };
-    let simulation = simulate(&scenario).expect("a sound scenario");
+    let simulation = simulate(&scenario).unwrap();
     let mut record = simulation.record;
     record.temperature_c = Some((0..record.len()).map(temperature_c).collect());
     (check_setup(&record, &simulation.bench), record)
@@ -50,7 +51,7 @@ fn kelvins_are_told_and_converted() {
         assert!(finding.description.contains(words), "{finding:?}");
     }
     assert_eq!(finding.rows, Some(0..record.len()));
-    let converted = temperatures(&check).expect("a temperature");
+    let converted = temperatures(&check).unwrap();
     for (row, value) in converted.iter().enumerate() {
         // Rounding of numbers up to 1e3.
         assert!((value - course(row)).abs() < 1e-12 * 1e3, "{value}");
@@ -74,7 +75,7 @@ fn values_that_are_no_temperatures_are_interpolated_or_left_out() {
         finding.evidence.contains("-999.0 in row 51; 10 rows"),
         "{finding:?}"
     );
-    let mended = temperatures(&check).expect("a temperature");
+    let mended = temperatures(&check).unwrap();
     let [before, after] = [course(49), course(60)];
     for (step, row) in (50..60).enumerate() {
         let between = before + (step + 1) as f64 / 11.0 * (after - before);
