@@ -11,7 +11,7 @@ use crate::rotation::{rotate, turned_by};
 
 /// Parameters of the catalogue's model, and those of them that enter the output.
 const PARAMETERS: usize = Catalogue::PARAMETERS;
-const OF_OUTPUT: usize = 28;
+const OF_OUTPUT: usize = 37;
 /// Points of Gauss's rule with two points, in a block of one: 1/2 ∓ √3 / 6.
 const POINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 

@@ -54,7 +54,9 @@ impl Axes {
     /// The axes at the rows of a record.
     pub(crate) fn of(&self, record: &Record) -> Outcome<GyroAxes> {
         let quaternions = match self {
-            Self::File(path) => return Ok(GyroAxes::new(&read_axes(&SourceText::read(path)?, record)?)),
+            Self::File(path) => {
+                return Ok(GyroAxes::new(&read_axes(&SourceText::read(path)?, record)?));
+            }
             Self::Array(quaternions) => quaternions,
         };
         if quaternions.len() != record.len() {

@@ -191,7 +191,7 @@ fn tests_of_instruments_fit() {
 fn the_catalogue_and_the_greeting_fit() {
     let folder = Folder::new();
     assert_screen(&folder, &[], &["What people do first"]);
-    assert_screen(&folder, &["effects"], &["EFFECTS  96 of the catalogue"]);
+    assert_screen(&folder, &["effects"], &["EFFECTS  114 of the catalogue"]);
     for effect in gyrocal::EFFECTS.iter() {
         let said = assert_screen(&folder, &["effects", effect.id], &[effect.id]);
         assert!(

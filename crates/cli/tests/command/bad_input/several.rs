@@ -177,8 +177,11 @@ fn records_of_several_platforms_are_not_taken_for_those_of_one() {
 fn benches_that_contradict_each_other_are_told_by_every_command_of_several_records() {
     let folder = two_platforms();
     let text = folder.text("b.toml");
-    let other = text.replace("bias_sigma_deg_per_h = ", "bias_sigma_deg_per_h = 3.0 # ");
-    assert_ne!(other, text);
+    let other = text
+        + "
+[prior]
+bias_sigma_deg_per_h = 3.0
+";
     folder.put("b.toml", other);
     let both = ["a.csv", "b.csv", "--bench", "a.toml", "--bench", "b.toml"];
     for command in ["calibrate", "diagnose", "plan"] {
