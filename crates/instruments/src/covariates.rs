@@ -48,12 +48,12 @@ pub(crate) fn temperatures_c(
         ),
     };
     let found = format!("a temperature of {:.2} degrees Celsius", celsius[row]);
-    let expected = "-100 to 250";
+    let expected = format!("{} to {}", PLAUSIBLE_C.start(), PLAUSIBLE_C.end());
     Err(file.error_at(
         row,
         InputErrorKind::OutOfRange,
         Unfit::Temperature,
-        [&found, expected, &advice],
+        [&found, &expected, &advice],
     ))
 }
 

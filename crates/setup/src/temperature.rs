@@ -1,4 +1,4 @@
-//! Unit of the temperature, and values that are none.
+//! Unit of the temperature, and values that cannot be temperatures.
 
 use gyrocal_statistics::quantile;
 
@@ -10,14 +10,14 @@ use crate::text::{number, row, rows, span};
 /// Temperatures of instruments at work \[°C\].
 const PLAUSIBLE_C: core::ops::RangeInclusive<f64> = -100.0..=250.0;
 
-/// Those of a laboratory or a vehicle, by which kelvins are recognised. Degrees Fahrenheit of such read as
-/// plausible ones in °C, or as kelvins.
+/// Those of a laboratory or a vehicle, by which kelvins are recognised. Below 250 K (-23 °C) kelvins are plausible
+/// in °C and are left; so are most degrees Fahrenheit, others read as kelvins.
 const USUAL_C: core::ops::RangeInclusive<f64> = -60.0..=130.0;
 
 /// 0 °C in kelvins.
 const ZERO_C_K: f64 = 273.15;
 
-/// Temperatures that are none in degrees Celsius: kelvins are converted, what is left is interpolated.
+/// Values that cannot be temperatures in °C: kelvins are converted, what is left is interpolated.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let Some(column) = &mut samples.temperature_c else {
         return Vec::new();
@@ -28,10 +28,12 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     }
     let first = column[wrong[0]];
     let evidence = format!(
-        "{} in row {}; {} outside of -100 to 250",
+        "{} in row {}; {} outside of {} to {}",
         number(first),
         row(wrong[0]),
-        rows(wrong.len())
+        rows(wrong.len()),
+        PLAUSIBLE_C.start(),
+        PLAUSIBLE_C.end()
     );
     // The unit is that of all rows.
     if 2 * wrong.len() > column.len() && is_in_kelvins(column) {
@@ -56,7 +58,7 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         "They were interpolated"
     };
     let description = format!(
-        "Temperatures are none in degrees Celsius. {done}. Check the sensor and the column, and leave its codes \
+        "Values that cannot be temperatures in °C. {done}. Check the sensor and the column, and leave its codes \
          of missing values out."
     );
     let finding = SetupFinding::new(SetupKind::Temperature, description, evidence);

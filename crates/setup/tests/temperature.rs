@@ -1,4 +1,4 @@
-//! Temperatures in another unit, and values that are none.
+//! Temperatures in another unit, and values that cannot be temperatures.
 #![allow(clippy::unwrap_used, missing_docs)] // a test stops at what fails
 
 use gyrocal_record::Record;
@@ -72,7 +72,9 @@ fn values_that_are_no_temperatures_are_interpolated_or_left_out() {
     };
     assert_eq!(finding.rows, Some(50..60));
     assert!(
-        finding.evidence.contains("-999.0 in row 51; 10 rows"),
+        finding
+            .evidence
+            .contains("-999.0 in row 51; 10 rows outside of -100 to 250"),
         "{finding:?}"
     );
     let mended = temperatures(&check).unwrap();
