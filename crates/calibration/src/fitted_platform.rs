@@ -70,7 +70,7 @@ fn of_site(bench: &Bench) -> ModelExtension {
 }
 
 /// The random walks of the gyros that have one, from their size.
-fn walks(deg_per_h_per_sqrt_h: &[f64; 3]) -> Vec<Walk> {
+pub(crate) fn walks(deg_per_h_per_sqrt_h: &[f64; 3]) -> Vec<Walk> {
     let rates = PLATFORM.rates.iter().zip(deg_per_h_per_sqrt_h);
     rates
         .filter(|(_, size)| **size > 0.0)
@@ -339,6 +339,12 @@ impl<'a> FittedPlatform<'a> {
             Some(several) => &several.points,
             None => &self.problem.runs[0].points,
         }
+    }
+
+    /// What the model relates temperatures to, if they were logged.
+    #[must_use]
+    pub fn temperature_scale(&self) -> Option<TemperatureScale> {
+        self.problem.runs.first()?.rows.temperature_scale()
     }
 
     /// All parameters of [`Catalogue`]: those that are not estimated are zero. Of several records those of

@@ -165,6 +165,6 @@ pub use same_rows::{SharedRows, shared_rows, times_overlap};
 pub use settings::{declared_attitude, filter_settings};
 pub use spread::{CoefficientSpread, Spread, spread};
 pub use streaming::{FilterWatch, StrapdownWatch, run_factorised_filter, run_strapdown_filter};
-pub use temperature::{REGRESSORS, regressor_means};
+pub use temperature::{REGRESSORS, TemperatureScale, regressor_means};
 pub use variances::UncertaintySource;
 pub use work::work;

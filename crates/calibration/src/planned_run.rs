@@ -8,13 +8,14 @@ use nalgebra::DMatrix;
 
 use crate::attitude::attitude_hypotheses;
 use crate::error::CalibrationError;
-use crate::fitted_platform::NoiseModel;
+use crate::fitted_platform::{NoiseModel, walks};
 use crate::law::{Law, LawInputs};
 use crate::options::Options;
 use crate::platform::covariates;
 use crate::problem::{Problem, RunProblem};
 use crate::run::{Run, WeightedRows};
 use crate::settings::filter_settings;
+use crate::temperature::TemperatureScale;
 
 /// A run that has not been made. Its trajectory is the noise-free solution of the model from the
 /// first attitude.
@@ -29,8 +30,11 @@ pub struct PlannedRun<'a> {
     pub parameters: &'a [f64],
     /// Onsets and time constants, as [`gyrocal::Catalogue`] takes them.
     pub shapes: [f64; catalogue::SHAPES.len()],
-    /// The expected noise; weights are not used.
+    /// The expected noise, with the random walks of the gyros, each from zero; weights are not used.
     pub noise: &'a NoiseModel,
+    /// What the model's parameters relate temperatures to: [`crate::FittedPlatform::temperature_scale`] of the fit
+    /// that they are of.
+    pub temperature_scale: Option<TemperatureScale>,
 }
 
 /// Predicted information of a run, and the trajectory that it is linearised about.
@@ -71,7 +75,8 @@ impl PlannedRun<'_> {
     }
 
     /// Information of the rows from `first` on, given the earlier ones, on the parameters `active`
-    /// of [`gyrocal::Catalogue`] and on further columns, along the trajectory `points`.
+    /// of [`gyrocal::Catalogue`] and on further columns, along the trajectory `points`. The biases of gyros that
+    /// have a random walk have to be active.
     ///
     /// # Errors
     /// As [`crate::cramer_rao_bound`].
@@ -85,7 +90,8 @@ impl PlannedRun<'_> {
     ) -> Result<PredictedInformation, CalibrationError> {
         let further = ExtraColumns::new(columns.to_vec());
         let count = active.len() + columns.len();
-        let problem = self.problem(points, options)?;
+        let mut problem = self.problem(points, options)?;
+        problem.runs[0].set_walks(walks(&self.noise.gyro_walk_deg_per_h_per_sqrt_h));
         let mut earlier = DMatrix::zeros(count, count);
         let reduced = problem
             .with_active(0, self.parameters, active, &further, |pass| {
@@ -129,6 +135,10 @@ impl PlannedRun<'_> {
             .noise
             .accel_ratio
             .map(|ratio| ratio * settings.accel_noise_g);
+        let mut rows = WeightedRows::new(record, record.len(), noise_g);
+        if self.temperature_scale.is_some() {
+            rows.set_temperature_scale(self.temperature_scale);
+        }
         Ok(Problem {
             model: Law::Platform.anchored(),
             integration: options.discretisation.integration,
@@ -136,7 +146,7 @@ impl PlannedRun<'_> {
             unknowns: Vec::new(),
             values: Vec::new(),
             runs: vec![RunProblem {
-                rows: WeightedRows::new(record, record.len(), noise_g),
+                rows,
                 chart,
                 noise_density: self.noise.gyro_ratio.map(|ratio| ratio * ratio * density),
                 prior: self.start,

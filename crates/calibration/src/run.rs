@@ -53,7 +53,8 @@ pub(crate) struct WeightedRows<'a> {
     rows: usize,
     /// Variance of a value of weight 1, g².
     variance_g2: [f64; 3],
-    /// What follows from the temperature at each row, if it was logged.
+    /// What the temperature is related to, and what follows from it at each row, if it was logged.
+    temperature_scale: Option<TemperatureScale>,
     temperature: Option<Arc<TemperatureCourse>>,
     /// Weight of each value if not all are 1: a value of weight 0 is left out.
     pub(crate) weights: Option<Vec<[f64; 3]>>,
@@ -64,14 +65,17 @@ pub(crate) struct WeightedRows<'a> {
 impl<'a> WeightedRows<'a> {
     /// The first `rows` rows with weight 1 and the noise `noise_g` of each accelerometer.
     pub(crate) fn new(record: &'a Record, rows: usize, noise_g: [f64; 3]) -> Self {
-        Self {
+        let mut all = Self {
             record: Cow::Borrowed(record),
             rows,
             variance_g2: noise_g.map(|sigma| sigma * sigma),
-            temperature: TemperatureCourse::of(record).map(Arc::new),
+            temperature_scale: None,
+            temperature: None,
             weights: None,
             gyro_axes: None,
-        }
+        };
+        all.set_temperature_scale(TemperatureScale::of(record, &[]));
+        all
     }
 
     /// The same with a copy of the record.
@@ -80,6 +84,7 @@ impl<'a> WeightedRows<'a> {
             record: Cow::Owned(self.record.into_owned()),
             rows: self.rows,
             variance_g2: self.variance_g2,
+            temperature_scale: self.temperature_scale,
             temperature: self.temperature,
             weights: self.weights,
             gyro_axes: self.gyro_axes.map(|axes| Cow::Owned(axes.into_owned())),
@@ -129,10 +134,16 @@ impl<'a> WeightedRows<'a> {
         self.temperature.is_some()
     }
 
+    /// What the temperature is related to, if it was logged.
+    pub(crate) fn temperature_scale(&self) -> Option<TemperatureScale> {
+        self.temperature_scale
+    }
+
     /// Relates temperatures to those of several records; `None` if one has none.
     pub(crate) fn set_temperature_scale(&mut self, scale: Option<TemperatureScale>) {
         let rows = 0..self.record.len();
         let course = scale.and_then(|scale| TemperatureCourse::of_rows(&self.record, rows, scale));
+        self.temperature_scale = scale;
         self.temperature = course.map(Arc::new);
     }
 

@@ -9,18 +9,18 @@ use gyrocal_statistics::{PLAY_OF_HYSTERESIS, followed_with_play, local_slopes};
 /// Number of regressors of the platform: temperature, then what derives from it.
 pub const REGRESSORS: usize = 3;
 
-/// Rows within this time of a row determine its rate of change of temperature, s: a hundredth of a
-/// kelvin a minute is a hundredth of a kelvin an hour then, and waves of six hours keep 99 %.
+/// Half width of the window whose slope is the rate of change at a row, s. With rows of a minute, noise of
+/// 0.01 K gives a rate with a standard deviation of 0.008 K/h; a wave of six hours keeps 99 % of its rate.
 const RATE_HALF_WIDTH_S: f64 = 1200.0;
 
 const HOUR_S: f64 = 3600.0;
 
 /// What temperatures of a record, or of several together, are related to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TemperatureScale {
+pub struct TemperatureScale {
     /// Their mean.
     mean_c: f64,
-    /// Play of the hysteresis to either side.
+    /// Play of the hysteresis to either side, from the largest range of one record.
     half_play_k: f64,
     /// Mean of what a play does not follow.
     mean_hysteresis_k: f64,
@@ -38,22 +38,19 @@ impl TemperatureScale {
     /// Of all rows of a record, or of several with the first rows of the later ones, with each of which a
     /// play begins anew; `None` without temperature.
     pub(crate) fn of(record: &Record, starts: &[usize]) -> Option<Self> {
-        Self::with_play(record, starts, half_play_k(record)?)
+        Self::with_play(record, starts, half_play_k(record, starts)?)
     }
 
     /// The same of a record with the play of another record of the same platform.
     pub(crate) fn with_play_of(record: &Record, other: &Record) -> Option<Self> {
-        Self::with_play(record, &[], half_play_k(other).or(half_play_k(record))?)
+        let play_k = half_play_k(other, &[]).or(half_play_k(record, &[]))?;
+        Self::with_play(record, &[], play_k)
     }
 
     fn with_play(record: &Record, starts: &[usize], half_play_k: f64) -> Option<Self> {
         let logged = record.temperature_c.as_ref()?;
         let mean = |sum: f64| sum / logged.len().max(1) as f64;
-        let firsts = core::iter::once(&0).chain(starts);
-        let ends = starts.iter().copied().chain([logged.len()]);
-        let sum_of_hysteresis = firsts
-            .zip(ends)
-            .filter_map(|(first, end)| logged.get(*first..end))
+        let sum_of_hysteresis = each(logged, starts)
             .map(|rows| hysteresis(rows, half_play_k).sum::<f64>())
             .sum();
         Some(Self {
@@ -65,11 +62,6 @@ impl TemperatureScale {
 }
 
 impl TemperatureCourse {
-    /// Of a record by itself; `None` if it has no temperature.
-    pub(crate) fn of(record: &Record) -> Option<Self> {
-        Self::of_rows(record, 0..record.len(), TemperatureScale::of(record, &[])?)
-    }
-
     /// Of rows that follow each other in one turn-on.
     pub(crate) fn of_rows(
         record: &Record,
@@ -120,14 +112,23 @@ pub fn regressor_means(record: &Record, play_of: &Record) -> Option<[f64; REGRES
     Some([scale.mean_c, 0.0, scale.mean_hysteresis_k])
 }
 
-/// Play of a record to either side.
-fn half_play_k(record: &Record) -> Option<f64> {
+/// Play to either side of a record, or of several with the first rows of the later ones.
+fn half_play_k(record: &Record, starts: &[usize]) -> Option<f64> {
     let logged = record.temperature_c.as_ref()?;
-    let [least, most] = logged.iter().fold(
-        [f64::INFINITY, f64::NEG_INFINITY],
-        |[least, most], value| [least.min(*value), most.max(*value)],
-    );
-    Some(0.5 * PLAY_OF_HYSTERESIS * (most - least).max(0.0))
+    let ranges = each(logged, starts).map(|rows| {
+        let least = rows.iter().copied().fold(f64::INFINITY, f64::min);
+        rows.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
+    });
+    Some(0.5 * PLAY_OF_HYSTERESIS * ranges.fold(0.0, f64::max))
+}
+
+/// The values of each record, with the first rows of the later ones.
+fn each<'a>(values: &'a [f64], starts: &'a [usize]) -> impl Iterator<Item = &'a [f64]> {
+    let firsts = core::iter::once(&0).chain(starts);
+    let ends = starts.iter().copied().chain([values.len()]);
+    firsts
+        .zip(ends)
+        .filter_map(|(first, end)| values.get(*first..end))
 }
 
 /// What a play does not follow.
@@ -152,12 +153,17 @@ mod tests {
         }
     }
 
+    fn course(record: &Record) -> Option<TemperatureCourse> {
+        let scale = TemperatureScale::of(record, &[])?;
+        TemperatureCourse::of_rows(record, 0..record.len(), scale)
+    }
+
     #[test]
     fn regressors_of_a_rise_and_a_fall() {
         // Four kelvin up and down, so that the play is half a kelvin to either side.
         let up = (0..=8).map(|row| 20.0 + 0.5 * f64::from(row));
         let down = (0..8).rev().map(|row| 20.0 + 0.5 * f64::from(row));
-        let course = TemperatureCourse::of(&record(up.chain(down).collect())).unwrap_or_default();
+        let course = course(&record(up.chain(down).collect())).unwrap_or_default();
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         assert!(mean(&course.temperature_k).abs() < 1e-12);
         assert!(mean(&course.hysteresis_k).abs() < 1e-12);
@@ -172,17 +178,18 @@ mod tests {
 
     #[test]
     fn several_records_have_one_scale_and_their_own_plays() {
-        let both = record(vec![20.0, 21.0, 22.0, 28.0, 27.0, 26.0]);
+        // Ranges of four and two kelvin; nine over both.
+        let both = record(vec![20.0, 22.0, 24.0, 29.0, 28.0, 27.0]);
         let scale = TemperatureScale::of(&both, &[3]).unwrap_or(TemperatureScale {
             mean_c: 0.0,
             half_play_k: 0.0,
             mean_hysteresis_k: 0.0,
         });
-        assert_eq!((scale.mean_c, scale.half_play_k), (24.0, 1.0));
-        // Raw: 0, 1, 1 and 0, -1, -1.
+        assert_eq!((scale.mean_c, scale.half_play_k), (25.0, 0.5));
+        // Raw: 0, 1/2, 1/2 and 0, -1/2, -1/2.
         assert_eq!(scale.mean_hysteresis_k, 0.0);
         let later = TemperatureCourse::of_rows(&both, 3..6, scale).unwrap_or_default();
-        assert_eq!(later.hysteresis_k, [0.0, -1.0, -1.0]);
+        assert_eq!(later.hysteresis_k, [0.0, -0.5, -0.5]);
         assert_eq!(later.temperature_k, [4.0, 3.0, 2.0]);
         assert!(
             later
@@ -194,7 +201,7 @@ mod tests {
             temperature_c: None,
             ..both
         };
-        assert_eq!(TemperatureCourse::of(&without), None);
+        assert_eq!(course(&without), None);
         assert_eq!(regressor_means(&without, &without), None);
     }
 }

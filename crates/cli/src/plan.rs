@@ -138,8 +138,8 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
         goal: goal(arguments),
         ..PlanOptions::default()
     };
-    let mut planned = plan(&known.fitted, &run, &known.noise, &known.named, &options)
-        .map_err(|source| NotPlanned::new(&arguments.records[0], source))?;
+    let mut planned = plan(&known.fitted, &run, &known.named, &options)
+        .map_err(|source| NotPlanned::new(&arguments.records, source))?;
     drop(progress);
     planned.setup.clone_from(&known.setup);
     planned.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;

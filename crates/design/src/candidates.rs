@@ -4,7 +4,6 @@ use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{FittedPlatform, PLATFORM};
 use gyrocal_diagnosis::{missing_input, selection};
 use gyrocal_hypothesis::{HypothesisSet, Variant};
-use gyrocal_record::Record;
 use nalgebra::DVector;
 
 use crate::effect_columns::Times;
@@ -27,7 +26,7 @@ pub(crate) fn times(past: &Past<'_>, next_s: f64) -> Times {
     let rows = past.rows();
     let set = HypothesisSet::new(&PLATFORM, &rows, &[]);
     Times {
-        first_s: duration_s(past.run().record),
+        first_s: past.run().record.duration_s(),
         next_s,
         onsets_s: set
             .onset_rows()
@@ -39,13 +38,6 @@ pub(crate) fn times(past: &Past<'_>, next_s: f64) -> Times {
     }
 }
 
-pub(crate) fn duration_s(record: &Record) -> f64 {
-    match record.time_s.as_slice() {
-        [first, .., last] => last - first,
-        _ => 0.0,
-    }
-}
-
 /// The members of all confidence sets, each with its best shape in the record. Near twins outside the
 /// default search are among them if they explain as much with a plausible size.
 pub(crate) fn candidates(
@@ -53,12 +45,13 @@ pub(crate) fn candidates(
     past: &Past<'_>,
     named: &[NamedCause],
 ) -> Result<Vec<Vec<Candidate>>, DesignError> {
-    let mut drafts = Vec::with_capacity(named.len());
-    for named in named {
-        drafts.push(draft(named, past)?);
-    }
+    let named: Vec<&NamedCause> = named.iter().filter(|named| !named.is_noise()).collect();
     let run = past.run();
-    let times = times(past, duration_s(run.record));
+    let times = times(past, run.record.duration_s());
+    let mut drafts = Vec::with_capacity(named.len());
+    for named in &named {
+        drafts.push(draft(named, past, &times)?);
+    }
     let unknowns = JointUnknowns::new(fitted, &run, &drafts, &times);
     let information = unknowns.of_first(&RunInformation::of_record(
         fitted,
@@ -73,7 +66,11 @@ pub(crate) fn candidates(
 }
 
 /// All candidates: of an effect with an onset or a time constant one for each variant of the search.
-fn draft(named: &NamedCause, past: &Past<'_>) -> Result<Vec<Candidate>, DesignError> {
+fn draft(
+    named: &NamedCause,
+    past: &Past<'_>,
+    times: &Times,
+) -> Result<Vec<Candidate>, DesignError> {
     let run = past.run();
     let mut rows = Vec::with_capacity(named.rivals.len());
     for (id, _) in &named.rivals {
@@ -94,8 +91,10 @@ fn draft(named: &NamedCause, past: &Past<'_>) -> Result<Vec<Candidate>, DesignEr
     let also: Vec<&str> = rows.iter().map(|row| row.id).collect();
     let selection = selection(run.record, run.bench, &also);
     let set = HypothesisSet::new(&PLATFORM, &past.rows(), &selection.effects);
+    let walk_size = named.shape.filter(|_| is_walk(own));
     let mut candidates = vec![Candidate {
         turn_on_sigmas: named.turn_on_sigmas.clone(),
+        variance: walk_size.map_or(0.0, |size| times.variance_of_steps(size)),
         ..candidate(own, named.shape.filter(|_| !is_walk(own)))
     }];
     for row in rows {
@@ -152,8 +151,10 @@ fn settled(
     let Some(Some((best, variance))) = statistics.first().copied() else {
         return alone(&own.candidate);
     };
+    // The steps of a named walk have the variance that it was found with, if this test finds none.
+    let variance = Some(variance).filter(|variance| *variance > 0.0);
     let mut set = vec![Candidate {
-        variance,
+        variance: variance.unwrap_or(own.candidate.variance),
         ..own.candidate.clone()
     }];
     let mut seen: Vec<&str> = vec![own.candidate.row.id];

@@ -2,10 +2,10 @@
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run};
 
-use crate::candidates::{candidates, duration_s, times};
+use crate::candidates::{candidates, times};
 use crate::error::DesignError;
 use crate::joint_unknowns::{ConfidenceSet, JointUnknowns};
-use crate::named_cause::{NamedCause, fitted_alone};
+use crate::named_cause::{NamedCause, fitted_alone, without_compared_walks};
 use crate::past::Past;
 use crate::result::Forecast;
 use crate::run_information::RunInformation;
@@ -36,7 +36,8 @@ pub struct ComparedMember {
 }
 
 /// Compares the members of the sets of a record on that record and another one. `fitted` is the
-/// fit to the first with what was named; `noise` holds for both.
+/// fit to the first with what was named; its noise holds for both. A random walk that is named without rivals is
+/// noise and has no set.
 ///
 /// # Errors
 /// [`DesignError`].
@@ -44,22 +45,22 @@ pub fn compare(
     fitted: &FittedPlatform<'_>,
     first: &Run<'_>,
     second: &Run<'_>,
-    noise: &NoiseModel,
     named: &[NamedCause],
     options: &Options,
 ) -> Result<Compared, DesignError> {
-    let past = Past::new(fitted, first);
-    let sets = candidates(fitted, &past, named)?;
-    let times = times(&past, duration_s(second.record));
-    let unknowns = JointUnknowns::new(fitted, first, &sets, &times);
+    let fitted = without_compared_walks(fitted, named)?;
+    let past = Past::new(&fitted, first);
+    let sets = candidates(&fitted, &past, named)?;
+    let times = times(&past, second.record.duration_s());
+    let unknowns = JointUnknowns::new(&fitted, first, &sets, &times);
     // Values that the first record's noise has no trust in are no rows of the second.
     let noise = NoiseModel {
         weights: None,
-        ..noise.clone()
+        ..fitted.noise_model().clone()
     };
     let other = fitted_alone(named, second, &noise, options)?;
     let mut information = unknowns.of_first(&RunInformation::of_record(
-        fitted,
+        &fitted,
         first.record,
         &unknowns.first,
     )?);

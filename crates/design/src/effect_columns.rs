@@ -34,6 +34,12 @@ impl Times {
     pub(crate) fn offset(&self) -> RecordOffset {
         offset_after(self.first_s)
     }
+
+    /// Variance of a step of a random walk of this size, deg/h/√h, in the record.
+    pub(crate) fn variance_of_steps(&self, size: f64) -> f64 {
+        let steps = self.onsets_s.len().max(1) as f64;
+        size * size * self.first_s / 3600.0 / steps
+    }
 }
 
 /// The offset of a run that follows a record of some duration at once.

@@ -5,13 +5,13 @@ use gyrocal::effect::Continuation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
 use gyrocal_calibration::{
     CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, PlannedRun, Run,
+    TemperatureScale,
 };
 use gyrocal_hypothesis::{RecordOffset, continued, continued_shapes};
 use gyrocal_record::{Bench, GimbalLimits, Record};
 use nalgebra::{DMatrix, DVector};
 
 use crate::attitude::of_angles;
-use crate::candidates::duration_s as duration_s_of;
 use crate::design_column::begins;
 use crate::effect_columns::offset_after;
 use crate::expected_sets::{Deviates, Posteriors, expected};
@@ -48,6 +48,7 @@ pub(crate) struct Evaluator<'a> {
     start: Orientation,
     /// Start of the record that goes on, on the clock of all, s.
     start_s: f64,
+    temperature_scale: Option<TemperatureScale>,
     now: RunInformation,
     before: Vec<Forecast>,
     posteriors: Vec<Posteriors>,
@@ -90,7 +91,7 @@ impl<'a> Evaluator<'a> {
             let next = one_more(unknowns, fitted.shared_parameters());
             (next, shapes.clone())
         } else {
-            let offset = offset_after(duration_s_of(run.record));
+            let offset = offset_after(run.record.duration_s());
             let next = next_parameters(unknowns, &fitted.parameters(), &offset);
             (next, continued_shapes(&PLATFORM, &shapes, &offset))
         };
@@ -112,6 +113,7 @@ impl<'a> Evaluator<'a> {
             shapes,
             start: *fitted.points().get(past.first_row())?,
             start_s: past.start_s,
+            temperature_scale: fitted.temperature_scale(),
             now,
             before,
             posteriors,
@@ -179,7 +181,7 @@ impl<'a> Evaluator<'a> {
 
     /// Forecast for continuing the last record for the duration of the next run.
     pub(crate) fn continued(&self) -> Result<Option<Outlook>, CalibrationError> {
-        let first_s = duration_s_of(self.run.record);
+        let first_s = self.run.record.duration_s();
         let (mut record, noise_factor) = self.rows(first_s + self.duration_s);
         let given = self.run.bench.initial_angles_deg.is_some();
         if !given {
@@ -253,6 +255,7 @@ impl<'a> Evaluator<'a> {
             parameters,
             shapes: core::array::from_fn(|index| shapes[index]),
             noise: self.noise,
+            temperature_scale: self.temperature_scale,
         }
     }
 
@@ -289,7 +292,7 @@ impl<'a> Evaluator<'a> {
         const DAY_S: f64 = 86_400.0;
         let record = self.run.record;
         let first_s = record.time_s.first().copied().unwrap_or(0.0);
-        let length_s = duration_s_of(record);
+        let length_s = record.duration_s();
         let days_s = (length_s / DAY_S).floor() * DAY_S;
         let at = if days_s > 0.0 {
             time_s.rem_euclid(days_s)

@@ -1,6 +1,8 @@
 //! Named causes of a record.
 
-use gyrocal::effect::{EffectKind, EffectParameter, Enters, NoiseProperty};
+use std::borrow::Cow;
+
+use gyrocal::effect::{EffectKind, EffectParameter};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{
     CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, Run, joined_record,
@@ -17,7 +19,8 @@ use gyrocal_diagnosis::result::{DiagnosisResult, Finding, SizeChoice};
 pub struct NamedCause {
     /// Its public id.
     pub effect: String,
-    /// Its onset in s or time constant in h, if it has one; of a random walk its size.
+    /// Its onset in s or time constant in h, if it has one; of a random walk its size, of a wrong first attitude
+    /// of one of several records the start of that record in s.
     pub shape: Option<f64>,
     /// Ids of the rest of its set, with the differences of log-likelihoods.
     pub rivals: Vec<(String, f64)>,
@@ -39,12 +42,7 @@ impl NamedCause {
     #[must_use]
     pub fn of(finding: &Finding) -> Self {
         let row = EFFECTS.iter().find(|row| row.id == finding.effect);
-        // Of a random walk its size.
-        let wanted = row.and_then(|row| {
-            let first = row.parameters.first().filter(|_| is_walk(row));
-            row.shape().or(first)
-        });
-        let shape = wanted.and_then(|wanted| finding.parameter(wanted.name));
+        let shape = row.and_then(|row| finding.parameter(shape_name(row)?));
         Self {
             effect: finding.effect.clone(),
             shape: shape.map(|parameter| parameter.estimate),
@@ -55,6 +53,11 @@ impl NamedCause {
                 .collect(),
             turn_on_sigmas: row.map_or_else(Vec::new, |row| turn_on_sigmas(row, finding)),
         }
+    }
+
+    /// Whether it is noise of the fit and nothing else: a random walk without rivals.
+    pub(crate) fn is_noise(&self) -> bool {
+        self.rivals.is_empty() && self.row().is_ok_and(is_walk)
     }
 
     /// Whether a run can be planned for an effect: one with a signature.
@@ -90,8 +93,8 @@ impl NamedCause {
 }
 
 /// The model that has some causes, fitted to several records of one platform by their joint diagnosis: where
-/// [`super::plan`] starts from, with the joint record beside it. Accelerometer noise is that found in each
-/// record, noise of the gyros that found in all.
+/// [`super::plan`] starts from, with the joint record beside it. Accelerometer noise is that of each record's own
+/// diagnosis, noise of the gyros that of all.
 ///
 /// # Errors
 /// As [`NamedCause::fitted`], and [`CalibrationError::UnlikeBenches`].
@@ -150,40 +153,51 @@ fn turn_on_sigmas(row: &Effect, finding: &Finding) -> Vec<f64> {
     row.sizes().take(sizes).enumerate().map(of_size).collect()
 }
 
-/// Noise other than declared, where a diagnosis found it: that of the accelerometers and of the gyros.
+/// Noise of the model of a diagnosis; the declared one of a result without it.
 #[must_use]
 pub fn noise_of(diagnosis: &DiagnosisResult) -> NoiseModel {
-    let ratio = |enters: &dyn Fn(Enters) -> bool| {
-        let level = EffectKind::Noise(NoiseProperty::Level);
-        let effect = EFFECTS.iter().find(|e| e.kind == level && enters(e.enters));
-        let mut findings = diagnosis.findings.iter();
-        let found = findings.find(|f| effect.is_some_and(|effect| effect.id == f.effect));
-        found
-            .and_then(|finding| finding.parameters.first())
-            .map_or(1.0, |parameter| parameter.estimate)
-    };
-    NoiseModel {
-        accel_ratio: core::array::from_fn(|axis| {
-            ratio(&|enters| matches!(enters, Enters::Outputs([at]) if *at == axis))
-        }),
-        gyro_ratio: core::array::from_fn(|axis| {
-            ratio(&|enters| matches!(enters, Enters::Rates([at]) if *at == axis))
-        }),
-        gyro_walk_deg_per_h_per_sqrt_h: [0.0; 3],
-        weights: None,
-    }
+    diagnosis
+        .model_noise
+        .map_or_else(NoiseModel::default, |noise| NoiseModel {
+            accel_ratio: noise.accel_ratio,
+            gyro_ratio: noise.gyro_ratio,
+            gyro_walk_deg_per_h_per_sqrt_h: noise.gyro_walk_deg_per_h_per_sqrt_h,
+            weights: None,
+        })
 }
 
+/// The noise with the random walks among some causes that it does not have.
 /// The noise with the random walks among some causes.
 fn with_walks(noise: &NoiseModel, named: &[NamedCause]) -> Result<NoiseModel, DesignError> {
     let mut noise = noise.clone();
     for named in named {
         let row = named.row()?;
         if let (true, Some(rate), Some(size)) = (is_walk(row), row.rate(), named.shape) {
-            noise.gyro_walk_deg_per_h_per_sqrt_h[rate] = size;
+            let own = &mut noise.gyro_walk_deg_per_h_per_sqrt_h[rate];
+            *own = if *own > 0.0 { *own } else { size };
         }
     }
     Ok(noise)
+}
+
+/// The fit that sets are compared with: without the random walks that are named beside rivals, whose steps are
+/// among what is compared.
+pub(crate) fn without_compared_walks<'a, 'f>(
+    fitted: &'f FittedPlatform<'a>,
+    named: &[NamedCause],
+) -> Result<Cow<'f, FittedPlatform<'a>>, DesignError> {
+    let mut noise = fitted.rate_noise();
+    for named in named.iter().filter(|named| !named.is_noise()) {
+        let row = named.row()?;
+        if let Some(rate) = row.rate().filter(|_| is_walk(row)) {
+            noise.walk[rate] = 0.0;
+        }
+    }
+    Ok(if noise == fitted.rate_noise() {
+        Cow::Borrowed(fitted)
+    } else {
+        Cow::Owned(fitted.with_rate_noise(&noise)?)
+    })
 }
 
 /// The extension of the nominal model by these causes.
@@ -227,6 +241,15 @@ pub(crate) fn row(effect: &str) -> Result<&'static Effect, DesignError> {
         .iter()
         .find(|row| row.id == effect && (row.has_signature() || is_walk(row)))
         .ok_or_else(|| unknown(effect))
+}
+
+/// Name of the parameter that is the shape of a named cause.
+fn shape_name(row: &Effect) -> Option<&'static str> {
+    match row.kind {
+        EffectKind::RandomWalk => row.parameters.first().map(|size| size.name),
+        EffectKind::InitialState => Some("onset_s"),
+        _ => row.shape().map(|shape| shape.name),
+    }
 }
 
 pub(crate) fn is_walk(row: &Effect) -> bool {

@@ -1,11 +1,10 @@
 //! The next run.
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Run};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, Run};
 use gyrocal_diagnosis::manifest;
 
-use crate::candidates::duration_s;
 use crate::error::DesignError;
-use crate::named_cause::NamedCause;
+use crate::named_cause::{NamedCause, without_compared_walks};
 use crate::options::PlanOptions;
 use crate::past::Past;
 use crate::planner::{FINE, Planner};
@@ -16,23 +15,24 @@ use crate::shortest_run::reach;
 const MOST_S: f64 = 366.0 * 86_400.0;
 
 /// Searches for the next run with the smallest expected confidence sets or standard deviations, given
-/// a fit with the causes that were named in its record. Of a fit to several records `run` has the record of
+/// a fit with the causes that were named in its record, whose noise the run has too. Of a fit to several records `run` has the record of
 /// [`gyrocal_calibration::joined_record`] and the bench of the last: the next run is one more record of the
-/// platform, with a clock and a turn-on of its own.
+/// platform, with a clock and a turn-on of its own. A random walk that is named without rivals is noise of all
+/// runs and has no set.
 ///
 /// # Errors
 /// [`DesignError`].
 pub fn plan(
     fitted: &FittedPlatform<'_>,
     run: &Run<'_>,
-    noise: &NoiseModel,
     named: &[NamedCause],
     options: &PlanOptions,
 ) -> Result<PlanResult, DesignError> {
     options.goal.check()?;
-    let past = Past::new(fitted, run);
-    let planner = Planner::new(fitted, &past, noise, named, options)?;
-    let own = [duration_s(past.last().record)];
+    let fitted = without_compared_walks(fitted, named)?;
+    let past = Past::new(&fitted, run);
+    let planner = Planner::new(&fitted, &past, named, options)?;
+    let own = [past.last().record.duration_s()];
     let durations_s = if options.durations_s.is_empty() {
         &own[..]
     } else {

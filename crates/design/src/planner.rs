@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel};
+use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use rayon::prelude::*;
 
 use crate::attitude::{apart_deg, beside, first};
-use crate::candidates::{candidates, duration_s, times};
+use crate::candidates::{candidates, times};
 use crate::error::DesignError;
 use crate::evaluator::{Detail, Evaluation, Evaluator, interval_s};
 use crate::joint_unknowns::{Candidate, JointUnknowns};
@@ -45,7 +45,6 @@ const SIGMAS_IN_SETS: f64 = 0.2;
 pub(crate) struct Planner<'a, 'b> {
     fitted: &'b FittedPlatform<'a>,
     past: &'b Past<'b>,
-    noise: &'b NoiseModel,
     pub(crate) options: &'b PlanOptions,
     sets: Vec<Vec<Candidate>>,
     /// Information of the records on the columns, which are the same for all durations.
@@ -57,13 +56,12 @@ impl<'a, 'b> Planner<'a, 'b> {
     pub(crate) fn new(
         fitted: &'b FittedPlatform<'a>,
         past: &'b Past<'b>,
-        noise: &'b NoiseModel,
         named: &[NamedCause],
         options: &'b PlanOptions,
     ) -> Result<Self, DesignError> {
         let sets = candidates(fitted, past, named)?;
         let run = past.run();
-        let own = times(past, duration_s(run.record));
+        let own = times(past, run.record.duration_s());
         let unknowns = JointUnknowns::new(fitted, &run, &sets, &own);
         let information = RunInformation::of_record(fitted, run.record, &unknowns.first)?;
         let aim = options
@@ -76,7 +74,6 @@ impl<'a, 'b> Planner<'a, 'b> {
         Ok(Self {
             fitted,
             past,
-            noise,
             options,
             sets,
             information,
@@ -115,7 +112,7 @@ impl<'a, 'b> Planner<'a, 'b> {
             &unknowns,
             self.fitted,
             self.past,
-            self.noise,
+            self.fitted.noise_model(),
             &self.information,
             self.options.limits,
             self.options.calibration,

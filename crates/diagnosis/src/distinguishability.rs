@@ -1,6 +1,8 @@
 //! Distinguishability: effects around a finding that the record does not separate, and experiments
 //! that would.
 
+use core::ops::Range;
+
 use gyrocal::effect::{self, EffectKind, Enters, Need};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_record::Record;
@@ -62,10 +64,16 @@ pub(crate) fn indistinguishable(
 /// Correlation of time and temperature from which on their effects are not told apart.
 const TOGETHER: f64 = 0.9;
 
-/// Correlation of temperature and time in a record; `None` without temperature, or if it does not change.
-pub(crate) fn time_and_temperature(record: &Record) -> Option<f64> {
+/// Correlation of temperature with the time since the first row of each record, by their rows; `None` without
+/// temperature, or if it does not change.
+pub(crate) fn time_and_temperature(record: &Record, each: &[Range<usize>]) -> Option<f64> {
     let temperature = about_mean(record.temperature_c.as_ref()?);
-    let time = about_mean(&record.time_s);
+    let of_one = |rows: &Range<usize>| {
+        let times_s = record.time_s.get(rows.clone()).unwrap_or_default();
+        times_s.iter().map(|time_s| time_s - times_s[0])
+    };
+    let time: Vec<f64> = each.iter().flat_map(of_one).collect();
+    let time = about_mean(&time);
     let sum = |one: &[f64], other: &[f64]| -> f64 {
         let pairs = one.iter().zip(other);
         pairs.map(|(a, b)| a * b).sum()
@@ -230,9 +238,10 @@ mod tests {
             accel_g: vec![[0.0, 0.0, 1.0]; 100],
             temperature_c: Some((0..100).map(|row| temperature(f64::from(row))).collect()),
         };
-        let rising = time_and_temperature(&record(|t| 20.0 + 0.1 * t + (0.3 * t).sin()));
-        let turning = time_and_temperature(&record(|t| 20.0 + (0.3 * t).sin()));
-        assert_eq!(time_and_temperature(&record(|_| 20.0)), None);
+        let correlation = |record: Record| time_and_temperature(&record, &[0..100]);
+        let rising = correlation(record(|t| 20.0 + 0.1 * t + (0.3 * t).sin()));
+        let turning = correlation(record(|t| 20.0 + (0.3 * t).sin()));
+        assert_eq!(correlation(record(|_| 20.0)), None);
         let told = |effect: &str, other: &str, correlation: Option<f64>| {
             let mut groups = indistinguishable(&finding(effect, &[other], &[]), &[], false);
             tell_together(&mut groups, correlation.unwrap_or(0.0));
@@ -249,6 +258,32 @@ mod tests {
         ));
         assert!(!told("gyro_x.ramp", "gyro_x.step", rising));
         assert!(!told("gyro_x.temperature", "gyro_x.ramp", turning));
+    }
+
+    #[test]
+    fn time_begins_anew_with_each_record() {
+        let correlation = |each_c: &[[f64; 2]]| {
+            let rows = 50;
+            let each: Vec<Range<usize>> = (0..each_c.len())
+                .map(|one| one * rows..(one + 1) * rows)
+                .collect();
+            let share = |row: usize| row as f64 / (rows - 1) as f64;
+            let warming = |[from, to]: &[f64; 2]| {
+                let (from, to) = (*from, *to);
+                (0..rows).map(move |row| from + share(row) * (to - from))
+            };
+            let record = Record {
+                time_s: (0..rows * each_c.len())
+                    .map(|row| 60.0 * row as f64)
+                    .collect(),
+                accel_g: vec![[0.0, 0.0, 1.0]; rows * each_c.len()],
+                temperature_c: Some(each_c.iter().flat_map(warming).collect()),
+            };
+            time_and_temperature(&record, &each).unwrap_or(f64::NAN)
+        };
+        // From record to record only: rounding is left.
+        assert!(correlation(&[[20.0; 2], [25.0; 2], [30.0; 2]]).abs() < 1e-12);
+        assert!(correlation(&[[20.0, 22.0]; 2]) > TOGETHER);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The result for one detected effect: estimates, significance, alternatives.
 
-use gyrocal_scalar::effect::Effect;
+use gyrocal_scalar::effect::{Effect, EffectKind};
 use nalgebra::DMatrix;
 
 use crate::accepted::Accepted;
@@ -283,7 +283,8 @@ fn change_by_shape(context: &SearchContext<'_>, accepted: &Accepted, size: f64) 
     )
 }
 
-/// Estimates of the parameters of an accepted effect.
+/// Estimates of the parameters of an accepted effect. Of a wrong first attitude of one of several records the
+/// start of that record is among them.
 pub(crate) fn parameters_of<F: FittedModel>(
     stage: &FittedStage<F>,
     set: &HypothesisSet,
@@ -295,6 +296,16 @@ pub(crate) fn parameters_of<F: FittedModel>(
     let (values, covariance): (&[f64], &DMatrix<f64>) =
         (stage.fitted.values(), stage.fitted.covariance());
     let all = hypothesis.effect.parameters.iter().enumerate();
+    let start_s = own
+        .shape
+        .filter(|_| hypothesis.effect.kind == EffectKind::InitialState);
+    let start = start_s.map(|start_s| EffectEstimate {
+        name: "onset_s",
+        estimate: start_s,
+        sigma: None,
+        interval: None,
+        unit: "s",
+    });
     all.map(|(index, parameter)| {
         let (estimate, sigma) = match places.values.get(index) {
             Some(place) => (
@@ -311,5 +322,6 @@ pub(crate) fn parameters_of<F: FittedModel>(
             unit: parameter.unit,
         }
     })
+    .chain(start)
     .collect()
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_cli::NotPlanned;
 use gyrocal_design::{
     Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design, prose,
@@ -73,7 +73,6 @@ struct Known<'a> {
     record: Cow<'a, Record>,
     setup: Vec<SetupProblem>,
     fitted: FittedPlatform<'a>,
-    noise: NoiseModel,
     named: Vec<NamedCause>,
 }
 
@@ -87,7 +86,7 @@ fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Answer>
         bench: &given.bench.bench,
     };
     let options = &request.options;
-    let mut planned = design(&known.fitted, &run, &known.noise, &known.named, options)
+    let mut planned = design(&known.fitted, &run, &known.named, options)
         .map_err(|source| no_plan(given, source))?;
     planned.setup.clone_from(&known.setup);
     let inputs = vec![given.record.input.clone(), given.bench.input.clone()];
@@ -96,7 +95,7 @@ fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Answer>
 }
 
 fn no_plan(given: Given<'_>, source: DesignError) -> Failure {
-    Failure::of_work(&NotPlanned::new(given.record.input.path.as_ref(), source))
+    Failure::of_work(&NotPlanned::new(&[&given.record.input.path], source))
 }
 
 /// Diagnoses the record.
@@ -106,7 +105,6 @@ fn made<'a>(given: Given<'a>, request: &Request) -> Outcome<Known<'a>> {
         .map_err(|source| given.no_diagnosis(source))?;
     Ok(Known {
         named: NamedCause::all(&found.result),
-        noise: found.noise_model,
         fitted: found.extended.unwrap_or(found.nominal),
         record: found.record,
         setup: found.result.setup,
@@ -117,9 +115,9 @@ fn made<'a>(given: Given<'a>, request: &Request) -> Outcome<Known<'a>> {
 fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
     let source = SourceText::new(diagnosis, "diagnosis")?;
     let diagnosis = gyrocal_diagnosis::result::read_text(&source)?;
+    refuse(&diagnosis)?;
     check_inputs(given, &diagnosis)?;
     let named = NamedCause::all(&diagnosis);
-    let noise = noise_of(&diagnosis);
     let options = options(Vec::new(), diagnosis.false_alarm_probability, false)?;
     let sound = given.gate(&options)?.sound(&options);
     let (record, setup) = sound.map_err(|source| given.no_diagnosis(source))?;
@@ -128,6 +126,7 @@ fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
             record: &record,
             bench: &given.bench.bench,
         };
+        let noise = noise_of(&diagnosis);
         let fitted = NamedCause::fitted(&named, &run, &noise, &Options::default());
         fitted
             .map_err(|source| no_plan(given, source))?
@@ -137,9 +136,29 @@ fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
         record,
         setup,
         fitted,
-        noise,
         named,
     })
+}
+
+/// Refuses a diagnosis of several records, and of what is no stabilised platform.
+fn refuse(diagnosis: &DiagnosisResult) -> Outcome<()> {
+    if !diagnosis.records.is_empty() {
+        return Err(Failure::of_value(
+            "diagnosis",
+            format!("that of {} records", diagnosis.records.len()),
+            "that of one",
+            "the command plans after several: gyrocal plan --diagnosis",
+        ));
+    }
+    if diagnosis.strapdown {
+        return Err(Failure::of_value(
+            "diagnosis",
+            "that of a strapdown unit, with gyro_axes",
+            "that of a stabilised platform",
+            "the next log of a unit is best one in another attitude",
+        ));
+    }
+    Ok(())
 }
 
 /// A diagnosis is of the record and the bench description that are given.

@@ -13,9 +13,9 @@ const CODE: &str = "gyrocal::plan";
 
 /// No next run could be planned; its help is the advice.
 #[derive(Debug, thiserror::Error)]
-#[error("{record}: no plan")]
+#[error("{records}: no plan")]
 pub struct NotPlanned {
-    record: String,
+    records: String,
     source: DesignError,
 }
 
@@ -34,11 +34,12 @@ pub(super) struct OtherInput {
 }
 
 impl NotPlanned {
-    /// The failure of a plan for a record.
+    /// The failure of a plan for records.
     #[must_use]
-    pub fn new(record: &Path, source: DesignError) -> Self {
+    pub fn new(records: &[impl AsRef<Path>], source: DesignError) -> Self {
+        let names = records.iter().map(|path| printable_path(path.as_ref()));
         Self {
-            record: printable_path(record),
+            records: names.collect::<Vec<_>>().join(", "),
             source,
         }
     }
@@ -54,8 +55,8 @@ impl NotPlanned {
                 "give shorter --hours, or wider --limits or [gimbal_limits_deg]"
             }
             _ => {
-                "the model with the findings cannot be fitted to the record: `gyrocal diagnose` \
-                 lists the findings"
+                "the model with the findings cannot be fitted: `gyrocal diagnose` of the same files lists \
+                 them"
             }
         }
     }

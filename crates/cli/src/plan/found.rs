@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_design::{NamedCause, noise_of};
 use gyrocal_diagnosis::prose::counted;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_watched, result};
@@ -23,7 +23,6 @@ pub(super) struct Known<'a> {
     /// Gross errors that were mended.
     pub(super) setup: Vec<SetupProblem>,
     pub(super) fitted: FittedPlatform<'a>,
-    pub(super) noise: NoiseModel,
     pub(super) named: Vec<NamedCause>,
 }
 
@@ -64,7 +63,6 @@ fn made<'a>(
         .map_err(|source| NotDiagnosed::new(&arguments.records[0], bench, source))?;
     Ok(Known {
         named: NamedCause::all(&found.result),
-        noise: found.noise_model,
         fitted: found.extended.unwrap_or(found.nominal),
         record: found.record,
         setup: found.result.setup,
@@ -81,7 +79,6 @@ fn written<'a>(
     refuse(path, &diagnosis, 1)?;
     check_inputs(path, &diagnosis, arguments)?;
     let named = NamedCause::all(&diagnosis);
-    let noise = noise_of(&diagnosis);
     let (record, setup) = checked
         .sound(&DiagnoseOptions::default())
         .map_err(|source| NotDiagnosed::new(&arguments.records[0], bench, source))?;
@@ -90,15 +87,15 @@ fn written<'a>(
             record: &record,
             bench,
         };
+        let noise = noise_of(&diagnosis);
         let fitted = NamedCause::fitted(&named, &run, &noise, &Options::default())
-            .map_err(|source| NotPlanned::new(&arguments.records[0], source))?;
+            .map_err(|source| NotPlanned::new(&arguments.records, source))?;
         fitted.into_owned()
     };
     Ok(Known {
         record,
         setup,
         fitted,
-        noise,
         named,
     })
 }

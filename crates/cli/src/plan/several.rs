@@ -47,7 +47,6 @@ pub(super) fn known<'a>(
             diagnose_together(checked, &options, |stage| progress.at(stage)).map_err(failed)?;
         return Ok(Known {
             named: NamedCause::all(&found.result),
-            noise: found.noise_model,
             fitted: found.extended.unwrap_or(found.nominal),
             record: found.record,
             setup: found.result.setup,
@@ -72,11 +71,10 @@ pub(super) fn known<'a>(
     let runs = sound.iter().zip(benches);
     let runs: Vec<Run<'_>> = runs.map(|(record, bench)| Run { record, bench }).collect();
     let (fitted, record) = fitted_to_records(&diagnosis, &runs, &Options::default())
-        .map_err(|source| NotPlanned::new(&arguments.records[0], source))?;
+        .map_err(|source| NotPlanned::new(&arguments.records, source))?;
     Ok(Known {
         record: Cow::Owned(record),
         setup,
-        noise: fitted.noise_model().clone(),
         fitted,
         named: NamedCause::all(&diagnosis),
     })

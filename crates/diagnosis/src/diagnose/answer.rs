@@ -15,9 +15,9 @@ use crate::noise::{NoiseAudit, NoiseFinding, gaps};
 use crate::power::{needs_caveat, undetectable};
 use crate::result::{
     AllanCourse, AllanPoint, AllanTest, DiagnosisResult, Estimated, FalseAlarmShares, Finding,
-    Gain, Indistinguishable, MagnitudeTest, NoiseAuditSummary, NotTested, NotTestedReason, Power,
-    RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals, SCHEMA_VERSION,
-    SizesByRecord, Verdict,
+    Gain, Indistinguishable, MagnitudeTest, ModelNoise, NoiseAuditSummary, NotTested,
+    NotTestedReason, Power, RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals,
+    SCHEMA_VERSION, SizesByRecord, Verdict,
 };
 use crate::untested::{Tests, not_tested, untested};
 use crate::validation::CrossValidated;
@@ -85,6 +85,7 @@ impl Evidence<'_, '_> {
                 .collect(),
             threshold: Some(threshold).filter(|threshold| threshold.is_finite()),
             noise: Some(noise(self.estimate)),
+            model_noise: Some(model_noise(self.validated, self.nominal)),
             noise_audit: Some(audit(self.audit)),
             allan: self.allan.as_ref().map(allan),
             not_searched: self.not_tested(),
@@ -123,7 +124,8 @@ impl Evidence<'_, '_> {
             .iter()
             .flat_map(|finding| indistinguishable(finding, &searched, field_is_known))
             .collect();
-        if let Some(correlation) = time_and_temperature(self.run.record) {
+        let each = self.nominal.record_rows();
+        if let Some(correlation) = time_and_temperature(self.run.record, &each) {
             tell_together(&mut groups, correlation);
         }
         groups
@@ -193,6 +195,16 @@ fn noise(estimate: &NoiseEstimate) -> NoiseReport {
     NoiseReport {
         accel: estimate.accel.map(ratio),
         gyro: estimate.gyro.map(ratio),
+    }
+}
+
+fn model_noise(validated: &CrossValidated<'_>, nominal: &FittedPlatform<'_>) -> ModelNoise {
+    let fitted = validated.extended.as_ref().unwrap_or(nominal);
+    let noise = fitted.noise_model();
+    ModelNoise {
+        accel_ratio: noise.accel_ratio,
+        gyro_ratio: noise.gyro_ratio,
+        gyro_walk_deg_per_h_per_sqrt_h: noise.gyro_walk_deg_per_h_per_sqrt_h,
     }
 }
 

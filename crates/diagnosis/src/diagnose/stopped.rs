@@ -64,6 +64,7 @@ fn result(record: &Record, options: &DiagnoseOptions, setup: Vec<SetupProblem>) 
         threshold: None,
         power: Vec::new(),
         noise: None,
+        model_noise: None,
         noise_audit: None,
         allan: None,
         not_searched: Vec::new(),

@@ -43,6 +43,18 @@ pub struct NoiseAuditSummary {
     pub outliers: usize,
 }
 
+/// Noise that a model is fitted with: what its standard deviations rest on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ModelNoise {
+    /// White noise of the accelerometers over the declared; of several records its root mean square.
+    pub accel_ratio: [f64; 3],
+    /// White noise of the gyros over the declared.
+    pub gyro_ratio: [f64; 3],
+    /// Random walks of the gyros, also those that are too small to be named \[deg/h/√h\].
+    pub gyro_walk_deg_per_h_per_sqrt_h: [f64; 3],
+}
+
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

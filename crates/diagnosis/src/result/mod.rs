@@ -29,7 +29,7 @@ use gyrocal_record::{Manifest, NoiseReport};
 use serde::{Deserialize, Serialize};
 
 pub use allan::{AllanCourse, AllanPoint, AllanTest};
-pub use audit::{Estimated, Gaps, NoiseAuditSummary, RecordSummary};
+pub use audit::{Estimated, Gaps, ModelNoise, NoiseAuditSummary, RecordSummary};
 pub use coefficients::{CoefficientEstimate, CoefficientInterval, Coefficients, SetMember};
 pub use filter::FilterTest;
 pub use finding::{Alternative, Equivalent, Finding, FindingKind, Parameter};
@@ -107,6 +107,9 @@ pub struct DiagnosisResult {
     /// Maximum-likelihood noise over the declared noise, with all causes in the model; `None`
     /// without a fit.
     pub noise: Option<NoiseReport>,
+    /// Noise of the model that the coefficients are of; `None` without a fit.
+    #[serde(default)]
+    pub model_noise: Option<ModelNoise>,
     /// Noise audit of the accelerometers; `None` without a fit.
     pub noise_audit: Option<NoiseAuditSummary>,
     /// Allan deviation of the innovations with all causes in the model; it makes no finding.

@@ -178,7 +178,7 @@ fn sigmas(seed: u64) -> Result<Sigmas, Error> {
     let first = simulate(&scenario)?;
     let noise = NoiseModel::default();
     let fitted = NamedCause::fitted(&[], &run(&first), &noise, &Options::default())?;
-    let planned = plan(&fitted, &run(&first), &noise, &[], &PlanOptions::default())?;
+    let planned = plan(&fitted, &run(&first), &[], &PlanOptions::default())?;
     let best = planned.proposals.first().ok_or("no proposal")?;
     let second = made(&scenario, best)?;
     let joint = calibrate_runs(&[run(&first), run(&second)], &Options::default(), |_| ())?;
@@ -213,7 +213,7 @@ fn sets(seed: u64) -> Result<Sets, Error> {
             durations_s: vec![share * scenario.duration_s],
             ..PlanOptions::default()
         };
-        let planned = plan(fitted, &run(&first), &found.noise_model, &named, &options)?;
+        let planned = plan(fitted, &run(&first), &named, &options)?;
         let of_first = |sizes: Vec<f64>| sizes.first().copied();
         let now = planned.now.sets.iter().map(|set| set.mean_size);
         sets.now = of_first(now.collect()).filter(|size| *size > 1.0);
@@ -224,7 +224,6 @@ fn sets(seed: u64) -> Result<Sets, Error> {
             fitted,
             &run(&first),
             &run(&second),
-            &found.noise_model,
             &named,
             &Options::default(),
         )?;
