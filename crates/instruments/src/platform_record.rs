@@ -52,10 +52,13 @@ pub fn read_any(
     }
     if let Some(typed) = TypedFile::of(path)? {
         let mut description = Description::of_records()?;
-        description.temperature = typed.has(path, TEMPERATURE).then(|| Temperature {
+        description.temperature = Some(Temperature {
             column: TEMPERATURE.to_owned(),
             unit: TemperatureUnit::default(),
         });
+        if !typed.has(path, PlatformRow::new(&description)?.names()) {
+            description.temperature = None;
+        }
         return read_record(path, &description);
     }
     let source = SourceText::read(path)?;

@@ -123,11 +123,11 @@ impl TypedFile {
         }
     }
 
-    /// Whether it has a column of this name, and a row.
-    pub(crate) fn has(self, path: &Path, name: &str) -> bool {
+    /// Whether it has these columns together, and a row.
+    pub(crate) fn has(self, path: &Path, names: &[&str]) -> bool {
         let mut seen = false;
         // What is wrong with the file is told when it is read.
-        let _ = self.read(path, &[name], &mut |_| {
+        let _ = self.read(path, names, &mut |_| {
             seen = true;
             Err(no_rows())
         });

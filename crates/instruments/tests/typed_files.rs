@@ -152,6 +152,63 @@ fn a_file_of_mcap_that_is_cut_is_refused() {
     }
 }
 
+/// A file of MCAP with messages of JSON, each with the place of its topic.
+#[cfg(feature = "mcap")]
+fn mcap(topics: &[&str], messages: &[(u16, String)]) -> Vec<u8> {
+    const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+    let text = |text: &str| [&(text.len() as u32).to_le_bytes()[..], text.as_bytes()].concat();
+    let record = |kind: u8, parts: &[&[u8]]| {
+        let content = parts.concat();
+        let length = (content.len() as u64).to_le_bytes();
+        [&[kind][..], &length, &content].concat()
+    };
+    let mut file = MAGIC.to_vec();
+    file.extend(record(1, &[&text(""), &text("")]));
+    for (id, topic) in (0_u16..).zip(topics) {
+        // No schema, no metadata.
+        let (name, encoding) = (text(topic), text("json"));
+        file.extend(record(
+            4,
+            &[&id.to_le_bytes(), &[0; 2], &name, &encoding, &[0; 4]],
+        ));
+    }
+    for (topic, message) in messages {
+        // Number and times are zero.
+        file.extend(record(
+            5,
+            &[&topic.to_le_bytes(), &[0; 20], message.as_bytes()],
+        ));
+    }
+    file.extend(record(15, &[&[0; 4]]));
+    file.extend(record(2, &[&[0; 20]]));
+    file.extend(MAGIC);
+    file
+}
+
+#[cfg(feature = "mcap")]
+#[test]
+fn a_temperature_is_that_of_the_topic_of_the_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mcap");
+    let read = |messages: &[(u16, String)]| {
+        std::fs::write(&path, mcap(&["/platform", "/room"], messages)).unwrap();
+        read_any(&path, None).unwrap().record().clone()
+    };
+    let force = r#""accel_x_g": 0.0, "accel_y_g": 0.0, "accel_z_g": 1.0"#;
+    let other = r#"{"temperature_c": 21.5}"#.to_owned();
+    let row = |time_s: u16, more: &str| (0, format!("{{\"time_s\": {time_s}, {force}{more}}}"));
+    let apart = read(&[
+        (1, other.clone()),
+        row(0, ""),
+        (1, other.clone()),
+        row(60, ""),
+    ]);
+    assert_eq!((apart.len(), apart.temperature_c), (2, None));
+    let warm = r#", "temperature_c": 20.5"#;
+    let together = read(&[(1, other), row(0, warm), row(60, warm)]);
+    assert_eq!(together.temperature_c, Some(vec![20.5; 2]));
+}
+
 #[cfg(not(feature = "mcap"))]
 #[test]
 fn a_file_of_mcap_is_refused_with_the_feature_to_build() {
