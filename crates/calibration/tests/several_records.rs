@@ -196,6 +196,40 @@ fn columns_of_one_record_stay_in_it() {
     assert!(difference <= 1e-12 * own[(1, 1)], "{difference}");
 }
 
+/// Without temperature its columns are zero without a pass; all others are those of the pass with all.
+#[test]
+fn the_gram_matrix_of_records_without_temperature_is_that_of_all_columns() {
+    for turn_on_sigma in [0.0, 0.01] {
+        let mut simulations = [simulation(11, 120, 300.0), simulation(12, 90, 300.0)];
+        for one in &mut simulations {
+            assert!(one.record.temperature_c.is_none());
+            one.bench.prior.turn_on_sigma_deg_per_h = [turn_on_sigma; 3];
+        }
+        let fit = joined(&simulations).unwrap();
+        let further = [
+            Column::Step {
+                parameter: 1,
+                row: 40,
+            },
+            Column::StateJump { row: 150, state: 2 },
+        ];
+        let found = fit.signatures_gram(&further).unwrap();
+        let expected = fit.signatures(&further, |_| ()).unwrap().gram;
+        assert_eq!(found.shape(), expected.shape());
+        // Four effects of temperature of each gyro and each accelerometer.
+        let zeros = expected.diagonal().iter().filter(|x| **x == 0.0).count();
+        assert!(zeros >= 24, "{zeros}");
+        for i in 0..expected.nrows() {
+            for j in 0..expected.ncols() {
+                let scale = (expected[(i, i)] * expected[(j, j)]).sqrt();
+                // Rounding of sums over 600 values.
+                let off = (found[(i, j)] - expected[(i, j)]).abs();
+                assert!(off <= 1e-10 * scale, "{i}, {j}: {off} of {scale}");
+            }
+        }
+    }
+}
+
 #[test]
 fn rows_of_all_records_are_on_one_clock() {
     let simulations = [simulation(7, 50, 60.0), simulation(8, 60, 120.0)];

@@ -1,8 +1,10 @@
 //! Effects of an extended model, and its gain on a later record.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use gyrocal_calibration::Run;
+use gyrocal::generated::catalogue::PARAMETERS;
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Run};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, LaterPrediction, diagnose, predict_later};
+use gyrocal_hypothesis::ModelExtension;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 /// A day or more at a random attitude.
@@ -75,6 +77,64 @@ fn predicted(found: &Diagnosis<'_>, first: &Simulation, later: &Simulation) -> L
     let models = [&found.nominal, found.extended.as_ref().unwrap()];
     let options = DiagnoseOptions::default();
     predict_later(models, &found.noise_model, &first, (&later, None), &options).unwrap()
+}
+
+/// Effect of temperature and hysteresis on accelerometer y, g/K: some ten sigmas of its noise in a row.
+const OF_TEMPERATURE: f64 = 1e-4;
+
+/// Two days with a temperature of this mean and this daily wave. It acts about `about_c`, and with a play to either
+/// side.
+fn warm(seed: u64, [mean_c, wave_k]: [f64; 2], about_c: f64, half_play_k: f64) -> Simulation {
+    let mut made = simulation(seed, 2.0, &[]);
+    let turns = made.record.time_s.iter().map(|time_s| time_s / 86_400.0);
+    let course: Vec<f64> = turns
+        .map(|turn| mean_c + wave_k * (core::f64::consts::TAU * turn).sin())
+        .collect();
+    let mut follows_c = course[0];
+    for (force_g, value_c) in made.record.accel_g.iter_mut().zip(&course) {
+        follows_c = follows_c.clamp(value_c - half_play_k, value_c + half_play_k);
+        force_g[1] += OF_TEMPERATURE * ((value_c - about_c) + (value_c - follows_c));
+    }
+    made.record.temperature_c = Some(course);
+    made
+}
+
+/// The play of a hysteresis and the zero of a temperature are those of the platform: a later record has what the
+/// first tells, whatever its own temperatures are.
+#[test]
+fn a_warmer_later_record_has_the_play_and_the_mean_of_the_first() {
+    let options = DiagnoseOptions::default();
+    // A range of 6 K: a play of an eighth of it to either side.
+    let first = warm(31, [20.0, 3.0], 20.0, 0.75);
+    let run = Run {
+        record: &first.record,
+        bench: &first.bench,
+    };
+    let noise = NoiseModel::default();
+    let nominal = FittedPlatform::nominal(&run, &options.calibration, &noise).unwrap();
+    let hidden = ["accel_y.temperature", "accel_y.temperature_hysteresis"];
+    let place = |id: &str| PARAMETERS.iter().position(|one| one.id == id).unwrap();
+    let mut extension: ModelExtension = nominal.extension().clone();
+    extension
+        .parameters
+        .extend(hidden.map(|id| (place(id), f64::INFINITY)));
+    let extended = nominal.refitted(&extension).unwrap();
+    let score_nats = |about_c: f64, half_play_k: f64| {
+        let later = warm(32, [25.0, 1.0], about_c, half_play_k);
+        let later = Run {
+            record: &later.record,
+            bench: &later.bench,
+        };
+        let models = [&nominal, &extended];
+        let found = predict_later(models, &noise, &run, (&later, None), &options).unwrap();
+        found.log_score_nats[1]
+    };
+    let of_platform = score_nats(20.0, 0.75);
+    // About its own mean, and with an eighth of its own range. Each differs by hundreds of sigmas.
+    for [about_c, half_play_k] in [[25.0, 0.75], [20.0, 0.25]] {
+        let other = score_nats(about_c, half_play_k);
+        assert!(of_platform > other + 1000.0, "{of_platform} {other}");
+    }
 }
 
 /// A record of hours does not determine its own attitude: no model can be compared with it.
