@@ -3,10 +3,10 @@
 
 use gyrocal_calibration::{CalibrationError, GyroAxes, Run};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, DiagnosisError, Gate, RecordToDiagnose, Verdict, diagnose,
-    diagnose_gated, diagnose_together,
+    DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, Gate, RecordToDiagnose, Verdict,
+    diagnose, diagnose_gated, diagnose_records, prose,
 };
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{Bench, Input, Record};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::deviates::Normals;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -102,6 +102,23 @@ fn names(found: &Diagnosis<'_>, effect: &str) -> bool {
     })
 }
 
+/// The files of a result of these inputs, as the next commands have them; none of those plans a run.
+fn files(mut result: DiagnosisResult, inputs: &str) -> String {
+    let input = |path: &str| Input {
+        path: path.to_owned(),
+        sha256: String::new(),
+    };
+    result.manifest.inputs = inputs.split(' ').map(input).collect();
+    let files = prose::files(&result);
+    let next = prose::first_screen(&result).next;
+    assert!(!next.is_empty());
+    for step in next {
+        assert!(step.command.contains(&files), "{}", step.command);
+        assert!(!step.command.starts_with("gyrocal plan"));
+    }
+    files
+}
+
 #[test]
 fn a_ramp_of_a_gyro_of_the_body_is_named_with_the_law_in_its_axes() {
     // Some twenty standard deviations.
@@ -122,6 +139,12 @@ fn a_ramp_of_a_gyro_of_the_body_is_named_with_the_law_in_its_axes() {
         let size = &cause.parameters[0];
         assert!((size.estimate - RAMP).abs() < 4.0 * size.sigma.unwrap());
     }
+    let mut with_later = found.result.clone();
+    with_later.later_record = Some(with_later.record.clone());
+    assert_eq!(
+        files(with_later, "r.csv b.toml l.csv lb.toml a.csv la.csv"),
+        "r.csv --bench b.toml --gyro-axes a.csv"
+    );
     // In the axes of the platform, which the body turns against, it is no ramp: no fit converges, or
     // something is left.
     if let Ok(platform) = diagnose(&unit.record, &unit.bench, &options) {
@@ -164,12 +187,20 @@ fn a_term_across_is_named_by_records_in_several_attitudes() {
             gate: unit.gate(&options),
             bench: &unit.bench,
         });
-    let found = diagnose_together(records.collect(), &options, |_| ()).unwrap();
+    let all = diagnose_records(records.collect(), &options, |_| ()).unwrap();
+    let found = all.together;
     assert!(found.result.strapdown);
     assert!(names(&found, "gyro_x.g_y"), "{:?}", found.result.findings);
+    assert_eq!(
+        files(
+            found.result,
+            "1.csv b.toml 2.csv b.toml 3.csv b.toml 4.csv b.toml 5.csv b.toml 6.csv b.toml 1a 2a 3a 4a 5a 6a"
+        ),
+        "1.csv 2.csv 3.csv 4.csv 5.csv 6.csv --bench b.toml --gyro-axes 1a --gyro-axes 2a --gyro-axes 3a \
+         --gyro-axes 4a --gyro-axes 5a --gyro-axes 6a"
+    );
     // Alone, one attitude makes a bias of it.
-    let one = diagnose_gated(units[0].gate(&options), &units[0].bench, &options).unwrap();
-    assert!(!names(&one, "gyro_x.g_y"));
+    assert!(!names(&all.alone[0], "gyro_x.g_y"));
 }
 
 #[test]

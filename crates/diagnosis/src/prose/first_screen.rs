@@ -221,18 +221,14 @@ fn remainder(result: &DiagnosisResult) -> String {
 
 fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
     let files = files(result);
-    let groups = !result.cannot_tell.is_empty();
     let causes: Vec<&str> = result
         .causes()
         .filter(|finding| finding.accepted == Some(true))
         .map(|finding| &*finding.effect)
         .collect();
     let is_one = result.records.is_empty();
-    if groups {
-        screen.then(
-            format!("gyrocal plan {files}"),
-            "the run that would distinguish them",
-        );
+    if !result.cannot_tell.is_empty() {
+        plan(result, screen, "the run that would distinguish them");
     }
     if causes.is_empty() {
         let filter = result
@@ -250,11 +246,23 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
             format!("gyrocal calibrate {files} --with {}", causes.join(",")),
             "the coefficients with it in the model",
         );
+    } else if result.strapdown {
+        screen.then(
+            format!("gyrocal diagnose {files} --report report.html"),
+            "what each record shows",
+        );
     } else {
         screen.then(
             "gyrocal extend RESULT.json --out NAME.model.toml",
             "the model file with it, from the result of --json",
         );
+    }
+}
+
+/// The next step that plans a run: of a stabilised platform only.
+fn plan(result: &DiagnosisResult, screen: &mut Screen, why: &str) {
+    if !result.strapdown {
+        screen.then(format!("gyrocal plan {}", files(result)), why);
     }
 }
 
@@ -326,10 +334,7 @@ fn clean(result: &DiagnosisResult) -> Screen {
         format!("gyrocal calibrate {files}"),
         "the nine coefficients with their sigmas",
     );
-    screen.then(
-        format!("gyrocal plan {files}"),
-        "the run that reduces the sigmas most",
-    );
+    plan(result, &mut screen, "the run that reduces the sigmas most");
     screen
 }
 

@@ -1,12 +1,11 @@
 //! What a diagnosis cannot tell, and the next run.
 
-use gyrocal_diagnosis::{DiagnosisResult, Verdict};
+use gyrocal_diagnosis::{DiagnosisResult, Verdict, prose};
 use gyrocal_report::page::{Card, Cell, Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
 
 use super::section;
 use super::summary::first_of;
-use crate::origin::argument;
 use crate::words::listed;
 
 pub(super) fn cannot_tell(result: &DiagnosisResult) -> Section {
@@ -75,13 +74,9 @@ fn undetected(result: &DiagnosisResult) -> Option<Table> {
     })
 }
 
-/// The command that plans the next run.
-fn plan_command(result: &DiagnosisResult) -> String {
-    format!(
-        "gyrocal plan {} --bench {}",
-        argument(&result.manifest, 0, "RECORD.csv"),
-        argument(&result.manifest, 1, "BENCH.toml")
-    )
+/// The command that plans the next run, of a stabilised platform.
+fn plan_command(result: &DiagnosisResult) -> Option<String> {
+    (!result.strapdown).then(|| format!("gyrocal plan {}", prose::files(result)))
 }
 
 /// What to do next, in a sentence.
@@ -96,12 +91,17 @@ fn advice(result: &DiagnosisResult) -> String {
             "Look at the residuals below, and record again under other conditions.".to_owned()
         }
         (_, Some(experiment)) => format!("To tell what remains apart: {experiment}."),
-        (Verdict::Clean, None) => {
-            "Use the coefficients; the command finds the run that reduces their sigmas most."
-                .to_owned()
-        }
-        (_, None) => "The cause is unique. The command finds the run that reduces the sigmas most."
-            .to_owned(),
+        (Verdict::Clean, None) => format!("Use the coefficients. {}", for_smaller_sigmas(result)),
+        (_, None) => format!("The cause is unique. {}", for_smaller_sigmas(result)),
+    }
+}
+
+/// What reduces the sigmas.
+fn for_smaller_sigmas(result: &DiagnosisResult) -> &'static str {
+    if result.strapdown {
+        "Records in other attitudes reduce the sigmas."
+    } else {
+        "The command finds the run that reduces the sigmas most."
     }
 }
 
@@ -109,27 +109,25 @@ pub(super) fn next_card(result: &DiagnosisResult) -> Card {
     Card {
         title: "Next step".to_owned(),
         text: vec![first_of(&advice(result))],
-        command: plan_command(result),
+        command: plan_command(result).unwrap_or_default(),
         columns: if result.coefficients.is_some() { 4 } else { 12 },
         ..Card::default()
     }
 }
 
 pub(super) fn next_run(result: &DiagnosisResult) -> Section {
-    let mut items = vec![
-        Item::Text(advice(result)),
-        Item::Command(plan_command(result)),
-    ];
+    let mut items = vec![Item::Text(advice(result))];
+    items.extend(plan_command(result).map(Item::Command));
     let effects: Vec<&str> = result.causes().map(|cause| &*cause.effect).collect();
-    if !effects.is_empty() {
+    // Of several records the command has no such model.
+    if !effects.is_empty() && result.records.is_empty() {
         items.push(Item::Text(format!(
             "Coefficients with {} in the model:",
             listed(&effects)
         )));
         items.push(Item::Command(format!(
-            "gyrocal calibrate {} --bench {} --with {}",
-            argument(&result.manifest, 0, "RECORD.csv"),
-            argument(&result.manifest, 1, "BENCH.toml"),
+            "gyrocal calibrate {} --with {}",
+            prose::files(result),
             effects.join(",")
         )));
     }
@@ -143,7 +141,11 @@ pub(super) fn next_run(result: &DiagnosisResult) -> Section {
     section(
         "next",
         "Next run",
-        "The run that tells most, within the limits of the gimbals.",
+        if result.strapdown {
+            "What would tell more."
+        } else {
+            "The run that tells most, within the limits of the gimbals."
+        },
         items,
     )
 }

@@ -65,7 +65,10 @@ pub fn of_result(result: &DiagnosisResult) -> Part {
 
 fn part(result: &DiagnosisResult, sections: Vec<Section>) -> Part {
     Part {
-        name: file_name(&result.manifest, 0, "record"),
+        name: match result.records.len() {
+            0 => file_name(&result.manifest, 0, "record"),
+            several => prose::counted(several, "record"),
+        },
         size: format!(
             "{} over {:.2} days",
             prose::counted(result.record.rows, "row"),

@@ -16,13 +16,11 @@ const NOTABLE: f64 = 2.0;
 const ROOM: usize = 300;
 
 pub(super) fn summary(result: &DiagnosisResult) -> Summary {
-    let blocks = prose::diagnosis(result);
-    let sentence = blocks.iter().find_map(|block| match block {
-        prose::Block::Paragraph(words) if !words.starts_with(&*first_words(result)) => {
-            Some(words.clone())
-        }
-        _ => None,
-    });
+    // The first paragraph is on the record.
+    let sentence = match prose::diagnosis(result).into_iter().nth(1) {
+        Some(prose::Block::Paragraph(words)) => words,
+        _ => String::new(),
+    };
     let (tone, headline) = verdict(result);
     let mut cards = Vec::new();
     if result.verdict == Verdict::Setup {
@@ -42,15 +40,9 @@ pub(super) fn summary(result: &DiagnosisResult) -> Summary {
     Summary {
         tone,
         headline,
-        sentence: sentence.unwrap_or_default(),
+        sentence,
         cards,
     }
-}
-
-/// What the paragraph on the record starts with.
-fn first_words(result: &DiagnosisResult) -> String {
-    let input = result.manifest.inputs.first();
-    input.map_or("record:".to_owned(), |input| format!("{}:", input.path))
 }
 
 fn verdict(result: &DiagnosisResult) -> (Tone, String) {
