@@ -205,9 +205,9 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         CalibrationMethod::Batch => Progress::waiting("calibrating", rows),
         _ => Progress::new("calibrating", rows),
     };
+    let names = arguments.records.iter().map(|path| printable_path(path));
+    let names: Vec<String> = names.collect();
     let calibration = calibrate(&runs, &gyro_axes, &options, &mut progress).map_err(|source| {
-        let names = arguments.records.iter().map(|path| printable_path(path));
-        let names: Vec<String> = names.collect();
         let method = arguments.method();
         NotCalibrated::new(&names, &runs, method, arguments.factorised, source)
     })?;
@@ -219,7 +219,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         method: arguments.method(),
         kind: arguments.kind(),
         first_run_sigmas: first_run_sigmas(&runs, &gyro_axes, &options),
-        verdict: calibration_verdict(&calibration.fit, &effects),
+        verdict: calibration_verdict(&calibration.fit, &names, &effects),
         effects,
         with_effects,
         calibration,

@@ -27,9 +27,14 @@ pub fn effect_test(file: &str, screened: &Screened) -> EffectTest {
 }
 
 /// The verdict on a fit: an effect that a record shows comes before the size of the innovations, since
-/// a test of all innovations together does not see a fault of ten sigmas of its own size.
+/// a test of all innovations together does not see a fault of ten sigmas of its own size. `records` are the
+/// names of all records, `effects` the tests of those that were tested.
 #[must_use]
-pub fn calibration_verdict(fit: &FitStatistics, effects: &[EffectTest]) -> CalibrationVerdict {
+pub fn calibration_verdict(
+    fit: &FitStatistics,
+    records: &[String],
+    effects: &[EffectTest],
+) -> CalibrationVerdict {
     let of_size = match fit.consistency() {
         Consistency::Consistent => FitVerdict::Consistent,
         Consistency::Overconfident => FitVerdict::TooLarge,
@@ -38,7 +43,7 @@ pub fn calibration_verdict(fit: &FitStatistics, effects: &[EffectTest]) -> Calib
     let shown: Vec<&EffectTest> = effects.iter().filter(|test| test.significant).collect();
     if shown.is_empty() || fit.is_gross() {
         let none = match fit.is_gross() {
-            true => several_platforms(effects),
+            true => several_platforms(records),
             false if effects.is_empty() => String::new(),
             false => " No effect of the catalogue is significant.".to_owned(),
         };
@@ -47,7 +52,7 @@ pub fn calibration_verdict(fit: &FitStatistics, effects: &[EffectTest]) -> Calib
             text: format!("{}{none}", fit.consistency_text()),
         };
     }
-    let several = effects.len() > 1;
+    let several = records.len() > 1;
     let sentences: Vec<String> = shown.iter().map(|test| sentence(test, several)).collect();
     let [low, high] = fit.nis_band();
     let size = match of_size {
@@ -68,15 +73,15 @@ pub fn calibration_verdict(fit: &FitStatistics, effects: &[EffectTest]) -> Calib
 }
 
 /// What a gross misfit of several records may come from.
-fn several_platforms(effects: &[EffectTest]) -> String {
-    if effects.len() < 2 {
+fn several_platforms(records: &[String]) -> String {
+    if records.len() < 2 {
         return String::new();
     }
-    let names = effects.iter().map(|test| printable_line(&test.record));
+    let names = records.iter().map(|name| printable_line(name));
     let names: Vec<_> = names.collect();
     format!(
-        " Records of several platforms are not fitted together: calibrate {} one by one. If each is consistent, \
-         keep them apart, or declare `turn_on_sigma_deg_per_h` in [prior] if only their turn-ons differ.",
+        " If these are records of several platforms, calibrate {} one by one. If only their turn-ons differ, \
+         declare `turn_on_sigma_deg_per_h` in [prior].",
         names.join(", ")
     )
 }

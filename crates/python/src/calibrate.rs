@@ -147,7 +147,7 @@ fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<Cali
         calibration: &calibration,
         effects: &effects,
         with_effects: with_effects.as_ref(),
-        verdict: &calibration_verdict(&calibration.fit, &effects),
+        verdict: &calibration_verdict(&calibration.fit, &names, &effects),
         // A first record that cannot be calibrated alone is no failure of all together.
         first_record_sigmas: first.unwrap_or(None),
     };

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use assert_cmd::Command;
+use gyrocal_truth::Scenario;
 use tempfile::TempDir;
 
 use crate::contract::assert_conforms;
@@ -64,6 +65,17 @@ impl Folder {
             "--bench-out",
             "b.toml",
         ]);
+    }
+
+    /// Simulates a record `NAME.csv` with its bench file `NAME.bench.toml`.
+    pub(crate) fn put_record(&self, name: &str, scenario: &Scenario) {
+        let made = gyrocal_truth::simulate(scenario).unwrap();
+        made.record
+            .write(&self.path(&format!("{name}.csv")))
+            .unwrap();
+        made.bench
+            .write(&self.path(&format!("{name}.bench.toml")))
+            .unwrap();
     }
 
     pub(crate) fn text(&self, name: &str) -> String {

@@ -220,6 +220,16 @@ fn it_is_diagnosed_in_the_axes_of_its_gyros() {
             "{effect}"
         );
     }
+    let short = folder.run(&with(&["--gyro-axes", "a.csv"]));
+    let short = String::from_utf8(short.stdout).unwrap();
+    let short = short.replace("\\\n", " ");
+    let next: Vec<&str> = short.split("next").skip(1).collect();
+    assert!(!next.is_empty(), "{short}");
+    for step in next {
+        let step = step.split_whitespace().collect::<Vec<_>>().join(" ");
+        let files = "r.csv --bench b.toml --gyro-axes a.csv";
+        assert!(step.contains(files) && !step.contains("plan"), "{step}");
+    }
     let refused = |arguments: &[&str], code: i32, words: &str| {
         let output = folder.run(arguments);
         let errors = String::from_utf8_lossy(&output.stderr);

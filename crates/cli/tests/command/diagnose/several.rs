@@ -3,7 +3,7 @@
 use gyrocal_design::PlanResult;
 use gyrocal_diagnosis::Verdict;
 use gyrocal_diagnosis::result::SizeChoice;
-use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
+use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario};
 
 use super::report;
 use crate::folder::Folder;
@@ -16,7 +16,7 @@ fn folder() -> Folder {
         ("b", 22, [60.0, -30.0, 120.0]),
     ];
     for (name, seed, angles_deg) in records {
-        let made = simulate(&Scenario {
+        let scenario = Scenario {
             seed,
             coefficients: Coefficients::PAPER_LIKE,
             initial: InitialAttitude::AnglesDeg(angles_deg),
@@ -24,11 +24,8 @@ fn folder() -> Folder {
             interval_s: 300.0,
             hidden: vec![Hidden::new("gyro_y.g_z", &[("size", 0.01)]).unwrap()],
             ..Scenario::default()
-        })
-        .unwrap();
-        let path = |end: &str| folder.path(&format!("{name}.{end}"));
-        made.record.write(&path("csv")).unwrap();
-        made.bench.write(&path("bench.toml")).unwrap();
+        };
+        folder.put_record(name, &scenario);
     }
     folder
 }
@@ -60,6 +57,11 @@ fn two_records_are_told_together_and_alone() {
     assert!(said.contains("2 records together (a.csv, b.csv)"), "{said}");
     assert!(said.contains("one size in all records"), "{said}");
     assert!(said.contains("Each record alone:"), "{said}");
+    let page = folder.text("o.html");
+    let words: String = page.replace("<span>", "").replace("</span>", "");
+    let plan = "gyrocal plan a.csv b.csv --bench a.bench.toml --bench b.bench.toml";
+    assert!(words.contains(plan));
+    assert!(words.contains("aria-label=\"2 records\""));
     let result = report(&folder, "o.json");
     assert_eq!(result.verdict, Verdict::EffectsFound);
     assert_eq!(result.manifest.inputs.len(), 4);
