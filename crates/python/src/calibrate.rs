@@ -60,7 +60,7 @@ impl Request {
 pub(crate) fn calibrate(
     py: Python<'_>,
     runs: Vec<(Bound<'_, HeldRecord>, Bound<'_, HeldBench>)>,
-    axes: Vec<GivenAxes<'_>>,
+    axes: Vec<(String, GivenAxes<'_>)>,
     method: &str,
     factorised: bool,
     noise: bool,
@@ -69,7 +69,7 @@ pub(crate) fn calibrate(
     effects: Vec<String>,
     command: &str,
 ) -> PyResult<String> {
-    let axes = axes.iter().map(GivenAxes::take);
+    let axes = axes.iter().map(|(name, axes)| axes.take(name));
     let axes: Vec<Axes> = axes.collect::<Outcome<_>>()?;
     let given: Vec<Given<'_>> = runs
         .iter()

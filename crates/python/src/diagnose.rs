@@ -85,8 +85,9 @@ pub(crate) fn diagnose(
     euler_filter: bool,
     command: &str,
 ) -> PyResult<Scored> {
-    let axes = axes.map(|axes| axes.take()).transpose()?;
-    let later_axes = later_axes.map(|axes| axes.take()).transpose()?;
+    let take = |axes: Option<GivenAxes<'_>>, name| axes.map(|axes| axes.take(name)).transpose();
+    let axes = take(axes, "gyro_axes")?;
+    let later_axes = take(later_axes, "later_gyro_axes")?;
     let given = Given {
         record: record.get(),
         bench: bench.get(),
@@ -151,14 +152,16 @@ fn result(
     if options.filter.is_some() && given.bench.bench.initial_angles_deg.is_none() {
         return Err(given.no_diagnosis(CalibrationError::NoAttitude.into()));
     }
-    let diagnosed: Result<Diagnosis<'_>, _> =
-        diagnose_gated(given.gate_with_axes(options)?, &given.bench.bench, options);
+    let gate = given.gate_with_axes(options)?;
+    // What is wrong with the later record is told before the work.
+    let later = later.map(|later| -> Outcome<_> { Ok((later, later.gate_with_axes(options)?)) });
+    let later = later.transpose()?;
+    let diagnosed: Result<Diagnosis<'_>, _> = diagnose_gated(gate, &given.bench.bench, options);
     let mut diagnosis = match diagnosed {
         Err(DiagnosisError::Setup { result }) => return Ok((*result, None)),
         found => found.map_err(|source| given.no_diagnosis(source))?,
     };
-    if let Some(later) = later {
-        let gate = later.gate_with_axes(options)?;
+    if let Some((later, gate)) = later {
         match diagnosis.validate_gated(&given.run(), gate, &later.bench.bench, options) {
             Err(DiagnosisError::Setup { result }) => return Ok((*result, None)),
             validated => validated.map_err(|source| later.no_diagnosis(source))?,

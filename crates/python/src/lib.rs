@@ -25,8 +25,9 @@ mod simulate;
 use mimalloc::MiMalloc;
 use pyo3::prelude::*;
 
-/// That of the system gives memory back after each step of a search, under the settings of a Dask worker
-/// and beside Arrow's tables; a sixth of a diagnosis went into getting it again.
+/// The allocator of glibc returns memory to the system between the steps of a search, which costs page faults
+/// in a worker of Dask. This one keeps it. Its feature `local_dynamic_tls` is that of a library which is loaded by
+/// `dlopen`, as an extension module is: the room for thread-local variables of the other model may be used up.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
@@ -51,7 +52,7 @@ mod _gyrocal {
     #[pymodule_export]
     use crate::plan::plan;
     #[pymodule_export]
-    use crate::plant::HeldPlant;
+    use crate::plant::{HeldPage, HeldPlant};
     #[pymodule_export]
     use crate::record::HeldRecord;
     #[pymodule_export]

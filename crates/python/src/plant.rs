@@ -1,20 +1,32 @@
 //! Any plant, by its program file: its functions are interpreted.
 
+use std::path::Path;
+
 use gyrocal_instruments::ResultFile;
+use gyrocal_pages::{Part, of_plant};
 use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
-use gyrocal_record::{Input, Manifest};
+use gyrocal_record::{Input, Manifest, printable_path};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
-use crate::diagnose::Answer;
 use crate::error::{Class, Failure, Outcome};
 use crate::origin::{json, manifest};
+use crate::report::refused;
 
 /// A plant that is ready to be fitted.
 #[pyclass(frozen, name = "Plant", module = "gyrocal._gyrocal")]
 pub(crate) struct HeldPlant {
     plant: LoadedPlant,
 }
+
+/// The page of a diagnosis: its charts need the fits, which no result holds.
+#[pyclass(frozen, name = "PlantPage", module = "gyrocal._gyrocal")]
+pub(crate) struct HeldPage {
+    pub(crate) part: Outcome<Part>,
+}
+
+/// The result (JSON), its sentences (JSON), and its page.
+type Answer = (String, String, HeldPage);
 
 /// The columns of a record: time, inputs, outputs and logged quantities in the order of the plant.
 #[derive(Clone, Debug)]
@@ -121,7 +133,7 @@ impl HeldPlant {
         effects.map(|effect| effect.id).collect()
     }
 
-    /// Diagnoses a record: the result (JSON), and its sentences (JSON). `inputs` are names and hashes, and
+    /// Diagnoses a record: the result (JSON), its sentences (JSON) and its page. `inputs` are names and hashes, and
     /// `command` is the call, both for the manifest.
     fn diagnose(
         &self,
@@ -151,11 +163,15 @@ impl HeldPlant {
         options: &SearchOptions,
         manifest: Manifest,
     ) -> Outcome<Answer> {
+        let path = Path::new(&record.name);
+        let name = printable_path(path.file_name().map_or(path, Path::new));
         let record = self.record(record)?;
         let later = later.map(|later| self.record(later)).transpose()?;
-        let answer = diagnose(&self.plant, record, later, options)?.answer;
-        let sentences = json(&answer.sentences())?;
-        Ok((json(&ResultFile::new(manifest, answer))?, sentences))
+        let diagnosed = diagnose(&self.plant, record, later, options)?;
+        let part = of_plant(&diagnosed, &name, &manifest).map_err(|error| refused(&error));
+        let sentences = json(&diagnosed.answer.sentences())?;
+        let result = json(&ResultFile::new(manifest, diagnosed.answer))?;
+        Ok((result, sentences, HeldPage { part }))
     }
 
     fn record(&self, columns: Columns) -> Outcome<PlantRecord> {

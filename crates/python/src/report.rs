@@ -11,22 +11,31 @@ use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Failure, Outcome};
+use crate::plant::HeldPage;
 
-/// The page of results (JSON) as one HTML file; of each the class of the result and its text.
+/// A result: its class, its text (JSON) and, of a plant, its page.
+type Given<'a> = (&'a str, &'a str, Option<&'a HeldPage>);
+
+/// The page of results as one HTML file.
 #[pyfunction]
-pub(crate) fn report(py: Python<'_>, results: Vec<(String, String)>) -> PyResult<String> {
-    Ok(py.detach(|| html(&results))?)
+pub(crate) fn report(
+    py: Python<'_>,
+    results: Vec<(String, String, Option<Bound<'_, HeldPage>>)>,
+) -> PyResult<String> {
+    let given: Vec<Given<'_>> = results
+        .iter()
+        .map(|(kind, result, page)| (&**kind, &**result, page.as_ref().map(Bound::get)))
+        .collect();
+    Ok(py.detach(|| html(&given))?)
 }
 
-fn html(results: &[(String, String)]) -> Outcome<String> {
-    let parts: Vec<Part> = results
-        .iter()
-        .map(|(kind, result)| part(kind, result))
-        .collect::<Outcome<_>>()?;
+fn html(results: &[Given<'_>]) -> Outcome<String> {
+    let parts = results.iter().copied().map(part);
+    let parts: Vec<Part> = parts.collect::<Outcome<_>>()?;
     page(parts).to_html().map_err(|error| refused(&error))
 }
 
-fn part(kind: &str, result: &str) -> Outcome<Part> {
+fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
     Ok(match kind {
         "Diagnosis" => of_result(&read_text(&SourceText::new(result, kind)?)?),
         // Charts over time need the records.
@@ -34,18 +43,29 @@ fn part(kind: &str, result: &str) -> Outcome<Part> {
             .map_err(|error| refused(&error))?,
         "Plan" => of_plan(&read::<PlanResult>(result)?),
         "Fleet" => of_fleet(&read::<FleetResult>(result)?),
+        "PlantDiagnosis" => match page {
+            Some(page) => page.part.clone()?,
+            None => {
+                return Err(Failure::of_value(
+                    "report",
+                    "a PlantDiagnosis that was pickled, without its fits",
+                    "one that Plant.diagnose returned here",
+                    "diagnose the record again: its page has charts over time",
+                ));
+            }
+        },
         other => {
             return Err(Failure::of_value(
                 "report",
                 other,
-                "a Calibration, a Diagnosis, a Plan or a Fleet",
+                "a Calibration, a Diagnosis, a Plan, a Fleet or a PlantDiagnosis",
                 "its numbers are in to_dict() and to_dataframe()",
             ));
         }
     })
 }
 
-fn refused(error: &impl Display) -> Failure {
+pub(crate) fn refused(error: &impl Display) -> Failure {
     Failure {
         message: error.to_string(),
         ..Failure::default()

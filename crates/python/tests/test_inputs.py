@@ -277,6 +277,14 @@ def test_work_that_fails_says_what_to_do(simulated):
         gyrocal.calibrate([simulated.record, simulated.record], simulated.bench)
 
 
+def test_a_list_of_records_is_refused_where_one_is_taken(simulated):
+    record, bench = simulated.record, simulated.bench
+    for function in (gyrocal.diagnose, gyrocal.plan):
+        with pytest.raises(gyrocal.InputError, match="a list of 2, expected one record") as raised:
+            function([record, record], bench)
+        assert "command" in raised.value.advice
+
+
 def test_gyro_axes_that_do_not_fit_are_refused(simulated):
     record, bench = simulated.record, simulated.bench
     rows = len(record)
@@ -286,16 +294,27 @@ def test_gyro_axes_that_do_not_fit_are_refused(simulated):
     unknown = identity.copy()
     unknown[3, 0] = np.nan
     later = (record, bench)
+    ragged = [[1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
+    both = {"gyro_axes": identity, "later": later}
     cases = [
-        (gyrocal.diagnose, {"gyro_axes": identity[:, :3]}, "(rows, 4)"),
+        (gyrocal.diagnose, {"gyro_axes": identity[:, :3]}, "gyro_axes: found the shape"),
+        (gyrocal.diagnose, {"gyro_axes": ragged}, "gyro_axes: found rows of different lengths"),
+        (gyrocal.diagnose, {"gyro_axes": [["a"] * 4]}, "gyro_axes: found the type"),
+        (gyrocal.diagnose, {**both, "later_gyro_axes": ragged}, "later_gyro_axes: found rows of"),
+        (gyrocal.diagnose, {**both, "later_gyro_axes": identity[1:]}, f"later_gyro_axes: found {rows - 1} rows"),
+        (gyrocal.diagnose, {**both, "later_gyro_axes": doubled}, "later_gyro_axes, row 5"),
         (gyrocal.diagnose, {"gyro_axes": identity[1:]}, f"{rows}, as many as the record has"),
         (gyrocal.diagnose, {"gyro_axes": doubled}, "row 5: found a quaternion of norm 2.0000"),
         (gyrocal.diagnose, {"gyro_axes": unknown}, "row 3"),
         (gyrocal.diagnose, {"gyro_axes": identity, "filter": "euler"}, "filter"),
-        (gyrocal.diagnose, {"gyro_axes": identity, "later": later}, "later_gyro_axes: found none"),
+        (gyrocal.diagnose, both, "later_gyro_axes: found none"),
         (gyrocal.diagnose, {"later_gyro_axes": identity}, "later_gyro_axes: found some"),
         (gyrocal.calibrate, {"gyro_axes": doubled}, "norm 2.0000"),
+        (gyrocal.calibrate, {"gyro_axes": [doubled]}, "gyro_axes[0], row 5"),
+        (gyrocal.calibrate, {"gyro_axes": ragged}, "gyro_axes: found rows of different lengths"),
+        (gyrocal.calibrate, {"gyro_axes": [identity, identity[:, :3]]}, "gyro_axes[1]: found the shape"),
         (gyrocal.calibrate, {"gyro_axes": [identity, identity]}, "2 for 1 records"),
+        (gyrocal.calibrate, {"gyro_axes": []}, "0 for 1 records"),
         (gyrocal.calibrate, {"gyro_axes": identity, "method": "streaming"}, "batch estimator"),
         (gyrocal.calibrate, {"gyro_axes": identity, "average_s": 600.0}, "without average_s"),
     ]

@@ -1,6 +1,8 @@
 """Plants of users: the numbers and names of the command, refusals in words."""
 
+import json
 import pickle
+import re
 from pathlib import Path
 
 import pandas as pd
@@ -52,10 +54,36 @@ def test_a_declared_plant_takes_frames(found):
     # Values and declarations have no files: their hashes are of what they hold.
     assert [one.path for one in again.manifest.inputs] == ["<DataFrame>", "<columns>", "<Declared>"]
     assert again.manifest.inputs[2].sha256 == found.manifest.inputs[2].sha256
+    # A later record is another frame.
+    later = plant.diagnose(frame, COLUMNS, later=pd.read_csv(FOLDER / "later.csv"), false_alarm=0.02)
+    assert later.later_record.gain_nats == found.later_record.gain_nats
+    assert later.manifest.command == (
+        "gyrocal.Plant.diagnose(<DataFrame>, <dict>, later=<DataFrame>, false_alarm=0.02)"
+    )
     # Other units of the same numbers: factors of two change no bit.
     doubled = frame.assign(displacement_m=2.0 * frame.displacement_m)
     columns = COLUMNS | {"outputs": {"y": {"column": "displacement_m", "factor": 0.5}}}
     assert plant.diagnose(doubled, columns).findings == found.findings
+
+
+def data_of(page):
+    """What the charts of a page show."""
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.S)[1])
+
+
+def test_its_page_is_that_of_the_command(tmp_path, found, diagnosed):
+    by_command, page = tmp_path / "command.html", tmp_path / "page.html"
+    arguments = ["plant", "diagnose", FOLDER / "plant.json", FOLDER / "record.csv"]
+    arguments += ["--columns", FOLDER / "columns.toml", "--validate", FOLDER / "later.csv"]
+    run_command([*arguments, "--report", by_command], tmp_path)
+    found.report(page)
+    text = page.read_text()
+    assert "Model lacks v_rate.x^3" in text and "gyrocal.Plant.diagnose(" in text
+    assert data_of(text) == data_of(by_command.read_text())
+    gyrocal.report([found, diagnosed], page)
+    assert "Model lacks v_rate.x^3" in page.read_text() and "gyro_y.g_z" in page.read_text()
+    with pytest.raises(gyrocal.InputError, match="was pickled"):
+        pickle.loads(pickle.dumps(found)).report(page)
 
 
 def test_wrong_input_is_refused_in_words(tmp_path):
@@ -74,6 +102,8 @@ def test_wrong_input_is_refused_in_words(tmp_path):
         plant.diagnose(frame.assign(drive_n=[None] + ["a"] * (len(frame) - 1)), COLUMNS)
     with pytest.raises(gyrocal.InputError, match="drive|input|number"):
         plant.diagnose(frame.assign(drive_n=float("nan")), COLUMNS)
+    with pytest.raises(gyrocal.InputError, match="a list of 2, expected one record"):
+        plant.diagnose([frame, frame], COLUMNS)
     with pytest.raises(gyrocal.InputError, match="false_alarm"):
         plant.diagnose(frame, COLUMNS, false_alarm=0.0)
     with pytest.raises(gyrocal.InputError, match="cannot be read"):

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import gyrocal
@@ -34,6 +35,23 @@ def test_a_hidden_cause_is_found_with_its_size(simulated, diagnosed):
     parameter = found.parameters[0]
     # Five standard deviations: by chance once in two million seeds.
     assert abs(parameter.estimate - size.value) < 5 * parameter.sigma
+
+
+def test_the_manifest_has_the_call(simulated):
+    record, bench = simulated.record, simulated.bench
+    options = {"average_s": 600.0, "robust_sigmas": 3, "noise": True, "effects": (one for one in ["gyro_y.g_z"])}
+    found = gyrocal.calibrate(record, [bench.to_dict()], **options)
+    assert found.manifest.command == (
+        "gyrocal.calibrate(<simulation>, [<dict>], effects=['gyro_y.g_z'], average_s=600.0, robust_sigmas=3)"
+    )
+    found = gyrocal.calibrate(simulated.record.to_dataframe(), bench, method="paper", factorised=True)
+    assert found.manifest.command == (
+        "gyrocal.calibrate(<DataFrame>, <simulation>.bench, method='paper', factorised=True)"
+    )
+    found = gyrocal.diagnose(record, bench, effects=[], false_alarm=np.float64(0.02), filter="euler")
+    assert found.manifest.command == (
+        "gyrocal.diagnose(<simulation>, <simulation>.bench, false_alarm=0.02, filter='euler')"
+    )
 
 
 def test_frames(simulated, diagnosed):

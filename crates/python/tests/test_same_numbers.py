@@ -84,10 +84,16 @@ def test_gyro_axes(tmp_path, strapdown):
         # The values of an array are those of the file; where they come from is another thing.
         of_array = function(record, bench, gyro_axes=quaternions, **options).to_dict()
         assert of_array["manifest"]["inputs"][2]["path"] == "<gyro_axes>"
+        effects = ", effects=['gyro_y.g_z']" if options else ""
+        assert of_array["manifest"]["command"].endswith(f", gyro_axes=<ndarray>{effects})")
         for result in (of_array, by_command):
             del result["manifest"]
         assert of_array == by_command
     assert by_command["schema_version"]
+    # The next run of a unit is another one than that of a platform.
+    found = gyrocal.diagnose(record, bench, gyro_axes=file)
+    with pytest.raises(gyrocal.InputError, match="strapdown unit"):
+        gyrocal.plan(record, bench, diagnosis=found)
 
 
 def test_gyro_axes_of_a_later_record(tmp_path, strapdown):
@@ -115,6 +121,8 @@ def test_gyro_axes_of_a_later_record(tmp_path, strapdown):
     found = gyrocal.diagnose(
         first, free, later=(later, free), gyro_axes=first_axes, later_gyro_axes=later_axes
     ).to_dict()
+    names = [one["path"] for one in found["manifest"]["inputs"]]
+    assert names[4:] == ["<gyro_axes>", "<later_gyro_axes>"]
     for result in (found, by_command):
         del result["manifest"]
     assert found == by_command
@@ -147,6 +155,9 @@ def test_plan(tmp_path, simulated):
     planned = gyrocal.plan(record, bench, **options)
     assert without_command_line(planned.to_dict()) == without_command_line(by_command)
     assert list(planned.to_dataframe().hours) == [12.0] * len(planned.proposals)
+    assert planned.manifest.command == (
+        f"gyrocal.plan('{record}', '{bench}', hours=[12.0], limits_deg={{'x': [-60.0, 60.0]}})"
+    )
 
     # From a diagnosis at hand, as the command from a file of it.
     found = gyrocal.diagnose(record, bench)
@@ -162,4 +173,5 @@ def test_characteristics(tmp_path):
     call = ["characterise", "--cell", "clean", "--runs", "2", "--seed", "40", "--method", "none"]
     by_command = run_command(call, tmp_path)
     found = gyrocal.characterise("clean", runs=2, seed=40, methods=[])
+    assert found.manifest.command == "gyrocal.characterise(['clean'], runs=2, seed=40, methods=[])"
     assert without_command_line(found.to_dict()) == without_command_line(by_command)

@@ -39,7 +39,9 @@ gyrocal.report(diagnosed, Path("page.html"))
 
 plant = gyrocal.Plant("plant.json")
 assert_type(plant.inputs, list[str])
-assert_type(plant.diagnose("record.csv", "columns.toml"), gyrocal.PlantDiagnosis)
+of_plant = plant.diagnose("record.csv", "columns.toml", later=pd.DataFrame())
+assert_type(of_plant, gyrocal.PlantDiagnosis)
+of_plant.report("page.html")
 
 for batch in fleet.diagnose_batches([pa.RecordBatch.from_pylist([], fleet.INPUT)]):
     assert_type(fleet.summarise([batch]), gyrocal.Fleet)

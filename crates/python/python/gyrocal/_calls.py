@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
+from numbers import Number
 from typing import Any, Literal, Union
 
 import numpy as np
@@ -44,7 +47,7 @@ def simulate(scenario: ScenarioLike, *, seed: int | None = None) -> Simulation:
     Raises:
         InputError: The scenario makes no sense.
     """
-    command = _call("simulate", scenario, seed=seed)
+    command = _call(simulate, locals())
     if isinstance(scenario, Mapping):
         made = _gyrocal.simulate(None, _json(scenario, "<scenario>"), seed, "<simulation>", command)
     else:
@@ -71,8 +74,9 @@ def calibrate(
         records: A record, or a list of them.
         bench: The bench description, one for all records or a list of one for each.
         gyro_axes: Axes of the instruments of a strapdown unit in the computed platform: for each row of the
-            record a unit quaternion (w, x, y, z), as an array of four columns or a file of them; of several
-            records a list of one for each. Coefficients are then those of the gyros in their own axes.
+            record the unit quaternion (w, x, y, z) that takes components along the gyros' axes to components
+            along the platform's, as an array of four columns or a file of them; of several records a list of
+            one for each. Coefficients are then those of the gyros in their own axes.
         method: ``batch`` estimates from whole records, ``streaming`` is the filter that a controller
             embeds, ``paper`` the paper's.
         effects: Effects of the catalogue that are estimated too; for one record.
@@ -86,7 +90,8 @@ def calibrate(
         SetupError: A gross error of the set-up leaves nothing sound; its ``result`` tells which.
         ComputationError: The records could not be calibrated.
     """
-    command = _call("calibrate", records, bench=bench, method=method, effects=tuple(effects))
+    effects = list(effects)
+    command = _call(calibrate, locals())
     given = [as_record(one) for one in _several(records)]
     benches = [as_bench(one) for one in _several(bench)]
     if len(benches) == 1:
@@ -99,7 +104,7 @@ def calibrate(
             expected=str(len(given)),
         )
     axes = _several_axes(gyro_axes)
-    if axes and len(axes) != len(given):
+    if gyro_axes is not None and len(axes) != len(given):
         raise InputError(
             f"gyro_axes: found {len(axes)} for {len(given)} records, expected one for each, in their order",
             found=str(len(axes)),
@@ -114,7 +119,7 @@ def calibrate(
     runs = [(one._held, other._held) for one, other in zip(given, benches)]
     try:
         text = _gyrocal.calibrate(
-            runs, axes, method, factorised, noise, average_s, robust_sigmas, list(effects), command
+            runs, axes, method, factorised, noise, average_s, robust_sigmas, effects, command
         )
     except SetupError as error:
         error.result = Calibration(error.result)
@@ -144,8 +149,9 @@ def diagnose(
         later: A later record of the same platform with its bench description, to be predicted with the
             nominal and with the extended model.
         gyro_axes: Axes of the instruments of a strapdown unit in the computed platform: for each row of the
-            record a unit quaternion (w, x, y, z), as an array of four columns or a file of them. Coefficients
-            and effects are then those of the instruments in their own axes.
+            record the unit quaternion (w, x, y, z) that takes components along the gyros' axes to components
+            along the platform's, as an array of four columns or a file of them. Coefficients and effects are
+            then those of the instruments in their own axes.
         later_gyro_axes: Those of the later record.
         effects: Effects to test that are not in the default set.
         false_alarm: Family-wise probability of a false alarm.
@@ -165,15 +171,16 @@ def diagnose(
             "and gyro_axes are given, and only then",
             advice="give the axes of the later record beside those of the record",
         )
-    command = _call("diagnose", record, bench=bench, effects=tuple(effects), false_alarm=false_alarm)
+    effects = list(effects)
+    command = _call(diagnose, locals())
     other = None if later is None else (as_record(later[0])._held, as_bench(later[1])._held)
     answer = _gyrocal.diagnose(
         as_record(record)._held,
         as_bench(bench)._held,
         other,
-        None if gyro_axes is None else as_axes(gyro_axes),
-        None if later_gyro_axes is None else as_axes(later_gyro_axes),
-        list(effects),
+        None if gyro_axes is None else as_axes(gyro_axes, "gyro_axes"),
+        None if later_gyro_axes is None else as_axes(later_gyro_axes, "later_gyro_axes"),
+        effects,
         false_alarm,
         filter is not None,
         command,
@@ -199,7 +206,8 @@ def plan(
     Args:
         record: The record.
         bench: The bench description.
-        diagnosis: Result of :func:`diagnose` for this record; without it the record is diagnosed.
+        diagnosis: Result of :func:`diagnose` for this record, without ``gyro_axes``; if none is given, the
+            record is diagnosed.
         hours: Durations of the next run; that of the record if none is given.
         limits_deg: Limits of the platform angles ``x``, ``y``, ``z``; before those of the bench.
         aim: Criterion of the ranking; ``set`` if a finding has alternatives.
@@ -212,22 +220,23 @@ def plan(
         InputError: An argument, the record or the bench description is wrong.
         ComputationError: No next run could be planned.
     """
+    hours = [hours] if isinstance(hours, (int, float)) else list(hours)
     effects = list(effects)
+    command = _call(plan, locals())
     if diagnosis is not None and (effects or false_alarm != 0.01):
         raise InputError("plan: effects and false_alarm are those of the diagnosis that is given")
-    durations = [hours] if isinstance(hours, (int, float)) else list(hours)
     answer = _gyrocal.plan(
         as_record(record)._held,
         as_bench(bench)._held,
         None if diagnosis is None else diagnosis.to_json(),
-        [float(one) for one in durations],
+        [float(one) for one in hours],
         [(axis, (float(low), float(high))) for axis, (low, high) in (limits_deg or {}).items()],
         aim,
         [(name, float(sigma)) for name, sigma in (sigmas or {}).items()],
         one_name,
         effects,
         false_alarm,
-        _call("plan", record, bench=bench, hours=tuple(durations), aim=aim),
+        command,
     )
     return Plan(*answer)
 
@@ -256,36 +265,35 @@ def characterise(
     Raises:
         InputError: An argument is wrong.
     """
-    asked = [cells] if isinstance(cells, str) else list(cells)
+    cells = [cells] if isinstance(cells, str) else list(cells)
+    methods = None if methods is None else list(methods)
+    command = _call(characterise, locals())
     for name, value, least in (("runs", runs, 1), ("seed", seed, 0), ("threads", threads, 1)):
         if value is not None and (not isinstance(value, int) or value < least):
             raise InputError(f"{name}: found {value!r}, expected an integer of at least {least}")
-    text = _gyrocal.characterise(
-        asked,
-        runs,
-        seed,
-        results,
-        None if methods is None else list(methods),
-        threads,
-        _call("characterise", tuple(asked), runs=runs, seed=seed),
-    )
-    return Characteristics(text)
+    return Characteristics(_gyrocal.characterise(cells, runs, seed, results, methods, threads, command))
 
 
 def _several(value: Any) -> list[Any]:
     return list(value) if isinstance(value, (list, tuple)) else [value]
 
 
-def _several_axes(value: Any) -> list[Any]:
+def _several_axes(value: Any) -> list[tuple[str, Any]]:
+    """Axes of each record, with the name of the argument."""
     if value is None:
         return []
-    # An array, or the rows of one, is that of one record.
-    is_list = isinstance(value, (list, tuple)) and not _is_rows(value)
-    return [as_axes(one) for one in (value if is_list else [value])]
+    if not isinstance(value, (list, tuple)) or _is_rows(value):
+        return [("gyro_axes", as_axes(value, "gyro_axes"))]
+    named = [(f"gyro_axes[{index}]", one) for index, one in enumerate(value)]
+    return [(name, as_axes(one, name)) for name, one in named]
 
 
 def _is_rows(value: Sequence[Any]) -> bool:
-    return len(value) > 0 and not isinstance(value[0], (str, os.PathLike)) and np.ndim(value[0]) == 1
+    """Whether these are the rows of one array, and not several things."""
+    first = value[0] if len(value) > 0 else None
+    if isinstance(first, (list, tuple)):
+        return all(isinstance(one, Number) for one in first)
+    return isinstance(first, np.ndarray) and first.ndim == 1
 
 
 def _check_calibration(
@@ -313,20 +321,49 @@ def _check_calibration(
         )
 
 
-def _call(function: str, *arguments: Any, **options: Any) -> str:
-    """The call in words, for the manifest."""
-    shown = [_shown(argument) for argument in arguments]
-    shown += [f"{key}={_shown(value)}" for key, value in options.items() if value not in (None, ())]
-    return f"gyrocal.{function}({', '.join(shown)})"
+def _call(function: Callable[..., Any], given: Mapping[str, Any]) -> str:
+    """The call in words, for the manifest: `given` are its arguments, of which defaults are left out."""
+    shown = []
+    for name, default, by_name in _parameters(function):
+        if not _is_default(given[name], default):
+            shown.append(f"{name}={_shown(given[name])}" if by_name else _shown(given[name]))
+    public = [part for part in function.__module__.split(".") if not part.startswith("_")]
+    return f"{'.'.join(public)}.{function.__qualname__}({', '.join(shown)})"
+
+
+@cache
+def _parameters(function: Callable[..., Any]) -> list[tuple[str, Any, bool]]:
+    """Name and default of each parameter, and whether it is given by name."""
+    every = inspect.signature(function).parameters.values()
+    return [(one.name, one.default, one.kind is one.KEYWORD_ONLY) for one in every if one.name != "self"]
+
+
+def _is_default(value: Any, default: Any) -> bool:
+    # Arrays and frames compare element by element.
+    if isinstance(value, (list, tuple)):
+        return default == () and len(value) == 0
+    return value is default or (isinstance(value, (str, Number)) and bool(value == default))
 
 
 def _shown(value: Any) -> str:
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_shown, value))}]"
+    """A value in words: settings and names as they are, of data the type."""
+    if isinstance(value, np.generic):
+        value = value.item()
     if isinstance(value, os.PathLike):
         return repr(os.fspath(value))
-    if isinstance(value, (str, int, float, bool)) or value is None:
+    if isinstance(value, (str, Number)) or value is None:
         return repr(value)
     if isinstance(value, (Record, Bench)):
         return value.name
+    if isinstance(value, (list, tuple)) and not _is_rows(value):
+        return f"[{', '.join(map(_shown, value))}]"
+    if isinstance(value, Mapping) and all(map(_is_setting, value.values())):
+        return f"{{{', '.join(f'{key!r}: {_shown(one)}' for key, one in value.items())}}}"
     return f"<{type(value).__name__}>"
+
+
+def _is_setting(value: Any) -> bool:
+    """Whether a value of a mapping is a number or a pair of them, and no column of a record."""
+    if isinstance(value, (list, tuple)):
+        return len(value) == 2 and all(isinstance(one, Number) for one in value)
+    return isinstance(value, Number)

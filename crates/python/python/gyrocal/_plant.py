@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from . import _gyrocal
 from ._calls import _call
 from ._errors import InputError
-from ._record import _column, _json
+from ._record import _column, _json, refuse_several
 from ._results import PlantDiagnosis
 
 __all__ = ["Plant"]
@@ -105,6 +105,7 @@ class Plant:
             InputError: A record, a column or an argument is wrong.
             ComputationError: The plant could not be fitted.
         """
+        command = _call(Plant.diagnose, locals())
         given, own = self._columns(record, columns)
         program, name = self._program
         inputs = [own, *_input_of_map(columns), (name, _sha256(program.encode()))]
@@ -112,7 +113,6 @@ class Plant:
         if later is not None:
             other, own = self._columns(later, columns if later_columns is None else later_columns)
             inputs += [own, *_input_of_map(later_columns)]
-        command = _call("Plant.diagnose", record, columns, later=later, false_alarm=false_alarm)
         return PlantDiagnosis(*self._held.diagnose(given, other, false_alarm, inputs, command))
 
     def _columns(self, record: Any, columns: Any) -> tuple[dict[str, Any], Input]:
@@ -191,6 +191,7 @@ def _frame(record: Any) -> tuple[Any, str, bytes | None]:
     if isinstance(record, (str, os.PathLike)):
         name, content = os.fspath(record), _read(record)
         return _csv(_text(content, name), name), name, content
+    refuse_several(record)
     return record, f"<{type(record).__name__}>", None
 
 

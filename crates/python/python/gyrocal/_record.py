@@ -56,7 +56,7 @@ class Record:
         *,
         name: str = "<arrays>",
     ) -> None:
-        samples = _numbers(accel_g, "accel_g", name)
+        samples = _numbers(accel_g, f"{name}, column `accel_g`")
         if samples.ndim != 2 or samples.shape[1] != 3:
             raise _refusal(
                 f"{name}, `accel_g`", f"the shape {samples.shape}", "(rows, 3)",
@@ -240,6 +240,7 @@ def as_record(record: RecordLike) -> Record:
     """The record itself, or what a path, frame, table or mapping gives."""
     if isinstance(record, Record):
         return record
+    refuse_several(record)
     if isinstance(record, (str, os.PathLike)):
         return Record.read(record)
     return Record.from_frame(record)
@@ -259,14 +260,26 @@ def as_bench(bench: BenchLike) -> Bench:
     )
 
 
-def as_axes(axes: AxesLike) -> NDArray[np.float64] | str:
-    """The path of a file of axes, or the quaternions as an array of two dimensions."""
+def refuse_several(record: Any) -> None:
+    """Refuses a list of records where one is taken."""
+    if isinstance(record, (list, tuple)):
+        raise _refusal(
+            "record", f"a {type(record).__name__} of {len(record)}", "one record",
+            "calibrate takes several; diagnoses and plans of several records are made by the command",
+        )
+
+
+def as_axes(axes: AxesLike, name: str) -> NDArray[np.float64] | str:
+    """The path of a file of axes, or the quaternions as an array of two dimensions.
+
+    `name` is that of the argument, for errors.
+    """
     if isinstance(axes, (str, os.PathLike)):
         return os.fspath(axes)
-    array = _numbers(axes, "q", "gyro_axes")
+    array = _numbers(axes, name)
     if array.ndim != 2 or array.shape[1] != 4:
         raise _refusal(
-            "gyro_axes", f"the shape {array.shape}", "(rows, 4)",
+            name, f"the shape {array.shape}", "(rows, 4)",
             "give one quaternion a row: np.column_stack([q_w, q_x, q_y, q_z])",
         )
     return array
@@ -293,34 +306,40 @@ def _of_mapping(columns: Mapping[str, Any], name: str) -> _gyrocal.Record:
 
 
 def _column(values: Any, column: str, name: str) -> NDArray[np.float64]:
-    array = _numbers(values, column, name)
+    place = f"{name}, column `{column}`"
+    array = _numbers(values, place)
     if array.ndim != 1:
-        raise _refusal(
-            f"{name}, column `{column}`", f"{array.ndim} dimensions", "one", "give one column"
-        )
+        raise _refusal(place, f"{array.ndim} dimensions", "one", "give one column")
     return array
 
 
-def _numbers(values: Any, column: str, name: str) -> NDArray[np.float64]:
-    """The values as float64: a view where they are that already."""
+def _numbers(values: Any, place: str) -> NDArray[np.float64]:
+    """The values as float64: a view where they are that already. `place` is for errors."""
     if hasattr(values, "to_numpy"):
         kind = getattr(values, "dtype", None)
         # Nullable columns of pandas: a missing value is a masked one.
         nullable = hasattr(kind, "na_value") and getattr(kind, "kind", "O") in "iuf"
         array = values.to_numpy(dtype=np.float64, na_value=np.nan) if nullable else values.to_numpy()
     else:
-        array = np.asarray(values)
+        array = _array(values, place)
     if array.dtype.kind in "iuf":
         return array.astype(np.float64, copy=False)
     advice = {
-        "M": f"give seconds: (t - t[0]) / np.timedelta64(1, 's'), as column `{column}`",
+        "M": "give seconds: (t - t[0]) / np.timedelta64(1, 's')",
         "m": "give seconds: t / np.timedelta64(1, 's')",
         "O": "the column holds other things than numbers: pandas.to_numeric(column) shows which",
         "b": "give numbers",
     }.get(array.dtype.kind, "convert the column to float64")
-    raise _refusal(
-        f"{name}, column `{column}`", f"the type {array.dtype}", "float64", advice
-    )
+    raise _refusal(place, f"the type {array.dtype}", "float64", advice)
+
+
+def _array(values: Any, place: str) -> NDArray[Any]:
+    try:
+        return np.asarray(values)
+    except ValueError as error:
+        raise _refusal(
+            place, "rows of different lengths", "an array", "give as many values in each row"
+        ) from error
 
 
 def _refusal(place: str, found: str, expected: str, advice: str) -> InputError:

@@ -135,6 +135,10 @@ class Result(Fields):
         """
         report([self], path)
 
+    def _page(self) -> _gyrocal.PlantPage | None:
+        """What a page needs beside the result."""
+        return None
+
     def _rows(self) -> list[dict[str, Any]]:
         raise NotImplementedError
 
@@ -157,7 +161,8 @@ def report(results: Result | Iterable[Result], path: str | os.PathLike[str]) -> 
 
     Args:
         results: A result, or several in the order of the page: of :func:`gyrocal.calibrate`,
-            :func:`gyrocal.diagnose`, :func:`gyrocal.plan` and :func:`gyrocal.fleet.summarise`.
+            :func:`gyrocal.diagnose`, :func:`gyrocal.plan`, :func:`gyrocal.fleet.summarise` and
+            :meth:`gyrocal.Plant.diagnose`.
         path: The file to write.
 
     Raises:
@@ -170,16 +175,16 @@ def report(results: Result | Iterable[Result], path: str | os.PathLike[str]) -> 
                 f"report: found a {type(one).__name__}, expected results",
                 found=type(one).__name__,
                 expected="results",
-                advice="give what calibrate, diagnose, plan or fleet.summarise returned",
+                advice="give what calibrate, diagnose, plan, fleet.summarise or Plant.diagnose returned",
             )
     if not given:
         raise InputError(
             "report: found no result, expected one or more",
             found="no result",
             expected="one or more",
-            advice="give what calibrate, diagnose, plan or fleet.summarise returned",
+            advice="give what calibrate, diagnose, plan, fleet.summarise or Plant.diagnose returned",
         )
-    page = _gyrocal.report([(type(one).__name__, one.to_json()) for one in given])
+    page = _gyrocal.report([(type(one).__name__, one.to_json(), one._page()) for one in given])
     with open(path, "w", encoding="utf-8", newline="\n") as file:
         file.write(page)
 
@@ -397,9 +402,10 @@ class Fleet(Result):
 
 
 class PlantDiagnosis(Result):
-    """Result of :meth:`gyrocal.Plant.diagnose`."""
+    """Result of :meth:`gyrocal.Plant.diagnose`. One that was pickled or copied has no :meth:`report`."""
 
-    __slots__ = ()
+    __slots__ = ("_charts",)
+    _charts: _gyrocal.PlantPage | None
     plant: str
     rows: int
     findings: list[Fields]
@@ -407,7 +413,17 @@ class PlantDiagnosis(Result):
     parameters: list[Fields]
     noise: list[Fields]
     undetermined: list[Fields]
+    cross_validation: Fields | None
     later_record: Fields | None
+
+    def __init__(
+        self, text: str, blocks: str | None = None, charts: _gyrocal.PlantPage | None = None
+    ) -> None:
+        super().__init__(text, blocks)
+        object.__setattr__(self, "_charts", charts)
+
+    def _page(self) -> _gyrocal.PlantPage | None:
+        return self._charts
 
     def _shown(self) -> list[dict[str, Any]]:
         """Sentences."""
