@@ -155,13 +155,54 @@ def test_partitions_are_done_once(tmp_path, records, expected):
         fleet.diagnose_partitions(tmp_path, out)
 
 
+def test_a_summary_counts_no_stale_result(tmp_path, records):
+    source, out = tmp_path / "in", tmp_path / "out"
+    write_partitions(source, records.slice(0, 6), 3)
+    fleet.diagnose_partitions(source, out)
+    assert fleet.summarise(out).records == 6
+    # A partition can no longer be read, and one is gone.
+    (source / "part-01.parquet").write_bytes(b"no Parquet")
+    (source / "part-02.parquet").unlink()
+    manifest = fleet.diagnose_partitions(source, out)
+    assert [one["partition"] for one in manifest["unreadable"]] == ["part-01.parquet"]
+    assert sorted(path.name for path in out.glob("*.parquet")) == ["part-00.parquet", "part-02.parquet"]
+    assert fleet.summarise(out).records == 2
+    # Without a manifest, as of another engine, all files count.
+    (out / "manifest.json").unlink()
+    assert fleet.summarise(out).records == 4
+    fleet.diagnose_partitions(source, out)
+    (out / "part-00.parquet").unlink()
+    with pytest.raises(gyrocal.InputError, match="part-00.*no result"):
+        fleet.summarise(out)
+
+
+def test_what_is_no_file_is_told_and_the_others_go_on(tmp_path, records):
+    source, out = tmp_path / "in", tmp_path / "out"
+    write_partitions(source, records.slice(0, 4), 2)
+    (source / "part-09.parquet").mkdir()
+    (source / "part-10.parquet").symlink_to(tmp_path / "gone.parquet")
+    manifest = fleet.diagnose_partitions(source, out)
+    assert (manifest["done"], manifest["computed_partitions"]) == (4, 4)
+    errors = {one["partition"]: one["error"] for one in manifest["unreadable"]}
+    assert "directory" in errors["part-09.parquet"] and "No such file" in errors["part-10.parquet"]
+    # A partition that was done, and is a directory now.
+    (source / "part-01.parquet").unlink()
+    (source / "part-01.parquet").mkdir()
+    # What another run in the same folder is writing is not touched.
+    other = out / ".part-00.parquet.0123.4567.tmp"
+    other.touch()
+    manifest = fleet.diagnose_partitions(source, out)
+    assert (manifest["done"], len(manifest["unreadable"]), other.exists()) == (2, 3, True)
+    assert fleet.summarise(out).records == 2
+
+
 class GivingUp:
     """A cluster whose workers die of one partition, as often as it is tried."""
 
     def __init__(self, poison):
         self.poison = poison
 
-    def map(self, function, paths, *, pure, retries, **settings):
+    def map(self, function, paths, *, pure, **settings):
         return [self.Task(function, path, settings, self.poison) for path in paths]
 
     def gather(self, tasks, errors):
@@ -187,6 +228,10 @@ def test_a_partition_that_kills_its_workers_is_named_and_the_others_go_on(tmp_pa
     # A later call tries it again, and nothing else.
     manifest = fleet.diagnose_partitions(source, out)
     assert (manifest["done"], manifest["unreadable"], manifest["computed_partitions"]) == (6, [], 1)
+    # With other settings the partition is lost again, and its old result with it.
+    cluster = GivingUp("part-01.parquet")
+    assert fleet.diagnose_partitions(source, out, client=cluster, false_alarm=0.02)["done"] == 4
+    assert not (out / "part-01.parquet").exists()
 
 
 def test_columns_of_other_names_are_refused_in_words(records):

@@ -125,4 +125,9 @@ def test_reports_of_other_results(results, tmp_path, simulated, diagnosed):
             gyrocal.report(wrong, page)
     with pytest.raises(gyrocal.InputError, match="Simulation"):
         simulated.report(page)
+    assert together.manifest.command == "gyrocal.fleet.summarise(<Table>)"
+    other = fleet.summarise(results, seed=3, group_probability=0.05, outlier_probability=0.02)
+    assert other.manifest.command == (
+        "gyrocal.fleet.summarise(<Table>, group_probability=0.05, outlier_probability=0.02, seed=3)"
+    )
     assert diagnosed.scores and pickle.loads(pickle.dumps(diagnosed)).scores == diagnosed.scores

@@ -18,6 +18,7 @@ import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 import pyarrow as pa
@@ -63,7 +64,8 @@ INPUT = pa.schema(
 _OPTIONAL = {COLUMNS[4], *(field.name for field in KNOWN)}
 
 #: Columns of the output. ``status`` is ``done`` or ``failed``; ``result`` is the JSON of the diagnosis,
-#: ``scores`` what :func:`summarise` pools (:attr:`gyrocal.Diagnosis.scores`), and ``error`` and ``advice`` tell what is wrong with a record that could not be diagnosed.
+#: ``scores`` what :func:`summarise` pools (:attr:`gyrocal.Diagnosis.scores`), and ``error`` and ``advice``
+#: tell what is wrong with a record that could not be diagnosed.
 OUTPUT = pa.schema(
     [
         pa.field("unit", pa.string()),
@@ -137,13 +139,16 @@ def diagnose_partitions(
     """Diagnoses the records of all Parquet files of a folder; results are files of the same names.
 
     A result is written whole or not at all, and beside it a note of what was done. A later call with the
-    same settings repeats no partition that has one and whose input is the same.
+    same settings repeats no partition that has one and whose input is the same. A partition that cannot be
+    read, or is given up, is told in the manifest and has no result, not even one of an earlier call.
 
     Args:
         source: The folder of the input.
         out: The folder of the results, which is made. ``manifest.json`` in it tells what became of
             each partition, what failed, and which names are there twice.
         client: A ``distributed.Client``; without it the partitions are worked on here, one after the other.
+            A partition is given up when more workers have died with it than
+            ``distributed.scheduler.allowed-failures`` says.
         false_alarm: Family-wise probability of a false alarm of each diagnosis.
 
     Returns:
@@ -162,24 +167,23 @@ def diagnose_partitions(
         )
     out.mkdir(parents=True, exist_ok=True)
     left = [path for path in partitions if not _is_done(path, out, false_alarm)]
+    run = uuid4().hex
     if client is None:
         for path in left:
-            _diagnose_partition(path, out, false_alarm)
+            _diagnose_partition(path, out, false_alarm, run)
     else:
         # Not pure: a result is a file, which the engine does not see. A worker that dies costs its
         # partition, which another one begins anew.
-        tasks = client.map(
-            _diagnose_partition, left, out=out, false_alarm=false_alarm, pure=False, retries=100
-        )
+        tasks = client.map(_diagnose_partition, left, out=out, false_alarm=false_alarm, run=run, pure=False)
         client.gather(tasks, errors="skip")
         for path, task in zip(left, tasks):
             if task.status == "error":
-                _note_failure(path, out, false_alarm, task.exception())
-    # What workers that died had begun.
-    for unfinished in out.glob(".*.tmp"):
+                _note_failure(path, out, false_alarm, run, task.exception())
+    # What workers of this run that died had begun; another run may be at work in the same folder.
+    for unfinished in out.glob(f".*.{run}.*.tmp"):
         unfinished.unlink(missing_ok=True)
-    manifest = _manifest(partitions, out, repeated=len(left))
-    _write_whole(out / _MANIFEST, json.dumps(manifest, indent=2).encode())
+    manifest = _manifest(partitions, out, computed=len(left))
+    _write_whole(out / _MANIFEST, json.dumps(manifest, indent=2).encode(), run)
     return manifest
 
 
@@ -202,7 +206,8 @@ def summarise(
     differ. It needs the results of the records, and not their samples.
 
     Args:
-        results: A folder of :func:`diagnose_partitions`, or batches or a table of the output.
+        results: A folder of :func:`diagnose_partitions`, of which the partitions count that its manifest
+            has as done; any other folder of Parquet files, or batches or a table of the output.
         false_discovery_rate: Share of false ones among the causes that recur.
         group_probability: Family-wise probability that a fleet without differences shows a batch or site.
         outlier_probability: Family-wise probability that a coefficient without outliers shows one.
@@ -211,8 +216,8 @@ def summarise(
     Raises:
         InputError: An argument is wrong, or no record was diagnosed.
     """
+    command = _call(summarise, locals())
     records = [_summarised(row) for batch in _batches(results) for row in batch.to_pylist()]
-    command = _call("fleet.summarise", results, false_discovery_rate=false_discovery_rate, seed=seed)
     return Fleet(
         *_gyrocal.summarise_fleet(
             records, false_discovery_rate, group_probability, outlier_probability, seed, command
@@ -226,11 +231,27 @@ _SUMMARISED = ("unit", "record", "result", "scores", "error", *(field.name for f
 
 def _batches(results: Any) -> Iterator[pa.RecordBatch]:
     if isinstance(results, (str, os.PathLike)):
-        for path in sorted(Path(results).glob("*.parquet")):
+        for path in _finished(Path(results)):
             with pq.ParquetFile(path) as file:
                 yield from file.iter_batches(BATCH_ROWS, columns=list(_SUMMARISED))
         return
     yield from results.to_batches() if isinstance(results, pa.Table) else results
+
+
+def _finished(out: Path) -> list[Path]:
+    """The files of results: those that a manifest has as done, else all."""
+    if not (out / _MANIFEST).exists():
+        return sorted(out.glob("*.parquet"))
+    partitions = read_manifest(out)["partitions"]
+    paths = [out / one["partition"] for one in partitions if one["status"] == "done"]
+    missing = next((path for path in paths if not path.exists()), None)
+    if missing is not None:
+        raise InputError(
+            f"{missing}: found no result, which the manifest has as done",
+            file=str(missing),
+            advice="finish the fleet: fleet.diagnose_partitions",
+        )
+    return paths
 
 
 def _summarised(row: dict[str, Any]) -> dict[str, Any]:
@@ -336,45 +357,53 @@ def _record_of(given: dict[str, Any]) -> tuple[Record, Bench]:
     return Record(columns["time_s"], samples, columns.get(COLUMNS[4]), name=name), bench
 
 
-def _diagnose_partition(path: Path, out: Path, false_alarm: float) -> None:
+def _diagnose_partition(path: Path, out: Path, false_alarm: float, run: str) -> None:
     """Diagnoses one partition, and writes its result and its note.
 
     An engine repeats a task whose worker dies after it: then there is nothing left to do.
     """
     if _is_done(path, out, false_alarm):
         return
-    note: dict[str, Any] = {"partition": path.name, "job": _job(path, false_alarm)}
-    temporary = out / f".{path.name}.{os.getpid()}.tmp"
+    temporary = _temporary(out / path.name, run)
+    try:
+        note: dict[str, Any] = {"partition": path.name, "job": _job(path, false_alarm), "status": "done"}
+        note |= _write_result(path, temporary, false_alarm)
+        os.replace(temporary, out / path.name)
+    except (OSError, pa.ArrowException, InputError) as error:
+        # The partition cannot be read: the fleet goes on, and a later call tries again.
+        _note_failure(path, out, false_alarm, run, error)
+        return
+    finally:
+        temporary.unlink(missing_ok=True)
+    _write_whole(_note(path, out), json.dumps(note).encode(), run)
+
+
+def _write_result(path: Path, target: Path, false_alarm: float) -> dict[str, Any]:
+    """Diagnoses the records of a partition; their numbers and names, and what failed."""
     counts = {"done": 0, "failed": 0}
     names: list[list[str | None]] = []
     failed: list[dict[str, Any]] = []
-    try:
-        with pq.ParquetFile(path) as file, pq.ParquetWriter(
-            temporary, OUTPUT, use_dictionary=_REPEATED
-        ) as writer:
-            for batch in diagnose_batches(file.iter_batches(BATCH_ROWS), false_alarm=false_alarm):
-                writer.write_batch(batch)
-                for row in batch.select(["unit", "record", "status", "error"]).to_pylist():
-                    counts[row.pop("status")] += 1
-                    names.append([row["unit"], row["record"]])
-                    if row["error"] is not None:
-                        failed.append(row)
-        os.replace(temporary, out / path.name)
-        note |= {"status": "done", "records": counts, "names": names, "failed": failed}
-    except (OSError, pa.ArrowException, InputError) as error:
-        # The partition cannot be read: the fleet goes on, and a later call tries again.
-        note |= {"status": "unreadable", "error": str(error)}
-    finally:
-        temporary.unlink(missing_ok=True)
-    _write_whole(_note(path, out), json.dumps(note).encode())
+    with pq.ParquetFile(path) as file, pq.ParquetWriter(
+        target, OUTPUT, use_dictionary=_REPEATED
+    ) as writer:
+        for batch in diagnose_batches(file.iter_batches(BATCH_ROWS), false_alarm=false_alarm):
+            writer.write_batch(batch)
+            for row in batch.select(["unit", "record", "status", "error"]).to_pylist():
+                counts[row.pop("status")] += 1
+                names.append([row["unit"], row["record"]])
+                if row["error"] is not None:
+                    failed.append(row)
+    return {"records": counts, "names": names, "failed": failed}
 
 
-def _note_failure(path: Path, out: Path, false_alarm: float, error: BaseException) -> None:
-    """Notes that the engine gave a partition up, as one does whose workers die again and again."""
+def _note_failure(path: Path, out: Path, false_alarm: float, run: str, error: BaseException) -> None:
+    """Notes that a partition cannot be read, or that the engine gave it up, and removes an earlier result."""
+    # Another worker may have finished it.
     if _is_done(path, out, false_alarm):
         return
+    (out / path.name).unlink(missing_ok=True)
     note = {"partition": path.name, "status": "unreadable", "error": f"{type(error).__name__}: {error}"}
-    _write_whole(_note(path, out), json.dumps(note).encode())
+    _write_whole(_note(path, out), json.dumps(note).encode(), run)
 
 
 def _job(path: Path, false_alarm: float) -> dict[str, Any]:
@@ -400,11 +429,15 @@ def _is_done(path: Path, out: Path, false_alarm: float) -> bool:
         note = json.loads(_note(path, out).read_text())
     except (OSError, ValueError):
         return False
-    done = note.get("status") == "done" and (out / path.name).exists()
-    return done and note.get("job") == _job(path, false_alarm)
+    if note.get("status") != "done" or not (out / path.name).exists():
+        return False
+    try:
+        return note.get("job") == _job(path, false_alarm)
+    except OSError:
+        return False
 
 
-def _manifest(partitions: list[Path], out: Path, repeated: int) -> dict[str, Any]:
+def _manifest(partitions: list[Path], out: Path, computed: int) -> dict[str, Any]:
     notes = [json.loads(_note(path, out).read_text()) for path in partitions]
     seen: set[tuple[str | None, ...]] = set()
     twice: set[tuple[str | None, ...]] = set()
@@ -419,7 +452,7 @@ def _manifest(partitions: list[Path], out: Path, repeated: int) -> dict[str, Any
             {key: value for key, value in note.items() if key not in ("names", "failed")}
             for note in notes
         ],
-        "computed_partitions": repeated,
+        "computed_partitions": computed,
         "done": sum(note["records"]["done"] for note in read),
         "failed": [
             {"partition": note["partition"], **row} for note in read for row in note["failed"]
@@ -433,7 +466,12 @@ def _manifest(partitions: list[Path], out: Path, repeated: int) -> dict[str, Any
     }
 
 
-def _write_whole(path: Path, content: bytes) -> None:
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+def _temporary(path: Path, run: str) -> Path:
+    """A new name beside a file, which tells the run: processes on other machines have the same numbers."""
+    return path.with_name(f".{path.name}.{run}.{uuid4().hex}.tmp")
+
+
+def _write_whole(path: Path, content: bytes, run: str) -> None:
+    temporary = _temporary(path, run)
     temporary.write_bytes(content)
     os.replace(temporary, path)
