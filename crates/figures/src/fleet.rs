@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use gyrocal_record::Outputs;
+use gyrocal_record::write_json;
+use gyrocal_testkit::timing;
 use serde::Deserialize;
 
 use crate::error::Error;
@@ -95,11 +96,14 @@ fn measured_by<T: for<'a> Deserialize<'a>>(python: &Path, arguments: &[&str]) ->
     )?)
 }
 
-/// The same of a measurement that takes minutes: what was measured of this wheel by these scripts is kept.
+/// The same of a measurement that takes minutes: what was measured of this wheel by these scripts, with these
+/// packages on this processor, is kept.
 fn measured_once<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Error> {
     let mut measures = DefaultHasher::new();
-    let scripts = ["measure.py", "measure_fleet.py"].map(|name| root().join(PACKAGE).join(name));
-    for file in scripts.iter().chain([&wheel()?]) {
+    timing::processor().hash(&mut measures);
+    let files = ["measure.py", "measure_fleet.py", "requirements-test.lock"];
+    let files = files.map(|name| root().join(PACKAGE).join(name));
+    for file in files.iter().chain([&wheel()?]) {
         std::fs::read(file)?.hash(&mut measures);
     }
     let name = format!(
@@ -108,13 +112,14 @@ fn measured_once<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Er
         measures.finish()
     );
     let kept = root().join("target/figures").join(name);
-    if let Ok(text) = std::fs::read_to_string(&kept) {
-        return Ok(serde_json::from_str(&text)?);
+    if let Ok(text) = std::fs::read_to_string(&kept)
+        && let Ok(found) = serde_json::from_str(&text)
+    {
+        eprintln!("measured before: {}", kept.display());
+        return Ok(found);
     }
     let found: serde_json::Value = measured(arguments)?;
-    let mut outputs = Outputs::new();
-    outputs.stage(&kept, &serde_json::to_vec(&found)?)?;
-    outputs.commit()?;
+    write_json(&kept, &found)?;
     Ok(serde_json::from_value(found)?)
 }
 
