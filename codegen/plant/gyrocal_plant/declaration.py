@@ -96,6 +96,7 @@ class Plant:
         self._inputs: list[_Symbol] = []
         self._outputs: list[_Symbol] = []
         self._regressors: list[str] = []
+        self._periods: list[tuple[str, float]] = []
         self._rates: dict[str, ca.SX] = {}
         self._densities: dict[str, float] = {}
         self._effects: list[_Effect] = []
@@ -125,6 +126,15 @@ class Plant:
     def regressor(self, name: str) -> None:
         """A logged quantity, such as a temperature, that rates and outputs may depend on."""
         self._regressors.append(name)
+
+    def period(self, name: str, seconds: float) -> None:
+        """A known period, such as that of a shaft or a day. Rates and outputs may have a wave of it over the
+        time that is logged."""
+        if not seconds > 0:
+            raise PlantError(f"the period `{name}` is {seconds} s, expected more than 0")
+        if name in dict(self._periods):
+            raise PlantError(f"the period `{name}` is declared twice; rename one")
+        self._periods.append((name, float(seconds)))
 
     def rate(self, state: str, expression: ca.SX, noise: float = 0.0) -> None:
         """Rate of change of a state; `noise` is the root of the spectral density of white noise in it,
@@ -408,12 +418,23 @@ class Plant:
                 found.append(_Effect(f"{channel}.{name}", f"{words}: proportional to {name}", name,
                                      f"{bias.unit} per unit of {name}", "regressor", bias.place,
                                      bias.index, regressor=index))
+            found += self._waves(bias, channel, words)
         rates = ca.vertcat(*self._rates.values())
         for index, parameter in enumerate(self._parameters):
             if ca.depends_on(rates, parameter.sx):
                 found.append(_Effect(f"{parameter.name}.step", f"a sudden change of {parameter.name}",
                                      "step(t - t0)", parameter.unit or "1", "step", "parameter", index))
         return found
+
+    def _waves(self, bias: _Effect, channel: str, words: str) -> Iterator[_Effect]:
+        # Waves follow the logged quantities: of each period the sine, then the cosine.
+        place = len(self._regressors)
+        for name, seconds in self._periods:
+            for wave, formula in (("sine", "sin"), ("cosine", "cos")):
+                yield _Effect(f"{channel}.{name}.{wave}", f"{words}: the {wave} of a wave of {seconds:g} s",
+                              f"{formula}(2 pi t / {seconds:g} s)", bias.unit, "regressor", bias.place,
+                              bias.index, regressor=place)
+                place += 1
 
     # --- program
 
@@ -496,6 +517,8 @@ class Plant:
                 {"state": self._states.index(s), "density": self._densities[s.name]} for s in driven]),
             _table("plant_regressors", "PlantRegressor", "Logged quantities.", [
                 {"id": name} for name in self._regressors]),
+            _table("plant_periods", "PlantPeriod", "Known periods.", [
+                {"id": name, "period_s": seconds} for name, seconds in self._periods]),
             _table("plant_channels", "PlantChannel", "Rates and outputs that effects enter.", channels),
             _table("plant_effects", "PlantEffect", "Catalogue of effects.", [
                 {"id": e.id, "name": e.name, "formula": e.formula, "unit": e.unit, "kind": e.kind,

@@ -70,6 +70,22 @@ def test_rates_by_definition_get_no_terms():
     assert "v_rate.x^3" in names and not any(name.startswith("x_rate") for name in names)
 
 
+def test_a_known_period_gives_waves():
+    plant, *_ = oscillator()
+    plant.regressor("temperature")
+    plant.period("shaft", 3.0)
+    tables = {table["name"]: table for table in json.loads(plant.to_json())["tables"]}
+    assert tables["plant_periods"]["rows"] == [["shaft", 3.0]]
+    fields = [field["name"] for field in tables["plant_effects"]["fields"]]
+    place = {row[0]: row[fields.index("regressor")] for row in tables["plant_effects"]["rows"]}
+    assert place["v_rate.temperature"] == 0
+    assert (place["v_rate.shaft.sine"], place["v_rate.shaft.cosine"]) == (1, 2)
+    with pytest.raises(PlantError, match="declared twice"):
+        plant.period("shaft", 4.0)
+    with pytest.raises(PlantError, match="expected more than 0"):
+        plant.period("day", 0.0)
+
+
 def test_units_are_parsed():
     assert units.parse("N s/m") == units.parse("kg s^-1")
     assert units.parse("V") == units.parse("W/A")

@@ -50,8 +50,13 @@ pub struct Diagnosis {
     pub horizon_s: f64,
     /// What is left.
     pub remainder: Vec<Remainder>,
+    /// Gain within the records; `None` where nothing was found, and where the nominal model cannot be fitted with
+    /// the noise that is left.
+    pub cross_validation: Option<CrossValidation>,
     /// Gain on a later record.
     pub later_record: Option<Comparison>,
+    /// Runs that could be made next, the one that tells most first.
+    pub next_runs: Vec<NextRun>,
 }
 
 /// The statistic of an effect.
@@ -214,6 +219,62 @@ pub struct Remainder {
     pub output: String,
     /// p-value of white innovations.
     pub p_value: f64,
+}
+
+/// Gain of what was found in parts of the record that are predicted from the others; of several records each is
+/// a part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CrossValidation {
+    /// Logarithm of the density of each part with the findings over that without; `None` of a part without which
+    /// the others do not determine the findings.
+    pub gains_nats: Vec<Option<f64>>,
+}
+
+/// What a run that has not been made would tell.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct NextRun {
+    /// Its name.
+    pub name: String,
+    /// Its rows.
+    pub rows: usize,
+    /// Its duration, s.
+    pub duration_s: f64,
+    /// Standard deviations of parameters and sizes.
+    pub sigmas: Vec<NextSigma>,
+    /// Named effects beside the rivals of their sets.
+    pub told_apart: Vec<ToldApart>,
+}
+
+/// A standard deviation before and after a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct NextSigma {
+    /// The parameter, or the effect with the name of its size.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// From the records.
+    pub now: f64,
+    /// From the records and the run.
+    pub after: f64,
+}
+
+/// A named effect and a rival before and after a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ToldApart {
+    /// The named effect.
+    pub effect: String,
+    /// The rival.
+    pub rival: String,
+    /// What the rival leaves of the named effect at its size, in standard deviations, from the records.
+    pub now: f64,
+    /// The same from the records and the run.
+    pub after: f64,
+    /// Probability that the rival leaves the set with the run, if the named effect is the cause.
+    pub probability: f64,
 }
 
 /// Both models on a later record, with the parameters of the first.

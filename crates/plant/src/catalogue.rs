@@ -131,7 +131,7 @@ impl Catalogue {
             rate_states: kept_all(builder.rate_states),
             outputs: kept_all(outputs.collect()),
             moving_states: states,
-            weight_count: 1 + description.regressors.len() + builder.shapes.len(),
+            weight_count: 1 + description.regressor_count() + builder.shapes.len(),
             shapes: kept_all(builder.shapes),
             weights,
             natural_periods_s: &[],
@@ -269,7 +269,7 @@ impl<'d> Builder<'d> {
             }
             Kind::Step => {
                 let shape = self.shapes.len();
-                let weight = RAMP + 1 + self.description.regressors.len() + shape;
+                let weight = RAMP + 1 + self.description.regressor_count() + shape;
                 let own = self.modulated(entry, Modulation::Weight(weight));
                 self.shapes.push(element("onset_s", "s", "onset"));
                 (

@@ -19,7 +19,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::description::Description;
+use crate::description::{Description, Output};
 use crate::error::PlantError;
 use crate::record::PlantRecord;
 
@@ -108,6 +108,24 @@ impl ColumnMap {
         description: &Description,
         path: &Path,
     ) -> Result<PlantRecord, PlantError> {
+        self.rows(description, path, &description.outputs)
+    }
+
+    /// Reads the time and the inputs of a run that has not been made; columns of outputs are not read, and outputs
+    /// are values within their range.
+    ///
+    /// # Errors
+    /// As [`Self::record`].
+    pub fn run(&self, description: &Description, path: &Path) -> Result<PlantRecord, PlantError> {
+        self.rows(description, path, &[])
+    }
+
+    fn rows(
+        &self,
+        description: &Description,
+        path: &Path,
+        outputs: &[Output],
+    ) -> Result<PlantRecord, PlantError> {
         let origin = path.display().to_string();
         let text = read(path)?;
         let mut reader = csv::ReaderBuilder::new()
@@ -122,7 +140,7 @@ impl ColumnMap {
         };
         let header = reader.headers().map_err(csv_fault)?.clone();
         let names: Vec<&str> = header.iter().collect();
-        let places = Places::new(self, description, &names, &origin)?;
+        let places = Places::new(self, description, outputs, (&names[..], origin.as_str()))?;
         let mut record = PlantRecord {
             regressors: vec![Vec::new(); description.regressors.len()],
             ..PlantRecord::default()
@@ -146,6 +164,10 @@ impl ColumnMap {
             }
             for place in &places.outputs {
                 record.outputs.push(field(place, true)?);
+            }
+            if outputs.is_empty() {
+                let all = description.outputs.iter();
+                record.outputs.extend(all.map(Output::within));
             }
             for (values, place) in record.regressors.iter_mut().zip(&places.regressors) {
                 values.push(field(place, false)?);
@@ -185,8 +207,8 @@ impl Places {
     fn new(
         map: &ColumnMap,
         description: &Description,
-        names: &[&str],
-        origin: &str,
+        outputs: &[Output],
+        (names, origin): (&[&str], &str),
     ) -> Result<Self, PlantError> {
         let place = |what: &str, source: &Source| {
             let Scaled {
@@ -231,16 +253,15 @@ impl Places {
             .iter()
             .map(|one| one.id.as_str())
             .collect();
-        let outputs = description
-            .outputs
-            .iter()
-            .map(|one| one.id.as_str())
-            .collect();
+        let outputs: Vec<&str> = outputs.iter().map(|one| one.id.as_str()).collect();
         let regressors = description.regressors.iter().map(String::as_str).collect();
         Ok(Self {
             time: place("time", &map.time)?,
             inputs: all("input", inputs, &map.inputs)?,
-            outputs: all("output", outputs, &map.outputs)?,
+            outputs: match outputs.is_empty() {
+                true => Vec::new(),
+                false => all("output", outputs, &map.outputs)?,
+            },
             regressors: all("regressor", regressors, &map.regressors)?,
         })
     }

@@ -1,7 +1,10 @@
 //! What a program file says of a plant beside its functions.
 
+use core::f64::consts::TAU;
+
 use gyrocal_codegen::Program;
 use gyrocal_codegen::program::{Table, Value};
+use gyrocal_statistics::math::{cos, sin};
 use serde::Deserialize;
 use serde::de::IntoDeserializer as _;
 use serde::de::value::Error as WordError;
@@ -58,6 +61,33 @@ pub struct Output {
     pub sigma: f64,
     /// Readings at or beyond these say nothing.
     pub saturates: Option<[f64; 2]>,
+}
+
+impl Output {
+    /// Whether a reading says nothing.
+    pub(crate) fn is_beyond(&self, value: f64) -> bool {
+        let mut ends = self.saturates.iter();
+        ends.any(|[low, high]| value <= *low || value >= *high)
+    }
+
+    /// A reading that says something.
+    pub(crate) fn within(&self) -> f64 {
+        match self.saturates {
+            Some([low, high]) if low.is_finite() && high.is_finite() => 0.5 * (low + high),
+            Some([low, _]) if low.is_finite() => low + 1.0,
+            Some([_, high]) if high.is_finite() => high - 1.0,
+            _ => 0.0,
+        }
+    }
+}
+
+/// A known period: sine and cosine of it over the logged time are regressors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Period {
+    /// Name.
+    pub id: String,
+    /// The period, s.
+    pub period_s: f64,
 }
 
 /// White noise of a rate.
@@ -152,6 +182,8 @@ pub struct Description {
     pub noises: Vec<Noise>,
     /// Logged quantities.
     pub regressors: Vec<String>,
+    /// Known periods of waves.
+    pub periods: Vec<Period>,
     /// Channels.
     pub channels: Vec<Channel>,
     /// Catalogue.
@@ -228,9 +260,34 @@ impl Description {
             outputs,
             noises,
             regressors: rows(program, "plant_regressors", |row| row.text("id"))?,
+            periods: rows(program, "plant_periods", |row| {
+                Ok(Period {
+                    id: row.text("id")?,
+                    period_s: row.number("period_s")?,
+                })
+            })?,
             channels: rows(program, "plant_channels", channel)?,
             effects: rows(program, "plant_effects", effect)?,
         })
+    }
+}
+
+impl Description {
+    /// Number of logged quantities and of waves.
+    pub(crate) fn regressor_count(&self) -> usize {
+        self.regressors.len() + 2 * self.periods.len()
+    }
+
+    /// The waves at some times: of each period the sine, then the cosine.
+    pub(crate) fn waves(&self, time_s: &[f64]) -> Vec<Vec<f64>> {
+        let of = |wave: fn(f64) -> f64, period_s: f64| -> Vec<f64> {
+            let phases = time_s.iter().map(|time| TAU * (time / period_s));
+            phases.map(wave).collect()
+        };
+        let periods = self.periods.iter();
+        periods
+            .flat_map(|one| [of(sin, one.period_s), of(cos, one.period_s)])
+            .collect()
     }
 }
 

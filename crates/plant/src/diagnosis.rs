@@ -13,6 +13,7 @@ use crate::answer::{
     Comparison, Diagnosis, Estimate, Found, Interval95, LeftOut, NoiseLevel, OutputError,
     RankedEffect, Remainder, Size, Unexplained,
 };
+use crate::cross_validation::cross_validated;
 use crate::diagnosed::Diagnosed;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
@@ -63,6 +64,7 @@ pub(crate) fn diagnose_from(
     let probability = options.false_alarm_probability;
     let mut answer = answer(plant, &searched, &selection, (directions, probability))?;
     answer.still_inputs = still;
+    answer.cross_validation = cross_validated(&searched).unwrap_or_default();
     let mut series = None;
     if let Some(later) = later {
         let (comparison, predicted) = compare(&searched, later, answer.has_findings())?;
@@ -160,7 +162,9 @@ fn answer(
         errors: errors(plant, record, (&nominal, &extended), 0..record.len()),
         horizon_s: horizon_s(plant, record),
         remainder: remainder(plant, fitted)?,
+        cross_validation: None,
         later_record: None,
+        next_runs: Vec::new(),
     })
 }
 

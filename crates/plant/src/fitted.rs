@@ -176,7 +176,7 @@ impl FittedPlant {
     }
 
     /// The model about its fit, with derivatives by the parameters of some lines.
-    fn linearised(&self, lines: &[Line]) -> Result<&Linearised, PlantError> {
+    pub(crate) fn linearised(&self, lines: &[Line]) -> Result<&Linearised, PlantError> {
         let solution = &self.solution;
         let own = &solution.lin.parameters;
         let mut parameters = lines.iter().filter_map(Line::parameter);

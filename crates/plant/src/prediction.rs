@@ -10,7 +10,7 @@ use gyrocal_statistics::rms_of_present;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::catalogue::Modulation;
-use crate::description::Kind;
+use crate::description::{Kind, State};
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
@@ -27,6 +27,11 @@ const HORIZON_ROWS: usize = 50;
 
 /// Standard deviation of an initial state of which nothing is known, over its size.
 const WIDE: f64 = 100.0;
+
+/// Standard deviation of an initial state before a record, finite where nothing is known of it.
+pub(crate) fn least_prior(state: &State, sigma: f64) -> f64 {
+    sigma.min(WIDE * state.initial.abs().max(1.0))
+}
 
 /// Prediction of a later record.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,25 +88,25 @@ impl FittedPlant {
     /// fit's covariance that they have.
     fn carried(&self, later: &PlantRecord) -> Vec<(Line, usize)> {
         let plant = &self.problem.plant;
-        let (n, nominal) = (plant.description.states.len(), self.problem.nominal());
-        let mut lines: Vec<(Line, usize)> = (n..nominal)
-            .map(|place| (Line::Parameter(place - n), place))
-            .collect();
-        let sizes = plant.functions.sizes().parameters;
-        let own = self.extension().parameters.iter().enumerate();
-        for (index, (parameter, _)) in own {
-            let place = nominal + index;
-            let parameter = parameter - n;
-            if parameter < sizes {
-                lines.push((Line::Parameter(parameter), place));
-                continue;
-            }
-            let Some(line) = self.later_line(parameter - sizes, later) else {
-                continue;
-            };
-            lines.push((line, place));
+        let states = plant.description.states.len();
+        let nominal = states..self.problem.nominal();
+        let own = self.extension().parameters.iter();
+        let parameters = nominal.chain(own.map(|(parameter, _)| *parameter));
+        let carried = parameters.zip(states..);
+        carried
+            .filter_map(|(parameter, place)| Some((self.in_later(parameter, later)?, place)))
+            .collect()
+    }
+
+    /// What a parameter of the model, by its index in the table of the plant, is in a later record; `None` of an
+    /// initial state.
+    pub(crate) fn in_later(&self, parameter: usize, later: &PlantRecord) -> Option<Line> {
+        let plant = &self.problem.plant;
+        let parameter = parameter.checked_sub(plant.description.states.len())?;
+        match parameter.checked_sub(plant.functions.sizes().parameters) {
+            None => Some(Line::Parameter(parameter)),
+            Some(modulated) => self.later_line(modulated, later),
         }
-        lines
     }
 
     /// What a function of time is in a later record: a step stays, a drift stays where it was, and a
@@ -197,7 +202,7 @@ impl FittedPlant {
         let sigmas: Vec<f64> = problem.prior_sigma[..n]
             .iter()
             .zip(&plant.description.states)
-            .map(|(sigma, state)| sigma.min(WIDE * state.initial.abs().max(1.0)))
+            .map(|(sigma, state)| least_prior(state, *sigma))
             .collect();
         let solver = Solver {
             problem: &problem,

@@ -24,7 +24,7 @@ pub struct PlantRecord {
     pub inputs: Vec<f64>,
     /// Outputs, by rows; NaN where one is missing.
     pub outputs: Vec<f64>,
-    /// Logged quantities, each over all rows.
+    /// Logged quantities, each over all rows; [`Self::prepared`] adds the waves of known periods.
     pub regressors: Vec<Vec<f64>>,
     /// Their means, which [`Self::prepared`] takes from them.
     pub regressor_means: Vec<f64>,
@@ -185,10 +185,7 @@ impl PlantRecord {
             let own = self.outputs.iter_mut().skip(index).step_by(outputs);
             let mut used = 0;
             for value in own {
-                let is_beyond = output
-                    .saturates
-                    .is_some_and(|[low, high]| *value <= low || *value >= high);
-                if is_beyond || !value.is_finite() {
+                if output.is_beyond(*value) || !value.is_finite() {
                     *value = f64::NAN;
                 }
                 used += usize::from(!value.is_nan());
@@ -198,6 +195,7 @@ impl PlantRecord {
                 return Err(refuse(problem, "check its column and its saturation"));
             }
         }
+        self.regressors.extend(description.waves(&self.time_s));
         for regressor in &mut self.regressors {
             let mean = regressor.iter().sum::<f64>() / rows as f64;
             if !mean.is_finite() {

@@ -2,7 +2,10 @@
 
 use gyrocal_statistics::format::{p_value, significant};
 
-use crate::answer::{Comparison, Diagnosis, Found, OutputError, RecordAnswer, Size, Unexplained};
+use crate::answer::{
+    Comparison, CrossValidation, Diagnosis, Found, NextRun, OutputError, RecordAnswer, Size,
+    Unexplained,
+};
 
 /// Gain on a later record, nats, below which nothing is said of it.
 const LEAST_GAIN: f64 = 3.0;
@@ -47,6 +50,9 @@ impl Diagnosis {
             );
             ("open loop", words)
         }));
+        if let Some(parts) = &self.cross_validation {
+            all.push(("parts", parts.sentence()));
+        }
         if let Some(later) = &self.later_record {
             all.push(("later record", later.sentence(self.has_findings())));
         }
@@ -70,6 +76,8 @@ impl Diagnosis {
             );
             all.push(("inputs", words));
         }
+        let next = self.next_runs.iter();
+        all.extend(next.map(|one| ("next run", one.sentence())));
         all
     }
 
@@ -215,6 +223,72 @@ impl Unexplained {
     }
 }
 
+/// What a gain says of what was found; `tells` are the words for what is left open.
+fn judged(gain_nats: f64, tells: &str) -> String {
+    if gain_nats >= LEAST_GAIN {
+        "what was found holds there".to_owned()
+    } else if gain_nats > -LEAST_GAIN {
+        format!("{tells} nothing of it")
+    } else {
+        "what was found does not hold there".to_owned()
+    }
+}
+
+impl CrossValidation {
+    /// Sum over the parts that can be predicted, nats.
+    #[must_use]
+    pub fn gain_nats(&self) -> f64 {
+        self.gains_nats.iter().flatten().sum()
+    }
+
+    /// The gain in words.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let parts = self.gains_nats.len();
+        let alone = self.gains_nats.iter().filter(|gain| gain.is_none()).count();
+        if alone == parts {
+            return format!(
+                "Without any of {parts} parts the others do not determine what was found."
+            );
+        }
+        let gain = self.gain_nats();
+        let words = format!(
+            "Each of {parts} parts predicted from the others, the gain is {gain:.1} nats: {}.",
+            judged(gain, "they tell")
+        );
+        match alone {
+            0 => words,
+            1 => format!("{words} One part is left out: only there is shown what was found."),
+            more => format!("{words} {more} parts are left out: only they show what was found."),
+        }
+    }
+}
+
+impl NextRun {
+    /// The forecast, a sentence or two.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let told = self.told_apart.iter().map(|one| {
+            format!(
+                " It tells {} from {} with a probability of {} % ({} standard deviations apart, now {}).",
+                one.effect,
+                one.rival,
+                significant(100.0 * one.probability, 2),
+                significant(one.after, 2),
+                significant(one.now, 2),
+            )
+        });
+        format!(
+            "{} ({} rows, {} s) brings standard deviations to {} of what they are (geometric mean).{}",
+            self.name,
+            self.rows,
+            significant(self.duration_s, 4),
+            significant(self.mean_ratio(), 2),
+            told.collect::<String>()
+        )
+    }
+}
+
 impl Comparison {
     /// The gain in words; `has` tells whether anything was found.
     #[must_use]
@@ -236,13 +310,7 @@ impl Comparison {
                 )
             })
             .collect();
-        let judged = if self.gain_nats >= LEAST_GAIN {
-            "what was found holds there"
-        } else if self.gain_nats > -LEAST_GAIN {
-            "the second record tells nothing of it"
-        } else {
-            "what was found does not hold there"
-        };
+        let judged = judged(self.gain_nats, "the second record tells");
         format!(
             "On the second record ({} rows), predicted with the parameters of the first, the gain is {:.1} \
              nats: {judged}. Simulated over {} s, {}.",

@@ -36,6 +36,10 @@ pub(super) struct RecordArguments {
     /// Columns of the later record, if they differ.
     #[arg(long, value_name = "MAP.toml", requires = "validate")]
     validate_columns: Option<PathBuf>,
+    /// Inputs of a run that could be made next (CSV with time and inputs): says what it would tell apart, and how
+    /// much better the parameters would be known. Several are compared.
+    #[arg(long, value_name = "RUN.csv", num_args = 1..)]
+    next: Vec<PathBuf>,
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -64,6 +68,13 @@ pub(super) fn run(
         })
     });
     let records: Vec<NamedRecord> = records.collect::<Result<_, PlantError>>()?;
+    let next = arguments.next.iter().map(|path| {
+        Ok(NamedRecord {
+            name: printable_path(path),
+            record: columns.run(plant.description(), path)?,
+        })
+    });
+    let next: Vec<NamedRecord> = next.collect::<Result<_, PlantError>>()?;
     let later = match &arguments.validate {
         Some(path) => {
             let own = arguments.validate_columns.as_deref().map(ColumnMap::read);
@@ -78,7 +89,8 @@ pub(super) fn run(
     };
     let rows = records.iter().map(|one| one.record.len()).sum();
     let progress = Progress::waiting("diagnosing", rows);
-    let found = diagnose_records(&plant, records, later, &options)?;
+    let mut found = diagnose_records(&plant, records, later, &options)?;
+    found.together.forecast(next)?;
     drop(progress);
     let manifest = manifest("", options.seed, &inputs)?;
     let answer = &found.together.answer;
@@ -145,6 +157,7 @@ fn checked_inputs<'a>(
     inputs.extend(file);
     inputs.extend(arguments.validate.as_deref());
     inputs.extend(arguments.validate_columns.as_deref());
+    inputs.extend(arguments.next.iter().map(PathBuf::as_path));
     let (json, figures) = (arguments.json.as_deref(), arguments.figures.as_deref());
     outputs::check(&inputs, json, figures)?;
     page::check(

@@ -181,3 +181,101 @@ fn several_records_have_one_answer_and_a_report() {
         assert!(errors.contains(words), "{errors}");
     }
 }
+
+#[test]
+fn a_wave_of_a_known_period_is_found() {
+    let folder = Folder::new();
+    let example = |name: &str| repository(&format!("examples/duffing/{name}"));
+    let script = std::fs::read_to_string(example("plant.py")).unwrap();
+    let end = "if __name__";
+    assert!(script.contains(end));
+    let script = script.replace(end, &format!("plant.period(\"shaft\", 3.0)\n\n{end}"));
+    folder.put("plant.py", &script);
+    folder.succeed(&["plant", "derive", "plant.py"]);
+    let text = std::fs::read_to_string(example("record.csv")).unwrap();
+    let mut lines = text.lines();
+    let mut record = format!("{}\n", lines.next().unwrap());
+    for line in lines {
+        let values: Vec<f64> = line
+            .split(',')
+            .map(|value| value.parse().unwrap())
+            .collect();
+        let wave = 0.05 * (core::f64::consts::TAU * values[0] / 3.0 + 0.7).sin();
+        record += &format!("{},{},{}\n", values[0], values[1], values[2] + wave);
+    }
+    folder.put("record.csv", &record);
+    let columns = example("columns.toml").display().to_string();
+    let arguments = [
+        "plant",
+        "diagnose",
+        "plant.json",
+        "record.csv",
+        "--columns",
+        &columns,
+    ];
+    folder.succeed(&[&arguments[..], &["--json", "o.json"]].concat());
+    let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let size = |effect: &str| {
+        let mut all = answer["findings"].as_array().unwrap().iter();
+        let found = all.find(|one| one["effect"] == effect)?;
+        found["sizes"][0]["value"].as_f64()
+    };
+    let amplitude = size("y.shaft.sine")
+        .unwrap()
+        .hypot(size("y.shaft.cosine").unwrap());
+    // Noise of 0.01 in 800 rows: 0.0005.
+    assert!((amplitude - 0.05).abs() < 0.0025, "{amplitude}");
+}
+
+#[test]
+fn runs_that_could_be_made_next_are_compared() {
+    let folder = Folder::new();
+    let example = |name: &str| {
+        repository(&format!("examples/duffing/{name}"))
+            .display()
+            .to_string()
+    };
+    let rows = |force: f64| {
+        let row = |row: i32| {
+            format!(
+                "{},{}\n",
+                0.05 * f64::from(row),
+                force * f64::from(row % 40 / 20)
+            )
+        };
+        format!("time_s,drive_n\n{}", (0..400).map(row).collect::<String>())
+    };
+    folder.put("weak.csv", &rows(0.1));
+    folder.put("strong.csv", &rows(3.0));
+    let [plant, record, columns] = ["plant.json", "record.csv", "columns.toml"].map(example);
+    let arguments = [
+        "plant",
+        "diagnose",
+        &plant,
+        &record,
+        "--columns",
+        &columns,
+        "--next",
+        "weak.csv",
+        "strong.csv",
+    ];
+    let printed = folder.succeed(&[&arguments[..], &["--json", "o.json"]].concat());
+    assert!(
+        printed.contains("brings standard deviations to"),
+        "{printed}"
+    );
+    let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let names = answer["next_runs"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|run| &run["name"]);
+    assert_eq!(names.collect::<Vec<_>>(), ["strong.csv", "weak.csv"]);
+    assert_eq!(
+        answer["cross_validation"]["gains_nats"]
+            .as_array()
+            .unwrap()
+            .len(),
+        6
+    );
+}

@@ -1,0 +1,317 @@
+//! What a run that has not been made would tell: standard deviations after it, and whether what may be the cause
+//! is told apart.
+//!
+//! The run is simulated by the model with all findings. Information of its rows on parameters and effects is
+//! added to that of the records (Lindley, Ann. Math. Stat. 27, 986, 1956; Box and Hill, Technometrics 9, 57,
+//! 1967).
+
+use std::sync::Arc;
+
+use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, FittedModel as _};
+use gyrocal_scalar::effect::Effect;
+use gyrocal_statistics::math::{exp, ln};
+use gyrocal_statistics::normal_probability;
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::answer::{Found, NextRun, NextSigma, ToldApart};
+use crate::diagnosed::Diagnosed;
+use crate::error::PlantError;
+use crate::fitted::FittedPlant;
+use crate::later_starts::eliminated;
+use crate::lines::{Course, Line};
+use crate::pass::{Keep, reduce};
+use crate::prediction::least_prior;
+use crate::problem::Problem;
+use crate::record::PlantRecord;
+use crate::several::NamedRecord;
+use crate::solve::Solver;
+
+/// Information on parameters of the model, by their index in the table of the plant, from the records and from a run.
+struct Informed<'a> {
+    fitted: &'a FittedPlant,
+    /// Parameters of the model: nominal ones, then those of effects.
+    unknowns: Vec<usize>,
+    now: DMatrix<f64>,
+    after: DMatrix<f64>,
+}
+
+impl Diagnosed {
+    /// Adds forecasts of runs that could be made next to the answer. A run has the inputs of its record and begins
+    /// with the initial states of the first one; its outputs are not used. Effects that begin at one time belong to
+    /// their record and are not in it.
+    ///
+    /// # Errors
+    /// [`PlantError::Input`] of a run in which the model leaves the numbers, [`PlantError::Singular`].
+    pub fn forecast(&mut self, runs: Vec<NamedRecord>) -> Result<(), PlantError> {
+        let forecasts = runs.into_iter().map(|run| self.next_run(run));
+        let mut forecasts: Vec<NextRun> = forecasts.collect::<Result<_, _>>()?;
+        forecasts.sort_by(|a, b| {
+            let told = b.least_probability().total_cmp(&a.least_probability());
+            told.then(a.mean_ratio().total_cmp(&b.mean_ratio()))
+        });
+        self.answer.next_runs = forecasts;
+        Ok(())
+    }
+
+    fn next_run(&self, run: NamedRecord) -> Result<NextRun, PlantError> {
+        let NamedRecord { name, record: run } = run;
+        let fitted = &self.searched.fitted;
+        let (rows, duration_s) = (run.len(), run.duration_s());
+        let informed =
+            Informed::new(fitted, &self.answer.findings, run).map_err(|error| match error {
+                PlantError::NotFinite { row } => PlantError::Input {
+                    origin: name.clone(),
+                    problem: format!("the model gives no finite numbers from row {row} on"),
+                    advice: "give inputs that the plant bears".to_owned(),
+                },
+                other => other,
+            })?;
+        Ok(NextRun {
+            name,
+            rows,
+            duration_s,
+            sigmas: informed.sigmas(self)?,
+            told_apart: informed.told_apart(&self.answer.findings),
+        })
+    }
+}
+
+impl NextRun {
+    /// The smallest probability with which a rival leaves its set; one without rivals.
+    fn least_probability(&self) -> f64 {
+        let all = self.told_apart.iter().map(|one| one.probability);
+        all.fold(1.0, f64::min)
+    }
+
+    /// Geometric mean of the standard deviations after the run over those before.
+    #[must_use]
+    pub fn mean_ratio(&self) -> f64 {
+        let ratios = self.sigmas.iter().map(|one| ln(one.after / one.now));
+        exp(ratios.sum::<f64>() / self.sigmas.len().max(1) as f64)
+    }
+}
+
+/// An effect whose columns another record has too.
+fn lasting(fitted: &FittedPlant, effect: &str) -> Option<&'static Effect> {
+    let row = fitted.plant().effect(effect)?;
+    (row.has_term() && row.shape().is_none()).then_some(row)
+}
+
+impl<'a> Informed<'a> {
+    fn new(
+        fitted: &'a FittedPlant,
+        findings: &[Found],
+        run: PlantRecord,
+    ) -> Result<Self, PlantError> {
+        let description = &fitted.loaded().description;
+        let states = description.states.len();
+        let mut unknowns: Vec<usize> = (states..fitted.problem.nominal()).collect();
+        let own = fitted.extension().parameters.iter();
+        unknowns.extend(own.map(|(parameter, _)| *parameter));
+        let rivals = findings.iter().flat_map(|found| &found.rivals);
+        for row in rivals.filter_map(|(rival, _)| lasting(fitted, rival)) {
+            unknowns.extend(row.model_parameters());
+        }
+        let mut seen = Vec::with_capacity(unknowns.len());
+        unknowns.retain(|parameter| {
+            let new = !seen.contains(parameter);
+            seen.push(*parameter);
+            new
+        });
+        let sigmas = &fitted.problem.prior_sigma[..states];
+        let pairs = description.states.iter().zip(sigmas);
+        let sigmas: Vec<f64> = pairs
+            .map(|(state, sigma)| least_prior(state, *sigma))
+            .collect();
+        // What belongs to the record comes last, to be eliminated: its initial states, and its own columns.
+        let table = fitted.plant().parameters.len();
+        let own = &fitted.extension().columns;
+        let parameters = unknowns.iter().copied().chain(0..states);
+        let places = parameters.chain(table..table + own.columns().len());
+        let columns: Vec<usize> = core::iter::once(0)
+            .chain(places.map(|place| place + 1))
+            .collect();
+        let gram = fitted.signatures_gram(&[])?;
+        let gram = gram.select_rows(&columns).select_columns(&columns);
+        let mut now = without_last(gram, &[&sigmas, own.sigmas()].concat())?;
+        for (place, parameter) in unknowns.iter().enumerate() {
+            if let Some(sigma) = fitted.problem.prior_sigma.get(*parameter) {
+                now[(place, place)] += sigma.powi(-2);
+            }
+        }
+        let run = without_last(fitted.gram_of(run, &unknowns)?, &sigmas)?;
+        Ok(Self {
+            fitted,
+            unknowns,
+            after: &now + run,
+            now,
+        })
+    }
+
+    fn places(&self, row: &Effect) -> Option<Vec<usize>> {
+        let place = |parameter| self.unknowns.iter().position(|own| *own == parameter);
+        row.model_parameters().map(place).collect()
+    }
+
+    /// Places of what is in the fitted model.
+    fn fitted_places(&self) -> Vec<usize> {
+        let count = self.fitted.loaded().description.parameters.len();
+        (0..count + self.fitted.extension().parameters.len()).collect()
+    }
+
+    /// Of parameters and of the sizes of findings.
+    fn sigmas(&self, diagnosed: &Diagnosed) -> Result<Vec<NextSigma>, PlantError> {
+        let places = self.fitted_places();
+        let variances = |all: &DMatrix<f64>| {
+            let own = all.select_rows(&places).select_columns(&places);
+            let cholesky = Cholesky::new(own).ok_or(PlantError::Singular)?;
+            Ok::<_, PlantError>(cholesky.inverse().diagonal())
+        };
+        let (now, after) = (variances(&self.now)?, variances(&self.after)?);
+        let ratio = |place: usize| (after[place] / now[place]).sqrt();
+        let forecast = |name: String, unit: &str, sigma: f64, place: usize| NextSigma {
+            name,
+            unit: unit.to_owned(),
+            now: sigma,
+            after: sigma * ratio(place),
+        };
+        let answer = &diagnosed.answer;
+        let parameters = answer.parameters.iter().zip(0..);
+        let count = self.fitted.loaded().description.parameters.len();
+        let mut all: Vec<NextSigma> = parameters
+            .take(count)
+            .map(|(one, place)| forecast(one.name.clone(), &one.unit, one.sigma, place))
+            .collect();
+        for found in &answer.findings {
+            let row = lasting(self.fitted, &found.effect);
+            let places = row.and_then(|row| self.places(row)).unwrap_or_default();
+            for (size, place) in found.sizes.iter().zip(places) {
+                if let Some(sigma) = size.sigma {
+                    let name = format!("{} {}", found.effect, size.name);
+                    all.push(forecast(name, &size.unit, sigma, place));
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// Each named effect against each of its rivals.
+    fn told_apart(&self, findings: &[Found]) -> Vec<ToldApart> {
+        let mut all = Vec::new();
+        for found in findings {
+            let named = lasting(self.fitted, &found.effect);
+            let Some(named) = named.and_then(|row| self.places(row)) else {
+                continue;
+            };
+            for (rival, _) in &found.rivals {
+                let row = lasting(self.fitted, rival).and_then(|row| self.places(row));
+                let distances = row.and_then(|rival| {
+                    let [now, after] = [&self.now, &self.after];
+                    Some([
+                        self.distance(now, &named, &rival)?,
+                        self.distance(after, &named, &rival)?,
+                    ])
+                });
+                let Some([now, after]) = distances else {
+                    continue;
+                };
+                // The deviance between both is normal about the squared distance, with twice it as deviation.
+                let beyond = (after * after - CONFIDENCE_SET_DEVIANCE) / (2.0 * after);
+                all.push(ToldApart {
+                    effect: found.effect.clone(),
+                    rival: rival.clone(),
+                    now,
+                    after,
+                    probability: if after > 0.0 {
+                        normal_probability(beyond)
+                    } else {
+                        0.0
+                    },
+                });
+            }
+        }
+        all
+    }
+
+    /// How far the named effect at its size is from the best fit with its rival in its place, in standard deviations.
+    fn distance(&self, all: &DMatrix<f64>, named: &[usize], rival: &[usize]) -> Option<f64> {
+        let mut beside = self.fitted_places();
+        beside.retain(|place| !named.contains(place));
+        beside.extend(rival.iter().filter(|place| !named.contains(place)));
+        let inner = all.select_rows(&beside).select_columns(&beside);
+        let cross = all.select_rows(&beside).select_columns(named);
+        let own = all.select_rows(named).select_columns(named);
+        let left = own - cross.tr_mul(&Cholesky::new(inner)?.solve(&cross));
+        let value = |place: &usize| self.fitted.value_of(self.unknowns[*place]);
+        let sizes = DVector::from_iterator(named.len(), named.iter().map(value));
+        Some((&left * &sizes).dot(&sizes).max(0.0).sqrt())
+    }
+}
+
+/// Information of a Gram matrix on all but its last columns, which have these standard deviations before it.
+fn without_last(gram: DMatrix<f64>, sigmas: &[f64]) -> Result<DMatrix<f64>, PlantError> {
+    let left = eliminated(gram, &vec![0.0; sigmas.len()], sigmas)?;
+    let count = left.nrows() - 1;
+    Ok(left.view((1, 1), (count, count)).into_owned())
+}
+
+impl FittedPlant {
+    /// Value of a parameter of the model in the fit; zero of an effect that is not in it.
+    fn value_of(&self, parameter: usize) -> f64 {
+        let nominal = self.problem.nominal();
+        if parameter < nominal {
+            return self.values()[parameter];
+        }
+        let mut own = self.extension().parameters.iter();
+        let place = own.position(|(other, _)| *other == parameter);
+        place.map_or(0.0, |place| self.values()[nominal + place])
+    }
+
+    /// Gram matrix of a run that the model simulates: nothing, columns of parameters of the model, initial states.
+    fn gram_of(
+        &self,
+        mut run: PlantRecord,
+        unknowns: &[usize],
+    ) -> Result<DMatrix<f64>, PlantError> {
+        let plant = &self.problem.plant;
+        let (states, outputs) = (plant.description.states.len(), &plant.description.outputs);
+        run.outputs.fill(0.0);
+        let run = Arc::new(run);
+        let problem = Problem::new(plant, Arc::clone(&run), self.problem.substeps);
+        let mut base = Course::declared(plant);
+        let mut lines = Vec::with_capacity(unknowns.len() + states);
+        for parameter in unknowns {
+            let line = self.in_later(*parameter, &run);
+            // What another record does not have is a change of nothing.
+            let line = line.unwrap_or_else(|| Line::Output(0, Arc::from([])));
+            base.add(&line, self.value_of(*parameter));
+            lines.push(line);
+        }
+        lines.extend((0..states).map(Line::Start));
+        let solver = Solver {
+            problem: &problem,
+            lines: Vec::new(),
+            sigmas: Vec::new(),
+            noise: problem.variances(&self.ratios),
+            parameters: Line::parameters(&lines),
+            base,
+        };
+        let mut dynamics = solver.dynamics();
+        let initial = problem.initial(&self.values()[..states]);
+        let points = dynamics.simulate(&solver.base, &initial);
+        if let Some(place) = points.iter().position(|value| !value.is_finite()) {
+            return Err(PlantError::NotFinite {
+                row: place / states + 1,
+            });
+        }
+        let mut lin = dynamics.linearise(&solver.base, &points)?;
+        for (residual, output) in lin.residuals.iter_mut().zip(outputs.iter().cycle()) {
+            let simulated = -*residual;
+            if output.is_beyond(simulated) {
+                *residual = f64::NAN;
+            }
+        }
+        let reduced = reduce(&lin, &solver.noise, &lines, Keep::Nothing);
+        Ok(reduced.ok_or(PlantError::Singular)?.gram)
+    }
+}
