@@ -238,7 +238,8 @@ mod tests {
             accel_g: vec![[0.0, 0.0, 1.0]; 100],
             temperature_c: Some((0..100).map(|row| temperature(f64::from(row))).collect()),
         };
-        let correlation = |record: Record| time_and_temperature(&record, &[0..100]);
+        let correlation =
+            |record: Record| time_and_temperature(&record, core::slice::from_ref(&(0..100)));
         let rising = correlation(record(|t| 20.0 + 0.1 * t + (0.3 * t).sin()));
         let turning = correlation(record(|t| 20.0 + (0.3 * t).sin()));
         assert_eq!(correlation(record(|_| 20.0)), None);

@@ -140,7 +140,7 @@ fn a_ramp_of_a_gyro_of_the_body_is_named_with_the_law_in_its_axes() {
         assert!((size.estimate - RAMP).abs() < 4.0 * size.sigma.unwrap());
     }
     let mut with_later = found.result.clone();
-    with_later.later_record = Some(with_later.record.clone());
+    with_later.later_record = Some(with_later.record);
     assert_eq!(
         files(with_later, "r.csv b.toml l.csv lb.toml a.csv la.csv"),
         "r.csv --bench b.toml --gyro-axes a.csv"

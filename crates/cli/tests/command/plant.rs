@@ -254,8 +254,8 @@ fn runs_that_could_be_made_next_are_compared() {
         };
         format!("time_s,drive_n\n{}", (0..400).map(row).collect::<String>())
     };
-    folder.put("weak.csv", &rows(0.1));
-    folder.put("strong.csv", &rows(3.0));
+    folder.put("weak.csv", rows(0.1));
+    folder.put("strong.csv", rows(3.0));
     let [plant, record, columns] = ["plant.json", "record.csv", "columns.toml"].map(example);
     let arguments = [
         "plant",
