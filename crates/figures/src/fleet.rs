@@ -96,14 +96,26 @@ fn measured_by<T: for<'a> Deserialize<'a>>(python: &Path, arguments: &[&str]) ->
     )?)
 }
 
-/// The same of a measurement that takes minutes: what was measured of this wheel by these scripts, with these
-/// packages on this processor, is kept.
+/// Files of the installed package. The wheel that they come in has a list of its parts with a number of its own.
+fn installed() -> Result<Vec<PathBuf>, Error> {
+    let mut pythons = std::fs::read_dir(folder().join("environment/lib"))?;
+    let python = pythons.next().ok_or("the environment has no library")??;
+    let package = python.path().join("site-packages/gyrocal");
+    let files = std::fs::read_dir(package)?.map(|entry| Ok(entry?.path()));
+    let mut files = files.collect::<Result<Vec<PathBuf>, Error>>()?;
+    files.retain(|path| path.is_file());
+    files.sort();
+    Ok(files)
+}
+
+/// The same of a measurement that takes minutes: what was measured of this package by these scripts, with these
+/// other packages on this processor, is kept.
 fn measured_once<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Error> {
     let mut measures = DefaultHasher::new();
     timing::processor().hash(&mut measures);
     let files = ["measure.py", "measure_fleet.py", "requirements-test.lock"];
     let files = files.map(|name| root().join(PACKAGE).join(name));
-    for file in files.iter().chain([&wheel()?]) {
+    for file in files.into_iter().chain(installed()?) {
         std::fs::read(file)?.hash(&mut measures);
     }
     let name = format!(
