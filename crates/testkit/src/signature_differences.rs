@@ -32,9 +32,8 @@ const LEAST_PART: f64 = 1e-3;
 pub struct Compared {
     /// Id of the parameter, with onset, time constant or axis.
     pub name: String,
-    /// Whether it is of a quantity that is estimated from the rows of the temperature: its rate of change, which
-    /// is a slope over many rows, or its hysteresis, which gaps hide.
-    pub is_from_rows: bool,
+    /// Whether it is of the rate of change of the temperature, which is estimated as a slope over many rows.
+    pub is_of_slope: bool,
     /// Norm of the difference over that of the finite difference, both whitened.
     pub error: f64,
     /// The same with the nine coefficients projected out; `None` if next to nothing is left.
@@ -117,7 +116,7 @@ pub fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
         let part = left[(b, b)] / gram[(b, b)];
         Compared {
             name: probe.name.clone(),
-            is_from_rows: is_from_rows(probe.effect),
+            is_of_slope: is_of_slope(probe.effect),
             error: relative(&gram, a, b),
             projected: (part > LEAST_PART * LEAST_PART).then(|| relative(&left, a, b)),
         }
@@ -125,10 +124,9 @@ pub fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
     Ok(compared.collect())
 }
 
-fn is_from_rows(id: &str) -> bool {
+fn is_of_slope(id: &str) -> bool {
     let mut own = EFFECTS.iter().filter(|effect| effect.id == id);
-    let estimated = ["temperature_rate_k_per_h", "temperature_hysteresis_k"];
-    own.any(|effect| estimated.iter().any(|name| effect.formula.contains(name)))
+    own.any(|effect| effect.formula.contains("temperature_rate_k_per_h"))
 }
 
 /// Norm of the difference of two columns over that of the second.

@@ -15,9 +15,10 @@ const FEW: u64 = 2;
 /// Largest difference of a signature to a finite difference, relative to its norm.
 const TARGET: f64 = 1e-3;
 
-/// The same of quantities that are estimated from the rows of the temperature: the slope over forty minutes loses a
-/// hundredth of waves of six hours, the fastest of the temperature. The records have no gaps.
-const TARGET_FROM_ROWS: f64 = 0.01;
+/// The same of the rate of change of the temperature. Its slope over forty minutes loses 0.012 of a wave of six
+/// hours, the fastest. At both ends of a record it is up to ten minutes off the row, where it errs by up to 0.17:
+/// about 0.01 over three days. The records have no gaps.
+const TARGET_OF_SLOPE: f64 = 0.02;
 
 pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let scenarios = if small { FEW } else { SCENARIOS };
@@ -42,16 +43,16 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         figure.measured = format!("{error:.1e} ({of})");
         figure.over(errors.len(), seeds.clone())
     };
-    let errors = |is_from_rows: bool| -> Vec<(f64, &str)> {
-        let own = all.iter().filter(|one| one.is_from_rows == is_from_rows);
+    let errors = |is_of_slope: bool| -> Vec<(f64, &str)> {
+        let own = all.iter().filter(|one| one.is_of_slope == is_of_slope);
         own.map(|one| (one.error, &*one.name)).collect()
     };
-    let estimated = errors(true);
+    let slopes = errors(true);
     let errors = errors(false);
     let count = errors.len() / scenarios as usize;
     let projected: Vec<(f64, &str)> = all
         .iter()
-        .filter(|one| !one.is_from_rows)
+        .filter(|one| !one.is_of_slope)
         .filter_map(|one| Some((one.projected?, &*one.name)))
         .collect();
     let mut left = figure(
@@ -72,9 +73,9 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         ),
         left,
         figure(
-            "signatures of rate and hysteresis of a logged temperature: the same difference",
-            TARGET_FROM_ROWS,
-            &estimated,
+            "signatures of the rate of a logged temperature: the same difference",
+            TARGET_OF_SLOPE,
+            &slopes,
         ),
     ])
 }
