@@ -16,10 +16,10 @@ use crate::prediction::least_prior;
 const PARTS: usize = 6;
 
 /// Log density of each part given the others with the findings, less that without them. Both models have the
-/// noise of the one with the findings. `None` where nothing was found.
+/// noise of the one with the findings, each about its own fit. `None` where nothing was found.
 ///
 /// # Errors
-/// [`PlantError::Singular`], and as a fit of the nominal model with that noise.
+/// [`PlantError::Singular`].
 pub(crate) fn cross_validated(
     searched: &Searched<FittedPlant>,
 ) -> Result<Option<CrossValidation>, PlantError> {
@@ -27,9 +27,8 @@ pub(crate) fn cross_validated(
         return Ok(None);
     }
     let extended = &searched.fitted;
-    let nominal = searched.nominal.with_rate_noise(&extended.rate_noise())?;
-    let before = nominal.part_scores()?;
-    let after = extended.part_scores()?;
+    let before = searched.nominal.part_scores(&extended.ratios)?;
+    let after = extended.part_scores(&extended.ratios)?;
     let pairs = before.into_iter().zip(after);
     Ok(Some(CrossValidation {
         gains_nats: pairs
@@ -40,12 +39,17 @@ pub(crate) fn cross_validated(
 
 impl FittedPlant {
     /// Logarithm of the density of each part given the others, nats; `None` of a part without which the others do
-    /// not determine all unknowns.
-    fn part_scores(&self) -> Result<Vec<Option<f64>>, PlantError> {
-        let whole = self.log_evidence(0..0)?.ok_or(PlantError::Singular)?;
+    /// not determine all unknowns. Noise has these standard deviations over the declared ones.
+    fn part_scores(&self, ratios: &[f64]) -> Result<Vec<Option<f64>>, PlantError> {
+        let whole = self.log_evidence(0..0, ratios)?;
+        let whole = whole.ok_or(PlantError::Singular)?;
         let parts = self.parts().into_iter();
         parts
-            .map(|rows| Ok(self.log_evidence(rows)?.map(|others| whole - others)))
+            .map(|rows| {
+                Ok(self
+                    .log_evidence(rows, ratios)?
+                    .map(|others| whole - others))
+            })
             .collect()
     }
 
@@ -60,9 +64,13 @@ impl FittedPlant {
 
     /// Logarithm of the density of all outputs but those of some rows, states and unknowns integrated out, up to what
     /// all rows have in common; `None` if they do not determine the unknowns.
-    fn log_evidence(&self, without: Range<usize>) -> Result<Option<f64>, PlantError> {
+    fn log_evidence(
+        &self,
+        without: Range<usize>,
+        ratios: &[f64],
+    ) -> Result<Option<f64>, PlantError> {
         let lines = self.lines();
-        let noise = self.problem.variances(&self.ratios);
+        let noise = self.problem.variances(ratios);
         let mut lin = self.linearised(&lines)?.clone();
         let outputs = noise.outputs.len();
         lin.residuals[without.start * outputs..without.end * outputs].fill(f64::NAN);
