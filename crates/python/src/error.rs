@@ -1,5 +1,7 @@
 //! Failures as plain data, and the exceptions that they become.
 
+use std::fmt::Display;
+
 use miette::Diagnostic;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict as _, PyDict};
@@ -42,6 +44,14 @@ pub(crate) struct Failure {
 pub(crate) type Outcome<T> = Result<T, Failure>;
 
 impl Failure {
+    /// A failure with nothing but its words.
+    pub(crate) fn of_text(error: &impl Display) -> Self {
+        Self {
+            message: error.to_string(),
+            ..Self::default()
+        }
+    }
+
     /// A value other than expected, at a place in words such as "column `time_s` of <DataFrame>".
     pub(crate) fn of_value(
         place: &str,

@@ -11,7 +11,6 @@ use pyo3::prelude::*;
 
 use crate::error::{Class, Failure, Outcome};
 use crate::origin::{json, manifest};
-use crate::report::refused;
 
 /// A plant that is ready to be fitted.
 #[pyclass(frozen, name = "Plant", module = "gyrocal._gyrocal")]
@@ -168,7 +167,7 @@ impl HeldPlant {
         let record = self.record(record)?;
         let later = later.map(|later| self.record(later)).transpose()?;
         let diagnosed = diagnose(&self.plant, record, later, options)?;
-        let part = of_plant(&diagnosed, &name, &manifest).map_err(|error| refused(&error));
+        let part = of_plant(&diagnosed, &name, &manifest).map_err(|error| Failure::of_text(&error));
         let sentences = json(&diagnosed.answer.sentences())?;
         let result = json(&ResultFile::new(manifest, diagnosed.answer))?;
         Ok((result, sentences, HeldPage { part }))

@@ -1,7 +1,5 @@
 //! Pages of results.
 
-use std::fmt::Display;
-
 use gyrocal_design::PlanResult;
 use gyrocal_diagnosis::result::read_text;
 use gyrocal_fleet::FleetResult;
@@ -32,7 +30,9 @@ pub(crate) fn report(
 fn html(results: &[Given<'_>]) -> Outcome<String> {
     let parts = results.iter().copied().map(part);
     let parts: Vec<Part> = parts.collect::<Outcome<_>>()?;
-    page(parts).to_html().map_err(|error| refused(&error))
+    page(parts)
+        .to_html()
+        .map_err(|error| Failure::of_text(&error))
 }
 
 fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
@@ -40,7 +40,7 @@ fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
         "Diagnosis" => of_result(&read_text(&SourceText::new(result, kind)?)?),
         // Charts over time need the records.
         "Calibration" => of_calibration(&read::<CalibrationReport>(result)?, &[])
-            .map_err(|error| refused(&error))?,
+            .map_err(|error| Failure::of_text(&error))?,
         "Plan" => of_plan(&read::<PlanResult>(result)?),
         "Fleet" => of_fleet(&read::<FleetResult>(result)?),
         "PlantDiagnosis" => match page {
@@ -65,14 +65,7 @@ fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
     })
 }
 
-pub(crate) fn refused(error: &impl Display) -> Failure {
-    Failure {
-        message: error.to_string(),
-        ..Failure::default()
-    }
-}
-
 fn read<T: DeserializeOwned>(text: &str) -> Outcome<T> {
     serde_json::from_str(text)
-        .map_err(|error| refused(&format!("the result cannot be read: {error}")))
+        .map_err(|error| Failure::of_text(&format!("the result cannot be read: {error}")))
 }
