@@ -167,7 +167,6 @@ pub fn noise_of(diagnosis: &DiagnosisResult) -> NoiseModel {
 }
 
 /// The noise with the random walks among some causes that it does not have.
-/// The noise with the random walks among some causes.
 fn with_walks(noise: &NoiseModel, named: &[NamedCause]) -> Result<NoiseModel, DesignError> {
     let mut noise = noise.clone();
     for named in named {

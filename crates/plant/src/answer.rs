@@ -50,8 +50,7 @@ pub struct Diagnosis {
     pub horizon_s: f64,
     /// What is left.
     pub remainder: Vec<Remainder>,
-    /// Gain within the records; `None` where nothing was found, and where the nominal model cannot be fitted with
-    /// the noise that is left.
+    /// Gain within the records; `None` where nothing was found.
     pub cross_validation: Option<CrossValidation>,
     /// Gain on a later record.
     pub later_record: Option<Comparison>,

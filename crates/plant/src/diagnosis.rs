@@ -64,7 +64,7 @@ pub(crate) fn diagnose_from(
     let probability = options.false_alarm_probability;
     let mut answer = answer(plant, &searched, &selection, (directions, probability))?;
     answer.still_inputs = still;
-    answer.cross_validation = cross_validated(&searched).unwrap_or_default();
+    answer.cross_validation = cross_validated(&searched)?;
     let mut series = None;
     if let Some(later) = later {
         let (comparison, predicted) = compare(&searched, later, answer.has_findings())?;
