@@ -42,13 +42,11 @@ impl FittedPlant {
     /// not determine all unknowns. Noise has these standard deviations over the declared ones.
     fn part_scores(&self, ratios: &[f64]) -> Result<Vec<Option<f64>>, PlantError> {
         let whole = self.log_evidence(0..0, ratios)?;
-        let whole = whole.ok_or(PlantError::Singular)?;
         let parts = self.parts().into_iter();
         parts
             .map(|rows| {
-                Ok(self
-                    .log_evidence(rows, ratios)?
-                    .map(|others| whole - others))
+                let others = self.log_evidence(rows, ratios)?;
+                Ok(whole.zip(others).map(|(whole, others)| whole - others))
             })
             .collect()
     }
