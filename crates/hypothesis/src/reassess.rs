@@ -10,7 +10,7 @@ use crate::replaced::{Replaced, replaceable};
 use crate::result::{ConditionalResult, add_shape_intervals, evaluate};
 use crate::score::Best;
 use crate::state::{SearchState, stage};
-use crate::walk_candidates::Rival;
+use crate::walk_candidates::{BESIDE_WALKS, Rival};
 
 /// Swaps names and removes insignificant effects until nothing changes; the conditional result of
 /// each effect that remains.
@@ -22,6 +22,11 @@ pub(crate) fn reassess<F: FittedModel>(
     draws: &mut GaussianDraws,
 ) -> Result<Vec<ConditionalResult>, F::Error> {
     let mut swaps = 0;
+    // An effect beside walks must gain more, whenever it came into the model.
+    let least = match state.stage.noise.noise.walking().is_empty() {
+        true => threshold,
+        false => threshold + BESIDE_WALKS,
+    };
     let mut replaced: Vec<Replaced> = Vec::new();
     loop {
         let mut results = Vec::with_capacity(state.accepted.len());
@@ -62,7 +67,7 @@ pub(crate) fn reassess<F: FittedModel>(
         }
         match weakest {
             Some((index, strength))
-                if strength <= threshold && state.accepted.len() + state.unmodelled.len() > 1 =>
+                if strength <= least && state.accepted.len() + state.unmodelled.len() > 1 =>
             {
                 state.accepted.remove(index);
                 let unmodelled = &state.unmodelled;

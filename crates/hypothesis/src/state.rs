@@ -30,8 +30,8 @@ impl<F> SearchState<F> {
         }
     }
 
-    /// Penalties of all effects and unmodelled terms for having been searched for, but for the first
-    /// `free`: the threshold, the search penalty and a margin for each.
+    /// Penalties of all effects and unmodelled terms for having been searched for: the search penalty of
+    /// each, and but for the first `free` the threshold and a margin.
     pub(crate) fn penalties(&self, threshold: f64, margin: f64, free: usize) -> f64 {
         self.penalties_of(|_| true, threshold, margin, free)
     }
@@ -62,8 +62,12 @@ impl<F> SearchState<F> {
         let effects = effects.map(|accepted| accepted.penalty);
         let unmodelled = self.unmodelled.iter();
         let unmodelled = unmodelled.map(|found| found.statistic - found.equivalent());
-        let each = effects.chain(unmodelled).skip(free);
-        each.map(|penalty| threshold + penalty + margin).sum()
+        let each = effects.chain(unmodelled).enumerate();
+        each.map(|(place, penalty)| match place {
+            place if place < free => penalty,
+            _ => threshold + penalty + margin,
+        })
+        .sum()
     }
 }
 

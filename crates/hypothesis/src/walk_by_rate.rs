@@ -13,7 +13,7 @@ use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::state::{SearchState, settled};
 use crate::walk_candidates::{
-    BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, alternatives, needed,
+    BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, needed, with_their_sets,
 };
 
 /// Most effects in the place of one walk: a slow one, and one whose onset it hides.
@@ -92,11 +92,10 @@ pub(crate) fn replaced<F: FittedModel>(
                 .filter(|other| other.advantage > -BESIDE_WALKS);
             let in_place_of = in_place_of.map(|other| {
                 let deficit = 0.5 * (BESIDE_WALKS - other.advantage);
-                let added = &other.state.accepted[state.accepted.len()..];
-                let ids = added
-                    .iter()
-                    .map(|own| context.set.hypotheses[own.hypothesis].id());
-                let effects = alternatives(ids, deficit, &other.state.stage.fitted);
+                let added: Vec<usize> =
+                    (state.accepted.len()..other.state.accepted.len()).collect();
+                let own = context.of_rate(other.walk.rate);
+                let effects = with_their_sets(&own, &other.state, &added, deficit, draws);
                 (other.walk.rate, effects)
             });
             return Ok(ByRate {

@@ -4,11 +4,14 @@ use gyrocal_scalar::effect::Effect;
 use gyrocal_statistics::chi_square_tail;
 
 use crate::bank::NominalEstimate;
+use crate::by_fits::Compared;
 use crate::context::SearchContext;
 use crate::finding::Alternative;
 use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
+use crate::null_distribution::GaussianDraws;
 use crate::rate_noise::RateNoiseFit;
+use crate::result::evaluate;
 use crate::score::Ranked;
 use crate::state::SearchState;
 
@@ -119,6 +122,41 @@ pub(crate) fn alternatives<F: FittedModel>(
         nominal: Some(nominal.clone()),
     })
     .collect()
+}
+
+/// Effects of a model as members of the set of a walk, with all that could be in the place of each: `of` are
+/// their places among those of the model, `deficit` is what the walk is better by.
+pub(crate) fn with_their_sets<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &SearchState<F>,
+    of: &[usize],
+    deficit: f64,
+    draws: &mut GaussianDraws,
+) -> Vec<Alternative> {
+    let hypotheses = &context.set.hypotheses;
+    let named = of
+        .iter()
+        .map(|index| hypotheses[state.accepted[*index].hypothesis].id());
+    let mut members = alternatives(named, deficit, &state.stage.fitted);
+    for index in of {
+        let compared = Compared {
+            stage: &state.stage,
+            accepted: &state.accepted,
+            unmodelled: &state.unmodelled,
+            index: *index,
+        };
+        // Without its set an effect stands alone.
+        let Ok(result) = evaluate(&compared, context, draws) else {
+            continue;
+        };
+        for mut other in result.finding.alternatives {
+            if members.iter().all(|member| member.effect != other.effect) {
+                other.log_likelihood_deficit += deficit;
+                members.push(other);
+            }
+        }
+    }
+    members
 }
 
 /// Probability that walks of so many rates gain as much where there are none: each variance is zero

@@ -18,6 +18,7 @@ use crate::state::{SearchState, settled, stage};
 use crate::walk_by_rate::{ByRate, replaced};
 use crate::walk_candidates::{
     BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, alternatives, needed,
+    with_their_sets,
 };
 
 /// Advantage of effects over a walk in the place of one of them, the shapes of the others held, above
@@ -124,8 +125,9 @@ pub(crate) fn compare<F: FittedModel>(
         compared.walks.rivals.push(rival);
         return Ok(compared);
     }
-    let rivals = if advantage > 0.0 {
-        effects_in_place(context, &state, &walking, 0.5 * (BESIDE_WALKS - advantage))
+    let rivals = if advantage > -BESIDE_WALKS {
+        let deficit = 0.5 * (BESIDE_WALKS - advantage);
+        effects_in_place(context, &state, &walking, deficit, draws)
     } else {
         Vec::new()
     };
@@ -205,10 +207,20 @@ fn effects_in_place<F: FittedModel>(
     state: &SearchState<F>,
     walking: &SearchState<F>,
     deficit: f64,
+    draws: &mut GaussianDraws,
 ) -> Vec<Alternative> {
-    let lacking = lacking(state, walking).into_iter();
-    let ids = lacking.map(|own| context.set.hypotheses[own].id());
-    alternatives(ids, deficit, &state.stage.fitted)
+    let lacking = lacking(state, walking);
+    let own = state.accepted.iter().enumerate();
+    let own = own.filter(|(_, own)| lacking.contains(&own.hypothesis));
+    let of: Vec<usize> = own.map(|(index, _)| index).collect();
+    let beside: Vec<&str> = walking
+        .accepted
+        .iter()
+        .map(|own| context.set.hypotheses[own.hypothesis].id())
+        .collect();
+    let mut members = with_their_sets(context, state, &of, deficit, draws);
+    members.retain(|member| !beside.contains(&member.effect));
+    members
 }
 
 /// Effects of a model that another one lacks.
