@@ -42,6 +42,26 @@ pub(crate) fn evaluate<F: FittedModel>(
     context: &SearchContext<'_>,
     draws: &mut GaussianDraws,
 ) -> Result<ConditionalResult, F::Error> {
+    let by_fits = compared.stage.fitted.sets_need_fits();
+    evaluate_with(compared, context, draws, by_fits)
+}
+
+/// What could be in the place of an accepted effect by the scores of this fit alone, without further ones.
+pub(crate) fn set_by_scores<F: FittedModel>(
+    compared: &Compared<'_, F>,
+    context: &SearchContext<'_>,
+    draws: &mut GaussianDraws,
+) -> Result<Vec<Alternative>, F::Error> {
+    let result = evaluate_with(compared, context, draws, false)?;
+    Ok(result.finding.alternatives)
+}
+
+fn evaluate_with<F: FittedModel>(
+    compared: &Compared<'_, F>,
+    context: &SearchContext<'_>,
+    draws: &mut GaussianDraws,
+    by_fits: bool,
+) -> Result<ConditionalResult, F::Error> {
     let Compared {
         stage,
         accepted,
@@ -57,7 +77,7 @@ pub(crate) fn evaluate<F: FittedModel>(
     let mut scores = Scores::of(&bank, &hypotheses, &null, None);
     scores.refine(&stage.fitted, context, &hypotheses, &places.values)?;
     let statistic = scores.best[own.hypothesis].map_or(0.0, |best| best.statistic);
-    let reaches = if stage.fitted.sets_need_fits() {
+    let reaches = if by_fits {
         let of = (&bank, hypotheses.as_slice());
         fit_rivals(compared, context, of, &mut scores, statistic);
         reaches(&bank, &hypotheses, &scores, context.options.seed)
@@ -92,7 +112,7 @@ pub(crate) fn evaluate<F: FittedModel>(
         (own.hypothesis, penalised, &reaches),
         estimates,
     );
-    if stage.fitted.sets_need_fits() {
+    if by_fits {
         keep_likely(&mut alternatives);
     }
     Ok(ConditionalResult {

@@ -11,7 +11,7 @@ use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::rate_noise::RateNoiseFit;
-use crate::result::evaluate;
+use crate::result::set_by_scores;
 use crate::score::Ranked;
 use crate::state::SearchState;
 
@@ -146,10 +146,10 @@ pub(crate) fn with_their_sets<F: FittedModel>(
             index: *index,
         };
         // Without its set an effect stands alone.
-        let Ok(result) = evaluate(&compared, context, draws) else {
+        let Ok(others) = set_by_scores(&compared, context, draws) else {
             continue;
         };
-        for mut other in result.finding.alternatives {
+        for mut other in others {
             if members.iter().all(|member| member.effect != other.effect) {
                 other.log_likelihood_deficit += deficit;
                 members.push(other);

@@ -113,10 +113,13 @@ pub(crate) fn compare<F: FittedModel>(
         let state = SearchState { stage, ..state };
         return model.with_walks(state, (p_beside, Vec::new()), draws);
     }
-    if advantage > BESIDE_WALKS {
+    // Walks that the record does not need replace nothing.
+    let without = walking.stage.fitted.fit_rate_noise(&[], &[])?;
+    let gained = 2.0 * (walking.stage.noise.log_likelihood - without.log_likelihood);
+    if advantage > BESIDE_WALKS || candidates.p_value(gained) >= probability {
         let walks = needed(candidates, &walking)?.into_iter();
         let ids = walks.map(|walk| walk.effect.id);
-        let deficit = 0.5 * (advantage - BESIDE_WALKS);
+        let deficit = 0.5 * (advantage - BESIDE_WALKS).max(0.0);
         let rival = Rival {
             alternatives: alternatives(ids, deficit, &walking.stage.fitted),
             of: lacking(&state, &walking),
