@@ -8,6 +8,7 @@
 mod alternatives;
 mod cross_validation;
 mod few_positions;
+mod log_biases;
 mod negative_controls;
 mod positions;
 mod prepare;
@@ -23,6 +24,7 @@ use gyrocal_statistics::{chi_square_tail, f_tail};
 pub use alternatives::Alternative;
 pub use cross_validation::{CrossValidation, cross_validate};
 pub use few_positions::{FewPositionFinding, FewPositionLaw, FewPositionReport, few_position_test};
+pub use log_biases::LogBiases;
 pub use negative_controls::{NegativeControls, negative_controls};
 pub use positions::{Instrument, Positions};
 pub use prepare::{PreparedTest, SensorReport, StopReport, prepare, prepare_logs};
@@ -32,6 +34,7 @@ pub use search::{LEAST_FALSE_ALARM, SearchSettings, SearchStep, search};
 pub use terms::Term;
 
 use crate::error::{InstrumentError, Unfit};
+use log_biases::{log_biases, with_one_bias};
 use regression::WeightedStops;
 use search::terms_of;
 
@@ -92,6 +95,8 @@ pub fn multi_position_test(
         ));
     }
     let all: Vec<usize> = (0..stops).collect();
+    let biases = differing_biases(positions, settings.search.false_alarm_probability);
+    let positions = &with_one_bias(positions, &biases);
     let mut steps = search(positions, &all, &settings.search);
     let cross_validation = match steps.is_empty() {
         true => None,
@@ -124,11 +129,24 @@ pub fn multi_position_test(
     Ok(MultiPositionReport {
         stops,
         gyros,
+        log_biases: biases.into_iter().map(|(_, found)| found).collect(),
         findings,
         not_confirmed,
         cross_validation,
         controls,
     })
+}
+
+/// The gyros whose biases differ between logs, with a family-wise false alarm of `probability`.
+fn differing_biases(positions: &Positions, probability: f64) -> Vec<(usize, LogBiases)> {
+    let all: Vec<usize> = (0..positions.time_s.len()).collect();
+    let gyros = (0..3).filter_map(|gyro| {
+        let data = WeightedStops::of(positions, gyro, &all);
+        let (law, _) = determined_terms(&data);
+        let found = log_biases(positions, &data, &law, RATES[gyro].id)?;
+        (3.0 * found.test.p_value <= probability).then_some((gyro, found))
+    });
+    gyros.collect()
 }
 
 fn gyro_report(data: &WeightedStops, steps: &[SearchStep]) -> Result<GyroReport, InstrumentError> {

@@ -28,6 +28,7 @@ fn positions(seed: u64, stops: usize, law: impl Fn(usize, [f64; 3]) -> f64) -> P
         time_s: (0..stops).map(|stop| 10.0 * stop as f64).collect(),
         rate_deg_per_h: force_g.iter().map(&mut rate).collect(),
         sigma_deg_per_h: vec![[SIGMA; 3]; stops],
+        log: vec![0; stops],
         force_g,
     }
 }
@@ -165,6 +166,34 @@ fn squares_along_the_two_other_axes_are_one_term() {
         "g_x", "g_y", "g_xy", "g_xz", "g_yz", "g_xx", "g_zzz", "ramp",
     ];
     assert_eq!(named, expected.map(|term| format!("gyro_z.{term}")));
+}
+
+#[test]
+fn a_bias_that_differs_between_logs_is_told_and_is_no_ramp() {
+    const CHANGE_DEG_PER_H: f64 = 400.0;
+    let settings = MultiPositionSettings {
+        shuffles: 1,
+        ..MultiPositionSettings::default()
+    };
+    let two_logs = |seed: u64, change: f64| {
+        let mut positions = positions(seed, 40, nominal);
+        positions.log = (0..40).map(|stop| stop / 20).collect();
+        let later = positions.rate_deg_per_h.iter_mut().skip(20);
+        later.for_each(|rate| rate[2] += change);
+        multi_position_test(&positions, &settings).unwrap()
+    };
+    let told = two_logs(5, CHANGE_DEG_PER_H);
+    let [found] = &told.log_biases[..] else {
+        panic!("{:?}", told.log_biases)
+    };
+    assert_eq!(found.gyro, "gyro_z");
+    let error = found.differences_deg_per_h[0] - CHANGE_DEG_PER_H;
+    assert!(error.abs() < 4.0 * found.sigmas_deg_per_h[0], "{found:?}");
+    // Without that the change would be a ramp.
+    assert!(told.findings.is_empty(), "{:?}", told.findings);
+    // One unit: 0.6 alarms are expected in 60 tests at 1 %, more than four have a chance of 4e-4.
+    let alarms = (0..60).filter(|seed| !two_logs(100 + seed, 0.0).log_biases.is_empty());
+    assert!(alarms.count() <= 4);
 }
 
 #[test]

@@ -91,6 +91,22 @@ fn many(report: &MultiPositionReport) -> Screen {
         );
     }
     more(&mut screen, report.findings.len());
+    for one in &report.log_biases {
+        let differences = one.differences_deg_per_h.iter().zip(&one.sigmas_deg_per_h);
+        let differences: Vec<String> = differences
+            .map(|(difference, sigma)| format::with_sigma(*difference, *sigma))
+            .collect();
+        screen.fact(
+            "logs differ",
+            format!(
+                "{}.bias by {} deg/h from the first log on, {}: another turn-on, or another unit, whose \
+                 logs are evaluated alone",
+                one.gyro,
+                differences.join(", "),
+                format::p_value(one.test.p_value)
+            ),
+        );
+    }
     screen.fact("no gain", report.not_confirmed.join(", "));
     if let Some(gain) = &report.cross_validation {
         let list = |values: [f64; 3]| values.map(|value| format!("{value:.0}")).join(", ");

@@ -17,6 +17,8 @@ pub struct Positions {
     pub sigma_deg_per_h: Vec<[f64; 3]>,
     /// Specific force along the axes of the accelerometers.
     pub force_g: Vec<[f64; 3]>,
+    /// Number of the log of each stop, from zero.
+    pub log: Vec<usize>,
 }
 
 /// Calibration constants of the sensors, and the site.
@@ -77,8 +79,15 @@ impl Positions {
             time_s: stops.iter().map(|stop| stop.time_s).collect(),
             rate_deg_per_h: stops.iter().zip(&force_g).map(rate).collect(),
             sigma_deg_per_h: stops.iter().zip(&force_g).map(sigma).collect(),
+            log: vec![0; stops.len()],
             force_g,
         }
+    }
+
+    /// The same stops of several logs, each with its number from zero.
+    #[must_use]
+    pub fn of_logs(self, log: Vec<usize>) -> Self {
+        Self { log, ..self }
     }
 }
 

@@ -123,8 +123,9 @@ pub fn prepare_logs(
         ));
     }
     let mut means: Vec<StopMeans> = Vec::new();
+    let mut of_logs: Vec<usize> = Vec::new();
     let mut end_s = f64::NEG_INFINITY;
-    for (log, stops) in logs {
+    for (number, (log, stops)) in logs.iter().enumerate() {
         let (Some(from_s), Some(to_s)) = (log.time_s.first(), log.time_s.last()) else {
             continue;
         };
@@ -138,9 +139,14 @@ pub fn prepare_logs(
             time_s: stop.time_s + later_s,
             ..stop
         }));
+        of_logs.resize(means.len(), number);
         end_s = to_s + later_s;
     }
-    prepare_means(first, description, means, false)
+    let prepared = prepare_means(first, description, means, false)?;
+    Ok(PreparedTest {
+        positions: prepared.positions.of_logs(of_logs),
+        ..prepared
+    })
 }
 
 /// Converts means of stops. `has_turns` if they are all of this log, with the turns between them.

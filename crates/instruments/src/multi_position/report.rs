@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::alternatives::Alternative;
 use super::cross_validation::CrossValidation;
+use super::log_biases::LogBiases;
 use super::negative_controls::NegativeControls;
 use super::terms::Term;
 
@@ -16,6 +17,9 @@ pub struct MultiPositionReport {
     pub stops: usize,
     /// The laws of each gyro.
     pub gyros: Vec<GyroReport>,
+    /// Gyros whose bias differs between the logs of the test: these differences are taken off before the
+    /// search. Empty of one log.
+    pub log_biases: Vec<LogBiases>,
     /// Terms that the nominal laws lack, in the order of the search.
     pub findings: Vec<Finding>,
     /// Significant terms that do not enter the laws, since they predict held-out stops no better than the
