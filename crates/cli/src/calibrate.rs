@@ -21,7 +21,7 @@ use gyrocal_diagnosis::{
 };
 use gyrocal_pages::of_calibration;
 use gyrocal_record::{
-    CalibrationMethod, EffectTest, FittedEffects, Outputs, SetupProblem, printable_path,
+    CalibrationMethod, EffectTest, FittedEffects, InputRole, Outputs, SetupProblem, printable_path,
 };
 use gyrocal_setup::PlatformKind;
 use miette::miette;
@@ -126,10 +126,17 @@ impl CalibrateArguments {
     }
 
     /// The files that are read.
-    fn inputs(&self) -> Vec<&Path> {
-        let files = self.records.iter().chain(&self.benches);
-        let files = files.chain(&self.gyro_axes).map(PathBuf::as_path);
-        files.chain(self.map.path()).collect()
+    fn inputs(&self) -> Vec<(InputRole, &Path)> {
+        let all = [
+            (InputRole::Record, &self.records),
+            (InputRole::Bench, &self.benches),
+            (InputRole::GyroAxes, &self.gyro_axes),
+        ];
+        let files = all
+            .into_iter()
+            .flat_map(|(role, files)| files.iter().map(move |file| (role, file.as_path())));
+        let map = self.map.path().map(|path| (InputRole::Columns, path));
+        files.chain(map).collect()
     }
 
     /// Checks what clap cannot express.
@@ -187,7 +194,8 @@ const FITTED: f64 = 0.5;
 pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     arguments.check()?;
     let inputs = arguments.inputs();
-    check_outputs(arguments, &inputs)?;
+    let paths: Vec<&Path> = inputs.iter().map(|(_, path)| *path).collect();
+    check_outputs(arguments, &paths)?;
     let measurements = inputs::read(arguments)?;
     if measurements.iter().any(|measurement| measurement.stops) {
         return Err(stopped(arguments, &measurements, &inputs)?.into());
@@ -217,7 +225,6 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
     drop(progress);
     let found = CalibrationRun {
         method: arguments.method(),
-        kind: arguments.kind(),
         first_run_sigmas: first_run_sigmas(&runs, &gyro_axes, &options),
         verdict: calibration_verdict(&calibration.fit, &names, &effects),
         effects,
@@ -226,7 +233,8 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         measurements,
         gyro_axes,
     };
-    let mut answer = Answer::of(screen::first(&found), prose::summary(&found));
+    let next = screen::diagnose(&found, arguments);
+    let mut answer = Answer::of(screen::first(&found, next), prose::summary(&found));
     let mut outputs = Outputs::new();
     let asked = [&arguments.json, &arguments.coefficients];
     if asked.into_iter().any(Option::is_some) || arguments.views.are_asked() {
@@ -269,7 +277,7 @@ fn check_outputs(arguments: &CalibrateArguments, inputs: &[&Path]) -> Result<(),
 fn stopped(
     arguments: &CalibrateArguments,
     measurements: &[Measurement],
-    inputs: &[&Path],
+    inputs: &[(InputRole, &Path)],
 ) -> Result<WrongSetup, Failure> {
     let problems = measurements.iter().flat_map(|one| &one.setup);
     let report = json::of_wrong_setup(arguments.method(), problems.cloned().collect(), inputs)?;
@@ -325,7 +333,6 @@ fn effects(measurements: &[Measurement], gyro_axes: &[GyroAxes]) -> Vec<EffectTe
 /// Inputs and result of the command.
 struct CalibrationRun {
     method: CalibrationMethod,
-    kind: PlatformKind,
     measurements: Vec<Measurement>,
     /// Axes of the gyros in each record, of a strapdown unit.
     gyro_axes: Vec<GyroAxes>,

@@ -14,11 +14,11 @@ use gyrocal_diagnosis::{
     Verdict, diagnose_watched, prose,
 };
 use gyrocal_pages::{of_diagnosis, of_result};
-use gyrocal_record::{Bench, Outputs, printable_path};
+use gyrocal_record::{Bench, InputRole, Outputs, printable_path};
 
 use crate::layout::layout;
 use crate::numbers::probability;
-use crate::outputs::{self, manifest, same_file};
+use crate::outputs::{self, manifest_of, same_file};
 use crate::page;
 use crate::pictures;
 use crate::progress::Progress;
@@ -114,6 +114,32 @@ impl DiagnoseArguments {
         let benches = self.benches.iter().cycle();
         self.records.iter().zip(benches)
     }
+
+    /// The files that are read.
+    fn inputs(&self) -> Vec<(InputRole, &Path)> {
+        let later = [
+            (InputRole::LaterRecord, &self.validate),
+            (InputRole::LaterBench, &self.validate_bench),
+        ];
+        let later_axes = (InputRole::LaterGyroAxes, &self.validate_gyro_axes);
+        fn given<'a>(
+            (role, file): (InputRole, &'a Option<PathBuf>),
+        ) -> Option<(InputRole, &'a Path)> {
+            Some((role, file.as_deref()?))
+        }
+        let pairs = self.pairs().flat_map(|(record, bench)| {
+            let pair = [(InputRole::Record, record), (InputRole::Bench, bench)];
+            pair.map(|(role, path)| (role, path.as_path()))
+        });
+        let axes = self.gyro_axes.iter();
+        let axes = axes.map(|path| (InputRole::GyroAxes, path.as_path()));
+        pairs
+            .chain(later.into_iter().filter_map(given))
+            .chain(axes)
+            .chain(given(later_axes))
+            .chain(self.map.path().map(|path| (InputRole::Columns, path)))
+            .collect()
+    }
 }
 
 /// A diagnosis with its inputs.
@@ -155,7 +181,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
             }
             found => found.map_err(failed)?,
         };
-    diagnosis.result.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
+    diagnosis.result.manifest = manifest_of(MODEL_HASH, options.seed, &inputs)?;
     if let Some((path, later, later_bench)) = &later {
         let failed = |source| NotDiagnosed::new(path, later_bench, source);
         let first = Run {
@@ -186,7 +212,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
 }
 
 /// The files that are read. Arguments that contradict each other are refused before that.
-fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> {
+fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path)>, Failure> {
     let records = arguments.records.len();
     records::check_benches(arguments.benches.len(), records)?;
     gyro_axes::check(&arguments.gyro_axes, records)?;
@@ -197,16 +223,8 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
                 .to_owned(),
         ));
     }
-    let inputs: Vec<&Path> = arguments
-        .pairs()
-        .flat_map(|(record, bench)| [record, bench])
-        .chain(&arguments.validate)
-        .chain(&arguments.validate_bench)
-        .chain(&arguments.gyro_axes)
-        .chain(&arguments.validate_gyro_axes)
-        .map(PathBuf::as_path)
-        .chain(arguments.map.path())
-        .collect();
+    let roles = arguments.inputs();
+    let inputs: Vec<&Path> = roles.iter().map(|(_, path)| *path).collect();
     outputs::check(
         &inputs,
         arguments.json.as_deref(),
@@ -240,16 +258,16 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<&Path>, Failure> 
             FILTER_EFFECT
         )));
     }
-    Ok(inputs)
+    Ok(roles)
 }
 
 /// The answer of a record whose set-up is wrong: no pictures, as nothing was fitted.
 fn stopped(
     arguments: &DiagnoseArguments,
     mut result: DiagnosisResult,
-    inputs: &[&Path],
+    inputs: &[(InputRole, &Path)],
 ) -> Result<Answer, Failure> {
-    result.manifest = manifest(MODEL_HASH, result.manifest.seed, inputs)?;
+    result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs)?;
     let mut answer = Answer::of(
         prose::first_screen(&result),
         layout(&prose::diagnosis(&result)),

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::{PoisonError, RwLock};
 
-use gyrocal_record::{Error, Input, Manifest, Outputs, printable_path, shell_quoted};
+use gyrocal_record::{Error, Input, InputRole, Manifest, Outputs, printable_path, shell_quoted};
 
 use crate::{Failure, pictures};
 
@@ -21,6 +21,20 @@ pub(crate) fn manifest(model_hash: &str, seed: u64, inputs: &[&Path]) -> Result<
         seed,
         command: command_line(),
     })
+}
+
+/// The same of inputs that the next command may read again.
+pub(crate) fn manifest_of(
+    model_hash: &str,
+    seed: u64,
+    inputs: &[(InputRole, &Path)],
+) -> Result<Manifest, Error> {
+    let paths: Vec<&Path> = inputs.iter().map(|(_, path)| *path).collect();
+    let mut manifest = manifest(model_hash, seed, &paths)?;
+    for (input, (role, _)) in manifest.inputs.iter_mut().zip(inputs) {
+        input.role = Some(*role);
+    }
+    Ok(manifest)
 }
 
 /// Refuses an output that is also an input, and two outputs in one file.

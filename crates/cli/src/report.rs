@@ -13,13 +13,15 @@ use gyrocal_diagnosis::{
     record_uncertainty, result,
 };
 use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread};
-use gyrocal_record::{Bench, CalibrationReport, Outputs, RecordFile, SourceText, printable_path};
+use gyrocal_record::{
+    Bench, CalibrationReport, InputRole, Outputs, RecordFile, SourceText, printable_path,
+};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 use serde::de::DeserializeOwned;
 
 use crate::diagnose::NotDiagnosed;
-use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
+use crate::outputs::{manifest, manifest_of, refuse_overlap, refuse_unwritable};
 use crate::progress::Progress;
 use crate::records::refuse_shared_rows;
 use crate::{Answer, Failure, page, records};
@@ -138,8 +140,10 @@ fn of_record(
     let map = &arguments.map;
     let bench = Bench::read(bench_path)?;
     let options = DiagnoseOptions::default();
-    let inputs: Vec<&Path> = [path, bench_path].into_iter().chain(map.path()).collect();
-    let origin = manifest(MODEL_HASH, options.seed, &inputs)?;
+    let pair = [(InputRole::Record, path), (InputRole::Bench, bench_path)];
+    let map_file = map.path().map(|path| (InputRole::Columns, path));
+    let inputs: Vec<(InputRole, &Path)> = pair.into_iter().chain(map_file).collect();
+    let origin = manifest_of(MODEL_HASH, options.seed, &inputs)?;
     let _progress = Progress::waiting("diagnosing", file.record().len());
     let gate = Gate::of_file(PlatformKind::Stabilised, file, &bench, &options.calibration)?;
     match diagnose_gated(gate, &bench, &options) {

@@ -6,7 +6,7 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, Gate, RecordToDiagnose, Verdict,
     diagnose, diagnose_gated, diagnose_records, prose,
 };
-use gyrocal_record::{Bench, Input, Record};
+use gyrocal_record::{Bench, Input, InputRole, Record};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::deviates::Normals;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -104,9 +104,20 @@ fn names(found: &Diagnosis<'_>, effect: &str) -> bool {
 
 /// The files of a result of these inputs, as the next commands have them; none of those plans a run.
 fn files(mut result: DiagnosisResult, inputs: &str) -> String {
+    // The roles by the first letters: later ones begin with l.
+    let role = |path: &str| match path.split('.').next().unwrap_or_default() {
+        "lr" => InputRole::LaterRecord,
+        "lb" => InputRole::LaterBench,
+        "la" => InputRole::LaterGyroAxes,
+        name if name.starts_with('b') => InputRole::Bench,
+        name if name.starts_with('a') => InputRole::GyroAxes,
+        name if name.starts_with('m') => InputRole::Columns,
+        _ => InputRole::Record,
+    };
     let input = |path: &str| Input {
         path: path.to_owned(),
         sha256: String::new(),
+        role: Some(role(path)),
     };
     result.manifest.inputs = inputs.split(' ').map(input).collect();
     let files = prose::files(&result);
@@ -142,8 +153,11 @@ fn a_ramp_of_a_gyro_of_the_body_is_named_with_the_law_in_its_axes() {
     let mut with_later = found.result.clone();
     with_later.later_record = Some(with_later.record);
     assert_eq!(
-        files(with_later, "r.csv b.toml l.csv lb.toml a.csv la.csv"),
-        "r.csv --bench b.toml --gyro-axes a.csv"
+        files(
+            with_later,
+            "r.csv b.toml lr.csv lb.toml a.csv la.csv m.toml"
+        ),
+        "r.csv --bench b.toml --gyro-axes a.csv --columns m.toml"
     );
     // In the axes of the platform, which the body turns against, it is no ramp: no fit converges, or
     // something is left.

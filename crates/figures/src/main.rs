@@ -63,8 +63,8 @@ struct Arguments {
     /// Renew the committed measurements of the topic instead of judging by them (kernel:
     /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper
     /// and catalogue: their page and its pictures; truth: the sections of its parts; all others:
-    /// docs/figures/TOPIC.md).
-    #[arg(long, conflicts_with_all = ["small", "records"])]
+    /// docs/figures/TOPIC.md). With --records the page says so.
+    #[arg(long, conflicts_with = "small")]
     write: bool,
 }
 

@@ -1,6 +1,7 @@
 //! The page of a calibration.
 
 use gyrocal_calibration::FittedPlatform;
+use gyrocal_diagnosis::prose::{first_input_files, record_and_bench};
 use gyrocal_record::{
     Bench, CalibrationReport, Coefficient, FitVerdict, NoiseReport, Record, RunReport,
 };
@@ -13,7 +14,7 @@ use gyrocal_statistics::format;
 use crate::diagnosis::open_loop::{self, Simulated};
 use crate::diagnosis::{coefficients, section};
 use crate::error::PageError;
-use crate::origin::{argument, file_name, origin};
+use crate::origin::{file_name, origin};
 use crate::words::listed;
 
 /// A calibrated record with the fit of the nominal model to it alone, for the charts over time.
@@ -239,11 +240,10 @@ fn next(report: &CalibrationReport) -> Card {
     Card {
         title: "Next step".to_owned(),
         text,
-        command: format!(
-            "gyrocal diagnose {} --bench {}",
-            argument(&report.manifest, 0, "RECORD.csv"),
-            report.runs.first().map_or("BENCH.toml", |run| &run.bench)
-        ),
+        command: format!("gyrocal diagnose {}", {
+            let inputs = &report.manifest.inputs;
+            first_input_files(inputs).unwrap_or_else(|| record_and_bench(inputs))
+        }),
         columns: 5,
         ..Card::default()
     }

@@ -27,16 +27,3 @@ pub(crate) fn file_name(manifest: &Manifest, place: usize, otherwise: &str) -> S
     let name = input.and_then(|input| input.path.rsplit(['/', '\\']).next());
     name.unwrap_or(otherwise).to_owned()
 }
-
-/// An input as an argument of a shell.
-pub(crate) fn argument(manifest: &Manifest, place: usize, otherwise: &str) -> String {
-    let Some(input) = manifest.inputs.get(place) else {
-        return otherwise.to_owned();
-    };
-    let plain = |letter: char| letter.is_alphanumeric() || "-_./=:,+@%".contains(letter);
-    if !input.path.is_empty() && input.path.chars().all(plain) {
-        input.path.clone()
-    } else {
-        format!("'{}'", input.path.replace('\'', r"'\''"))
-    }
-}

@@ -23,6 +23,7 @@ impl HeldBench {
             input: Input {
                 path: name.to_owned(),
                 sha256: hash(text.as_bytes()),
+                role: None,
             },
         })
     }

@@ -13,7 +13,7 @@ use gyrocal_diagnosis::{
 };
 use gyrocal_record::{
     AveragedReport, Bench, CalibrationMethod, CalibrationReport, EffectTest, FittedEffects,
-    Manifest, Record, SetupProblem,
+    InputRole, Manifest, Record, SetupProblem,
 };
 use pyo3::prelude::*;
 
@@ -156,14 +156,18 @@ fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<Cali
 
 /// Inputs in the order of the command: all records, then each bench description once, then the axes.
 fn origin(given: &[Given<'_>], command: &str) -> Outcome<Manifest> {
-    let mut inputs: Vec<_> = given.iter().map(|one| one.record.input.clone()).collect();
+    let records = given.iter().map(|one| one.record.input.clone());
+    let mut inputs: Vec<_> = records
+        .map(|input| input.with_role(InputRole::Record))
+        .collect();
     let one_bench = given
         .windows(2)
         .all(|pair| pair[0].bench.input == pair[1].bench.input);
     let benches = given.iter().map(|one| one.bench.input.clone());
+    let benches = benches.map(|input| input.with_role(InputRole::Bench));
     inputs.extend(benches.take(if one_bench { 1 } else { given.len() }));
     for axes in given.iter().filter_map(|one| one.axes) {
-        inputs.push(axes.input()?);
+        inputs.push(axes.input()?.with_role(InputRole::GyroAxes));
     }
     Ok(manifest(MODEL_HASH, 0, inputs, command))
 }

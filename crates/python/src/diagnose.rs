@@ -7,6 +7,7 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
     diagnose_gated, prose,
 };
+use gyrocal_record::InputRole;
 use gyrocal_setup::PlatformKind;
 use pyo3::prelude::*;
 
@@ -132,11 +133,23 @@ fn answer(
     command: &str,
 ) -> Outcome<Scored> {
     let (mut result, scores) = result(given, later, options)?;
-    let both = || [Some(given), later].into_iter().flatten();
-    let pairs = both().flat_map(|one| [one.record.input.clone(), one.bench.input.clone()]);
-    let mut inputs: Vec<_> = pairs.collect();
-    for axes in both().filter_map(|one| one.axes) {
-        inputs.push(axes.input()?);
+    use InputRole::{Bench, GyroAxes, LaterBench, LaterGyroAxes, LaterRecord, Record};
+    let later = later.map(|later| (later, [LaterRecord, LaterBench, LaterGyroAxes]));
+    let both = || {
+        [Some((given, [Record, Bench, GyroAxes])), later]
+            .into_iter()
+            .flatten()
+    };
+    let pairs = both().flat_map(|(one, [record, bench, _])| {
+        [(&one.record.input, record), (&one.bench.input, bench)]
+    });
+    let mut inputs: Vec<_> = pairs
+        .map(|(input, role)| input.clone().with_role(role))
+        .collect();
+    for (one, [.., role]) in both() {
+        if let Some(axes) = one.axes {
+            inputs.push(axes.input()?.with_role(role));
+        }
     }
     result.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
     let blocks = json(&prose::diagnosis(&result))?;

@@ -146,9 +146,11 @@ impl HeldPlant {
         let record = record.columns();
         let later = later.map(|later| later.columns());
         let options = options(false_alarm)?;
-        let inputs = inputs
-            .into_iter()
-            .map(|(path, sha256)| Input { path, sha256 });
+        let inputs = inputs.into_iter().map(|(path, sha256)| Input {
+            path,
+            sha256,
+            role: None,
+        });
         let manifest = manifest("", options.seed, inputs.collect(), command);
         Ok(py.detach(|| self.answer(record, later, &options, manifest))?)
     }

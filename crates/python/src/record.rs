@@ -29,6 +29,7 @@ impl HeldRecord {
             input: Input {
                 path: name.to_owned(),
                 sha256: hash(&record),
+                role: None,
             },
             file: RecordFile::of_record(record, name),
         })

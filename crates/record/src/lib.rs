@@ -94,7 +94,7 @@ pub use extension_report::{ExtensionReport, LeftOut};
 pub use gimbals::GimbalLimits;
 #[cfg(feature = "schema")]
 pub use json_schema::written_schema;
-pub use manifest::{Input, Manifest};
+pub use manifest::{Input, InputRole, Manifest};
 pub use model_file::{KnownEffect, ModelFile, ParameterEstimate, Standing};
 pub use module_name::module_name;
 pub use output::{Outputs, write_json, write_whole};

@@ -33,6 +33,30 @@ pub struct Input {
     pub path: String,
     /// SHA-256 of the content, in hexadecimal.
     pub sha256: String,
+    /// What it is to the command, where a next command needs it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub role: Option<InputRole>,
+}
+
+/// What a file is to the command that reads it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum InputRole {
+    /// A record.
+    Record,
+    /// A bench description: of all records, or of one of them in their order.
+    Bench,
+    /// The axes of a strapdown unit's instruments in a record, in the order of the records.
+    GyroAxes,
+    /// A later record, which takes no part in the fit.
+    LaterRecord,
+    /// Its bench description.
+    LaterBench,
+    /// The axes of the instruments in it.
+    LaterGyroAxes,
+    /// The map of the columns of all records.
+    Columns,
 }
 
 impl Input {
@@ -50,6 +74,16 @@ impl Input {
         Ok(Self {
             path: path.display().to_string(),
             sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+            role: None,
         })
+    }
+
+    /// The same as a file of a role.
+    #[must_use]
+    pub fn with_role(self, role: InputRole) -> Self {
+        Self {
+            role: Some(role),
+            ..self
+        }
     }
 }

@@ -4,16 +4,16 @@ use std::path::Path;
 
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::{CalibratedRecord, CalibrationEvidence, calibration_report};
-use gyrocal_record::{CalibrationMethod, CalibrationReport, SetupProblem};
+use gyrocal_record::{CalibrationMethod, CalibrationReport, InputRole, SetupProblem};
 
 use super::CalibrationRun;
 use super::inputs::Measurement;
 use crate::Failure;
-use crate::outputs::manifest;
+use crate::outputs::manifest_of;
 
 pub(super) fn report(
     found: &CalibrationRun,
-    inputs: &[&Path],
+    inputs: &[(InputRole, &Path)],
 ) -> Result<CalibrationReport, Failure> {
     let evidence = CalibrationEvidence {
         method: found.method,
@@ -24,7 +24,7 @@ pub(super) fn report(
         verdict: &found.verdict,
         first_record_sigmas: found.first_run_sigmas,
     };
-    let manifest = manifest(MODEL_HASH, 0, inputs)?;
+    let manifest = manifest_of(MODEL_HASH, 0, inputs)?;
     Ok(calibration_report(evidence, manifest))
 }
 
@@ -32,9 +32,9 @@ pub(super) fn report(
 pub(super) fn of_wrong_setup(
     method: CalibrationMethod,
     setup: Vec<SetupProblem>,
-    inputs: &[&Path],
+    inputs: &[(InputRole, &Path)],
 ) -> Result<CalibrationReport, Failure> {
-    let manifest = manifest(MODEL_HASH, 0, inputs)?;
+    let manifest = manifest_of(MODEL_HASH, 0, inputs)?;
     Ok(CalibrationReport::of_wrong_setup(manifest, method, setup))
 }
 

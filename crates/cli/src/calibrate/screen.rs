@@ -1,13 +1,13 @@
 //! The first screen of `gyrocal calibrate`.
 
+use std::path::PathBuf;
+
 use gyrocal_calibration::{NoiseRatio, RunResult, SiteQuantity};
-use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table, few};
-use gyrocal_record::{EffectTest, FitVerdict, shell_quoted};
-use gyrocal_setup::PlatformKind;
+use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table, command_files, few};
+use gyrocal_record::{EffectTest, FitVerdict, InputRole};
 use gyrocal_statistics::format;
 
-use super::CalibrationRun;
-use super::inputs::Measurement;
+use super::{CalibrateArguments, CalibrationRun};
 
 /// Records that are told one by one.
 const RECORDS_SHOWN: usize = 2;
@@ -15,7 +15,7 @@ const RECORDS_SHOWN: usize = 2;
 const NAMES_SHOWN: usize = 4;
 
 /// Verdict, how sure it is, the nine coefficients, and what to run next.
-pub(super) fn first(found: &CalibrationRun) -> Screen {
+pub(super) fn first(found: &CalibrationRun, next: Option<String>) -> Screen {
     let mut screen = verdict(found);
     let fit = &found.calibration.fit;
     let shown: Vec<&EffectTest> = found.effects.iter().filter(|one| one.significant).collect();
@@ -60,24 +60,34 @@ pub(super) fn first(found: &CalibrationRun) -> Screen {
         let more = found.measurements.len() - RECORDS_SHOWN;
         screen.fact("and", format!("{more} more records"));
     }
-    if found.kind == PlatformKind::Stabilised {
-        let why = match found.verdict.verdict {
-            FitVerdict::Consistent => "all tests, and what could go undetected",
-            _ => "looks for the causes",
-        };
-        if let Some(measurement) = found.measurements.first() {
-            screen.then(diagnose(measurement), why);
-        }
+    let why = match found.verdict.verdict {
+        FitVerdict::Consistent => "all tests, and what could go undetected",
+        _ => "looks for the causes",
+    };
+    if let Some(command) = next {
+        screen.then(command, why);
     }
     screen
 }
 
-fn diagnose(measurement: &Measurement) -> String {
-    format!(
-        "gyrocal diagnose {} --bench {}",
-        shell_quoted(&measurement.path.to_string_lossy()),
-        shell_quoted(&measurement.bench_path.to_string_lossy())
-    )
+/// The diagnosis of the first record, as a shell reads it.
+pub(super) fn diagnose(found: &CalibrationRun, arguments: &CalibrateArguments) -> Option<String> {
+    let first = found.measurements.first()?;
+    let files = [
+        (InputRole::Record, Some(first.path.as_path())),
+        (InputRole::Bench, Some(first.bench_path.as_path())),
+        (
+            InputRole::GyroAxes,
+            arguments.gyro_axes.first().map(PathBuf::as_path),
+        ),
+        (InputRole::Columns, arguments.map.path()),
+    ];
+    let files: Vec<(InputRole, String)> = files
+        .into_iter()
+        .filter_map(|(role, path)| Some((role, path?.to_string_lossy().into_owned())))
+        .collect();
+    let files = files.iter().map(|(role, path)| (*role, path.as_str()));
+    Some(format!("gyrocal diagnose {}", command_files(files)))
 }
 
 fn verdict(found: &CalibrationRun) -> Screen {

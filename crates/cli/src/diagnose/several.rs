@@ -5,18 +5,21 @@ use std::path::{Path, PathBuf};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records, prose};
 use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
-use gyrocal_record::{Bench, Outputs, RecordFile, printable_path};
+use gyrocal_record::{Bench, InputRole, Outputs, RecordFile, printable_path};
 use gyrocal_report::Picture;
 
 use super::{DiagnoseArguments, NotDiagnosed, exit_code};
 use crate::layout::layout;
-use crate::outputs::manifest;
+use crate::outputs::manifest_of;
 use crate::progress::Progress;
 use crate::records::refuse_shared_rows;
 use crate::{Answer, Failure, gyro_axes, page, pictures};
 
 /// Runs the command; `inputs` are each record with its bench file.
-pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Answer, Failure> {
+pub(super) fn run(
+    arguments: &DiagnoseArguments,
+    inputs: &[(InputRole, &Path)],
+) -> Result<Answer, Failure> {
     refuse_options(arguments)?;
     let benches: Vec<Bench> = arguments
         .pairs()
@@ -55,7 +58,7 @@ pub(super) fn run(arguments: &DiagnoseArguments, inputs: &[&Path]) -> Result<Ans
     let mut found =
         diagnose_records(checked, &options, |stage| progress.at(stage)).map_err(failed)?;
     drop(progress);
-    found.together.result.manifest = manifest(MODEL_HASH, options.seed, inputs)?;
+    found.together.result.manifest = manifest_of(MODEL_HASH, options.seed, inputs)?;
     let result = &found.together.result;
     tracing::info!(verdict = ?result.verdict, "diagnosed");
     let mut answer = Answer::of(

@@ -28,7 +28,10 @@ pub use limits::{
     near_twins, not_tested, time_is_temperature, why_not_distinguished, would_distinguish,
 };
 pub use records::files;
-pub use screen::{Fact, NextStep, Screen, Standing, few, record_and_bench};
+pub use screen::{
+    Fact, NextStep, Screen, Standing, command_files, few, first_input_files, input_files,
+    record_and_bench,
+};
 pub use tests::residual_description;
 pub use verdict::setup;
 

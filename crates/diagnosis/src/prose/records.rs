@@ -1,9 +1,8 @@
 //! Several records of one platform.
 
-use gyrocal_record::{Input, shell_quoted};
 use gyrocal_statistics::format::with_sigma;
 
-use super::screen::record_and_bench;
+use super::screen::{input_files, record_and_bench};
 use super::{Column, Table};
 use crate::result::{DiagnosisResult, Finding, FindingKind, SizeChoice, Verdict};
 
@@ -88,46 +87,15 @@ pub(super) fn fact(result: &DiagnosisResult) -> String {
 }
 
 /// The files of a result as arguments of `calibrate` and `diagnose`, as a shell reads them: records, bench files
-/// and, of a strapdown unit, axes.
+/// and, where there are, axes of strapdown units and the map of columns.
 #[must_use]
 pub fn files(result: &DiagnosisResult) -> String {
-    records_and_benches(result) + &axes(result)
-}
-
-fn records_and_benches(result: &DiagnosisResult) -> String {
     let inputs = &result.manifest.inputs;
-    let count = result.records.len();
-    if count < 2 || inputs.len() < 2 * count {
-        return record_and_bench(inputs);
-    }
-    let pairs = inputs.chunks_exact(2).take(count);
-    let records: Vec<String> = pairs.clone().map(|pair| quoted(&pair[0])).collect();
-    let mut benches: Vec<String> = pairs.map(|pair| quoted(&pair[1])).collect();
-    if benches.iter().all(|bench| *bench == benches[0]) {
-        benches.truncate(1);
-    }
-    format!(
-        "{} --bench {}",
-        records.join(" "),
-        benches.join(" --bench ")
-    )
-}
-
-/// ` --gyro-axes AXES` of each record; empty of a stabilised platform.
-fn axes(result: &DiagnosisResult) -> String {
-    if !result.strapdown {
-        return String::new();
-    }
-    // Those inputs follow the pairs of record and bench, of which a later record is the last.
-    let count = result.records.len().max(1);
-    let pairs = count + usize::from(result.later_record.is_some());
-    let given = result.manifest.inputs.get(2 * pairs..).unwrap_or_default();
-    let path = |place: usize| given.get(place).map_or("AXES.csv".to_owned(), quoted);
-    (0..count)
-        .map(|place| format!(" --gyro-axes {}", path(place)))
-        .collect()
-}
-
-fn quoted(input: &Input) -> String {
-    shell_quoted(&input.path)
+    input_files(inputs).unwrap_or_else(|| {
+        let axes = match result.strapdown {
+            true => " --gyro-axes AXES.csv",
+            false => "",
+        };
+        record_and_bench(inputs) + axes
+    })
 }
