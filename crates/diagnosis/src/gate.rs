@@ -74,8 +74,11 @@ impl<'a> Gate<'a> {
         }
     }
 
-    /// The axes at the rows that are left.
-    pub(crate) fn usable_axes(&self) -> Result<Option<GyroAxes>, CalibrationError> {
+    /// The axes at the rows that are left; `None` of a stabilised platform, and where nothing is left.
+    ///
+    /// # Errors
+    /// [`CalibrationError::GyroAxes`] if there is not one attitude for each row.
+    pub fn usable_axes(&self) -> Result<Option<GyroAxes>, CalibrationError> {
         let (Some(axes), Some(usable)) = (&self.gyro_axes, &self.usable) else {
             return Ok(None);
         };

@@ -25,7 +25,7 @@ mod schema;
 mod tables;
 
 pub use gyrocal_record::SetupProblem;
-use gyrocal_record::{Manifest, NoiseReport};
+use gyrocal_record::{Input, Manifest, NoiseReport};
 use serde::{Deserialize, Serialize};
 
 pub use allan::{AllanCourse, AllanPoint, AllanTest};
@@ -145,6 +145,18 @@ impl DiagnosisResult {
     /// Causes: findings of the search.
     pub fn causes(&self) -> impl Iterator<Item = &Finding> {
         self.of_kind(FindingKind::Cause)
+    }
+
+    /// Files of the axes of the instruments, one for each record, if it is of a strapdown unit. That of a later
+    /// record may follow, and other inputs.
+    #[must_use]
+    pub fn axes_inputs(&self) -> &[Input] {
+        if !self.strapdown {
+            return &[];
+        }
+        // They follow the pairs of record and bench, of which a later record is the last.
+        let pairs = self.records.len().max(1) + usize::from(self.later_record.is_some());
+        self.manifest.inputs.get(2 * pairs..).unwrap_or_default()
     }
 
     /// Whether the residual test failed.
