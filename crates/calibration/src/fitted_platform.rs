@@ -11,6 +11,7 @@ mod prediction;
 mod rate_noise;
 mod record_sizes;
 mod several;
+mod unit_start;
 
 use gyrocal::estimation::batch::Walk;
 use gyrocal::generated::catalogue;

@@ -40,6 +40,11 @@ impl GyroAxes {
         self.platform_q_gyros.is_empty()
     }
 
+    /// The first of them.
+    pub(crate) fn first(&self) -> Option<[f64; 4]> {
+        self.platform_q_gyros.first().copied()
+    }
+
     /// The attitudes at the rows of a record that has all or some of the rows of another, at the times of
     /// whose rows these are; `None` if it has others.
     #[must_use]

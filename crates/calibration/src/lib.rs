@@ -132,6 +132,7 @@ mod spread;
 mod streaming;
 mod temperature;
 mod uncertainty;
+mod unit_start;
 mod variances;
 mod work;
 
@@ -166,5 +167,6 @@ pub use settings::{declared_attitude, filter_settings};
 pub use spread::{CoefficientSpread, Spread, spread};
 pub use streaming::{FilterWatch, StrapdownWatch, run_factorised_filter, run_strapdown_filter};
 pub use temperature::{REGRESSORS, TemperatureScale, regressor_means};
+pub use unit_start::UnitStart;
 pub use variances::UncertaintySource;
 pub use work::work;

@@ -1,10 +1,14 @@
 //! Predicted information of a planned run.
 
+use std::borrow::Cow;
+
+use gyrocal::estimation::batch::{Manifold, Series};
 use gyrocal::generated::catalogue;
+use gyrocal::scalar::Model;
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Chart};
 use gyrocal_hypothesis::{Column, Covariate, ExtraColumns};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, UnitQuaternion, Vector3};
 
 use crate::attitude::attitude_hypotheses;
 use crate::error::CalibrationError;
@@ -13,19 +17,29 @@ use crate::law::{Law, LawInputs};
 use crate::options::Options;
 use crate::platform::covariates;
 use crate::problem::{Problem, RunProblem};
-use crate::run::{Run, WeightedRows};
+use crate::run::{Conditions, Run, WeightedRows};
 use crate::settings::filter_settings;
 use crate::temperature::TemperatureScale;
+use crate::unit_start::UnitStart;
+
+/// Axes of the instruments along those of the platform, by rows.
+const ALIGNED: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
 /// A run that has not been made. Its trajectory is the noise-free solution of the model from the
 /// first attitude.
+///
+/// That of a strapdown unit is a log of the unit at rest on the Earth. Rows and trajectory are those of the
+/// platform that is computed from it, and the axes of the instruments follow from them.
 #[derive(Clone, Debug)]
 pub struct PlannedRun<'a> {
     /// Times, missing values and bench of the run. Accelerometer values are used only to level the
     /// platform if the bench does not declare the attitude.
     pub run: Run<'a>,
-    /// Attitude at the first row.
+    /// Attitude of the platform at the first row.
     pub start: Orientation,
+    /// How the run of a strapdown unit begins; its covariance takes the place of the sigmas of the bench. `None` of
+    /// a stabilised platform.
+    pub unit: Option<UnitStart>,
     /// All parameters of [`gyrocal::Catalogue`].
     pub parameters: &'a [f64],
     /// Onsets and time constants, as [`gyrocal::Catalogue`] takes them.
@@ -48,7 +62,7 @@ pub struct PredictedInformation {
 }
 
 impl PlannedRun<'_> {
-    /// Attitude at each row without noise.
+    /// Attitude of the platform at each row without noise.
     ///
     /// # Errors
     /// As [`crate::cramer_rao_bound`].
@@ -56,6 +70,9 @@ impl PlannedRun<'_> {
         let none = ExtraColumns::default();
         let points = vec![self.start; self.run.record.len()];
         let problem = self.problem(points, options)?;
+        if let Some(unit) = &self.unit {
+            return Ok(self.trajectory_of(unit, &problem));
+        }
         problem
             .with_active(0, self.parameters, &[], &none, |pass| pass.free_run())
             .map_err(|source| CalibrationError::pass(0, source))
@@ -113,6 +130,50 @@ impl PlannedRun<'_> {
         })
     }
 
+    /// Attitudes of the platform that a unit at rest computes. What its gyros err by depends on specific force,
+    /// field and time along axes that rest, and not on the platform: the rate of a platform that lies along these
+    /// axes is that of any, along them.
+    fn trajectory_of(
+        &self,
+        unit: &UnitStart,
+        problem: &Problem<'_, Anchored<Law>, LawInputs>,
+    ) -> Vec<Orientation> {
+        let run = &problem.runs[0];
+        let attitude = unit.attitude(&self.start);
+        let (mut chart, mut moving) = (run.chart, [0.0; 3]);
+        problem.model.place(&attitude, &mut moving, &mut chart);
+        let mut platform_q_gyros = unit.rotation();
+        let mut points = vec![self.start];
+        for (row, pair) in self.run.record.time_s.windows(2).enumerate() {
+            let interval_s = pair[1] - pair[0];
+            let parts = (interval_s / problem.longest_step_s).ceil().max(1.0);
+            let part_s = interval_s / parts;
+            for part in 0..parts as usize {
+                let from_s = pair[0] + part_s * part as f64;
+                run.rows.over(row, from_s, from_s + part_s, &mut chart);
+                chart.inputs_mut().set_gyro_axes(&ALIGNED);
+                let rate = problem.model.rates(&moving, self.parameters, &chart);
+                // Axes that turn by a vector turn components by its opposite.
+                let turn = Vector3::from(rate) * -part_s;
+                platform_q_gyros *= UnitQuaternion::from_scaled_axis(turn);
+            }
+            points.push(attitude.map(|vector| (platform_q_gyros * Vector3::from(vector)).into()));
+        }
+        points
+    }
+
+    /// Covariance of the first attitude, along the axes of the platform, rad².
+    fn prior_covariance(&self) -> Result<[[f64; 3]; 3], CalibrationError> {
+        if let Some(unit) = &self.unit {
+            return Ok(unit.covariance_rad2(&self.start));
+        }
+        // All hypotheses have the same covariance: it does not depend on azimuth.
+        attitude_hypotheses(self.run.record, self.run.bench)?
+            .first()
+            .map(|hypothesis| hypothesis.prior.covariance)
+            .ok_or(CalibrationError::NotLevelled)
+    }
+
     fn problem(
         &self,
         points: Vec<Orientation>,
@@ -120,11 +181,7 @@ impl PlannedRun<'_> {
     ) -> Result<Problem<'_, Anchored<Law>, LawInputs>, CalibrationError> {
         let Run { record, bench } = self.run;
         let settings = filter_settings(bench, options.moving_chart());
-        // All hypotheses have the same covariance: it does not depend on azimuth.
-        let prior_covariance = attitude_hypotheses(record, bench)?
-            .first()
-            .map(|hypothesis| hypothesis.prior.covariance)
-            .ok_or(CalibrationError::NotLevelled)?;
+        let prior_covariance = self.prior_covariance()?;
         let mut chart: Chart<f64, LawInputs> = Chart::for_model(settings.site);
         if let Some(field_gauss) = bench.magnetic_field_gauss {
             chart.set_field_gauss(field_gauss);
@@ -139,8 +196,15 @@ impl PlannedRun<'_> {
         if self.temperature_scale.is_some() {
             rows.set_temperature_scale(self.temperature_scale);
         }
+        let law = match &self.unit {
+            Some(unit) => {
+                rows.gyro_axes = Some(Cow::Owned(unit.axes(&points)));
+                Law::Strapdown
+            }
+            None => Law::Platform,
+        };
         Ok(Problem {
-            model: Law::Platform.anchored(),
+            model: law.anchored(),
             integration: options.discretisation.integration,
             longest_step_s: options.discretisation.longest_step_s,
             unknowns: Vec::new(),
@@ -159,5 +223,67 @@ impl PlannedRun<'_> {
                 walk_changes: Vec::new(),
             }],
         })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // tests stop where they fail
+mod tests {
+    use gyrocal::Catalogue;
+    use gyrocal::trajectory::rotation_between;
+    use gyrocal_record::{Bench, Record};
+
+    use super::*;
+
+    #[test]
+    fn a_unit_at_rest_computes_the_platform_that_the_law_in_its_axes_gives() {
+        let bench =
+            "[site]\nlatitude_deg = 39.1\n\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n";
+        let bench = Bench::parse(bench, "bench.toml").unwrap();
+        let rows = 2 * 288;
+        let record = Record {
+            time_s: (0..rows).map(|row| 300.0 * f64::from(row)).collect(),
+            accel_g: vec![[0.0, 0.0, 1.0]; rows as usize],
+            temperature_c: None,
+        };
+        let mut parameters = vec![0.0; Catalogue::PARAMETERS];
+        parameters[..9].copy_from_slice(&[0.8, -0.4, 0.2, -0.5, 0.3, 0.1, 0.6, 0.7, -0.3]);
+        let half = 0.4_f64;
+        let planned = PlannedRun {
+            run: Run {
+                record: &record,
+                bench: &bench,
+            },
+            start: [[0.0, 0.8, 0.6], [1.0, 0.0, 0.0]],
+            unit: Some(UnitStart {
+                platform_q_gyros: [half.cos(), half.sin(), 0.0, 0.0],
+                covariance_enu_rad2: [[1e-6, 0.0, 0.0], [0.0, 1e-6, 0.0], [0.0, 0.0, 1e-6]],
+            }),
+            parameters: &parameters,
+            shapes: [0.0; catalogue::SHAPES.len()],
+            noise: &NoiseModel::default(),
+            temperature_scale: None,
+        };
+        let options = Options::default();
+        let points = planned.trajectory(&options).unwrap();
+        let problem = planned.problem(points.clone(), &options).unwrap();
+        let none = ExtraColumns::default();
+        let free = problem
+            .with_active(0, planned.parameters, &[], &none, |pass| pass.free_run())
+            .unwrap();
+        let far = |(a, b): (&Orientation, &Orientation)| {
+            let turn = rotation_between(a, b);
+            turn.iter().map(|x| x * x).sum::<f64>().sqrt()
+        };
+        let worst = points.iter().zip(&free).map(far).fold(0.0, f64::max);
+        // Axes between rows turn uniformly to 2e-5, and drifts of a degree an hour turn by 0.8 rad in two days.
+        assert!(worst < 5e-5, "{worst}");
+        // What a platform with such gyros of its own does is another thing.
+        let platform = PlannedRun {
+            unit: None,
+            ..planned.clone()
+        };
+        let platform = platform.trajectory(&options).unwrap();
+        assert!(points.iter().zip(&platform).map(far).fold(0.0, f64::max) > 0.1);
     }
 }

@@ -19,7 +19,7 @@ use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::page::Views;
 use crate::progress::Progress;
-use crate::{Answer, Failure, records};
+use crate::{Answer, Failure, gyro_axes, records};
 pub use failed::NotPlanned;
 use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 
@@ -27,7 +27,8 @@ use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 ///
 /// Searches the attitudes within the gimbal limits for the run that reduces the confidence sets of
 /// the findings most, or the sigmas of the coefficients, and predicts the joint result of records
-/// and run. The records are diagnosed first unless a diagnosis is given.
+/// and run. The records are diagnosed first unless a diagnosis is given. Of a strapdown unit
+/// (--gyro-axes) the next run is a log at rest in another attitude of the unit.
 #[derive(Debug, Args)]
 pub(crate) struct PlanArguments {
     /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and optionally temperature_c. Of several
@@ -42,6 +43,10 @@ pub(crate) struct PlanArguments {
     /// Result of `gyrocal diagnose --json` for these records; without it they are diagnosed.
     #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["effects", "false_alarm"])]
     diagnosis: Option<PathBuf>,
+    /// Axes of the instruments in the platform at each row (CSV), one file for each record: for platforms
+    /// that `import strapdown` computed. Attitudes are then those of the unit.
+    #[arg(long, value_name = "AXES.csv", action = ArgAction::Append)]
+    gyro_axes: Vec<PathBuf>,
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -50,8 +55,8 @@ pub(crate) struct PlanArguments {
     /// Durations of the next run, h; default: that of the last record.
     #[arg(long, value_name = "H,H", value_delimiter = ',', value_parser = positive)]
     hours: Vec<f64>,
-    /// Limits of the platform angles during the whole run, deg: x=-30..30,y=-60..60. They override
-    /// those of the bench file.
+    /// Limits of the platform angles during the whole run, or of the angles of a strapdown unit, deg:
+    /// x=-30..30,y=-60..60. They override those of the bench file.
     #[arg(
         long,
         value_name = "AXIS=FROM..TO",
@@ -83,6 +88,13 @@ impl PlanArguments {
         let benches = self.benches.iter().cycle();
         self.records.iter().zip(benches)
     }
+
+    /// The files that are read: each record with its bench file, then axes, in the order of the records.
+    fn inputs(&self) -> Vec<&Path> {
+        let pairs = self.pairs().flat_map(|(record, bench)| [record, bench]);
+        let files = pairs.chain(&self.gyro_axes).chain(&self.diagnosis);
+        files.map(PathBuf::as_path).chain(self.map.path()).collect()
+    }
 }
 
 /// Criterion of the ranking.
@@ -100,12 +112,8 @@ const DIAGNOSED: f64 = 0.5;
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     records::check_benches(arguments.benches.len(), arguments.records.len())?;
-    let mut inputs: Vec<&Path> = arguments
-        .pairs()
-        .flat_map(|(record, bench)| [record.as_path(), bench.as_path()])
-        .collect();
-    inputs.extend(arguments.diagnosis.as_deref());
-    inputs.extend(arguments.map.path());
+    gyro_axes::check(&arguments.gyro_axes, arguments.records.len())?;
+    let inputs = arguments.inputs();
     refuse_repeated(&arguments.limits)?;
     let json = arguments.json.as_deref();
     outputs::check(&inputs, json, arguments.views.figures())?;

@@ -36,6 +36,11 @@ pub(crate) fn first(limits: &GimbalLimits) -> Vec<[f64; 3]> {
         all.push([along(0), y.asin().to_degrees(), along(2)].map(f64::round));
     }
     all.retain(|angles| limits.hold(*angles));
+    if all.is_empty() {
+        // Limits less than a degree apart.
+        let middle = ranges.map(|[from, to]| 0.5 * (from + to));
+        all.extend(Some(middle).filter(|angles| limits.hold(*angles)));
+    }
     all
 }
 
@@ -101,6 +106,16 @@ mod tests {
             let near = all.iter().map(|angles| apart_deg(*angles, target));
             assert!(near.fold(f64::INFINITY, f64::min) < 25.0);
         }
+    }
+
+    #[test]
+    fn limits_without_whole_degrees_between_them_leave_an_attitude() {
+        let limits = GimbalLimits {
+            deg: [Some([0.2, 0.4]), Some([-10.6, -10.4]), Some([30.1, 30.3])],
+        };
+        let all = first(&limits);
+        assert!(all.iter().all(|angles| limits.hold(*angles)), "{all:?}");
+        assert_eq!(all.len(), 1);
     }
 
     #[test]

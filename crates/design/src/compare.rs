@@ -1,6 +1,6 @@
 //! Two records together: what is left of the sets that the first one had.
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run};
 
 use crate::candidates::{candidates, times};
 use crate::error::DesignError;
@@ -37,7 +37,8 @@ pub struct ComparedMember {
 
 /// Compares the members of the sets of a record on that record and another one. `fitted` is the
 /// fit to the first with what was named; its noise holds for both. A random walk that is named without rivals is
-/// noise and has no set.
+/// noise and has no set. Of a strapdown unit `axes` are those of the instruments at each row of the other
+/// record.
 ///
 /// # Errors
 /// [`DesignError`].
@@ -45,6 +46,7 @@ pub fn compare(
     fitted: &FittedPlatform<'_>,
     first: &Run<'_>,
     second: &Run<'_>,
+    axes: Option<&GyroAxes>,
     named: &[NamedCause],
     options: &Options,
 ) -> Result<Compared, DesignError> {
@@ -58,7 +60,7 @@ pub fn compare(
         weights: None,
         ..fitted.noise_model().clone()
     };
-    let other = fitted_alone(named, second, &noise, options)?;
+    let other = fitted_alone(named, second, axes, &noise, options)?;
     let mut information = unknowns.of_first(&RunInformation::of_record(
         &fitted,
         first.record,

@@ -43,6 +43,9 @@ pub enum DesignError {
         /// The longest run \[s\].
         most_s: f64,
     },
+    /// No attitude lies within the limits.
+    #[error("no attitude lies within the limits of the angles; that about y is from -90 to 90 deg")]
+    NoAttitude,
     /// The gimbals reach a limit in any run of that duration.
     #[error(
         "no attitude that was tried keeps the gimbals within their limits for {wanted_h:.1} h, as \

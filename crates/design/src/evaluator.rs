@@ -5,7 +5,7 @@ use gyrocal::effect::Continuation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
 use gyrocal_calibration::{
     CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, PlannedRun, Run,
-    TemperatureScale,
+    TemperatureScale, UnitStart,
 };
 use gyrocal_hypothesis::{RecordOffset, continued, continued_shapes};
 use gyrocal_record::{Bench, GimbalLimits, Record};
@@ -33,6 +33,10 @@ pub(crate) struct Detail {
 /// Longest step of the integration, s: a turn of 2.5° is integrated to 1e-9 rad.
 const LONGEST_STEP_S: f64 = 600.0;
 
+/// Longest interval between rows of a planned run of a strapdown unit, s: its axes turn by 15° in the
+/// platform, uniformly to 0.3 % between rows.
+const LONGEST_OF_UNIT_S: f64 = 3600.0;
+
 /// Evaluates attitudes for one duration.
 pub(crate) struct Evaluator<'a> {
     pub(crate) unknowns: &'a JointUnknowns,
@@ -45,7 +49,10 @@ pub(crate) struct Evaluator<'a> {
     next_parameters: Vec<f64>,
     shapes: Vec<f64>,
     next_shapes: Vec<f64>,
+    /// Attitude of the platform where the last record begins.
     start: Orientation,
+    /// How the last record begins, of a strapdown unit.
+    unit: Option<UnitStart>,
     /// Start of the record that goes on, on the clock of all, s.
     start_s: f64,
     temperature_scale: Option<TemperatureScale>,
@@ -112,6 +119,7 @@ impl<'a> Evaluator<'a> {
             next_shapes,
             shapes,
             start: *fitted.points().get(past.first_row())?,
+            unit: fitted.unit_start(last),
             start_s: past.start_s,
             temperature_scale: fitted.temperature_scale(),
             now,
@@ -146,7 +154,7 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// A run from platform angles.
+    /// A run from angles of the platform at its first row, or of a strapdown unit at rest.
     pub(crate) fn evaluate(&self, angles_deg: [f64; 3]) -> Result<Evaluation, CalibrationError> {
         let start = of_angles(angles_deg);
         let (mut record, noise_factor) = self.rows(self.duration_s);
@@ -159,14 +167,11 @@ impl<'a> Evaluator<'a> {
             accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
             ..self.run.bench.clone()
         };
-        let planned = self.planned(
-            &record,
-            &bench,
-            start,
-            (&self.next_parameters, &self.next_shapes),
-        );
+        let unit = self.unit.as_ref().map(UnitStart::along_instruments);
+        let model = (&self.next_parameters[..], &self.next_shapes[..]);
+        let planned = self.planned(&record, &bench, (start, unit), model);
         let points = planned.trajectory(&self.options)?;
-        if let Some(row) = points.iter().position(|point| !self.allowed(point)) {
+        if let Some(row) = self.stop(&points) {
             return Ok(Evaluation::Stopped(
                 record.time_s[row.saturating_sub(1)] - record.time_s[0],
             ));
@@ -192,12 +197,8 @@ impl<'a> Evaluator<'a> {
             accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
             ..self.run.bench.clone()
         };
-        let planned = self.planned(
-            &record,
-            &bench,
-            self.start,
-            (&self.parameters, &self.shapes),
-        );
+        let model = (&self.parameters[..], &self.shapes[..]);
+        let planned = self.planned(&record, &bench, (self.start, self.unit), model);
         let points = planned.trajectory(&self.options)?;
         let from = record.time_s.partition_point(|t| *t <= first_s);
         // A fit's own columns, which are of the record's own rows, say nothing here.
@@ -235,6 +236,15 @@ impl<'a> Evaluator<'a> {
         })
     }
 
+    /// First row at which the gimbals are at a limit. A strapdown unit rests in an attitude that was tried
+    /// because it is within them.
+    fn stop(&self, points: &[Orientation]) -> Option<usize> {
+        if self.unit.is_some() {
+            return None;
+        }
+        points.iter().position(|point| !self.allowed(point))
+    }
+
     fn allowed(&self, point: &Orientation) -> bool {
         let angles = angles_rad(&platform_c_enu(point)).map(f64::to_degrees);
         // The same attitude by the other way round.
@@ -246,12 +256,13 @@ impl<'a> Evaluator<'a> {
         &'b self,
         record: &'b Record,
         bench: &'b Bench,
-        start: Orientation,
+        (start, unit): (Orientation, Option<UnitStart>),
         (parameters, shapes): (&'b [f64], &[f64]),
     ) -> PlannedRun<'b> {
         PlannedRun {
             run: Run { record, bench },
             start,
+            unit,
             parameters,
             shapes: core::array::from_fn(|index| shapes[index]),
             noise: self.noise,
@@ -264,7 +275,11 @@ impl<'a> Evaluator<'a> {
     fn rows(&self, duration_s: f64) -> (Record, f64) {
         let logged_s = interval_s(self.run.record);
         let steps = (duration_s / logged_s).round().max(1.0);
-        let taken = steps.min(self.detail.rows as f64).max(1.0);
+        let least = match self.unit {
+            Some(_) => (duration_s / LONGEST_OF_UNIT_S).ceil(),
+            None => 1.0,
+        };
+        let taken = steps.min((self.detail.rows as f64).max(least)).max(1.0);
         let interval_s = duration_s / taken;
         let time_s: Vec<f64> = (0..=taken as usize)
             .map(|row| row as f64 * interval_s)

@@ -3,8 +3,8 @@
 use gyrocal_diagnosis::prose::{Screen, Standing, counted, few, record_and_bench};
 use gyrocal_record::shell_quoted;
 
-use crate::prose::{attitude, hours, known, percent, undecided};
-use crate::result::{Aim, PlanResult, Proposal};
+use crate::prose::{attitude, hours, known, percent, undecided, unit_angles};
+use crate::result::{Aim, AttitudeOf, PlanResult, Proposal};
 
 /// Names of a list that are shown.
 const SHOWN: usize = 4;
@@ -12,16 +12,21 @@ const SHOWN: usize = 4;
 /// Durations that are told beside the first one.
 const DURATIONS_SHOWN: usize = 3;
 
+/// The command that makes a record of the next log of a strapdown unit.
+const IMPORT: &str = "gyrocal import strapdown LOG.csv --log-description LOG.toml --out next.csv --bench-out \
+                      next.toml --axes-out next.axes.csv";
+
 /// The first screen: the run to make, what it will tell, and how much more that is than going on.
 #[must_use]
 pub fn first_screen(plan: &PlanResult) -> Screen {
     let mut screen = match plan.proposals.first() {
         Some(best) => {
-            let run = format!("{} from {}", hours(best.duration_s), attitude(best));
+            let run = format!("{} from {}", hours(best.duration_s), attitude(plan, best));
             Screen::new(Standing::Good, "NEXT RUN", run)
         }
         None => Screen::new(Standing::Doubtful, "NO RUN", "no attitude is better"),
     };
+    screen.fact("angles", unit_angles(plan).unwrap_or_default());
     screen.fact("why", question(plan));
     if let Some(best) = plan.proposals.first() {
         expectation(plan, best, &mut screen);
@@ -39,7 +44,7 @@ pub fn first_screen(plan: &PlanResult) -> Screen {
                 format!(
                     "{} from {}: {}",
                     hours(duration_s),
-                    attitude(run),
+                    attitude(plan, run),
                     outlook(run)
                 )
             }),
@@ -59,12 +64,36 @@ pub fn first_screen(plan: &PlanResult) -> Screen {
         true => "both runs, once the next is recorded",
         false => "all runs, once the next is recorded",
     };
+    if plan.attitude_of == AttitudeOf::Unit {
+        screen.then(IMPORT, "the platform of the next log");
+    }
     screen.then(format!("gyrocal calibrate {}", with_next(plan)), what);
     screen
 }
 
-/// The records and the next one with their bench files, as arguments of a command.
+/// The records and the next one with their bench files and axes, as arguments of a command.
 fn with_next(plan: &PlanResult) -> String {
+    records_with_next(plan) + &axes_with_next(plan)
+}
+
+/// ` --gyro-axes AXES` of each record and the next; empty of a stabilised platform.
+fn axes_with_next(plan: &PlanResult) -> String {
+    if plan.attitude_of != AttitudeOf::Unit {
+        return String::new();
+    }
+    // Those inputs follow the pairs of record and bench.
+    let count = plan.records.len().max(1);
+    let given = plan.manifest.inputs.get(2 * count..).unwrap_or_default();
+    let path = |place: usize| {
+        let input = given.get(place);
+        input.map_or("AXES.csv".to_owned(), |input| shell_quoted(&input.path))
+    };
+    let paths = (0..count).map(path).chain(["next.axes.csv".to_owned()]);
+    paths.map(|path| format!(" --gyro-axes {path}")).collect()
+}
+
+/// The records and the next one with their bench files.
+fn records_with_next(plan: &PlanResult) -> String {
     let inputs = &plan.manifest.inputs;
     let count = plan.records.len();
     if count == 0 || inputs.len() < 2 * count {

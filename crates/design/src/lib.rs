@@ -1,4 +1,4 @@
-//! Experiment design: attitude and duration of the next run of a platform.
+//! Experiment design: attitude and duration of the next run of a platform or of a strapdown unit.
 //!
 //! # What it is
 //!
@@ -42,13 +42,18 @@
 //! record stays there. A cause that a joint diagnosis gives a size for each turn-on has another size in the
 //! next run, of which only the scale over the records is known.
 //!
+//! Of a strapdown unit a run is a log of the unit at rest in another attitude. The platform is the one that
+//! `gyrocal import strapdown` computes from it: it begins along the axes of the instruments, and turns against them
+//! at Earth rate and at what the fitted model says that the gyros err by. The first attitude is known as well about
+//! East, North and Up as in the last record: the level from the accelerometers, the heading as it was.
+//!
 //! # Features
 //!
 //! - `schema`: the JSON Schema of the results.
 //!
 //! # What it does not do
 //!
-//! It reads no files and plans runs of a static platform only.
+//! It reads no files and plans runs on a base at rest only.
 
 mod attitude;
 mod candidates;
@@ -85,7 +90,8 @@ pub use prose::prose;
 #[cfg(feature = "schema")]
 pub use result::schema;
 pub use result::{
-    Aim, Forecast, Outlook, PlanResult, Proposal, Reached, SCHEMA_VERSION, SetForecast, SetMember,
+    Aim, AttitudeOf, Forecast, Outlook, PlanResult, Proposal, Reached, SCHEMA_VERSION, SetForecast,
+    SetMember,
 };
 
 /// Number of drift coefficients of the nominal model.

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use gyrocal::effect::{EffectKind, EffectParameter};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{
-    CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, Run, joined_record,
+    CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, PLATFORM, Run, joined_record,
 };
 use gyrocal_hypothesis::{HypothesisSet, ModelExtension, RateNoise, recurs};
 use gyrocal_record::{Bench, Record};
@@ -82,7 +82,22 @@ impl NamedCause {
         noise: &NoiseModel,
         options: &Options,
     ) -> Result<FittedPlatform<'a>, DesignError> {
-        let nominal = FittedPlatform::nominal(run, options, &with_walks(noise, named)?)?;
+        Self::fitted_of_unit(named, run, None, noise, options)
+    }
+
+    /// The same of a strapdown unit, if the axes of its instruments at each row are given.
+    ///
+    /// # Errors
+    /// As [`Self::fitted`], and [`CalibrationError::GyroAxes`] if there is not one attitude for each row.
+    pub fn fitted_of_unit<'a>(
+        named: &[Self],
+        run: &Run<'a>,
+        axes: Option<&GyroAxes>,
+        noise: &NoiseModel,
+        options: &Options,
+    ) -> Result<FittedPlatform<'a>, DesignError> {
+        let noise = with_walks(noise, named)?;
+        let nominal = FittedPlatform::nominal_of_unit(run, axes, options, &noise)?;
         let extension = extension(named, run, &nominal)?;
         Ok(if extension == *FittedPlatform::extension(&nominal) {
             nominal
@@ -94,24 +109,27 @@ impl NamedCause {
 
 /// The model that has some causes, fitted to several records of one platform by their joint diagnosis: where
 /// [`super::plan`] starts from, with the joint record beside it. Accelerometer noise is that of each record's own
-/// diagnosis, noise of the gyros that of all.
+/// diagnosis, noise of the gyros that of all. `axes` are those of the instruments of a strapdown unit, for each
+/// record; of a stabilised platform there are none.
 ///
 /// # Errors
-/// As [`NamedCause::fitted`], and [`CalibrationError::UnlikeBenches`].
+/// As [`NamedCause::fitted_of_unit`], and [`CalibrationError::UnlikeBenches`].
 pub fn fitted_to_records(
     diagnosis: &DiagnosisResult,
     runs: &[Run<'_>],
+    axes: &[GyroAxes],
     options: &Options,
 ) -> Result<(FittedPlatform<'static>, Record), DesignError> {
     let named = NamedCause::all(diagnosis);
     let gyros = with_walks(&noise_of(diagnosis), &named)?;
     let mut parts = Vec::with_capacity(runs.len());
-    for (run, one) in runs.iter().zip(&diagnosis.records) {
+    for (index, (run, one)) in runs.iter().zip(&diagnosis.records).enumerate() {
         let noise = NoiseModel {
             accel_ratio: noise_of(&one.alone).accel_ratio,
             ..NoiseModel::default()
         };
-        parts.push(FittedPlatform::nominal(run, options, &noise)?);
+        let axes = axes.get(index);
+        parts.push(FittedPlatform::nominal_of_unit(run, axes, options, &noise)?);
     }
     let benches: Vec<&Bench> = runs.iter().map(|run| run.bench).collect();
     let records: Vec<&Record> = runs.iter().map(|run| run.record).collect();
@@ -274,14 +292,15 @@ pub(crate) fn recurring(named: &[NamedCause]) -> Vec<NamedCause> {
         .collect()
 }
 
-/// As [`NamedCause::fitted`], without what cannot be fitted to a run by itself.
+/// As [`NamedCause::fitted_of_unit`], without what cannot be fitted to a run by itself.
 pub(crate) fn fitted_alone<'a>(
     named: &[NamedCause],
     run: &Run<'a>,
+    axes: Option<&GyroAxes>,
     noise: &NoiseModel,
     options: &Options,
 ) -> Result<FittedPlatform<'a>, CalibrationError> {
-    let nominal = FittedPlatform::nominal(run, options, noise)?;
+    let nominal = FittedPlatform::nominal_of_unit(run, axes, options, noise)?;
     let named = recurring(named);
     let extended = extension(&named, run, &nominal)
         .ok()

@@ -9,7 +9,7 @@ use crate::result::Aim;
 pub struct PlanOptions {
     /// Durations of the run, s; none stands for that of the last record.
     pub durations_s: Vec<f64>,
-    /// Limits of the gimbals over the whole run.
+    /// Limits of the gimbals over the whole run, or of the angles of a strapdown unit.
     pub limits: GimbalLimits,
     /// Criterion of the ranking; `None`: by confidence sets if one has alternatives.
     pub aim: Option<Aim>,

@@ -8,17 +8,22 @@ use crate::named_cause::{NamedCause, without_compared_walks};
 use crate::options::PlanOptions;
 use crate::past::Past;
 use crate::planner::{FINE, Planner};
-use crate::result::{PlanResult, Proposal, Reached, SCHEMA_VERSION};
+use crate::result::{AttitudeOf, PlanResult, Proposal, Reached, SCHEMA_VERSION};
 use crate::shortest_run::reach;
 
 /// Longest run, s: a year.
 const MOST_S: f64 = 366.0 * 86_400.0;
 
 /// Searches for the next run with the smallest expected confidence sets or standard deviations, given
-/// a fit with the causes that were named in its record, whose noise the run has too. Of a fit to several records `run` has the record of
-/// [`gyrocal_calibration::joined_record`] and the bench of the last: the next run is one more record of the
-/// platform, with a clock and a turn-on of its own. A random walk that is named without rivals is noise of all
-/// runs and has no set.
+/// a fit with the causes that were named in its record, whose noise the run has too.
+///
+/// Of a fit to several records `run` has the record of [`gyrocal_calibration::joined_record`] and the bench
+/// of the last: the next run is one more record of the platform, with a clock and a turn-on of its own.
+///
+/// Of a fit to a strapdown unit the next run is a log of the unit at rest in another attitude, from which a
+/// platform is computed as from the logs before.
+///
+/// A random walk that is named without rivals is noise of all runs and has no set.
 ///
 /// # Errors
 /// [`DesignError`].
@@ -79,6 +84,10 @@ pub fn plan(
         record: past.summary(),
         records: past.summaries(),
         setup: Vec::new(),
+        attitude_of: match fitted.is_strapdown() {
+            true => AttitudeOf::Unit,
+            false => AttitudeOf::Platform,
+        },
         aim: planner.aim,
         now,
         going_on,

@@ -156,6 +156,9 @@ impl<'a, 'b> Planner<'a, 'b> {
         tried: Vec<[f64; 3]>,
         duration_s: f64,
     ) -> Result<Vec<Seen>, DesignError> {
+        if tried.is_empty() {
+            return Err(DesignError::NoAttitude);
+        }
         let looked: Vec<_> = tried
             .into_par_iter()
             .map(|angles_deg| (angles_deg, evaluator.evaluate(angles_deg)))
@@ -177,6 +180,8 @@ impl<'a, 'b> Planner<'a, 'b> {
         match failed {
             _ if !seen.is_empty() => Ok(seen),
             Some(error) => Err(error.into()),
+            // No time moves a unit that rests.
+            None if self.fitted.is_strapdown() => Err(CalibrationError::NotPositiveDefinite.into()),
             None => Err(DesignError::Limits {
                 wanted_h: duration_s / 3600.0,
                 longest_h: longest.0 / 3600.0,

@@ -1,6 +1,6 @@
 //! The sentences and tables of a plan, made from its result alone.
 
-use crate::result::{Aim, Outlook, PlanResult, Proposal, SetForecast};
+use crate::result::{Aim, AttitudeOf, Outlook, PlanResult, Proposal, SetForecast};
 use gyrocal_record::printable_line;
 
 use gyrocal_diagnosis::prose::{Block, Column, Table, counted, setup};
@@ -19,6 +19,7 @@ pub fn prose(plan: &PlanResult) -> Vec<Block> {
         Block::Paragraph(question(plan)),
     ];
     blocks.extend(setup(&plan.setup));
+    blocks.extend(unit_angles(plan).map(|words| Block::Paragraph(format!("Unit angles {words}."))));
     for (index, duration_s) in durations(plan).into_iter().enumerate() {
         let of_it = |p: &&Proposal| p.duration_s == duration_s;
         let Some(best) = plan.proposals.iter().find(of_it) else {
@@ -125,7 +126,7 @@ fn recommendation(plan: &PlanResult, best: &Proposal, first: bool) -> String {
             "Alternatively"
         },
         hours(best.duration_s),
-        attitude(best)
+        attitude(plan, best)
     )
 }
 
@@ -188,7 +189,7 @@ pub(crate) fn goal(plan: &PlanResult) -> Option<String> {
         Some(run) => format!(
             "Shortest run that meets the goal ({wish}): {} from {}.",
             hours(run.duration_s),
-            attitude(run)
+            attitude(plan, run)
         ),
         None => format!(
             "No run of up to {} among those examined meets the goal: {wish}.",
@@ -308,12 +309,24 @@ fn members(plan: &PlanResult, later: &[(&str, &Outlook)]) -> Table {
     }
 }
 
-/// Platform angles in words.
-pub(crate) fn attitude(run: &Proposal) -> String {
-    match run.angles_deg {
-        Some([x, y, z]) => format!("platform angles x {x:.0}°, y {y:.0}°, z {z:.0}°"),
-        None => "the present attitude".to_owned(),
-    }
+/// The attitude of a run in words.
+pub(crate) fn attitude(plan: &PlanResult, run: &Proposal) -> String {
+    let Some([x, y, z]) = run.angles_deg else {
+        return "the present attitude".to_owned();
+    };
+    let body = match plan.attitude_of {
+        AttitudeOf::Platform => "platform",
+        AttitudeOf::Unit => "unit",
+    };
+    format!("{body} angles x {x:.0}°, y {y:.0}°, z {z:.0}°")
+}
+
+/// What the angles of a strapdown unit are; `None` of a platform.
+pub(crate) fn unit_angles(plan: &PlanResult) -> Option<&'static str> {
+    (plan.attitude_of == AttitudeOf::Unit).then_some(
+        "turn East, North, Up into the axes of the instruments, about x, then y, then z; the unit rests \
+         in them for the whole log",
+    )
 }
 
 /// A duration in hours.

@@ -29,6 +29,9 @@ pub struct PlanResult {
     /// Gross errors of its set-up that were mended.
     #[serde(default)]
     pub setup: Vec<SetupProblem>,
+    /// The body that the angles of the runs are of.
+    #[serde(default)]
+    pub attitude_of: AttitudeOf,
     /// Criterion that proposals are ranked by.
     pub aim: Aim,
     /// Forecast from the record so far.
@@ -42,6 +45,21 @@ pub struct PlanResult {
     /// Exact equivalents among the effects in question, which no run distinguishes; the reported
     /// one first.
     pub inseparable: Vec<Vec<Id>>,
+}
+
+/// The body whose attitude is planned. Its angles against local east, north, up are rotations about x, then y, then
+/// z.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum AttitudeOf {
+    /// The stabilised platform, at the first row: the Earth turns under it from there on.
+    #[default]
+    Platform,
+    /// The axes of the instruments of a strapdown unit, which rests on the Earth for the whole run. The platform that
+    /// is computed from its log begins along them.
+    Unit,
 }
 
 /// Criterion that proposals are ranked by.
@@ -60,8 +78,8 @@ pub enum Aim {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Proposal {
-    /// Platform angles about x, then y, then z at its first row \[deg\]; `None` if the record
-    /// continues.
+    /// Angles about x, then y, then z at its first row \[deg\], of [`PlanResult::attitude_of`]; `None` if the
+    /// record continues.
     #[serde(rename = "initial_angles_deg")]
     pub angles_deg: Option<[f64; 3]>,
     /// Its duration \[s\].

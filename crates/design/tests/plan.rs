@@ -136,6 +136,7 @@ fn near_twins_are_planned_apart_and_the_run_tells_them_apart() {
         &fitted,
         &run(&first),
         &run(&second),
+        None,
         &named,
         &Options::default(),
     )
@@ -406,7 +407,7 @@ fn a_plan_from_a_written_joint_diagnosis_is_that_from_the_diagnosis() {
     assert_eq!(named[0].effect, "gyro_y.g_z");
     assert!(named[0].turn_on_sigmas.is_empty());
     let runs = records.each_ref().map(run);
-    let (fitted, record) = fitted_to_records(&result, &runs, &Options::default()).unwrap();
+    let (fitted, record) = fitted_to_records(&result, &runs, &[], &Options::default()).unwrap();
     let run = Run {
         record: &record,
         bench: &records[1].bench,
@@ -449,7 +450,7 @@ fn a_cause_with_a_size_for_each_turn_on_has_another_in_the_next_run() {
     let named = own.iter().find(|one| !one.turn_on_sigmas.is_empty());
     assert!(named.is_some(), "{own:?}");
     let runs = records.each_ref().map(run);
-    let (fitted, record) = fitted_to_records(&result, &runs, &Options::default()).unwrap();
+    let (fitted, record) = fitted_to_records(&result, &runs, &[], &Options::default()).unwrap();
     let run = Run {
         record: &record,
         bench: &records[1].bench,
@@ -559,7 +560,7 @@ fn a_wrong_first_attitude_is_of_its_own_record() {
     let named = NamedCause::all(&result);
     assert_eq!(named[0].effect, "platform.initial_attitude");
     let runs = records.each_ref().map(run);
-    let (fitted, record) = fitted_to_records(&result, &runs, &Options::default()).unwrap();
+    let (fitted, record) = fitted_to_records(&result, &runs, &[], &Options::default()).unwrap();
     let start_s = record.time_s[records[0].record.len()] - record.time_s[0];
     assert_eq!(named[0].shape, Some(start_s));
     let run = Run {

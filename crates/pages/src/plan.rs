@@ -1,6 +1,6 @@
 //! The page of a planned next run.
 
-use gyrocal_design::{Forecast, PlanResult, Proposal, prose};
+use gyrocal_design::{AttitudeOf, Forecast, PlanResult, Proposal, prose};
 use gyrocal_diagnosis::prose::{Block, counted};
 use gyrocal_report::page::{
     Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,
@@ -86,7 +86,7 @@ fn summary(plan: &PlanResult, blocks: &[Block]) -> Summary {
         tone: Tone::Plain,
         headline: plan.proposals.first().map_or_else(
             || "No next run within the limits".to_owned(),
-            |best| format!("Next run: {}, {}", attitude(best), hours(best)),
+            |best| format!("Next run: {}, {}", attitude(plan, best), hours(best)),
         ),
         sentence: paragraphs
             .get(1)
@@ -95,11 +95,15 @@ fn summary(plan: &PlanResult, blocks: &[Block]) -> Summary {
     }
 }
 
-fn attitude(proposal: &Proposal) -> String {
-    match proposal.angles_deg {
-        Some([x, y, z]) => format!("platform angles {x:.0}°, {y:.0}°, {z:.0}°").replace('-', "−"),
-        None => "continue in the present attitude".to_owned(),
-    }
+fn attitude(plan: &PlanResult, proposal: &Proposal) -> String {
+    let Some([x, y, z]) = proposal.angles_deg else {
+        return "continue in the present attitude".to_owned();
+    };
+    let body = match plan.attitude_of {
+        AttitudeOf::Unit => "unit",
+        _ => "platform",
+    };
+    format!("{body} angles {x:.0}°, {y:.0}°, {z:.0}°").replace('-', "−")
 }
 
 fn hours(proposal: &Proposal) -> String {
@@ -152,7 +156,7 @@ fn sigmas(plan: &PlanResult) -> Table {
 /// Ratio of the sigmas of each proposal.
 fn proposals(plan: &PlanResult) -> Bars {
     let bar = |proposal: &Proposal, tint: Tint| Bar {
-        label: format!("{}, {}", attitude(proposal), hours(proposal)),
+        label: format!("{}, {}", attitude(plan, proposal), hours(proposal)),
         value: 100.0 * proposal.outlook.sigma_ratio,
         tint,
         note: match proposal.outlook.sets.len() {

@@ -51,6 +51,7 @@ impl NotPlanned {
             }
             DesignError::UnknownCoefficient { .. } => "name one of them in --sigma",
             DesignError::Duration { .. } => "give other --hours",
+            DesignError::NoAttitude => "widen --limits or [gimbal_limits_deg]",
             DesignError::Limits { .. } => {
                 "give shorter --hours, or wider --limits or [gimbal_limits_deg]"
             }

@@ -8,12 +8,12 @@ use gyrocal_design::{NamedCause, noise_of};
 use gyrocal_diagnosis::prose::counted;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_watched, result};
 use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem, printable_path};
-use gyrocal_setup::PlatformKind;
 
 use super::failed::{NotPlanned, OtherInput};
 use super::{PlanArguments, several};
 use crate::Failure;
 use crate::diagnose::NotDiagnosed;
+use crate::gyro_axes;
 use crate::progress::Progress;
 
 /// Starting point of a plan.
@@ -35,8 +35,9 @@ pub(super) fn known<'a>(
     let ([file], [bench]) = (files, benches) else {
         return several::known(arguments, files, benches, progress);
     };
-    let kind = PlatformKind::Stabilised;
-    let checked = Gate::of_file(kind, file, bench, &Options::default())?;
+    let axes = gyro_axes::read(&arguments.gyro_axes, [file.record()])?.pop();
+    let kind = gyro_axes::kind(&arguments.gyro_axes);
+    let checked = Gate::of_file(kind, file, bench, &Options::default())?.with_gyro_axes(axes);
     match &arguments.diagnosis {
         Some(path) => written(path, arguments, checked, bench),
         None => made(arguments, checked, bench, progress),
@@ -76,19 +77,21 @@ fn written<'a>(
     bench: &'a Bench,
 ) -> Result<Known<'a>, Failure> {
     let diagnosis = result::read(path)?;
-    refuse(path, &diagnosis, 1)?;
+    refuse(path, &diagnosis, arguments)?;
     check_inputs(path, &diagnosis, arguments)?;
     let named = NamedCause::all(&diagnosis);
-    let (record, setup) = checked
-        .sound(&DiagnoseOptions::default())
-        .map_err(|source| NotDiagnosed::new(&arguments.records[0], bench, source))?;
+    let failed = |source| NotDiagnosed::new(&arguments.records[0], bench, source);
+    let axes = checked.usable_axes();
+    let axes = axes.map_err(|source| failed(source.into()))?;
+    let (record, setup) = checked.sound(&DiagnoseOptions::default()).map_err(failed)?;
     let fitted = {
         let run = Run {
             record: &record,
             bench,
         };
         let noise = noise_of(&diagnosis);
-        let fitted = NamedCause::fitted(&named, &run, &noise, &Options::default())
+        let options = Options::default();
+        let fitted = NamedCause::fitted_of_unit(&named, &run, axes.as_ref(), &noise, &options)
             .map_err(|source| NotPlanned::new(&arguments.records, source))?;
         fitted.into_owned()
     };
@@ -100,13 +103,14 @@ fn written<'a>(
     })
 }
 
-/// Refuses a diagnosis of another number of records, and of what is no stabilised platform.
+/// Refuses a diagnosis of another number of records, and one with axes where none are given, or without.
 pub(super) fn refuse(
     path: &Path,
     diagnosis: &DiagnosisResult,
-    given: usize,
+    arguments: &PlanArguments,
 ) -> Result<(), Failure> {
     let found = diagnosis.records.len().max(1);
+    let given = arguments.records.len();
     if found != given {
         return Err(Failure::Usage(format!(
             "{} is a result of {}, and {} given: give what was diagnosed, in the same order",
@@ -118,32 +122,40 @@ pub(super) fn refuse(
             }
         )));
     }
-    if diagnosis.strapdown {
-        return Err(Failure::Usage(format!(
-            "{} is of a strapdown unit (--gyro-axes): a run is planned of a stabilised platform. The next log \
-             of a unit is best one in another attitude",
-            printable_path(path)
-        )));
-    }
-    Ok(())
+    let what = match (diagnosis.strapdown, arguments.gyro_axes.is_empty()) {
+        (true, true) => {
+            "is of a strapdown unit: give its axes, --gyro-axes AXES.csv, for each record"
+        }
+        (false, false) => {
+            "is of a stabilised platform: leave --gyro-axes out, or diagnose with them"
+        }
+        _ => return Ok(()),
+    };
+    Err(Failure::Usage(format!("{} {what}", printable_path(path))))
 }
 
 /// The inputs of a diagnosis are each record with its bench file; a later record and its bench file may
-/// follow.
+/// follow, then axes.
 pub(super) fn check_inputs(
     path: &Path,
     diagnosis: &DiagnosisResult,
     arguments: &PlanArguments,
 ) -> Result<(), Failure> {
-    let given = arguments.pairs().flat_map(|(record, bench)| {
+    let pairs = arguments.pairs().flat_map(|(record, bench)| {
         [
             (record, "of another record"),
             (bench, "with another bench file"),
         ]
     });
-    for (place, (given, other)) in given.enumerate() {
+    let inputs = &diagnosis.manifest.inputs;
+    let pairs = pairs
+        .enumerate()
+        .map(|(place, (given, other))| (given, other, inputs.get(place)));
+    let axes = arguments.gyro_axes.iter().enumerate();
+    let axes =
+        axes.map(|(place, given)| (given, "with other axes", diagnosis.axes_inputs().get(place)));
+    for (given, other, found) in pairs.chain(axes) {
         let expected = Input::of(given)?.sha256;
-        let found = diagnosis.manifest.inputs.get(place);
         if found.is_none_or(|input| input.sha256 != expected) {
             return Err(OtherInput {
                 diagnosis: printable_path(path),

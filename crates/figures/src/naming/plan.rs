@@ -224,6 +224,7 @@ fn sets(seed: u64) -> Result<Sets, Error> {
             fitted,
             &run(&first),
             &run(&second),
+            None,
             &named,
             &Options::default(),
         )?;
