@@ -237,8 +237,8 @@ mod tests {
 
     #[test]
     fn a_unit_at_rest_computes_the_platform_that_the_law_in_its_axes_gives() {
-        let bench =
-            "[site]\nlatitude_deg = 39.1\n\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n";
+        let bench = "[site]\nlatitude_deg = 39.1\n\n[platform]\ninitial_angles_deg = [0, 0, 0]\n\
+             initial_angles_sigma_deg = [1, 1, 1]\n\n[noise]\naccel_g = 1e-5\ngyro_deg_per_h = 0.002\n";
         let bench = Bench::parse(bench, "bench.toml").unwrap();
         let rows = 2 * 288;
         let record = Record {
