@@ -228,7 +228,7 @@ fn it_is_diagnosed_in_the_axes_of_its_gyros() {
     for step in next {
         let step = step.split_whitespace().collect::<Vec<_>>().join(" ");
         let files = "r.csv --bench b.toml --gyro-axes a.csv";
-        assert!(step.contains(files) && !step.contains("plan"), "{step}");
+        assert!(step.contains(files), "{step}");
     }
     let refused = |arguments: &[&str], code: i32, words: &str| {
         let output = folder.run(arguments);
@@ -246,15 +246,6 @@ fn it_is_diagnosed_in_the_axes_of_its_gyros() {
         2,
         "--validate-gyro-axes",
     );
-    let plan = [
-        "plan",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--diagnosis",
-        "d.json",
-    ];
-    refused(&plan, 2, "strapdown unit");
     let extend = ["extend", "d.json", "--out", "x.model.toml"];
     refused(&extend, 1, "strapdown unit");
 }

@@ -1,8 +1,8 @@
 //! `gyrocal plan` as a user runs it.
 
-use gyrocal_design::{Aim, PlanResult};
+use gyrocal_design::{Aim, AttitudeOf, PlanResult};
 
-use crate::folder::Folder;
+use crate::folder::{Folder, repository_argument};
 
 const RECORD: &str = "hidden_fault.csv";
 const BENCH: &str = "hidden_fault.bench.toml";
@@ -133,5 +133,110 @@ fn mistakes_are_told() {
         assert_eq!(output.status.code(), Some(2));
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(errors.contains(message), "{errors}");
+    }
+}
+
+/// A record of a unit at rest, computed from its log, with its axes.
+fn unit_folder() -> Folder {
+    let folder = Folder::new();
+    let log = "tests/data/measured/ring_laser_static/imu.csv";
+    let description = "tests/data/measured/ring_laser_static/log.toml";
+    folder.succeed(&[
+        "import",
+        "strapdown",
+        &repository_argument(log),
+        "--log-description",
+        &repository_argument(description),
+        "--out",
+        "r.csv",
+        "--bench-out",
+        "b.toml",
+        "--axes-out",
+        "a.csv",
+    ]);
+    folder
+}
+
+const OF_UNIT: [&str; 4] = ["plan", "r.csv", "--bench", "b.toml"];
+
+#[test]
+fn a_log_of_a_strapdown_unit_is_planned() {
+    let folder = unit_folder();
+    let diagnose = ["r.csv", "--bench", "b.toml", "--gyro-axes", "a.csv"];
+    folder.succeed(&[&["diagnose"], &diagnose[..], &["--json", "d.json"]].concat());
+    let with_axes = [&OF_UNIT[..], &["--gyro-axes", "a.csv", "--json", "p.json"]].concat();
+    let said = folder.succeed(&with_axes);
+    for words in [
+        "Recommended next run: 0.5 h from unit angles x",
+        "Unit angles turn East, North, Up into the axes of the instruments, about x, then y, then z",
+    ] {
+        assert!(said.contains(words), "{words}\nis not in\n{said}");
+    }
+    let fresh: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+    assert_eq!(fresh.attitude_of, AttitudeOf::Unit);
+    let inputs = fresh.manifest.inputs.iter().map(|input| &*input.path);
+    assert_eq!(inputs.collect::<Vec<_>>(), ["r.csv", "b.toml", "a.csv"]);
+    // Another attitude tells what the same cannot.
+    let best = &fresh.proposals[0].outlook;
+    assert!(best.sigma_ratio < 0.9 * fresh.going_on[0].outlook.sigma_ratio);
+    folder.succeed(&[&with_axes[..], &["--diagnosis", "d.json"]].concat());
+    let written: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+    let pairs = fresh.now.coefficients.iter().zip(&written.now.coefficients);
+    for (fresh, written) in pairs {
+        // The same noise about the same fit, which each search for it ends within a thousandth of a sigma of.
+        assert!(
+            (written.sigma / fresh.sigma - 1.0).abs() < 1e-3,
+            "{written:?} {fresh:?}"
+        );
+    }
+    let short = folder.run(&[&OF_UNIT[..], &["--gyro-axes", "a.csv"]].concat());
+    let short = String::from_utf8(short.stdout).unwrap();
+    let short = short.replace("\\\n", " ");
+    let short = short.split_whitespace().collect::<Vec<_>>().join(" ");
+    for step in [
+        "gyrocal import strapdown LOG.csv --log-description LOG.toml --out next.csv",
+        "gyrocal calibrate r.csv next.csv --bench b.toml --bench next.toml --gyro-axes a.csv --gyro-axes next.axes.csv",
+    ] {
+        assert!(short.contains(step), "{step}\nis not in\n{short}");
+    }
+}
+
+#[test]
+fn axes_that_a_diagnosis_was_not_made_with_are_refused() {
+    let folder = unit_folder();
+    let diagnose = ["diagnose", "r.csv", "--bench", "b.toml"];
+    folder.succeed(&[&diagnose[..], &["--json", "platform.json"]].concat());
+    let with_axes = ["--gyro-axes", "a.csv", "--json", "unit.json"];
+    folder.succeed(&[&diagnose[..], &with_axes].concat());
+    // Another file with the same axes.
+    folder.put("other.csv", folder.text("a.csv") + "\n");
+    let cases: [(&[&str], i32, &str); 4] = [
+        (
+            &["--diagnosis", "unit.json"],
+            2,
+            "is of a strapdown unit: give its axes, --gyro-axes AXES.csv, for each record",
+        ),
+        (
+            &["--diagnosis", "platform.json", "--gyro-axes", "a.csv"],
+            2,
+            "is of a stabilised platform: leave --gyro-axes out, or diagnose with them",
+        ),
+        (
+            &["--diagnosis", "unit.json", "--gyro-axes", "other.csv"],
+            1,
+            "a diagnosis with other axes",
+        ),
+        (
+            &["--gyro-axes", "a.csv", "--gyro-axes", "a.csv"],
+            2,
+            "2 of --gyro-axes for 1 of records: give one for each record, in their order",
+        ),
+    ];
+    for (more, code, message) in cases {
+        let output = folder.run(&[&OF_UNIT[..], more].concat());
+        let errors = String::from_utf8_lossy(&output.stderr);
+        let errors = errors.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(code), "{errors}");
+        assert!(errors.contains(message), "{message}\nis not in\n{errors}");
     }
 }

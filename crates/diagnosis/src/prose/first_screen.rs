@@ -259,11 +259,9 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
     }
 }
 
-/// The next step that plans a run: of a stabilised platform only.
+/// The next step that plans a run.
 fn plan(result: &DiagnosisResult, screen: &mut Screen, why: &str) {
-    if !result.strapdown {
-        screen.then(format!("gyrocal plan {}", files(result)), why);
-    }
+    screen.then(format!("gyrocal plan {}", files(result)), why);
 }
 
 fn unexplained(result: &DiagnosisResult) -> Screen {

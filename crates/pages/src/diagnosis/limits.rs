@@ -74,10 +74,13 @@ fn undetected(result: &DiagnosisResult) -> Option<Table> {
     })
 }
 
-/// The command that plans the next run, of a stabilised platform.
-fn plan_command(result: &DiagnosisResult) -> Option<String> {
-    (!result.strapdown).then(|| format!("gyrocal plan {}", prose::files(result)))
+/// The command that plans the next run.
+fn plan_command(result: &DiagnosisResult) -> String {
+    format!("gyrocal plan {}", prose::files(result))
 }
+
+/// What reduces the sigmas.
+const FOR_SMALLER_SIGMAS: &str = "The command finds the run that reduces the sigmas most.";
 
 /// What to do next, in a sentence.
 fn advice(result: &DiagnosisResult) -> String {
@@ -91,17 +94,8 @@ fn advice(result: &DiagnosisResult) -> String {
             "Look at the residuals below, and record again under other conditions.".to_owned()
         }
         (_, Some(experiment)) => format!("To tell what remains apart: {experiment}."),
-        (Verdict::Clean, None) => format!("Use the coefficients. {}", for_smaller_sigmas(result)),
-        (_, None) => format!("The cause is unique. {}", for_smaller_sigmas(result)),
-    }
-}
-
-/// What reduces the sigmas.
-fn for_smaller_sigmas(result: &DiagnosisResult) -> &'static str {
-    if result.strapdown {
-        "Records in other attitudes reduce the sigmas."
-    } else {
-        "The command finds the run that reduces the sigmas most."
+        (Verdict::Clean, None) => format!("Use the coefficients. {FOR_SMALLER_SIGMAS}"),
+        (_, None) => format!("The cause is unique. {FOR_SMALLER_SIGMAS}"),
     }
 }
 
@@ -109,15 +103,17 @@ pub(super) fn next_card(result: &DiagnosisResult) -> Card {
     Card {
         title: "Next step".to_owned(),
         text: vec![first_of(&advice(result))],
-        command: plan_command(result).unwrap_or_default(),
+        command: plan_command(result),
         columns: if result.coefficients.is_some() { 4 } else { 12 },
         ..Card::default()
     }
 }
 
 pub(super) fn next_run(result: &DiagnosisResult) -> Section {
-    let mut items = vec![Item::Text(advice(result))];
-    items.extend(plan_command(result).map(Item::Command));
+    let mut items = vec![
+        Item::Text(advice(result)),
+        Item::Command(plan_command(result)),
+    ];
     let effects: Vec<&str> = result.causes().map(|cause| &*cause.effect).collect();
     // Of several records the command has no such model.
     if !effects.is_empty() && result.records.is_empty() {
@@ -142,7 +138,7 @@ pub(super) fn next_run(result: &DiagnosisResult) -> Section {
         "next",
         "Next run",
         if result.strapdown {
-            "What would tell more."
+            "The log that tells most, of the unit at rest in another attitude."
         } else {
             "The run that tells most, within the limits of the gimbals."
         },
