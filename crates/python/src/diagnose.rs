@@ -50,7 +50,7 @@ impl<'a> Given<'a> {
     }
 
     /// The same with the axes of the instruments.
-    fn gate_with_axes(&self, options: &DiagnoseOptions) -> Outcome<Gate<'a>> {
+    pub(crate) fn gate_with_axes(&self, options: &DiagnoseOptions) -> Outcome<Gate<'a>> {
         let axes = self.axes.map(|axes| axes.of(self.record.file.record()));
         Ok(self.gate(options)?.with_gyro_axes(axes.transpose()?))
     }

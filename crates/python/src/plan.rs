@@ -12,6 +12,7 @@ use gyrocal_diagnosis::{DiagnosisResult, diagnose_gated};
 use gyrocal_record::{GimbalLimits, Record, SetupProblem, SourceText};
 use pyo3::prelude::*;
 
+use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
 use crate::diagnose::{Answer, Given, options};
 use crate::error::{Failure, Outcome};
@@ -29,7 +30,7 @@ struct Request {
 
 /// Plans the next run.
 #[pyfunction]
-#[pyo3(signature = (record, bench, diagnosis, hours, limits_deg, aim, sigmas, one_name, effects, false_alarm, command))]
+#[pyo3(signature = (record, bench, axes, diagnosis, hours, limits_deg, aim, sigmas, one_name, effects, false_alarm, command))]
 #[expect(
     clippy::too_many_arguments,
     reason = "the module in Python calls it, with defaults"
@@ -38,6 +39,7 @@ pub(crate) fn plan(
     py: Python<'_>,
     record: &Bound<'_, HeldRecord>,
     bench: &Bound<'_, HeldBench>,
+    axes: Option<GivenAxes<'_>>,
     diagnosis: Option<String>,
     hours: Vec<f64>,
     limits_deg: Vec<(String, [f64; 2])>,
@@ -48,10 +50,11 @@ pub(crate) fn plan(
     false_alarm: f64,
     command: &str,
 ) -> PyResult<Answer> {
+    let axes = axes.map(|axes| axes.take("gyro_axes")).transpose()?;
     let given = Given {
         record: record.get(),
         bench: bench.get(),
-        axes: None,
+        axes: axes.as_ref(),
     };
     let request = Request {
         diagnosis,
@@ -89,7 +92,8 @@ fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Answer>
     let mut planned = design(&known.fitted, &run, &known.named, options)
         .map_err(|source| no_plan(given, source))?;
     planned.setup.clone_from(&known.setup);
-    let inputs = vec![given.record.input.clone(), given.bench.input.clone()];
+    let mut inputs = vec![given.record.input.clone(), given.bench.input.clone()];
+    inputs.extend(given.axes.map(Axes::input).transpose()?);
     planned.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
     Ok((json(&planned)?, json(&prose(&planned))?))
 }
@@ -101,8 +105,12 @@ fn no_plan(given: Given<'_>, source: DesignError) -> Failure {
 /// Diagnoses the record.
 fn made<'a>(given: Given<'a>, request: &Request) -> Outcome<Known<'a>> {
     let options = options(request.effects.clone(), request.false_alarm, false)?;
-    let found = diagnose_gated(given.gate(&options)?, &given.bench.bench, &options)
-        .map_err(|source| given.no_diagnosis(source))?;
+    let found = diagnose_gated(
+        given.gate_with_axes(&options)?,
+        &given.bench.bench,
+        &options,
+    )
+    .map_err(|source| given.no_diagnosis(source))?;
     Ok(Known {
         named: NamedCause::all(&found.result),
         fitted: found.extended.unwrap_or(found.nominal),
@@ -115,20 +123,22 @@ fn made<'a>(given: Given<'a>, request: &Request) -> Outcome<Known<'a>> {
 fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
     let source = SourceText::new(diagnosis, "diagnosis")?;
     let diagnosis = gyrocal_diagnosis::result::read_text(&source)?;
-    refuse(&diagnosis)?;
+    refuse(given, &diagnosis)?;
     check_inputs(given, &diagnosis)?;
     let named = NamedCause::all(&diagnosis);
     let options = options(Vec::new(), diagnosis.false_alarm_probability, false)?;
-    let sound = given.gate(&options)?.sound(&options);
-    let (record, setup) = sound.map_err(|source| given.no_diagnosis(source))?;
+    let gate = given.gate_with_axes(&options)?;
+    let failed = |source| given.no_diagnosis(source);
+    let axes = gate.usable_axes().map_err(|source| failed(source.into()))?;
+    let (record, setup) = gate.sound(&options).map_err(failed)?;
     let fitted = {
         let run = Run {
             record: &record,
             bench: &given.bench.bench,
         };
         let noise = noise_of(&diagnosis);
-        let fitted = NamedCause::fitted(&named, &run, &noise, &Options::default());
-        fitted
+        let settings = Options::default();
+        NamedCause::fitted_of_unit(&named, &run, axes.as_ref(), &noise, &settings)
             .map_err(|source| no_plan(given, source))?
             .into_owned()
     };
@@ -140,8 +150,8 @@ fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
     })
 }
 
-/// Refuses a diagnosis of several records, and of what is no stabilised platform.
-fn refuse(diagnosis: &DiagnosisResult) -> Outcome<()> {
+/// Refuses a diagnosis of several records, and one with axes where none are given, or without.
+fn refuse(given: Given<'_>, diagnosis: &DiagnosisResult) -> Outcome<()> {
     if !diagnosis.records.is_empty() {
         return Err(Failure::of_value(
             "diagnosis",
@@ -150,29 +160,41 @@ fn refuse(diagnosis: &DiagnosisResult) -> Outcome<()> {
             "the command plans after several: gyrocal plan --diagnosis",
         ));
     }
-    if diagnosis.strapdown {
-        return Err(Failure::of_value(
+    match (diagnosis.strapdown, given.axes) {
+        (true, None) => Err(Failure::of_value(
             "diagnosis",
             "that of a strapdown unit, with gyro_axes",
-            "that of a stabilised platform",
-            "the next log of a unit is best one in another attitude",
-        ));
+            "that of a stabilised platform, as no gyro_axes are given",
+            "give the gyro_axes of the record",
+        )),
+        (false, Some(_)) => Err(Failure::of_value(
+            "diagnosis",
+            "that of a stabilised platform, without gyro_axes",
+            "that of a strapdown unit, as gyro_axes are given",
+            "leave gyro_axes out, or diagnose with them",
+        )),
+        _ => Ok(()),
     }
-    Ok(())
 }
 
-/// A diagnosis is of the record and the bench description that are given.
+/// A diagnosis is of the record, the bench description and the axes that are given.
 fn check_inputs(given: Given<'_>, diagnosis: &DiagnosisResult) -> Outcome<()> {
-    let expected = [&given.record.input, &given.bench.input];
-    for (place, expected) in expected.into_iter().enumerate() {
-        let found = diagnosis.manifest.inputs.get(place);
+    let inputs = &diagnosis.manifest.inputs;
+    let mut pairs = vec![
+        (given.record.input.clone(), inputs.first()),
+        (given.bench.input.clone(), inputs.get(1)),
+    ];
+    if let Some(axes) = given.axes {
+        pairs.push((axes.input()?, diagnosis.axes_inputs().first()));
+    }
+    for (expected, found) in pairs {
         if found.is_none_or(|found| found.sha256 != expected.sha256) {
             return Err(Failure::of_value(
                 "diagnosis",
                 found.map_or("no input", |found| found.path.as_str()),
                 format!("{}, with SHA-256 {}", expected.path, expected.sha256),
-                "diagnose this record with this bench description, from a file or from memory as \
-                 here, or leave diagnosis out",
+                "diagnose this record with this bench description and these axes, from a file or from memory \
+                 as here, or leave diagnosis out",
             ));
         }
     }

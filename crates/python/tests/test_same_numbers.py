@@ -90,10 +90,34 @@ def test_gyro_axes(tmp_path, strapdown):
             del result["manifest"]
         assert of_array == by_command
     assert by_command["schema_version"]
-    # The next run of a unit is another one than that of a platform.
+
+
+def test_plan_of_a_strapdown_unit(tmp_path, strapdown):
+    record, bench, file = strapdown
+    quaternions = np.loadtxt(file, delimiter=",", skiprows=1)[:, 1:]
+    call = ["plan", record, "--bench", bench, "--gyro-axes", file]
+    by_command = run_command(call, tmp_path)
+    planned = gyrocal.plan(record, bench, gyro_axes=file)
+    assert without_command_line(planned.to_dict()) == without_command_line(by_command)
+    assert planned.attitude_of == "unit"
+    of_array = gyrocal.plan(record, bench, gyro_axes=quaternions)
+    assert of_array.manifest.inputs[2].path == "<gyro_axes>"
+    assert of_array.proposals == planned.proposals
+
+    # From a diagnosis with the same axes, and with no others.
     found = gyrocal.diagnose(record, bench, gyro_axes=file)
+    json_file = tmp_path / "diagnosis.json"
+    json_file.write_text(json.dumps(found.to_dict()))
+    by_command = run_command([*call, "--diagnosis", json_file], tmp_path)
+    planned = gyrocal.plan(record, bench, gyro_axes=file, diagnosis=found).to_dict()
+    del by_command["manifest"], planned["manifest"]
+    assert planned == by_command
     with pytest.raises(gyrocal.InputError, match="strapdown unit"):
         gyrocal.plan(record, bench, diagnosis=found)
+    with pytest.raises(gyrocal.InputError, match="stabilised platform"):
+        gyrocal.plan(record, bench, gyro_axes=file, diagnosis=gyrocal.diagnose(record, bench))
+    with pytest.raises(gyrocal.InputError, match="SHA-256"):
+        gyrocal.plan(record, bench, gyro_axes=-quaternions, diagnosis=found)
 
 
 def test_gyro_axes_of_a_later_record(tmp_path, strapdown):

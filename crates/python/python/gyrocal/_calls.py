@@ -192,6 +192,7 @@ def plan(
     record: RecordLike,
     bench: BenchLike,
     *,
+    gyro_axes: AxesLike | None = None,
     diagnosis: Diagnosis | None = None,
     hours: float | Iterable[float] = (),
     limits_deg: Mapping[str, tuple[float, float]] | None = None,
@@ -206,10 +207,13 @@ def plan(
     Args:
         record: The record.
         bench: The bench description.
-        diagnosis: Result of :func:`diagnose` for this record, without ``gyro_axes``; if none is given, the
-            record is diagnosed.
+        gyro_axes: Axes of the instruments of a strapdown unit in the computed platform, as :func:`diagnose`
+            takes them. The next run is then a log of the unit at rest, and angles are those of the unit.
+        diagnosis: Result of :func:`diagnose` for this record, with the same ``gyro_axes`` if any; if none is
+            given, the record is diagnosed.
         hours: Durations of the next run; that of the record if none is given.
-        limits_deg: Limits of the platform angles ``x``, ``y``, ``z``; before those of the bench.
+        limits_deg: Limits of the platform angles ``x``, ``y``, ``z``, or of those of the unit; before those
+            of the bench.
         aim: Criterion of the ranking; ``set`` if a finding has alternatives.
         sigmas: Also finds the shortest run after which coefficients have these sigmas.
         one_name: Also finds the shortest run after which one effect stays in each confidence set.
@@ -228,6 +232,7 @@ def plan(
     answer = _gyrocal.plan(
         as_record(record)._held,
         as_bench(bench)._held,
+        None if gyro_axes is None else as_axes(gyro_axes, "gyro_axes"),
         None if diagnosis is None else diagnosis.to_json(),
         [float(one) for one in hours],
         [(axis, (float(low), float(high))) for axis, (low, high) in (limits_deg or {}).items()],

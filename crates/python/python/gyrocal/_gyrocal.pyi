@@ -110,6 +110,7 @@ def diagnose(
 def plan(
     record: Record,
     bench: Bench,
+    axes: NDArray[np.float64] | str | None,
     diagnosis: str | None,
     hours: list[float],
     limits_deg: list[tuple[str, tuple[float, float]]],
