@@ -18,7 +18,14 @@ from effect import Effect
 from layout import drift
 
 SCHEMA_VERSION = 1
-KEYS = {"schema_version", "effects", "shapes", "estimates"}
+KEYS = {"schema_version", "gyros", "effects", "shapes", "estimates"}
+PLATFORM, STRAPDOWN = "platform", "strapdown"
+GYROS = {
+    PLATFORM: "The platform with {effects}.",
+    STRAPDOWN: "The analytic platform of a strapdown unit with {effects}, in the axes of its gyros "
+               "and accelerometers.",
+}
+"""What the gyros are fixed to, and the documentation of such a model."""
 WIDE = 10
 """Sigma of a parameter without an estimate, in typical sizes."""
 
@@ -48,6 +55,9 @@ def _program(content: dict, name: str) -> Program:
     if content.get("schema_version") != SCHEMA_VERSION:
         raise ExportError(f"found schema_version {content.get('schema_version')}, "
                           f"expected {SCHEMA_VERSION}")
+    gyros = content.get("gyros", PLATFORM)
+    if not isinstance(gyros, str) or gyros not in GYROS:
+        raise ExportError(f"found gyros {gyros!r}, expected {_any_of(list(GYROS))}")
     ids = content.get("effects")
     if not isinstance(ids, list) or not ids or not all(isinstance(i, str) for i in ids):
         raise ExportError(f"found effects {ids!r}, expected a list of ids of effects")
@@ -59,10 +69,11 @@ def _program(content: dict, name: str) -> Program:
     listed = ", ".join(f"`{effect.id}`" for effect in effects)
     return extended_program.program(
         name, "".join(word.capitalize() for word in name.split("_")),
-        f"The platform with {listed}.", effects,
+        GYROS[gyros].format(effects=listed), effects,
         [Table("start", "StartValue",
                "Initial values of a filter: the parameters after the drift coefficients, in order.",
                START_FIELDS, start)],
+        strapdown=gyros == STRAPDOWN,
     )
 
 

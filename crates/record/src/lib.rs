@@ -95,7 +95,7 @@ pub use gimbals::GimbalLimits;
 #[cfg(feature = "schema")]
 pub use json_schema::written_schema;
 pub use manifest::{Input, InputRole, Manifest};
-pub use model_file::{KnownEffect, ModelFile, ParameterEstimate, Standing};
+pub use model_file::{Gyros, KnownEffect, ModelFile, ParameterEstimate, Standing};
 pub use module_name::module_name;
 pub use output::{Outputs, write_json, write_whole};
 pub use printable::{printable, printable_line, printable_path, shell_quoted};

@@ -16,6 +16,8 @@ use crate::table::Table;
 /// their estimates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModelFile {
+    /// What the gyros are fixed to.
+    pub gyros: Gyros,
     /// Ids of the effects, each once.
     pub effects: Vec<String>,
     /// Ids of shapes (onsets, time constants) with the values that are built into the model.
@@ -23,6 +25,30 @@ pub struct ModelFile {
     pub shapes: Vec<(String, f64)>,
     /// Initial values of filters. Other parameters start at zero with a wide prior.
     pub estimates: Vec<ParameterEstimate>,
+}
+
+/// What the gyros and accelerometers of a model are fixed to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Gyros {
+    /// The platform that the gyros stabilise: instruments lie along its axes.
+    #[default]
+    Platform,
+    /// A body: the platform is computed from the outputs of the gyros, and coefficients and effects are
+    /// errors of the instruments in their own axes.
+    Strapdown,
+}
+
+impl Gyros {
+    const ALL: [Self; 2] = [Self::Platform, Self::Strapdown];
+
+    /// The word for it in a model file.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Platform => "platform",
+            Self::Strapdown => "strapdown",
+        }
+    }
 }
 
 /// An estimated parameter of an effect.
@@ -84,7 +110,13 @@ impl KnownEffect<'_> {
     }
 }
 
-const KEYS: [&str; 4] = ["schema_version", "effects", "shapes", "estimates"];
+const KEYS: [&str; 5] = [
+    "schema_version",
+    "gyros",
+    "effects",
+    "shapes",
+    "estimates",
+];
 
 impl ModelFile {
     /// Reads a model file.
@@ -139,6 +171,7 @@ impl ModelFile {
     fn from_document(document: &Document, known: &[KnownEffect<'_>]) -> Result<Self, Error> {
         document.interpret(&KEYS, |root| {
             check_version(root)?;
+            let gyros = read_gyros(root)?;
             let listed = effects(root, known)?;
             let shapes: Vec<&str> = listed
                 .iter()
@@ -151,6 +184,7 @@ impl ModelFile {
                 .copied()
                 .collect();
             Ok(Self {
+                gyros,
                 effects: listed.iter().map(|effect| effect.id.to_owned()).collect(),
                 shapes: read_shapes(root, &shapes)?,
                 estimates: read_estimates(root, &states)?,
@@ -161,10 +195,16 @@ impl ModelFile {
     fn format(&self) -> String {
         let mut text = format!(
             "# Effects of an extended model, after the nine drift coefficients; docs/extending.md.\n\
-             schema_version = {SCHEMA_VERSION}\n\
-             effects = {:?}\n",
-            self.effects
+             schema_version = {SCHEMA_VERSION}\n"
         );
+        if self.gyros != Gyros::default() {
+            let _ = writeln!(
+                text,
+                "# fixed to a body: coefficients and effects are those of its axes\ngyros = {:?}",
+                self.gyros.word()
+            );
+        }
+        let _ = writeln!(text, "effects = {:?}", self.effects);
         if !self.shapes.is_empty() {
             text.push_str(
                 "\n# constants of the model; shapes that are not listed are inputs\n[shapes]\n",
@@ -197,6 +237,24 @@ fn check_version(root: &Table<'_>) -> Result<(), Error> {
         &format!("{SCHEMA_VERSION}, the version that this program knows"),
         "write the file again with `gyrocal extend` of this version",
     ))
+}
+
+fn read_gyros(root: &Table<'_>) -> Result<Gyros, Error> {
+    let words = Gyros::ALL.map(Gyros::word);
+    let expected = any_of(&words);
+    let Some(text) = root.optional_text("gyros", &expected)? else {
+        return Ok(Gyros::default());
+    };
+    let found = Gyros::ALL
+        .into_iter()
+        .find(|gyros| gyros.word() == text.text);
+    found.ok_or_else(|| {
+        text.error(
+            InputErrorKind::OutOfRange,
+            &expected,
+            "what the gyros are fixed to; without the key it is the platform",
+        )
+    })
 }
 
 fn effects<'k, 'a>(

@@ -246,6 +246,29 @@ impl<'a> Table<'a> {
         items.iter().map(text).collect()
     }
 
+    /// A text that may be absent, with its place.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if what is there is no text.
+    pub(crate) fn optional_text(
+        &self,
+        key: &str,
+        expected: &str,
+    ) -> Result<Option<Text<'a>>, Error> {
+        let Some((_, value)) = self.entry(key) else {
+            return Ok(None);
+        };
+        match value.get_ref().as_str() {
+            Some(text) => Ok(Some(Text {
+                source: self.source,
+                text,
+                span: value.span(),
+            })),
+            None => Err(self.wrong_type(value, expected)),
+        }
+    }
+
     /// Whether the value of a key is this word.
     #[must_use]
     pub fn is_word(&self, key: &str, word: &str) -> bool {

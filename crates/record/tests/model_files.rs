@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use gyrocal_record::{
-    Error, InputErrorKind, KnownEffect, ModelFile, ParameterEstimate, Standing, module_name,
+    Error, Gyros, InputErrorKind, KnownEffect, ModelFile, ParameterEstimate, Standing, module_name,
 };
 
 fn effect(
@@ -70,12 +70,18 @@ fn what_is_written_is_what_is_read() {
     let text = model.to_toml(Path::new("m.toml"), &known()).unwrap();
     assert_eq!(ModelFile::parse(&text, "m.toml", &known()).unwrap(), model);
 
-    let bare = ModelFile {
-        effects: vec!["gyro_x.diurnal".to_owned()],
-        ..ModelFile::default()
-    };
-    let text = bare.to_toml(Path::new("m.toml"), &known()).unwrap();
-    assert_eq!(ModelFile::parse(&text, "m.toml", &known()).unwrap(), bare);
+    for gyros in [Gyros::Platform, Gyros::Strapdown] {
+        let bare = ModelFile {
+            gyros,
+            effects: vec!["gyro_x.diurnal".to_owned()],
+            ..ModelFile::default()
+        };
+        let text = bare.to_toml(Path::new("m.toml"), &known()).unwrap();
+        assert_eq!(ModelFile::parse(&text, "m.toml", &known()).unwrap(), bare);
+        // What files of before say stays the default.
+        let is_said = text.contains("\ngyros = \"strapdown\"\n");
+        assert_eq!(is_said, gyros == Gyros::Strapdown, "{text}");
+    }
 }
 
 #[test]
@@ -193,6 +199,20 @@ fn each_mistake_is_shown_where_it_is() {
             Kind::OutOfRange,
             "1:18: found `2`, expected 1, the version",
             "gyrocal extend",
+        ),
+        (
+            "= 1\n",
+            "= 1\ngyros = \"body\"\n",
+            Kind::OutOfRange,
+            "2:9: found `body`, expected `platform` or `strapdown`",
+            "without the key it is the platform",
+        ),
+        (
+            "= 1\n",
+            "= 1\ngyros = true\n",
+            Kind::WrongType,
+            "2:9: found `true`, expected `platform` or `strapdown`",
+            "",
         ),
         (
             "schema_version = 1\n",
