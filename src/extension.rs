@@ -1,10 +1,11 @@
 use gyrocal_estimation::{ArrayStorage, EstimationError, Filter, Innovation, Precision};
-use gyrocal_scalar::{Model, NamedInputs};
+use gyrocal_scalar::{Model, NamedInputs, Real};
 
 use crate::anchor::{Anchored, Chart};
 use crate::generated::platform::Platform;
 use crate::initial_attitude::InitialAttitude;
 use crate::regressors::Regressors;
+use crate::rotation::rotate;
 use crate::settings::FilterSettings;
 
 /// The filter underneath: three angles, the nine coefficients and the parameters of the effects.
@@ -13,10 +14,18 @@ pub type ExtensionKernel<T, M, I, const N: usize> =
 
 /// 1 rad/s in deg/h.
 const DEG_PER_H: f64 = 3600.0 * 180.0 / core::f64::consts::PI;
+/// The input of models whose gyros are fixed to a body.
+const GYRO_AXES: &str = "platform_c_gyros";
 
 /// Estimates the drift from accelerometer samples, and computes the commands of the torquers.
 ///
 /// `M` is the generated model of a model file, `I` are its inputs and `N` its states.
+///
+/// In the model of a strapdown unit the gyros are fixed to a body and the platform is computed from their
+/// outputs, uncorrected. Samples are along the axes of this platform. The matrix that takes components along
+/// the axes of the gyros to components along those of the platform is an input:
+/// [`Self::take_turning`] has it. Coefficients and effects are errors of the outputs of the instruments, in
+/// their own axes.
 #[derive(Clone, Debug)]
 pub struct ExtensionFilter<T: Precision, M, I, const N: usize> {
     filter: ExtensionKernel<T, M, I, N>,
@@ -84,6 +93,7 @@ where
             model,
         };
         this.set_regressors(&Regressors::from_array([zero; 3]));
+        this.set_gyro_axes(&identity());
         Ok(this)
     }
 
@@ -116,21 +126,55 @@ where
             .update(specific_force_g, &self.accel_variance_g2)
     }
 
-    /// The drift of the gyros under this specific force \[deg/h\]. Torquing them by its negative keeps
-    /// the platform fixed in inertial space.
+    /// [`Self::take`] for gyros that are fixed to a body, which turns in the platform: with the matrix of
+    /// [`Self::set_gyro_axes`] at the middle of the interval and at the sample.
+    ///
+    /// # Errors
+    /// As [`Self::take`].
+    pub fn take_turning(
+        &mut self,
+        interval_s: T,
+        [middle, sample]: [&[[T; 3]; 3]; 2],
+        specific_force_g: &[T; 3],
+    ) -> Result<Innovation<T, 3>, EstimationError> {
+        if interval_s.is_positive() {
+            self.set_gyro_axes(middle);
+            self.coast(interval_s)?;
+            self.condition(self.time_s, interval_s);
+        }
+        self.set_gyro_axes(sample);
+        self.take(T::from_f64(0.0), specific_force_g)
+    }
+
+    /// The drift of the gyros under this specific force along their axes \[deg/h\]. Torquing them by its
+    /// negative keeps the platform fixed in inertial space. Of gyros that are fixed to a body it is the
+    /// error of their outputs, which is to be subtracted from them.
     #[must_use]
     pub fn drift_deg_per_h(&self, specific_force_g: &[T; 3]) -> [T; 3] {
         let zero = [T::from_f64(0.0); 3];
         let mut inputs = *self.filter.inputs().inputs();
+        let axes = matrix_of(&mut inputs);
+        let along_platform = match &axes {
+            Some(platform_c_gyros) => rotate(platform_c_gyros, specific_force_g),
+            None => *specific_force_g,
+        };
         // Without Earth rate, and at zero angles, the rates are the drift.
-        for (name, value) in [("omega_0", &zero), ("f_0", specific_force_g)] {
+        for (name, value) in [("omega_0", &zero), ("f_0", &along_platform)] {
             if let Some(group) = inputs.group_mut(name) {
                 group.copy_from_slice(value);
             }
         }
-        self.model
-            .rates(&zero, &self.filter.state()[3..], &inputs)
-            .map(|rate| rate * T::from_f64(DEG_PER_H))
+        let state = self.filter.state();
+        let rates = self.model.rates(&zero, &state[3..], &inputs);
+        let drift = match &axes {
+            // A platform that is computed turns by minus the errors.
+            Some(platform_c_gyros) => {
+                let back = transposed(platform_c_gyros);
+                rotate(&back, &rates).map(|rate| zero[0] - rate)
+            }
+            None => rates,
+        };
+        drift.map(|rate| rate * T::from_f64(DEG_PER_H))
     }
 
     /// The specific force that the accelerometers should read now \[g\].
@@ -152,6 +196,18 @@ where
         }
     }
 
+    /// Sets the matrix, by rows, that takes components along the axes of gyros fixed to a body to components
+    /// along the axes of the platform that is computed from their outputs, for the next steps, samples and
+    /// drifts; the identity before. Over a step it is the one at its middle. Does nothing in a model of a
+    /// stabilised platform.
+    pub fn set_gyro_axes(&mut self, platform_c_gyros: &[[T; 3]; 3]) {
+        if let Some(own) = self.inputs_mut().group_mut(GYRO_AXES) {
+            for (own, given) in own.iter_mut().zip(platform_c_gyros.as_flattened()) {
+                *own = *given;
+            }
+        }
+    }
+
     /// The inputs of the model, for shapes.
     pub fn inputs_mut(&mut self) -> &mut I {
         self.filter.inputs_mut().inputs_mut()
@@ -169,4 +225,20 @@ where
             (*time, *interval) = (time_s, interval_s);
         }
     }
+}
+
+/// The axes of gyros that are fixed to a body; `None` of those of a stabilised platform.
+fn matrix_of<T: Real, I: NamedInputs<T>>(inputs: &mut I) -> Option<[[T; 3]; 3]> {
+    let elements: &[T; 9] = (&*inputs.group_mut(GYRO_AXES)?).try_into().ok()?;
+    Some(core::array::from_fn(|i| {
+        core::array::from_fn(|j| elements[3 * i + j])
+    }))
+}
+
+fn identity<T: Real>() -> [[T; 3]; 3] {
+    core::array::from_fn(|i| core::array::from_fn(|j| T::from_f64(f64::from(u8::from(i == j)))))
+}
+
+fn transposed<T: Real>(matrix: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    core::array::from_fn(|i| core::array::from_fn(|j| matrix[j][i]))
 }

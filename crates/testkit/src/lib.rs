@@ -13,6 +13,7 @@
 //! - `positions`: logs of multi-position tests.
 //! - `sensor-noise`: rates of a gyro at rest with noise of known parts.
 //! - `setups`: records with gross errors of the set-up.
+//! - `strapdown`: records of strapdown units with the axes of their instruments.
 //! - `extended`: the controller of `examples/extended` against the catalogue.
 //!
 //! Each module has more than one user among tests, benches and `cargo figures`; support of a single test
@@ -59,6 +60,8 @@ pub mod sensor_noise;
 pub mod signature_differences;
 #[cfg(feature = "filters")]
 pub mod step_times;
+#[cfg(feature = "strapdown")]
+pub mod strapdown_unit;
 pub mod timing;
 mod tiny;
 

@@ -157,17 +157,16 @@ fn what_the_derivation_refuses_is_passed_on() {
 }
 
 #[test]
-fn the_copy_of_the_example_is_what_its_model_file_gives() {
+fn the_copies_of_the_example_are_what_its_model_files_give() {
     let example = workspace().join("examples/extended");
     let mut settings = Settings::from_env();
     settings.environments = Some(real_environments());
     settings.offline = false;
-    let variant = Variant::open(
-        workspace().join("codegen/derive"),
-        example.join("extended.model.toml"),
-    )
-    .unwrap()
-    .committed(example.join("src/generated"))
-    .with_settings(settings);
-    variant.check().unwrap();
+    for file in ["extended.model.toml", "unit.model.toml"] {
+        let variant = Variant::open(workspace().join("codegen/derive"), example.join(file))
+            .unwrap()
+            .committed(example.join("src/generated"))
+            .with_settings(settings.clone());
+        variant.check().unwrap();
+    }
 }

@@ -1,0 +1,107 @@
+//! Records of the platform that is computed from the outputs of a strapdown unit, with the axes of its
+//! instruments.
+
+use gyrocal_record::{Bench, Record};
+use gyrocal_statistics::deviates::Normals;
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+/// The bench description of all records: its text.
+pub const BENCH: &str = "[site]\nlatitude_deg = 39.1\n\n[platform]\ninitial_angles_deg = [0.0, 0.0, 0.0]\n\
+                         initial_angles_sigma_deg = [0.02, 0.02, 0.02]\n\n[noise]\naccel_g = 1e-5\n\
+                         gyro_deg_per_h = 0.002\n\n[prior]\nbias_sigma_deg_per_h = 1.0\n\
+                         g_sigma_deg_per_h_per_g = 1.0\ngg_sigma_deg_per_h_per_g2 = 1.0\n";
+const LATITUDE_DEG: f64 = 39.1;
+const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;
+const DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
+const GYRO_DEG_PER_H: f64 = 0.002;
+const ACCEL_G: f64 = 1e-5;
+const DAY_S: f64 = 86_400.0;
+
+/// A record, its bench description and the axes of the instruments.
+#[derive(Clone, Debug)]
+pub struct StrapdownUnit {
+    /// Specific force along the platform, whose axes are East, North, Up at the first row.
+    pub record: Record,
+    /// [`BENCH`].
+    pub bench: Bench,
+    /// Unit quaternions (w, x, y, z) that take components along the body to components along the platform,
+    /// one for each row.
+    pub platform_q_body: Vec<[f64; 4]>,
+}
+
+/// What a unit does, and how its instruments err.
+pub struct UnitRun<'a> {
+    /// Rotation vector that takes components along the body to East, North, Up at the first row, rad.
+    pub attitude_rad: [f64; 3],
+    /// Turn of the body against the Earth, along its axes, rad/s.
+    pub turn_rad_per_s: [f64; 3],
+    /// Time between two rows, s.
+    pub interval_s: f64,
+    /// Number of rows.
+    pub rows: usize,
+    /// Seed of the noise.
+    pub seed: u64,
+    /// Errors of the gyros by the specific force along the body [g] and the time in days, deg/h.
+    pub gyro_error: &'a dyn Fn([f64; 3], f64) -> [f64; 3],
+    /// Errors of the accelerometers by the same, g.
+    pub accel_error: &'a dyn Fn([f64; 3], f64) -> [f64; 3],
+}
+
+impl UnitRun<'_> {
+    /// The record. What the gyros read over an interval is the exact rotation between two rows, with the
+    /// errors of its middle.
+    pub fn simulate(&self) -> StrapdownUnit {
+        let mut normals = Normals::of_seed(self.seed);
+        let mut noise = |size: f64| Vector3::from_fn(|_, _| size * normals.normal());
+        let (sine, cosine) = LATITUDE_DEG.to_radians().sin_cos();
+        let earth = Vector3::new(0.0, cosine, sine) * EARTH_RATE_RAD_PER_S;
+        let turned = |rate: Vector3<f64>, time_s| UnitQuaternion::from_scaled_axis(rate * time_s);
+        let first = turned(self.attitude_rad.into(), 1.0);
+        let enu_c_body = |time_s| first * turned(self.turn_rad_per_s.into(), time_s);
+        let inertial_c_body = |time_s| turned(earth, time_s) * enu_c_body(time_s);
+        let force = |time_s| enu_c_body(time_s).inverse() * Vector3::z();
+        let held = GYRO_DEG_PER_H * (60.0 / self.interval_s).sqrt();
+        let mut platform_c_body = first;
+        let mut unit = StrapdownUnit {
+            record: Record {
+                time_s: Vec::new(),
+                accel_g: Vec::new(),
+                temperature_c: None,
+            },
+            bench: Bench::parse(BENCH, "bench.toml").unwrap(),
+            platform_q_body: Vec::new(),
+        };
+        for row in 0..self.rows {
+            let time_s = row as f64 * self.interval_s;
+            let error = Vector3::from((self.accel_error)(force(time_s).into(), time_s / DAY_S));
+            let read = platform_c_body * (force(time_s) + error + noise(ACCEL_G));
+            let q = platform_c_body.quaternion();
+            unit.record.time_s.push(time_s);
+            unit.record.accel_g.push(read.into());
+            unit.platform_q_body.push([q.w, q.i, q.j, q.k]);
+            let middle_s = time_s + 0.5 * self.interval_s;
+            let error = (self.gyro_error)(force(middle_s).into(), middle_s / DAY_S);
+            let error = Vector3::from(error) + noise(held);
+            let next = inertial_c_body(time_s + self.interval_s);
+            let exact = (inertial_c_body(time_s).inverse() * next).scaled_axis();
+            platform_c_body *= turned(exact + DEG_PER_H * self.interval_s * error, 1.0);
+        }
+        unit
+    }
+}
+
+impl StrapdownUnit {
+    /// Matrices, by rows, that take components along the body to components along the platform: at the
+    /// middle of the interval before a row, and at it.
+    pub fn axes(&self, row: usize) -> [[[f64; 3]; 3]; 2] {
+        let at = |row: usize| {
+            let [w, i, j, k] = self.platform_q_body[row];
+            UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, i, j, k))
+        };
+        let middle = at(row.saturating_sub(1)).slerp(&at(row), 0.5);
+        [middle, at(row)].map(|turn| {
+            let matrix: Matrix3<f64> = turn.to_rotation_matrix().into_inner();
+            matrix.transpose().into()
+        })
+    }
+}
