@@ -1,5 +1,5 @@
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_record::ModelFile;
+use gyrocal_record::{Gyros, ModelFile};
 
 use crate::bundle::{Sources, generated, selected};
 use crate::error::EmitError;
@@ -32,7 +32,10 @@ impl Emission<'_> {
     /// # Errors
     /// [`EmitError`]: a module that is not that of the model file, or a filter that stops.
     pub fn write(&self) -> Result<String, EmitError> {
-        let samples = reference::samples()?;
+        let gyros = self
+            .extension
+            .map_or_else(Gyros::default, |extension| extension.model.gyros);
+        let samples = reference::samples(gyros)?;
         let (model, own, vectors) = match &self.extension {
             None => {
                 let expected = match self.number {
@@ -47,15 +50,14 @@ impl Emission<'_> {
                 let starts = reference::starts(extension.model)?;
                 let expected = reference::extended(extension.model, &starts, &samples)?;
                 let module = generated(extension.name, extension.module);
-                let own = text::extended(self.number, extension.name, &type_name);
-                let vectors = text::extended_vectors(
-                    self.number,
-                    extension.name,
-                    &type_name,
-                    &starts,
-                    &samples,
-                    &expected,
-                );
+                let names = text::Names {
+                    module: extension.name,
+                    model: &type_name,
+                    gyros,
+                };
+                let own = text::extended(self.number, &names);
+                let vectors =
+                    text::extended_vectors(self.number, &names, &starts, &samples, &expected);
                 (module, own, vectors)
             }
         };
@@ -63,7 +65,7 @@ impl Emission<'_> {
             .extension
             .map_or_else(Vec::new, |extension| extension.model.effects.clone());
         let parts = [
-            text::head(self.number, &effects, MODEL_HASH),
+            text::head(self.number, gyros, &effects, MODEL_HASH),
             own,
             model,
             libraries()?,
@@ -100,6 +102,17 @@ impl Extension<'_> {
                     missing: format!("`{item}`"),
                 });
             }
+        }
+        let found = match self.module.contains("pub platform_c_gyros: [T; 9],") {
+            true => Gyros::Strapdown,
+            false => Gyros::Platform,
+        };
+        if found != self.model.gyros {
+            return Err(EmitError::Gyros {
+                module: format!("{}.rs", self.name),
+                found: found.word(),
+                expected: self.model.gyros.word(),
+            });
         }
         Ok(name)
     }

@@ -23,6 +23,19 @@ pub enum EmitError {
         /// The item that is missing.
         missing: String,
     },
+    /// The gyros of the generated module are fixed to something else than the model file says.
+    #[error(
+        "{module}: found gyros that are `{found}`, expected `{expected}`, as the model file says; is it the \
+         module that a build derived from the model file?"
+    )]
+    Gyros {
+        /// Name of the module's file.
+        module: String,
+        /// Word of the module's gyros in a model file.
+        found: &'static str,
+        /// That of the model file.
+        expected: &'static str,
+    },
     /// An effect of the model file that the catalogue does not have as a term.
     #[error("the catalogue has no term `{id}`")]
     NoTerm {

@@ -1,12 +1,15 @@
 //! The numbers that the tests of a file expect, from the libraries.
 
-use gyrocal::generated::catalogue::{CatalogueInputs, PARAMETERS, SHAPES};
+use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
+use gyrocal::generated::strapdown::StrapdownInputs;
+use gyrocal::scalar::{Model, NamedInputs};
 use gyrocal::{
     Catalogue, ControllerFilter, Drift, EFFECTS, ExtensionFilter, FilterSettings, InitialAttitude,
-    Limits, Platform, PlatformFilter, Precision, SavedForm, SavedNumber, Site,
+    Limits, Platform, PlatformFilter, Precision, SavedForm, SavedNumber, Site, Strapdown,
+    StrapdownCatalogue,
 };
 use gyrocal_estimation::form::Form;
-use gyrocal_record::ModelFile;
+use gyrocal_record::{Gyros, ModelFile};
 
 use crate::error::EmitError;
 
@@ -25,6 +28,9 @@ const WIDE: f64 = 10.0;
 /// So small that a parameter of an effect stays zero.
 const NOTHING: f64 = 1e-14;
 const ACCEL_NOISE_G: f64 = 1e-5;
+
+/// Change of the vector part of the quaternion of [`axes`] in a row.
+pub(crate) const TURN: [f64; 3] = [0.002, 0.003, -0.0015];
 
 /// Estimates and sigmas of the parameters after a row.
 pub(crate) struct Expected {
@@ -51,14 +57,43 @@ fn attitude<T: Precision>() -> InitialAttitude<T> {
     }
 }
 
+/// Axes of the gyros of a strapdown unit in the platform, some rows after the first: of the quaternion
+/// (1, x, y, z), whose elements are fractions with the same digits everywhere.
+fn axes(rows: f64) -> [[f64; 3]; 3] {
+    let [x, y, z] = TURN.map(|change| change * rows);
+    let scale = 1.0 / (1.0 + x * x + y * y + z * z);
+    [
+        [
+            1.0 + x * x - y * y - z * z,
+            2.0 * (x * y - z),
+            2.0 * (x * z + y),
+        ],
+        [
+            2.0 * (x * y + z),
+            1.0 - x * x + y * y - z * z,
+            2.0 * (y * z - x),
+        ],
+        [
+            2.0 * (x * z - y),
+            2.0 * (y * z + x),
+            1.0 - x * x - y * y + z * z,
+        ],
+    ]
+    .map(|row| row.map(|element| scale * element))
+}
+
+/// Axes over the step to a row, and at it.
+fn axes_of(row: usize) -> [[[f64; 3]; 3]; 2] {
+    [axes(row as f64 - 0.5), axes(row as f64)]
+}
+
 /// Specific forces along the axes of a platform that drifts, with noise, rounded to `f32`, so that they
 /// are the same samples in both number types.
-pub(crate) fn samples() -> Result<Vec<[f64; 3]>, EmitError> {
-    let truth = FilterSettings {
-        drift: Drift::from_array(DRIFT),
-        ..settings::<f64>()
+pub(crate) fn samples(gyros: Gyros) -> Result<Vec<[f64; 3]>, EmitError> {
+    let forces = match gyros {
+        Gyros::Platform => forces()?,
+        Gyros::Strapdown => strapdown_forces()?,
     };
-    let mut platform = PlatformFilter::new(&truth, &attitude())?;
     let mut state = 1_u64;
     let mut uniform = move || {
         state ^= state >> 12;
@@ -67,17 +102,50 @@ pub(crate) fn samples() -> Result<Vec<[f64; 3]>, EmitError> {
         let bits = state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11;
         bits as f64 / (1_u64 << 53) as f64 - 0.5
     };
-    let mut samples = Vec::with_capacity(SAMPLES);
+    // Uniform, of the declared standard deviation.
+    let noise = 12_f64.sqrt() * ACCEL_NOISE_G;
+    let forces = forces.into_iter();
+    let noisy = forces.map(|up| up.map(|force| f64::from((force + noise * uniform()) as f32)));
+    Ok(noisy.collect())
+}
+
+fn truth() -> FilterSettings<f64> {
+    FilterSettings {
+        drift: Drift::from_array(DRIFT),
+        ..settings()
+    }
+}
+
+/// Specific forces of a stabilised platform, without noise.
+fn forces() -> Result<Vec<[f64; 3]>, EmitError> {
+    let mut platform = PlatformFilter::new(&truth(), &attitude())?;
+    let mut forces = Vec::with_capacity(SAMPLES);
     for row in 0..SAMPLES {
         if row > 0 {
             platform.predict(INTERVAL_S)?;
         }
-        let up = platform.platform_c_enu().map(|[_, _, up]| up);
-        // Uniform, of the declared standard deviation.
-        let noise = 12_f64.sqrt() * ACCEL_NOISE_G;
-        samples.push(up.map(|force| f64::from((force + noise * uniform()) as f32)));
+        forces.push(platform.platform_c_enu().map(|[_, _, up]| up));
     }
-    Ok(samples)
+    Ok(forces)
+}
+
+/// Those of the platform that is computed from gyros fixed to a body.
+fn strapdown_forces() -> Result<Vec<[f64; 3]>, EmitError> {
+    const STATES: usize = Strapdown::STATES;
+    const OF_SITE: usize = Strapdown::PARAMETERS - Platform::PARAMETERS;
+    type StrapdownFilter = ExtensionFilter<f64, Strapdown, StrapdownInputs<f64>, STATES>;
+    let start = [[0.0, NOTHING]; OF_SITE];
+    let mut platform = StrapdownFilter::new(Strapdown, start, &truth(), &attitude())?;
+    let mut forces = Vec::with_capacity(SAMPLES);
+    for row in 0..SAMPLES {
+        if row > 0 {
+            let [middle, _] = axes_of(row);
+            platform.set_gyro_axes(&middle);
+            platform.coast(INTERVAL_S)?;
+        }
+        forces.push(platform.expected_g());
+    }
+    Ok(forces)
 }
 
 /// What a filter of a controller finds, in numbers of its type.
@@ -135,8 +203,24 @@ pub(crate) fn extended(
     starts: &[Start],
     samples: &[[f64; 3]],
 ) -> Result<Vec<Expected>, EmitError> {
+    match model.gyros {
+        Gyros::Platform => extended_of(Catalogue, model, starts, samples),
+        Gyros::Strapdown => extended_of(StrapdownCatalogue, model, starts, samples),
+    }
+}
+
+/// Parameters of both catalogues are the same, in the same order.
+fn extended_of<M, I>(
+    catalogue: M,
+    model: &ModelFile,
+    starts: &[Start],
+    samples: &[[f64; 3]],
+) -> Result<Vec<Expected>, EmitError>
+where
+    M: Model<f64, 3, 3, Inputs = I> + Copy,
+    I: NamedInputs<f64>,
+{
     const STATES: usize = Catalogue::STATES;
-    type CatalogueFilter = ExtensionFilter<f64, Catalogue, CatalogueInputs<f64>, STATES>;
     let effects = PARAMETERS.iter().skip(Platform::PARAMETERS);
     let start = effects.map(|parameter| {
         let mut starts = starts.iter();
@@ -145,8 +229,10 @@ pub(crate) fn extended(
             None => [0.0, NOTHING],
         }
     });
-    let mut filter = CatalogueFilter::new(Catalogue, start, &settings(), &attitude())?;
-    for (place, shape) in filter.inputs_mut().shapes.iter_mut().zip(&SHAPES) {
+    let mut filter =
+        ExtensionFilter::<f64, M, I, STATES>::new(catalogue, start, &settings(), &attitude())?;
+    let shapes = filter.inputs_mut().group_mut("shapes");
+    for (place, shape) in shapes.unwrap_or_default().iter_mut().zip(&SHAPES) {
         let mut given = model.shapes.iter();
         if let Some((_, value)) = given.find(|(id, _)| id == shape.id) {
             *place = *value;
@@ -165,7 +251,10 @@ pub(crate) fn extended(
         .collect();
     let mut expected = Vec::new();
     for (row, sample) in samples.iter().enumerate() {
-        filter.take(if row == 0 { 0.0 } else { INTERVAL_S }, sample)?;
+        let interval_s = if row == 0 { 0.0 } else { INTERVAL_S };
+        // The axes concern a strapdown unit only.
+        let [middle, end] = axes_of(row);
+        filter.take_turning(interval_s, [&middle, &end], sample)?;
         if COMPARED.contains(&row) {
             let kernel = filter.filter();
             expected.push(Expected {

@@ -2,14 +2,30 @@
 
 use std::fmt::Write as _;
 
+use gyrocal_record::Gyros;
+
 use crate::number::Number;
-use crate::reference::{ANGLES_RAD, Expected, INTERVAL_S, LATITUDE_DEG, SIGMA_RAD, Start};
+use crate::reference::{ANGLES_RAD, Expected, INTERVAL_S, LATITUDE_DEG, SIGMA_RAD, Start, TURN};
 
 /// True if the libraries of this program fuse multiplication and addition, which the file does not.
 const FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
+/// An extended model.
+pub(crate) struct Names<'a> {
+    /// Its module.
+    pub(crate) module: &'a str,
+    /// Its type.
+    pub(crate) model: &'a str,
+    /// What its gyros are fixed to.
+    pub(crate) gyros: Gyros,
+}
+
 /// Comment and attributes at the beginning.
-pub(crate) fn head(number: Number, effects: &[String], hash: &str) -> String {
+pub(crate) fn head(number: Number, gyros: Gyros, effects: &[String], hash: &str) -> String {
+    let of = match gyros {
+        Gyros::Platform => "of a platform",
+        Gyros::Strapdown => "of a strapdown unit",
+    };
     let number = number.name();
     let what = match effects {
         [] => "the nine drift coefficients".to_owned(),
@@ -17,7 +33,7 @@ pub(crate) fn head(number: Number, effects: &[String], hash: &str) -> String {
     };
     format!(
         "\
-//! A streaming filter for the drift of three gyros of a platform, in one file, `{number}`:
+//! A streaming filter for the drift of three gyros {of}, in one file, `{number}`:
 //! {what}.
 //!
 //! Written by `gyrocal emit`, gyrocal {}; do not edit. Model {hash}.
@@ -63,8 +79,12 @@ pub type EmittedFilter = ControllerFilter<Number>;
 }
 
 /// Types of an extended filter.
-pub(crate) fn extended(number: Number, module: &str, model: &str) -> String {
-    let number = number.name();
+pub(crate) fn extended(number: Number, names: &Names<'_>) -> String {
+    let (number, Names { module, model, .. }) = (number.name(), names);
+    let take = match names.gyros {
+        Gyros::Platform => "`take`",
+        Gyros::Strapdown => "`take_turning`",
+    };
     format!(
         "\
 pub use gyrocal::{{
@@ -76,7 +96,7 @@ pub use {module}::{{{model}, {model}Inputs, START}};
 /// The number type.
 pub type Number = {number};
 
-/// The filter: [`emitted_filter`], then `take` with each sample.
+/// The filter: [`emitted_filter`], then {take} with each sample.
 pub type EmittedFilter =
     ExtensionFilter<Number, {model}, {model}Inputs<Number>, {{ {model}::STATES }}>;
 
@@ -184,12 +204,12 @@ pub(crate) fn nominal_vectors(
 /// Tests of an extended filter.
 pub(crate) fn extended_vectors(
     number: Number,
-    module: &str,
-    model: &str,
+    names: &Names<'_>,
     starts: &[Start],
     samples: &[[f64; 3]],
     expected: &[Expected],
 ) -> String {
+    let Names { module, model, .. } = names;
     let tolerance = match number {
         Number::F64 => (
             1e-5,
@@ -207,9 +227,16 @@ pub(crate) fn extended_vectors(
         format!("        ({:?}, [{value:?}, {sigma:?}]),\n", start.id)
     });
     let rows: String = rows.collect();
+    let (axes, take) = match names.gyros {
+        Gyros::Platform => (String::new(), "take(interval_s, sample)"),
+        Gyros::Strapdown => (
+            axes(),
+            "take_turning(interval_s, [&axes(row as Number - 0.5), &axes(row as Number)], sample)",
+        ),
+    };
     let _ = write!(
         text,
-        "
+        "{axes}
     /// Ids of the parameters of the effects in the order of [`EXPECTED`], with start value and sigma.
     const STARTS: [(&str, [f64; 2]); {}] = [
 {rows}    ];
@@ -226,7 +253,8 @@ pub(crate) fn extended_vectors(
         let places: Vec<usize> = (3..12).chain(STARTS.map(|(id, _)| place(id))).collect();
         let mut compared = 0;
         for (row, sample) in SAMPLES.iter().enumerate() {{
-            filter.take(if row == 0 {{ 0.0 }} else {{ INTERVAL_S }}, sample).unwrap();
+            let interval_s = if row == 0 {{ 0.0 }} else {{ INTERVAL_S }};
+            filter.{take}.unwrap();
             for (_, estimates, sigmas) in EXPECTED.iter().filter(|(at, _, _)| *at == row) {{
                 let kernel = filter.filter();
                 let found: Vec<Number> = places.iter().map(|at| kernel.state()[*at]).collect();
@@ -248,6 +276,25 @@ pub(crate) fn extended_vectors(
         starts.len()
     );
     text
+}
+
+/// The function of the axes of a strapdown unit.
+fn axes() -> String {
+    format!(
+        "
+    /// Axes of the gyros in the platform, some rows after the first: of the quaternion (1, x, y, z).
+    fn axes(rows: Number) -> [[Number; 3]; 3] {{
+        let [x, y, z] = {TURN:?}.map(|change: Number| change * rows);
+        let scale = 1.0 / (1.0 + x * x + y * y + z * z);
+        [
+            [1.0 + x * x - y * y - z * z, 2.0 * (x * y - z), 2.0 * (x * z + y)],
+            [2.0 * (x * y + z), 1.0 - x * x + y * y - z * z, 2.0 * (y * z - x)],
+            [2.0 * (x * z - y), 2.0 * (y * z + x), 1.0 - x * x - y * y + z * z],
+        ]
+        .map(|row| row.map(|element| scale * element))
+    }}
+"
+    )
 }
 
 /// Samples, expected numbers and the comparison: the beginning of the module of tests.

@@ -9,11 +9,22 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use gyrocal_emit::{Emission, EmitError, Extension, Number};
-use gyrocal_record::{ModelFile, ParameterEstimate};
+use gyrocal_record::{Gyros, ModelFile, ParameterEstimate};
 
 /// The module that the example package has derived, which has one effect.
 const MODULE: &str = include_str!("../../../examples/extended/src/generated/extended.rs");
 const EFFECT: &str = "gyro_y.g_z";
+/// That of a strapdown unit, which has two effects.
+const UNIT_MODULE: &str = include_str!("../../../examples/extended/src/generated/unit.rs");
+const UNIT_EFFECTS: [&str; 2] = ["gyro_y.ramp", "accel_x.ramp"];
+
+/// The filter in a file.
+#[derive(Clone, Copy)]
+enum Kind {
+    Nominal,
+    Extended,
+    Strapdown,
+}
 
 fn model() -> ModelFile {
     let estimate = ParameterEstimate {
@@ -28,14 +39,29 @@ fn model() -> ModelFile {
     }
 }
 
-fn emitted(number: Number, extended: bool) -> String {
-    let model = model();
-    let extension = Extension {
-        model: &model,
-        name: "extended",
-        module: MODULE,
+fn unit_model() -> ModelFile {
+    ModelFile {
+        gyros: Gyros::Strapdown,
+        effects: UNIT_EFFECTS.map(str::to_owned).to_vec(),
+        ..ModelFile::default()
+    }
+}
+
+fn emitted(number: Number, kind: Kind) -> String {
+    let (model, unit) = (model(), unit_model());
+    let extension = match kind {
+        Kind::Nominal => None,
+        Kind::Extended => Some(Extension {
+            model: &model,
+            name: "extended",
+            module: MODULE,
+        }),
+        Kind::Strapdown => Some(Extension {
+            model: &unit,
+            name: "unit",
+            module: UNIT_MODULE,
+        }),
     };
-    let extension = extended.then_some(extension);
     Emission { number, extension }.write().unwrap()
 }
 
@@ -69,8 +95,8 @@ fn run_tests(text: &str) -> Output {
     Command::new(folder.path().join("tests")).output().unwrap()
 }
 
-fn passes(number: Number, extended: bool) {
-    let text = emitted(number, extended);
+fn passes(number: Number, kind: Kind) {
+    let text = emitted(number, kind);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("filter.rs");
     std::fs::write(&file, &text).unwrap();
@@ -82,28 +108,48 @@ fn passes(number: Number, extended: bool) {
 
 #[test]
 fn the_nominal_filter_in_f32() {
-    passes(Number::F32, false);
+    passes(Number::F32, Kind::Nominal);
 }
 
 #[test]
 fn the_nominal_filter_in_f64() {
-    passes(Number::F64, false);
+    passes(Number::F64, Kind::Nominal);
 }
 
 #[test]
 fn an_extended_filter_in_f32() {
-    passes(Number::F32, true);
+    passes(Number::F32, Kind::Extended);
 }
 
 #[test]
 fn an_extended_filter_in_f64() {
-    passes(Number::F64, true);
+    passes(Number::F64, Kind::Extended);
+}
+
+#[test]
+fn the_filter_of_a_strapdown_unit_in_f32() {
+    passes(Number::F32, Kind::Strapdown);
+}
+
+#[test]
+fn the_filter_of_a_strapdown_unit_in_f64() {
+    passes(Number::F64, Kind::Strapdown);
+}
+
+#[test]
+fn other_axes_fail_the_tests_of_the_file() {
+    let text = emitted(Number::F64, Kind::Strapdown);
+    let own =
+        "take_turning(interval_s, [&axes(row as Number - 0.5), &axes(row as Number)], sample)";
+    assert_eq!(text.matches(own).count(), 1);
+    let tests = run_tests(&text.replace(own, "take(interval_s, sample)"));
+    assert!(!tests.status.success());
 }
 
 #[test]
 fn a_changed_step_fails_the_tests_of_the_file() {
     // The spectral density of the noise of the drift, by a hundredth.
-    let text = emitted(Number::F32, false);
+    let text = emitted(Number::F32, Kind::Nominal);
     let held = "const HELD_S: f64 = 60.0;";
     assert_eq!(text.matches(held).count(), 1);
     let tests = run_tests(&text.replace(held, "const HELD_S: f64 = 60.6;"));
@@ -124,4 +170,33 @@ fn a_module_of_another_model_is_refused() {
         extension: Some(extension),
     };
     assert!(matches!(emission.write(), Err(EmitError::Module { .. })));
+}
+
+#[test]
+fn a_module_with_other_gyros_is_refused_in_words() {
+    let platform = ModelFile {
+        gyros: Gyros::Platform,
+        ..unit_model()
+    };
+    let strapdown = ModelFile {
+        gyros: Gyros::Strapdown,
+        ..model()
+    };
+    for (model, name, module, found, expected) in [
+        (platform, "unit", UNIT_MODULE, "strapdown", "platform"),
+        (strapdown, "extended", MODULE, "platform", "strapdown"),
+    ] {
+        let extension = Extension {
+            model: &model,
+            name,
+            module,
+        };
+        let emission = Emission {
+            number: Number::F32,
+            extension: Some(extension),
+        };
+        let said = emission.write().unwrap_err().to_string();
+        let words = format!("{name}.rs: found gyros that are `{found}`, expected `{expected}`");
+        assert!(said.starts_with(&words), "{said}");
+    }
 }
