@@ -4,12 +4,11 @@ mod effects;
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_diagnosis::{DiagnosisResult, result};
-use gyrocal_record::{ExtensionReport, LeftOut, Outputs, SCHEMA_VERSION, printable_path};
-use miette::miette;
+use gyrocal_diagnosis::result;
+use gyrocal_record::{ExtensionReport, Gyros, LeftOut, Outputs, SCHEMA_VERSION, printable_path};
 
 use crate::outputs::{manifest, refuse_overlap};
 use crate::{Answer, Failure};
@@ -29,6 +28,9 @@ pub(crate) struct ExtendArguments {
     /// Effects of the catalogue instead of a diagnosis.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     effects: Option<Vec<String>>,
+    /// What the gyros of the listed effects are fixed to; a diagnosis says it itself.
+    #[arg(long, value_enum, default_value_t = GyrosArgument::Platform, requires = "effects")]
+    gyros: GyrosArgument,
     /// Members of the confidence sets to take in the place of the effects that the diagnosis names; without
     /// initial values, which the diagnosis gives for the named ones only.
     #[arg(
@@ -46,6 +48,24 @@ pub(crate) struct ExtendArguments {
     json: Option<PathBuf>,
 }
 
+/// What gyros are fixed to.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum GyrosArgument {
+    /// The platform that they stabilise.
+    Platform,
+    /// A body: a platform is computed from their outputs.
+    Strapdown,
+}
+
+impl From<GyrosArgument> for Gyros {
+    fn from(gyros: GyrosArgument) -> Self {
+        match gyros {
+            GyrosArgument::Platform => Self::Platform,
+            GyrosArgument::Strapdown => Self::Strapdown,
+        }
+    }
+}
+
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
     let inputs: Vec<&Path> = arguments.diagnosis.iter().map(PathBuf::as_path).collect();
@@ -60,12 +80,12 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
         Some(path) => {
             let name = printable_path(path);
             let diagnosis = with_members(result::read(path)?, &arguments.member, &name);
-            diagnosis.and_then(|diagnosis| {
-                refuse_strapdown(&diagnosis, &name)?;
-                of_diagnosis(&diagnosis, &name)
-            })
+            diagnosis.and_then(|diagnosis| of_diagnosis(&diagnosis, &name))
         }
-        None => of_list(arguments.effects.as_deref().unwrap_or_default()),
+        None => of_list(
+            arguments.effects.as_deref().unwrap_or_default(),
+            arguments.gyros.into(),
+        ),
     }
     .map_err(Failure::Work)?;
     let mut outputs = Outputs::new();
@@ -78,23 +98,12 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
     Ok(summary(arguments, &extension))
 }
 
-/// The extended filter is that of a stabilised platform.
-fn refuse_strapdown(diagnosis: &DiagnosisResult, name: &str) -> Result<(), miette::Report> {
-    if !diagnosis.strapdown {
-        return Ok(());
-    }
-    Err(miette!(
-        help = "correct the outputs of the unit by the coefficients, or extend from a diagnosis of a platform",
-        "{name}: found a diagnosis of a strapdown unit (--gyro-axes), expected one of a stabilised platform, \
-         whose filter a model file extends"
-    ))
-}
-
 fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Failure> {
     let left_out = extension.left_out.iter();
     Ok(ExtensionReport {
         schema_version: SCHEMA_VERSION,
         manifest: manifest(MODEL_HASH, 0, inputs)?,
+        strapdown: extension.model.gyros == Gyros::Strapdown,
         effects: extension.model.effects.clone(),
         left_out: left_out
             .map(|(effect, why)| LeftOut {
@@ -116,6 +125,13 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> Answer {
             model.effects.join(", ")
         ),
     );
+    if model.gyros == Gyros::Strapdown {
+        screen.fact(
+            "gyros",
+            "fixed to a body: coefficients and effects are errors of the outputs of the instruments, in their \
+             own axes",
+        );
+    }
     for estimate in &model.estimates {
         screen.fact(
             "start value",

@@ -12,6 +12,9 @@ pub struct ExtensionReport {
     pub schema_version: u32,
     /// Origin of the result.
     pub manifest: Manifest,
+    /// Whether the model is that of gyros and accelerometers that are fixed to a body, in their own axes.
+    #[serde(default)]
+    pub strapdown: bool,
     /// The effects of the model file.
     pub effects: Vec<String>,
     /// Findings without a place in the model file.

@@ -110,13 +110,7 @@ impl KnownEffect<'_> {
     }
 }
 
-const KEYS: [&str; 5] = [
-    "schema_version",
-    "gyros",
-    "effects",
-    "shapes",
-    "estimates",
-];
+const KEYS: [&str; 5] = ["schema_version", "gyros", "effects", "shapes", "estimates"];
 
 impl ModelFile {
     /// Reads a model file.

@@ -5,7 +5,9 @@ use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_diagnosis::result::Finding;
 use gyrocal_diagnosis::{DiagnosisResult, Verdict};
-use gyrocal_record::{KnownEffect, ModelFile, ParameterEstimate, Standing, any_of, nearest_names};
+use gyrocal_record::{
+    Gyros, KnownEffect, ModelFile, ParameterEstimate, Standing, any_of, nearest_names,
+};
 use miette::{Report, miette};
 
 /// A model file, with the findings left out and the exact equivalents.
@@ -82,8 +84,15 @@ pub(super) fn with_members(
 
 /// The model of what a diagnosis found.
 pub(super) fn of_diagnosis(diagnosis: &DiagnosisResult, name: &str) -> Result<Extension, Report> {
+    let gyros = match diagnosis.strapdown {
+        true => Gyros::Strapdown,
+        false => Gyros::Platform,
+    };
     let mut extension = Extension {
-        model: ModelFile::default(),
+        model: ModelFile {
+            gyros,
+            ..ModelFile::default()
+        },
         left_out: Vec::new(),
         equivalents: Vec::new(),
     };
@@ -156,8 +165,11 @@ pub(super) fn of_diagnosis(diagnosis: &DiagnosisResult, name: &str) -> Result<Ex
 }
 
 /// The model of a list of effects.
-pub(super) fn of_list(ids: &[String]) -> Result<Extension, Report> {
-    let mut model = ModelFile::default();
+pub(super) fn of_list(ids: &[String], gyros: Gyros) -> Result<Extension, Report> {
+    let mut model = ModelFile {
+        gyros,
+        ..ModelFile::default()
+    };
     let mut equivalents = Vec::new();
     for id in ids {
         let row = row(id)?;

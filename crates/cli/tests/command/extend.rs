@@ -1,5 +1,9 @@
 //! `gyrocal extend`: from findings, or a list of effects, to a model file.
 
+use std::fmt::Write as _;
+
+use gyrocal_record::{KnownEffect, ModelFile, Standing};
+use gyrocal_testkit::strapdown_unit::{BENCH, UnitRun};
 use serde_json::{Value, json};
 
 use crate::folder::Folder;
@@ -246,4 +250,121 @@ fn a_diagnosis_or_a_list_is_asked_for() {
         );
     }
     assert_eq!(folder.text("d.json"), "{}");
+}
+
+#[test]
+fn a_fault_of_a_strapdown_unit_goes_from_its_record_to_the_model_file() {
+    // Some twenty standard deviations.
+    const RAMP: f64 = 0.001;
+    let folder = Folder::new();
+    let gyro_error = |force: [f64; 3], days: f64| {
+        let along = force.map(|force| 0.1 * force - 0.05 * force * force);
+        [
+            0.2 + along[0],
+            -0.1 + along[1] + RAMP * days,
+            0.05 + along[2],
+        ]
+    };
+    let unit = UnitRun {
+        attitude_rad: [1.3, -0.7, 2.1],
+        turn_rad_per_s: [0.0; 3],
+        interval_s: 300.0,
+        rows: 576,
+        seed: 1,
+        gyro_error: &gyro_error,
+        accel_error: &|_, _| [0.0; 3],
+    }
+    .simulate();
+    unit.record.write(&folder.path("r.csv")).unwrap();
+    folder.put("b.toml", BENCH);
+    let mut axes = "time_s,q_w,q_x,q_y,q_z\n".to_owned();
+    for (time_s, [w, x, y, z]) in unit.record.time_s.iter().zip(&unit.platform_q_body) {
+        writeln!(axes, "{time_s},{w:?},{x:?},{y:?},{z:?}").unwrap();
+    }
+    folder.put("a.csv", axes);
+    let diagnosed = [
+        "diagnose",
+        "r.csv",
+        "--bench",
+        "b.toml",
+        "--gyro-axes",
+        "a.csv",
+        "--json",
+        "d.json",
+    ];
+    folder.succeed(&diagnosed);
+    let said = folder.succeed(&[
+        "extend",
+        "d.json",
+        "--out",
+        "unit.model.toml",
+        "--json",
+        "o.json",
+    ]);
+    assert_says(&said, "gyros        fixed to a body");
+    let text = folder.text("unit.model.toml");
+    assert_says(
+        &text,
+        "\ngyros = \"strapdown\"\neffects = [\"gyro_y.ramp\"]\n",
+    );
+    let model = ModelFile::parse(&text, "unit.model.toml", &known()).unwrap();
+    let [estimate] = &model.estimates[..] else {
+        panic!("{text}");
+    };
+    assert_eq!(estimate.parameter, "gyro_y.ramp");
+    assert!(
+        (estimate.value - RAMP).abs() < 4.0 * estimate.sigma,
+        "{text}"
+    );
+    let report: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_eq!(report["strapdown"], json!(true));
+    assert_eq!(report["effects"], json!(["gyro_y.ramp"]));
+}
+
+/// The one effect that the test above expects.
+fn known() -> Vec<KnownEffect<'static>> {
+    vec![KnownEffect {
+        id: "gyro_y.ramp",
+        standing: Standing::Term,
+        states: vec!["gyro_y.ramp"],
+        shapes: Vec::new(),
+    }]
+}
+
+#[test]
+fn a_list_of_effects_says_what_the_gyros_are_fixed_to() {
+    let folder = Folder::new();
+    let listed = [
+        "extend",
+        "--effects",
+        "gyro_y.ramp",
+        "--out",
+        "m.model.toml",
+    ];
+    folder.succeed(&[&listed[..], &["--gyros", "strapdown"]].concat());
+    assert_says(&folder.text("m.model.toml"), "gyros = \"strapdown\"\n");
+    folder.succeed(&[&listed[..], &["--gyros", "platform"]].concat());
+    assert!(!folder.text("m.model.toml").contains("gyros"));
+    // A diagnosis says it itself.
+    let output = folder.run(&[&MODEL[..], &["--gyros", "strapdown"]].concat());
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn advice_on_a_strapdown_unit_is_for_such_a_unit() {
+    let folder = Folder::new();
+    let findings = [
+        finding("gyro_y.ramp", &[("size", 0.05)]),
+        finding("platform.knock", &[("x", 0.1), ("onset_s", 7200.0)]),
+    ];
+    let result = diagnosis("effects-found", &findings);
+    let mut result: Value = serde_json::from_str(&result).unwrap();
+    result["strapdown"] = json!(true);
+    folder.put("d.json", result.to_string());
+    let said = folder.succeed(&MODEL);
+    assert_says(
+        &folder.text("extended.model.toml"),
+        "gyros = \"strapdown\"\n",
+    );
+    assert_says(&said, "left out     platform.knock concerns the attitude");
 }

@@ -246,11 +246,6 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
             format!("gyrocal calibrate {files} --with {}", causes.join(",")),
             "the coefficients with it in the model",
         );
-    } else if result.strapdown {
-        screen.then(
-            format!("gyrocal diagnose {files} --report report.html"),
-            "what each record shows",
-        );
     } else {
         screen.then(
             "gyrocal extend RESULT.json --out NAME.model.toml",
