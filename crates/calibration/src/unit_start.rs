@@ -40,6 +40,17 @@ impl UnitStart {
         }
     }
 
+    /// Standard deviation of the heading where the level is known, rad.
+    #[must_use]
+    pub fn heading_sigma_rad(&self) -> f64 {
+        let covariance = &self.covariance_enu_rad2;
+        let all = Matrix3::from_fn(|row, column| covariance[row][column]);
+        // A level that is known to the last bit leaves the heading by itself.
+        let information = all.try_inverse().map(|inverse| inverse[(2, 2)]);
+        let known = information.filter(|information| *information > 0.0);
+        known.map_or(covariance[2][2], f64::recip).sqrt()
+    }
+
     /// Covariance of the error of the first attitude of the platform, a rotation vector along its axes, rad².
     pub(crate) fn covariance_rad2(&self, platform: &Orientation) -> [[f64; 3]; 3] {
         turned(&self.covariance_enu_rad2, &matrix(platform))
@@ -104,6 +115,8 @@ mod tests {
         // About the platform's z axis, which is up.
         let known = [[1e-8, 0.0, 0.0], [0.0, 1e-8, 0.0], [0.0, 0.0, 1e-2]];
         let start = UnitStart::new([1.0, 0.0, 0.0, 0.0], &level, &known);
+        // The square root of the last variance, to rounding.
+        assert!((start.heading_sigma_rad() - 0.1).abs() < 1e-12);
         for angles_deg in [[90.0, 0.0, 0.0], [20.0, -70.0, 130.0]] {
             let there = of_angles(angles_deg);
             let covariance = start.covariance_rad2(&there);

@@ -12,11 +12,11 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
 use gyrocal_design::{Aim, PlanOptions, first_screen, plan, prose};
 use gyrocal_pages::of_plan;
-use gyrocal_record::{Bench, Outputs, RecordFile};
+use gyrocal_record::{Bench, InputRole, Outputs, RecordFile};
 
 use crate::layout::layout;
 use crate::numbers::{positive, probability};
-use crate::outputs::{self, manifest};
+use crate::outputs::{self, manifest_of};
 use crate::page::Views;
 use crate::progress::Progress;
 use crate::{Answer, Failure, gyro_axes, records};
@@ -90,10 +90,23 @@ impl PlanArguments {
     }
 
     /// The files that are read: each record with its bench file, then axes, in the order of the records.
-    fn inputs(&self) -> Vec<&Path> {
-        let pairs = self.pairs().flat_map(|(record, bench)| [record, bench]);
-        let files = pairs.chain(&self.gyro_axes).chain(&self.diagnosis);
-        files.map(PathBuf::as_path).chain(self.map.path()).collect()
+    fn inputs(&self) -> Vec<(InputRole, &Path)> {
+        let pairs = self
+            .pairs()
+            .flat_map(|(record, bench)| [(InputRole::Record, record), (InputRole::Bench, bench)]);
+        let axes = self
+            .gyro_axes
+            .iter()
+            .map(|path| (InputRole::GyroAxes, path));
+        let diagnosis = self
+            .diagnosis
+            .iter()
+            .map(|path| (InputRole::Diagnosis, path));
+        let files = pairs.chain(axes).chain(diagnosis);
+        files
+            .map(|(role, path)| (role, path.as_path()))
+            .chain(self.map.path().map(|path| (InputRole::Columns, path)))
+            .collect()
     }
 }
 
@@ -113,7 +126,8 @@ const DIAGNOSED: f64 = 0.5;
 pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     records::check_benches(arguments.benches.len(), arguments.records.len())?;
     gyro_axes::check(&arguments.gyro_axes, arguments.records.len())?;
-    let inputs = arguments.inputs();
+    let files = arguments.inputs();
+    let inputs: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
     refuse_repeated(&arguments.limits)?;
     let json = arguments.json.as_deref();
     outputs::check(&inputs, json, arguments.views.figures())?;
@@ -150,7 +164,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
         .map_err(|source| NotPlanned::new(&arguments.records, source))?;
     drop(progress);
     planned.setup.clone_from(&known.setup);
-    planned.manifest = manifest(MODEL_HASH, options.seed, &inputs)?;
+    planned.manifest = manifest_of(MODEL_HASH, options.seed, &files)?;
     let mut answer = Answer::of(first_screen(&planned), layout(&prose(&planned)));
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {

@@ -2,7 +2,7 @@
 
 use gyrocal::Discretisation;
 use gyrocal::effect::Continuation;
-use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
+use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu, turned};
 use gyrocal_calibration::{
     CalibrationError, FittedPlatform, NoiseModel, Options, PLATFORM, PlannedRun, Run,
     TemperatureScale, UnitStart,
@@ -36,6 +36,9 @@ const LONGEST_STEP_S: f64 = 600.0;
 /// Longest interval between rows of a planned run of a strapdown unit, s: its axes turn by 15° in the
 /// platform, uniformly to 0.3 % between rows.
 const LONGEST_OF_UNIT_S: f64 = 3600.0;
+
+/// Largest turn of a unit about the vertical that a forecast allows for, rad: from North to halfway to East.
+const LARGEST_TURN_RAD: f64 = core::f64::consts::FRAC_PI_4;
 
 /// Evaluates attitudes for one duration.
 pub(crate) struct Evaluator<'a> {
@@ -155,8 +158,34 @@ impl<'a> Evaluator<'a> {
     }
 
     /// A run from angles of the platform at its first row, or of a strapdown unit at rest.
+    ///
+    /// A unit stands as its heading is known: the forecast is the worse one of a turn by a standard deviation to
+    /// either side. A gyro that is exactly along North does not see an error of the heading, and stands there by
+    /// chance only.
     pub(crate) fn evaluate(&self, angles_deg: [f64; 3]) -> Result<Evaluation, CalibrationError> {
         let start = of_angles(angles_deg);
+        let Some(unit) = self.unit.as_ref().map(UnitStart::along_instruments) else {
+            return self.evaluate_from(angles_deg, start, None);
+        };
+        let turn = unit.heading_sigma_rad().min(LARGEST_TURN_RAD);
+        let beside = |turn: f64| {
+            let start = turned(&start, &start[1].map(|component| turn * component));
+            self.evaluate_from(angles_deg, start, Some(unit))
+        };
+        Ok(match (beside(turn)?, beside(-turn)?) {
+            (Evaluation::At(one), Evaluation::At(other)) => {
+                Evaluation::At(one.worse(other, &self.before))
+            }
+            (Evaluation::At(_), stopped) | (stopped, _) => stopped,
+        })
+    }
+
+    fn evaluate_from(
+        &self,
+        angles_deg: [f64; 3],
+        start: Orientation,
+        unit: Option<UnitStart>,
+    ) -> Result<Evaluation, CalibrationError> {
         let (mut record, noise_factor) = self.rows(self.duration_s);
         // Where the bench gives no attitude the first samples have to tell it.
         let up = start[1].map(|component| component * self.run.bench.specific_force_at_rest());
@@ -167,7 +196,6 @@ impl<'a> Evaluator<'a> {
             accel_noise_g: noise_factor * self.run.bench.accel_noise_g,
             ..self.run.bench.clone()
         };
-        let unit = self.unit.as_ref().map(UnitStart::along_instruments);
         let model = (&self.next_parameters[..], &self.next_shapes[..]);
         let planned = self.planned(&record, &bench, (start, unit), model);
         let points = planned.trajectory(&self.options)?;

@@ -1,7 +1,7 @@
 //! The first screen of a plan.
 
 use gyrocal_diagnosis::prose::{Screen, Standing, counted, few, record_and_bench};
-use gyrocal_record::shell_quoted;
+use gyrocal_record::{InputRole, shell_quoted};
 
 use crate::prose::{attitude, hours, known, percent, undecided, unit_angles};
 use crate::result::{Aim, AttitudeOf, PlanResult, Proposal};
@@ -73,7 +73,15 @@ pub fn first_screen(plan: &PlanResult) -> Screen {
 
 /// The records and the next one with their bench files and axes, as arguments of a command.
 fn with_next(plan: &PlanResult) -> String {
-    records_with_next(plan) + &axes_with_next(plan)
+    records_with_next(plan) + &axes_with_next(plan) + &columns(plan)
+}
+
+/// ` --columns MAP`, if there is a map of the columns of all records.
+fn columns(plan: &PlanResult) -> String {
+    let inputs = plan.manifest.inputs.iter();
+    let maps = inputs.filter(|input| input.role == Some(InputRole::Columns));
+    maps.map(|map| format!(" --columns {}", shell_quoted(&map.path)))
+        .collect()
 }
 
 /// ` --gyro-axes AXES` of each record and the next; empty of a stabilised platform.

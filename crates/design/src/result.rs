@@ -161,6 +161,22 @@ impl Outlook {
     pub fn surplus(&self) -> f64 {
         self.sets.iter().map(|set| set.mean_size - 1.0).sum()
     }
+
+    /// The worse of two forecasts in each of their figures; `before` are the standard deviations of the
+    /// coefficients so far.
+    pub(crate) fn worse(mut self, other: Self, before: &[Forecast]) -> Self {
+        let own = self.coefficients.iter_mut().chain(&mut self.sizes);
+        for (own, other) in own.zip(other.coefficients.iter().chain(&other.sizes)) {
+            own.sigma = own.sigma.max(other.sigma);
+        }
+        for (own, other) in self.sets.iter_mut().zip(other.sets) {
+            if other.mean_size > own.mean_size {
+                *own = other;
+            }
+        }
+        self.sigma_ratio = ratio(&self.coefficients, before);
+        self
+    }
 }
 
 /// Geometric mean of ratios.

@@ -9,7 +9,7 @@ use gyrocal_design::{
     Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design, prose,
 };
 use gyrocal_diagnosis::{DiagnosisResult, diagnose_gated};
-use gyrocal_record::{GimbalLimits, Record, SetupProblem, SourceText};
+use gyrocal_record::{GimbalLimits, InputRole, Record, SetupProblem, SourceText};
 use pyo3::prelude::*;
 
 use crate::axes::{Axes, GivenAxes};
@@ -92,8 +92,12 @@ fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Answer>
     let mut planned = design(&known.fitted, &run, &known.named, options)
         .map_err(|source| no_plan(given, source))?;
     planned.setup.clone_from(&known.setup);
-    let mut inputs = vec![given.record.input.clone(), given.bench.input.clone()];
-    inputs.extend(given.axes.map(Axes::input).transpose()?);
+    let mut inputs = vec![
+        given.record.input.clone().with_role(InputRole::Record),
+        given.bench.input.clone().with_role(InputRole::Bench),
+    ];
+    let axes = given.axes.map(Axes::input).transpose()?;
+    inputs.extend(axes.map(|axes| axes.with_role(InputRole::GyroAxes)));
     planned.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
     Ok((json(&planned)?, json(&prose(&planned))?))
 }

@@ -57,6 +57,8 @@ pub enum InputRole {
     LaterGyroAxes,
     /// The map of the columns of all records.
     Columns,
+    /// The result of a diagnosis.
+    Diagnosis,
 }
 
 impl Input {
