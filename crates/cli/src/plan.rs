@@ -126,8 +126,8 @@ const DIAGNOSED: f64 = 0.5;
 pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     records::check_benches(arguments.benches.len(), arguments.records.len())?;
     gyro_axes::check(&arguments.gyro_axes, arguments.records.len())?;
-    let files = arguments.inputs();
-    let inputs: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
+    let read = arguments.inputs();
+    let inputs: Vec<&Path> = read.iter().map(|(_, path)| *path).collect();
     refuse_repeated(&arguments.limits)?;
     let json = arguments.json.as_deref();
     outputs::check(&inputs, json, arguments.views.figures())?;
@@ -164,7 +164,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
         .map_err(|source| NotPlanned::new(&arguments.records, source))?;
     drop(progress);
     planned.setup.clone_from(&known.setup);
-    planned.manifest = manifest_of(MODEL_HASH, options.seed, &files)?;
+    planned.manifest = manifest_of(MODEL_HASH, options.seed, &read)?;
     let mut answer = Answer::of(first_screen(&planned), layout(&prose(&planned)));
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
