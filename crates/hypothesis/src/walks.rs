@@ -113,10 +113,11 @@ pub(crate) fn compare<F: FittedModel>(
         let state = SearchState { stage, ..state };
         return model.with_walks(state, (p_beside, Vec::new()), draws);
     }
-    // Walks that the record does not need replace nothing.
-    let without = walking.stage.fitted.fit_rate_noise(&[], &[])?;
-    let gained = 2.0 * (walking.stage.noise.log_likelihood - without.log_likelihood);
-    if advantage > BESIDE_WALKS || candidates.p_value(gained) >= probability {
+    // Walks that are clearly better than the effects gain as much at least.
+    let is_clear = advantage < -CLEAR_ADVANTAGE;
+    let stands = advantage > BESIDE_WALKS
+        || !(is_clear || are_needed(candidates, &walking, p_value, probability)?);
+    if stands {
         let walks = needed(candidates, &walking)?.into_iter();
         let ids = walks.map(|walk| walk.effect.id);
         let deficit = 0.5 * (advantage - BESIDE_WALKS).max(0.0);
@@ -135,6 +136,22 @@ pub(crate) fn compare<F: FittedModel>(
         Vec::new()
     };
     model.with_walks(walking, (p_value, rivals), draws)
+}
+
+/// Whether the record needs the walks of a model: those that it does not need replace nothing. `p_value` is that
+/// of walks without effects.
+fn are_needed<F: FittedModel>(
+    candidates: &Candidates,
+    walking: &SearchState<F>,
+    p_value: f64,
+    probability: f64,
+) -> Result<bool, F::Error> {
+    if walking.accepted.is_empty() {
+        return Ok(p_value < probability);
+    }
+    let without = walking.stage.fitted.fit_rate_noise(&[], &[])?;
+    let gained = 2.0 * (walking.stage.noise.log_likelihood - without.log_likelihood);
+    Ok(candidates.p_value(gained) < probability)
 }
 
 /// The model with walks that effects are least better than, and by how much: twice the log-likelihood,
