@@ -113,18 +113,10 @@ pub(crate) fn compare<F: FittedModel>(
         let state = SearchState { stage, ..state };
         return model.with_walks(state, (p_beside, Vec::new()), draws);
     }
-    // Walks that are clearly better than the effects gain as much at least.
-    let is_clear = advantage < -CLEAR_ADVANTAGE;
-    let stands = advantage > BESIDE_WALKS
-        || !(is_clear || are_needed(candidates, &walking, p_value, probability)?);
-    if stands {
-        let walks = needed(candidates, &walking)?.into_iter();
-        let ids = walks.map(|walk| walk.effect.id);
-        let deficit = 0.5 * (advantage - BESIDE_WALKS).max(0.0);
-        let rival = Rival {
-            alternatives: alternatives(ids, deficit, &walking.stage.fitted),
-            of: lacking(&state, &walking),
-        };
+    if advantage > BESIDE_WALKS
+        || !are_needed(candidates, &walking, (advantage, p_value), probability)?
+    {
+        let rival = rival(candidates, &state, &walking, advantage)?;
         let mut compared = only(state);
         compared.walks.rivals.push(rival);
         return Ok(compared);
@@ -138,14 +130,34 @@ pub(crate) fn compare<F: FittedModel>(
     model.with_walks(walking, (p_value, rivals), draws)
 }
 
-/// Whether the record needs the walks of a model: those that it does not need replace nothing. `p_value` is that
-/// of walks without effects.
+/// The walks of a model as members of the sets of the effects that they could stand for.
+fn rival<F: FittedModel>(
+    candidates: &Candidates,
+    state: &SearchState<F>,
+    walking: &SearchState<F>,
+    advantage: f64,
+) -> Result<Rival, F::Error> {
+    let walks = needed(candidates, walking)?.into_iter();
+    let ids = walks.map(|walk| walk.effect.id);
+    let deficit = 0.5 * (advantage - BESIDE_WALKS).max(0.0);
+    Ok(Rival {
+        alternatives: alternatives(ids, deficit, &walking.stage.fitted),
+        of: lacking(state, walking),
+    })
+}
+
+/// Whether the record needs the walks of a model: those that it does not need replace nothing. `advantage` is that of
+/// effects, and `p_value` that of walks without effects.
 fn are_needed<F: FittedModel>(
     candidates: &Candidates,
     walking: &SearchState<F>,
-    p_value: f64,
+    (advantage, p_value): (f64, f64),
     probability: f64,
 ) -> Result<bool, F::Error> {
+    // Walks that are clearly better than the effects gain as much at least.
+    if advantage < -CLEAR_ADVANTAGE {
+        return Ok(true);
+    }
     if walking.accepted.is_empty() {
         return Ok(p_value < probability);
     }

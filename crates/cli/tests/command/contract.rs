@@ -112,7 +112,7 @@ fn a_result_that_lacks_a_key_or_has_a_wrong_type_does_not_conform() {
     let of = |effects: &str| {
         format!(
             "{{\"schema_version\": 1, \"manifest\": {manifest}, \"effects\": {effects}, \
-             \"left_out\": []}}"
+             \"strapdown\": false, \"left_out\": []}}"
         )
     };
     assert_eq!(violations(&schema, &of("[]")), "");
