@@ -29,7 +29,7 @@ pub(crate) struct ExtendArguments {
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     effects: Option<Vec<String>>,
     /// What the gyros of the listed effects are fixed to; a diagnosis says it itself.
-    #[arg(long, value_enum, default_value_t = GyrosArgument::Platform, requires = "effects")]
+    #[arg(long, value_enum, default_value_t = GyrosArgument::Platform, conflicts_with = "diagnosis")]
     gyros: GyrosArgument,
     /// Members of the confidence sets to take in the place of the effects that the diagnosis names; without
     /// initial values, which the diagnosis gives for the named ones only.
