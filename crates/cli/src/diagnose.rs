@@ -122,9 +122,7 @@ impl DiagnoseArguments {
             (InputRole::LaterBench, &self.validate_bench),
         ];
         let later_axes = (InputRole::LaterGyroAxes, &self.validate_gyro_axes);
-        fn given<'a>(
-            (role, file): (InputRole, &'a Option<PathBuf>),
-        ) -> Option<(InputRole, &'a Path)> {
+        fn given((role, file): (InputRole, &Option<PathBuf>)) -> Option<(InputRole, &Path)> {
             Some((role, file.as_deref()?))
         }
         let pairs = self.pairs().flat_map(|(record, bench)| {
