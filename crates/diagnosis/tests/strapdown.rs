@@ -213,10 +213,10 @@ fn a_term_across_is_named_by_records_in_several_attitudes() {
     assert_eq!(
         files(
             found.result,
-            "1.csv b.toml 2.csv b.toml 3.csv b.toml 4.csv b.toml 5.csv b.toml 6.csv b.toml 1a 2a 3a 4a 5a 6a"
+            "1.csv b.toml 2.csv b.toml 3.csv b.toml 4.csv b.toml 5.csv b.toml 6.csv b.toml a1 a2 a3 a4 a5 a6"
         ),
-        "1.csv 2.csv 3.csv 4.csv 5.csv 6.csv --bench b.toml --gyro-axes 1a --gyro-axes 2a --gyro-axes 3a \
-         --gyro-axes 4a --gyro-axes 5a --gyro-axes 6a"
+        "1.csv 2.csv 3.csv 4.csv 5.csv 6.csv --bench b.toml --gyro-axes a1 --gyro-axes a2 --gyro-axes a3 \
+         --gyro-axes a4 --gyro-axes a5 --gyro-axes a6"
     );
     // Alone, one attitude makes a bias of it.
     assert!(!names(&all.alone[0], "gyro_x.g_y"));
