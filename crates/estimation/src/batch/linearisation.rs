@@ -181,7 +181,7 @@ where
                 let advanced = pass.advance(row)?;
                 reduced.trajectory_cost += advanced.cost;
                 if let Some(tape) = &mut tape {
-                    tape.push(&advanced.step, &advanced.jump, &pass.own);
+                    tape.push(&pass.last, &advanced.jump, &pass.own);
                 }
             }
         }
@@ -206,8 +206,8 @@ where
                 output(whitened, &taken.jacobian, &taken.cross, taken.walk_cross);
             })?;
             if row + 1 < self.points.len() {
-                let advanced = pass.advance(row)?;
-                step(&advanced.step.moving, &pass.walk_steps);
+                pass.advance(row)?;
+                step(&pass.last.moving, &pass.walk_steps);
             }
         }
         Ok(())
@@ -315,8 +315,8 @@ where
         for row in 0..self.points.len() {
             pass.observe(row, &mut |whitened, taken| filter.take(whitened, taken))?;
             if row + 1 < self.points.len() {
-                let step = pass.advance(row)?.step;
-                filter.predict(&step, &pass.walk_steps);
+                pass.advance(row)?;
+                filter.predict(&pass.last, &pass.walk_steps);
             }
         }
         Ok(filter.finish())
@@ -337,9 +337,9 @@ where
             corrections.push(DVector::from_vec(pass.filter.whole_mean()));
             if row + 1 < rows {
                 let filtered = pass.filter.covariance.clone();
-                let step = pass.advance(row)?.step;
+                pass.advance(row)?;
                 let steps = &pass.walk_steps;
-                let transition = whole_transition(&step.moving, steps);
+                let transition = whole_transition(&pass.last.moving, steps);
                 let gain = smoother_gain(&filtered, &transition, &pass.filter.covariance)
                     .ok_or(NOT_DRIVEN)?;
                 let predicted = DVector::from_vec(pass.filter.whole_mean());

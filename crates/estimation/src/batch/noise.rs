@@ -46,6 +46,10 @@ impl NoiseScore {
     }
 }
 
+/// Rows that are gathered before they are multiplied: with their derivatives they stay in the
+/// second-level cache.
+const BLOCK: usize = 48;
+
 /// Derivatives of mean, columns and covariance of a filter with respect to logarithms of variances
 /// (Gupta, Mehra, IEEE Trans. Automatic Control 19(6), 1974).
 pub(crate) struct NoiseFilter<const M: usize> {
@@ -54,16 +58,20 @@ pub(crate) struct NoiseFilter<const M: usize> {
     /// The first noise that derivatives are by.
     first: usize,
     each: Vec<Derivative<M>>,
+    /// Derivatives of the columns of the filter: a row for each moving state, then for each walk, that
+    /// holds those by each logarithm side by side. All have the same transition and the same gain.
+    columns: Vec<f64>,
     score: NoiseScore,
-    /// Derivative of the whitened row, before it is whitened.
-    d_row: Vec<f64>,
+    /// Derivatives of the innovations, then of the whitened rows, by each logarithm.
+    d_rows: Vec<f64>,
     d_cross: Vec<f64>,
+    /// Gain of the last output: of the moving states, then of the walks.
+    gains: Vec<f64>,
+    sums: Sums,
 }
 
 /// Derivatives by one logarithm.
 struct Derivative<const M: usize> {
-    /// Of the columns of the filter.
-    columns: Vec<f64>,
     covariance: Joint<M>,
     /// Of the last innovation.
     innovation: f64,
@@ -71,39 +79,97 @@ struct Derivative<const M: usize> {
     variance: f64,
 }
 
+/// Sums of w wᵀ over the whitened rows w, and of w' wᵀ for each derivative w' of them.
+struct Sums {
+    /// These below each other.
+    products: DMatrix<f64>,
+    /// A row and its derivatives a column.
+    block: DMatrix<f64>,
+    held: usize,
+    stride: usize,
+}
+
+impl Sums {
+    fn new(stride: usize, derivatives: usize) -> Self {
+        let size = stride * (1 + derivatives);
+        Self {
+            products: DMatrix::zeros(size, stride),
+            block: DMatrix::zeros(size, BLOCK),
+            held: 0,
+            stride,
+        }
+    }
+
+    fn add(&mut self, row: &[f64], derivatives: &[f64]) {
+        let mut held = self.block.column_mut(self.held);
+        let (first, others) = held.as_mut_slice().split_at_mut(self.stride);
+        first.copy_from_slice(row);
+        others.copy_from_slice(derivatives);
+        self.held += 1;
+        if self.held == BLOCK {
+            self.multiply();
+        }
+    }
+
+    fn multiply(&mut self) {
+        let all = self.block.columns(0, self.held);
+        let rows = all.rows(0, self.stride).transpose();
+        self.products.gemm(1.0, &all, &rows, 1.0);
+        self.held = 0;
+    }
+
+    /// The sum of w wᵀ.
+    fn gram(&self) -> DMatrix<f64> {
+        self.products.rows(0, self.stride).into_owned()
+    }
+
+    /// The derivative of it.
+    fn d_gram(&self, derivative: usize) -> DMatrix<f64> {
+        let from = (1 + derivative) * self.stride;
+        let product = self.products.rows(from, self.stride);
+        product + product.transpose()
+    }
+}
+
 impl<const M: usize> NoiseFilter<M> {
     pub(crate) fn new(outputs: usize, columns: usize, walks: usize, first: usize) -> Self {
         let count = outputs + M + walks;
         let stride = columns + 1;
         let first = first.min(count);
+        let derivatives = count - first;
+        let derivative = |_| Derivative {
+            covariance: Joint::new([[0.0; M]; M], walks),
+            innovation: 0.0,
+            variance: 0.0,
+        };
         Self {
             outputs,
             stride,
             first,
-            each: (first..count)
-                .map(|_| Derivative {
-                    columns: vec![0.0; (M + walks) * stride],
-                    covariance: Joint::new([[0.0; M]; M], walks),
-                    innovation: 0.0,
-                    variance: 0.0,
-                })
-                .collect(),
+            each: (0..derivatives).map(derivative).collect(),
+            columns: vec![0.0; (M + walks) * derivatives * stride],
             score: NoiseScore {
                 values: 0,
                 log_variance: 0.0,
                 d_log_variance: vec![0.0; count],
-                gram: DMatrix::zeros(stride, stride),
-                d_gram: vec![DMatrix::zeros(stride, stride); count],
+                gram: DMatrix::zeros(0, 0),
+                d_gram: Vec::new(),
                 information: vec![0.0; count * count],
             },
-            d_row: vec![0.0; stride],
+            d_rows: vec![0.0; derivatives * stride],
             d_cross: vec![0.0; walks],
+            gains: vec![0.0; M + walks],
+            sums: Sums::new(stride, derivatives),
         }
     }
 
     pub(crate) fn predict(&mut self, step: &Step<M>, walks: &[WalkStep<M>]) {
+        if self.each.is_empty() {
+            return;
+        }
+        let width = self.d_rows.len();
+        predict_columns(&step.moving, walks, &mut self.columns, width);
         for (k, own) in (self.first..).zip(&mut self.each) {
-            predict_columns(&step.moving, walks, &mut own.columns, self.stride);
             own.covariance.predict(&step.moving, walks);
             let Some(input) = k.checked_sub(self.outputs) else {
                 continue;
@@ -119,125 +185,118 @@ impl<const M: usize> NoiseFilter<M> {
     pub(crate) fn take(&mut self, whitened: &Whitened<'_>, taken: &Taken<'_, M>) {
         let deviation = whitened.deviation;
         let total = deviation * deviation;
-        let score = &mut self.score;
-        score.values += 1;
-        score.log_variance += ln(total);
-        for (j, value) in whitened.columns.iter().enumerate() {
-            for (i, other) in whitened.columns[..=j].iter().enumerate() {
-                score.gram[(i, j)] += value * other;
-            }
+        let reciprocal = 1.0 / total;
+        self.score.values += 1;
+        self.score.log_variance += ln(total);
+        self.set_innovations(&taken.jacobian);
+        let all = taken.cross.iter().chain(taken.walk_cross);
+        for (gain, cross) in self.gains.iter_mut().zip(all) {
+            *gain = cross * reciprocal;
         }
         let direct = whitened.output;
-        for (k, own) in (self.first..).zip(&mut self.each) {
-            let variance = if k == direct { taken.variance } else { 0.0 };
-            own.take(
-                whitened,
-                taken,
-                variance,
-                &mut self.d_row,
-                &mut self.d_cross,
-            );
-            score.d_log_variance[k] += own.variance;
-            // Of the whitened row w = v / s: v' / s - w s' / s.
-            for (d_row, column) in self.d_row.iter_mut().zip(whitened.columns) {
-                *d_row = *d_row / deviation - 0.5 * column * own.variance;
-            }
-            let gram = &mut score.d_gram[k];
-            for (j, column) in whitened.columns.iter().enumerate() {
-                for (i, other) in whitened.columns[..=j].iter().enumerate() {
-                    gram[(i, j)] += self.d_row[j] * other + self.d_row[i] * column;
+        let (stride, width) = (self.stride, self.d_rows.len());
+        let per_deviation = 1.0 / deviation;
+        for (index, own) in self.each.iter_mut().enumerate() {
+            let k = self.first + index;
+            let d_noise = if k == direct { taken.variance } else { 0.0 };
+            let d_row = &mut self.d_rows[index * stride..(index + 1) * stride];
+            own.innovation = d_row[0];
+            let d_moving = own
+                .covariance
+                .with_output(&taken.jacobian, &mut self.d_cross);
+            let d_total = d_noise + dot(&taken.jacobian, &d_moving);
+            own.variance = d_total * reciprocal;
+            let d_all = d_moving.iter().chain(self.d_cross.iter());
+            let rows = self.columns.chunks_exact_mut(width);
+            for ((row, gain), d_cross) in rows.zip(&self.gains).zip(d_all) {
+                let innovation = (d_cross - gain * d_total) * per_deviation;
+                let row = &mut row[index * stride..(index + 1) * stride];
+                for ((value, own), column) in row.iter_mut().zip(&*d_row).zip(whitened.columns) {
+                    *value += innovation * column + gain * own;
                 }
             }
+            own.subtract(taken, &self.gains, &d_moving, &self.d_cross);
+            self.score.d_log_variance[k] += own.variance;
+            // Of the whitened row w = v / s: v' / s - w s' / s.
+            let half = 0.5 * own.variance;
+            for (d_row, column) in d_row.iter_mut().zip(whitened.columns) {
+                *d_row = *d_row * per_deviation - half * column;
+            }
         }
+        self.sums.add(whitened.columns, &self.d_rows);
+        self.add_information(reciprocal);
+    }
+
+    /// Sets the derivatives of the innovations of an output.
+    fn set_innovations(&mut self, jacobian: &[f64; M]) {
+        let width = self.d_rows.len();
+        self.d_rows.fill(0.0);
+        if width == 0 {
+            return;
+        }
+        for (h, row) in jacobian.iter().zip(self.columns.chunks_exact(width)) {
+            for (d_row, value) in self.d_rows.iter_mut().zip(row) {
+                *d_row -= h * value;
+            }
+        }
+    }
+
+    /// Adds the expected information of the last output, one over whose variance is `reciprocal`.
+    fn add_information(&mut self, reciprocal: f64) {
         let count = self.first + self.each.len();
-        for k in self.first..count {
-            for l in self.first..=k {
-                let (one, other) = (&self.each[k - self.first], &self.each[l - self.first]);
-                let information =
-                    0.5 * one.variance * other.variance + one.innovation * other.innovation / total;
-                score.information[k * count + l] += information;
+        for (k, one) in (self.first..).zip(&self.each) {
+            for (l, other) in (self.first..=k).zip(&self.each) {
+                let information = 0.5 * one.variance * other.variance
+                    + one.innovation * other.innovation * reciprocal;
+                self.score.information[k * count + l] += information;
                 if l < k {
-                    score.information[l * count + k] += information;
+                    self.score.information[l * count + k] += information;
                 }
             }
         }
     }
 
-    pub(crate) fn finish(self) -> NoiseScore {
+    pub(crate) fn finish(mut self) -> NoiseScore {
+        self.sums.multiply();
         let mut score = self.score;
-        score.gram.fill_lower_triangle_with_upper_triangle();
-        for gram in &mut score.d_gram {
-            gram.fill_lower_triangle_with_upper_triangle();
-        }
+        score.gram = self.sums.gram();
+        let size = self.stride;
+        score.d_gram = vec![DMatrix::zeros(size, size); self.first];
+        score
+            .d_gram
+            .extend((0..self.each.len()).map(|derivative| self.sums.d_gram(derivative)));
         score
     }
 }
 
 impl<const M: usize> Derivative<M> {
-    /// Takes an output whose own noise variance has the derivative `d_noise`; leaves the derivative of
-    /// the innovations in `d_row`.
-    fn take(
-        &mut self,
-        whitened: &Whitened<'_>,
-        taken: &Taken<'_, M>,
-        d_noise: f64,
-        d_row: &mut [f64],
-        d_cross_walks: &mut [f64],
-    ) {
-        let stride = d_row.len();
-        let deviation = whitened.deviation;
-        let total = deviation * deviation;
-        let h = &taken.jacobian;
-        d_row.fill(0.0);
-        for (h, row) in h.iter().zip(self.columns.chunks_exact(stride)) {
-            for (d_row, value) in d_row.iter_mut().zip(row) {
-                *d_row -= h * value;
-            }
-        }
-        let d_cross = self.covariance.with_output(h, d_cross_walks);
-        let d_total = d_noise + dot(h, &d_cross);
-        let all = taken.cross.iter().chain(taken.walk_cross);
-        let d_all = d_cross.iter().chain(d_cross_walks.iter());
-        let rows = self.columns.chunks_exact_mut(stride);
-        for ((row, cross), d_cross) in rows.zip(all).zip(d_all) {
-            let gain = cross / total;
-            let d_gain = (d_cross - gain * d_total) / total;
-            let innovation = d_gain * deviation;
-            for ((value, own), column) in row.iter_mut().zip(&*d_row).zip(whitened.columns) {
-                *value += innovation * column + gain * own;
-            }
-        }
-        self.subtract(taken, &d_cross, d_cross_walks, total, d_total);
-        self.innovation = d_row[0];
-        self.variance = d_total / total;
-    }
-
-    /// The derivative of - c cᵀ / S, c being the covariance with the output.
+    /// The derivative of - c cᵀ / S, c being the covariance with the output and `gains` c / S.
     fn subtract(
         &mut self,
         taken: &Taken<'_, M>,
-        d_cross: &[f64; M],
+        gains: &[f64],
+        d_moving: &[f64; M],
         d_walks: &[f64],
-        total: f64,
-        d_total: f64,
     ) {
-        let change = |c: f64, other: f64, d_c: f64, d_other: f64| {
-            (d_c * other + c * d_other - c * other * (d_total / total)) / total
-        };
+        let (of_moving, of_walks) = gains.split_at(M);
         let joint = &mut self.covariance;
-        let (cross, walks) = (taken.cross, taken.walk_cross);
+        let left: [f64; M] = core::array::from_fn(|i| d_moving[i] - taken.cross[i] * self.variance);
         for i in 0..M {
-            for j in 0..M {
-                joint.moving[i][j] -= change(cross[i], cross[j], d_cross[i], d_cross[j]);
+            for j in 0..=i {
+                joint.moving[i][j] -= d_moving[i] * of_moving[j] + of_moving[i] * left[j];
+                joint.moving[j][i] = joint.moving[i][j];
             }
         }
-        let count = walks.len();
-        for w in 0..count {
+        let count = of_walks.len();
+        for (w, gain) in of_walks.iter().enumerate() {
+            let left_walk = d_walks[w] - taken.walk_cross[w] * self.variance;
             for i in 0..M {
-                joint.cross[w][i] -= change(cross[i], walks[w], d_cross[i], d_walks[w]);
+                joint.cross[w][i] -= d_moving[i] * gain + of_moving[i] * left_walk;
             }
-            for v in 0..count {
-                joint.walks[w * count + v] -= change(walks[w], walks[v], d_walks[w], d_walks[v]);
+            for v in 0..=w {
+                let change = left_walk * of_walks[v] + gain * d_walks[v];
+                joint.walks[w * count + v] -= change;
+                joint.walks[v * count + w] = joint.walks[w * count + v];
             }
         }
     }

@@ -34,7 +34,6 @@ pub(crate) struct Taken<'a, const M: usize> {
 
 /// A step to the next row.
 pub(super) struct Advanced<const M: usize> {
-    pub(super) step: Step<M>,
     /// Difference from the predicted point to the next one.
     pub(super) jump: [f64; M],
     /// Part of the trajectory's cost that the noise of the step adds.
@@ -58,7 +57,9 @@ where
     pub(super) input_factors: [f64; M],
     /// Factors of the densities of the walks.
     pub(super) walk_factors: Vec<f64>,
-    /// The walks over the last step.
+    /// The last step.
+    pub(super) last: Step<M>,
+    /// The walks over it.
     pub(super) walk_steps: Vec<WalkStep<M>>,
     /// Place of the parameter of each walk among the active ones.
     walk_places: Vec<usize>,
@@ -138,6 +139,7 @@ where
             factors: [1.0; Y],
             input_factors: [1.0; M],
             walk_factors: vec![1.0; walks.len()],
+            last: Step::still(),
             walk_steps: Vec::with_capacity(walks.len()),
             walk_places,
             parameters: of.parameters.to_vec(),
@@ -305,13 +307,14 @@ where
         &self.drive
     }
 
-    /// The step after a row, from the tape or from the model, and the difference from the predicted
-    /// point to the next one; leaves its active columns in [`Self::own`].
-    fn step(&mut self, row: usize) -> Result<(Step<M>, [f64; M]), EstimationError> {
+    /// Makes the step after a row, from the tape or from the model: sets [`Self::last`], and
+    /// [`Self::own`] to its active columns. Returns the difference from the predicted point to the next
+    /// one.
+    fn step(&mut self, row: usize) -> Result<[f64; M], EstimationError> {
         let of = self.of;
         let active = of.active.len();
         if let Some(tape) = of.tape {
-            let (step, jump, columns) = tape.step(row);
+            let (jump, columns) = tape.step(row, &mut self.last);
             self.own.copy_from_slice(columns);
             // Further columns may follow a parameter that is active.
             let p = of.parameters.len();
@@ -320,19 +323,20 @@ where
                     self.stepper.columns[i * p + index] = *own;
                 }
             }
-            return Ok((step, jump));
+            return Ok(jump);
         }
         for (index, walk) in of.walks.walks.iter().enumerate() {
             self.parameters[walk.parameter] =
                 of.parameters[walk.parameter] + of.walks.change(row, index);
         }
-        let (mut step, predicted) =
+        let predicted;
+        (self.last, predicted) =
             self.stepper
                 .advance(of.series, row, &of.points[row], &self.parameters)?;
         let jump = of.model.difference(&predicted, &of.points[row + 1]);
         let p = of.parameters.len();
         if let Some(corrected) = of.model.corrected(&jump) {
-            step.correct(&corrected);
+            self.last.correct(&corrected);
             map_columns(&corrected.point, &mut self.stepper.columns, p);
         }
         for i in 0..M {
@@ -340,24 +344,25 @@ where
                 *own = self.stepper.columns[i * p + index];
             }
         }
-        Ok((step, jump))
+        Ok(jump)
     }
 
     /// Predicts to the next row.
     pub(super) fn advance(&mut self, row: usize) -> Result<Advanced<M>, EstimationError> {
         let of = self.of;
-        let (mut step, predicted_jump) = self.step(row)?;
+        let predicted_jump = self.step(row)?;
         let mut jump = predicted_jump;
         if self.input_factors != [1.0; M] {
-            for (share, factor) in step.shares.iter_mut().zip(self.input_factors) {
+            for (share, factor) in self.last.shares.iter_mut().zip(self.input_factors) {
                 for element in share.as_flattened_mut() {
                     *element *= factor;
                 }
             }
         }
-        let noise = step.noise();
+        let noise = self.last.noise();
         self.set_walk_steps(row);
-        self.filter.predict(&step.moving, &noise, &self.walk_steps);
+        let steps = &self.walk_steps;
+        self.filter.predict(&self.last.moving, &noise, steps);
         let (active, further) = (of.active.len(), of.further.count());
         self.drive(row);
         for i in 0..M {
@@ -386,7 +391,6 @@ where
             target[0] += mean - jump[i];
         }
         Ok(Advanced {
-            step,
             jump: predicted_jump,
             cost: self.step_cost(row, noise, jump).ok_or(NOT_DRIVEN)?,
         })

@@ -20,6 +20,14 @@ pub(crate) struct Step<const M: usize> {
 }
 
 impl<const M: usize> Step<M> {
+    /// A step of no time.
+    pub(crate) fn still() -> Self {
+        Self {
+            moving: identity(),
+            shares: [[[0.0; M]; M]; M],
+        }
+    }
+
     /// Covariance that all noise adds over the step.
     pub(crate) fn noise(&self) -> [[f64; M]; M] {
         let mut noise = [[0.0; M]; M];
@@ -91,10 +99,7 @@ where
         let part_s = interval_s / count as f64;
         let mut moving = [0.0; M];
         self.model.place(point, &mut moving, &mut self.inputs);
-        let mut step = Step {
-            moving: identity(),
-            shares: [[[0.0; M]; M]; M],
-        };
+        let mut step = Step::still();
         for index in 0..count {
             let from_s = start_s + part_s * index as f64;
             series.over(row, from_s, from_s + part_s, &mut self.inputs);
@@ -243,17 +248,20 @@ pub(crate) fn add<const M: usize>(a: &mut [[f64; M]; M], b: &[[f64; M]; M]) {
 
 /// Replaces the M rows of `columns` by their product with `map` from the left.
 pub(crate) fn map_columns<const M: usize>(map: &[[f64; M]; M], columns: &mut [f64], stride: usize) {
+    let mut rest = &mut columns[..M * stride];
+    let mut rows: [&mut [f64]; M] = core::array::from_fn(|_| {
+        let (row, others) = core::mem::take(&mut rest).split_at_mut(stride);
+        rest = others;
+        row
+    });
     for column in 0..stride {
-        let mut old = [0.0; M];
-        for (i, value) in old.iter_mut().enumerate() {
-            *value = columns[i * stride + column];
-        }
-        for (i, weights) in map.iter().enumerate() {
-            let mut sum = 0.0;
-            for (value, weight) in old.iter().zip(weights) {
-                sum += value * weight;
-            }
-            columns[i * stride + column] = sum;
+        let old: [f64; M] = core::array::from_fn(|i| rows[i][column]);
+        for (row, weights) in rows.iter_mut().zip(map) {
+            row[column] = old
+                .iter()
+                .zip(weights)
+                .map(|(value, weight)| value * weight)
+                .sum();
         }
     }
 }

@@ -61,13 +61,12 @@ impl<const M: usize> Tape<M> {
         self.columns.extend_from_slice(columns);
     }
 
-    /// The step after a row, the difference from the predicted point to the next one, and the
-    /// parameter columns.
-    pub(crate) fn step(&self, row: usize) -> (Step<M>, [f64; M], &[f64]) {
-        let mut shares = [[[0.0; M]; M]; M];
+    /// Sets `step` to that after a row. Returns the difference from the predicted point to the next one,
+    /// and the parameter columns.
+    pub(crate) fn step(&self, row: usize, step: &mut Step<M>) -> ([f64; M], &[f64]) {
         let size = M * Self::TRIANGLE;
         let mut kept = self.shares[row * size..(row + 1) * size].iter();
-        for share in &mut shares {
+        for share in &mut step.shares {
             for i in 0..M {
                 for j in 0..=i {
                     let element = kept.next().copied().unwrap_or(0.0);
@@ -75,12 +74,9 @@ impl<const M: usize> Tape<M> {
                 }
             }
         }
+        step.moving = self.moving[row];
         let width = M * self.active;
         (
-            Step {
-                moving: self.moving[row],
-                shares,
-            },
             self.jumps[row],
             &self.columns[row * width..(row + 1) * width],
         )
