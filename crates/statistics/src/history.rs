@@ -12,23 +12,58 @@ pub const PLAY_OF_HYSTERESIS: f64 = 0.25;
 pub fn local_slopes(times: &[f64], values: &[f64], half_width: f64) -> Vec<f64> {
     let sums = RunningSums::new(times, values);
     let count = times.len().min(values.len());
-    let (mut from, mut to) = (0, 0);
-    (0..count)
-        .map(|at| {
-            while times[at] - times[from] > half_width {
-                from += 1;
-            }
-            while to < count && times[to] - times[at] <= half_width {
-                to += 1;
-            }
-            if to - from < 3 {
+    within(times, half_width)
+        .take(count)
+        .enumerate()
+        .map(|(at, (from, to))| {
+            if to - from < FEWEST {
                 let near = at.saturating_sub(1)..(at + 2).min(count);
-                RunningSums::new(&times[near.clone()], &values[near.clone()]).slope(0, near.len())
+                RunningSums::new(&times[near.clone()], &values[near.clone()])
+                    .line(0, near.len())
+                    .slope
             } else {
-                sums.slope(from, to)
+                sums.line(from, to).slope
             }
         })
         .collect()
+}
+
+/// Values without most of their noise: at each time that of the straight line through the values within
+/// `half_width` of it by least squares. Where these are fewer than five, the value itself: they would take
+/// little of the noise and much of a turn.
+///
+/// Times rise; both slices have the same length.
+#[must_use]
+pub fn local_lines(times: &[f64], values: &[f64], half_width: f64) -> Vec<f64> {
+    let sums = RunningSums::new(times, values);
+    within(times, half_width)
+        .zip(times.iter().zip(values))
+        .map(|((from, to), (time, value))| {
+            if to - from < FEWEST_SMOOTHED {
+                return *value;
+            }
+            let line = sums.line(from, to);
+            values[0] + line.value + line.slope * (time - times[0] - line.time)
+        })
+        .collect()
+}
+
+/// Fewest values that a straight line is put through for its slope, and for a point of it.
+const FEWEST: usize = 3;
+const FEWEST_SMOOTHED: usize = 5;
+
+/// The range of the times within `half_width` of each.
+fn within(times: &[f64], half_width: f64) -> impl Iterator<Item = (usize, usize)> {
+    let (mut from, mut to) = (0, 0);
+    times.iter().map(move |time| {
+        while time - times[from] > half_width {
+            from += 1;
+        }
+        while to < times.len() && times[to] - time <= half_width {
+            to += 1;
+        }
+        (from, to)
+    })
 }
 
 /// What follows values with a play of `half` to either side, from the first value on.
@@ -61,17 +96,31 @@ impl RunningSums {
         Self(sums)
     }
 
-    /// Slope over the elements `from..to`.
-    fn slope(&self, from: usize, to: usize) -> f64 {
+    /// The straight line through the elements `from..to` by least squares; its slope is zero where they do
+    /// not tell it.
+    fn line(&self, from: usize, to: usize) -> Line {
         let [time, value, square, product] =
             core::array::from_fn(|place| self.0[to][place] - self.0[from][place]);
         let count = (to - from) as f64;
         let spread = square - time * time / count;
-        if to - from < 2 || spread <= 0.0 {
-            return 0.0;
+        let slope = if to - from < 2 || spread <= 0.0 {
+            0.0
+        } else {
+            (product - time * value / count) / spread
+        };
+        Line {
+            time: time / count,
+            value: value / count,
+            slope,
         }
-        (product - time * value / count) / spread
     }
+}
+
+/// A straight line: a point of it, about the first time and value, and its slope.
+struct Line {
+    time: f64,
+    value: f64,
+    slope: f64,
 }
 
 #[cfg(test)]
@@ -117,6 +166,35 @@ mod tests {
         );
         assert_eq!(local_slopes(&[5.0], &[1.0], 10.0), [0.0]);
         assert_eq!(local_slopes(&[], &[], 1.0), [0.0; 0]);
+    }
+
+    #[test]
+    fn local_lines_keep_a_line_and_take_a_third_of_alternating_noise() {
+        // Irregular, with a time alone in a gap.
+        let mut times: Vec<f64> = (0..60).map(|row| 60.0 * f64::from(row)).collect();
+        times.push(100_000.0);
+        let line: Vec<f64> = times.iter().map(|time| 20.0 - 3e-4 * time).collect();
+        // Values of 20 and roundings of sums of 1e5.
+        for (smooth, value) in local_lines(&times, &line, 600.0).iter().zip(&line) {
+            assert!((smooth - value).abs() < 1e-9, "{smooth} {value}");
+        }
+        let noise = |row: usize| if row.is_multiple_of(2) { 0.1 } else { -0.1 };
+        let noisy: Vec<f64> = line
+            .iter()
+            .enumerate()
+            .map(|(row, v)| v + noise(row))
+            .collect();
+        // The mean of 21 alternating values is a twenty-first of one; the end of a line through eleven
+        // has at most four times the weight of one of them.
+        for (smooth, value) in local_lines(&times, &noisy, 600.0)
+            .iter()
+            .zip(&line)
+            .take(60)
+        {
+            assert!((smooth - value).abs() < 0.1 / 3.0, "{smooth} {value}");
+        }
+        assert_eq!(local_lines(&[], &[], 1.0), [0.0; 0]);
+        assert_eq!(local_lines(&[1.0, 2.0], &[3.0, 5.0], 9.0), [3.0, 5.0]);
     }
 
     #[test]

@@ -10,7 +10,8 @@
 //! - [`Proportion`], [`chi_square_band`] and others: exact intervals of proportions and of mean
 //!   squares.
 //! - [`median`], [`quantile`], [`robust_sigma`] and others: descriptive statistics.
-//! - [`local_slopes`], [`followed_with_play`]: slope and hysteresis of a series.
+//! - [`local_slopes`], [`local_lines`], [`followed_with_play`]: slope, smooth course and hysteresis of a
+//!   series.
 //! - [`deviates`]: normal deviates from a seed.
 //! - [`mod@format`]: p-values, estimates and rounded numbers as text.
 //! - [`math`]: exponential, logarithm, sine and others, the same on every machine.
@@ -66,7 +67,7 @@ pub use descriptive::{
     mean, median, quantile, rms_of_present, root_mean_square, standard_error, upper_median,
 };
 pub use error::StatisticsError;
-pub use history::{PLAY_OF_HYSTERESIS, followed_with_play, local_slopes};
+pub use history::{PLAY_OF_HYSTERESIS, followed_with_play, local_lines, local_slopes};
 pub use periodogram::{
     FrequencySearch, Periodogram, SpectralLine, fourier_powers, periodogram, strongest_line,
 };
