@@ -33,6 +33,15 @@ impl Extent {
     }
 }
 
+/// Sampling intervals of the records of a cell in turn, s: those of means of one to four minutes, which
+/// tell as much of slow effects as raw samples.
+const INTERVALS_S: [f64; 3] = [60.0, 120.0, 240.0];
+
+/// Sampling interval of the record of a seed, s.
+fn interval_s(seed: u64) -> f64 {
+    INTERVALS_S[(seed % INTERVALS_S.len() as u64) as usize]
+}
+
 /// A part of the topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Part {

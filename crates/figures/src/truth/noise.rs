@@ -10,7 +10,7 @@ use gyrocal_statistics::{Judgement, Proportion};
 use gyrocal_truth::{Hidden, Scenario, Simulation, Term, simulate, simulate_with};
 use serde::{Deserialize, Serialize};
 
-use super::Extent;
+use super::{Extent, interval_s};
 use crate::error::Error;
 use crate::figure::{Figure, coverage};
 use crate::resumable;
@@ -171,7 +171,7 @@ fn of_row(row: &Row, extent: Extent) -> Result<Vec<Figure>, Error> {
 fn record(noise: Noise, seed: u64) -> Result<Noisy, EvaluationError> {
     let mut random = Draw::new(seed, LEVELS);
     let plain = Scenario {
-        interval_s: 60.0,
+        interval_s: interval_s(seed),
         ..scenario(seed)
     };
     let mut hidden = Vec::new();

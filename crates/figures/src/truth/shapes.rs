@@ -9,7 +9,7 @@ use gyrocal_statistics::{Judgement, Proportion};
 use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::Extent;
+use super::{Extent, interval_s};
 use crate::error::Error;
 use crate::figure::{Figure, coverage};
 use crate::resumable;
@@ -113,7 +113,7 @@ fn kind_of(id: &str) -> Option<EffectKind> {
 fn record(seed: u64) -> Result<Shaped, EvaluationError> {
     let mut random = Draw::new(seed, PURPOSE);
     let plain = Scenario {
-        interval_s: 60.0,
+        interval_s: interval_s(seed),
         ..scenario(seed)
     };
     let shaped: Vec<_> = EFFECTS

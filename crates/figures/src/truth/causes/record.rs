@@ -16,6 +16,7 @@ use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::{Cell, effect};
+use crate::truth::interval_s;
 
 /// Purposes of the streams of draws.
 const CAUSES: u64 = 47;
@@ -63,7 +64,7 @@ fn is_slow(effect: &Effect) -> bool {
 fn plain(seed: u64) -> Result<(Scenario, NoiseModel), EvaluationError> {
     let mut random = Draw::new(seed, LEVELS);
     let mut plain = Scenario {
-        interval_s: 60.0,
+        interval_s: interval_s(seed),
         ..scenario(seed)
     };
     let mut noise = NoiseModel::default();
