@@ -212,15 +212,42 @@ fn at_an_end(value: f64, masked: &[f64], row: usize, run: &Range<usize>) -> Opti
     })
 }
 
+/// Whether a value is far from what either side alone predicts. Where there is one side only, it must be
+/// farther too than the values of that side are from what those behind them predict: a series that bends,
+/// as that of a filter without a large effect, is off everywhere alike, and its last value is no outlier.
 fn is_isolated(value: f64, masked: &[f64], row: usize, run: &Range<usize>, scale: f64) -> bool {
-    let far = |near: &[(f64, f64)]| {
-        near.len() < LEAST_SIDE
-            || theil_sen_at_zero(near).is_none_or(|(line, spread)| {
-                (value - line).abs() > ISOLATED_SIGMAS * spread * scale
-            })
+    let within = 4 * SIDE;
+    let before: Vec<usize> = (run.start..row).rev().take(within).collect();
+    let after: Vec<usize> = (row + 1..run.end).take(within).collect();
+    let of_sides = [&before, &after].map(|rows| distance(value, row, masked, rows));
+    let scale = match of_sides {
+        [Some(_), None] => scale.max(usual_distance(masked, &before)),
+        [None, Some(_)] => scale.max(usual_distance(masked, &after)),
+        _ => scale,
     };
-    let before = (run.start..row).rev();
-    far(&side(masked, before, row)) && far(&side(masked, row + 1..run.end, row))
+    let mut distances = of_sides.into_iter().flatten();
+    distances.all(|distance| distance > ISOLATED_SIGMAS * scale)
+}
+
+/// Distance of a value of a row from the line through other rows, over its standard deviation for samples of
+/// unit variance; `None` of fewer than [`LEAST_SIDE`].
+fn distance(value: f64, row: usize, masked: &[f64], rows: &[usize]) -> Option<f64> {
+    let near = side(masked, rows.iter().copied(), row);
+    if near.len() < LEAST_SIDE {
+        return None;
+    }
+    theil_sen_at_zero(&near).map(|(line, spread)| (value - line).abs() / spread)
+}
+
+/// The same of the nearest of these rows, each from those behind it: a robust root mean square.
+fn usual_distance(masked: &[f64], rows: &[usize]) -> f64 {
+    let places = rows.iter().enumerate();
+    let mut distances: Vec<f64> = places
+        .filter(|(_, row)| !masked[**row].is_nan())
+        .take(SIDE)
+        .filter_map(|(place, row)| distance(masked[*row], *row, masked, &rows[place + 1..]))
+        .collect();
+    robust_sigma(&mut distances)
 }
 
 /// The nearest values on one side, with their distances in rows.
@@ -230,4 +257,40 @@ fn side(masked: &[f64], rows: impl Iterator<Item = usize>, from: usize) -> Vec<(
         .filter(|(_, value)| !value.is_nan())
         .take(SIDE)
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use gyrocal_statistics::deviates::Draw;
+
+    use super::search;
+
+    /// Noise of unit variance about a parabola that rises by `bend` over the first row.
+    fn bent(seed: u64, bend: f64) -> Vec<f64> {
+        let mut random = Draw::new(seed, 0);
+        (0..300)
+            .map(|row| bend * f64::from(row * row) + random.normal())
+            .collect()
+    }
+
+    #[test]
+    fn the_end_of_a_bent_series_holds_no_outliers() {
+        // Extrapolated by eight rows, a parabola is off by some tens of its bend.
+        for (seed, bend) in (0_u64..40).zip([0.0, 0.1, 1.0, 10.0].into_iter().cycle()) {
+            let found = search(&bent(seed, bend), &[0..150, 150..300], 16);
+            assert!(found.outliers.is_empty(), "{seed}: {:?}", found.outliers);
+        }
+    }
+
+    #[test]
+    fn an_outlier_at_the_end_of_a_run_is_found() {
+        for seed in 0..10 {
+            let mut series = bent(seed, 0.0);
+            series[149] += 15.0;
+            series[299] -= 15.0;
+            let found = search(&series, &[0..150, 150..300], 16);
+            let rows: Vec<usize> = found.outliers.iter().map(|one| one.0).collect();
+            assert_eq!(rows, [149, 299], "{seed}");
+        }
+    }
 }
