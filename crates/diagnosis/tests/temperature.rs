@@ -86,6 +86,12 @@ fn the_hysteresis_of_temperature_is_found() {
 }
 
 #[test]
+fn noise_of_the_temperature_leaves_nothing_beside_a_large_hysteresis() {
+    found(8, "gyro_z.temperature_hysteresis", 0.04);
+    found(9, "gyro_x.temperature_hysteresis", 0.08);
+}
+
+#[test]
 fn where_temperature_went_with_time_the_set_holds_both_and_says_so() {
     let (mut record, bench) = record(7, "gyro_x.ramp", 0.01);
     let mut draw = Draw::new(7, 1);
