@@ -13,7 +13,8 @@ use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::result::{add_shape_intervals, parameters_of};
 use crate::rows::Rows;
-use crate::state::{settled, stage};
+use crate::shape::About;
+use crate::state::{settled, settled_with_shapes, stage};
 
 /// A model with given effects, fitted with the noise that it leaves.
 pub struct FittedWith<F> {
@@ -62,7 +63,7 @@ pub fn fit_with<F: FittedModel>(
     if !walking.is_empty() {
         let noise = own.fitted.fit_rate_noise(&walking, &[])?.noise;
         let fitted = own.fitted.with_rate_noise(&noise)?;
-        own = settled(&context, fitted, &accepted)?;
+        own = settled_with_shapes(&context, (fitted, About::Estimate), &mut accepted, &[])?;
     }
     let mut draws = GaussianDraws::new(options.seed);
     let mut effects = Vec::with_capacity(selection.effects.len());

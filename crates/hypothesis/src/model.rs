@@ -90,6 +90,16 @@ pub trait FittedModel: Clone {
     /// Covariance of their errors.
     fn covariance(&self) -> &DMatrix<f64>;
 
+    /// Degrees of freedom of the variance of each estimate, in the order of [`Self::values`]: the noise
+    /// that it rests on was estimated from the record. Infinite where the noise is known; an estimate beyond
+    /// the end of the list counts as such.
+    ///
+    /// # Errors
+    /// Those of a pass over the record.
+    fn degrees_of_freedom(&self) -> Result<Vec<f64>, Self::Error> {
+        Ok(Vec::new())
+    }
+
     /// Standard deviations before the record, in the order of [`Self::values`].
     fn prior_sigma(&self) -> Vec<f64>;
 

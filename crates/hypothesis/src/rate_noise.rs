@@ -6,6 +6,10 @@ use gyrocal_statistics::math::ln;
 /// determine.
 const SAME: f64 = 0.02;
 
+/// The same for onsets and time constants: weights that are off by a fifth take some thousandths of a
+/// standard deviation from the best estimate.
+const SAME_SHAPES: f64 = 0.1;
+
 /// Noise of the rates of a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RateNoise {
@@ -28,10 +32,19 @@ impl RateNoise {
 
     /// Whether any of it differs so much that results would change.
     pub(crate) fn differs(&self, other: &Self) -> bool {
+        self.differs_by(SAME, other)
+    }
+
+    /// Whether any of it differs so much that onsets and time constants would move.
+    pub(crate) fn moves_shapes(&self, other: &Self) -> bool {
+        self.differs_by(SAME_SHAPES, other)
+    }
+
+    fn differs_by(&self, least: f64, other: &Self) -> bool {
         let own = self.white.iter().chain(&self.walk);
         let others = other.white.iter().chain(&other.walk);
         own.zip(others)
-            .any(|(own, other)| own != other && ln(own / other).abs() >= SAME)
+            .any(|(own, other)| own != other && ln(own / other).abs() >= least)
     }
 
     /// The same without random walks.

@@ -272,7 +272,11 @@ pub(crate) fn add_shape_intervals<F: FittedModel>(
         .collect();
     let absent = &stage.places[index].values;
     let fitted = &stage.fitted;
-    let found = shape_interval(fitted, context, (hypothesis, shape), (absent, &free), draws)?;
+    let degrees = fitted.degrees_of_freedom()?;
+    // Those of the size: the noise that hides it hides the shape.
+    let degrees = absent.first().and_then(|place| degrees.get(*place));
+    let of = (hypothesis, shape, degrees.copied().unwrap_or(f64::INFINITY));
+    let found = shape_interval(fitted, context, of, (absent, &free), draws)?;
     let Some(found) = found else { return Ok(()) };
     let mut sigmas = found.size_sigmas.into_iter();
     let described = estimates.iter_mut().zip(hypothesis.effect.parameters);

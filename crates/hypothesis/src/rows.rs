@@ -4,11 +4,18 @@ use core::ops::Range;
 use std::sync::Arc;
 
 use gyrocal_scalar::effect::Role;
+use gyrocal_statistics::median_interval_s;
 
 use crate::plant::{Plant, WeightInputs};
 
 /// Onset of an effect that does not act in a record, after its end, s.
 const AFTER_END_S: f64 = 1.0;
+
+/// Length of a step over the typical one beyond which it is a gap.
+const GAP: f64 = 1.5;
+
+/// Most parts of a gap: each of a day is then shorter than six minutes.
+const MOST_PARTS: usize = 256;
 
 /// A known function of the moving states at each row, such as a component of specific force.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,32 +102,39 @@ impl Rows {
         self.time_s.partition_point(|t| t - first_s < time_s)
     }
 
-    /// A weight of a plant in each step: in its middle, regressors and covariates interpolated.
+    /// A weight of a plant in each step: in its middle, regressors and covariates interpolated. Over a gap,
+    /// in which a weight may change as no straight line does, its mean.
     #[must_use]
     pub fn step_weights(&self, plant: &Plant, weight: usize, shapes: &[f64]) -> Arc<[f64]> {
-        let middle = |values: &[f64], step: usize| 0.5 * (values[step] + values[step + 1]);
-        self.evaluate(
-            plant,
-            weight,
-            shapes,
-            self.len().saturating_sub(1),
-            |step, first_s, inputs| {
-                inputs.time_s = 0.5 * (self.time_s[step] + self.time_s[step + 1]) - first_s;
-                inputs.interval_s = self.time_s[step + 1] - self.time_s[step];
-                for (target, values) in inputs.regressors.iter_mut().zip(self.all_regressors()) {
-                    *target = middle(values, step);
-                }
-                for (target, covariate) in inputs.covariates.iter_mut().zip(&self.covariates) {
-                    *target = middle(&covariate.values, step);
-                }
-            },
-        )
+        let typical_s = median_interval_s(&self.time_s);
+        let parts = |step: usize| {
+            let parts = (self.time_s[step + 1] - self.time_s[step]) / typical_s;
+            if parts > GAP {
+                (parts as usize + 1).min(MOST_PARTS)
+            } else {
+                1
+            }
+        };
+        let set = |step: usize, first_s: f64, part: f64, inputs: &mut Point| {
+            let interval_s = self.time_s[step + 1] - self.time_s[step];
+            let within = |values: &[f64]| (1.0 - part) * values[step] + part * values[step + 1];
+            inputs.time_s = self.time_s[step] + part * interval_s - first_s;
+            inputs.interval_s = interval_s / parts(step) as f64;
+            for (target, values) in inputs.regressors.iter_mut().zip(self.all_regressors()) {
+                *target = within(values);
+            }
+            for (target, covariate) in inputs.covariates.iter_mut().zip(&self.covariates) {
+                *target = within(&covariate.values);
+            }
+        };
+        let steps = self.len().saturating_sub(1);
+        self.evaluate(plant, weight, shapes, steps, parts, set)
     }
 
     /// A weight of a plant at each row.
     #[must_use]
     pub fn row_weights(&self, plant: &Plant, weight: usize, shapes: &[f64]) -> Arc<[f64]> {
-        self.evaluate(plant, weight, shapes, self.len(), |row, first_s, inputs| {
+        let set = |row: usize, first_s: f64, _: f64, inputs: &mut Point| {
             inputs.time_s = self.time_s[row] - first_s;
             inputs.interval_s = 1.0;
             for (target, values) in inputs.regressors.iter_mut().zip(self.all_regressors()) {
@@ -129,7 +143,8 @@ impl Rows {
             for (target, covariate) in inputs.covariates.iter_mut().zip(&self.covariates) {
                 *target = covariate.values[row];
             }
-        })
+        };
+        self.evaluate(plant, weight, shapes, self.len(), |_| 1, set)
     }
 
     /// The regressors, then what derives from them.
@@ -137,13 +152,15 @@ impl Rows {
         self.regressors.iter().chain(&self.derived)
     }
 
+    /// Means of a weight over the parts of each row or step; `set` sets the point of a place in one.
     fn evaluate(
         &self,
         plant: &Plant,
         weight: usize,
         shapes: &[f64],
         count: usize,
-        set: impl Fn(usize, f64, &mut Point),
+        parts: impl Fn(usize) -> usize,
+        set: impl Fn(usize, f64, f64, &mut Point),
     ) -> Arc<[f64]> {
         let mut point = Point {
             time_s: 0.0,
@@ -157,16 +174,26 @@ impl Rows {
             let first_s = self.time_s.get(rows.start).copied().unwrap_or(0.0);
             let own = self.shapes_in(plant, shapes, &rows);
             for index in rows.start..rows.end.min(count) {
-                set(index, first_s, &mut point);
-                let inputs = WeightInputs {
-                    time_s: point.time_s,
-                    interval_s: point.interval_s,
-                    regressors: &point.regressors,
-                    covariates: &point.covariates,
-                    shapes: &own,
-                };
-                (plant.weights)(&inputs, &mut weights);
-                values.push(weights[weight]);
+                let parts = parts(index);
+                let mut sum = 0.0;
+                for part in 0..parts {
+                    set(
+                        index,
+                        first_s,
+                        (part as f64 + 0.5) / parts as f64,
+                        &mut point,
+                    );
+                    let inputs = WeightInputs {
+                        time_s: point.time_s,
+                        interval_s: point.interval_s,
+                        regressors: &point.regressors,
+                        covariates: &point.covariates,
+                        shapes: &own,
+                    };
+                    (plant.weights)(&inputs, &mut weights);
+                    sum += weights[weight];
+                }
+                values.push(sum / parts as f64);
             }
         }
         values.into()
@@ -219,4 +246,62 @@ struct Point {
     interval_s: f64,
     regressors: Vec<f64>,
     covariates: Vec<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use gyrocal_statistics::math::exp;
+
+    use super::*;
+
+    const TAU_S: f64 = 3600.0;
+    const ONSET_S: f64 = 20_000.0;
+
+    /// A warm-up and a step.
+    fn write(inputs: &WeightInputs<'_>, weights: &mut [f64]) {
+        weights[0] = exp(-inputs.time_s / TAU_S);
+        weights[1] = ((inputs.time_s - ONSET_S) / inputs.interval_s + 0.5).clamp(0.0, 1.0);
+    }
+
+    const PLANT: Plant = Plant {
+        effects: &[],
+        parameters: &[],
+        nominal_parameters: 0,
+        shapes: &[],
+        rates: &[],
+        rate_states: &[],
+        outputs: &[],
+        moving_states: 0,
+        weight_count: 2,
+        weights: write,
+        natural_periods_s: &[],
+    };
+
+    #[test]
+    fn a_weight_over_a_gap_is_its_mean() {
+        // Rows a minute apart with a gap of five hours, after which a warm-up has nearly ended.
+        let gap_s = [6_000.0, 24_000.0];
+        let time_s: Vec<f64> = (0..=600)
+            .map(|row| 60.0 * f64::from(row))
+            .filter(|t| *t <= gap_s[0] || *t >= gap_s[1])
+            .collect();
+        let gap = time_s.partition_point(|t| *t < gap_s[1]) - 1;
+        let rows = Rows {
+            time_s,
+            ..Rows::default()
+        };
+        let mean = |[first_s, last_s]: [f64; 2]| {
+            TAU_S * (exp(-first_s / TAU_S) - exp(-last_s / TAU_S)) / (last_s - first_s)
+        };
+        let warmup = rows.step_weights(&PLANT, 0, &[]);
+        let step = rows.step_weights(&PLANT, 1, &[]);
+        for (index, weight) in warmup.iter().enumerate() {
+            let ends = [rows.time_s[index], rows.time_s[index + 1]];
+            // The rule of midpoints is off by h²/24τ² of the value: 2e-5 of parts of 70 s.
+            assert!((weight / mean(ends) - 1.0).abs() < 2e-5, "step {index}");
+        }
+        // The weight is linear in the part that holds the onset, where the mean is exact.
+        let expected = (gap_s[1] - ONSET_S) / (gap_s[1] - gap_s[0]);
+        assert!((step[gap] - expected).abs() < 1e-12);
+    }
 }

@@ -8,7 +8,7 @@ use crate::hypothesis::Hypothesis;
 use crate::jump::BestJump;
 use crate::model::FittedModel;
 use crate::null_distribution::NullDistribution;
-use crate::shape::best_shape;
+use crate::shape::{About, best_shape};
 
 /// The 5 % point of chi-square with one degree of freedom: an effect replaces a nested one only if
 /// its statistic is larger by this.
@@ -118,7 +118,8 @@ impl<'a> Scores<'a> {
             let Some(shape) = best.shape(hypotheses).filter(|_| best.statistic > least) else {
                 continue;
             };
-            if let Some(found) = best_shape(fitted, context, hypothesis, shape, absent)?
+            if let Some(found) =
+                best_shape(fitted, context, hypothesis, (shape, About::Variant), absent)?
                 && found.statistic > best.statistic
             {
                 *best = Best {

@@ -25,6 +25,10 @@ const POINTS: usize = 9;
 /// between two variants of the search.
 const GRIDS: usize = 5;
 
+/// The first of these grids about a shape that was estimated in nearly the same model: a sixteenth as wide
+/// as the distance between two variants.
+const NEARBY: usize = 2;
+
 /// Rounds of shapes and fits. Each moves a shape to the maximum of its likelihood given the others;
 /// effects that overlap little need two.
 const ROUNDS: usize = 6;
@@ -143,12 +147,21 @@ impl ShapeProfile {
     }
 }
 
-/// The best shape of a hypothesis about one of its variants, by grids that narrow.
+/// Where a shape is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum About {
+    /// Between the neighbours of a variant.
+    Variant,
+    /// Near an estimate.
+    Estimate,
+}
+
+/// The best shape of a hypothesis about one of its variants or about an estimate, by grids that narrow.
 pub(crate) fn best_shape<F: FittedModel>(
     fitted: &F,
     context: &SearchContext<'_>,
     hypothesis: &Hypothesis,
-    start: f64,
+    (start, about): (f64, About),
     absent: &[usize],
 ) -> Result<Option<BestShape>, F::Error> {
     let Some(scale) = ShapeScale::of(hypothesis, &context.rows) else {
@@ -168,11 +181,19 @@ pub(crate) fn best_shape<F: FittedModel>(
     if width <= 0.0 {
         return Ok(None);
     }
+    let skipped = match about {
+        About::Variant => 0,
+        About::Estimate => NEARBY,
+    };
+    let narrower = 2.0 / (POINTS - 1) as f64;
+    for _ in 0..skipped {
+        width *= narrower;
+    }
     let mut best = BestShape {
         shape: start,
         statistic: f64::NEG_INFINITY,
     };
-    for _ in 0..GRIDS {
+    for _ in skipped..GRIDS {
         let centre = scale.place(best.shape);
         let shapes = grid(&scale, centre, width);
         let profile = ShapeProfile::new(fitted, context, hypothesis, shapes, (absent, &[]))?;
@@ -181,7 +202,7 @@ pub(crate) fn best_shape<F: FittedModel>(
         {
             best = found;
         }
-        width *= 2.0 / (POINTS - 1) as f64;
+        width *= narrower;
     }
     Ok(best.statistic.is_finite().then_some(best))
 }
@@ -197,14 +218,16 @@ fn grid(scale: &ShapeScale, centre: f64, width: f64) -> Vec<f64> {
 }
 
 /// Moves the shapes of all accepted effects to the maximum of the likelihood, and fits again, until
-/// none gains.
+/// none gains; first where `about` says, then near the shapes found.
 pub(crate) fn estimate_shapes<F: FittedModel>(
     context: &SearchContext<'_>,
     fitted: F,
+    about: About,
     accepted: &mut [Accepted],
     refit: impl Fn(&F, &[Accepted]) -> Result<F, F::Error>,
 ) -> Result<F, F::Error> {
     let mut fitted = fitted;
+    let mut about = about;
     for _ in 0..ROUNDS {
         let mut moved = false;
         if context.budget.is_spent(&fitted) {
@@ -219,7 +242,8 @@ pub(crate) fn estimate_shapes<F: FittedModel>(
                 continue;
             }
             let absent = value_places(&fitted, hypothesis);
-            let Some(best) = best_shape(&fitted, context, hypothesis, now, &absent)? else {
+            let Some(best) = best_shape(&fitted, context, hypothesis, (now, about), &absent)?
+            else {
                 continue;
             };
             let before =
@@ -242,6 +266,7 @@ pub(crate) fn estimate_shapes<F: FittedModel>(
         if !moved {
             break;
         }
+        about = About::Estimate;
     }
     Ok(fitted)
 }

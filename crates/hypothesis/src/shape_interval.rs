@@ -5,8 +5,11 @@
 //! point, whose likelihood is a random walk on both sides of it, and c is larger (Hinkley, Biometrika
 //! 57, 1, 1970). Both follow from the same draws: with the estimated effect in the data, the scores at
 //! all shapes are jointly normal, and c is the 95 % quantile of the largest statistic less that at
-//! the true shape.
+//! the true shape. The noise that all statistics are over was estimated with ν degrees of freedom: the
+//! largest statistic less that at the true shape is over χ²(ν)/ν too, and c of a quadratic likelihood is
+//! the square of Student's deviate.
 
+use gyrocal_statistics::{chi_square_quantile, student_quantile};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::column::Column;
@@ -34,6 +37,13 @@ const POINTS: usize = 81;
 /// 95 % point of χ²(1), for effects with several sizes.
 const QUADRATIC: f64 = 3.84;
 
+/// Quantiles that stand for the distribution of χ²(ν)/ν. With 64, c of a quadratic likelihood is within
+/// 1 % of its value at five degrees of freedom.
+const NOISE_QUANTILES: usize = 64;
+
+/// Halvings of the bracket of c: it is then known to a part in 10⁹.
+const HALVINGS: usize = 40;
+
 /// Ratio of the two halves of an interval above which no standard deviation describes it.
 const SYMMETRIC: f64 = 1.5;
 
@@ -49,11 +59,12 @@ pub(crate) struct ShapeInterval {
     pub(crate) size_sigmas: Vec<f64>,
 }
 
-/// The interval of the shape of an effect in a fit; `absent` and `free` as of [`ShapeProfile::new`].
+/// The interval of the shape of an effect in a fit whose noise has these degrees of freedom; `absent` and
+/// `free` as of [`ShapeProfile::new`].
 pub(crate) fn shape_interval<F: FittedModel>(
     fitted: &F,
     context: &SearchContext<'_>,
-    (hypothesis, estimate): (&Hypothesis, f64),
+    (hypothesis, estimate, degrees): (&Hypothesis, f64, f64),
     (absent, free): (&[usize], &[Column]),
     draws: &mut GaussianDraws,
 ) -> Result<Option<ShapeInterval>, F::Error> {
@@ -89,13 +100,14 @@ pub(crate) fn shape_interval<F: FittedModel>(
         .collect();
     let at = places.partition_point(|place| *place < centre);
     places.insert(at, centre);
-    Ok(interval(&around(places.clone())?, &places, &scale, draws))
+    let profile = around(places.clone())?;
+    Ok(interval(&profile, (&places, &scale), degrees, draws))
 }
 
 fn interval(
     profile: &ShapeProfile,
-    places: &[f64],
-    scale: &ShapeScale,
+    (places, scale): (&[f64], &ShapeScale),
+    degrees: f64,
     draws: &mut GaussianDraws,
 ) -> Option<ShapeInterval> {
     let statistics = profile.statistics();
@@ -104,7 +116,10 @@ fn interval(
         .copied()
         .enumerate()
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let limit = deviance_limit(profile, best, draws).unwrap_or(QUADRATIC);
+    let limit = losses(profile, best, draws)
+        .and_then(|losses| limit(&losses, degrees))
+        .or_else(|| Some(student_quantile(0.5 * (1.0 + COVERAGE), degrees)?.powi(2)))
+        .unwrap_or(QUADRATIC);
     let deviance: Vec<f64> = statistics.iter().map(|other| largest - other).collect();
     let pieces = pieces(places, &deviance, limit);
     let sigma = match pieces.as_slice() {
@@ -127,9 +142,9 @@ fn interval(
     })
 }
 
-/// The 95 % quantile of the largest statistic less that at the true shape, if that is the best one;
-/// `None` of an effect with several sizes.
-fn deviance_limit(profile: &ShapeProfile, best: usize, draws: &mut GaussianDraws) -> Option<f64> {
+/// Draws of the largest statistic less that at the true shape, if that is the best one, rising; `None` of an
+/// effect with several sizes.
+fn losses(profile: &ShapeProfile, best: usize, draws: &mut GaussianDraws) -> Option<Vec<f64>> {
     let columns: Option<Vec<usize>> = profile
         .columns
         .iter()
@@ -165,8 +180,38 @@ fn deviance_limit(profile: &ShapeProfile, best: usize, draws: &mut GaussianDraws
         })
         .collect();
     losses.sort_unstable_by(f64::total_cmp);
+    Some(losses)
+}
+
+/// The 95 % quantile of rising losses over χ²(ν)/ν.
+fn limit(losses: &[f64], degrees: f64) -> Option<f64> {
     let index = (COVERAGE * losses.len() as f64) as usize;
-    losses.get(index).copied()
+    let known = losses.get(index).copied()?;
+    if !degrees.is_finite() {
+        return Some(known);
+    }
+    let quantile = |index: usize| {
+        let probability = (index as f64 + 0.5) / NOISE_QUANTILES as f64;
+        Some(chi_square_quantile(probability, degrees)? / degrees)
+    };
+    let noise: Option<Vec<f64>> = (0..NOISE_QUANTILES).map(quantile).collect();
+    let noise = noise?;
+    let below = |limit: f64| {
+        let counts = noise
+            .iter()
+            .map(|noise| losses.partition_point(|loss| *loss <= limit * noise));
+        counts.sum::<usize>() as f64 / (noise.len() * losses.len()) as f64
+    };
+    let (mut low, mut high) = (0.0, losses.last()? / noise.first()?);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if below(middle) < COVERAGE {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(high)
 }
 
 /// Stretches of places whose deviance is below a limit, ends interpolated.
@@ -229,7 +274,29 @@ fn size_sigmas(profile: &ShapeProfile, deviance: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::pieces;
+    use gyrocal_statistics::{chi_square_quantile, student_quantile};
+
+    use super::{limit, pieces};
+
+    #[test]
+    fn losses_of_a_quadratic_likelihood_have_the_square_of_a_deviate_for_their_limit() {
+        let count = 4096;
+        let quantile = |index: usize| {
+            let probability = (index as f64 + 0.5) / f64::from(count);
+            chi_square_quantile(probability, 1.0).unwrap()
+        };
+        let losses: Vec<f64> = (0..count as usize).map(quantile).collect();
+        for degrees in [5.0, 12.0, 80.0, f64::INFINITY] {
+            let found = limit(&losses, degrees).unwrap();
+            let expected = match degrees {
+                f64::INFINITY => chi_square_quantile(0.95, 1.0),
+                degrees => student_quantile(0.975, degrees).map(|t| t * t),
+            };
+            // The quantiles of the noise are 64: see `NOISE_QUANTILES`.
+            let ratio = found / expected.unwrap();
+            assert!((ratio - 1.0).abs() < 0.01, "{degrees}: {ratio}");
+        }
+    }
 
     #[test]
     fn a_likelihood_with_two_maxima_has_an_interval_in_two_pieces() {

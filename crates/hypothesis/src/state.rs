@@ -5,7 +5,8 @@ use crate::context::SearchContext;
 use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::pattern::Unmodelled;
-use crate::shape::estimate_shapes;
+use crate::rate_noise::{RateNoise, RateNoiseFit};
+use crate::shape::{About, estimate_shapes};
 
 /// Current model and accepted effects.
 #[derive(Clone)]
@@ -71,6 +72,28 @@ impl<F> SearchState<F> {
     }
 }
 
+impl<F: FittedModel> SearchState<F> {
+    /// The same effects in other noise of the rates, with what that changes: shapes, sizes and noise.
+    pub(crate) fn in_noise(
+        &self,
+        context: &SearchContext<'_>,
+        noise: &RateNoise,
+    ) -> Result<Self, F::Error> {
+        let fitted = self.stage.fitted.with_rate_noise(noise)?;
+        let mut accepted = self.accepted.clone();
+        let start = (fitted, About::Estimate);
+        let stage = settled_with_shapes(context, start, &mut accepted, &self.unmodelled)?;
+        Ok(Self {
+            stage,
+            accepted,
+            ..self.clone()
+        })
+    }
+}
+
+/// Rounds of shapes and noise. An effect that raised the noise by a factor of a hundred needs three.
+const ROUNDS: usize = 4;
+
 /// The model with these effects, fitted from another one, with the shapes of all effects and the noise
 /// of the rates estimated and with all its signatures.
 pub(crate) fn stage<F: FittedModel>(
@@ -79,10 +102,32 @@ pub(crate) fn stage<F: FittedModel>(
     accepted: &mut [Accepted],
     unmodelled: &[Unmodelled],
 ) -> Result<FittedStage<F>, F::Error> {
+    let fitted = context.fitted(from, accepted, unmodelled)?;
+    settled_with_shapes(context, (fitted, About::Variant), accepted, unmodelled)
+}
+
+/// A fit with these effects, with their shapes and the noise of its rates as the record tells them: in
+/// turn, until the noise stays, since a shape is best in the noise that the effect leaves.
+pub(crate) fn settled_with_shapes<F: FittedModel>(
+    context: &SearchContext<'_>,
+    (mut fitted, mut about): (F, About),
+    accepted: &mut [Accepted],
+    unmodelled: &[Unmodelled],
+) -> Result<FittedStage<F>, F::Error> {
     let refit = |from: &F, accepted: &[Accepted]| context.fitted(from, accepted, unmodelled);
-    let fitted = refit(from, accepted)?;
-    let fitted = estimate_shapes(context, fitted, accepted, refit)?;
-    settled(context, fitted, accepted)
+    let has_shape = accepted.iter().any(|own| own.shape.is_some());
+    let mut rounds = 0;
+    loop {
+        fitted = estimate_shapes(context, fitted, about, accepted, refit)?;
+        let before = fitted.rate_noise();
+        let noise;
+        (fitted, noise) = with_noise(fitted)?;
+        rounds += 1;
+        if !has_shape || rounds == ROUNDS || !fitted.rate_noise().moves_shapes(&before) {
+            return FittedStage::new(fitted, noise, &context.set, &context.rows, accepted);
+        }
+        about = About::Estimate;
+    }
 }
 
 /// A fit with the noise of its rates that the record tells.
@@ -91,6 +136,11 @@ pub(crate) fn settled<F: FittedModel>(
     fitted: F,
     accepted: &[Accepted],
 ) -> Result<FittedStage<F>, F::Error> {
+    let (fitted, noise) = with_noise(fitted)?;
+    FittedStage::new(fitted, noise, &context.set, &context.rows, accepted)
+}
+
+fn with_noise<F: FittedModel>(fitted: F) -> Result<(F, RateNoiseFit), F::Error> {
     let believed = fitted.rate_noise();
     let noise = fitted.fit_rate_noise(&believed.walking(), &[])?;
     let fitted = if noise.noise.differs(&believed) {
@@ -99,5 +149,5 @@ pub(crate) fn settled<F: FittedModel>(
     } else {
         fitted
     };
-    FittedStage::new(fitted, noise, &context.set, &context.rows, accepted)
+    Ok((fitted, noise))
 }

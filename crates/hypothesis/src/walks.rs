@@ -105,12 +105,9 @@ pub(crate) fn compare<F: FittedModel>(
         if p_beside >= probability {
             return Ok(only(state));
         }
-        let with_them = state.stage.fitted.with_rate_noise(&beside.noise);
-        let staged = with_them.and_then(|fitted| settled(context, fitted, &state.accepted));
-        let Ok(stage) = staged else {
+        let Ok(state) = state.in_noise(context, &beside.noise) else {
             return Ok(only(state));
         };
-        let state = SearchState { stage, ..state };
         return model.with_walks(state, (p_beside, Vec::new()), draws);
     }
     if advantage > BESIDE_WALKS

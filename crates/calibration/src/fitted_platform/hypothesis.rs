@@ -41,6 +41,10 @@ impl FittedModel for FittedPlatform<'_> {
         FittedPlatform::covariance(self)
     }
 
+    fn degrees_of_freedom(&self) -> Result<Vec<f64>, CalibrationError> {
+        FittedPlatform::degrees_of_freedom(self)
+    }
+
     fn prior_sigma(&self) -> Vec<f64> {
         FittedPlatform::prior_sigma(self)
     }
