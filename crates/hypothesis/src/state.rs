@@ -86,7 +86,9 @@ impl<F: FittedModel> SearchState<F> {
         Ok(Self {
             stage,
             accepted,
-            ..self.clone()
+            inseparable: self.inseparable.clone(),
+            unmodelled: self.unmodelled.clone(),
+            seeks_unmodelled: self.seeks_unmodelled,
         })
     }
 }
