@@ -121,7 +121,8 @@ fn near_twins_are_planned_apart_and_the_run_tells_them_apart() {
     };
     let planned = planned(&first, &named, &options).unwrap();
     assert_eq!(planned.aim, Aim::Set);
-    assert_eq!(planned.now.sets[0].mean_size, 2.0);
+    // Rounding of a sum of probabilities.
+    assert!((planned.now.sets[0].mean_size - 2.0).abs() < 1e-12);
     let best = &planned.proposals[0];
     assert!(best.outlook.sets[0].one_left > 0.95);
     // The shortest run is shorter, and too long by less than one step of the search.
@@ -526,7 +527,8 @@ fn a_random_walk_beside_rivals_is_compared_with_them() {
         ..named("gyro_y.random_walk", &[("gyro_y.ramp", 0.5)])
     };
     let planned = planned(&first, &[walk], &short()).unwrap();
-    assert_eq!(planned.now.sets[0].mean_size, 2.0);
+    // Rounding of a sum of probabilities.
+    assert!((planned.now.sets[0].mean_size - 2.0).abs() < 1e-12);
     let best = &planned.proposals[0].outlook;
     // A ramp and a walk that drifts as far in a day and a half are seldom told apart by six hours more.
     assert!((1.0..=2.0).contains(&best.sets[0].mean_size));
