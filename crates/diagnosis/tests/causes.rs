@@ -178,7 +178,7 @@ fn the_time_constant_of_a_large_warm_up_is_that_of_the_noise_it_leaves() {
             (*low..=*high).contains(&shape.estimate),
             "{seed}: {shape:?}"
         );
-        // One in sixteen thousand is farther off than twice the 95 % interval.
+        // Of a normal distribution one in eleven thousand is farther off than twice the 95 % interval.
         let half = 0.5 * (high - low);
         let off = (shape.estimate - TIME_CONSTANT_H).abs();
         assert!(off < 2.0 * half, "{seed}: {shape:?}");

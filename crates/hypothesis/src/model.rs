@@ -91,8 +91,8 @@ pub trait FittedModel: Clone {
     fn covariance(&self) -> &DMatrix<f64>;
 
     /// Degrees of freedom of the variance of each estimate, in the order of [`Self::values`]: the noise
-    /// that it rests on was estimated from the record. Infinite where the noise is known; an estimate beyond
-    /// the end of the list counts as such.
+    /// that it rests on was estimated from the record. Infinite where the noise is known or known well; an
+    /// estimate beyond the end of the list counts as such, and so do all of a model that does not tell them.
     ///
     /// # Errors
     /// Those of a pass over the record.

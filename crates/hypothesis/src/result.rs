@@ -272,8 +272,12 @@ pub(crate) fn add_shape_intervals<F: FittedModel>(
         .collect();
     let absent = &stage.places[index].values;
     let fitted = &stage.fitted;
-    let degrees = fitted.degrees_of_freedom()?;
-    // Those of the size: the noise that hides it hides the shape.
+    if ShapeScale::of(hypothesis, &context.rows).is_none() {
+        return Ok(());
+    }
+    // Those of the first size: the noise that hides it hides the shape. Where no pass succeeds, nothing is
+    // known of the noise but its value.
+    let degrees = fitted.degrees_of_freedom().unwrap_or_default();
     let degrees = absent.first().and_then(|place| degrees.get(*place));
     let of = (hypothesis, shape, degrees.copied().unwrap_or(f64::INFINITY));
     let found = shape_interval(fitted, context, of, (absent, &free), draws)?;

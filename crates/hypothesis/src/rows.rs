@@ -11,7 +11,7 @@ use crate::plant::{Plant, WeightInputs};
 /// Onset of an effect that does not act in a record, after its end, s.
 const AFTER_END_S: f64 = 1.0;
 
-/// Length of a step over the typical one beyond which it is a gap.
+/// Length of a step over the typical one of its record beyond which it is a gap: between one step and two.
 const GAP: f64 = 1.5;
 
 /// Most parts of a gap: each of a day is then shorter than six minutes.
@@ -106,15 +106,8 @@ impl Rows {
     /// in which a weight may change as no straight line does, its mean.
     #[must_use]
     pub fn step_weights(&self, plant: &Plant, weight: usize, shapes: &[f64]) -> Arc<[f64]> {
-        let typical_s = median_interval_s(&self.time_s);
-        let parts = |step: usize| {
-            let parts = (self.time_s[step + 1] - self.time_s[step]) / typical_s;
-            if parts > GAP {
-                (parts as usize + 1).min(MOST_PARTS)
-            } else {
-                1
-            }
-        };
+        let parts_of_steps = self.parts_of_steps();
+        let parts = |step: usize| parts_of_steps[step];
         let set = |step: usize, first_s: f64, part: f64, inputs: &mut Point| {
             let interval_s = self.time_s[step + 1] - self.time_s[step];
             let within = |values: &[f64]| (1.0 - part) * values[step] + part * values[step + 1];
@@ -145,6 +138,26 @@ impl Rows {
             }
         };
         self.evaluate(plant, weight, shapes, self.len(), |_| 1, set)
+    }
+
+    /// Parts over which the mean of a weight is taken in each step: several in a gap.
+    fn parts_of_steps(&self) -> Vec<usize> {
+        let mut all = Vec::with_capacity(self.len());
+        for rows in self.records() {
+            let time_s = &self.time_s[rows];
+            let typical_s = median_interval_s(time_s);
+            all.extend(time_s.windows(2).map(|step| {
+                let parts = (step[1] - step[0]) / typical_s;
+                if parts > GAP {
+                    (parts as usize).min(MOST_PARTS - 1) + 1
+                } else {
+                    1
+                }
+            }));
+            // From the last row of a record to the next record.
+            all.push(1);
+        }
+        all
     }
 
     /// The regressors, then what derives from them.
@@ -303,5 +316,18 @@ mod tests {
         // The weight is linear in the part that holds the onset, where the mean is exact.
         let expected = (gap_s[1] - ONSET_S) / (gap_s[1] - gap_s[0]);
         assert!((step[gap] - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_step_is_as_long_as_the_others_of_its_record() {
+        // Rows of one and of four minutes, each record with a gap.
+        let first = [0.0, 60.0, 120.0, 720.0, 780.0];
+        let second = [0.0, 240.0, 480.0, 1_200.0, 1_440.0, 1_680.0].map(|t| 10_000.0 + t);
+        let rows = Rows {
+            time_s: [first.as_slice(), &second].concat(),
+            starts: vec![first.len()],
+            ..Rows::default()
+        };
+        assert_eq!(rows.parts_of_steps(), [1, 1, 11, 1, 1, 1, 1, 4, 1, 1, 1]);
     }
 }

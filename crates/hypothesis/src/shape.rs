@@ -29,6 +29,10 @@ const GRIDS: usize = 5;
 /// as the distance between two variants.
 const NEARBY: usize = 2;
 
+/// Distance from an estimate, over the first grid about it, beyond which the shape may lie outside of that
+/// grid: its last points but one.
+const AT_THE_END: f64 = 0.75;
+
 /// Rounds of shapes and fits. Each moves a shape to the maximum of its likelihood given the others;
 /// effects that overlap little need two.
 const ROUNDS: usize = 6;
@@ -189,6 +193,7 @@ pub(crate) fn best_shape<F: FittedModel>(
     for _ in 0..skipped {
         width *= narrower;
     }
+    let first = width;
     let mut best = BestShape {
         shape: start,
         statistic: f64::NEG_INFINITY,
@@ -203,6 +208,11 @@ pub(crate) fn best_shape<F: FittedModel>(
             best = found;
         }
         width *= narrower;
+    }
+    let moved = (scale.place(best.shape) - scale.place(start)).abs();
+    if about == About::Estimate && moved >= AT_THE_END * first {
+        let start = (best.shape, About::Variant);
+        return best_shape(fitted, context, hypothesis, start, absent);
     }
     Ok(best.statistic.is_finite().then_some(best))
 }

@@ -22,7 +22,8 @@ use crate::shape::{ShapeProfile, ShapeScale};
 /// Coverage of the intervals.
 const COVERAGE: f64 = 0.95;
 
-/// Deviance beyond which no shape is looked at: its likelihood is below 1e-6.
+/// Deviance beyond which no shape is looked at: its likelihood is below 1e-6, and c of a change point is 28
+/// with the three degrees of freedom that a platform tells at least.
 const FARTHEST: f64 = 30.0;
 
 /// Smallest distance of a shape from the estimate, over the whole scale.
@@ -34,11 +35,14 @@ const DISTANCES: i32 = 20;
 /// Points between the two shapes where the deviance is [`FARTHEST`].
 const POINTS: usize = 81;
 
-/// 95 % point of χ²(1), for effects with several sizes.
+/// 95 % point of χ²(1), of a quadratic likelihood in known noise.
 const QUADRATIC: f64 = 3.84;
 
+/// Degrees of freedom beyond which noise counts as known: c is then within 0.1 %.
+const MANY: f64 = 1e4;
+
 /// Quantiles that stand for the distribution of χ²(ν)/ν. With 64, c of a quadratic likelihood is within
-/// 1 % of its value at five degrees of freedom.
+/// 1 % of its value at three degrees of freedom.
 const NOISE_QUANTILES: usize = 64;
 
 /// Halvings of the bracket of c: it is then known to a part in 10⁹.
@@ -145,15 +149,23 @@ fn interval(
 /// Draws of the largest statistic less that at the true shape, if that is the best one, rising; `None` of an
 /// effect with several sizes.
 fn losses(profile: &ShapeProfile, best: usize, draws: &mut GaussianDraws) -> Option<Vec<f64>> {
-    let columns: Option<Vec<usize>> = profile
-        .columns
-        .iter()
-        .map(|columns| match columns.as_slice() {
-            [column] => Some(*column),
-            _ => None,
-        })
-        .collect();
-    let columns = columns?;
+    let mut columns = Vec::with_capacity(profile.columns.len());
+    let mut place = None;
+    for (index, own) in profile.columns.iter().enumerate() {
+        match own.as_slice() {
+            // A shape of which nothing can be seen, such as an onset at the end, is no rival.
+            [] => {}
+            [column] if !profile.bank.visible(*column) => {}
+            [column] => {
+                if index == best {
+                    place = Some(columns.len());
+                }
+                columns.push(*column);
+            }
+            _ => return None,
+        }
+    }
+    let best = place?;
     let (information, score) = profile.bank.part(&columns);
     let scale = information.diagonal().map(|own| own.sqrt().recip());
     if !scale.iter().all(|scale| scale.is_finite()) {
@@ -187,7 +199,7 @@ fn losses(profile: &ShapeProfile, best: usize, draws: &mut GaussianDraws) -> Opt
 fn limit(losses: &[f64], degrees: f64) -> Option<f64> {
     let index = (COVERAGE * losses.len() as f64) as usize;
     let known = losses.get(index).copied()?;
-    if !degrees.is_finite() {
+    if degrees > MANY {
         return Some(known);
     }
     let quantile = |index: usize| {
@@ -286,7 +298,7 @@ mod tests {
             chi_square_quantile(probability, 1.0).unwrap()
         };
         let losses: Vec<f64> = (0..count as usize).map(quantile).collect();
-        for degrees in [5.0, 12.0, 80.0, f64::INFINITY] {
+        for degrees in [3.0, 5.0, 12.0, 80.0, f64::INFINITY] {
             let found = limit(&losses, degrees).unwrap();
             let expected = match degrees {
                 f64::INFINITY => chi_square_quantile(0.95, 1.0),
@@ -296,6 +308,31 @@ mod tests {
             let ratio = found / expected.unwrap();
             assert!((ratio - 1.0).abs() < 0.01, "{degrees}: {ratio}");
         }
+    }
+
+    #[test]
+    fn losses_of_a_change_point_have_the_limit_of_its_distribution() {
+        // Beside a change point the likelihood falls as a random walk on both sides: the loss stays below c
+        // with the probability (1 − exp(−c/2))² in known noise (Hinkley 1970), and with the mean of that
+        // over χ²(ν)/ν in estimated noise.
+        let count = 4096;
+        let losses: Vec<f64> = (0..count)
+            .map(|index| {
+                let probability = (f64::from(index) + 0.5) / f64::from(count);
+                -2.0 * (1.0 - probability.sqrt()).ln()
+            })
+            .collect();
+        let below = |limit: f64, degrees: f64| {
+            let tail = |times: f64| (1.0 + times * limit / degrees).powf(-0.5 * degrees);
+            1.0 - 2.0 * tail(1.0) + tail(2.0)
+        };
+        for degrees in [3.0, 8.0, 40.0] {
+            let found = below(limit(&losses, degrees).unwrap(), degrees);
+            // 64 quantiles of the noise, as above: 1 % of c is some 0.1 % of the probability.
+            assert!((found - 0.95).abs() < 0.002, "{degrees}: {found}");
+        }
+        let known = limit(&losses, f64::INFINITY).unwrap();
+        assert!((known - 7.35).abs() < 0.02, "{known}");
     }
 
     #[test]

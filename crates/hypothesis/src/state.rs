@@ -6,7 +6,7 @@ use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::pattern::Unmodelled;
 use crate::rate_noise::{RateNoise, RateNoiseFit};
-use crate::shape::{About, estimate_shapes};
+use crate::shape::{About, ShapeScale, estimate_shapes};
 
 /// Current model and accepted effects.
 #[derive(Clone)]
@@ -112,24 +112,37 @@ pub(crate) fn stage<F: FittedModel>(
 /// turn, until the noise stays, since a shape is best in the noise that the effect leaves.
 pub(crate) fn settled_with_shapes<F: FittedModel>(
     context: &SearchContext<'_>,
-    (mut fitted, mut about): (F, About),
+    (fitted, about): (F, About),
     accepted: &mut [Accepted],
     unmodelled: &[Unmodelled],
 ) -> Result<FittedStage<F>, F::Error> {
-    let refit = |from: &F, accepted: &[Accepted]| context.fitted(from, accepted, unmodelled);
-    let has_shape = accepted.iter().any(|own| own.shape.is_some());
-    let mut rounds = 0;
-    loop {
-        fitted = estimate_shapes(context, fitted, about, accepted, refit)?;
+    let once = |fitted: F, about: About, accepted: &mut [Accepted]| {
+        let refit = |from: &F, accepted: &[Accepted]| context.fitted(from, accepted, unmodelled);
+        let fitted = estimate_shapes(context, fitted, about, accepted, refit)?;
         let before = fitted.rate_noise();
-        let noise;
-        (fitted, noise) = with_noise(fitted)?;
-        rounds += 1;
-        if !has_shape || rounds == ROUNDS || !fitted.rate_noise().moves_shapes(&before) {
-            return FittedStage::new(fitted, noise, &context.set, &context.rows, accepted);
+        let (fitted, noise) = with_noise(fitted)?;
+        let moves_shapes = fitted.rate_noise().moves_shapes(&before);
+        Ok::<_, F::Error>((fitted, noise, moves_shapes))
+    };
+    let mut latest = once(fitted, about, accepted)?;
+    let has_shape = accepted.iter().any(|own| {
+        let hypothesis = &context.set.hypotheses[own.hypothesis];
+        own.shape.is_some() && ShapeScale::of(hypothesis, &context.rows).is_some()
+    });
+    for _ in 1..ROUNDS {
+        if !(has_shape && latest.2) || context.budget.is_spent(&latest.0) {
+            break;
         }
-        about = About::Estimate;
+        let mut next = accepted.to_vec();
+        // Shapes that cannot be estimated once more stay.
+        let Ok(again) = once(latest.0.clone(), About::Estimate, &mut next) else {
+            break;
+        };
+        latest = again;
+        accepted.clone_from_slice(&next);
     }
+    let (fitted, noise, _) = latest;
+    FittedStage::new(fitted, noise, &context.set, &context.rows, accepted)
 }
 
 /// A fit with the noise of its rates that the record tells.

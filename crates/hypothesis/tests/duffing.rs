@@ -4,7 +4,7 @@
 
 use gyrocal_hypothesis::{
     Column, Covariate, Finding, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Rows,
-    SearchOptions, Singular, StateJump, WeightInputs, search, select,
+    SearchOptions, Singular, StateJump, WeightInputs, fit_with, search, select,
 };
 use gyrocal_scalar::Element;
 use gyrocal_scalar::effect::{
@@ -460,6 +460,32 @@ fn a_step_of_the_force_is_found_with_its_onset() {
     // Between two onsets of the grid, which are ten rows apart, at most.
     let (onset, _) = found[0].1[1];
     assert!((onset - onset_s).abs() < 10.0 * STEP_S, "{onset} s");
+}
+
+#[test]
+fn the_onset_of_a_step_that_is_not_there_is_anywhere() {
+    let mut draw = Draw::new(3, 0);
+    let measured: Vec<f64> = simulate(&TRUTH, &ModelExtension::default(), &[])
+        .iter()
+        .map(|x| x + NOISE * draw.normal())
+        .collect();
+    let nominal = FittedDuffing::fit(&measured, &ModelExtension::default(), TRUTH[..3].to_vec());
+    let rows = Rows {
+        time_s: (0..ROWS).map(|row| row as f64 * STEP_S).collect(),
+        ..Rows::default()
+    };
+    let mut selection = select(&DUFFING, &[], |_| None);
+    selection.effects.retain(|effect| effect.id == "force.step");
+    let options = SearchOptions::default();
+    let fitted = fit_with(nominal.unwrap(), rows, &selection, &options).unwrap();
+    let (_, parameters) = &fitted.effects[0];
+    let (size, sigma) = (parameters[0].estimate, parameters[0].sigma.unwrap());
+    // The largest of forty correlated onsets.
+    assert!(size.abs() < 5.0 * sigma, "{size} ± {sigma}");
+    let pieces = parameters[1].interval.as_ref().unwrap();
+    let length_s: f64 = pieces.iter().map(|[low, high]| high - low).sum();
+    // That of a step of twenty standard deviations is some rows long.
+    assert!(length_s > 20.0 * STEP_S, "{pieces:?}");
 }
 
 #[test]

@@ -8,6 +8,9 @@ use gyrocal_statistics::{robust_sigma, student_two_sided_p, theil_sen_at_zero};
 const REACH: usize = 8;
 /// Number of values of a comparison with one side alone.
 const SIDE: usize = 8;
+/// Rows on a side that a test of isolation looks at: twice as many as values, since some are missing, for the
+/// line beside a sample, and as many for that beside the last of these.
+const ROWS_BESIDE: usize = 4 * SIDE;
 /// Smallest number of values on a side for the quadratic fit.
 const LEAST_SIDE: usize = 3;
 /// Smallest distance of an isolated sample from the line through either side alone, in standard
@@ -216,9 +219,8 @@ fn at_an_end(value: f64, masked: &[f64], row: usize, run: &Range<usize>) -> Opti
 /// farther too than the values of that side are from what those behind them predict: a series that bends,
 /// as that of a filter without a large effect, is off everywhere alike, and its last value is no outlier.
 fn is_isolated(value: f64, masked: &[f64], row: usize, run: &Range<usize>, scale: f64) -> bool {
-    let within = 4 * SIDE;
-    let before: Vec<usize> = (run.start..row).rev().take(within).collect();
-    let after: Vec<usize> = (row + 1..run.end).take(within).collect();
+    let before: Vec<usize> = (run.start..row).rev().take(ROWS_BESIDE).collect();
+    let after: Vec<usize> = (row + 1..run.end).take(ROWS_BESIDE).collect();
     let of_sides = [&before, &after].map(|rows| distance(value, row, masked, rows));
     let scale = match of_sides {
         [Some(_), None] => scale.max(usual_distance(masked, &before)),
@@ -275,7 +277,7 @@ mod tests {
 
     #[test]
     fn the_end_of_a_bent_series_holds_no_outliers() {
-        // Extrapolated by eight rows, a parabola is off by some tens of its bend.
+        // One row beyond a line through eight, a parabola is off by some fifteen of its bends.
         for (seed, bend) in (0_u64..40).zip([0.0, 0.1, 1.0, 10.0].into_iter().cycle()) {
             let found = search(&bent(seed, bend), &[0..150, 150..300], 16);
             assert!(found.outliers.is_empty(), "{seed}: {:?}", found.outliers);
@@ -291,6 +293,18 @@ mod tests {
             let found = search(&series, &[0..150, 150..300], 16);
             let rows: Vec<usize> = found.outliers.iter().map(|one| one.0).collect();
             assert_eq!(rows, [149, 299], "{seed}");
+        }
+    }
+
+    #[test]
+    fn an_outlier_after_missing_values_is_found() {
+        for seed in 0..10 {
+            let mut series = bent(seed, 0.0);
+            series[60..100].fill(f64::NAN);
+            series[100] += 15.0;
+            let found = search(&series, &[0..300], 16);
+            let rows: Vec<usize> = found.outliers.iter().map(|one| one.0).collect();
+            assert_eq!(rows, [100], "{seed}");
         }
     }
 }
