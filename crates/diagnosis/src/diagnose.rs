@@ -26,7 +26,7 @@ use crate::error_budget::{RESIDUAL_TESTS, shares};
 use crate::filter_test::{TestedFilter, filter_test};
 use crate::gate::Gate;
 use crate::magnitude_test::{MagnitudeTest, magnitude_test};
-use crate::noise::{NoiseAudit, Outlier};
+use crate::noise::{AuditOptions, NoiseAudit, Outlier};
 use crate::power::powers;
 use crate::request;
 use crate::residual_test::{decorrelated, residual_test, whitened};
@@ -191,26 +191,64 @@ fn diagnose_sound<'a>(
     setup: Vec<SetupProblem>,
     watch: &mut dyn FnMut(Stage),
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
-    watch(Stage::Audit);
-    let run = Run { record, bench };
+    let mut with = |left_correlated: Option<f64>| {
+        watch(Stage::Audit);
+        let run = Run { record, bench };
+        let sound = sound(&run, axes, options, setup.clone(), left_correlated)?;
+        concluded(sound, options, watch)
+    };
+    let first = with(None)?;
+    let Some(p_value) = left_correlated(&first) else {
+        return Ok(first);
+    };
+    // It stands if it explains what was left, and no cause comes with it.
+    Ok(match with(Some(p_value)) {
+        Ok(again)
+            if !again.result.is_unexplained()
+                && again.result.causes().count() <= first.result.causes().count() =>
+        {
+            again
+        }
+        _ => first,
+    })
+}
+
+/// p-value of the correlation of neighbouring innovations that no noise of a diagnosis explains.
+fn left_correlated(found: &Diagnosis<'_>) -> Option<f64> {
+    let correlation = found.result.remainder.correlation.as_ref()?;
+    let is_left = correlation.significant && found.audit.cleaned.correlation == 0.0;
+    is_left.then_some(correlation.p_value)
+}
+
+/// Noise audit, first fit and magnitude test of a record; `left_correlated` is that of [`AuditOptions`].
+fn sound<'a>(
+    run: &Run<'a>,
+    axes: Option<&GyroAxes>,
+    options: &DiagnoseOptions,
+    setup: Vec<SetupProblem>,
+    left_correlated: Option<f64>,
+) -> Result<Sound<'a, 'a>, DiagnosisError> {
+    let Run { record, bench } = *run;
     let shares = shares(options.false_alarm_probability);
     let declared = NoiseModel::default();
-    let alpha = shares.noise_audit;
-    let audited = noise_audited_fit(&run, axes, &declared, alpha, &options.calibration)?;
+    let audit = AuditOptions {
+        left_correlated,
+        ..AuditOptions::with_share(shares.noise_audit)
+    };
+    let audited = noise_audited_fit(run, axes, &declared, &audit, &options.calibration)?;
     let accel_noise_g = audited
         .noise_model
         .accel_ratio
         .map(|ratio| ratio * bench.accel_noise_g);
     let cleaned = audited.audit.cleaned.apply(record);
     let magnitude = magnitude_test(&cleaned, bench, &accel_noise_g, shares.magnitude_test).ok();
-    let sound = Sound {
-        run,
+    Ok(Sound {
+        run: *run,
         setup,
         magnitude,
         audited,
         shares,
-    };
-    concluded(sound, options, watch)
+    })
 }
 
 /// Search, residual test, gain and answer.

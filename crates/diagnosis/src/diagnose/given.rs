@@ -11,6 +11,7 @@ use super::noise_audited_fit::noise_audited_fit;
 use super::{DiagnoseOptions, search_options};
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
+use crate::noise::AuditOptions;
 use crate::request;
 
 /// Estimates the drift coefficients with effects of the catalogue in the model, without a test of whether
@@ -53,7 +54,7 @@ pub fn fit_effects(
         run,
         axes,
         &declared,
-        shares.noise_audit,
+        &AuditOptions::with_share(shares.noise_audit),
         &options.calibration,
     )?;
     let rows = rows(run.record, audited.nominal.covariates());

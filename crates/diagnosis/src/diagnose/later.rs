@@ -10,6 +10,7 @@ use super::{DiagnoseOptions, Diagnosis};
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
 use crate::gate::Gate;
+use crate::noise::AuditOptions;
 use crate::request;
 use crate::result::{Compensation, Validation};
 use crate::validation::{LaterPrediction, predict};
@@ -89,8 +90,8 @@ pub fn predict_later(
         gyro_walk_deg_per_h_per_sqrt_h: assumed.gyro_walk_deg_per_h_per_sqrt_h,
         ..NoiseModel::default()
     };
-    let alpha = shares(options.false_alarm_probability).noise_audit;
-    let fitted = noise_audited_fit(later, axes, &assumed, alpha, &options.calibration)?.nominal;
+    let audit = AuditOptions::with_share(shares(options.false_alarm_probability).noise_audit);
+    let fitted = noise_audited_fit(later, axes, &assumed, &audit, &options.calibration)?.nominal;
     Ok(predict(nominal, extended, first, &fitted, later)?)
 }
 

@@ -38,7 +38,7 @@ pub(super) fn noise_audited_fit<'a>(
     run: &Run<'a>,
     axes: Option<&GyroAxes>,
     before: &NoiseModel,
-    false_alarm: f64,
+    audit: &AuditOptions,
     options: &Options,
 ) -> Result<AuditedFit<'a>, DiagnosisError> {
     let Run { record, bench } = *run;
@@ -60,7 +60,7 @@ pub(super) fn noise_audited_fit<'a>(
             accel_g: [bench.accel_noise_g; 3],
             gyro_deg_per_h: bench.gyro_noise_deg_per_h,
         },
-        &AuditOptions { false_alarm },
+        audit,
     )?;
     noise_model = NoiseModel {
         gyro_ratio: before.gyro_ratio,

@@ -13,7 +13,7 @@ use crate::error::DiagnosisError;
 use crate::error_budget::shares;
 use crate::gate::Gate;
 use crate::magnitude_test::{MagnitudeTest, magnitude_test};
-use crate::noise::{NoiseAudit, NoiseFinding};
+use crate::noise::{AuditOptions, NoiseAudit, NoiseFinding};
 use crate::request;
 use crate::result::{Estimated, Gaps, RecordResult, RecordSummary};
 use crate::series::Innovations;
@@ -147,7 +147,8 @@ fn jointly(
     let mut shares = shares(options.false_alarm_probability);
     let count = sound.len().max(1) as f64;
     // Each record spends its part.
-    let (of_audit, of_magnitude) = (shares.noise_audit / count, shares.magnitude_test / count);
+    let of_audit = AuditOptions::with_share(shares.noise_audit / count);
+    let of_magnitude = shares.magnitude_test / count;
     let mut audits = Vec::with_capacity(sound.len());
     let mut magnitudes = Vec::new();
     for one in sound {
@@ -156,7 +157,7 @@ fn jointly(
             bench: one.bench,
         };
         let (axes, declared) = (one.axes.as_ref(), NoiseModel::default());
-        let audited = noise_audited_fit(&run, axes, &declared, of_audit, &options.calibration)
+        let audited = noise_audited_fit(&run, axes, &declared, &of_audit, &options.calibration)
             .map_err(|error| of(&one.name, error))?;
         let noise_g = audited
             .noise_model
@@ -180,7 +181,7 @@ fn jointly(
         ));
     };
     // No test of the whole is left of what the records have spent.
-    shares.noise_audit = of_audit * count;
+    shares.noise_audit = of_audit.false_alarm * count;
     let sound = Sound {
         run: Run {
             record: &record,

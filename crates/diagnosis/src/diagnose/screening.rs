@@ -7,6 +7,7 @@ use super::noise_audited_fit::noise_audited_fit;
 use super::{DiagnoseOptions, search_options};
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
+use crate::noise::AuditOptions;
 use crate::request;
 
 /// A record with more rows is averaged before it is tested.
@@ -60,7 +61,7 @@ fn screen_rows(
         run,
         axes,
         &declared,
-        shares.noise_audit,
+        &AuditOptions::with_share(shares.noise_audit),
         &options.calibration,
     )?;
     let also: Vec<&str> = options.also.iter().map(String::as_str).collect();

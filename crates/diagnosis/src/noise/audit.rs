@@ -46,14 +46,26 @@ pub struct DeclaredNoise {
 pub struct AuditOptions {
     /// Family-wise false-alarm probability of the audit.
     pub false_alarm: f64,
+    /// p-value of the correlation of innovations that a fit with white noise left. The accelerometers' noise
+    /// then counts as correlated, which the spectrum of an hour may not tell from noise of the gyros.
+    pub left_correlated: Option<f64>,
+}
+
+impl AuditOptions {
+    /// Those of a family-wise false-alarm probability.
+    #[must_use]
+    pub const fn with_share(false_alarm: f64) -> Self {
+        Self {
+            false_alarm,
+            left_correlated: None,
+        }
+    }
 }
 
 impl Default for AuditOptions {
     /// 0.0025: a quarter of 0.01, of which the rest is left to the search.
     fn default() -> Self {
-        Self {
-            false_alarm: 0.0025,
-        }
+        Self::with_share(0.0025)
     }
 }
 
@@ -96,8 +108,8 @@ pub fn audit_noise(
     let quantisation = core::array::from_fn(|axis| {
         lattices[axis].map_or(0.0, |l| (l.step / declared.accel_g[axis]).powi(2) / 12.0)
     });
-    let decided =
-        (spectrum.blocks() >= LEAST_BLOCKS).then(|| decide(&spectrum, quantisation, &shares));
+    let decided = (spectrum.blocks() >= LEAST_BLOCKS)
+        .then(|| decide(&spectrum, quantisation, &shares, options.left_correlated));
     let mut keep: Vec<[bool; 3]> = record
         .accel_g
         .iter()

@@ -34,8 +34,14 @@ const WHITE: [bool; 5] = [true, true, true, false, true];
 const COLOURED: [bool; 5] = [true; 5];
 
 /// Compares noise models of the spectrum. The random walk is a free parameter of all of them, so
-/// that gyro noise and slow effects are not attributed to the accelerometers.
-pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Shares) -> Decision {
+/// that gyro noise and slow effects are not attributed to the accelerometers. `left_correlated` is that of
+/// [`AuditOptions`](super::audit::AuditOptions).
+pub(crate) fn decide(
+    spectrum: &Spectrum,
+    quantisation: [f64; 3],
+    shares: &Shares,
+    left_correlated: Option<f64>,
+) -> Decision {
     let start = NoiseModel::declared(quantisation);
     let all = Bins::all(spectrum);
     let first = fit(spectrum, &all, start, COLOURED);
@@ -48,10 +54,13 @@ pub(crate) fn decide(spectrum: &Spectrum, quantisation: [f64; 3], shares: &Share
         bins,
     };
     let mut findings = Vec::new();
-    let (coloured, z) = fits.correlation(shares);
+    let (coloured, z) = match left_correlated {
+        Some(p_value) => (fits.full.clone(), z_of_two_sided_p(p_value)),
+        None => fits.correlation(shares),
+    };
     let size = coloured.model.values[CORRELATION];
-    let is_coloured =
-        two_sided_p(z) < 0.5 * shares.coloured_noise && size.abs() > LEAST_CORRELATION;
+    let is_significant = left_correlated.is_some() || two_sided_p(z) < 0.5 * shares.coloured_noise;
+    let is_coloured = is_significant && size.abs() > LEAST_CORRELATION;
     if is_coloured {
         findings.extend(correlation_effect().map(|effect| NoiseFinding {
             effect: effect.id,
