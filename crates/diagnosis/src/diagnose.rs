@@ -77,6 +77,10 @@ impl Default for DiagnoseOptions {
     }
 }
 
+/// Most causes beside which a record is diagnosed once more with correlated noise: such a search takes a few
+/// times the work of that of a clean record.
+const MOST_CAUSES: usize = 2;
+
 /// A diagnosis: the answer, and the fits and series behind it.
 pub struct Diagnosis<'a> {
     /// The answer.
@@ -213,11 +217,13 @@ fn diagnose_sound<'a>(
     })
 }
 
-/// p-value of the correlation of neighbouring innovations that no noise of a diagnosis explains.
+/// p-value of the correlation of neighbouring innovations that no noise of a diagnosis explains; `None` of a
+/// search that named so much that a second one would take too long.
 fn left_correlated(found: &Diagnosis<'_>) -> Option<f64> {
     let correlation = found.result.remainder.correlation.as_ref()?;
     let is_left = correlation.significant && found.audit.cleaned.correlation == 0.0;
-    is_left.then_some(correlation.p_value)
+    let is_short = found.result.search_complete && found.result.causes().count() <= MOST_CAUSES;
+    (is_left && is_short).then_some(correlation.p_value)
 }
 
 /// Noise audit, first fit and magnitude test of a record; `left_correlated` is that of [`AuditOptions`].
