@@ -82,18 +82,23 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
-/// The commit of a workspace, as far as `git` tells it; `-dirty` if files differ from it.
+/// The commit of a workspace, as far as `git` tells it; `-dirty` if files differ from it but for the pages of
+/// figures, which one part after the other writes.
 pub(crate) fn commit(root: &Path) -> String {
-    let described = Command::new("git")
-        .arg("-C")
-        .arg(root)
-        .args(["describe", "--always", "--dirty", "--exclude=*"])
-        .output();
-    match described {
-        Ok(output) if output.status.success() => {
-            String::from_utf8_lossy(&output.stdout).trim().to_owned()
-        }
-        _ => "unknown".to_owned(),
+    let git = |arguments: &[&str]| {
+        let mut command = Command::new("git");
+        let output = command.arg("-C").arg(root).args(arguments).output().ok()?;
+        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        output.status.success().then_some(text)
+    };
+    let Some(commit) = git(&["describe", "--always", "--exclude=*"]) else {
+        return "unknown".to_owned();
+    };
+    let tracked = ["status", "--porcelain", "--untracked-files=no"];
+    let but_pages = ["--", ":/", ":(top,exclude)docs/figures"];
+    match git(&[tracked.as_slice(), &but_pages].concat()) {
+        Some(changes) if changes.is_empty() => commit,
+        _ => format!("{commit}-dirty"),
     }
 }
 
