@@ -243,13 +243,14 @@ mod tests {
                 [of_record(20.0, noise_over), of_record(30.0, noise_over)].concat(),
             ),
         };
-        let hysteresis = |record: &Record| -> Vec<f64> {
-            let scale = TemperatureScale::of(record, &[240]).unwrap();
-            let mut course = TemperatureCourse::of_rows(record, 0..240, scale).unwrap();
-            course.append(TemperatureCourse::of_rows(record, 240..480, scale).unwrap());
-            course.hysteresis_k
+        let hysteresis = |record: &Record| -> Option<Vec<f64>> {
+            let scale = TemperatureScale::of(record, &[240])?;
+            let mut course = TemperatureCourse::of_rows(record, 0..240, scale)?;
+            course.append(TemperatureCourse::of_rows(record, 240..480, scale)?);
+            Some(course.hysteresis_k)
         };
-        let (noisy, smooth) = (hysteresis(&both(1.0)), hysteresis(&both(0.0)));
+        let [noisy, smooth] = [1.0, 0.0].map(|over| hysteresis(&both(over)).unwrap_or_default());
+        assert_eq!((noisy.len(), smooth.len()), (480, 480));
         let mean = noisy.iter().sum::<f64>() / 480.0;
         assert!(mean.abs() < 1e-12, "{mean}");
         for (row, (noisy, smooth)) in noisy.iter().zip(&smooth).enumerate() {
