@@ -1,7 +1,9 @@
 //! Effects hidden in simulated records: each kind of search finds its own.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use gyrocal_diagnosis::result::{FindingKind, Prediction, SetMember, UnmodelledPattern};
+use gyrocal_diagnosis::result::{
+    DiagnosisResult, FindingKind, Prediction, SetMember, UnmodelledPattern,
+};
 use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
@@ -18,6 +20,19 @@ fn record(seed: u64, effect: &str, parameters: &[(&str, f64)]) -> (Record, Bench
     })
     .unwrap();
     (simulation.record, simulation.bench)
+}
+
+/// The diagnosis of a scenario with the drift of the paper and any attitude.
+fn diagnosed(scenario: Scenario) -> DiagnosisResult {
+    let simulation = simulate(&Scenario {
+        coefficients: Coefficients::PAPER_LIKE,
+        initial: InitialAttitude::Random,
+        ..scenario
+    })
+    .unwrap();
+    let options = DiagnoseOptions::default();
+    let found = diagnose(&simulation.record, &simulation.bench, &options);
+    found.unwrap().result
 }
 
 /// Diagnoses, and returns the parameters of the single expected finding.
@@ -79,24 +94,15 @@ fn a_random_walk_is_no_cause_with_a_law() {
 
 #[test]
 fn a_term_beside_a_random_walk_is_found_and_judged_forward() {
-    let simulation = simulate(&Scenario {
+    let found = diagnosed(Scenario {
         seed: 11,
-        coefficients: Coefficients::PAPER_LIKE,
-        initial: InitialAttitude::Random,
         duration_s: 2.0 * 86_400.0,
         hidden: vec![
             Hidden::new("gyro_y.g_z", &[("size", 0.05)]).unwrap(),
             Hidden::new("gyro_x.random_walk", &[("size", 0.001)]).unwrap(),
         ],
         ..Scenario::default()
-    })
-    .unwrap();
-    let found = diagnose(
-        &simulation.record,
-        &simulation.bench,
-        &DiagnoseOptions::default(),
-    );
-    let found = found.unwrap().result;
+    });
     let names: Vec<&str> = found.causes().map(|f| f.effect.as_str()).collect();
     assert_eq!(names, ["gyro_y.g_z", "gyro_x.random_walk"]);
     let gain = found.gain.unwrap();
@@ -120,10 +126,8 @@ fn a_ramp_of_one_gyro_is_no_walk_of_it_beside_walks_of_the_others() {
         ("gyro_y.random_walk", &[("size", 0.003)]),
         ("gyro_z.random_walk", &[("size", 0.01)]),
     ];
-    let simulation = simulate(&Scenario {
+    let found = diagnosed(Scenario {
         seed: 12,
-        coefficients: Coefficients::PAPER_LIKE,
-        initial: InitialAttitude::Random,
         duration_s: 2.5 * 86_400.0,
         interval_s: 120.0,
         hidden: hidden
@@ -131,14 +135,7 @@ fn a_ramp_of_one_gyro_is_no_walk_of_it_beside_walks_of_the_others() {
             .map(|(effect, parameters)| Hidden::new(effect, parameters).unwrap())
             .collect(),
         ..Scenario::default()
-    })
-    .unwrap();
-    let found = diagnose(
-        &simulation.record,
-        &simulation.bench,
-        &DiagnoseOptions::default(),
-    );
-    let found = found.unwrap().result;
+    });
     let names: Vec<&str> = found.causes().map(|f| f.effect.as_str()).collect();
     // The budget of work ends before the last comparisons, which change no name.
     assert_eq!(names, hidden.map(|(effect, _)| effect));
@@ -150,23 +147,14 @@ fn the_time_constant_of_a_large_warm_up_is_that_of_the_noise_it_leaves() {
     for seed in 0..3 {
         // Some three hundred standard deviations, a part of them in a gap.
         let parameters = [("size", 0.3), ("time_constant_h", TIME_CONSTANT_H)];
-        let simulation = simulate(&Scenario {
+        let found = diagnosed(Scenario {
             seed,
-            coefficients: Coefficients::PAPER_LIKE,
-            initial: InitialAttitude::Random,
             duration_s: 2.5 * 86_400.0,
             interval_s: 120.0,
             gaps_s: vec![[7_200.0, 21_600.0]],
             hidden: vec![Hidden::new("gyro_x.warmup", &parameters).unwrap()],
             ..Scenario::default()
-        })
-        .unwrap();
-        let found = diagnose(
-            &simulation.record,
-            &simulation.bench,
-            &DiagnoseOptions::default(),
-        );
-        let found = found.unwrap().result;
+        });
         let causes: Vec<_> = found.causes().collect();
         assert_eq!(causes.len(), 1, "{seed}: {causes:?}");
         let shape = causes[0].parameter("time_constant_h").unwrap();
@@ -273,22 +261,13 @@ fn correlated_noise_with_rows_minutes_apart_is_named_and_leaves_nothing() {
         let correlated = [("correlation", CORRELATION)];
         let mut hidden: Vec<Hidden> = levels.iter().map(level).collect();
         hidden.push(Hidden::new("accel.coloured_noise", &correlated).unwrap());
-        let simulation = simulate(&Scenario {
+        let found = diagnosed(Scenario {
             seed,
-            coefficients: Coefficients::PAPER_LIKE,
-            initial: InitialAttitude::Random,
             duration_s: 2.2 * 86_400.0,
             interval_s: 240.0,
             hidden,
             ..Scenario::default()
-        })
-        .unwrap();
-        let found = diagnose(
-            &simulation.record,
-            &simulation.bench,
-            &DiagnoseOptions::default(),
-        );
-        let found = found.unwrap().result;
+        });
         assert!(!found.is_unexplained(), "{seed}: {:?}", found.remainder);
         if found.causes().count() > 0 {
             continue;

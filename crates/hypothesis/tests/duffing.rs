@@ -396,25 +396,30 @@ impl FittedModel for FittedDuffing {
     }
 }
 
-/// The findings in a record with something hidden.
-fn findings(seed: u64, hide: impl Fn(&mut [f64; 6], &mut ModelExtension)) -> Vec<Finding> {
-    let (mut truth, mut extension) = (TRUTH, ModelExtension::default());
-    hide(&mut truth, &mut extension);
+/// The nominal model fitted to a simulated record, and its rows.
+fn fitted(seed: u64, truth: &[f64; 6], extension: &ModelExtension) -> (FittedDuffing, Rows) {
     let mut draw = Draw::new(seed, 0);
-    let noiseless = simulate(&truth, &extension, &[]);
+    let noiseless = simulate(truth, extension, &[]);
     let measured: Vec<f64> = noiseless
         .iter()
         .map(|x| x + NOISE * draw.normal())
         .collect();
     let nominal = FittedDuffing::fit(&measured, &ModelExtension::default(), TRUTH[..3].to_vec());
     let rows = Rows {
-        starts: Vec::new(),
         time_s: (0..ROWS).map(|row| row as f64 * STEP_S).collect(),
         ..Rows::default()
     };
+    (nominal.unwrap(), rows)
+}
+
+/// The findings in a record with something hidden.
+fn findings(seed: u64, hide: impl Fn(&mut [f64; 6], &mut ModelExtension)) -> Vec<Finding> {
+    let (mut truth, mut extension) = (TRUTH, ModelExtension::default());
+    hide(&mut truth, &mut extension);
+    let (nominal, rows) = fitted(seed, &truth, &extension);
     let selection = select(&DUFFING, &[], |_| None);
     let options = SearchOptions::default();
-    let searched = search(nominal.unwrap(), rows, &selection, &options).unwrap();
+    let searched = search(nominal, rows, &selection, &options).unwrap();
     assert!(searched.unmodelled.is_empty());
     searched.findings
 }
@@ -464,20 +469,11 @@ fn a_step_of_the_force_is_found_with_its_onset() {
 
 #[test]
 fn the_onset_of_a_step_that_is_not_there_is_anywhere() {
-    let mut draw = Draw::new(3, 0);
-    let measured: Vec<f64> = simulate(&TRUTH, &ModelExtension::default(), &[])
-        .iter()
-        .map(|x| x + NOISE * draw.normal())
-        .collect();
-    let nominal = FittedDuffing::fit(&measured, &ModelExtension::default(), TRUTH[..3].to_vec());
-    let rows = Rows {
-        time_s: (0..ROWS).map(|row| row as f64 * STEP_S).collect(),
-        ..Rows::default()
-    };
+    let (nominal, rows) = fitted(3, &TRUTH, &ModelExtension::default());
     let mut selection = select(&DUFFING, &[], |_| None);
     selection.effects.retain(|effect| effect.id == "force.step");
     let options = SearchOptions::default();
-    let fitted = fit_with(nominal.unwrap(), rows, &selection, &options).unwrap();
+    let fitted = fit_with(nominal, rows, &selection, &options).unwrap();
     let (_, parameters) = &fitted.effects[0];
     let (size, sigma) = (parameters[0].estimate, parameters[0].sigma.unwrap());
     // The largest of forty correlated onsets.
