@@ -1,6 +1,5 @@
 //! Restricted likelihood of the gyros' noise: white noise and random walks.
 
-mod curvature;
 mod likelihood;
 
 use gyrocal::estimation::batch::Walk;

@@ -4,7 +4,6 @@ use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
 use gyrocal_hypothesis::RateNoiseFit;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::curvature::{Curvature, bounded, moved, scale};
 use super::{GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
@@ -12,13 +11,15 @@ use crate::fitted_platform::several::add_score;
 use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
 use crate::platform::PLATFORM;
 use crate::solve::add_gram;
-use crate::work;
 
 /// Most steps of Fisher's scoring.
 const MAX_STEPS: usize = 25;
 
 /// Most halvings of a step.
 const MAX_HALVINGS: usize = 8;
+
+/// Largest step in the logarithm of a variance.
+const LARGEST_STEP: f64 = 2.5;
 
 /// Gain of the log-likelihood that a step expects below which it is not made: a likelihood ratio is
 /// then good to a fiftieth.
@@ -89,38 +90,33 @@ impl Likelihood<'_, '_> {
         Ok(())
     }
 
-    /// Fisher's scoring from the noise of the fit, with the curvature that its steps show.
+    /// Fisher's scoring from the noise of the fit.
     pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
         let mut logarithms = DVector::zeros(AXES + self.free.len());
         for axis in self.held {
             logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
         }
         let mut at = self.at(&logarithms)?;
-        let mut curvature = Curvature::default();
         for _ in 0..MAX_STEPS {
-            let by = scale(&logarithms);
-            let gradient = at.gradient.component_mul(&by);
-            let Some(cholesky) = Cholesky::new(curvature.beside(&at.information, &by)) else {
+            let Some(cholesky) = Cholesky::new(at.information.clone()) else {
                 break;
             };
-            let mut step = bounded(cholesky.solve(&gradient), &logarithms);
-            if 0.5 * step.dot(&gradient) < LEAST_GAIN {
-                // What the last steps show may be too steep: the information alone decides.
-                if curvature.forget() {
-                    continue;
-                }
+            let mut step = cholesky.solve(&at.gradient);
+            let longest = step.amax();
+            if longest > LARGEST_STEP {
+                step *= LARGEST_STEP / longest;
+            }
+            if 0.5 * step.dot(&at.gradient) < LEAST_GAIN {
                 break;
             }
             let mut halvings = 0;
             loop {
-                let next = moved(&logarithms, &step);
+                let next = &logarithms + &step;
                 // A step may lead to where the filter leaves the numbers: it was too long.
-                if let Ok(found) = self.at(&next)
-                    && found.value >= at.value
+                if let Ok(moved) = self.at(&next)
+                    && moved.value >= at.value
                 {
-                    let fall = gradient - found.gradient.component_mul(&scale(&next));
-                    curvature.add(step, fall);
-                    (logarithms, at) = (next, found);
+                    (logarithms, at) = (next, moved);
                     break;
                 }
                 halvings += 1;
@@ -199,7 +195,6 @@ impl Likelihood<'_, '_> {
             let parameters = problem.parameters(run);
             let mut score = problem
                 .with_first_rows(run, &parameters, count, |linearised| {
-                    work::differentiate((2 * AXES + self.walks.len()).saturating_sub(first));
                     let tape = self.fitted.solution.tapes[run].as_deref();
                     let walks = Walks {
                         walks: &self.walks,
