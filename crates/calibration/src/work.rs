@@ -16,7 +16,9 @@ const FILTER: usize = 12;
 
 /// Work of all passes over records that this thread has made so far, in products of the sums of their
 /// Gram matrices: each row of a pass counts the square of its columns, and a constant for the model.
-/// The difference of two values is the work done between them.
+/// The difference of two values is the work done between them. It is no measure of time: the step of the
+/// model takes longer than the products that it counts for, and derivatives by the noise of the gyros are
+/// not counted.
 #[must_use]
 pub fn work() -> u64 {
     SPENT.get()
