@@ -5,6 +5,7 @@ use gyrocal_scalar::effect::Effect;
 use crate::accepted::{Accepted, value_places};
 use crate::context::{MOST_EFFECTS, SearchContext, SearchOptions, extension};
 use crate::finding::Finding;
+use crate::fitted_stage::FittedStage;
 use crate::forward::{Beside, FirstRound, forward, open_hypotheses};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
@@ -17,7 +18,7 @@ use crate::reassess::reassess;
 use crate::rows::Rows;
 use crate::score::Ranked;
 use crate::score_table::ScoreTable;
-use crate::state::{SearchState, settled};
+use crate::state::{SearchState, with_noise};
 use crate::walk_candidates::Candidates;
 use crate::walks::{Compared, compare};
 
@@ -93,8 +94,9 @@ pub fn search<F: FittedModel>(
     let plant = nominal.plant();
     let context = SearchContext::new(&nominal, rows, selection, options);
     let mut draws = GaussianDraws::new(options.seed);
-    let before = nominal.work();
-    let nominal = settled(&context, nominal, &[])?;
+    let (fitted, noise) = with_noise(nominal)?;
+    let before = fitted.work();
+    let nominal = FittedStage::new(fitted, noise, &context.set, &context.rows, &[])?;
     context.budget.start(before, &nominal.fitted);
     let state = SearchState::new(nominal.clone());
     let candidates = Candidates::new(&context, &nominal)?;

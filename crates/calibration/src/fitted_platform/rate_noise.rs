@@ -1,5 +1,6 @@
 //! Restricted likelihood of the gyros' noise: white noise and random walks.
 
+mod curvature;
 mod likelihood;
 
 use gyrocal::estimation::batch::Walk;

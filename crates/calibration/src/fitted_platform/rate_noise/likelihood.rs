@@ -4,6 +4,7 @@ use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
 use gyrocal_hypothesis::RateNoiseFit;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use super::curvature::{Curvature, bounded, moved, scale};
 use super::{GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
@@ -11,15 +12,13 @@ use crate::fitted_platform::several::add_score;
 use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
 use crate::platform::PLATFORM;
 use crate::solve::add_gram;
+use crate::work;
 
 /// Most steps of Fisher's scoring.
 const MAX_STEPS: usize = 25;
 
 /// Most halvings of a step.
 const MAX_HALVINGS: usize = 8;
-
-/// Largest step in the logarithm of a variance.
-const LARGEST_STEP: f64 = 2.5;
 
 /// Gain of the log-likelihood that a step expects below which it is not made: a likelihood ratio is
 /// then good to a fiftieth.
@@ -90,33 +89,38 @@ impl Likelihood<'_, '_> {
         Ok(())
     }
 
-    /// Fisher's scoring from the noise of the fit.
+    /// Fisher's scoring from the noise of the fit, with the curvature that its steps show.
     pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
         let mut logarithms = DVector::zeros(AXES + self.free.len());
         for axis in self.held {
             logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
         }
         let mut at = self.at(&logarithms)?;
+        let mut curvature = Curvature::default();
         for _ in 0..MAX_STEPS {
-            let Some(cholesky) = Cholesky::new(at.information.clone()) else {
+            let by = scale(&logarithms);
+            let gradient = at.gradient.component_mul(&by);
+            let Some(cholesky) = Cholesky::new(curvature.beside(&at.information, &by)) else {
                 break;
             };
-            let mut step = cholesky.solve(&at.gradient);
-            let longest = step.amax();
-            if longest > LARGEST_STEP {
-                step *= LARGEST_STEP / longest;
-            }
-            if 0.5 * step.dot(&at.gradient) < LEAST_GAIN {
+            let mut step = bounded(cholesky.solve(&gradient), &logarithms);
+            if 0.5 * step.dot(&gradient) < LEAST_GAIN {
+                // What the last steps show may be too steep: the information alone decides.
+                if curvature.forget() {
+                    continue;
+                }
                 break;
             }
             let mut halvings = 0;
             loop {
-                let next = &logarithms + &step;
+                let next = moved(&logarithms, &step);
                 // A step may lead to where the filter leaves the numbers: it was too long.
-                if let Ok(moved) = self.at(&next)
-                    && moved.value >= at.value
+                if let Ok(found) = self.at(&next)
+                    && found.value >= at.value
                 {
-                    (logarithms, at) = (next, moved);
+                    let fall = gradient - found.gradient.component_mul(&scale(&next));
+                    curvature.add(step, fall);
+                    (logarithms, at) = (next, found);
                     break;
                 }
                 halvings += 1;
@@ -195,6 +199,7 @@ impl Likelihood<'_, '_> {
             let parameters = problem.parameters(run);
             let mut score = problem
                 .with_first_rows(run, &parameters, count, |linearised| {
+                    work::differentiate((2 * AXES + self.walks.len()).saturating_sub(first));
                     let tape = self.fitted.solution.tapes[run].as_deref();
                     let walks = Walks {
                         walks: &self.walks,
