@@ -20,6 +20,8 @@ pub(crate) struct Budget {
     /// Work at which it is spent, in the unit of [`FittedModel::work`].
     end: Cell<u64>,
     is_cut: Cell<bool>,
+    /// Work of one pass with all signatures.
+    pass: Cell<u64>,
 }
 
 impl Budget {
@@ -27,6 +29,7 @@ impl Budget {
         Self {
             end: Cell::new(u64::MAX),
             is_cut: Cell::new(false),
+            pass: Cell::new(0),
         }
     }
 
@@ -35,6 +38,7 @@ impl Budget {
     pub(crate) fn start<F: FittedModel>(&self, before: u64, fitted: &F) {
         let now = fitted.work();
         let pass = now.saturating_sub(before);
+        self.pass.set(pass);
         if pass > 0 {
             self.end
                 .set(now.saturating_add(PASSES.saturating_mul(pass)));
@@ -46,6 +50,11 @@ impl Budget {
         let is_spent = fitted.work() > self.end.get();
         self.is_cut.set(self.is_cut.get() || is_spent);
         is_spent
+    }
+
+    /// Work of one pass with all signatures.
+    pub(crate) fn pass(&self) -> u64 {
+        self.pass.get()
     }
 
     /// Whether the budget has ended something.

@@ -42,6 +42,8 @@ pub struct Searched<F> {
     pub unavailable: Vec<Unavailable>,
     /// Whether the search ended at its budget of work: there may be more to be found.
     pub is_cut: bool,
+    /// Work of one pass over the record with all signatures, in the unit of [`FittedModel::work`].
+    pub pass_work: u64,
     /// Scores on what the model does not hold.
     pub scores: ScoreTable,
     base: ModelExtension,
@@ -148,6 +150,7 @@ pub fn search<F: FittedModel>(
         threshold,
         unavailable: selection.unavailable.clone(),
         is_cut: context.budget.is_cut(),
+        pass_work: context.budget.pass(),
         base: context.base,
         plant,
         rows: context.rows,

@@ -38,6 +38,8 @@ const STARTS: [f64; 3] = [3.0, 100.0, 3000.0];
 /// The likelihood at one point.
 pub(super) struct At {
     pub(super) value: f64,
+    /// One, and the change of every unknown of the fit.
+    pub(super) solution: DVector<f64>,
     gradient: DVector<f64>,
     pub(super) information: DMatrix<f64>,
 }
@@ -89,13 +91,29 @@ impl Likelihood<'_, '_> {
         Ok(())
     }
 
-    /// Fisher's scoring from the noise of the fit, with the curvature that its steps show.
-    pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
+    /// The noise of the fit, where the unknowns of the fit are not known to change.
+    pub(super) fn start_at_fit(&self) -> (DVector<f64>, Option<DVector<f64>>) {
         let mut logarithms = DVector::zeros(AXES + self.free.len());
         for axis in self.held {
             logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
         }
-        let mut at = self.at(&logarithms)?;
+        (logarithms, None)
+    }
+
+    /// The largest likelihood, from the noise of the fit.
+    pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
+        self.maximise_from(&self.start_at_fit(), LEAST_GAIN)
+    }
+
+    /// Fisher's scoring from logarithms and the solution there, with the curvature that its steps show, until
+    /// the next step expects no more than `least_gain`.
+    pub(super) fn maximise_from(
+        &self,
+        (logarithms, solution): &(DVector<f64>, Option<DVector<f64>>),
+        least_gain: f64,
+    ) -> Result<(DVector<f64>, At), CalibrationError> {
+        let mut logarithms = logarithms.clone();
+        let mut at = self.at(&logarithms, solution.as_ref())?;
         let mut curvature = Curvature::default();
         for _ in 0..MAX_STEPS {
             let by = scale(&logarithms);
@@ -104,7 +122,7 @@ impl Likelihood<'_, '_> {
                 break;
             };
             let mut step = bounded(cholesky.solve(&gradient), &logarithms);
-            if 0.5 * step.dot(&gradient) < LEAST_GAIN {
+            if 0.5 * step.dot(&gradient) < least_gain {
                 // What the last steps show may be too steep: the information alone decides.
                 if curvature.forget() {
                     continue;
@@ -115,7 +133,7 @@ impl Likelihood<'_, '_> {
             loop {
                 let next = moved(&logarithms, &step);
                 // A step may lead to where the filter leaves the numbers: it was too long.
-                if let Ok(found) = self.at(&next)
+                if let Ok(found) = self.at(&next, Some(&at.solution))
                     && found.value >= at.value
                 {
                     let fall = gradient - found.gradient.component_mul(&scale(&next));
@@ -181,8 +199,13 @@ impl Likelihood<'_, '_> {
     }
 
     /// The score of the rows of all records, with Gram matrices of the unknowns of the fit. `first` is the
-    /// first factor whose derivatives are wanted.
-    fn score(&self, factors: &[f64], first: usize) -> Result<NoiseScore, CalibrationError> {
+    /// first factor whose derivatives are wanted. The information is that at a `solution` of the unknowns.
+    fn score(
+        &self,
+        factors: &[f64],
+        first: usize,
+        solution: Option<&DVector<f64>>,
+    ) -> Result<NoiseScore, CalibrationError> {
         let problem = &self.fitted.problem;
         let mut total = None;
         for (run, rows) in self.fitted.record_rows().into_iter().enumerate() {
@@ -197,6 +220,14 @@ impl Likelihood<'_, '_> {
                 &[]
             };
             let parameters = problem.parameters(run);
+            let columns = leg.column_unknowns();
+            let change: Vec<f64> = solution.map_or_else(Vec::new, |solution| {
+                let of_column = |unknowns: &&[usize]| {
+                    let unknowns = unknowns.iter();
+                    unknowns.map(|unknown| solution[unknown + 1]).sum()
+                };
+                columns.iter().map(of_column).collect()
+            });
             let mut score = problem
                 .with_first_rows(run, &parameters, count, |linearised| {
                     work::differentiate((2 * AXES + self.walks.len()).saturating_sub(first));
@@ -211,10 +242,9 @@ impl Likelihood<'_, '_> {
                         walks,
                         ..*linearised
                     }
-                    .noise_score_of_columns(factors, first)
+                    .noise_score_of_columns(factors, first, &change)
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
-            let columns = leg.column_unknowns();
             score.gram = self.gram(&score.gram, &columns);
             for own in &mut score.d_gram {
                 *own = self.gram(own, &columns);
@@ -225,13 +255,18 @@ impl Likelihood<'_, '_> {
     }
 
     pub(super) fn value(&self, logarithms: &[f64]) -> Result<f64, CalibrationError> {
-        let score = self.score(&self.factors(logarithms), usize::MAX)?;
+        let score = self.score(&self.factors(logarithms), usize::MAX, None)?;
         let (value, ..) = self.restricted(&score, logarithms)?;
         Ok(value)
     }
 
-    fn at(&self, logarithms: &DVector<f64>) -> Result<At, CalibrationError> {
-        let score = self.score(&self.factors(logarithms.as_slice()), AXES)?;
+    /// The likelihood and its derivatives, with the information at a `solution` of the unknowns.
+    fn at(
+        &self,
+        logarithms: &DVector<f64>,
+        solution: Option<&DVector<f64>>,
+    ) -> Result<At, CalibrationError> {
+        let score = self.score(&self.factors(logarithms.as_slice()), AXES, solution)?;
         let (value, solution, inverse) = self.restricted(&score, logarithms.as_slice())?;
         let unknowns = self.unknowns();
         let integrated = self.integrated();
@@ -257,6 +292,7 @@ impl Likelihood<'_, '_> {
         }
         Ok(At {
             value,
+            solution,
             gradient,
             information: self.information(&score),
         })
@@ -295,7 +331,7 @@ impl Likelihood<'_, '_> {
     /// the unknowns of the fit by each of its logarithms.
     pub(super) fn at_fit(&self) -> Result<(DMatrix<f64>, Vec<DMatrix<f64>>), CalibrationError> {
         let factors = self.factors(&vec![0.0; AXES + self.free.len()]);
-        let score = self.score(&factors, AXES)?;
+        let score = self.score(&factors, AXES, None)?;
         let count = self.fitted.problem.unknowns.len();
         let derivative = |unknown: &usize| {
             let gram = &score.d_gram[*unknown];
