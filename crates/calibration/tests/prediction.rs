@@ -105,7 +105,7 @@ fn the_first_rows_are_a_record_without_the_others() {
         let off = noise.white[0].ln() / GYRO_NOISE_PRIOR_SIGMA;
         walking.log_evidence_of_first(rows / 2, noise).unwrap() - 0.5 * off * off
     };
-    let own = walking.rate_noise_before(&[rows / 2]).remove(0);
+    let own = walking.fit_rate_noise_to_first(rows / 2).unwrap().noise;
     let best = penalised(&own);
     for factor in [0.3, 3.0] {
         let mut other = own.clone();
@@ -129,7 +129,7 @@ fn noise_of_the_first_rows_knows_nothing_of_later_ones() {
     }
     let [one, other] = [&simulation, &changed].map(|simulation| {
         let fit = fitted(simulation);
-        fit.rate_noise_before(&[rows / 2]).remove(0)
+        fit.fit_rate_noise_to_first(rows / 2).unwrap().noise
     });
     for (one, other) in one.white.iter().zip(&other.white) {
         // The scoring ends at 0.005 nats, a tenth of a sigma, which is some per cent; about another line.

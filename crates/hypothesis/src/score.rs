@@ -120,11 +120,11 @@ impl<'a> Scores<'a> {
             };
             if let Some(found) =
                 best_shape(fitted, context, hypothesis, (shape, About::Variant), absent)?
-                && found.best.statistic > best.statistic
+                && found.statistic > best.statistic
             {
                 *best = Best {
-                    statistic: found.best.statistic,
-                    shape: found.best.shape,
+                    statistic: found.statistic,
+                    shape: found.shape,
                     refined: true,
                     ..*best
                 };

@@ -5,7 +5,6 @@ use gyrocal_scalar::effect::Effect;
 use crate::accepted::{Accepted, value_places};
 use crate::context::{MOST_EFFECTS, SearchContext, SearchOptions, extension};
 use crate::finding::Finding;
-use crate::fitted_stage::FittedStage;
 use crate::forward::{Beside, FirstRound, forward, open_hypotheses};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
@@ -18,7 +17,7 @@ use crate::reassess::reassess;
 use crate::rows::Rows;
 use crate::score::Ranked;
 use crate::score_table::ScoreTable;
-use crate::state::{SearchState, with_noise};
+use crate::state::{SearchState, settled};
 use crate::walk_candidates::Candidates;
 use crate::walks::{Compared, compare};
 
@@ -42,8 +41,6 @@ pub struct Searched<F> {
     pub unavailable: Vec<Unavailable>,
     /// Whether the search ended at its budget of work: there may be more to be found.
     pub is_cut: bool,
-    /// Work of one pass over the record with all signatures, in the unit of [`FittedModel::work`].
-    pub pass_work: u64,
     /// Scores on what the model does not hold.
     pub scores: ScoreTable,
     base: ModelExtension,
@@ -96,9 +93,8 @@ pub fn search<F: FittedModel>(
     let plant = nominal.plant();
     let context = SearchContext::new(&nominal, rows, selection, options);
     let mut draws = GaussianDraws::new(options.seed);
-    let (fitted, noise) = with_noise(nominal)?;
-    let before = fitted.work();
-    let nominal = FittedStage::new(fitted, noise, &context.set, &context.rows, &[])?;
+    let before = nominal.work();
+    let nominal = settled(&context, nominal, &[])?;
     context.budget.start(before, &nominal.fitted);
     let state = SearchState::new(nominal.clone());
     let candidates = Candidates::new(&context, &nominal)?;
@@ -150,7 +146,6 @@ pub fn search<F: FittedModel>(
         threshold,
         unavailable: selection.unavailable.clone(),
         is_cut: context.budget.is_cut(),
-        pass_work: context.budget.pass(),
         base: context.base,
         plant,
         rows: context.rows,

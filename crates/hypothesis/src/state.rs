@@ -155,8 +155,7 @@ pub(crate) fn settled<F: FittedModel>(
     FittedStage::new(fitted, noise, &context.set, &context.rows, accepted)
 }
 
-/// A fit with the noise of its rates that the record tells, and that noise.
-pub(crate) fn with_noise<F: FittedModel>(fitted: F) -> Result<(F, RateNoiseFit), F::Error> {
+fn with_noise<F: FittedModel>(fitted: F) -> Result<(F, RateNoiseFit), F::Error> {
     let believed = fitted.rate_noise();
     let noise = fitted.fit_rate_noise(&believed.walking(), &[])?;
     let fitted = if noise.noise.differs(&believed) {

@@ -1,6 +1,5 @@
 //! Restricted likelihood of the gyros' noise: white noise and random walks.
 
-mod curvature;
 mod likelihood;
 
 use gyrocal::estimation::batch::Walk;
@@ -34,10 +33,6 @@ const FEWEST_DEGREES: f64 = 3.0;
 /// standard deviations.
 const MAX_EVALUATIONS: usize = 6;
 const END_PRECISION: f64 = 0.02;
-
-/// Gain of the log-likelihood that is left to the noise that a prediction is made with: a tenth of what its
-/// error of estimation makes.
-const ENOUGH_TO_PREDICT: f64 = 0.05;
 
 /// The distance from the maximum at which twice the log-likelihood has fallen to the 95 % point of χ²(1),
 /// in standard deviations; `None` if that is farther than `longest`. The root of the fall is nearly
@@ -84,7 +79,7 @@ impl FittedPlatform<'_> {
         walking: &[usize],
         absent: &[usize],
     ) -> Result<RateNoiseFit, CalibrationError> {
-        self.fit_rate_noise_with(walking, absent, &[])
+        self.fit_rate_noise_with(walking, absent, &[], self.points().len())
     }
 
     /// The same with the noise of this fit's walks, and the white noise of some gyros `held` at the
@@ -93,29 +88,17 @@ impl FittedPlatform<'_> {
     /// # Errors
     /// As [`Self::fit_rate_noise`].
     pub fn fit_rate_noise_held(&self, held: &[usize]) -> Result<RateNoiseFit, CalibrationError> {
-        self.fit_rate_noise_with(&self.rate_noise().walking(), &[], held)
+        let rows = self.points().len();
+        self.fit_rate_noise_with(&self.rate_noise().walking(), &[], held, rows)
     }
 
-    /// The noise of the gyros that walk in this fit, and the white noise of all, from the rows before each of
-    /// `ends` alone, which ascend. Where the rows tell nothing of the noise, that of this fit.
-    #[must_use]
-    pub fn rate_noise_before(&self, ends: &[usize]) -> Vec<RateNoise> {
-        let (mut likelihood, _) = self.likelihood(&self.rate_noise().walking(), &[], &[]);
-        let mut start = likelihood.start_at_fit();
-        let mut noises = Vec::with_capacity(ends.len());
-        // The last are nearest to the noise of all rows, and each is near to the next.
-        for rows in ends.iter().rev() {
-            likelihood.rows = *rows;
-            let found = likelihood.maximise_from(&start, ENOUGH_TO_PREDICT);
-            let noise = found.and_then(|(logarithms, at)| {
-                let noise = likelihood.result(&logarithms, &at)?.noise;
-                start = (logarithms, Some(at.solution));
-                Ok(noise)
-            });
-            noises.push(noise.unwrap_or_else(|_| self.rate_noise()));
-        }
-        noises.reverse();
-        noises
+    /// The noise of the gyros that walk in this fit, and the white noise of all, from the first `rows`
+    /// rows alone.
+    ///
+    /// # Errors
+    /// As [`Self::fit_rate_noise`].
+    pub fn fit_rate_noise_to_first(&self, rows: usize) -> Result<RateNoiseFit, CalibrationError> {
+        self.fit_rate_noise_with(&self.rate_noise().walking(), &[], &[], rows)
     }
 
     fn fit_rate_noise_with(
@@ -123,8 +106,10 @@ impl FittedPlatform<'_> {
         walking: &[usize],
         absent: &[usize],
         held: &[usize],
+        rows: usize,
     ) -> Result<RateNoiseFit, CalibrationError> {
         let (mut likelihood, unit) = self.likelihood(walking, absent, held);
+        likelihood.rows = rows;
         likelihood.start(unit)?;
         let (logarithms, at) = likelihood.maximise()?;
         likelihood.result(&logarithms, &at)

@@ -42,9 +42,10 @@ pub(crate) fn block_log_scores(fit: &FittedPlatform<'_>) -> Result<Vec<f64>, Cal
 /// As [`FittedPlatform::log_evidence_of_first`].
 pub(crate) fn forward_log_scores(fit: &FittedPlatform<'_>) -> Result<Vec<f64>, CalibrationError> {
     let mut scores = vec![0.0];
-    let blocks = blocks(fit).split_off(1);
-    let starts: Vec<usize> = blocks.iter().map(|block| block.start).collect();
-    for (block, noise) in blocks.iter().zip(fit.rate_noise_before(&starts)) {
+    for block in blocks(fit).into_iter().skip(1) {
+        // Rows that tell nothing of the noise leave what is believed of it.
+        let told = fit.fit_rate_noise_to_first(block.start);
+        let noise = told.map_or_else(|_| fit.rate_noise(), |told| told.noise);
         let [before, until] =
             [block.start, block.end].map(|rows| fit.log_evidence_of_first(rows, &noise));
         scores.push(until? - before?);

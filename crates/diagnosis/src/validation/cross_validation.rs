@@ -2,23 +2,19 @@
 
 use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
-use gyrocal_calibration::{CalibrationError, FittedPlatform, work};
+use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use gyrocal_hypothesis::Searched;
 
 use super::block_scores::{block_log_scores, forward_log_scores};
 use crate::result::Prediction;
 
-/// Work of the elimination over that of one pass over the record with all signatures, beyond which no further
-/// model is scored. One with a cause beside walks takes a fifth of it at most in half of the records.
-const PASSES: u64 = 25;
-
 /// Decision of the cross-validation on one cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct KeepDecision {
     /// Predictive log score of the blocks with the cause less that without it, the other causes in
-    /// the model, nats; `None` if the work for it was too much.
-    pub(crate) gain_nats: Option<f64>,
-    /// Whether the cause is in the extended model: whether the gain is positive, or not judged.
+    /// the model, nats.
+    pub(crate) gain_nats: f64,
+    /// Whether the cause is in the extended model: whether the gain is positive.
     pub(crate) accepted: bool,
 }
 
@@ -63,8 +59,6 @@ pub(crate) fn cross_validate<'a>(
         searched.fitted.refitted(&searched.extension_with(kept))
     };
     let (prediction, log_scores) = scoring(walks > 0);
-    let end = work().saturating_add(PASSES.saturating_mul(searched.pass_work));
-    let is_spent = || searched.pass_work > 0 && work() > end;
     let before = log_scores(nominal)?;
     let mut scored: Vec<(Vec<bool>, Vec<f64>)> = Vec::new();
     if searched.unmodelled.is_empty() && walks == 0 {
@@ -74,7 +68,7 @@ pub(crate) fn cross_validate<'a>(
         .iter()
         .map(|found| found.alternatives.iter().any(|other| is_walk(other.effect)))
         .collect();
-    let mut decisions = backward_elimination(&stays, is_spent, |kept| {
+    let mut decisions = backward_elimination(&stays, |kept| {
         let known = scored.iter().find(|(other, _)| other == kept);
         let scores = match known {
             Some((_, scores)) => scores.clone(),
@@ -103,7 +97,7 @@ pub(crate) fn cross_validate<'a>(
     if let Some(extended) = extended.as_ref().filter(|_| walks > 0) {
         let gain_nats = gain_of_walks(extended)?;
         let decision = KeepDecision {
-            gain_nats: Some(gain_nats),
+            gain_nats,
             accepted: true,
         };
         decisions.resize(findings.len(), decision);
@@ -142,37 +136,30 @@ fn gain_of_walks(fit: &FittedPlatform<'_>) -> Result<f64, CalibrationError> {
     Ok(with - without)
 }
 
-/// Removes causes without which the score is as high, the least useful first; not those that `stay`. Nothing
-/// more is judged once the work is spent.
+/// Removes causes without which the score is as high, the least useful first; not those that `stay`.
 fn backward_elimination<E>(
     stays: &[bool],
-    is_spent: impl Fn() -> bool,
     mut score: impl FnMut(&[bool]) -> Result<f64, E>,
 ) -> Result<Vec<KeepDecision>, E> {
     let count = stays.len();
     let mut kept = vec![true; count];
-    let mut gains = vec![None; count];
+    let mut gains = vec![0.0; count];
     while kept.contains(&true) {
         let with_all = score(&kept)?;
-        let mut least: Option<(usize, f64)> = None;
+        let mut least: Option<usize> = None;
         for index in (0..count).filter(|index| kept[*index]) {
-            if is_spent() {
-                least = None;
-                break;
-            }
             let mut others = kept.clone();
             others[index] = false;
-            let gain = with_all - score(&others)?;
-            gains[index] = Some(gain);
+            gains[index] = with_all - score(&others)?;
             if stays[index] {
                 continue;
             }
-            if least.is_none_or(|(_, least)| gain < least) {
-                least = Some((index, gain));
+            if least.is_none_or(|least| gains[index] < gains[least]) {
+                least = Some(index);
             }
         }
         match least {
-            Some((least, gain)) if gain <= 0.0 => kept[least] = false,
+            Some(least) if gains[least] <= 0.0 => kept[least] = false,
             _ => break,
         }
     }
@@ -188,38 +175,16 @@ fn backward_elimination<E>(
 
 #[cfg(test)]
 mod tests {
-    use core::cell::Cell;
     use core::convert::Infallible;
 
     use super::{KeepDecision, backward_elimination};
 
-    fn eliminated_within(
-        models: usize,
-        count: usize,
-        score: impl Fn(&[bool]) -> f64,
-    ) -> Vec<(Option<f64>, bool)> {
-        let scored = Cell::new(0);
-        let is_spent = || scored.get() >= models;
-        let found = backward_elimination(&vec![false; count], is_spent, |kept| {
-            scored.set(scored.get() + 1);
+    fn eliminated(count: usize, score: impl Fn(&[bool]) -> f64) -> Vec<(f64, bool)> {
+        let found = backward_elimination(&vec![false; count], |kept| {
             Ok::<f64, Infallible>(score(kept))
         });
         let found: Vec<KeepDecision> = found.unwrap_or_default();
         found.iter().map(|a| (a.gain_nats, a.accepted)).collect()
-    }
-
-    fn eliminated(count: usize, score: impl Fn(&[bool]) -> f64) -> Vec<(f64, bool)> {
-        let found = eliminated_within(usize::MAX, count, score).into_iter();
-        found
-            .map(|(gain, accepted)| (gain.unwrap_or(f64::NAN), accepted))
-            .collect()
-    }
-
-    #[test]
-    fn what_is_not_judged_stays() {
-        let without_gain = |_: &[bool]| 1.0;
-        let [first, second] = [(Some(0.0), true), (None, true)];
-        assert_eq!(eliminated_within(2, 2, without_gain), [first, second]);
     }
 
     #[test]

@@ -25,8 +25,7 @@ pub struct NoiseScore {
     pub gram: DMatrix<f64>,
     /// Its derivatives.
     pub d_gram: Vec<DMatrix<f64>>,
-    /// Information on the logarithms with all columns known, by rows: expected of the variances, and as the
-    /// innovations have it of their means.
+    /// Expected information on the logarithms with all columns known, by rows.
     pub information: Vec<f64>,
 }
 
@@ -63,8 +62,6 @@ pub(crate) struct NoiseFilter<const M: usize> {
     /// holds those by each logarithm side by side. All have the same transition and the same gain.
     columns: Vec<f64>,
     score: NoiseScore,
-    /// Share of residual and columns in the innovations whose information is taken.
-    shares: Vec<f64>,
     /// Derivatives of the innovations, then of the whitened rows, by each logarithm.
     d_rows: Vec<f64>,
     d_cross: Vec<f64>,
@@ -159,22 +156,10 @@ impl<const M: usize> NoiseFilter<M> {
                 d_gram: Vec::new(),
                 information: vec![0.0; count * count],
             },
-            shares: {
-                let mut shares = vec![0.0; stride];
-                shares[0] = 1.0;
-                shares
-            },
             d_rows: vec![0.0; derivatives * stride],
             d_cross: vec![0.0; walks],
             gains: vec![0.0; M + walks],
             sums: Sums::new(stride, derivatives),
-        }
-    }
-
-    /// Takes the information where the columns have changed by `change`.
-    pub(crate) fn change_columns(&mut self, change: &[f64]) {
-        for (share, change) in self.shares[1..].iter_mut().zip(change) {
-            *share = *change;
         }
     }
 
@@ -215,7 +200,7 @@ impl<const M: usize> NoiseFilter<M> {
             let k = self.first + index;
             let d_noise = if k == direct { taken.variance } else { 0.0 };
             let d_row = &mut self.d_rows[index * stride..(index + 1) * stride];
-            own.innovation = d_row.iter().zip(&self.shares).map(|(d, s)| d * s).sum();
+            own.innovation = d_row[0];
             let d_moving = own
                 .covariance
                 .with_output(&taken.jacobian, &mut self.d_cross);

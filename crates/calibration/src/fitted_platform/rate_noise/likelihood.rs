@@ -4,7 +4,6 @@ use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
 use gyrocal_hypothesis::RateNoiseFit;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::curvature::{Curvature, bounded, moved, scale};
 use super::{GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
@@ -12,13 +11,15 @@ use crate::fitted_platform::several::add_score;
 use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
 use crate::platform::PLATFORM;
 use crate::solve::add_gram;
-use crate::work;
 
 /// Most steps of Fisher's scoring.
 const MAX_STEPS: usize = 25;
 
 /// Most halvings of a step.
 const MAX_HALVINGS: usize = 8;
+
+/// Largest step in the logarithm of a variance.
+const LARGEST_STEP: f64 = 2.5;
 
 /// Gain of the log-likelihood that a step expects below which it is not made: a likelihood ratio is
 /// then good to a fiftieth.
@@ -38,8 +39,6 @@ const STARTS: [f64; 3] = [3.0, 100.0, 3000.0];
 /// The likelihood at one point.
 pub(super) struct At {
     pub(super) value: f64,
-    /// One, and the change of every unknown of the fit.
-    pub(super) solution: DVector<f64>,
     gradient: DVector<f64>,
     pub(super) information: DMatrix<f64>,
 }
@@ -91,54 +90,33 @@ impl Likelihood<'_, '_> {
         Ok(())
     }
 
-    /// The noise of the fit, where the unknowns of the fit are not known to change.
-    pub(super) fn start_at_fit(&self) -> (DVector<f64>, Option<DVector<f64>>) {
+    /// Fisher's scoring from the noise of the fit.
+    pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
         let mut logarithms = DVector::zeros(AXES + self.free.len());
         for axis in self.held {
             logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
         }
-        (logarithms, None)
-    }
-
-    /// The largest likelihood, from the noise of the fit.
-    pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
-        self.maximise_from(&self.start_at_fit(), LEAST_GAIN)
-    }
-
-    /// Fisher's scoring from logarithms and the solution there, with the curvature that its steps show, until
-    /// the next step expects no more than `least_gain`.
-    pub(super) fn maximise_from(
-        &self,
-        (logarithms, solution): &(DVector<f64>, Option<DVector<f64>>),
-        least_gain: f64,
-    ) -> Result<(DVector<f64>, At), CalibrationError> {
-        let mut logarithms = logarithms.clone();
-        let mut at = self.at(&logarithms, solution.as_ref())?;
-        let mut curvature = Curvature::default();
+        let mut at = self.at(&logarithms)?;
         for _ in 0..MAX_STEPS {
-            let by = scale(&logarithms);
-            let gradient = at.gradient.component_mul(&by);
-            let Some(cholesky) = Cholesky::new(curvature.beside(&at.information, &by)) else {
+            let Some(cholesky) = Cholesky::new(at.information.clone()) else {
                 break;
             };
-            let mut step = bounded(cholesky.solve(&gradient), &logarithms);
-            if 0.5 * step.dot(&gradient) < least_gain {
-                // What the last steps show may be too steep: the information alone decides.
-                if curvature.forget() {
-                    continue;
-                }
+            let mut step = cholesky.solve(&at.gradient);
+            let longest = step.amax();
+            if longest > LARGEST_STEP {
+                step *= LARGEST_STEP / longest;
+            }
+            if 0.5 * step.dot(&at.gradient) < LEAST_GAIN {
                 break;
             }
             let mut halvings = 0;
             loop {
-                let next = moved(&logarithms, &step);
+                let next = &logarithms + &step;
                 // A step may lead to where the filter leaves the numbers: it was too long.
-                if let Ok(found) = self.at(&next, Some(&at.solution))
-                    && found.value >= at.value
+                if let Ok(moved) = self.at(&next)
+                    && moved.value >= at.value
                 {
-                    let fall = gradient - found.gradient.component_mul(&scale(&next));
-                    curvature.add(step, fall);
-                    (logarithms, at) = (next, found);
+                    (logarithms, at) = (next, moved);
                     break;
                 }
                 halvings += 1;
@@ -199,13 +177,8 @@ impl Likelihood<'_, '_> {
     }
 
     /// The score of the rows of all records, with Gram matrices of the unknowns of the fit. `first` is the
-    /// first factor whose derivatives are wanted. The information is that at a `solution` of the unknowns.
-    fn score(
-        &self,
-        factors: &[f64],
-        first: usize,
-        solution: Option<&DVector<f64>>,
-    ) -> Result<NoiseScore, CalibrationError> {
+    /// first factor whose derivatives are wanted.
+    fn score(&self, factors: &[f64], first: usize) -> Result<NoiseScore, CalibrationError> {
         let problem = &self.fitted.problem;
         let mut total = None;
         for (run, rows) in self.fitted.record_rows().into_iter().enumerate() {
@@ -220,17 +193,8 @@ impl Likelihood<'_, '_> {
                 &[]
             };
             let parameters = problem.parameters(run);
-            let columns = leg.column_unknowns();
-            let change: Vec<f64> = solution.map_or_else(Vec::new, |solution| {
-                let of_column = |unknowns: &&[usize]| {
-                    let unknowns = unknowns.iter();
-                    unknowns.map(|unknown| solution[unknown + 1]).sum()
-                };
-                columns.iter().map(of_column).collect()
-            });
             let mut score = problem
                 .with_first_rows(run, &parameters, count, |linearised| {
-                    work::differentiate((2 * AXES + self.walks.len()).saturating_sub(first));
                     let tape = self.fitted.solution.tapes[run].as_deref();
                     let walks = Walks {
                         walks: &self.walks,
@@ -242,9 +206,10 @@ impl Likelihood<'_, '_> {
                         walks,
                         ..*linearised
                     }
-                    .noise_score_of_columns(factors, first, &change)
+                    .noise_score_of_columns(factors, first)
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
+            let columns = leg.column_unknowns();
             score.gram = self.gram(&score.gram, &columns);
             for own in &mut score.d_gram {
                 *own = self.gram(own, &columns);
@@ -255,18 +220,13 @@ impl Likelihood<'_, '_> {
     }
 
     pub(super) fn value(&self, logarithms: &[f64]) -> Result<f64, CalibrationError> {
-        let score = self.score(&self.factors(logarithms), usize::MAX, None)?;
+        let score = self.score(&self.factors(logarithms), usize::MAX)?;
         let (value, ..) = self.restricted(&score, logarithms)?;
         Ok(value)
     }
 
-    /// The likelihood and its derivatives, with the information at a `solution` of the unknowns.
-    fn at(
-        &self,
-        logarithms: &DVector<f64>,
-        solution: Option<&DVector<f64>>,
-    ) -> Result<At, CalibrationError> {
-        let score = self.score(&self.factors(logarithms.as_slice()), AXES, solution)?;
+    fn at(&self, logarithms: &DVector<f64>) -> Result<At, CalibrationError> {
+        let score = self.score(&self.factors(logarithms.as_slice()), AXES)?;
         let (value, solution, inverse) = self.restricted(&score, logarithms.as_slice())?;
         let unknowns = self.unknowns();
         let integrated = self.integrated();
@@ -292,7 +252,6 @@ impl Likelihood<'_, '_> {
         }
         Ok(At {
             value,
-            solution,
             gradient,
             information: self.information(&score),
         })
@@ -331,7 +290,7 @@ impl Likelihood<'_, '_> {
     /// the unknowns of the fit by each of its logarithms.
     pub(super) fn at_fit(&self) -> Result<(DMatrix<f64>, Vec<DMatrix<f64>>), CalibrationError> {
         let factors = self.factors(&vec![0.0; AXES + self.free.len()]);
-        let score = self.score(&factors, AXES, None)?;
+        let score = self.score(&factors, AXES)?;
         let count = self.fitted.problem.unknowns.len();
         let derivative = |unknown: &usize| {
             let gram = &score.d_gram[*unknown];
