@@ -53,8 +53,12 @@ pub(crate) enum Part {
     Shapes,
     /// One cause of the catalogue.
     Causes,
-    /// Noise other than declared.
-    Noise,
+    /// Random walks of the gyros.
+    Walks,
+    /// Flicker of the gyros.
+    Flicker,
+    /// Noise other than declared, without a cause.
+    Clean,
     /// A cause of the catalogue beside random walks.
     Together,
     /// Causes outside of the catalogue.
@@ -82,7 +86,9 @@ impl Part {
             Self::Hostile => hostile::figures(extent.small),
             Self::Shapes => shapes::figures(extent),
             Self::Causes => causes::figures(extent),
-            Self::Noise => noise::figures(extent),
+            Self::Walks => noise::of_walks(extent),
+            Self::Flicker => noise::of_flicker(extent),
+            Self::Clean => noise::of_clean(extent),
             Self::Together => together::figures(extent),
             Self::Outside => outside::figures(extent),
         }
