@@ -132,7 +132,7 @@ fn noise_of_the_first_rows_knows_nothing_of_later_ones() {
         fit.fit_rate_noise_to_first(rows / 2).unwrap().noise
     });
     for (one, other) in one.white.iter().zip(&other.white) {
-        // The scoring ends at 0.005 nats, a tenth of a sigma, which is some per cent; about another line.
+        // The scoring ends at 0.02 nats, a fifth of a sigma, which is some per cent; about another line.
         assert!((one / other - 1.0).abs() < 0.01, "{one} {other}");
     }
 }

@@ -95,7 +95,11 @@ impl FittedPlatform<'_> {
                 .problem
                 .with_first_rows(run, &parameters, count, |pass| {
                     let tape = self.solution.tapes[run].as_deref();
-                    Linearisation { tape, ..*pass }.noise_score_of_columns(&factors, usize::MAX)
+                    Linearisation { tape, ..*pass }.noise_score_of_columns(
+                        &factors,
+                        usize::MAX,
+                        &[],
+                    )
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
             let columns = self.problem.runs[run].column_unknowns();

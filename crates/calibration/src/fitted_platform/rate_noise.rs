@@ -1,6 +1,7 @@
 //! Restricted likelihood of the gyros' noise: white noise and random walks.
 
 mod likelihood;
+mod steps;
 
 use gyrocal::estimation::batch::Walk;
 use gyrocal_hypothesis::{RateNoise, RateNoiseFit};

@@ -15,6 +15,7 @@ use crate::error::CalibrationError;
 use crate::platform::{PLATFORM, rows_of};
 use crate::problem::{Problem, Unknown};
 use crate::settings::filter_settings;
+use crate::solve::MAX_PASSES;
 use crate::temperature::TemperatureScale;
 
 /// Distance between the clocks of two records, in usual intervals between rows: to every test a gap.
@@ -144,7 +145,12 @@ impl<'a> FittedPlatform<'a> {
             offsets,
             offset_sigmas,
         });
-        Self::solved(problem, extension, Parts { noise, several })
+        let parts = Parts {
+            noise,
+            several,
+            most_passes: MAX_PASSES,
+        };
+        Self::solved(problem, extension, parts)
     }
 
     /// Number of records.
@@ -386,6 +392,9 @@ pub(super) fn add_score(total: &mut Option<NoiseScore>, one: NoiseScore) {
         *sum += own;
     }
     for (sum, own) in total.information.iter_mut().zip(one.information) {
+        *sum += own;
+    }
+    for (sum, own) in total.with_rows.iter_mut().zip(one.with_rows) {
         *sum += own;
     }
 }

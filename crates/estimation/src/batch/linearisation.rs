@@ -275,21 +275,29 @@ where
     /// for each output, noise input and walk.
     pub fn noise_score(&self, factors: &[f64]) -> Result<NoiseScore, EstimationError> {
         let none = vec![0.0; self.active.len() + self.further.count()];
-        self.noise_pass(factors, 0, Some(&none), 0)
+        self.noise_pass(factors, 0, Some(&none), (0, &[]))
     }
 
     /// The same with the columns free, for a likelihood that they are to be eliminated from, and with
-    /// derivatives by the noises from `first` on only; those by the others are zero.
+    /// derivatives by the noises from `first` on only; those by the others are zero. The information is
+    /// that where the columns have changed by `change`; by nothing if that is empty.
     ///
     /// # Errors
-    /// As [`Self::noise_score`].
+    /// As [`Self::noise_score`], and [`EstimationError::InvalidArgument`] if there is not one change for
+    /// each column.
     pub fn noise_score_of_columns(
         &self,
         factors: &[f64],
         first: usize,
+        change: &[f64],
     ) -> Result<NoiseScore, EstimationError> {
         let count = self.active.len() + self.further.count();
-        self.noise_pass(factors, count, None, first)
+        if !change.is_empty() && change.len() != count {
+            return Err(EstimationError::InvalidArgument {
+                expected: "one change for each column",
+            });
+        }
+        self.noise_pass(factors, count, None, (first, change))
     }
 
     fn noise_pass(
@@ -297,7 +305,7 @@ where
         factors: &[f64],
         count: usize,
         change: Option<&[f64]>,
-        first: usize,
+        (first, of_columns): (usize, &[f64]),
     ) -> Result<NoiseScore, EstimationError> {
         let walks = self.walks.walks.len();
         if factors.len() != M + Y + walks {
@@ -312,6 +320,7 @@ where
         pass.input_factors.copy_from_slice(inputs);
         pass.walk_factors.copy_from_slice(own);
         let mut filter = NoiseFilter::<M>::new(Y, count, walks, first);
+        filter.change_columns(of_columns);
         for row in 0..self.points.len() {
             pass.observe(row, &mut |whitened, taken| filter.take(whitened, taken))?;
             if row + 1 < self.points.len() {

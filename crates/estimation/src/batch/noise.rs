@@ -25,8 +25,13 @@ pub struct NoiseScore {
     pub gram: DMatrix<f64>,
     /// Its derivatives.
     pub d_gram: Vec<DMatrix<f64>>,
-    /// Expected information on the logarithms with all columns known, by rows.
+    /// Information on the logarithms with all columns known, by rows: expected of the variances, and as the
+    /// innovations have it of their means.
     pub information: Vec<f64>,
+    /// Sums over the innovations of each whitened row times the derivatives of that innovation's mean, over
+    /// its standard deviation: a row of 1 + columns for each logarithm. Of the information on the means the
+    /// columns take that on their projection.
+    pub with_rows: Vec<f64>,
 }
 
 impl NoiseScore {
@@ -62,6 +67,8 @@ pub(crate) struct NoiseFilter<const M: usize> {
     /// holds those by each logarithm side by side. All have the same transition and the same gain.
     columns: Vec<f64>,
     score: NoiseScore,
+    /// Share of residual and columns in the innovations whose information is taken.
+    shares: Vec<f64>,
     /// Derivatives of the innovations, then of the whitened rows, by each logarithm.
     d_rows: Vec<f64>,
     d_cross: Vec<f64>,
@@ -155,11 +162,24 @@ impl<const M: usize> NoiseFilter<M> {
                 gram: DMatrix::zeros(0, 0),
                 d_gram: Vec::new(),
                 information: vec![0.0; count * count],
+                with_rows: vec![0.0; count * stride],
+            },
+            shares: {
+                let mut shares = vec![0.0; stride];
+                shares[0] = 1.0;
+                shares
             },
             d_rows: vec![0.0; derivatives * stride],
             d_cross: vec![0.0; walks],
             gains: vec![0.0; M + walks],
             sums: Sums::new(stride, derivatives),
+        }
+    }
+
+    /// Takes the information where the columns have changed by `change`.
+    pub(crate) fn change_columns(&mut self, change: &[f64]) {
+        for (share, change) in self.shares[1..].iter_mut().zip(change) {
+            *share = *change;
         }
     }
 
@@ -200,7 +220,11 @@ impl<const M: usize> NoiseFilter<M> {
             let k = self.first + index;
             let d_noise = if k == direct { taken.variance } else { 0.0 };
             let d_row = &mut self.d_rows[index * stride..(index + 1) * stride];
-            own.innovation = d_row[0];
+            own.innovation = d_row.iter().zip(&self.shares).map(|(d, s)| d * s).sum();
+            let with_row = &mut self.score.with_rows[k * stride..(k + 1) * stride];
+            for (sum, column) in with_row.iter_mut().zip(whitened.columns) {
+                *sum += own.innovation * per_deviation * column;
+            }
             let d_moving = own
                 .covariance
                 .with_output(&taken.jacobian, &mut self.d_cross);

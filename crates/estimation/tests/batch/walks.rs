@@ -141,7 +141,7 @@ fn the_gradient_by_walks_and_columns_is_that_of_the_sums() {
     let points = chain.trajectory();
     let pass = walking(&chain, &points, &NoColumns);
     let at = [1.3, 0.6, 2.0, 1.0, 1.7, 0.4];
-    let score = |factors: &[f64]| pass.noise_score_of_columns(factors, 0).unwrap();
+    let score = |factors: &[f64]| pass.noise_score_of_columns(factors, 0, &[]).unwrap();
     let found = score(&at);
     assert_eq!(found.gram.nrows(), 3);
     for k in 0..6 {
@@ -174,7 +174,7 @@ fn the_gradient_by_walks_and_columns_is_that_of_the_sums() {
             }
         }
     }
-    let some = pass.noise_score_of_columns(&at, 4).unwrap();
+    let some = pass.noise_score_of_columns(&at, 4, &[]).unwrap();
     assert_eq!(some.d_gram[4..], found.d_gram[4..]);
     assert_eq!(some.information[28..30], found.information[28..30]);
     let reduced = pass.reduce(|_| ()).unwrap();
@@ -182,6 +182,69 @@ fn the_gradient_by_walks_and_columns_is_that_of_the_sums() {
     // The same sums in another order.
     assert!((reduced.gram - declared.gram).abs().max() < 1e-8);
     assert!((reduced.log_variance - declared.log_variance).abs() < 1e-10);
+}
+
+/// Information on a walk where the columns have changed, and what of it lies along them, against differences
+/// of the innovations of two passes.
+#[test]
+fn the_information_is_that_of_the_innovations_where_the_columns_have_changed() {
+    let chain = Chain::measured(4);
+    let points = chain.trajectory();
+    let change = [0.7, -1.9];
+    let half = 1e-4;
+    // Innovation with its columns, variance, and the whitened row of each output.
+    let rows = |logarithm: f64| {
+        let mut walks = WALKS;
+        walks[0].density *= f64::exp(logarithm);
+        let pass = Linearisation {
+            walks: Walks {
+                walks: &walks,
+                changes: &[],
+            },
+            ..walking(&chain, &points, &NoColumns)
+        };
+        let mut rows = Vec::new();
+        pass.reduce(|seen| {
+            let innovation = seen.deviation * (seen.columns[0] + changed(seen.columns, &change));
+            rows.push((innovation, seen.deviation.powi(2), seen.columns.to_vec()));
+        })
+        .unwrap();
+        rows
+    };
+    let (before, at, after) = (rows(-half), rows(0.0), rows(half));
+    let mut information = 0.0;
+    let mut along = [0.0; 3];
+    for ((before, at), after) in before.iter().zip(&at).zip(&after) {
+        let by_mean = (after.0 - before.0) / (2.0 * half) / at.1.sqrt();
+        let by_variance = (after.1 - before.1) / (2.0 * half) / at.1;
+        information += 0.5 * by_variance * by_variance + by_mean * by_mean;
+        for (sum, column) in along.iter_mut().zip(&at.2) {
+            *sum += by_mean * column;
+        }
+    }
+    let pass = walking(&chain, &points, &NoColumns);
+    let score = pass.noise_score_of_columns(&[1.0; 6], 0, &change).unwrap();
+    let (walk, count) = (4, 6);
+    // Differences of second order.
+    let same = |found: f64, expected: f64| {
+        let off = (found - expected).abs();
+        assert!(off < 1e-6 * (1.0 + expected.abs()), "{found} {expected}");
+    };
+    same(score.information[walk * count + walk], information);
+    for (found, expected) in score.with_rows[walk * 3..].iter().zip(along) {
+        same(*found, expected);
+    }
+    let expected = pass.noise_score_of_columns(&[1.0; 6], 0, &[]).unwrap();
+    assert!(score.information[28] > 1.1 * expected.information[28]);
+    let wrong = pass.noise_score_of_columns(&[1.0; 6], 0, &[1.0]);
+    assert!(matches!(
+        wrong,
+        Err(EstimationError::InvalidArgument { .. })
+    ));
+}
+
+fn changed(columns: &[f64], change: &[f64]) -> f64 {
+    columns[1..].iter().zip(change).map(|(a, b)| a * b).sum()
 }
 
 #[test]

@@ -2,8 +2,9 @@
 
 use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
 use gyrocal_hypothesis::RateNoiseFit;
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use super::steps::{bounded, moved, scale};
 use super::{GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
@@ -11,19 +12,18 @@ use crate::fitted_platform::several::add_score;
 use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
 use crate::platform::PLATFORM;
 use crate::solve::add_gram;
+use crate::work;
 
-/// Most steps of Fisher's scoring.
-const MAX_STEPS: usize = 25;
+/// Most steps of Fisher's scoring. Where the noise is that of the model four suffice; one that is not shortens
+/// each step by the same share, and after ten less than a unit of the log-likelihood is left.
+const MAX_STEPS: usize = 10;
 
 /// Most halvings of a step.
 const MAX_HALVINGS: usize = 8;
 
-/// Largest step in the logarithm of a variance.
-const LARGEST_STEP: f64 = 2.5;
-
 /// Gain of the log-likelihood that a step expects below which it is not made: a likelihood ratio is
-/// then good to a fiftieth.
-const LEAST_GAIN: f64 = 0.005;
+/// then good to some hundredths, and a logarithm to a fifth of its standard deviation.
+const LEAST_GAIN: f64 = 0.02;
 
 /// Precision of the logarithm of the variance of a walk that keeps a step finite where the record says
 /// nothing of it.
@@ -39,8 +39,23 @@ const STARTS: [f64; 3] = [3.0, 100.0, 3000.0];
 /// The likelihood at one point.
 pub(super) struct At {
     pub(super) value: f64,
+    /// One, and the change of every unknown of the fit.
+    solution: DVector<f64>,
     gradient: DVector<f64>,
     pub(super) information: DMatrix<f64>,
+    /// The information that the unknowns of the fit leave: less its projection on them.
+    left: DMatrix<f64>,
+}
+
+/// The unknowns of the fit at one noise.
+struct Eliminated {
+    value: f64,
+    solution: DVector<f64>,
+    /// The unknowns that the model has, and the factor of their information.
+    present: Vec<usize>,
+    cholesky: Cholesky<f64, Dyn>,
+    /// The inverse information of those that are integrated out.
+    inverse: DMatrix<f64>,
 }
 
 /// The unknown logarithms of variances: the white noise of each gyro over the fit's, then densities
@@ -96,27 +111,26 @@ impl Likelihood<'_, '_> {
         for axis in self.held {
             logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
         }
-        let mut at = self.at(&logarithms)?;
+        let mut at = self.at(&logarithms, None)?;
         for _ in 0..MAX_STEPS {
-            let Some(cholesky) = Cholesky::new(at.information.clone()) else {
+            let by = scale(&logarithms);
+            let gradient = at.gradient.component_mul(&by);
+            let information = at.left.component_mul(&(&by * by.transpose()));
+            let Some(cholesky) = Cholesky::new(information) else {
                 break;
             };
-            let mut step = cholesky.solve(&at.gradient);
-            let longest = step.amax();
-            if longest > LARGEST_STEP {
-                step *= LARGEST_STEP / longest;
-            }
-            if 0.5 * step.dot(&at.gradient) < LEAST_GAIN {
+            let mut step = bounded(cholesky.solve(&gradient), &logarithms);
+            if 0.5 * step.dot(&gradient) < LEAST_GAIN {
                 break;
             }
             let mut halvings = 0;
             loop {
-                let next = &logarithms + &step;
+                let next = moved(&logarithms, &step);
                 // A step may lead to where the filter leaves the numbers: it was too long.
-                if let Ok(moved) = self.at(&next)
-                    && moved.value >= at.value
+                if let Ok(found) = self.at(&next, Some(&at.solution))
+                    && found.value >= at.value
                 {
-                    (logarithms, at) = (next, moved);
+                    (logarithms, at) = (next, found);
                     break;
                 }
                 halvings += 1;
@@ -177,8 +191,13 @@ impl Likelihood<'_, '_> {
     }
 
     /// The score of the rows of all records, with Gram matrices of the unknowns of the fit. `first` is the
-    /// first factor whose derivatives are wanted.
-    fn score(&self, factors: &[f64], first: usize) -> Result<NoiseScore, CalibrationError> {
+    /// first factor whose derivatives are wanted. The information is that at a `solution` of the unknowns.
+    fn score(
+        &self,
+        factors: &[f64],
+        first: usize,
+        solution: Option<&DVector<f64>>,
+    ) -> Result<NoiseScore, CalibrationError> {
         let problem = &self.fitted.problem;
         let mut total = None;
         for (run, rows) in self.fitted.record_rows().into_iter().enumerate() {
@@ -193,8 +212,17 @@ impl Likelihood<'_, '_> {
                 &[]
             };
             let parameters = problem.parameters(run);
+            let columns = leg.column_unknowns();
+            let change: Vec<f64> = solution.map_or_else(Vec::new, |solution| {
+                let of_column = |unknowns: &&[usize]| {
+                    let unknowns = unknowns.iter();
+                    unknowns.map(|unknown| solution[unknown + 1]).sum()
+                };
+                columns.iter().map(of_column).collect()
+            });
             let mut score = problem
                 .with_first_rows(run, &parameters, count, |linearised| {
+                    work::differentiate((2 * AXES + self.walks.len()).saturating_sub(first));
                     let tape = self.fitted.solution.tapes[run].as_deref();
                     let walks = Walks {
                         walks: &self.walks,
@@ -206,10 +234,10 @@ impl Likelihood<'_, '_> {
                         walks,
                         ..*linearised
                     }
-                    .noise_score_of_columns(factors, first)
+                    .noise_score_of_columns(factors, first, &change)
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
-            let columns = leg.column_unknowns();
+            score.with_rows = self.rows(&score.with_rows, &columns);
             score.gram = self.gram(&score.gram, &columns);
             for own in &mut score.d_gram {
                 *own = self.gram(own, &columns);
@@ -220,14 +248,25 @@ impl Likelihood<'_, '_> {
     }
 
     pub(super) fn value(&self, logarithms: &[f64]) -> Result<f64, CalibrationError> {
-        let score = self.score(&self.factors(logarithms), usize::MAX)?;
-        let (value, ..) = self.restricted(&score, logarithms)?;
-        Ok(value)
+        let score = self.score(&self.factors(logarithms), usize::MAX, None)?;
+        Ok(self.restricted(&score, logarithms)?.value)
     }
 
-    fn at(&self, logarithms: &DVector<f64>) -> Result<At, CalibrationError> {
-        let score = self.score(&self.factors(logarithms.as_slice()), AXES)?;
-        let (value, solution, inverse) = self.restricted(&score, logarithms.as_slice())?;
+    /// The likelihood and its derivatives, with the information at a `solution` of the unknowns.
+    fn at(
+        &self,
+        logarithms: &DVector<f64>,
+        solution: Option<&DVector<f64>>,
+    ) -> Result<At, CalibrationError> {
+        let score = self.score(&self.factors(logarithms.as_slice()), AXES, solution)?;
+        let eliminated = self.restricted(&score, logarithms.as_slice())?;
+        let left = self.left(&score, &eliminated);
+        let Eliminated {
+            value,
+            solution,
+            inverse,
+            ..
+        } = eliminated;
         let unknowns = self.unknowns();
         let integrated = self.integrated();
         let believed = self.fitted.noise.gyro_ratio;
@@ -252,9 +291,29 @@ impl Likelihood<'_, '_> {
         }
         Ok(At {
             value,
+            solution,
             gradient,
             information: self.information(&score),
+            left,
         })
+    }
+
+    /// The information that the unknowns of the fit leave.
+    fn left(&self, score: &NoiseScore, eliminated: &Eliminated) -> DMatrix<f64> {
+        let unknowns = self.unknowns();
+        let stride = self.fitted.problem.unknowns.len() + 1;
+        let present = &eliminated.present;
+        let mut along = DMatrix::from_fn(present.len(), unknowns.len(), |i, index| {
+            score.with_rows[unknowns[index] * stride + present[i] + 1]
+        });
+        for axis in self.held {
+            along.column_mut(*axis).fill(0.0);
+        }
+        eliminated
+            .cholesky
+            .l_dirty()
+            .solve_lower_triangular_mut(&mut along);
+        self.information(score) - along.tr_mul(&along)
     }
 
     /// Places of the unknowns in a score, after the noise of the outputs: inputs, walks.
@@ -290,7 +349,7 @@ impl Likelihood<'_, '_> {
     /// the unknowns of the fit by each of its logarithms.
     pub(super) fn at_fit(&self) -> Result<(DMatrix<f64>, Vec<DMatrix<f64>>), CalibrationError> {
         let factors = self.factors(&vec![0.0; AXES + self.free.len()]);
-        let score = self.score(&factors, AXES)?;
+        let score = self.score(&factors, AXES, None)?;
         let count = self.fitted.problem.unknowns.len();
         let derivative = |unknown: &usize| {
             let gram = &score.d_gram[*unknown];
@@ -318,13 +377,28 @@ impl Likelihood<'_, '_> {
         gram
     }
 
-    /// The logarithm of the restricted likelihood with the prior; one and the change of every unknown;
-    /// the inverse information of those that are integrated out.
+    /// Rows of one and the unknowns of the fit from those of one and the columns of a pass.
+    fn rows(&self, of_columns: &[f64], columns: &[&[usize]]) -> Vec<f64> {
+        let stride = self.fitted.problem.unknowns.len() + 1;
+        let own = of_columns.chunks_exact(columns.len() + 1);
+        let mut rows = vec![0.0; own.len() * stride];
+        for (row, own) in rows.chunks_exact_mut(stride).zip(own) {
+            row[0] = own[0];
+            for (unknowns, value) in columns.iter().zip(&own[1..]) {
+                for unknown in *unknowns {
+                    row[unknown + 1] += value;
+                }
+            }
+        }
+        rows
+    }
+
+    /// The logarithm of the restricted likelihood with the prior, and the unknowns of the fit there.
     fn restricted(
         &self,
         score: &NoiseScore,
         logarithms: &[f64],
-    ) -> Result<(f64, DVector<f64>, DMatrix<f64>), CalibrationError> {
+    ) -> Result<Eliminated, CalibrationError> {
         let problem = &self.fitted.problem;
         let gram = &score.gram;
         let count = problem.unknowns.len();
@@ -356,9 +430,8 @@ impl Likelihood<'_, '_> {
             .collect();
         let own = inner.select_rows(&places).select_columns(&places);
         let not_definite = || CalibrationError::NotPositiveDefinite;
-        let change = Cholesky::new(inner)
-            .ok_or_else(not_definite)?
-            .solve(&gradient);
+        let cholesky = Cholesky::new(inner).ok_or_else(not_definite)?;
+        let change = cholesky.solve(&gradient);
         for (place, change) in present.iter().zip(change.iter()) {
             solution[place + 1] = *change;
         }
@@ -377,6 +450,12 @@ impl Likelihood<'_, '_> {
             })
             .sum();
         let value = -0.5 * (score.log_variance + determinant + squares + prior + of_noise);
-        Ok((value, solution, own.inverse()))
+        Ok(Eliminated {
+            value,
+            solution,
+            present,
+            cholesky,
+            inverse: own.inverse(),
+        })
     }
 }
