@@ -10,7 +10,7 @@ use crate::options::Options;
 use crate::result::AzimuthSearch;
 use crate::run::Run;
 use crate::single_run::{DIVERGED_NIS, single_run_problem, windowed_trajectory};
-use crate::solve::MAX_ITERATIONS;
+use crate::solve::MAX_PASSES;
 use crate::uncertainty::Uncertainty;
 
 /// Rows over which azimuths are compared: two days of minutes.
@@ -102,7 +102,7 @@ fn solve_from<'a>(
     options: &Options,
 ) -> Option<HypothesisSolution<'a>> {
     let mut problem = single_run_problem(run, rows, settings, &hypothesis.prior, start, options);
-    let solution = problem.solve(MAX_ITERATIONS).ok()?;
+    let solution = problem.solve(MAX_PASSES).ok()?;
     let uncertainty = Uncertainty::new(&problem.unknowns, &solution)?;
     Some(HypothesisSolution {
         hypothesis,

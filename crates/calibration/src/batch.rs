@@ -21,7 +21,7 @@ use crate::robust::solve_robust;
 use crate::run::{Conditions, Run};
 use crate::settings::filter_settings;
 use crate::single_run::run_problem;
-use crate::solve::{MAX_ITERATIONS, Solution};
+use crate::solve::{MAX_PASSES, Solution};
 use crate::uncertainty::Uncertainty;
 use crate::variances::{UncertaintySource, Variances};
 
@@ -161,7 +161,7 @@ where
     let (mut problem, azimuths) = problem_at_guess(task, start, progress)?;
     let (solution, bounded) = match task.options.outlier_bound {
         Some(bound) => solve_robust(&mut problem, bound)?,
-        None => (problem.solve(MAX_ITERATIONS)?, vec![0; task.runs.len()]),
+        None => (problem.solve(MAX_PASSES)?, vec![0; task.runs.len()]),
     };
     Ok(Solved {
         problem,

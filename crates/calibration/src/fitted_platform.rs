@@ -28,7 +28,7 @@ use crate::layout::SiteQuantity;
 use crate::platform::PLATFORM;
 use crate::problem::{Problem, RunProblem, Unknown};
 use crate::settings::filter_settings;
-use crate::solve::{MAX_ITERATIONS, Solution};
+use crate::solve::{MAX_PASSES_AGAIN, Solution};
 use crate::temperature::TemperatureScale;
 use crate::uncertainty::Uncertainty;
 
@@ -86,6 +86,8 @@ pub(crate) fn walks(deg_per_h_per_sqrt_h: &[f64; 3]) -> Vec<Walk> {
 struct Parts {
     noise: NoiseModel,
     several: Option<Several>,
+    /// Passes after which it is given up.
+    most_passes: usize,
 }
 
 /// An extended model at its best fit to a record, or to several records of one platform.
@@ -173,7 +175,12 @@ impl<'a> FittedPlatform<'a> {
             values,
         };
         let several = self.several.clone();
-        Self::solved(problem, extension.clone(), Parts { noise, several })
+        let parts = Parts {
+            noise,
+            several,
+            most_passes: MAX_PASSES_AGAIN,
+        };
+        Self::solved(problem, extension.clone(), parts)
     }
 
     /// The same extension fitted with another noise.
@@ -196,7 +203,11 @@ impl<'a> FittedPlatform<'a> {
     fn solved(
         mut problem: Problem<'a, Anchored<Law>, LawInputs>,
         extension: ModelExtension,
-        Parts { noise, mut several }: Parts,
+        Parts {
+            noise,
+            mut several,
+            most_passes,
+        }: Parts,
     ) -> Result<Self, CalibrationError> {
         let mut sums = vec![Vec::new(); Catalogue::PARAMETERS];
         for (parameter, sum) in sums.iter_mut().enumerate().take(PARAMETERS) {
@@ -226,7 +237,7 @@ impl<'a> FittedPlatform<'a> {
             leg.further
                 .set_amplitudes(problem.values[first..shared].iter().copied());
         }
-        let solution = problem.solve(MAX_ITERATIONS)?;
+        let solution = problem.solve(most_passes)?;
         let uncertainty = Uncertainty::new(&problem.unknowns, &solution)
             .ok_or(CalibrationError::NotPositiveDefinite)?;
         if let Some(several) = &mut several {

@@ -8,7 +8,7 @@ use gyrocal::trajectory::Orientation;
 use crate::error::CalibrationError;
 use crate::problem::Problem;
 use crate::run::Conditions;
-use crate::solve::{MAX_ITERATIONS, Solution};
+use crate::solve::{MAX_PASSES, Solution};
 
 /// Most rounds of reweighting; with a few outliers the weights converge in three or four.
 const MAX_ROUNDS: usize = 20;
@@ -29,7 +29,7 @@ where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
-    let mut solution = problem.solve(MAX_ITERATIONS)?;
+    let mut solution = problem.solve(MAX_PASSES)?;
     let mut iterations = solution.iterations;
     for _ in 0..MAX_ROUNDS {
         let mut moved = 0.0_f64;
@@ -47,7 +47,7 @@ where
         if moved < CONVERGED {
             break;
         }
-        solution = problem.solve(MAX_ITERATIONS)?;
+        solution = problem.solve(MAX_PASSES)?;
         iterations += solution.iterations;
     }
     solution.iterations = iterations;

@@ -11,7 +11,7 @@ use crate::layout::Layout;
 use crate::options::Options;
 use crate::problem::{Problem, RunProblem};
 use crate::run::{Run, WeightedRows};
-use crate::solve::MAX_ITERATIONS;
+use crate::solve::MAX_PASSES;
 use crate::uncertainty::Uncertainty;
 use gyrocal_hypothesis::ExtraColumns;
 
@@ -114,7 +114,7 @@ pub(crate) fn windowed_trajectory(
         let mut problem =
             single_run_problem(run, rows, settings, &hypothesis.prior, &start, options);
         // After a window that does not converge the next one, with more rows, starts as it did.
-        if let Ok(solution) = problem.solve(MAX_ITERATIONS)
+        if let Ok(solution) = problem.solve(MAX_PASSES)
             && let Some(uncertainty) = Uncertainty::new(&problem.unknowns, &solution)
         {
             attitude.orientation = problem.runs[0].points[0];

@@ -12,8 +12,13 @@ use crate::error::CalibrationError;
 use crate::problem::Problem;
 use crate::run::Conditions;
 
-/// Steps after which an estimate that still moves is given up.
-pub(crate) const MAX_ITERATIONS: usize = 50;
+/// Passes over the records after which an estimate that still moves is given up: one for each step, and one
+/// for each halving of it.
+pub(crate) const MAX_PASSES: usize = 40;
+
+/// The same of an estimate that starts from one of nearly the same model. Effects of some hundred standard
+/// deviations need a dozen.
+pub(crate) const MAX_PASSES_AGAIN: usize = 30;
 
 /// Longest record whose linearised steps are kept between passes, in rows of some 500 bytes each.
 const LONGEST_TAPE: usize = 400_000;
@@ -39,6 +44,10 @@ const FLAT_SHARE: f64 = 1e-5;
 /// directions that only the prior determines, as most are of a strapdown unit in one attitude, the slope of
 /// the cost is smaller than the error of the linearised one.
 const FLAT_STEP: f64 = 0.01;
+
+/// Length of a step over that of the step before, above which steps shrink too slowly for the curvature of a
+/// chart to be the cause: they then end at the flat length already.
+const SLOW: f64 = 0.3;
 
 /// The records linearised about the solution.
 #[derive(Clone)]
@@ -87,16 +96,19 @@ where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
-    /// Iterates to convergence in at most `max_iterations` steps; steps that do not lower the cost
-    /// are halved.
-    pub(crate) fn solve(&mut self, max_iterations: usize) -> Result<Solution, CalibrationError> {
+    /// Iterates to convergence in at most `max_passes` passes; steps that do not lower the cost are halved.
+    pub(crate) fn solve(&mut self, max_passes: usize) -> Result<Solution, CalibrationError> {
         let mut point = self.linearise()?;
         let mut cost = point.trajectory_cost + self.prior_cost();
-        let mut iterations = 0;
+        let (mut iterations, mut passes) = (0, 0);
+        let mut before_length = f64::INFINITY;
         loop {
             let step = self.step(&point)?;
             iterations += 1;
-            let last = step.length < LAST_STEP.max(LAST_SHARE * cost.sqrt());
+            let is_flat = step.length <= FLAT_STEP.max(FLAT_SHARE * cost.sqrt());
+            let last = step.length < LAST_STEP.max(LAST_SHARE * cost.sqrt())
+                || (is_flat && step.length > SLOW * before_length);
+            before_length = step.length;
             // Long records: the steps of one point at a time.
             point.tapes.clear();
             let before: Vec<_> = self
@@ -110,6 +122,7 @@ where
             loop {
                 self.apply(&step, share, &before, &values);
                 let moved = self.linearise();
+                passes += 1;
                 // A model may leave its domain on the way: that step was too long.
                 if let Ok(moved) = moved {
                     let moved_cost = moved.trajectory_cost + self.prior_cost();
@@ -122,7 +135,7 @@ where
                     return Err(moved.err().unwrap_or(CalibrationError::NotPositiveDefinite));
                 }
                 if halvings == MAX_HALVINGS {
-                    if step.length > FLAT_STEP.max(FLAT_SHARE * cost.sqrt()) {
+                    if !is_flat {
                         return Err(CalibrationError::NoDescent { iterations });
                     }
                     self.apply(&step, 0.0, &before, &values);
@@ -134,7 +147,7 @@ where
             if last {
                 return Ok(self.solution(point, iterations));
             }
-            if iterations == max_iterations {
+            if passes >= max_passes {
                 return Err(CalibrationError::NotConverged {
                     iterations,
                     last_step: step.length,

@@ -15,6 +15,7 @@ use crate::options::Options;
 use crate::problem::{Problem, RunProblem, Unknown};
 use crate::run::{Run, WeightedRows};
 use crate::settings::filter_settings;
+use crate::solve::MAX_PASSES;
 
 impl<'a> FittedPlatform<'a> {
     /// Fits the nominal model; what the bench declares uncertain of its site is in the extension.
@@ -121,6 +122,11 @@ impl<'a> FittedPlatform<'a> {
         };
         let noise = noise.clone();
         let several = None;
-        Self::solved(problem, extension, Parts { noise, several })
+        let parts = Parts {
+            noise,
+            several,
+            most_passes: MAX_PASSES,
+        };
+        Self::solved(problem, extension, parts)
     }
 }
