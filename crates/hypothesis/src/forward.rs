@@ -32,13 +32,38 @@ const WORTH_FITTING_BESIDE_WALKS: f64 = 0.5;
 /// Model that effects are added to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Beside {
-    /// White noise. Effects are given up where walks, with this log-likelihood and no effect, are so much
-    /// better that the effects would lose even if gains went on to fall only as fast as the last two have.
-    /// The model has `most` effects at most.
-    WhiteNoise { walks: Option<f64>, most: usize },
+    /// White noise, and `most` effects at most.
+    WhiteNoise { walks: Option<Walking>, most: usize },
     /// Random walks: an effect must gain so much more than the threshold, with the walks estimated with
     /// and without it.
     Walks { margin: f64 },
+}
+
+/// Log-likelihood of a model with walks, less half the penalties of its effects, that effects in white noise
+/// are held against.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Walking {
+    /// Of walks without effects. The selection pauses where they are better than effects.
+    Alone(f64),
+    /// Of the model with walks that is compared in the end. Effects are given up where it is so much better
+    /// that they would lose even if gains went on to fall only as fast as the last two have.
+    Best(f64),
+}
+
+/// Why a forward selection ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ended {
+    /// No further effect is to be added.
+    Complete,
+    /// Walks alone are better than the effects so far.
+    BehindWalks,
+}
+
+/// Result of a forward selection.
+pub(crate) struct Selected<F> {
+    pub(crate) state: SearchState<F>,
+    pub(crate) first: FirstRound,
+    pub(crate) ended: Ended,
 }
 
 /// Adds effects until none is significant.
@@ -47,8 +72,13 @@ pub(crate) fn forward<F: FittedModel>(
     mut state: SearchState<F>,
     beside: Beside,
     draws: &mut GaussianDraws,
-) -> Result<(SearchState<F>, FirstRound), F::Error> {
+) -> Result<Selected<F>, F::Error> {
     let mut first: Option<FirstRound> = None;
+    let selected = |state, first: Option<FirstRound>, ended| Selected {
+        state,
+        first: first.unwrap_or_default(),
+        ended,
+    };
     let mut gains = Vec::new();
     let (margin, most) = match beside {
         Beside::WhiteNoise { most, .. } => (None, most),
@@ -70,7 +100,7 @@ pub(crate) fn forward<F: FittedModel>(
             threshold,
         });
         if context.budget.is_spent(&state.stage.fitted) {
-            return Ok((state, first.unwrap_or_default()));
+            return Ok(selected(state, first, Ended::Complete));
         }
         let share = if margin.is_some() {
             WORTH_FITTING_BESIDE_WALKS
@@ -105,16 +135,16 @@ pub(crate) fn forward<F: FittedModel>(
             continue;
         }
         let Some(best) = best else {
-            return Ok((state, first.unwrap_or_default()));
+            return Ok(selected(state, first, Ended::Complete));
         };
         let candidate = (best, best.shape(&hypotheses));
         match try_effect(context, &mut state, candidate, (&null, threshold), beside) {
             Outcome::Inseparable => {}
             Outcome::Gained(gained) => gains.push(gained),
-            Outcome::NotDetected => return Ok((state, first.unwrap_or_default())),
+            Outcome::NotDetected => return Ok(selected(state, first, Ended::Complete)),
         }
-        if is_hopeless(&state, &gains, threshold, beside) {
-            return Ok((state, first.unwrap_or_default()));
+        if let Some(ended) = against_walks(&state, &gains, threshold, beside) {
+            return Ok(selected(state, first, ended));
         }
     }
 }
@@ -128,28 +158,34 @@ enum Outcome {
     NotDetected,
 }
 
-/// Whether walks would stay better than the effects whatever were added to them.
-fn is_hopeless<F>(state: &SearchState<F>, gains: &[f64], threshold: f64, beside: Beside) -> bool {
+/// Whether the selection ends for walks that are better than its effects.
+fn against_walks<F>(
+    state: &SearchState<F>,
+    gains: &[f64],
+    threshold: f64,
+    beside: Beside,
+) -> Option<Ended> {
     let Beside::WhiteNoise {
         walks: Some(walks),
         most,
     } = beside
     else {
-        return false;
+        return None;
     };
-    let Some((last, before)) = gains.split_last() else {
-        return false;
+    let (last, before) = gains.split_last()?;
+    let own = state.penalised(threshold, 0.0, 1);
+    let best = match walks {
+        Walking::Alone(alone) => return (own < alone).then_some(Ended::BehindWalks),
+        Walking::Best(best) => best,
     };
     let fall = before.last().map_or(1.0, |before| (last / before).min(1.0));
-    let advantage =
-        2.0 * (state.stage.noise.log_likelihood - walks) - state.penalties(threshold, 0.0, 1);
     let mut further = 0.0;
     let mut gain = *last;
     for _ in state.accepted.len()..most {
         gain *= fall;
         further += (gain - threshold).max(0.0);
     }
-    advantage + further < 0.0
+    (own + 0.5 * further < best).then_some(Ended::Complete)
 }
 
 /// Adds the best effect to the model if it is detected: by the likelihood ratio, the noise estimated

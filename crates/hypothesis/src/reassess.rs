@@ -28,6 +28,7 @@ pub(crate) fn reassess<F: FittedModel>(
         false => threshold + BESIDE_WALKS,
     };
     let mut replaced: Vec<Replaced> = Vec::new();
+    let mut can_remove = true;
     loop {
         let mut results = Vec::with_capacity(state.accepted.len());
         let mut weakest: Option<(usize, f64)> = None;
@@ -67,16 +68,20 @@ pub(crate) fn reassess<F: FittedModel>(
         }
         match weakest {
             Some((index, strength))
-                if strength <= least && state.accepted.len() + state.unmodelled.len() > 1 =>
+                if can_remove
+                    && strength <= least
+                    && state.accepted.len() + state.unmodelled.len() > 1 =>
             {
-                state.accepted.remove(index);
-                let unmodelled = &state.unmodelled;
-                state.stage = stage(
-                    context,
-                    &state.stage.fitted,
-                    &mut state.accepted,
-                    unmodelled,
-                )?;
+                let mut others = state.accepted.clone();
+                others.remove(index);
+                match stage(context, &state.stage.fitted, &mut others, &state.unmodelled) {
+                    Ok(without) => {
+                        state.stage = without;
+                        state.accepted = others;
+                    }
+                    // Without it no fit converges.
+                    Err(_) => can_remove = false,
+                }
             }
             _ => {
                 if let Some(found) = replaceable(context, state, threshold)? {

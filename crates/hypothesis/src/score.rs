@@ -120,11 +120,11 @@ impl<'a> Scores<'a> {
             };
             if let Some(found) =
                 best_shape(fitted, context, hypothesis, (shape, About::Variant), absent)?
-                && found.statistic > best.statistic
+                && found.best.statistic > best.statistic
             {
                 *best = Best {
-                    statistic: found.statistic,
-                    shape: found.shape,
+                    statistic: found.best.statistic,
+                    shape: found.best.shape,
                     refined: true,
                     ..*best
                 };

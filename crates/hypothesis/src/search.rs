@@ -5,7 +5,8 @@ use gyrocal_scalar::effect::Effect;
 use crate::accepted::{Accepted, value_places};
 use crate::context::{MOST_EFFECTS, SearchContext, SearchOptions, extension};
 use crate::finding::Finding;
-use crate::forward::{Beside, FirstRound, forward, open_hypotheses};
+use crate::fitted_stage::FittedStage;
+use crate::forward::{Beside, Ended, FirstRound, Selected, Walking, forward, open_hypotheses};
 use crate::hypothesis::{HypothesisSet, Selection, Unavailable};
 use crate::model::{FittedModel, ModelExtension};
 use crate::null_distribution::GaussianDraws;
@@ -17,9 +18,9 @@ use crate::reassess::reassess;
 use crate::rows::Rows;
 use crate::score::Ranked;
 use crate::score_table::ScoreTable;
-use crate::state::{SearchState, settled};
-use crate::walk_candidates::Candidates;
-use crate::walks::{Compared, compare};
+use crate::state::{SearchState, with_noise};
+use crate::walk_candidates::{BESIDE_WALKS, Candidates};
+use crate::walks::{Compared, compare, walking};
 
 /// Result of a search.
 pub struct Searched<F> {
@@ -41,6 +42,8 @@ pub struct Searched<F> {
     pub unavailable: Vec<Unavailable>,
     /// Whether the search ended at its budget of work: there may be more to be found.
     pub is_cut: bool,
+    /// Work of one pass over the record with all signatures, in the unit of [`FittedModel::work`].
+    pub pass_work: u64,
     /// Scores on what the model does not hold.
     pub scores: ScoreTable,
     base: ModelExtension,
@@ -93,23 +96,42 @@ pub fn search<F: FittedModel>(
     let plant = nominal.plant();
     let context = SearchContext::new(&nominal, rows, selection, options);
     let mut draws = GaussianDraws::new(options.seed);
-    let before = nominal.work();
-    let nominal = settled(&context, nominal, &[])?;
+    let (fitted, noise) = with_noise(nominal)?;
+    let before = fitted.work();
+    let nominal = FittedStage::new(fitted, noise, &context.set, &context.rows, &[])?;
     context.budget.start(before, &nominal.fitted);
     let state = SearchState::new(nominal.clone());
     let candidates = Candidates::new(&context, &nominal)?;
-    let walks = candidates.as_ref().map(Candidates::log_likelihood);
-    let (state, first) = forward(
-        &context,
-        state,
-        Beside::WhiteNoise {
-            walks,
-            most: MOST_EFFECTS,
-        },
-        &mut draws,
-    )?;
+    let alone = candidates.as_ref().map(Candidates::log_likelihood);
+    let in_white_noise = |walks| Beside::WhiteNoise {
+        walks,
+        most: MOST_EFFECTS,
+    };
+    let beside = in_white_noise(alone.map(Walking::Alone));
+    let Selected {
+        mut state,
+        first,
+        ended,
+    } = forward(&context, state, beside, &mut draws)?;
+    let mut best_walking = None;
+    if let Some(candidates) = candidates.as_ref().filter(|_| ended == Ended::BehindWalks) {
+        // Where no fit converges with walks, walks alone are what effects are held against.
+        best_walking = walking(&context, candidates, &nominal, &mut draws).ok();
+        let best = best_walking
+            .as_ref()
+            .map(|best| best.penalised(first.threshold, BESIDE_WALKS, 0));
+        let beside = in_white_noise(best.or(alone).map(Walking::Best));
+        state = forward(&context, state, beside, &mut draws)?.state;
+    }
     let compared = match &candidates {
-        Some(candidates) => compare(&context, candidates, &nominal, state, &first, &mut draws)?,
+        Some(candidates) => compare(
+            &context,
+            candidates,
+            &nominal,
+            (state, best_walking),
+            &first,
+            &mut draws,
+        )?,
         None => Compared::without_walks(state),
     };
     let Compared {
@@ -146,6 +168,7 @@ pub fn search<F: FittedModel>(
         threshold,
         unavailable: selection.unavailable.clone(),
         is_cut: context.budget.is_cut(),
+        pass_work: context.budget.pass(),
         base: context.base,
         plant,
         rows: context.rows,

@@ -18,20 +18,21 @@ use crate::model::FittedModel;
 use crate::rows::Rows;
 use crate::signature::profiles;
 
-/// Points of a grid between the neighbours of the best point so far.
-const POINTS: usize = 9;
+/// Points of a grid between the neighbours of the best point so far. A pass over the record costs as much
+/// as some ten columns, so that few grids with many points are the cheapest.
+const POINTS: usize = 21;
 
-/// Grids, each a quarter as wide as the one before: the last resolves a thousandth of the distance
+/// Grids, each a tenth as wide as the one before: the last resolves a thousandth of the distance
 /// between two variants of the search.
-const GRIDS: usize = 5;
+const GRIDS: usize = 3;
 
-/// The first of these grids about a shape that was estimated in nearly the same model: a sixteenth as wide
+/// The first of these grids about a shape that was estimated in nearly the same model: a tenth as wide
 /// as the distance between two variants.
-const NEARBY: usize = 2;
+const NEARBY: usize = 1;
 
 /// Distance from an estimate, over the first grid about it, beyond which the shape may lie outside of that
 /// grid: its last points but one.
-const AT_THE_END: f64 = 0.75;
+const AT_THE_END: f64 = 0.9 - 1e-9;
 
 /// Rounds of shapes and fits. Each moves a shape to the maximum of its likelihood given the others;
 /// effects that overlap little need two.
@@ -160,6 +161,14 @@ pub(crate) enum About {
     Estimate,
 }
 
+/// The best shape of a hypothesis and how much it gains.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FoundShape {
+    pub(crate) best: BestShape,
+    /// Its statistic less that of the shape from which it was looked for.
+    pub(crate) gain: f64,
+}
+
 /// The best shape of a hypothesis about one of its variants or about an estimate, by grids that narrow.
 pub(crate) fn best_shape<F: FittedModel>(
     fitted: &F,
@@ -167,7 +176,7 @@ pub(crate) fn best_shape<F: FittedModel>(
     hypothesis: &Hypothesis,
     (start, about): (f64, About),
     absent: &[usize],
-) -> Result<Option<BestShape>, F::Error> {
+) -> Result<Option<FoundShape>, F::Error> {
     let Some(scale) = ShapeScale::of(hypothesis, &context.rows) else {
         return Ok(None);
     };
@@ -185,36 +194,43 @@ pub(crate) fn best_shape<F: FittedModel>(
     if width <= 0.0 {
         return Ok(None);
     }
-    let skipped = match about {
-        About::Variant => 0,
-        About::Estimate => NEARBY,
-    };
     let narrower = 2.0 / (POINTS - 1) as f64;
-    for _ in 0..skipped {
-        width *= narrower;
+    let mut grids = GRIDS;
+    if about == About::Estimate {
+        grids -= NEARBY;
+        width *= narrower.powi(NEARBY as i32);
     }
-    let first = width;
-    let mut best = BestShape {
-        shape: start,
-        statistic: f64::NEG_INFINITY,
+    // The first grid holds the shape of the start as well.
+    let mut shapes = grid(&scale, scale.place(start), width);
+    shapes.push(start);
+    let profile = ShapeProfile::new(fitted, context, hypothesis, shapes, (absent, &[]))?;
+    let before = profile.statistics().last().copied().unwrap_or_default();
+    let Some(mut best) = profile.best() else {
+        return Ok(None);
     };
-    for _ in skipped..GRIDS {
-        let centre = scale.place(best.shape);
-        let shapes = grid(&scale, centre, width);
+    let moved = (scale.place(best.shape) - scale.place(start)).abs();
+    if about == About::Estimate && moved >= AT_THE_END * width {
+        let again = (best.shape, About::Variant);
+        let found = best_shape(fitted, context, hypothesis, again, absent)?;
+        return Ok(found.map(|found| FoundShape {
+            gain: found.best.statistic - before,
+            ..found
+        }));
+    }
+    for _ in 1..grids {
+        width *= narrower;
+        let shapes = grid(&scale, scale.place(best.shape), width);
         let profile = ShapeProfile::new(fitted, context, hypothesis, shapes, (absent, &[]))?;
         if let Some(found) = profile.best()
             && found.statistic > best.statistic
         {
             best = found;
         }
-        width *= narrower;
     }
-    let moved = (scale.place(best.shape) - scale.place(start)).abs();
-    if about == About::Estimate && moved >= AT_THE_END * first {
-        let start = (best.shape, About::Variant);
-        return best_shape(fitted, context, hypothesis, start, absent);
-    }
-    Ok(best.statistic.is_finite().then_some(best))
+    Ok(best.statistic.is_finite().then_some(FoundShape {
+        best,
+        gain: best.statistic - before,
+    }))
 }
 
 /// Shapes within a width on both sides of a place.
@@ -240,11 +256,11 @@ pub(crate) fn estimate_shapes<F: FittedModel>(
     let mut about = about;
     for _ in 0..ROUNDS {
         let mut moved = false;
-        if context.budget.is_spent(&fitted) {
-            break;
-        }
         for index in 0..accepted.len() {
             let hypothesis = &context.set.hypotheses[accepted[index].hypothesis];
+            if context.budget.is_spent(&fitted) {
+                break;
+            }
             let Some(now) = accepted[index].shape else {
                 continue;
             };
@@ -252,16 +268,14 @@ pub(crate) fn estimate_shapes<F: FittedModel>(
                 continue;
             }
             let absent = value_places(&fitted, hypothesis);
-            let Some(best) = best_shape(&fitted, context, hypothesis, (now, about), &absent)?
+            let Some(found) = best_shape(&fitted, context, hypothesis, (now, about), &absent)?
             else {
                 continue;
             };
-            let before =
-                ShapeProfile::new(&fitted, context, hypothesis, vec![now], (&absent, &[]))?;
-            let before = before.best().map_or(0.0, |before| before.statistic);
-            if best.statistic - before <= CONVERGED {
+            if found.gain <= CONVERGED {
                 continue;
             }
+            let best = found.best;
             let mut next = accepted.to_vec();
             next[index].shape = Some(best.shape);
             // A shape that cannot be fitted leaves the one before.

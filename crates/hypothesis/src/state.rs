@@ -37,7 +37,12 @@ impl<F> SearchState<F> {
         self.penalties_of(|_| true, threshold, margin, free)
     }
 
-    /// The same of the effects that another model lacks.
+    /// Log-likelihood less half of these penalties.
+    pub(crate) fn penalised(&self, threshold: f64, margin: f64, free: usize) -> f64 {
+        self.stage.noise.log_likelihood - 0.5 * self.penalties(threshold, margin, free)
+    }
+
+    /// The same penalties of the effects that another model lacks.
     pub(crate) fn penalties_beside(
         &self,
         other: &Self,
@@ -155,7 +160,8 @@ pub(crate) fn settled<F: FittedModel>(
     FittedStage::new(fitted, noise, &context.set, &context.rows, accepted)
 }
 
-fn with_noise<F: FittedModel>(fitted: F) -> Result<(F, RateNoiseFit), F::Error> {
+/// A fit with the noise of its rates that the record tells, and that noise.
+pub(crate) fn with_noise<F: FittedModel>(fitted: F) -> Result<(F, RateNoiseFit), F::Error> {
     let believed = fitted.rate_noise();
     let noise = fitted.fit_rate_noise(&believed.walking(), &[])?;
     let fitted = if noise.noise.differs(&believed) {

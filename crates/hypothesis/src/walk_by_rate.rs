@@ -8,7 +8,7 @@ use crate::bank::NominalEstimate;
 use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::finding::Alternative;
 use crate::fitted_stage::FittedStage;
-use crate::forward::{Beside, forward};
+use crate::forward::{Beside, Walking, forward};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::state::{SearchState, settled};
@@ -158,10 +158,10 @@ fn in_place<F: FittedModel>(
         threshold
     };
     let beside = Beside::WhiteNoise {
-        walks: Some(own - 0.5 * (before + first)),
+        walks: Some(Walking::Best(own - 0.5 * (before + first))),
         most: MOST_EFFECTS.min(state.accepted.len() + MOST_IN_PLACE),
     };
-    let (mut with, _) = forward(context, without, beside, draws)?;
+    let mut with = forward(context, without, beside, draws)?.state;
     with.seeks_unmodelled = state.seeks_unmodelled;
     let added = &with.accepted[state.accepted.len()..];
     if added.is_empty() {

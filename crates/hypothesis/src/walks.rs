@@ -13,6 +13,7 @@ use crate::fitted_stage::FittedStage;
 use crate::forward::{Beside, FirstRound, forward};
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
+use crate::rate_noise::RateNoise;
 use crate::score::Ranked;
 use crate::state::{SearchState, settled, stage};
 use crate::walk_by_rate::{ByRate, replaced};
@@ -53,12 +54,12 @@ impl<F> Compared<F> {
     }
 }
 
-/// Compares the best deterministic effects with walks.
+/// Compares the best deterministic effects with walks, whose best model may be known.
 pub(crate) fn compare<F: FittedModel>(
     context: &SearchContext<'_>,
     candidates: &Candidates,
     nominal: &FittedStage<F>,
-    state: SearchState<F>,
+    (state, walking_state): (SearchState<F>, Option<SearchState<F>>),
     first: &FirstRound,
     draws: &mut GaussianDraws,
 ) -> Result<Compared<F>, F::Error> {
@@ -89,6 +90,9 @@ pub(crate) fn compare<F: FittedModel>(
     let own = state.stage.noise.log_likelihood;
     let beside = state.stage.fitted.fit_rate_noise(&candidates.rates, &[])?;
     let p_beside = candidates.p_value(2.0 * (beside.log_likelihood - own));
+    if walking_state.is_none() && context.budget.is_spent(&state.stage.fitted) {
+        return model.uncompared(state, (p_beside, &beside.noise), draws);
+    }
     let penalties = state.penalties(first.threshold, 0.0, 1);
     let alone = 2.0 * (own - candidates.fit.log_likelihood) - penalties;
     let weakest = least_advantage(context, candidates, &state)
@@ -97,10 +101,13 @@ pub(crate) fn compare<F: FittedModel>(
     if alone > WALK_SET_DEVIANCE && p_beside >= probability && weakest.is_none() {
         return Ok(only(state));
     }
-    let best = best_walking(&model, nominal, &state, weakest, draws);
+    let best = best_walking(&model, nominal, (&state, walking_state), weakest, draws);
     let Some((advantage, walking)) = best else {
         return Ok(only(state));
     };
+    if advantage > BESIDE_WALKS && context.budget.is_spent(&state.stage.fitted) {
+        return model.uncompared(state, (p_beside, &beside.noise), draws);
+    }
     if advantage > WALK_SET_DEVIANCE {
         if p_beside >= probability {
             return Ok(only(state));
@@ -169,12 +176,15 @@ fn are_needed<F: FittedModel>(
 fn best_walking<F: FittedModel>(
     model: &Chosen<'_, '_>,
     nominal: &FittedStage<F>,
-    state: &SearchState<F>,
+    (state, known): (&SearchState<F>, Option<SearchState<F>>),
     weakest: Option<usize>,
     draws: &mut GaussianDraws,
 ) -> Option<(f64, SearchState<F>)> {
     let (context, candidates) = (model.context, model.candidates);
-    let found = walking(context, candidates, nominal, draws);
+    let found = match known {
+        Some(known) => Ok(known),
+        None => walking(context, candidates, nominal, draws),
+    };
     let in_place = weakest.map(|index| in_place_of_effect(context, candidates, state, index));
     let both = [Some(found), in_place].into_iter().flatten().flatten();
     let advantage = |walking: &SearchState<F>| {
@@ -197,17 +207,58 @@ fn least_advantage<F: FittedModel>(
     if state.accepted.len() < 2 || context.budget.is_spent(&state.stage.fitted) {
         return None;
     }
-    let hypotheses = &context.set.hypotheses;
-    let fitted = &state.stage.fitted;
-    let accepted = state.accepted.iter().enumerate();
-    let all = accepted.filter_map(|(index, accepted)| {
-        let absent = value_places(fitted, &hypotheses[accepted.hypothesis]);
-        // Walks that cannot be fitted in its place do not stand there.
-        let walking = fitted.fit_rate_noise(&candidates.rates, &absent).ok()?;
-        let lost = 2.0 * (state.stage.noise.log_likelihood - walking.log_likelihood);
+    let all = (0..state.accepted.len()).filter_map(|index| {
+        let (lost, _) = walks_in_place(context, candidates, state, index)?;
         Some((index, lost))
     });
     all.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Twice the log-likelihood that is lost with walks in the place of an effect, the shapes of the others held,
+/// and the noise with these walks; `None` if they cannot be fitted.
+fn walks_in_place<F: FittedModel>(
+    context: &SearchContext<'_>,
+    candidates: &Candidates,
+    state: &SearchState<F>,
+    index: usize,
+) -> Option<(f64, RateNoise)> {
+    let hypothesis = &context.set.hypotheses[state.accepted[index].hypothesis];
+    let fitted = &state.stage.fitted;
+    let absent = value_places(fitted, hypothesis);
+    let walking = fitted.fit_rate_noise(&candidates.rates, &absent).ok()?;
+    let lost = 2.0 * (state.stage.noise.log_likelihood - walking.log_likelihood);
+    Some((lost, walking.noise))
+}
+
+/// The walks that may stand in the place of effects that no model with walks was searched against: for each
+/// effect those of its own rate, unless the others with their shapes leave far less to walks.
+fn uncompared_rivals<F: FittedModel>(
+    context: &SearchContext<'_>,
+    candidates: &Candidates,
+    state: &SearchState<F>,
+) -> Vec<Rival> {
+    let of_effect = |index: usize| {
+        let (lost, noise) = walks_in_place(context, candidates, state, index)?;
+        if lost > CLEAR_ADVANTAGE {
+            return None;
+        }
+        let mut others = state.accepted.clone();
+        let own = others.remove(index).hypothesis;
+        let without = context.fitted(&state.stage.fitted, &others, &state.unmodelled);
+        let walking = without.and_then(|fitted| fitted.with_rate_noise(&noise));
+        let rate = context.set.hypotheses[own].effect.rate();
+        let walks = candidates.effects.iter().filter(|walk| match rate {
+            Some(rate) => walk.rate() == Some(rate),
+            None => true,
+        });
+        let deficit = 0.5 * (lost - BESIDE_WALKS).max(0.0);
+        let walks = walks.map(|walk| walk.id);
+        Some(Rival {
+            alternatives: alternatives(walks, deficit, &walking.ok()?),
+            of: vec![own],
+        })
+    };
+    (0..state.accepted.len()).filter_map(of_effect).collect()
 }
 
 /// The model with walks in the place of an effect.
@@ -263,7 +314,7 @@ fn lacking<F>(of: &SearchState<F>, other: &SearchState<F>) -> Vec<usize> {
 }
 
 /// The nominal model with walks, and the effects that stand beside them.
-fn walking<F: FittedModel>(
+pub(crate) fn walking<F: FittedModel>(
     context: &SearchContext<'_>,
     candidates: &Candidates,
     nominal: &FittedStage<F>,
@@ -274,7 +325,7 @@ fn walking<F: FittedModel>(
     let beside = Beside::Walks {
         margin: BESIDE_WALKS,
     };
-    Ok(forward(context, state, beside, draws)?.0)
+    Ok(forward(context, state, beside, draws)?.state)
 }
 
 /// A search in which a model with walks is chosen.
@@ -286,6 +337,29 @@ struct Chosen<'c, 'o> {
 }
 
 impl Chosen<'_, '_> {
+    /// The result of a search whose budget ended before effects were compared with walks: walks stand in the
+    /// sets of effects, and beside these in the model if the record needs them there.
+    fn uncompared<F: FittedModel>(
+        &self,
+        state: SearchState<F>,
+        (p_beside, beside): (f64, &RateNoise),
+        draws: &mut GaussianDraws,
+    ) -> Result<Compared<F>, F::Error> {
+        let mut rivals = uncompared_rivals(self.context, self.candidates, &state);
+        let probability = self.context.options.walk_probability;
+        let walking = (p_beside < probability).then(|| state.in_noise(self.context, beside));
+        let mut compared = match walking {
+            Some(Ok(walking)) => self.with_walks(walking, (p_beside, Vec::new()), draws)?,
+            // Walks that no fit converges with are not what the record has.
+            _ => Compared {
+                ranking: self.ranking.to_vec(),
+                ..Compared::without_walks(state)
+            },
+        };
+        compared.walks.rivals.append(&mut rivals);
+        Ok(compared)
+    }
+
     /// The result, with the rivals of all walks together; each walk is held against effects.
     fn with_walks<F: FittedModel>(
         &self,

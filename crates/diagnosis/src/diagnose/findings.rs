@@ -54,7 +54,7 @@ pub(super) fn of_cause(finding: &hypothesis::Finding, decision: &KeepDecision) -
         alternatives,
         none_of_these: finding.none_of_these,
         equivalents: equivalents.collect(),
-        gain_nats: Some(decision.gain_nats),
+        gain_nats: decision.gain_nats,
         accepted: Some(decision.accepted),
         ..bare(
             finding.effect,

@@ -110,6 +110,7 @@ fn gain(finding: &Finding) -> String {
     match (finding.gain_nats, finding.accepted) {
         (Some(nats), Some(false)) => format!("{nats:+.1}, not in the model"),
         (Some(nats), _) => format!("{nats:+.1}"),
+        (None, Some(_)) => "not judged".to_owned(),
         (None, _) => String::new(),
     }
 }

@@ -37,7 +37,8 @@ pub struct Finding {
     /// Exact equivalents: effects that no record can distinguish from it.
     pub equivalents: Vec<Equivalent>,
     /// Gain in the log score of cross-validation with the effect in the model, given the other
-    /// causes \[nats\]; `None` of noise and of a filter.
+    /// causes \[nats\]; `None` of noise and of a filter, and where it was not judged: of one of many causes
+    /// of a record that takes too much work.
     pub gain_nats: Option<f64>,
     /// Whether it is in the extended model: whether that gain is positive. `None` as above.
     pub accepted: Option<bool>,

@@ -2,19 +2,23 @@
 
 use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
-use gyrocal_calibration::{CalibrationError, FittedPlatform};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, work};
 use gyrocal_hypothesis::Searched;
 
 use super::block_scores::{block_log_scores, forward_log_scores};
 use crate::result::Prediction;
 
+/// Work of the elimination over that of one pass over the record with all signatures, beyond which no further
+/// model is scored. That of one cause beside walks takes eight passes in the mean.
+const PASSES: u64 = 12;
+
 /// Decision of the cross-validation on one cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct KeepDecision {
     /// Predictive log score of the blocks with the cause less that without it, the other causes in
-    /// the model, nats.
-    pub(crate) gain_nats: f64,
-    /// Whether the cause is in the extended model: whether the gain is positive.
+    /// the model, nats; `None` if the work for it was too much.
+    pub(crate) gain_nats: Option<f64>,
+    /// Whether the cause is in the extended model: whether the gain is positive, or not judged.
     pub(crate) accepted: bool,
 }
 
@@ -59,6 +63,8 @@ pub(crate) fn cross_validate<'a>(
         searched.fitted.refitted(&searched.extension_with(kept))
     };
     let (prediction, log_scores) = scoring(walks > 0);
+    let end = work().saturating_add(PASSES.saturating_mul(searched.pass_work));
+    let is_spent = || searched.pass_work > 0 && work() > end;
     let before = log_scores(nominal)?;
     let mut scored: Vec<(Vec<bool>, Vec<f64>)> = Vec::new();
     if searched.unmodelled.is_empty() && walks == 0 {
@@ -68,7 +74,7 @@ pub(crate) fn cross_validate<'a>(
         .iter()
         .map(|found| found.alternatives.iter().any(|other| is_walk(other.effect)))
         .collect();
-    let mut decisions = backward_elimination(&stays, |kept| {
+    let mut decisions = backward_elimination(&stays, is_spent, |kept| {
         let known = scored.iter().find(|(other, _)| other == kept);
         let scores = match known {
             Some((_, scores)) => scores.clone(),
@@ -95,9 +101,10 @@ pub(crate) fn cross_validate<'a>(
         None => extended.as_ref().map(log_scores).transpose()?,
     };
     if let Some(extended) = extended.as_ref().filter(|_| walks > 0) {
-        let gain_nats = gain_of_walks(extended)?;
+        let with = after.as_ref().map_or(0.0, |after| after.iter().sum());
+        let gain_nats = with - score_without_walks(extended)?;
         let decision = KeepDecision {
-            gain_nats,
+            gain_nats: Some(gain_nats),
             accepted: true,
         };
         decisions.resize(findings.len(), decision);
@@ -127,39 +134,44 @@ fn is_walk(effect: &str) -> bool {
     effects.any(|row| row.id == effect && row.kind == EffectKind::RandomWalk)
 }
 
-/// Gain in forward prediction of all walks of a model over the best noise without them.
-fn gain_of_walks(fit: &FittedPlatform<'_>) -> Result<f64, CalibrationError> {
+/// Score in forward prediction of a model with the best noise without walks in the place of its own.
+fn score_without_walks(fit: &FittedPlatform<'_>) -> Result<f64, CalibrationError> {
     let white = fit.fit_rate_noise(&[], &[])?.noise;
     let without = fit.with_rate_noise(&white)?;
-    let with: f64 = forward_log_scores(fit)?.iter().sum();
-    let without: f64 = forward_log_scores(&without)?.iter().sum();
-    Ok(with - without)
+    Ok(forward_log_scores(&without)?.iter().sum())
 }
 
-/// Removes causes without which the score is as high, the least useful first; not those that `stay`.
+/// Removes causes without which the score is as high, the least useful first; not those that `stay`. Nothing
+/// more is judged once the work is spent.
 fn backward_elimination<E>(
     stays: &[bool],
+    is_spent: impl Fn() -> bool,
     mut score: impl FnMut(&[bool]) -> Result<f64, E>,
 ) -> Result<Vec<KeepDecision>, E> {
     let count = stays.len();
     let mut kept = vec![true; count];
-    let mut gains = vec![0.0; count];
+    let mut gains = vec![None; count];
     while kept.contains(&true) {
         let with_all = score(&kept)?;
-        let mut least: Option<usize> = None;
+        let mut least: Option<(usize, f64)> = None;
         for index in (0..count).filter(|index| kept[*index]) {
+            if is_spent() {
+                least = None;
+                break;
+            }
             let mut others = kept.clone();
             others[index] = false;
-            gains[index] = with_all - score(&others)?;
+            let gain = with_all - score(&others)?;
+            gains[index] = Some(gain);
             if stays[index] {
                 continue;
             }
-            if least.is_none_or(|least| gains[index] < gains[least]) {
-                least = Some(index);
+            if least.is_none_or(|(_, least)| gain < least) {
+                least = Some((index, gain));
             }
         }
         match least {
-            Some(least) if gains[least] <= 0.0 => kept[least] = false,
+            Some((least, gain)) if gain <= 0.0 => kept[least] = false,
             _ => break,
         }
     }
@@ -175,16 +187,38 @@ fn backward_elimination<E>(
 
 #[cfg(test)]
 mod tests {
+    use core::cell::Cell;
     use core::convert::Infallible;
 
     use super::{KeepDecision, backward_elimination};
 
-    fn eliminated(count: usize, score: impl Fn(&[bool]) -> f64) -> Vec<(f64, bool)> {
-        let found = backward_elimination(&vec![false; count], |kept| {
+    fn eliminated_within(
+        models: usize,
+        count: usize,
+        score: impl Fn(&[bool]) -> f64,
+    ) -> Vec<(Option<f64>, bool)> {
+        let scored = Cell::new(0);
+        let is_spent = || scored.get() >= models;
+        let found = backward_elimination(&vec![false; count], is_spent, |kept| {
+            scored.set(scored.get() + 1);
             Ok::<f64, Infallible>(score(kept))
         });
         let found: Vec<KeepDecision> = found.unwrap_or_default();
         found.iter().map(|a| (a.gain_nats, a.accepted)).collect()
+    }
+
+    fn eliminated(count: usize, score: impl Fn(&[bool]) -> f64) -> Vec<(f64, bool)> {
+        let found = eliminated_within(usize::MAX, count, score).into_iter();
+        found
+            .map(|(gain, accepted)| (gain.unwrap_or(f64::NAN), accepted))
+            .collect()
+    }
+
+    #[test]
+    fn what_is_not_judged_stays() {
+        let without_gain = |_: &[bool]| 1.0;
+        let [first, second] = [(Some(0.0), true), (None, true)];
+        assert_eq!(eliminated_within(2, 2, without_gain), [first, second]);
     }
 
     #[test]
