@@ -25,7 +25,7 @@ const STRENGTH: [f64; 2] = [10.0, 100.0];
 /// Probability that a gyro walks; where none does by it, one is chosen.
 const WALKING: f64 = 0.5;
 
-const FIRST_SEED: u64 = 790_000;
+const FIRST_SEED: u64 = 795_000;
 const RECORDS: u64 = 500;
 const SMALL: u64 = 3;
 
