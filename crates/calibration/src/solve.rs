@@ -289,6 +289,26 @@ where
     }
 }
 
+/// Rows of the residual and `count` unknowns, from rows of the residual and columns of a pass; `unknowns` has for
+/// each column the unknowns whose sum it is.
+pub(crate) fn rows_of_unknowns(
+    of_columns: &[f64],
+    unknowns: &[&[usize]],
+    count: usize,
+) -> Vec<f64> {
+    let own = of_columns.chunks_exact(unknowns.len() + 1);
+    let mut rows = vec![0.0; own.len() * (count + 1)];
+    for (row, own) in rows.chunks_exact_mut(count + 1).zip(own) {
+        row[0] = own[0];
+        for (of_column, value) in unknowns.iter().zip(&own[1..]) {
+            for unknown in *of_column {
+                row[unknown + 1] += value;
+            }
+        }
+    }
+    rows
+}
+
 /// Adds a record's Gram matrix, whose columns are parameters of the model, to that of the unknowns;
 /// `unknowns` has for each column the unknowns whose sum it is.
 pub(crate) fn add_gram(total: &mut DMatrix<f64>, gram: &DMatrix<f64>, unknowns: &[&[usize]]) {

@@ -66,6 +66,16 @@ pub(crate) struct Selected<F> {
     pub(crate) ended: Ended,
 }
 
+impl<F> Selected<F> {
+    fn new(state: SearchState<F>, first: Option<FirstRound>, ended: Ended) -> Self {
+        Self {
+            state,
+            first: first.unwrap_or_default(),
+            ended,
+        }
+    }
+}
+
 /// Adds effects until none is significant.
 pub(crate) fn forward<F: FittedModel>(
     context: &SearchContext<'_>,
@@ -74,11 +84,6 @@ pub(crate) fn forward<F: FittedModel>(
     draws: &mut GaussianDraws,
 ) -> Result<Selected<F>, F::Error> {
     let mut first: Option<FirstRound> = None;
-    let selected = |state, first: Option<FirstRound>, ended| Selected {
-        state,
-        first: first.unwrap_or_default(),
-        ended,
-    };
     let mut gains = Vec::new();
     let (margin, most) = match beside {
         Beside::WhiteNoise { most, .. } => (None, most),
@@ -100,7 +105,7 @@ pub(crate) fn forward<F: FittedModel>(
             threshold,
         });
         if context.budget.is_spent(&state.stage.fitted) {
-            return Ok(selected(state, first, Ended::Complete));
+            return Ok(Selected::new(state, first, Ended::Complete));
         }
         let share = if margin.is_some() {
             WORTH_FITTING_BESIDE_WALKS
@@ -135,16 +140,16 @@ pub(crate) fn forward<F: FittedModel>(
             continue;
         }
         let Some(best) = best else {
-            return Ok(selected(state, first, Ended::Complete));
+            return Ok(Selected::new(state, first, Ended::Complete));
         };
         let candidate = (best, best.shape(&hypotheses));
         match try_effect(context, &mut state, candidate, (&null, threshold), beside) {
             Outcome::Inseparable => {}
             Outcome::Gained(gained) => gains.push(gained),
-            Outcome::NotDetected => return Ok(selected(state, first, Ended::Complete)),
+            Outcome::NotDetected => return Ok(Selected::new(state, first, Ended::Complete)),
         }
         if let Some(ended) = against_walks(&state, &gains, threshold, beside) {
-            return Ok(selected(state, first, ended));
+            return Ok(Selected::new(state, first, ended));
         }
     }
 }

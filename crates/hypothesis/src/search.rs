@@ -100,29 +100,9 @@ pub fn search<F: FittedModel>(
     let before = fitted.work();
     let nominal = FittedStage::new(fitted, noise, &context.set, &context.rows, &[])?;
     context.budget.start(before, &nominal.fitted);
-    let state = SearchState::new(nominal.clone());
     let candidates = Candidates::new(&context, &nominal)?;
-    let alone = candidates.as_ref().map(Candidates::log_likelihood);
-    let in_white_noise = |walks| Beside::WhiteNoise {
-        walks,
-        most: MOST_EFFECTS,
-    };
-    let beside = in_white_noise(alone.map(Walking::Alone));
-    let Selected {
-        mut state,
-        first,
-        ended,
-    } = forward(&context, state, beside, &mut draws)?;
-    let mut best_walking = None;
-    if let Some(candidates) = candidates.as_ref().filter(|_| ended == Ended::BehindWalks) {
-        // Where no fit converges with walks, walks alone are what effects are held against.
-        best_walking = walking(&context, candidates, &nominal, &mut draws).ok();
-        let best = best_walking
-            .as_ref()
-            .map(|best| best.penalised(first.threshold, BESIDE_WALKS, 0));
-        let beside = in_white_noise(best.or(alone).map(Walking::Best));
-        state = forward(&context, state, beside, &mut draws)?.state;
-    }
+    let (state, first, best_walking) =
+        in_white_noise(&context, candidates.as_ref(), &nominal, &mut draws)?;
     let compared = match &candidates {
         Some(candidates) => compare(
             &context,
@@ -175,6 +155,38 @@ pub fn search<F: FittedModel>(
         set: context.set,
         accepted: state.accepted,
     })
+}
+
+/// Forward selection in white noise, and the model with walks that it was held against: as soon as walks alone
+/// are better than the effects.
+fn in_white_noise<F: FittedModel>(
+    context: &SearchContext<'_>,
+    candidates: Option<&Candidates>,
+    nominal: &FittedStage<F>,
+    draws: &mut GaussianDraws,
+) -> Result<(SearchState<F>, FirstRound, Option<SearchState<F>>), F::Error> {
+    let alone = candidates.map(Candidates::log_likelihood);
+    let beside = |walks| Beside::WhiteNoise {
+        walks,
+        most: MOST_EFFECTS,
+    };
+    let state = SearchState::new(nominal.clone());
+    let Selected {
+        state,
+        first,
+        ended,
+    } = forward(context, state, beside(alone.map(Walking::Alone)), draws)?;
+    let Some(candidates) = candidates.filter(|_| ended == Ended::BehindWalks) else {
+        return Ok((state, first, None));
+    };
+    // Where no fit converges with walks, walks alone are what effects are held against.
+    let found = walking(context, candidates, nominal, draws).ok();
+    let best = found
+        .as_ref()
+        .map(|found| found.penalised(first.threshold, BESIDE_WALKS, 0));
+    let against = best.or(alone).map(Walking::Best);
+    let state = forward(context, state, beside(against), draws)?.state;
+    Ok((state, first, found))
 }
 
 /// Effects of the default search and those with an id in `also`, but for those with a reason against

@@ -11,7 +11,7 @@ use crate::error::CalibrationError;
 use crate::fitted_platform::several::add_score;
 use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
 use crate::platform::PLATFORM;
-use crate::solve::add_gram;
+use crate::solve::{add_gram, rows_of_unknowns};
 use crate::work;
 
 /// Most steps of Fisher's scoring. Where the noise is that of the model four suffice; one that is not shortens
@@ -237,7 +237,7 @@ impl Likelihood<'_, '_> {
                     .noise_score_of_columns(factors, first, &change)
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
-            score.with_rows = self.rows(&score.with_rows, &columns);
+            score.with_rows = rows_of_unknowns(&score.with_rows, &columns, problem.unknowns.len());
             score.gram = self.gram(&score.gram, &columns);
             for own in &mut score.d_gram {
                 *own = self.gram(own, &columns);
@@ -375,22 +375,6 @@ impl Likelihood<'_, '_> {
         let mut gram = DMatrix::zeros(count + 1, count + 1);
         add_gram(&mut gram, of_columns, columns);
         gram
-    }
-
-    /// Rows of one and the unknowns of the fit from those of one and the columns of a pass.
-    fn rows(&self, of_columns: &[f64], columns: &[&[usize]]) -> Vec<f64> {
-        let stride = self.fitted.problem.unknowns.len() + 1;
-        let own = of_columns.chunks_exact(columns.len() + 1);
-        let mut rows = vec![0.0; own.len() * stride];
-        for (row, own) in rows.chunks_exact_mut(stride).zip(own) {
-            row[0] = own[0];
-            for (unknowns, value) in columns.iter().zip(&own[1..]) {
-                for unknown in *unknowns {
-                    row[unknown + 1] += value;
-                }
-            }
-        }
-        rows
     }
 
     /// The logarithm of the restricted likelihood with the prior, and the unknowns of the fit there.
