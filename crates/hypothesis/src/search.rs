@@ -101,8 +101,9 @@ pub fn search<F: FittedModel>(
     let nominal = FittedStage::new(fitted, noise, &context.set, &context.rows, &[])?;
     context.budget.start(before, &nominal.fitted);
     let candidates = Candidates::new(&context, &nominal)?;
-    let (state, first, best_walking) =
+    let (selected, best_walking) =
         in_white_noise(&context, candidates.as_ref(), &nominal, &mut draws)?;
+    let Selected { state, first, .. } = selected;
     let compared = match &candidates {
         Some(candidates) => compare(
             &context,
@@ -164,29 +165,30 @@ fn in_white_noise<F: FittedModel>(
     candidates: Option<&Candidates>,
     nominal: &FittedStage<F>,
     draws: &mut GaussianDraws,
-) -> Result<(SearchState<F>, FirstRound, Option<SearchState<F>>), F::Error> {
+) -> Result<(Selected<F>, Option<SearchState<F>>), F::Error> {
     let alone = candidates.map(Candidates::log_likelihood);
     let beside = |walks| Beside::WhiteNoise {
         walks,
         most: MOST_EFFECTS,
     };
     let state = SearchState::new(nominal.clone());
-    let Selected {
-        state,
-        first,
-        ended,
-    } = forward(context, state, beside(alone.map(Walking::Alone)), draws)?;
-    let Some(candidates) = candidates.filter(|_| ended == Ended::BehindWalks) else {
-        return Ok((state, first, None));
+    let selected = forward(context, state, beside(alone.map(Walking::Alone)), draws)?;
+    let is_behind = selected.ended == Ended::BehindWalks;
+    let Some(candidates) = candidates.filter(|_| is_behind) else {
+        return Ok((selected, None));
     };
     // Where no fit converges with walks, walks alone are what effects are held against.
     let found = walking(context, candidates, nominal, draws).ok();
     let best = found
         .as_ref()
-        .map(|found| found.penalised(first.threshold, BESIDE_WALKS, 0));
+        .map(|found| found.penalised(selected.first.threshold, BESIDE_WALKS, 0));
     let against = best.or(alone).map(Walking::Best);
-    let state = forward(context, state, beside(against), draws)?.state;
-    Ok((state, first, found))
+    let completed = forward(context, selected.state, beside(against), draws)?;
+    let selected = Selected {
+        first: selected.first,
+        ..completed
+    };
+    Ok((selected, found))
 }
 
 /// Effects of the default search and those with an id in `also`, but for those with a reason against
