@@ -101,9 +101,11 @@ pub fn search<F: FittedModel>(
     let nominal = FittedStage::new(fitted, noise, &context.set, &context.rows, &[])?;
     context.budget.start(before, &nominal.fitted);
     let candidates = Candidates::new(&context, &nominal)?;
-    let (selected, best_walking) =
-        in_white_noise(&context, candidates.as_ref(), &nominal, &mut draws)?;
-    let Selected { state, first, .. } = selected;
+    let InWhiteNoise {
+        state,
+        first,
+        best_walking,
+    } = in_white_noise(&context, candidates.as_ref(), &nominal, &mut draws)?;
     let compared = match &candidates {
         Some(candidates) => compare(
             &context,
@@ -158,37 +160,53 @@ pub fn search<F: FittedModel>(
     })
 }
 
-/// Forward selection in white noise, and the model with walks that it was held against: as soon as walks alone
-/// are better than the effects.
+/// Result of the forward selection in white noise.
+struct InWhiteNoise<F> {
+    state: SearchState<F>,
+    first: FirstRound,
+    /// The model with walks that it was held against.
+    best_walking: Option<SearchState<F>>,
+}
+
+/// Forward selection in white noise, held against the best model with walks as soon as walks alone are better
+/// than its effects.
 fn in_white_noise<F: FittedModel>(
     context: &SearchContext<'_>,
     candidates: Option<&Candidates>,
     nominal: &FittedStage<F>,
     draws: &mut GaussianDraws,
-) -> Result<(Selected<F>, Option<SearchState<F>>), F::Error> {
+) -> Result<InWhiteNoise<F>, F::Error> {
     let alone = candidates.map(Candidates::log_likelihood);
     let beside = |walks| Beside::WhiteNoise {
         walks,
         most: MOST_EFFECTS,
     };
     let state = SearchState::new(nominal.clone());
-    let selected = forward(context, state, beside(alone.map(Walking::Alone)), draws)?;
-    let is_behind = selected.ended == Ended::BehindWalks;
+    let Selected {
+        state,
+        first,
+        ended,
+    } = forward(context, state, beside(alone.map(Walking::Alone)), draws)?;
+    let is_behind = ended == Ended::BehindWalks;
     let Some(candidates) = candidates.filter(|_| is_behind) else {
-        return Ok((selected, None));
+        return Ok(InWhiteNoise {
+            state,
+            first,
+            best_walking: None,
+        });
     };
     // Where no fit converges with walks, walks alone are what effects are held against.
-    let found = walking(context, candidates, nominal, draws).ok();
-    let best = found
+    let best_walking = walking(context, candidates, nominal, draws).ok();
+    let best = best_walking
         .as_ref()
-        .map(|found| found.penalised(selected.first.threshold, BESIDE_WALKS, 0));
+        .map(|found| found.penalised(first.threshold, BESIDE_WALKS, 0));
     let against = best.or(alone).map(Walking::Best);
-    let completed = forward(context, selected.state, beside(against), draws)?;
-    let selected = Selected {
-        first: selected.first,
-        ..completed
-    };
-    Ok((selected, found))
+    let state = forward(context, state, beside(against), draws)?.state;
+    Ok(InWhiteNoise {
+        state,
+        first,
+        best_walking,
+    })
 }
 
 /// Effects of the default search and those with an id in `also`, but for those with a reason against
