@@ -12,7 +12,7 @@ use crate::model::FittedModel;
 /// less than five passes. The search of one with a cause beside walks would take fifty in the median. A
 /// hostile record is to take at most twenty times the work of a sound one, which `cargo figures truth`
 /// measures.
-const PASSES: u64 = 45;
+const PASSES: u64 = 36;
 
 /// What a search may still do.
 #[derive(Clone, Debug)]

@@ -10,7 +10,7 @@ use crate::result::Prediction;
 
 /// Work of the elimination over that of one pass over the record with all signatures, beyond which no further
 /// model is scored. That of one cause beside walks takes eight passes in the mean.
-const PASSES: u64 = 12;
+const PASSES: u64 = 10;
 
 /// Decision of the cross-validation on one cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
