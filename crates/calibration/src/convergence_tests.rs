@@ -143,3 +143,23 @@ fn the_error_of_several_records_names_the_record() {
         "{error}"
     );
 }
+
+/// Halvings cost as much as steps, and count.
+#[test]
+fn halvings_count_as_passes() {
+    let (record, bench) = day(1);
+    let run = Run {
+        record: &record,
+        bench: &bench,
+    };
+    // From so far that steps have to be halved after the first ones.
+    let mut drift = [0.0; 9];
+    (drift[0], drift[1]) = (20.0, 20.0);
+    let passes = 20;
+    let mut problem = problem_at(&run, &settings(&bench), drift);
+    let failure = problem.solve(passes).err().unwrap();
+    assert!(
+        matches!(failure, CalibrationError::NotConverged { iterations, .. } if iterations < passes),
+        "{failure:?}"
+    );
+}

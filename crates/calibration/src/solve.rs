@@ -126,7 +126,7 @@ where
                 // A model may leave its domain on the way: that step was too long.
                 if let Ok(moved) = moved {
                     let moved_cost = moved.trajectory_cost + self.prior_cost();
-                    // The last step changes the cost by less than rounding does.
+                    // The last step changes the cost by less than rounding does, or than 1e-4.
                     if moved_cost <= cost || last {
                         (point, cost) = (moved, moved_cost);
                         break;
