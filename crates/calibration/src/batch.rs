@@ -10,7 +10,7 @@ use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fit::FitStatistics;
 use crate::gyro_axes::GyroAxes;
-use crate::initial_guess::{Start, best_fit, initial_guess};
+use crate::initial_guess::{Guessed, Start, best_fit, initial_guess};
 use crate::layout::{Layout, SiteQuantity};
 use crate::noise::{self, NoiseEstimate};
 use crate::observability::unobservable;
@@ -115,7 +115,8 @@ where
         options,
     };
     let solved = best_fit(
-        |start| solve(task, start, progress),
+        |start| problem_at_guess(task, start, progress),
+        |guess| solve(task, guess),
         |solved| (solved.solution.cost, solved.solution.values),
     )?;
     let (problem, solution) = (&solved.problem, &solved.solution);
@@ -151,14 +152,12 @@ where
 /// Solves the joint problem.
 fn solve<'a, D, I>(
     task: &Task<'a, '_, D>,
-    start: Start,
-    progress: &mut dyn FnMut(usize),
+    (mut problem, azimuths): ProblemAtGuess<'a, D, I>,
 ) -> Result<Solved<'a, D, I>, CalibrationError>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
-    let (mut problem, azimuths) = problem_at_guess(task, start, progress)?;
     let (solution, bounded) = match task.options.outlier_bound {
         Some(bound) => solve_robust(&mut problem, bound)?,
         None => (problem.solve(MAX_PASSES)?, vec![0; task.runs.len()]),
@@ -179,7 +178,7 @@ fn problem_at_guess<'a, D, I>(
     task: &Task<'a, '_, D>,
     start: Start,
     progress: &mut dyn FnMut(usize),
-) -> Result<ProblemAtGuess<'a, D, I>, CalibrationError>
+) -> Result<Guessed<ProblemAtGuess<'a, D, I>>, CalibrationError>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
@@ -200,11 +199,13 @@ where
     };
     let mut weights = [0.0; PARAMETERS];
     let mut azimuths = Vec::with_capacity(runs.len());
+    let mut is_careful = true;
     for (index, run) in runs.iter().enumerate() {
         let settings = filter_settings(run.bench, options.moving_chart());
         let guess = initial_guess(run, &settings, options, start)
             .map_err(|error| error.of_record(index, runs.len()))?;
         let start = guess.start;
+        is_careful &= start.by_windows;
         // Weighted means of the filters' drifts, which are those of gyros along the platform's axes.
         if task.gyro_axes.is_none() {
             for (i, sum) in weights.iter_mut().enumerate() {
@@ -238,7 +239,10 @@ where
         azimuths.push(guess.azimuth);
         progress(run.record.len());
     }
-    Ok((problem, azimuths))
+    Ok(Guessed {
+        guess: (problem, azimuths),
+        is_careful,
+    })
 }
 
 fn run_results<D, I>(

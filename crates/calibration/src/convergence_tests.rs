@@ -46,6 +46,7 @@ fn problem_at<'a>(
         drift,
         sigma: [1.0; 9],
         nis_mean: 0.0,
+        by_windows: false,
     };
     let options = Options::default();
     let mut problem = single_run_problem(run, rows, settings, &prior, &start, &options);

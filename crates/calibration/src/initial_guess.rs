@@ -31,7 +31,7 @@ const POOR_FIT: f64 = 1000.0;
 const LOOSE: f64 = 30.0;
 
 /// How the initial guess of a fit is made.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Start {
     /// By growing windows even if the filter does not diverge.
     pub(crate) careful: bool,
@@ -64,6 +64,14 @@ impl Start {
         },
     ];
 
+    /// The same by growing windows.
+    fn carefully(self) -> Self {
+        Self {
+            careful: true,
+            ..self
+        }
+    }
+
     /// Settings of the filter that makes the guess.
     fn settings(self, settings: &FilterSettings<f64>) -> FilterSettings<f64> {
         let factor = if self.loose { LOOSE } else { 1.0 };
@@ -74,13 +82,30 @@ impl Start {
     }
 }
 
+/// What a fit starts from.
+pub(crate) struct Guessed<G> {
+    pub(crate) guess: G,
+    /// Whether all its trajectories were made by growing windows, asked for or not.
+    pub(crate) is_careful: bool,
+}
+
 /// The fit from the usual start; where it is poor or fails, the best from all starts. `quality` gives
 /// the cost of a fit and its number of values.
-pub(crate) fn best_fit<T, E>(
-    mut fit: impl FnMut(Start) -> Result<T, E>,
+pub(crate) fn best_fit<G, T, E>(
+    mut guess: impl FnMut(Start) -> Result<Guessed<G>, E>,
+    mut fit: impl FnMut(G) -> Result<T, E>,
     quality: impl Fn(&T) -> (f64, usize),
 ) -> Result<T, E> {
-    let first = fit(Start::FILTERED);
+    // Starts that were made by windows without being asked to: the careful ones would be the same.
+    let mut careful = Vec::new();
+    let mut fit_from = |start: Start, careful: &mut Vec<Start>| {
+        let guessed = guess(start)?;
+        if guessed.is_careful {
+            careful.push(start.carefully());
+        }
+        fit(guessed.guess)
+    };
+    let first = fit_from(Start::FILTERED, &mut careful);
     let is_good = |fit: &T| {
         let (cost, values) = quality(fit);
         cost < POOR_FIT * values as f64
@@ -91,7 +116,12 @@ pub(crate) fn best_fit<T, E>(
     let failed = first.is_err();
     let mut best = first;
     for start in Start::OTHERS {
-        let Ok(other) = fit(start) else { continue };
+        if careful.contains(&start) {
+            continue;
+        }
+        let Ok(other) = fit_from(start, &mut careful) else {
+            continue;
+        };
         // A fit that succeeds after a failure is taken as before, unless it is poor.
         let good = failed && is_good(&other);
         let is_better = match &best {

@@ -21,6 +21,8 @@ pub(crate) struct InitialTrajectory {
     pub(crate) sigma: [f64; PARAMETERS],
     /// Mean NIS over the values used, 1 expected.
     pub(crate) nis_mean: f64,
+    /// Whether it was made by growing windows.
+    pub(crate) by_windows: bool,
 }
 
 /// Filters the first `rows` rows from an attitude; on the factors of the covariance if the
@@ -65,5 +67,6 @@ fn filtered_in_form<F: Form<f64>>(
         drift: filter.drift().to_array(),
         sigma: filter.drift_sigma().to_array(),
         nis_mean: nis / values.max(1) as f64,
+        by_windows: false,
     })
 }

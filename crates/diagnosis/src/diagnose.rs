@@ -15,7 +15,9 @@ mod untestable_rows;
 
 use std::borrow::Cow;
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run};
+use gyrocal_calibration::{
+    CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run, work,
+};
 use gyrocal_hypothesis::{ScoreTable, SearchOptions, Searched, Selection};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
@@ -182,6 +184,8 @@ struct Sound<'e, 'a> {
     setup: Vec<SetupProblem>,
     magnitude: Option<MagnitudeTest>,
     audited: AuditedFit<'a>,
+    /// Work done on the record so far.
+    work: u64,
     shares: FalseAlarmShares,
 }
 
@@ -235,6 +239,7 @@ fn sound<'a>(
     left_correlated: Option<f64>,
 ) -> Result<Sound<'a, 'a>, DiagnosisError> {
     let Run { record, bench } = *run;
+    let before = work();
     let shares = shares(options.false_alarm_probability);
     let declared = NoiseModel::default();
     let audit = AuditOptions {
@@ -253,6 +258,7 @@ fn sound<'a>(
         setup,
         magnitude,
         audited,
+        work: work() - before,
         shares,
     })
 }
@@ -268,6 +274,7 @@ fn concluded<'e, 'a: 'e>(
         setup,
         magnitude,
         audited,
+        work,
         shares,
     } = sound;
     let Run { record, bench } = run;
@@ -277,7 +284,10 @@ fn concluded<'e, 'a: 'e>(
         .accel_ratio
         .map(|ratio| ratio * bench.accel_noise_g);
     let selection = selection(record, bench, options);
-    let search = search_options(options, &shares);
+    let search = SearchOptions {
+        work_before: work,
+        ..search_options(options, &shares)
+    };
     watch(Stage::Search);
     let rows = audited.nominal.rows(record);
     let searched = gyrocal_hypothesis::search(audited.nominal, rows, &selection, &search)?;
@@ -350,6 +360,7 @@ fn search_options(options: &DiagnoseOptions, shares: &FalseAlarmShares) -> Searc
         walk_probability: shares.random_walk,
         unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
         seed: options.seed,
+        work_before: 0,
     }
 }
 

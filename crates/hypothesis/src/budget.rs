@@ -14,6 +14,11 @@ use crate::model::FittedModel;
 /// measures.
 const PASSES: u64 = 36;
 
+/// Work before a search that counts for nothing: that of the first fits of nearly every record. What is more
+/// shortens the search, by `LONGEST_BEFORE` at most.
+const FREE_BEFORE: u64 = 4;
+const LONGEST_BEFORE: u64 = 12;
+
 /// What a search may still do.
 #[derive(Clone, Debug)]
 pub(crate) struct Budget {
@@ -34,14 +39,16 @@ impl Budget {
     }
 
     /// Sets the end: `before` was the work done before the pass of the first stage, of which `fitted` is the
-    /// model.
-    pub(crate) fn start<F: FittedModel>(&self, before: u64, fitted: &F) {
+    /// model, and `on_record` so much of it on this record.
+    pub(crate) fn start<F: FittedModel>(&self, (before, on_record): (u64, u64), fitted: &F) {
         let now = fitted.work();
         let pass = now.saturating_sub(before);
         self.pass.set(pass);
         if pass > 0 {
-            self.end
-                .set(now.saturating_add(PASSES.saturating_mul(pass)));
+            let further = on_record.saturating_sub(FREE_BEFORE.saturating_mul(pass));
+            let shortened = further.min(LONGEST_BEFORE.saturating_mul(pass));
+            let own = PASSES.saturating_mul(pass).saturating_sub(shortened);
+            self.end.set(now.saturating_add(own));
         }
     }
 

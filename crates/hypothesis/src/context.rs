@@ -12,7 +12,7 @@ use crate::pattern::Unmodelled;
 use crate::plant::Plant;
 use crate::rows::Rows;
 
-/// Error rates of a search.
+/// Error rates of a search, and what it needs to know of what was done before.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchOptions {
     /// Family-wise probability of a false alarm of all deterministic hypotheses together.
@@ -23,6 +23,9 @@ pub struct SearchOptions {
     pub unmodelled_probability: f64,
     /// Seed of the draws of the null distribution.
     pub seed: u64,
+    /// Work done on the record before the search, in the unit of [`FittedModel::work`]: where it was much,
+    /// the search has a smaller budget.
+    pub work_before: u64,
 }
 
 impl Default for SearchOptions {
@@ -32,6 +35,7 @@ impl Default for SearchOptions {
             walk_probability: 0.001,
             unmodelled_probability: 0.001,
             seed: 0,
+            work_before: 0,
         }
     }
 }

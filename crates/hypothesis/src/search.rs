@@ -99,7 +99,8 @@ pub fn search<F: FittedModel>(
     let (fitted, noise) = with_noise(nominal)?;
     let before = fitted.work();
     let nominal = FittedStage::new(fitted, noise, &context.set, &context.rows, &[])?;
-    context.budget.start(before, &nominal.fitted);
+    let on_record = options.work_before;
+    context.budget.start((before, on_record), &nominal.fitted);
     let candidates = Candidates::new(&context, &nominal)?;
     let InWhiteNoise {
         state,

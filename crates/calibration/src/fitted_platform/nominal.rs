@@ -9,7 +9,7 @@ use super::{FittedPlatform, NoiseModel, Parts, of_site, walks};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::gyro_axes::GyroAxes;
-use crate::initial_guess::{Start, best_fit, initial_guess};
+use crate::initial_guess::{Guessed, InitialGuess, Start, best_fit, initial_guess};
 use crate::law::{Law, LawInputs};
 use crate::options::Options;
 use crate::problem::{Problem, RunProblem, Unknown};
@@ -42,7 +42,8 @@ impl<'a> FittedPlatform<'a> {
         noise: &NoiseModel,
     ) -> Result<Self, CalibrationError> {
         best_fit(
-            |start| Self::nominal_from(run, axes, options, noise, start),
+            |start| guess(run, options, noise, start),
+            |guess| Self::nominal_from(run, axes, options, noise, guess),
             |fit| (fit.solution.cost, fit.solution.values),
         )
     }
@@ -56,8 +57,11 @@ impl<'a> FittedPlatform<'a> {
         options: &Options,
         noise: &NoiseModel,
     ) -> Result<Self, CalibrationError> {
-        Self::nominal_from(run, None, options, noise, Start::FILTERED)
-            .or_else(|_| Self::nominal_from(run, None, options, noise, Start::CAREFUL))
+        let from = |start| {
+            let guessed = guess(run, options, noise, start)?;
+            Self::nominal_from(run, None, options, noise, guessed.guess)
+        };
+        from(Start::FILTERED).or_else(|_| from(Start::CAREFUL))
     }
 
     fn nominal_from(
@@ -65,17 +69,10 @@ impl<'a> FittedPlatform<'a> {
         axes: Option<&GyroAxes>,
         options: &Options,
         noise: &NoiseModel,
-        start: Start,
+        beginning: InitialGuess,
     ) -> Result<Self, CalibrationError> {
         let law = Law::of(run, axes)?;
         let settings = filter_settings(run.bench, options.moving_chart());
-        // Noise that is believed to be far larger than declared is that of the first guess as well.
-        let largest_ratio = noise.accel_ratio.into_iter().fold(1.0, f64::max);
-        let guessing = FilterSettings {
-            accel_noise_g: largest_ratio * settings.accel_noise_g,
-            ..settings
-        };
-        let beginning = initial_guess(run, &guessing, options, start)?;
         let extension = of_site(run.bench);
         let mut values = law.starts_from(&beginning.start.drift).to_vec();
         values.resize(PARAMETERS + extension.parameters.len(), 0.0);
@@ -129,4 +126,25 @@ impl<'a> FittedPlatform<'a> {
         };
         Self::solved(problem, extension, parts)
     }
+}
+
+/// What a fit of one record starts from.
+fn guess(
+    run: &Run<'_>,
+    options: &Options,
+    noise: &NoiseModel,
+    start: Start,
+) -> Result<Guessed<InitialGuess>, CalibrationError> {
+    let settings = filter_settings(run.bench, options.moving_chart());
+    // Noise that is believed to be far larger than declared is that of the first guess as well.
+    let largest_ratio = noise.accel_ratio.into_iter().fold(1.0, f64::max);
+    let guessing = FilterSettings {
+        accel_noise_g: largest_ratio * settings.accel_noise_g,
+        ..settings
+    };
+    let guess = initial_guess(run, &guessing, options, start)?;
+    Ok(Guessed {
+        is_careful: guess.start.by_windows,
+        guess,
+    })
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_calibration::{FittedPlatform, GyroAxes, NoiseModel, Run, joined_record};
+use gyrocal_calibration::{FittedPlatform, GyroAxes, NoiseModel, Run, joined_record, work};
 use gyrocal_record::{Bench, Record, SetupProblem};
 
 use super::answer::record_summary;
@@ -144,6 +144,7 @@ fn jointly(
     watch: &mut dyn FnMut(Stage),
 ) -> Result<Diagnosis<'static>, DiagnosisError> {
     watch(Stage::Audit);
+    let before = work();
     let mut shares = shares(options.false_alarm_probability);
     let count = sound.len().max(1) as f64;
     // Each record spends its part.
@@ -193,6 +194,7 @@ fn jointly(
             .collect(),
         magnitude: least(magnitudes, count),
         audited,
+        work: work() - before,
         shares,
     };
     Ok(concluded(sound, options, watch)?.into_owned())

@@ -101,10 +101,12 @@ pub(crate) fn cross_validate<'a>(
         None => extended.as_ref().map(log_scores).transpose()?,
     };
     if let Some(extended) = extended.as_ref().filter(|_| walks > 0) {
-        let with = after.as_ref().map_or(0.0, |after| after.iter().sum());
-        let gain_nats = with - score_without_walks(extended)?;
+        let with: f64 = after.as_ref().map_or(0.0, |after| after.iter().sum());
         let decision = KeepDecision {
-            gain_nats: Some(gain_nats),
+            gain_nats: match is_spent() {
+                true => None,
+                false => Some(with - score_without_walks(extended)?),
+            },
             accepted: true,
         };
         decisions.resize(findings.len(), decision);
