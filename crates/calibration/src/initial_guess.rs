@@ -184,3 +184,37 @@ fn guess_from_all_rows(
         gross_errors: Vec::new(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use core::convert::Infallible;
+
+    use super::{Guessed, Start, best_fit};
+
+    /// The starts that are fitted from where each fit is poor.
+    fn fitted_from(diverges: impl Fn(Start) -> bool) -> Vec<[bool; 2]> {
+        let mut fitted = Vec::new();
+        let guess = |start: Start| {
+            Ok::<_, Infallible>(Guessed {
+                guess: [start.careful, start.loose],
+                is_careful: start.careful || diverges(start),
+            })
+        };
+        let poor = |from: [bool; 2]| {
+            fitted.push(from);
+            Ok(())
+        };
+        let found = best_fit(guess, poor, |()| (f64::INFINITY, 1));
+        assert!(found.is_ok());
+        fitted
+    }
+
+    #[test]
+    fn a_start_by_windows_is_fitted_from_once() {
+        let [usual, careful, loose, both] =
+            [[false, false], [true, false], [false, true], [true, true]];
+        assert_eq!(fitted_from(|_| false), [usual, careful, loose, both]);
+        assert_eq!(fitted_from(|start| !start.loose), [usual, loose, both]);
+        assert_eq!(fitted_from(|_| true), [usual, loose]);
+    }
+}

@@ -54,7 +54,7 @@ struct Arguments {
     /// Only these parts of the topic (truth).
     #[arg(long = "part", value_name = "PART")]
     parts: Vec<truth::Part>,
-    /// Most records of each population (truth, logs, any-plant, plant-peers, watch, uncertainty; fleet: without the Python package): a part of the full version, which goes on from there.
+    /// Most records of each population (truth, naming, logs, any-plant, plant-peers, watch, uncertainty; fleet: without the Python package): a part of the full version, which goes on from there.
     #[arg(long, value_name = "COUNT")]
     records: Option<u64>,
     /// Also write the table into this file, with the command that printed it.
@@ -148,7 +148,7 @@ fn main() -> ExitCode {
         Topic::Generator => generator::figures(arguments.small),
         Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
         Topic::Embedded => embedded::figures(arguments.small),
-        Topic::Naming => naming::figures(arguments.small),
+        Topic::Naming => naming::figures(extent),
         Topic::Comparison => comparison::figures(arguments.small),
         Topic::Gain => gain::figures(arguments.small),
         Topic::House => house::figures(arguments.small, arguments.write),

@@ -9,6 +9,7 @@ use gyrocal_evaluation::{Characteristic, PopulationCell, Target, cell_campaign, 
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable::results;
+use crate::truth::Extent;
 
 /// Number of records of each cell in the small version.
 const SMALL_RUNS: [(PopulationCell, u64); 11] = [
@@ -26,21 +27,17 @@ const SMALL_RUNS: [(PopulationCell, u64); 11] = [
 ];
 
 /// All figures of the topic.
-pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let small = extent.small;
     let mut figures = Vec::new();
     for (cell, few) in SMALL_RUNS {
-        let report = if small {
-            let seeds = 0..few;
-            let outcome = cell_campaign(cell, seeds.clone(), &[])
-                .run(|seed| cell.evaluate(seed, &[]), |_| ())?;
-            cell_report(cell, &outcome, &seeds)
-        } else {
-            let seeds = 0..cell.full_runs();
-            let outcome = cell_campaign(cell, seeds.clone(), &[])
-                .results(results("naming", &cell.name())?)
-                .run(|seed| cell.evaluate(seed, &[]), |_| ())?;
-            cell_report(cell, &outcome, &seeds)
-        };
+        let seeds = 0..extent.records(cell.full_runs(), few);
+        let mut campaign = cell_campaign(cell, seeds.clone(), &[]);
+        if !small {
+            campaign = campaign.results(results("naming", &cell.name())?);
+        }
+        let outcome = campaign.run(|seed| cell.evaluate(seed, &[]), |_| ())?;
+        let report = cell_report(cell, &outcome, &seeds);
         let all = report.characteristics.iter();
         figures.extend(all.map(|characteristic| figure(&report.title, characteristic)));
     }

@@ -45,10 +45,7 @@ impl Budget {
         let pass = now.saturating_sub(before);
         self.pass.set(pass);
         if pass > 0 {
-            let further = on_record.saturating_sub(FREE_BEFORE.saturating_mul(pass));
-            let shortened = further.min(LONGEST_BEFORE.saturating_mul(pass));
-            let own = PASSES.saturating_mul(pass).saturating_sub(shortened);
-            self.end.set(now.saturating_add(own));
+            self.end.set(now.saturating_add(own(pass, on_record)));
         }
     }
 
@@ -67,5 +64,28 @@ impl Budget {
     /// Whether the budget has ended something.
     pub(crate) fn is_cut(&self) -> bool {
         self.is_cut.get()
+    }
+}
+
+/// Work that a search may do after one pass with all signatures, of which `pass` is the work; `on_record` was
+/// done before it.
+fn own(pass: u64, on_record: u64) -> u64 {
+    let counted = on_record.saturating_sub(FREE_BEFORE.saturating_mul(pass));
+    let shortened = counted.min(LONGEST_BEFORE.saturating_mul(pass));
+    PASSES.saturating_mul(pass).saturating_sub(shortened)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FREE_BEFORE, LONGEST_BEFORE, PASSES, own};
+
+    #[test]
+    fn long_fits_before_a_search_shorten_it_to_a_limit() {
+        let pass = 1000;
+        assert_eq!(own(pass, 0), PASSES * pass);
+        assert_eq!(own(pass, FREE_BEFORE * pass), PASSES * pass);
+        assert_eq!(own(pass, (FREE_BEFORE + 5) * pass), (PASSES - 5) * pass);
+        let shortest = (PASSES - LONGEST_BEFORE) * pass;
+        assert_eq!(own(pass, u64::MAX), shortest);
     }
 }
