@@ -9,15 +9,18 @@ use core::cell::Cell;
 use crate::model::FittedModel;
 
 /// Work of a search over that of one pass with all its signatures. A whole diagnosis of a sound record takes
-/// less than five passes. The search of one with a cause beside walks would take fifty in the median. A
-/// hostile record is to take at most twenty times the work of a sound one, which `cargo figures truth`
-/// measures.
-const PASSES: u64 = 36;
+/// less than six passes. The search of one with causes of a hundred standard deviations beside walks would
+/// take sixty in the median. A hostile record is to take at most twenty times the work of a sound one, which
+/// `cargo figures truth` measures.
+const PASSES: u64 = 46;
 
 /// Work before a search that counts for nothing: that of the first fits of nearly every record. What is more
-/// shortens the search, by `LONGEST_BEFORE` at most.
+/// shortens the search, by `LONGEST_BEFORE` at most: it is long where no model fits.
 const FREE_BEFORE: u64 = 4;
-const LONGEST_BEFORE: u64 = 12;
+const LONGEST_BEFORE: u64 = 24;
+
+/// Work after the end of a search within which what stands in the sets is still fitted.
+const GRACE: u64 = 8;
 
 /// What a search may still do.
 #[derive(Clone, Debug)]
@@ -25,6 +28,8 @@ pub(crate) struct Budget {
     /// Work at which it is spent, in the unit of [`FittedModel::work`].
     end: Cell<u64>,
     is_cut: Cell<bool>,
+    /// Whether it has ended a selection of effects.
+    has_ended_selection: Cell<bool>,
     /// Work of one pass with all signatures.
     pass: Cell<u64>,
 }
@@ -34,6 +39,7 @@ impl Budget {
         Self {
             end: Cell::new(u64::MAX),
             is_cut: Cell::new(false),
+            has_ended_selection: Cell::new(false),
             pass: Cell::new(0),
         }
     }
@@ -54,6 +60,25 @@ impl Budget {
         let is_spent = fitted.work() > self.end.get();
         self.is_cut.set(self.is_cut.get() || is_spent);
         is_spent
+    }
+
+    /// The same of a selection of effects, which then ends before it is complete.
+    pub(crate) fn ends_selection<F: FittedModel>(&self, fitted: &F) -> bool {
+        let is_spent = self.is_spent(fitted);
+        let has_ended = self.has_ended_selection.get() || is_spent;
+        self.has_ended_selection.set(has_ended);
+        is_spent
+    }
+
+    /// Whether a selection of effects was ended: there may be more to be named.
+    pub(crate) fn has_ended_selection(&self) -> bool {
+        self.has_ended_selection.get()
+    }
+
+    /// Whether not even what stands in the sets may be fitted.
+    pub(crate) fn is_exhausted<F: FittedModel>(&self, fitted: &F) -> bool {
+        let grace = GRACE.saturating_mul(self.pass.get());
+        fitted.work() > self.end.get().saturating_add(grace)
     }
 
     /// Work of one pass with all signatures.

@@ -13,6 +13,7 @@ use crate::rate_noise::degrees_of_freedom;
 use crate::score::{Best, NESTED_MODEL_CHI2, Ranked, Scores};
 use crate::state::{SearchState, stage};
 use crate::unmodelled;
+use crate::walk_candidates::BESIDE_WALKS;
 
 /// Result of the first detection test.
 #[derive(Clone, Default)]
@@ -31,20 +32,43 @@ const WORTH_FITTING_BESIDE_WALKS: f64 = 0.5;
 
 /// Model that effects are added to.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Beside {
+pub(crate) enum Beside<'r> {
     /// White noise, and `most` effects at most.
-    WhiteNoise { walks: Option<Walking>, most: usize },
+    WhiteNoise {
+        walks: Option<Walking<'r>>,
+        most: usize,
+    },
     /// Random walks: an effect must gain so much more than the threshold, with the walks estimated with
     /// and without it.
     Walks { margin: f64 },
 }
 
+impl Beside<'_> {
+    /// Takes walks beside these effects into account, if the selection pauses for walks.
+    fn add_walks_beside<F: FittedModel>(&mut self, state: &SearchState<F>, threshold: f64) {
+        let Beside::WhiteNoise {
+            walks: Some(Walking::Alone { best, rates }),
+            ..
+        } = self
+        else {
+            return;
+        };
+        // Walks that cannot be fitted are no better.
+        let Ok(walking) = state.stage.fitted.fit_rate_noise(rates, &[]) else {
+            return;
+        };
+        let penalties = state.penalties(threshold, BESIDE_WALKS, 0);
+        *best = best.max(walking.log_likelihood - 0.5 * penalties);
+    }
+}
+
 /// Log-likelihood of a model with walks, less half the penalties of its effects, that effects in white noise
 /// are held against.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Walking {
-    /// Of walks without effects. The selection pauses where they are better than effects.
-    Alone(f64),
+pub(crate) enum Walking<'r> {
+    /// Of walks without effects. The selection pauses where these, or walks beside its first effects, are
+    /// better than its effects.
+    Alone { best: f64, rates: &'r [usize] },
     /// Of the model with walks that is compared in the end. Effects are given up where it is so much better
     /// that they would lose even if gains went on to fall only as fast as the last two have.
     Best(f64),
@@ -55,7 +79,7 @@ pub(crate) enum Walking {
 pub(crate) enum Ended {
     /// No further effect is to be added.
     Complete,
-    /// Walks alone are better than the effects so far.
+    /// Walks, alone or beside some of the effects, are better than the effects so far.
     BehindWalks,
 }
 
@@ -80,7 +104,7 @@ impl<F> Selected<F> {
 pub(crate) fn forward<F: FittedModel>(
     context: &SearchContext<'_>,
     mut state: SearchState<F>,
-    beside: Beside,
+    mut beside: Beside<'_>,
     draws: &mut GaussianDraws,
 ) -> Result<Selected<F>, F::Error> {
     let mut first: Option<FirstRound> = None;
@@ -104,7 +128,7 @@ pub(crate) fn forward<F: FittedModel>(
             ranking: scores.ranking(&hypotheses),
             threshold,
         });
-        if context.budget.is_spent(&state.stage.fitted) {
+        if context.budget.ends_selection(&state.stage.fitted) {
             return Ok(Selected::new(state, first, Ended::Complete));
         }
         let share = if margin.is_some() {
@@ -151,6 +175,7 @@ pub(crate) fn forward<F: FittedModel>(
         if let Some(ended) = against_walks(&state, &gains, threshold, beside) {
             return Ok(Selected::new(state, first, ended));
         }
+        beside.add_walks_beside(&state, threshold);
     }
 }
 
@@ -168,7 +193,7 @@ fn against_walks<F>(
     state: &SearchState<F>,
     gains: &[f64],
     threshold: f64,
-    beside: Beside,
+    beside: Beside<'_>,
 ) -> Option<Ended> {
     let Beside::WhiteNoise {
         walks: Some(walks),
@@ -180,7 +205,7 @@ fn against_walks<F>(
     let (last, before) = gains.split_last()?;
     let own = state.penalised(threshold, 0.0, 1);
     let best = match walks {
-        Walking::Alone(alone) => return (own < alone).then_some(Ended::BehindWalks),
+        Walking::Alone { best, .. } => return (own < best).then_some(Ended::BehindWalks),
         Walking::Best(best) => best,
     };
     let fall = before.last().map_or(1.0, |before| (last / before).min(1.0));
@@ -200,7 +225,7 @@ fn try_effect<F: FittedModel>(
     state: &mut SearchState<F>,
     (best, shape): (Best, Option<f64>),
     (null, threshold): (&NullDistribution, f64),
-    beside: Beside,
+    beside: Beside<'_>,
 ) -> Outcome {
     let penalty = best.searched + null.penalties[best.hypothesis];
     let before = state.clone();

@@ -135,7 +135,7 @@ pub(crate) fn add_none_of_these<F: FittedModel>(
     walks: &mut [Finding],
 ) -> Result<(), F::Error> {
     // One set of columns is always paid for, but not beside what a search had only begun to find.
-    if effects.is_empty() && walks.is_empty() || context.budget.is_cut() {
+    if effects.is_empty() && walks.is_empty() || context.budget.has_ended_selection() {
         return Ok(());
     }
     let beside = RichAlternative::new(&stage.fitted, &context.rows)?.ln_evidence();

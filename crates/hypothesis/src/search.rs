@@ -182,12 +182,16 @@ fn in_white_noise<F: FittedModel>(
         walks,
         most: MOST_EFFECTS,
     };
+    let at_first = candidates.map(|candidates| Walking::Alone {
+        best: candidates.log_likelihood(),
+        rates: &candidates.rates,
+    });
     let state = SearchState::new(nominal.clone());
     let Selected {
         state,
         first,
         ended,
-    } = forward(context, state, beside(alone.map(Walking::Alone)), draws)?;
+    } = forward(context, state, beside(at_first), draws)?;
     let is_behind = ended == Ended::BehindWalks;
     let Some(candidates) = candidates.filter(|_| is_behind) else {
         return Ok(InWhiteNoise {

@@ -7,6 +7,7 @@
 use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::value_places;
+use crate::bank::NominalEstimate;
 use crate::context::SearchContext;
 use crate::finding::{Alternative, EffectEstimate, Finding};
 use crate::fitted_stage::FittedStage;
@@ -98,7 +99,8 @@ pub(crate) fn compare<F: FittedModel>(
     let weakest = least_advantage(context, candidates, &state)
         .filter(|(_, advantage)| *advantage <= CLEAR_ADVANTAGE)
         .map(|(index, _)| index);
-    if alone > WALK_SET_DEVIANCE && p_beside >= probability && weakest.is_none() {
+    let is_clear = alone > WALK_SET_DEVIANCE && weakest.is_none();
+    if is_clear && p_beside >= probability && walking_state.is_none() {
         return Ok(only(state));
     }
     let best = best_walking(&model, nominal, (&state, walking_state), weakest, draws);
@@ -244,17 +246,27 @@ fn uncompared_rivals<F: FittedModel>(
         }
         let mut others = state.accepted.clone();
         let own = others.remove(index).hypothesis;
-        let without = context.fitted(&state.stage.fitted, &others, &state.unmodelled);
-        let walking = without.and_then(|fitted| fitted.with_rate_noise(&noise));
+        let nominal = match context.budget.is_exhausted(&state.stage.fitted) {
+            true => None,
+            false => {
+                let without = context.fitted(&state.stage.fitted, &others, &state.unmodelled);
+                let walking = without.and_then(|fitted| fitted.with_rate_noise(&noise));
+                Some(NominalEstimate::of(&walking.ok()?))
+            }
+        };
         let rate = context.set.hypotheses[own].effect.rate();
         let walks = candidates.effects.iter().filter(|walk| match rate {
             Some(rate) => walk.rate() == Some(rate),
             None => true,
         });
         let deficit = 0.5 * (lost - BESIDE_WALKS).max(0.0);
-        let walks = walks.map(|walk| walk.id);
+        let walks = walks.map(|walk| Alternative {
+            effect: walk.id,
+            log_likelihood_deficit: deficit,
+            nominal: nominal.clone(),
+        });
         Some(Rival {
-            alternatives: alternatives(walks, deficit, &walking.ok()?),
+            alternatives: walks.collect(),
             of: vec![own],
         })
     };

@@ -46,7 +46,7 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
         if !result.search_complete {
             screen.fact(
                 "search",
-                "ended at its budget of work: the record contradicts the model in more ways",
+                "ended at its budget of work: there may be more to find, or other names for it",
             );
         }
     }

@@ -77,9 +77,10 @@ pub(super) fn verdict(result: &DiagnosisResult) -> String {
 /// The caveat on a search that ended at its budget of work.
 pub(super) fn unfinished(result: &DiagnosisResult) -> Option<String> {
     (!result.search_complete).then(|| {
-        "The search ended at its budget of work: the record contradicts the model in more ways than \
-         these effects explain. Names, sizes and coefficients are what was found until then. Look at \
-         the residuals (--figures), mend the largest fault, and record again."
+        "The search ended at its budget of work: there may be more in the record than these effects, and \
+         effects that they were not compared with. Names, sizes and coefficients are what was found until \
+         then. Look at the residuals (--figures); if they are not white, mend the largest fault, and record \
+         again."
             .to_owned()
     })
 }

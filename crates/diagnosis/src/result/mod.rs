@@ -117,8 +117,8 @@ pub struct DiagnosisResult {
     pub allan: Option<AllanTest>,
     /// Effects that were not tested, and those that so short a record could not show.
     pub not_searched: Vec<NotTested>,
-    /// Whether the search ended by itself, and not at its budget of work: then the record contradicts
-    /// the model in more ways than the findings say.
+    /// Whether the search ended by itself, and not at its budget of work: then there may be more in the
+    /// record than the findings, and effects that they were not compared with.
     #[serde(default = "is_complete")]
     pub search_complete: bool,
     /// Consistency test of another filter, if one was asked for.

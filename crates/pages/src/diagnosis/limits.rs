@@ -129,8 +129,8 @@ pub(super) fn next_run(result: &DiagnosisResult) -> Section {
     }
     if !result.search_complete {
         items.push(Item::Text(
-            "The search ended at its budget of work: the record contradicts the model in more ways than \
-             the effects found explain."
+            "The search ended at its budget of work: there may be more in the record than the effects found, \
+             and effects that they were not compared with."
                 .to_owned(),
         ));
     }
