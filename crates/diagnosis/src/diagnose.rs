@@ -284,10 +284,7 @@ fn concluded<'e, 'a: 'e>(
         .accel_ratio
         .map(|ratio| ratio * bench.accel_noise_g);
     let selection = selection(record, bench, options);
-    let search = SearchOptions {
-        work_before: work,
-        ..search_options(options, &shares)
-    };
+    let search = search_options(options, &shares, work);
     watch(Stage::Search);
     let rows = audited.nominal.rows(record);
     let searched = gyrocal_hypothesis::search(audited.nominal, rows, &selection, &search)?;
@@ -310,9 +307,8 @@ fn concluded<'e, 'a: 'e>(
     let validated = cross_validate(&nominal, &searched)?;
     let gain = model_gain(&nominal, &searched, &validated, &run, &noise_model)?;
     watch(Stage::Answer);
-    let filter = options
-        .filter
-        .map(|filter| filter_test(record, bench, filter));
+    let test = |filter| filter_test(record, bench, filter);
+    let filter = options.filter.map(test).transpose()?;
     let alpha = options.false_alarm_probability;
     let result = Evidence {
         run: &run,
@@ -332,7 +328,7 @@ fn concluded<'e, 'a: 'e>(
         allan,
         validated: &validated,
         gain,
-        filter: filter.transpose()?,
+        filter,
     }
     .answer();
     Ok(Diagnosis {
@@ -354,13 +350,18 @@ fn selection(record: &Record, bench: &Bench, options: &DiagnoseOptions) -> Selec
     request::selection(record, bench, &also)
 }
 
-fn search_options(options: &DiagnoseOptions, shares: &FalseAlarmShares) -> SearchOptions {
+/// Options of a search on a record that so much work was done on before.
+fn search_options(
+    options: &DiagnoseOptions,
+    shares: &FalseAlarmShares,
+    work_before: u64,
+) -> SearchOptions {
     SearchOptions {
         false_alarm_probability: shares.search,
         walk_probability: shares.random_walk,
         unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
         seed: options.seed,
-        work_before: 0,
+        work_before,
     }
 }
 

@@ -58,7 +58,7 @@ pub fn fit_effects(
         &options.calibration,
     )?;
     let rows = rows(run.record, audited.nominal.covariates());
-    let search = search_options(options, &shares);
+    let search = search_options(options, &shares, 0);
     let found = fit_with(audited.nominal, rows, &selection, &search)?;
     let described = found.effects.iter().zip(&selection.effects);
     Ok(FittedEffects {

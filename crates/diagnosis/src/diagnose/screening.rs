@@ -68,6 +68,6 @@ fn screen_rows(
     let selection = request::selection(run.record, run.bench, &also);
     let nominal = audited.nominal;
     let rows = rows(run.record, nominal.covariates());
-    let search = search_options(options, &shares);
+    let search = search_options(options, &shares, 0);
     Ok(screen(nominal, rows, &selection, &search)?)
 }
