@@ -63,6 +63,22 @@ fn a_term_of_the_drift_is_found_with_its_size() {
 }
 
 #[test]
+fn a_large_warm_up_beside_a_random_walk_leaves_no_effect_for_the_walk() {
+    let found = diagnosed(Scenario {
+        seed: 3,
+        duration_s: 3.0 * 86_400.0,
+        hidden: vec![
+            Hidden::new("gyro_x.warmup", &[("size", 0.03), ("time_constant_h", 4.0)]).unwrap(),
+            Hidden::new("gyro_z.random_walk", &[("size", 5e-4)]).unwrap(),
+        ],
+        ..Scenario::default()
+    });
+    let names: Vec<&str> = found.causes().map(|cause| cause.effect.as_str()).collect();
+    assert_eq!(names, ["gyro_x.warmup", "gyro_z.random_walk"]);
+    assert!(!found.is_unexplained(), "{}", found.remainder.description);
+}
+
+#[test]
 fn a_step_is_found_with_its_onset() {
     let found = only_finding("gyro_x.step", &[("size", 0.01), ("onset_s", 90_000.0)]);
     assert_eq!(found[1].0, "onset_s");
