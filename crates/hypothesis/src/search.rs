@@ -169,8 +169,8 @@ struct InWhiteNoise<F> {
     best_walking: Option<SearchState<F>>,
 }
 
-/// Forward selection in white noise, held against the best model with walks as soon as walks alone are better
-/// than its effects.
+/// Forward selection in white noise, held against the best model with walks as soon as walks, alone or
+/// beside some of its effects, are better.
 fn in_white_noise<F: FittedModel>(
     context: &SearchContext<'_>,
     candidates: Option<&Candidates>,
