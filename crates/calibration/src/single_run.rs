@@ -11,6 +11,7 @@ use crate::layout::Layout;
 use crate::options::Options;
 use crate::problem::{Problem, RunProblem};
 use crate::run::{Run, WeightedRows};
+use crate::solve::MAX_PASSES;
 use crate::uncertainty::Uncertainty;
 use gyrocal_hypothesis::ExtraColumns;
 
@@ -19,9 +20,6 @@ pub(crate) const DIVERGED_NIS: f64 = 10.0;
 
 /// Rows of the first window of [`windowed_trajectory`].
 const FIRST_WINDOW: usize = 16;
-
-/// Most passes over a window: one that is no solution by then hardly leads to the next.
-const WINDOW_PASSES: usize = 20;
 
 /// The first rows of a run with their noise, prior, trajectory and unknowns.
 pub(crate) fn run_problem<'a, I: ChartInputs<f64>>(
@@ -119,7 +117,7 @@ pub(crate) fn windowed_trajectory(
         let mut problem =
             single_run_problem(run, rows, settings, &hypothesis.prior, &start, options);
         // After a window that does not converge the next one, with more rows, starts as it did.
-        if let Ok(solution) = problem.solve(WINDOW_PASSES)
+        if let Ok(solution) = problem.solve(MAX_PASSES)
             && let Some(uncertainty) = Uncertainty::new(&problem.unknowns, &solution)
         {
             attitude.orientation = problem.runs[0].points[0];

@@ -12,7 +12,7 @@ use crate::model::FittedModel;
 /// less than six passes. The search of one with causes of a hundred standard deviations beside walks would
 /// take sixty in the median. A hostile record is to take at most twenty times the work of a sound one, which
 /// `cargo figures truth` measures.
-const PASSES: u64 = 46;
+const PASSES: u64 = 44;
 
 /// Work before a search that counts for nothing: that of the first fits of nearly every record. What is more
 /// shortens the search, by `LONGEST_BEFORE` at most: it is long where no model fits.
