@@ -62,20 +62,82 @@ fn a_term_of_the_drift_is_found_with_its_size() {
     assert!((estimate - 0.01).abs() < 4.0 * sigma.unwrap());
 }
 
+/// The causes named in three days of a platform at an attitude of its own, with effects hidden.
+fn causes_at(
+    (seed, latitude_deg, angles_deg): (u64, f64, [f64; 3]),
+    gyro_noise_deg_per_h: f64,
+    hidden: &[(&str, &[(&str, f64)])],
+) -> Vec<String> {
+    let hidden = hidden.iter();
+    let simulation = simulate(&Scenario {
+        seed,
+        latitude_deg,
+        initial: InitialAttitude::AnglesDeg(angles_deg),
+        initial_angles_sigma_deg: [0.01; 3],
+        coefficients: Coefficients {
+            bias_deg_per_h: [0.31, -0.22, 0.113],
+            g_deg_per_h_per_g: [-0.16, 0.114, 0.187],
+            gg_deg_per_h_per_g2: [0.021, -0.048, 0.033],
+        },
+        accel_noise_g: 1e-5,
+        gyro_noise_deg_per_h,
+        duration_s: 3.0 * 86_400.0,
+        interval_s: 60.0,
+        hidden: hidden
+            .map(|(effect, parameters)| Hidden::new(effect, parameters).unwrap())
+            .collect(),
+        ..Scenario::default()
+    })
+    .unwrap();
+    let options = DiagnoseOptions::default();
+    let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap();
+    let causes = found.result.causes();
+    causes.map(|cause| cause.effect.clone()).collect()
+}
+
+/// Walks are compared with effects also where the effects took the whole budget of the search.
 #[test]
 fn a_large_warm_up_beside_a_random_walk_leaves_no_effect_for_the_walk() {
-    let found = diagnosed(Scenario {
-        seed: 3,
-        duration_s: 3.0 * 86_400.0,
-        hidden: vec![
-            Hidden::new("gyro_x.warmup", &[("size", 0.03), ("time_constant_h", 4.0)]).unwrap(),
-            Hidden::new("gyro_z.random_walk", &[("size", 5e-4)]).unwrap(),
+    let warm_up: &[_] = &[("size", 0.03), ("time_constant_h", 4.0)];
+    let causes = causes_at(
+        (3, 47.3, [20.0, 35.0, -70.0]),
+        0.002,
+        &[
+            ("gyro_x.warmup", warm_up),
+            ("gyro_z.random_walk", &[("size", 5e-4)]),
         ],
-        ..Scenario::default()
-    });
-    let names: Vec<&str> = found.causes().map(|cause| cause.effect.as_str()).collect();
-    assert_eq!(names, ["gyro_x.warmup", "gyro_z.random_walk"]);
-    assert!(!found.is_unexplained(), "{}", found.remainder.description);
+    );
+    assert_eq!(causes, ["gyro_x.warmup", "gyro_z.random_walk"]);
+}
+
+/// A large effect does not hide that walks beside it are better than further effects.
+#[test]
+fn walks_beside_a_large_bias_leave_no_effect_of_the_gyros() {
+    let causes = causes_at(
+        (221, 42.731_315_749_786_745, [-82.0, -50.0, 45.2]),
+        0.003_600_550_348_248_304_4,
+        &[
+            ("accel_x.bias", &[("size", 9.749_410_764_819_277e-5)]),
+            ("gyro_x.random_walk", &[("size", 6.736_687_199_369_466e-4)]),
+            ("gyro_y.random_walk", &[("size", 6.043_858_104_436_561e-4)]),
+            (
+                "gyro_z.random_walk",
+                &[("size", 1.109_993_492_993_095_2e-4)],
+            ),
+        ],
+    );
+    let walks = [
+        "gyro_x.random_walk",
+        "gyro_y.random_walk",
+        "gyro_z.random_walk",
+    ];
+    assert!(
+        causes.iter().any(|cause| cause == "accel_x.bias"),
+        "{causes:?}"
+    );
+    let others = causes.iter().filter(|cause| *cause != "accel_x.bias");
+    let mut others = others.filter(|cause| !walks.contains(&cause.as_str()));
+    assert_eq!(others.next(), None, "{causes:?}");
 }
 
 #[test]
