@@ -5,6 +5,7 @@ use gyrocal_scalar::effect::Enters;
 use crate::column::Column;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
+use crate::null_distribution::DETECTION_PENALTY_FRACTION;
 
 /// An effect in the model.
 #[derive(Clone, Debug)]
@@ -16,6 +17,13 @@ pub(crate) struct Accepted {
     pub(crate) searched: f64,
     /// The whole search penalty.
     pub(crate) penalty: f64,
+}
+
+impl Accepted {
+    /// The part of its search penalty that the detection test subtracts.
+    pub(crate) fn detection_penalty(&self) -> f64 {
+        DETECTION_PENALTY_FRACTION * (self.penalty - self.searched) + self.searched
+    }
 }
 
 /// Places of an effect among the values of a fit.

@@ -115,6 +115,7 @@ mod hypothesis;
 mod information;
 mod jump;
 mod line;
+mod merged;
 mod model;
 mod null_distribution;
 mod outside;

@@ -224,7 +224,6 @@ impl NullDistribution {
     }
 
     /// Without penalties.
-    #[cfg(test)]
     pub(crate) fn without_search(hypotheses: usize) -> Self {
         Self {
             penalties: vec![0.0; hypotheses],

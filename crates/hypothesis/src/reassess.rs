@@ -4,6 +4,7 @@
 use crate::accepted::Accepted;
 use crate::by_fits::Compared;
 use crate::context::{MOST_EFFECTS, SearchContext};
+use crate::merged::merge;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::replaced::{Replaced, replaceable};
@@ -12,8 +13,8 @@ use crate::score::Best;
 use crate::state::{SearchState, stage};
 use crate::walk_candidates::{BESIDE_WALKS, Rival};
 
-/// Swaps names and removes insignificant effects until nothing changes; the conditional result of
-/// each effect that remains.
+/// Puts one effect in the place of two where it does as well, then swaps names and removes insignificant
+/// effects until nothing changes; the conditional result of each effect that remains.
 pub(crate) fn reassess<F: FittedModel>(
     context: &SearchContext<'_>,
     state: &mut SearchState<F>,
@@ -27,6 +28,12 @@ pub(crate) fn reassess<F: FittedModel>(
         true => threshold,
         false => threshold + BESIDE_WALKS,
     };
+    // First: what stands in the set of an effect takes fits to tell.
+    while let Some(merged) = merge(context, state, least, draws)? {
+        for own in merged.pair {
+            rename(rivals, own, merged.by);
+        }
+    }
     let mut replaced: Vec<Replaced> = Vec::new();
     let mut can_remove = true;
     loop {
@@ -59,10 +66,7 @@ pub(crate) fn reassess<F: FittedModel>(
             // An effect stays if its successor cannot be fitted.
             let own = state.accepted[index].hypothesis;
             if swap(context, state, index, &other).is_ok() {
-                let of = rivals.iter_mut().flat_map(|rival| &mut rival.of);
-                for of in of.filter(|of| **of == own) {
-                    *of = other.hypothesis;
-                }
+                rename(rivals, own, other.hypothesis);
                 continue;
             }
         }
@@ -92,6 +96,14 @@ pub(crate) fn reassess<F: FittedModel>(
                 return Ok(results);
             }
         }
+    }
+}
+
+/// Makes the rivals of one effect those of another one that is in its place.
+fn rename(rivals: &mut [Rival], own: usize, other: usize) {
+    let of = rivals.iter_mut().flat_map(|rival| &mut rival.of);
+    for of in of.filter(|of| **of == own) {
+        *of = other;
     }
 }
 

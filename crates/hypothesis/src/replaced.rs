@@ -6,7 +6,6 @@ use crate::accepted::value_places;
 use crate::context::SearchContext;
 use crate::finding::Alternative;
 use crate::model::FittedModel;
-use crate::null_distribution::DETECTION_PENALTY_FRACTION;
 use crate::state::{SearchState, stage};
 
 /// Correlation of the errors of two sizes beyond which one effect may do the work of both: the part of one
@@ -73,8 +72,7 @@ pub(crate) fn replaceable<F: FittedModel>(
         };
         without.stage = fitted;
         let gained = 2.0 * (state.stage.noise.log_likelihood - without.stage.noise.log_likelihood);
-        let detection = DETECTION_PENALTY_FRACTION * (own.penalty - own.searched) + own.searched;
-        let tested = gained - detection;
+        let tested = gained - own.detection_penalty();
         if tested <= threshold && least.as_ref().is_none_or(|(most, ..)| tested < *most) {
             let found = Replaced {
                 effect: context.set.hypotheses[own.hypothesis].id(),

@@ -72,7 +72,7 @@ fn evaluate_with<F: FittedModel>(
     let own = &accepted[index];
     let places = &stage.places[index];
     let bank = stage.products.bank(&places.values)?;
-    let hypotheses = unmasked(set, accepted, index, places);
+    let hypotheses = unmasked(set, accepted, &[index], &stage.places);
     let null = NullDistribution::draw(&bank, &hypotheses, draws);
     let mut scores = Scores::of(&bank, &hypotheses, &null, None);
     scores.refine(&stage.fitted, context, &hypotheses, &places.values)?;
@@ -131,18 +131,18 @@ fn evaluate_with<F: FittedModel>(
     })
 }
 
-/// The hypotheses that are compared with an accepted one: all but the other accepted ones and their
-/// equivalents.
-fn unmasked(
+/// The hypotheses that are compared with some `own` of the accepted ones: all but the other accepted ones
+/// and their equivalents. The last variant of each of its own is that of the fit.
+pub(crate) fn unmasked(
     set: &HypothesisSet,
     accepted: &[Accepted],
-    index: usize,
-    places: &EffectPlaces,
+    own: &[usize],
+    places: &[EffectPlaces],
 ) -> Vec<Hypothesis> {
     let others: Vec<usize> = accepted
         .iter()
         .enumerate()
-        .filter(|(other, _)| *other != index)
+        .filter(|(other, _)| !own.contains(other))
         .map(|(_, accepted)| accepted.hypothesis)
         .collect();
     let all = set.hypotheses.iter().enumerate();
@@ -151,19 +151,21 @@ fn unmasked(
             content.masked(others.contains(&one) || set.is_equivalent(one, &others))
         })
         .collect();
-    if let Some(columns) = &places.jump {
-        hypotheses[accepted[index].hypothesis].variants = vec![Variant {
-            columns: columns.clone(),
-            shape: None,
-        }];
-    }
-    if let Some(columns) = &places.shaped {
-        hypotheses[accepted[index].hypothesis]
-            .variants
-            .push(Variant {
+    for index in own {
+        let (accepted, places) = (&accepted[*index], &places[*index]);
+        let variants = &mut hypotheses[accepted.hypothesis].variants;
+        if let Some(columns) = &places.jump {
+            *variants = vec![Variant {
                 columns: columns.clone(),
-                shape: accepted[index].shape,
+                shape: None,
+            }];
+        }
+        if let Some(columns) = &places.shaped {
+            variants.push(Variant {
+                columns: columns.clone(),
+                shape: accepted.shape,
             });
+        }
     }
     hypotheses
 }

@@ -16,7 +16,7 @@ pub const NESTED_MODEL_CHI2: f64 = 3.84;
 
 /// Share of the largest statistic above which a hypothesis is refined: midway between two variants of
 /// a grid an effect has at least this share of its statistic.
-const NEAR_LARGEST: f64 = 0.8;
+pub(crate) const NEAR_LARGEST: f64 = 0.8;
 
 /// One hypothesis in the first round of the search.
 #[derive(Clone, Debug, PartialEq)]
