@@ -140,6 +140,19 @@ fn walks_beside_a_large_bias_leave_no_effect_of_the_gyros() {
     assert_eq!(others.next(), None, "{causes:?}");
 }
 
+/// A warm-up of an hour acts like those of two other gyros, or of one and another first attitude: the
+/// selection takes these, since about the nominal model each alone gains more.
+#[test]
+fn a_short_warm_up_is_not_shared_out_among_others() {
+    let warm_up: &[_] = &[("size", 0.0293), ("time_constant_h", 1.35)];
+    let causes = causes_at(
+        (325, 66.0, [170.6, 26.6, -153.3]),
+        0.002,
+        &[("gyro_z.warmup", warm_up)],
+    );
+    assert_eq!(causes, ["gyro_z.warmup"]);
+}
+
 #[test]
 fn a_step_is_found_with_its_onset() {
     let found = only_finding("gyro_x.step", &[("size", 0.01), ("onset_s", 90_000.0)]);
