@@ -56,8 +56,9 @@
 //!
 //! given the other effects. Where the model asks for it ([`FittedModel::sets_need_fits`]), l_b of the nearest
 //! rivals is that of a fit with b in the place of a, and of two effects whose sizes are hardly told apart one
-//! is taken out if the other, fitted anew, explains as much; it stays in the set. [`CONFIDENCE_SET_DEVIANCE`] is calibrated by simulation. An effect gives way
-//! to one that is nested in it unless it is better by the 5 % point of χ²(1), [`NESTED_MODEL_CHI2`].
+//! is taken out if the other, fitted anew, explains as much; it stays in the set. One effect takes the place
+//! of any two if both together are not detected beside it. [`CONFIDENCE_SET_DEVIANCE`] is calibrated by
+//! simulation. An effect gives way to one that is nested in it unless it is better by the 5 % point of χ²(1), [`NESTED_MODEL_CHI2`].
 //!
 //! # Noise and random walks
 //!
