@@ -2,11 +2,10 @@
 //!
 //! A record that contradicts the model in more ways than the catalogue has names for makes every fit
 //! long, and every round of a search finds something. A search may therefore do only so much work, in
-//! passes over the record, and says what it had found when it ended.
+//! passes over the record, and says what it had found when it ended. Work is in the unit of
+//! [`FittedModel::work`](crate::FittedModel::work).
 
 use core::cell::Cell;
-
-use crate::model::FittedModel;
 
 /// Work of a search over that of one pass with all its signatures. A whole diagnosis of a sound record takes
 /// less than six passes. The search of one with causes of a hundred standard deviations beside walks would
@@ -19,7 +18,8 @@ const PASSES: u64 = 44;
 const FREE_BEFORE: u64 = 4;
 const LONGEST_BEFORE: u64 = 24;
 
-/// Work after the end of a search within which what stands in the sets is still fitted.
+/// Work after the end of a search within which what stands in the sets is still fitted, and one effect is
+/// tried in the place of two.
 const GRACE: u64 = 8;
 
 /// What a search may still do.
@@ -44,10 +44,9 @@ impl Budget {
         }
     }
 
-    /// Sets the end: `before` was the work done before the pass of the first stage, of which `fitted` is the
-    /// model, and `on_record` so much of it on this record.
-    pub(crate) fn start<F: FittedModel>(&self, (before, on_record): (u64, u64), fitted: &F) {
-        let now = fitted.work();
+    /// Sets the end, the pass of the first stage being done: `before` was the work until then, `on_record` so
+    /// much of it on this record, and `now` is the work with that pass.
+    pub(crate) fn start(&self, (before, on_record): (u64, u64), now: u64) {
         let pass = now.saturating_sub(before);
         self.pass.set(pass);
         if pass > 0 {
@@ -55,16 +54,16 @@ impl Budget {
         }
     }
 
-    /// Whether nothing more may be looked for. The search is then cut.
-    pub(crate) fn is_spent<F: FittedModel>(&self, fitted: &F) -> bool {
-        let is_spent = fitted.work() > self.end.get();
+    /// Whether nothing more may be looked for after this `work`. The search is then cut.
+    pub(crate) fn is_spent(&self, work: u64) -> bool {
+        let is_spent = work > self.end.get();
         self.is_cut.set(self.is_cut.get() || is_spent);
         is_spent
     }
 
     /// The same of a selection of effects, which then ends before it is complete.
-    pub(crate) fn ends_selection<F: FittedModel>(&self, fitted: &F) -> bool {
-        let is_spent = self.is_spent(fitted);
+    pub(crate) fn ends_selection(&self, work: u64) -> bool {
+        let is_spent = self.is_spent(work);
         let has_ended = self.has_ended_selection.get() || is_spent;
         self.has_ended_selection.set(has_ended);
         is_spent
@@ -75,10 +74,10 @@ impl Budget {
         self.has_ended_selection.get()
     }
 
-    /// Whether not even what stands in the sets may be fitted.
-    pub(crate) fn is_exhausted<F: FittedModel>(&self, fitted: &F) -> bool {
+    /// Whether not even what stands in the sets may be fitted, nor one effect in the place of two.
+    pub(crate) fn is_exhausted(&self, work: u64) -> bool {
         let grace = GRACE.saturating_mul(self.pass.get());
-        fitted.work() > self.end.get().saturating_add(grace)
+        work > self.end.get().saturating_add(grace)
     }
 
     /// Work of one pass with all signatures.
@@ -102,7 +101,7 @@ fn own(pass: u64, on_record: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{FREE_BEFORE, LONGEST_BEFORE, PASSES, own};
+    use super::{Budget, FREE_BEFORE, GRACE, LONGEST_BEFORE, PASSES, own};
 
     #[test]
     fn long_fits_before_a_search_shorten_it_to_a_limit() {
@@ -112,5 +111,44 @@ mod tests {
         assert_eq!(own(pass, (FREE_BEFORE + 5) * pass), (PASSES - 5) * pass);
         let shortest = (PASSES - LONGEST_BEFORE) * pass;
         assert_eq!(own(pass, u64::MAX), shortest);
+    }
+
+    /// A budget after a first pass of `PASS`, and the work at its end.
+    fn started() -> (Budget, u64) {
+        let budget = Budget::unlimited();
+        budget.start((200, 200), 200 + PASS);
+        (budget, 200 + PASS + PASSES * PASS)
+    }
+
+    const PASS: u64 = 100;
+
+    #[test]
+    fn a_search_without_a_budget_has_no_end() {
+        let budget = Budget::unlimited();
+        assert!(!budget.is_spent(u64::MAX) && !budget.is_exhausted(u64::MAX));
+        // A model that counts no work has none.
+        budget.start((0, 0), 0);
+        assert!(!budget.is_spent(u64::MAX) && !budget.is_cut());
+    }
+
+    #[test]
+    fn a_comparison_that_is_ended_cuts_the_search_and_no_selection() {
+        let (budget, end) = started();
+        assert!(!budget.is_spent(end) && !budget.is_cut());
+        assert!(budget.is_spent(end + 1) && budget.is_cut());
+        assert!(!budget.has_ended_selection());
+        assert!(!budget.ends_selection(end) && !budget.has_ended_selection());
+        assert!(budget.ends_selection(end + 1) && budget.has_ended_selection());
+        // It stays so whatever is asked later.
+        assert!(!budget.ends_selection(end) && budget.has_ended_selection());
+    }
+
+    #[test]
+    fn sets_are_fitted_for_some_passes_after_the_end() {
+        let (budget, end) = started();
+        let last = end + GRACE * PASS;
+        assert!(!budget.is_exhausted(last) && budget.is_exhausted(last + 1));
+        // To ask is no cut.
+        assert!(!budget.is_cut());
     }
 }

@@ -50,7 +50,7 @@ pub(crate) fn fit_rivals<F: FittedModel>(
     near.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut fitted: Vec<(usize, f64)> = Vec::new();
     for (other, _) in near {
-        if context.budget.is_spent(&compared.stage.fitted) {
+        if context.budget.is_spent(compared.stage.fitted.work()) {
             return;
         }
         let twin = fitted

@@ -128,7 +128,7 @@ pub(crate) fn forward<F: FittedModel>(
             ranking: scores.ranking(&hypotheses),
             threshold,
         });
-        if context.budget.ends_selection(&state.stage.fitted) {
+        if context.budget.ends_selection(state.stage.fitted.work()) {
             return Ok(Selected::new(state, first, Ended::Complete));
         }
         let share = if margin.is_some() {

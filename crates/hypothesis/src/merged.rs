@@ -33,7 +33,7 @@ pub(crate) fn merge<F: FittedModel>(
     let count = state.accepted.len();
     for first in 0..count {
         for second in first + 1..count {
-            if context.budget.is_exhausted(&state.stage.fitted) {
+            if context.budget.is_exhausted(state.stage.fitted.work()) {
                 return Ok(None);
             }
             let pair = [first, second];

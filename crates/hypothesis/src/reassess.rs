@@ -60,7 +60,7 @@ pub(crate) fn reassess<F: FittedModel>(
         }
         if let Some((index, other, _)) = better
             && swaps < MOST_EFFECTS
-            && !context.budget.is_spent(&state.stage.fitted)
+            && !context.budget.is_spent(state.stage.fitted.work())
         {
             swaps += 1;
             // An effect stays if its successor cannot be fitted.

@@ -55,7 +55,7 @@ pub(crate) fn replaceable<F: FittedModel>(
     }
     let mut least: Option<(f64, Replaced, SearchState<F>)> = None;
     for (index, by) in correlated(context, state) {
-        if context.budget.is_spent(&state.stage.fitted) {
+        if context.budget.is_spent(state.stage.fitted.work()) {
             break;
         }
         let own = &state.accepted[index];

@@ -100,7 +100,9 @@ pub fn search<F: FittedModel>(
     let before = fitted.work();
     let nominal = FittedStage::new(fitted, noise, &context.set, &context.rows, &[])?;
     let on_record = options.work_before;
-    context.budget.start((before, on_record), &nominal.fitted);
+    context
+        .budget
+        .start((before, on_record), nominal.fitted.work());
     let candidates = Candidates::new(&context, &nominal)?;
     let InWhiteNoise {
         state,

@@ -258,7 +258,7 @@ pub(crate) fn estimate_shapes<F: FittedModel>(
         let mut moved = false;
         for index in 0..accepted.len() {
             let hypothesis = &context.set.hypotheses[accepted[index].hypothesis];
-            if context.budget.is_spent(&fitted) {
+            if context.budget.is_spent(fitted.work()) {
                 break;
             }
             let Some(now) = accepted[index].shape else {

@@ -135,7 +135,7 @@ pub(crate) fn settled_with_shapes<F: FittedModel>(
         own.shape.is_some() && ShapeScale::of(hypothesis, &context.rows).is_some()
     });
     for _ in 1..ROUNDS {
-        if !(has_shape && latest.2) || context.budget.is_spent(&latest.0) {
+        if !(has_shape && latest.2) || context.budget.is_spent(latest.0.work()) {
             break;
         }
         let mut next = accepted.to_vec();

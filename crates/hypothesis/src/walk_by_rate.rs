@@ -70,7 +70,7 @@ pub(crate) fn replaced<F: FittedModel>(
             if same.any(|one| !one.is_open(&walk)) {
                 continue;
             }
-            if context.budget.is_spent(&state.stage.fitted) {
+            if context.budget.is_spent(state.stage.fitted.work()) {
                 break;
             }
             // What cannot be fitted does not stand in the place of a walk.

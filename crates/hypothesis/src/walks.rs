@@ -91,7 +91,7 @@ pub(crate) fn compare<F: FittedModel>(
     let own = state.stage.noise.log_likelihood;
     let beside = state.stage.fitted.fit_rate_noise(&candidates.rates, &[])?;
     let p_beside = candidates.p_value(2.0 * (beside.log_likelihood - own));
-    if walking_state.is_none() && context.budget.is_spent(&state.stage.fitted) {
+    if walking_state.is_none() && context.budget.is_spent(state.stage.fitted.work()) {
         return model.uncompared(state, (p_beside, &beside.noise), draws);
     }
     let penalties = state.penalties(first.threshold, 0.0, 1);
@@ -107,7 +107,7 @@ pub(crate) fn compare<F: FittedModel>(
     let Some((advantage, walking)) = best else {
         return Ok(only(state));
     };
-    if advantage > BESIDE_WALKS && context.budget.is_spent(&state.stage.fitted) {
+    if advantage > BESIDE_WALKS && context.budget.is_spent(state.stage.fitted.work()) {
         return model.uncompared(state, (p_beside, &beside.noise), draws);
     }
     if advantage > WALK_SET_DEVIANCE {
@@ -206,7 +206,7 @@ fn least_advantage<F: FittedModel>(
     candidates: &Candidates,
     state: &SearchState<F>,
 ) -> Option<(usize, f64)> {
-    if state.accepted.len() < 2 || context.budget.is_spent(&state.stage.fitted) {
+    if state.accepted.len() < 2 || context.budget.is_spent(state.stage.fitted.work()) {
         return None;
     }
     let all = (0..state.accepted.len()).filter_map(|index| {
@@ -246,7 +246,7 @@ fn uncompared_rivals<F: FittedModel>(
         }
         let mut others = state.accepted.clone();
         let own = others.remove(index).hypothesis;
-        let nominal = match context.budget.is_exhausted(&state.stage.fitted) {
+        let nominal = match context.budget.is_exhausted(state.stage.fitted.work()) {
             true => None,
             false => {
                 let without = context.fitted(&state.stage.fitted, &others, &state.unmodelled);
