@@ -31,6 +31,10 @@ const LEAST_CHANGES: usize = 3;
 /// Share of the way of gravity on one side by which a straight line may miss it.
 const CURVATURE: f64 = 0.1;
 
+/// Duration of the rows on both sides beyond which straight lines say nothing of the way of gravity, which
+/// turns by 60 degrees in it: rows are then 25 minutes apart or more.
+const LONGEST_S: f64 = 4.0 * 3600.0;
+
 /// Fewest rows on either side: one of three may be wild.
 const LEAST_SIDE: usize = 3;
 
@@ -127,8 +131,9 @@ fn jump_at(samples: &Samples<'_>, complete: &[Complete], at: usize) -> Option<Ju
         let expected = sides.before(middle_s)?;
         let found = sides.after(middle_s)?;
         let size_rad = norm(minus(found, expected));
-        let way_rad = norm(sides.slope) * (sides.after[0].time_s - sides.before[0].time_s);
-        return (size_rad > LEAST_RAD + CURVATURE * way_rad).then(|| Jump {
+        let way_rad = sides.speed_rad_per_s * sides.duration_s();
+        let is_straight = sides.duration_s() < LONGEST_S;
+        return (is_straight && size_rad > LEAST_RAD + CURVATURE * way_rad).then(|| Jump {
             at,
             size_rad,
             expected: unit(expected),
@@ -189,6 +194,8 @@ struct Sides<'a> {
     after: &'a [Complete],
     /// Median rate of change of the vertical over both, per second.
     slope: Vector,
+    /// Median of its size, which a way that bends does not shorten.
+    speed_rad_per_s: f64,
     /// Rows that are farther apart have a gap between them.
     gap_s: f64,
 }
@@ -215,12 +222,19 @@ impl<'a> Sides<'a> {
             .collect();
         let enough = before.len() >= LEAST_SIDE && after.len() >= LEAST_SIDE;
         let slope = median(&slopes).filter(|_| enough)?;
+        let mut speeds: Vec<f64> = slopes.iter().map(|slope| norm(*slope)).collect();
         Some(Self {
             before,
             after,
             slope,
+            speed_rad_per_s: upper_median(&mut speeds)?,
             gap_s,
         })
+    }
+
+    /// From the first row before to the last row after.
+    fn duration_s(&self) -> f64 {
+        self.after[self.after.len() - 1].time_s - self.before[0].time_s
     }
 
     /// The vertical at a time, from the rows before.

@@ -49,21 +49,35 @@ pub(crate) fn column_noise(time_s: &[f64], column: &[f64], declared_g: f64) -> C
     } else {
         upper_median(&mut fourth).unwrap_or(0.0) / NORMAL_MAD / FOURTH_DIFFERENCE_VARIANCE.sqrt()
     };
-    let mut steps: Vec<f64> = column
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs())
-        .filter(|step| *step > 0.0)
-        .collect();
-    let place = (ODD_SHARE * steps.len() as f64) as usize;
-    let step_g = if steps.is_empty() {
-        0.0
-    } else {
-        *steps.select_nth_unstable_by(place, f64::total_cmp).1
-    };
+    let step_g = step_g(column);
     ColumnNoise {
         sigma_g: declared_g.max(shown_g),
         step_g,
     }
+}
+
+/// Step of the converter: all differences of its values, of any order, are multiples of it. Those of the
+/// second order are small also where gravity turns by many steps between all rows of a short record. Zero of a
+/// column that does not change.
+fn step_g(column: &[f64]) -> f64 {
+    let largest = column
+        .iter()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    // Sums of values that are rounded to steps are not exact.
+    let rounding = 16.0 * f64::EPSILON * largest;
+    let first = column.windows(2).map(|v| v[1] - v[0]);
+    let second = column.windows(3).map(|v| v[2] - 2.0 * v[1] + v[0]);
+    let smallest = |differences: &mut Vec<f64>| {
+        let place = (ODD_SHARE * differences.len() as f64) as usize;
+        (!differences.is_empty())
+            .then(|| *differences.select_nth_unstable_by(place, f64::total_cmp).1)
+    };
+    let steps = |difference: f64| Some(difference.abs()).filter(|size| *size > rounding);
+    let orders = [
+        smallest(&mut first.filter_map(steps).collect()),
+        smallest(&mut second.filter_map(steps).collect()),
+    ];
+    orders.into_iter().flatten().reduce(f64::min).unwrap_or(0.0)
 }
 
 /// Noise of the accelerometers x, y, z as fourth differences of their values show it, whatever is

@@ -3,7 +3,7 @@
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::motion;
-use crate::samples::Samples;
+use crate::samples::{Complete, Samples};
 use crate::text::{row, rows, span};
 use crate::vector::{minus, norm};
 
@@ -21,7 +21,9 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     };
     let step_g = samples.noise.iter().map(|n| n.step_g).fold(0.0, f64::max);
     let moved = |time_s: f64| speed_rad_per_s * time_s * samples.rest_g > STEPS * step_g;
-    let mut runs = Vec::new();
+    let is_held =
+        |run: &[Complete]| run.len() > 1 && moved(run[run.len() - 1].time_s - run[0].time_s);
+    let (mut runs, mut short_ends): (Vec<&[Complete]>, Vec<&[Complete]>) = Default::default();
     let mut from = 0;
     for run in complete.chunk_by(|a, b| a.force_g == b.force_g) {
         let end = from + run.len();
@@ -31,13 +33,21 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
             [Some(before), Some(after)] => {
                 norm(minus(before.force_g, after.force_g)) > STEPS * step_g
             }
-            _ => run.len() >= LEAST_ROWS_AT_END,
+            _ if run.len() < LEAST_ROWS_AT_END => {
+                short_ends.push(run);
+                false
+            }
+            _ => true,
         };
-        let span_s = run[run.len() - 1].time_s - run[0].time_s;
-        if run.len() > 1 && moved(span_s) && moves_about {
+        if moves_about && is_held(run) {
             runs.push(run);
         }
         from = end;
+    }
+    // A logger that repeats rows elsewhere repeats them there too.
+    if !runs.is_empty() {
+        runs.extend(short_ends.into_iter().filter(|run| is_held(run)));
+        runs.sort_by_key(|run| run[0].row);
     }
     let Some(longest) = runs.iter().max_by_key(|run| run.len()) else {
         return Vec::new();

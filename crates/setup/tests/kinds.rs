@@ -1,7 +1,8 @@
 //! Every breakage is told by a finding of its kind, or of one that no record tells from it.
 
-use gyrocal_setup::{SetupCheck, check_setup};
-use gyrocal_testkit::broken_setups::{BREAKAGES, Breakage, Broken};
+use gyrocal_record::{Bench, Record};
+use gyrocal_setup::{SetupCheck, SetupKind, check_setup};
+use gyrocal_testkit::broken_setups::{BREAKAGES, Breakage, Broken, sound};
 
 /// First of the seeds; each breakage has its own thousand.
 const FIRST_SEED: u64 = 2_100_000;
@@ -117,4 +118,50 @@ fn what_is_mended_is_left_out_and_the_rest_stays() {
     let rows = check.findings[0].rows.clone().unwrap_or_default();
     assert_eq!(rows.end, broken.record.len());
     assert_eq!(check.usable.map_or(0, |usable| usable.len()), rows.start);
+}
+
+/// Kinds of what a check tells.
+fn kinds(record: &Record, bench: &Bench) -> Vec<SetupKind> {
+    let findings = check_setup(record, bench).findings;
+    findings.iter().map(|finding| finding.kind).collect()
+}
+
+/// Gravity turns by many steps of a converter between all rows of a short record.
+#[test]
+fn a_stuck_accelerometer_is_told_in_a_short_record() {
+    let simulation = sound(2_175_100);
+    for rows in [30, 100, 145, 300] {
+        for axis in 0..3 {
+            let mut record = Record {
+                time_s: simulation.record.time_s[..rows].to_vec(),
+                accel_g: simulation.record.accel_g[..rows].to_vec(),
+                temperature_c: None,
+            };
+            // One axis may hardly move for some hours.
+            let first = record.accel_g[0][axis];
+            let moves = record.accel_g.iter().map(|row| (row[axis] - first).abs());
+            if moves.fold(0.0, f64::max) < 0.05 {
+                continue;
+            }
+            for row in &mut record.accel_g {
+                row[axis] = first;
+            }
+            let told = kinds(&record, &simulation.bench);
+            assert_eq!(told, [SetupKind::Stuck], "{rows} rows, axis {axis}");
+        }
+    }
+}
+
+#[test]
+fn rows_that_are_all_written_twice_are_told_from_the_first_on() {
+    let mut simulation = sound(2_175_101);
+    let record = &mut simulation.record;
+    for row in (1..record.len()).step_by(2) {
+        record.accel_g[row] = record.accel_g[row - 1];
+    }
+    let check = check_setup(record, &simulation.bench);
+    let told: Vec<SetupKind> = check.findings.iter().map(|finding| finding.kind).collect();
+    assert_eq!(told, [SetupKind::Repeated]);
+    let usable = check.usable.unwrap_or_else(|| panic!("a usable record"));
+    assert!(usable.accel_g[1][0].is_nan() && !usable.accel_g[0][0].is_nan());
 }

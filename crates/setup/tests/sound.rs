@@ -86,6 +86,32 @@ fn pieces_of_a_record_are_judged_without_panic_and_without_alarm() {
     }
 }
 
+/// A record with each so-many-th row of another.
+fn thinned(record: &Record, stride: usize) -> Record {
+    Record {
+        time_s: record.time_s.iter().copied().step_by(stride).collect(),
+        accel_g: record.accel_g.iter().copied().step_by(stride).collect(),
+        temperature_c: None,
+    }
+}
+
+#[test]
+fn rows_far_apart_are_no_jumps() {
+    for seed in 2_000_910..2_000_920 {
+        let simulation = sound(seed);
+        let interval_s = simulation.record.time_s[1] - simulation.record.time_s[0];
+        for minutes in [20.0, 36.0, 45.0, 60.0, 90.0, 120.0] {
+            let stride = (60.0 * minutes / interval_s) as usize;
+            let check = check_setup(&thinned(&simulation.record, stride), &simulation.bench);
+            let jumps = check
+                .findings
+                .iter()
+                .find(|found| found.kind == SetupKind::Jump);
+            assert!(jumps.is_none(), "{seed}, {minutes} min: {jumps:?}");
+        }
+    }
+}
+
 #[test]
 fn random_damage_makes_no_panic() {
     let simulation = sound(2_000_901);
