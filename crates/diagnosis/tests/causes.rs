@@ -153,6 +153,24 @@ fn a_short_warm_up_is_not_shared_out_among_others() {
     assert_eq!(causes, ["gyro_z.warmup"]);
 }
 
+/// Before both are in the model a curve over a force does the work of two large errors of accelerometers.
+#[test]
+fn two_errors_of_accelerometers_are_no_curve() {
+    let size: &[_] = &[("size", 1e-4)];
+    for (seed, effects) in [
+        (4, ["accel_x.scale", "accel_y.bias"]),
+        (8, ["accel_xy.nonorthogonality", "accel_y.scale"]),
+    ] {
+        let mut causes = causes_at(
+            (seed, 48.2, [12.0, -25.0, 40.0]),
+            0.002,
+            &effects.map(|effect| (effect, size)),
+        );
+        causes.sort();
+        assert_eq!(causes, effects, "seed {seed}");
+    }
+}
+
 #[test]
 fn a_step_is_found_with_its_onset() {
     let found = only_finding("gyro_x.step", &[("size", 0.01), ("onset_s", 90_000.0)]);

@@ -1,7 +1,7 @@
 //! The score bank: scores and information of all signatures, with the fitted unknowns projected out
 //! (equations (1) and (2) of the crate).
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 use crate::column::Column;
 use crate::error::Singular;
@@ -238,6 +238,25 @@ impl ScoreBank {
             }),
             DVector::from_fn(count, |i, _| self.score[columns[i]]),
         )
+    }
+
+    /// Chi-square that some columns explain together, whether or not they can be told apart.
+    pub(crate) fn explained(&self, columns: &[usize]) -> f64 {
+        let seen = columns
+            .iter()
+            .copied()
+            .filter(|column| self.visible(*column));
+        let seen: Vec<usize> = seen.collect();
+        let (information, score) = self.part(&seen);
+        let scale = information.diagonal().map(|own| own.sqrt().recip());
+        let scaled = DMatrix::from_fn(seen.len(), seen.len(), |i, j| {
+            information[(i, j)] * scale[i] * scale[j]
+        });
+        let eigen = SymmetricEigen::new(scaled);
+        let along = eigen.eigenvectors.tr_mul(&score.component_mul(&scale));
+        let values = eigen.eigenvalues.iter().zip(along.iter());
+        let told_apart = values.filter(|(value, _)| **value > VISIBLE);
+        told_apart.map(|(value, along)| along * along / value).sum()
     }
 
     /// Estimate and covariance of some columns jointly, and their statistic: chi-square with as

@@ -4,11 +4,13 @@
 
 use std::sync::Arc;
 
+use gyrocal_scalar::effect::Enters;
 use gyrocal_statistics::math::ln;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::bank::ScoreBank;
 use crate::column::Column;
+use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::pattern::{ChannelIndex, Pattern, Unmodelled};
 use crate::plant::Plant;
@@ -68,6 +70,33 @@ pub(crate) fn strongest<F: FittedModel>(
         }
     }
     Ok(best)
+}
+
+/// Share that is left to a curve of what it and all effects without a shape explain together, those of rates
+/// beside a curve in a rate and those of outputs beside one in an output. Several of these look like a curve
+/// before all are in the model.
+pub(crate) fn share_beside_effects<F: FittedModel>(
+    fitted: &F,
+    hypotheses: &[Hypothesis],
+    curve: &Unmodelled,
+) -> Result<f64, F::Error> {
+    let parameters = fitted.plant().parameters.len();
+    let bank = ScoreBank::new(fitted, &curve.columns)?;
+    let enters = |one: &&Hypothesis| match (one.effect.enters, curve.channel) {
+        (Enters::Rates(_), ChannelIndex::Rate(_)) => true,
+        (Enters::Outputs(_), ChannelIndex::Output(_)) => true,
+        _ => false,
+    };
+    let own = hypotheses.iter().filter(enters);
+    let own = own.filter(|one| one.effect.shape().is_none() && !one.is_jump);
+    let columns = own.flat_map(|one| one.variants.iter().flat_map(|variant| &variant.columns));
+    let mut columns: Vec<usize> = columns.copied().filter(|at| *at < parameters).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let effects = bank.explained(&columns);
+    columns.extend(parameters..parameters + curve.columns.len());
+    let together = bank.explained(&columns);
+    Ok(1.0 - effects / together)
 }
 
 /// The best function of what some columns span.

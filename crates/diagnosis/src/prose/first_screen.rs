@@ -153,13 +153,24 @@ pub fn may_also_be(result: &DiagnosisResult) -> String {
     });
     let listed = (!names.is_empty()).then(|| few(&names, ALTERNATIVES_SHOWN));
     match (listed, unlisted) {
-        (None, None) if result.causes().next().is_some() => {
-            "nothing else of the catalogue, at 95 %".to_owned()
-        }
+        (None, None) if result.causes().next().is_some() => nothing_else(result),
         (listed, unlisted) => {
             let all: Vec<String> = listed.into_iter().chain(unlisted).collect();
             all.join("; ")
         }
+    }
+}
+
+/// What sets without a second member say: their coverage, where it was measured and the search was complete.
+fn nothing_else(result: &DiagnosisResult) -> String {
+    if !result.search_complete {
+        return "nothing else that the search came to compare".to_owned();
+    }
+    let coverages = result.causes().map(|finding| finding.coverage);
+    let least = coverages.reduce(|least, own| Some(least?.min(own?)));
+    match least.flatten() {
+        Some(coverage) => format!("nothing else of the catalogue, at {}", percent(coverage)),
+        None => "nothing else of the catalogue".to_owned(),
     }
 }
 
@@ -260,12 +271,15 @@ fn plan(result: &DiagnosisResult, screen: &mut Screen, why: &str) {
 }
 
 fn unexplained(result: &DiagnosisResult) -> Screen {
+    let test = &result.remainder;
+    if test.verdict != ResidualVerdict::Unexplained {
+        return not_settled(result);
+    }
     let mut screen = Screen::new(
         Standing::Bad,
         "UNEXPLAINED",
         "the record contradicts the model, and no effect of the catalogue explains it",
     );
-    let test = &result.remainder;
     screen.fact("what is seen", &*test.description);
     screen.fact(
         "how sure",
@@ -295,6 +309,25 @@ fn unexplained(result: &DiagnosisResult) -> Screen {
             "the residual of each record",
         );
     }
+    screen
+}
+
+/// A search that ended at its budget before it named anything.
+fn not_settled(result: &DiagnosisResult) -> Screen {
+    let mut screen = Screen::new(
+        Standing::Bad,
+        "NOT SETTLED",
+        "effects of the catalogue were found and not kept, or not compared to the end",
+    );
+    screen.fact("left over", remainder(result));
+    screen.fact(
+        "coefficients",
+        "of the nominal model: they may be biased by more than their sigmas",
+    );
+    screen.then(
+        format!("gyrocal diagnose {} --verbose", files(result)),
+        "statistics of all effects",
+    );
     screen
 }
 

@@ -46,6 +46,9 @@ pub(super) fn verdict(result: &DiagnosisResult) -> String {
             counted(result.findings.len(), "effect"),
             p_value(least_p_value(result)),
         ),
+        Verdict::Unexplained if result.remainder.verdict != ResidualVerdict::Unexplained => {
+            "Not settled: the search ended at its budget of work, with no effect named.".to_owned()
+        }
         Verdict::Unexplained => format!(
             "Model mismatch detected: no effect of the catalogue explains it (family-wise {}; \
              {alarm}).",

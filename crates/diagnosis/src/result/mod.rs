@@ -186,7 +186,8 @@ pub enum Verdict {
     Clean,
     /// At least one effect was detected; effects of noise and filter count.
     EffectsFound,
-    /// The residuals are not white, and no effect of the catalogue explains them.
+    /// The residuals are not white, and no effect of the catalogue explains them; or the search ended at its
+    /// budget with nothing named (`search_complete` is false).
     Unexplained,
     /// A gross error of the set-up stopped the diagnosis.
     Setup,
