@@ -82,10 +82,12 @@ pub(crate) fn share_beside_effects<F: FittedModel>(
 ) -> Result<f64, F::Error> {
     let parameters = fitted.plant().parameters.len();
     let bank = ScoreBank::new(fitted, &curve.columns)?;
-    let enters = |one: &&Hypothesis| match (one.effect.enters, curve.channel) {
-        (Enters::Rates(_), ChannelIndex::Rate(_)) => true,
-        (Enters::Outputs(_), ChannelIndex::Output(_)) => true,
-        _ => false,
+    let enters = |one: &&Hypothesis| {
+        matches!(
+            (one.effect.enters, curve.channel),
+            (Enters::Rates(_), ChannelIndex::Rate(_))
+                | (Enters::Outputs(_), ChannelIndex::Output(_))
+        )
     };
     let own = hypotheses.iter().filter(enters);
     let own = own.filter(|one| one.effect.shape().is_none() && !one.is_jump);

@@ -7,7 +7,7 @@ use gyrocal::effect::EffectKind;
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_statistics::{Judgement, Proportion};
 use record::{Caused, record};
-pub(super) use record::{covered, holds};
+pub(super) use record::{covered, holds, plain};
 
 use super::Extent;
 use crate::error::Error;

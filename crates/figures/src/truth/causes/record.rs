@@ -61,7 +61,7 @@ fn is_slow(effect: &Effect) -> bool {
 }
 
 /// Scenario without a cause, and its true noise.
-fn plain(seed: u64) -> Result<(Scenario, NoiseModel), EvaluationError> {
+pub(in crate::truth) fn plain(seed: u64) -> Result<(Scenario, NoiseModel), EvaluationError> {
     let mut random = Draw::new(seed, LEVELS);
     let mut plain = Scenario {
         interval_s: interval_s(seed),
