@@ -85,7 +85,11 @@ pub fn magnitude_test(
             found.chi_square,
             found.bins.len()
         );
-        tests.push((found.p_value, found.chi_square, words));
+        tests.push((
+            found.p_value,
+            found.chi_square / found.bins.len() as f64,
+            words,
+        ));
     };
     for (axis, found) in channel.on_component.iter().enumerate() {
         let values = rows.iter().map(|row| row[axis]);
@@ -103,7 +107,7 @@ pub fn magnitude_test(
         depends("temperature", found);
     }
     let count = tests.len() as f64;
-    // Where probabilities underflow, the largest statistic decides.
+    // Where probabilities underflow, the largest statistic over its degrees of freedom decides.
     let strongest = tests
         .into_iter()
         .min_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));

@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal_calibration::work;
+use gyrocal_diagnosis::prose::{first_screen, may_also_be};
 use gyrocal_diagnosis::result::DiagnosisResult;
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
 
@@ -57,8 +58,25 @@ fn thirty_knocks_take_no_more_than_the_limit() {
         assert!(*work <= LIMIT * of_sound, "{work} over {of_sound}");
         assert!(found.causes().count() > 0);
     }
-    // It is said where the search ended before it was complete.
-    assert!(found.iter().any(|(found, _)| !found.search_complete));
+    // It is said where the search ended before it was complete, and a set is then no 95 % one.
+    let mut cut = found.iter().filter(|(found, _)| !found.search_complete);
+    let (cut, _) = cut.next().unwrap();
+    let set = may_also_be(cut);
+    assert!(!set.contains("at 95 %"), "{set}");
+    let facts = first_screen(cut).facts;
+    assert!(facts.iter().any(|fact| fact.label == "search"), "{facts:?}");
+}
+
+/// A cut search that named nothing is not settled, whatever its residuals.
+#[test]
+fn a_cut_search_without_a_name_contradicts_nothing() {
+    let (mut found, _) = diagnosed(1, Vec::new());
+    assert_eq!(found.verdict, Verdict::Clean);
+    found.verdict = Verdict::Unexplained;
+    found.search_complete = false;
+    let screen = first_screen(&found);
+    assert_eq!(screen.verdict, "NOT SETTLED");
+    assert!(!screen.what.contains("contradicts"), "{}", screen.what);
 }
 
 #[test]

@@ -90,8 +90,17 @@ fn none_of_these(probability: f64) -> String {
     } else {
         "less likely than not".to_owned()
     };
+    // At prior odds of one to one; beyond rounding the ratio is not known.
+    let ratio = probability / (1.0 - probability);
+    let ratio = match ratio.is_finite() {
+        true => format!(
+            ", {} times the likelihood of these",
+            gyrocal_statistics::format::short(ratio, 2)
+        ),
+        false => String::new(),
+    };
     format!(
-        "None of these: probability {}, {likelier}.",
+        "None of these: probability {}{ratio}, {likelier}.",
         percent(probability)
     )
 }
