@@ -8,7 +8,7 @@ use crate::solve::Solution;
 use crate::uncertainty::Uncertainty;
 
 /// False-alarm probability of the consistency test.
-const FALSE_ALARM: f64 = 1e-3;
+pub const NIS_FALSE_ALARM: f64 = 1e-3;
 
 /// Mean NIS above which the message points to wrong inputs: first-order integration, the largest
 /// model error among the figures, gives 190.
@@ -74,7 +74,7 @@ impl FitStatistics {
     /// The 99.9 % interval of [`Self::nis_mean`] for a record that fits the model.
     #[must_use]
     pub fn nis_band(&self) -> [f64; 2] {
-        chi_square_band(self.values as f64, FALSE_ALARM).map(|bound| bound / self.rows as f64)
+        chi_square_band(self.values as f64, NIS_FALSE_ALARM).map(|bound| bound / self.rows as f64)
     }
 
     /// Compares [`Self::nis_mean`] with [`Self::nis_band`].

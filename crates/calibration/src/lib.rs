@@ -145,7 +145,7 @@ pub use check::check_record;
 pub use coefficients::BIASES;
 pub use cramer_rao::cramer_rao_bound;
 pub use error::CalibrationError;
-pub use fit::{Consistency, FitStatistics};
+pub use fit::{Consistency, FitStatistics, NIS_FALSE_ALARM};
 pub use fitted_platform::{
     Estimates, Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel, RecordSizes,
     SiteBias, WalkEnd, joined_record,

@@ -2,7 +2,7 @@
 //! specific force, time and temperature, and the error of the open-loop simulation. They make no
 //! finding.
 
-use gyrocal_calibration::FittedPlatform;
+use gyrocal_calibration::{FittedPlatform, NIS_FALSE_ALARM};
 use gyrocal_record::Record;
 use gyrocal_statistics::{
     SpectralLine, StatisticsError, autocorrelation, binned_means, nis, periodogram, rms_of_present,
@@ -52,7 +52,7 @@ pub(crate) fn residuals(
         })
         .collect();
     Ok(Residuals {
-        nis: nis_of_rows(normalised, false_alarm),
+        nis: nis_of_rows(normalised),
         autocorrelation: autocorrelation(normalised, LAGS, false_alarm)
             .ok()
             .map(|found| Autocorrelation {
@@ -70,9 +70,9 @@ pub(crate) fn residuals(
     })
 }
 
-/// Mean NIS of a row with its band; `None` without a value.
-fn nis_of_rows(normalised: &[[f64; 3]], false_alarm: f64) -> Option<Nis> {
-    let found = nis(normalised, false_alarm).ok()?;
+/// Mean NIS of a row with its band, which is that of a calibration; `None` without a value.
+fn nis_of_rows(normalised: &[[f64; 3]]) -> Option<Nis> {
+    let found = nis(normalised, NIS_FALSE_ALARM).ok()?;
     let has_value = |row: &&[f64; 3]| row.iter().any(|value| !value.is_nan());
     let rows = normalised.iter().filter(has_value).count();
     let values_of_a_row = found.values as f64 / rows as f64;

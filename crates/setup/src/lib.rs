@@ -75,4 +75,5 @@ pub use finding::{Correction, SetupFinding};
 pub use kind::SetupKind;
 pub use noise::shown_noise_g;
 pub use platform_kind::PlatformKind;
+pub use rate::LEAST_TURN_S;
 pub use signed_axes::SignedAxes;

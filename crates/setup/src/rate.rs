@@ -15,6 +15,9 @@ pub(crate) const WINDOW_S: f64 = 6.0 * 3600.0;
 /// Length of a part of a window, over which the change of e is measured: seven degrees.
 const PART_S: f64 = 1800.0;
 
+/// Shortest record that tells how gravity turns, and with it axes, signs, latitude and clock \[s\].
+pub const LEAST_TURN_S: f64 = LEAST_PARTS as f64 * PART_S;
+
 /// A gap across which ∫ e dt is not known well enough: the chord of 15 degrees is short by 0.3 %.
 const LONGEST_INTERVAL_S: f64 = 3600.0;
 

@@ -1,5 +1,6 @@
 //! The first screen of a diagnosis.
 
+use gyrocal_setup::LEAST_TURN_S;
 use gyrocal_statistics::format::{self, p_value, percent, with_sigma};
 
 use super::format::{counted, short};
@@ -26,6 +27,10 @@ const TOLD: f64 = 0.2;
 const STRAPDOWN: &str = "coefficients and effects are errors of the outputs of instruments that are fixed to a body, \
                          in their own axes";
 
+/// What a record of less than [`LEAST_TURN_S`] does not tell.
+const TOO_SHORT_FOR_TURN: &str =
+    "axes, their signs, latitude and clock were not checked: that takes a record of 1.5 h";
+
 /// The first screen: verdict, size, significance, alternatives, effect on the coefficients, next step.
 #[must_use]
 pub fn first_screen(result: &DiagnosisResult) -> Screen {
@@ -39,6 +44,9 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
         screen.fact("axes", STRAPDOWN);
     }
     if result.verdict != Verdict::Setup {
+        if result.record.duration_s < LEAST_TURN_S && !result.strapdown {
+            screen.fact("set-up", TOO_SHORT_FOR_TURN);
+        }
         let problems = result.setup.iter().take(PROBLEMS_SHOWN);
         for problem in problems {
             screen.fact("set-up mended", &*problem.description);

@@ -27,7 +27,7 @@ pub struct Nis {
     /// Their mean over the rows; the number of values of a row is expected of a consistent filter, 3
     /// if none is missing.
     pub mean: f64,
-    /// Acceptance band of the mean at the false-alarm probability of the diagnosis.
+    /// The 99.9 % interval of the mean for a record that fits the model, as in a calibration.
     pub band: [f64; 2],
     /// Two-sided p-value of the mean.
     pub p_value: f64,
