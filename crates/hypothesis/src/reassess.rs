@@ -29,11 +29,7 @@ pub(crate) fn reassess<F: FittedModel>(
         false => threshold + BESIDE_WALKS,
     };
     // First: what stands in the set of an effect takes fits to tell.
-    while let Some(merged) = merge(context, state, least, draws)? {
-        for own in merged.pair {
-            rename(rivals, own, merged.by);
-        }
-    }
+    merge_pairs(context, state, least, rivals, draws)?;
     let mut replaced: Vec<Replaced> = Vec::new();
     let mut can_remove = true;
     loop {
@@ -97,6 +93,22 @@ pub(crate) fn reassess<F: FittedModel>(
             }
         }
     }
+}
+
+/// Puts one effect in the place of two for as long as it does as well.
+fn merge_pairs<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &mut SearchState<F>,
+    least: f64,
+    rivals: &mut [Rival],
+    draws: &mut GaussianDraws,
+) -> Result<(), F::Error> {
+    while let Some(merged) = merge(context, state, least, draws)? {
+        for own in merged.pair {
+            rename(rivals, own, merged.by);
+        }
+    }
+    Ok(())
 }
 
 /// Makes the rivals of one effect those of another one that is in its place.
