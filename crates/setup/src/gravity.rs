@@ -17,8 +17,9 @@ const LEAST_ERROR: f64 = 5e-5;
 const STANDARD_ERRORS: f64 = 12.0;
 
 /// What varies with the attitude may be at most this share of what does not: biases and gains of
-/// single accelerometers are left to the fine diagnosis.
-const MOST_VARYING: f64 = 0.2;
+/// single accelerometers are left to the fine diagnosis. Of a bias the part along the axis of the Earth does not
+/// vary: it must lie within four degrees of it to be taken for gravity.
+const MOST_VARYING: f64 = 0.05;
 
 /// An error of the magnitude that is neither gravity's nor left to the diagnosis.
 const NO_GRAVITY: f64 = 0.1;
@@ -122,10 +123,21 @@ fn finding(samples: &Samples<'_>, middle: f64, error: f64) -> SetupFinding {
             format!("standard g as the unit, with local gravity of {local:.4} m/s^2"),
         );
     }
-    finding.or(
-        SetupKind::Scale,
-        format!("a common scale of all accelerometers of {}", number(ratio)),
-    )
+    finding
+        .or(
+            SetupKind::Scale,
+            format!(
+                "a common scale of all accelerometers of {}",
+                six_digits(ratio)
+            ),
+        )
+        .or(
+            SetupKind::Scale,
+            format!(
+                "a bias of accelerometers of {} g along the axis of the Earth",
+                number(middle.abs())
+            ),
+        )
 }
 
 fn six_digits(value: f64) -> String {

@@ -112,6 +112,34 @@ fn rows_far_apart_are_no_jumps() {
     }
 }
 
+/// The part of a bias along the axis of the Earth is in the magnitude at all attitudes, and no more of it.
+#[test]
+fn a_bias_of_one_accelerometer_is_no_gravity() {
+    for seed in 2_000_920..2_000_940 {
+        let simulation = sound(seed);
+        for axis in 0..3 {
+            let mut record = simulation.record.clone();
+            for row in &mut record.accel_g {
+                row[axis] += 3e-4;
+            }
+            // Over whole days the mean of gravity is along the axis of the Earth.
+            let mean = [0, 1, 2].map(|axis| {
+                let column = record.accel_g.iter().map(|row| row[axis]);
+                column.filter(|value| !value.is_nan()).sum::<f64>()
+            });
+            let size = mean.iter().map(|value| value * value).sum::<f64>().sqrt();
+            let angle_deg = (mean[axis].abs() / size).acos().to_degrees();
+            let check = check_setup(&record, &simulation.bench);
+            // Four degrees are those of a twentieth; drift moves the mean by some more.
+            let is_told = !check.findings.is_empty();
+            assert!(
+                !is_told || angle_deg < 8.0,
+                "{seed}, axis {axis}: {angle_deg}"
+            );
+        }
+    }
+}
+
 #[test]
 fn random_damage_makes_no_panic() {
     let simulation = sound(2_000_901);
