@@ -61,6 +61,29 @@ pub(crate) fn indistinguishable(
     groups
 }
 
+/// Set-ups that fit a record without declared angles as well as the declared one: `docs/setup-checks.md` has
+/// the symmetry.
+pub(crate) fn set_ups_without_angles() -> Indistinguishable {
+    let experiments = vec![Experiment {
+        kind: ExperimentKind::MeasureAttitude,
+        what: None,
+    }];
+    let members = [
+        "axes as declared",
+        "axes exchanged in a circle",
+        "two axes negated",
+        "mirrored axes at the opposite latitude",
+    ];
+    Indistinguishable {
+        members: members.map(str::to_owned).to_vec(),
+        relation: Relation::SetUps,
+        why: prose::SET_UPS_WITHOUT_ANGLES.to_owned(),
+        testable: Vec::new(),
+        would_separate: prose::would_distinguish(&[], &experiments),
+        experiments,
+    }
+}
+
 /// Correlation of time and temperature from which on their effects are not told apart.
 const TOGETHER: f64 = 0.9;
 

@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal_calibration::{Options, Run};
-use gyrocal_diagnosis::Gate;
+use gyrocal_diagnosis::prose::first_screen;
+use gyrocal_diagnosis::result::Relation;
+use gyrocal_diagnosis::{DiagnoseOptions, Gate, diagnose};
 use gyrocal_record::RecordFile;
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
@@ -94,4 +96,25 @@ fn problems_of_a_file_have_its_lines_and_the_rest_is_checked() {
     lines[100] = "5940.0,0.0,0.0,9.81";
     let error = of(&(lines.join("\n") + "\n")).unwrap_err().to_string();
     assert!(error.starts_with("r.csv:101:1: found a norm"), "{error}");
+}
+
+/// Exchanged axes fit every record without angles: the answer says so, and proposes no run for it.
+#[test]
+fn set_ups_that_fit_alike_are_told_without_angles() {
+    let mut simulation = record(2_180_300, 47.0, 24.0);
+    let diagnosed = |simulation: &Simulation| {
+        let options = DiagnoseOptions::default();
+        let found = diagnose(&simulation.record, &simulation.bench, &options);
+        found.unwrap().result
+    };
+    let found = diagnosed(&simulation);
+    let groups: Vec<Relation> = found.cannot_tell.iter().map(|g| g.relation).collect();
+    assert_eq!(groups, [Relation::SetUps]);
+    let screen = first_screen(&found);
+    assert!(screen.facts.iter().any(|fact| fact.label == "axes"));
+    // With axes exchanged in a circle it is as sound a record.
+    for [x, y, z] in &mut simulation.record.accel_g {
+        (*x, *y, *z) = (*y, *z, *x);
+    }
+    assert_eq!(diagnosed(&simulation).verdict, found.verdict);
 }

@@ -8,7 +8,9 @@ use gyrocal_statistics::{self as statistics, NoiseCourse};
 
 use super::coefficients::coefficients;
 use super::{DiagnoseOptions, findings};
-use crate::distinguishability::{indistinguishable, tell_together, time_and_temperature};
+use crate::distinguishability::{
+    indistinguishable, set_ups_without_angles, tell_together, time_and_temperature,
+};
 use crate::filter_test::Tested;
 use crate::magnitude_test;
 use crate::noise::{NoiseAudit, NoiseFinding, gaps};
@@ -127,6 +129,9 @@ impl Evidence<'_, '_> {
         let each = self.nominal.record_rows();
         if let Some(correlation) = time_and_temperature(self.run.record, &each) {
             tell_together(&mut groups, correlation);
+        }
+        if self.run.bench.initial_angles_deg.is_none() && !self.nominal.is_strapdown() {
+            groups.push(set_ups_without_angles());
         }
         groups
     }

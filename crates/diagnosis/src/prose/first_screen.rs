@@ -8,8 +8,8 @@ use super::records::{self, files};
 use super::screen::{Screen, Standing, few};
 use super::verdict;
 use crate::result::{
-    DiagnosisResult, Finding, FindingKind, NotTestedReason, Parameter, Relation, ResidualVerdict,
-    Verdict,
+    DiagnosisResult, Finding, FindingKind, Indistinguishable, NotTestedReason, Parameter, Relation,
+    ResidualVerdict, Verdict,
 };
 
 /// Findings that are told one by one.
@@ -42,6 +42,10 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
     };
     if result.strapdown {
         screen.fact("axes", STRAPDOWN);
+    }
+    let mut groups = result.cannot_tell.iter();
+    if let Some(group) = groups.find(|group| group.relation == Relation::SetUps) {
+        screen.fact("axes", &*group.why);
     }
     if result.verdict != Verdict::Setup {
         if result.record.duration_s < LEAST_TURN_S && !result.strapdown {
@@ -246,7 +250,8 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
         .map(|finding| &*finding.effect)
         .collect();
     let is_one = result.records.is_empty();
-    if !result.cannot_tell.is_empty() {
+    let is_of_effects = |group: &Indistinguishable| group.relation != Relation::SetUps;
+    if result.cannot_tell.iter().any(is_of_effects) {
         plan(result, screen, "the run that would distinguish them");
     }
     if causes.is_empty() {

@@ -25,7 +25,8 @@ pub use findings::{likelihood, parameter_values};
 pub use first_screen::{first_screen, may_also_be};
 pub use format::counted;
 pub use limits::{
-    near_twins, not_tested, time_is_temperature, why_not_distinguished, would_distinguish,
+    SET_UPS_WITHOUT_ANGLES, near_twins, not_tested, time_is_temperature, why_not_distinguished,
+    would_distinguish,
 };
 pub use records::files;
 pub use screen::{

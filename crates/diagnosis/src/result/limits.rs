@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A group of effects that the record does not distinguish.
+/// A group of effects, or of set-ups, that the record does not distinguish.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Indistinguishable {
-    /// Their ids, the reported one first.
+    /// Their ids, the reported one first; of set-ups their names, the declared one first.
     pub members: Vec<String>,
     /// Their relation.
     pub relation: Relation,
@@ -32,6 +32,8 @@ pub enum Relation {
     ConfidenceSet,
     /// Near twins that were not tested.
     NearTwins,
+    /// Set-ups that fit every record alike; the members are no effects.
+    SetUps,
 }
 
 /// An experiment that distinguishes effects.

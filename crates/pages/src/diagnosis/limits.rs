@@ -1,5 +1,6 @@
 //! What a diagnosis cannot tell, and the next run.
 
+use gyrocal_diagnosis::result::Relation;
 use gyrocal_diagnosis::{DiagnosisResult, Verdict, prose};
 use gyrocal_report::page::{Card, Cell, Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
@@ -86,7 +87,8 @@ const FOR_SMALLER_SIGMAS: &str = "The command finds the run that reduces the sig
 fn advice(result: &DiagnosisResult) -> String {
     let experiment = result
         .cannot_tell
-        .first()
+        .iter()
+        .find(|group| group.relation != Relation::SetUps)
         .map(|group| &group.would_separate);
     match (result.verdict, experiment) {
         (Verdict::Setup, _) => "Mend the set-up, and diagnose the record again.".to_owned(),
