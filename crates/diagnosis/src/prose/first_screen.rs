@@ -45,7 +45,11 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
     }
     let mut groups = result.cannot_tell.iter();
     if let Some(group) = groups.find(|group| group.relation == Relation::SetUps) {
-        screen.fact("axes", &*group.why);
+        let others: Vec<&str> = group.members.iter().skip(1).map(|own| &**own).collect();
+        screen.fact(
+            "axes",
+            format!("{} fit as well: {}", others.join(", "), group.why),
+        );
     }
     if result.verdict != Verdict::Setup {
         if result.record.duration_s < LEAST_TURN_S && !result.strapdown {

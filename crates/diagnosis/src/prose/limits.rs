@@ -45,8 +45,8 @@ pub(super) fn untested(result: &DiagnosisResult) -> Option<Block> {
 }
 
 /// Why set-ups are not distinguished where no angles are declared.
-pub const SET_UPS_WITHOUT_ANGLES: &str = "no initial angles are declared, so that each of these fits every record; the \
-                                          coefficients then belong to other axes";
+pub const SET_UPS_WITHOUT_ANGLES: &str =
+    "no initial angles are declared; the coefficients then belong to other axes";
 
 /// Reason why the members of a confidence set are not distinguished.
 #[must_use]
