@@ -131,7 +131,7 @@ fn jump_at(samples: &Samples<'_>, complete: &[Complete], at: usize) -> Option<Ju
         let expected = sides.before(middle_s)?;
         let found = sides.after(middle_s)?;
         let size_rad = norm(minus(found, expected));
-        let way_rad = sides.speed_rad_per_s * sides.duration_s();
+        let way_rad = sides.speed_rad_per_s * (sides.after[0].time_s - sides.before[0].time_s);
         let is_straight = sides.duration_s() < LONGEST_S;
         return (is_straight && size_rad > LEAST_RAD + CURVATURE * way_rad).then(|| Jump {
             at,

@@ -23,30 +23,30 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let moved = |time_s: f64| speed_rad_per_s * time_s * samples.rest_g > STEPS * step_g;
     let is_held =
         |run: &[Complete]| run.len() > 1 && moved(run[run.len() - 1].time_s - run[0].time_s);
-    let (mut runs, mut short_ends): (Vec<&[Complete]>, Vec<&[Complete]>) = Default::default();
+    let mut runs: Vec<&[Complete]> = Vec::new();
+    let mut short_ends: Vec<&[Complete]> = Vec::new();
     let mut from = 0;
     for run in complete.chunk_by(|a, b| a.force_g == b.force_g) {
         let end = from + run.len();
         // Gyros that drift fast may hold gravity for a while: it must move before and after.
         let about = [from.checked_sub(1), Some(end)].map(|at| at.and_then(|at| complete.get(at)));
-        let moves_about = match about {
-            [Some(before), Some(after)] => {
-                norm(minus(before.force_g, after.force_g)) > STEPS * step_g
-            }
-            _ if run.len() < LEAST_ROWS_AT_END => {
-                short_ends.push(run);
-                false
-            }
-            _ => true,
-        };
-        if moves_about && is_held(run) {
-            runs.push(run);
-        }
         from = end;
+        if !is_held(run) {
+            continue;
+        }
+        match about {
+            [Some(before), Some(after)] => {
+                if norm(minus(before.force_g, after.force_g)) > STEPS * step_g {
+                    runs.push(run);
+                }
+            }
+            _ if run.len() >= LEAST_ROWS_AT_END => runs.push(run),
+            _ => short_ends.push(run),
+        }
     }
     // A logger that repeats rows elsewhere repeats them there too.
     if !runs.is_empty() {
-        runs.extend(short_ends.into_iter().filter(|run| is_held(run)));
+        runs.extend(short_ends);
         runs.sort_by_key(|run| run[0].row);
     }
     let Some(longest) = runs.iter().max_by_key(|run| run.len()) else {
