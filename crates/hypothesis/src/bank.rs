@@ -1,7 +1,7 @@
 //! The score bank: scores and information of all signatures, with the fitted unknowns projected out
 //! (equations (1) and (2) of the crate).
 
-use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 
 use crate::column::Column;
 use crate::error::Singular;
@@ -240,22 +240,40 @@ impl ScoreBank {
         )
     }
 
-    /// Chi-square that some columns explain together, whether or not they can be told apart.
-    pub(crate) fn explained(&self, columns: &[usize]) -> f64 {
-        let seen = columns
+    /// Information and scores of some columns along their principal directions, each column in units of its
+    /// information before anything was projected out: an eigenvalue is what the fit leaves of a direction.
+    /// `None` without columns, or if one has no information.
+    pub(crate) fn principal(&self, columns: &[usize]) -> Option<Principal> {
+        let (information, score) = self.part(columns);
+        let raw = columns
             .iter()
-            .copied()
-            .filter(|column| self.visible(*column));
-        let seen: Vec<usize> = seen.collect();
-        let (information, score) = self.part(&seen);
-        let scale = information.diagonal().map(|own| own.sqrt().recip());
-        let scaled = DMatrix::from_fn(seen.len(), seen.len(), |i, j| {
+            .map(|column| self.raw[*column].sqrt().recip());
+        let scale = DVector::from_iterator(columns.len(), raw);
+        if columns.is_empty() || !scale.iter().all(|scale| scale.is_finite()) {
+            return None;
+        }
+        let scaled = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
             information[(i, j)] * scale[i] * scale[j]
         });
         let eigen = SymmetricEigen::new(scaled);
         let along = eigen.eigenvectors.tr_mul(&score.component_mul(&scale));
-        let values = eigen.eigenvalues.iter().zip(along.iter());
-        let told_apart = values.filter(|(value, _)| **value > VISIBLE);
+        Some(Principal {
+            eigen,
+            along,
+            scale,
+        })
+    }
+
+    /// Chi-square that some columns explain together, whether or not they can be told apart.
+    pub(crate) fn explained(&self, columns: &[usize]) -> f64 {
+        let columns = columns.iter().copied();
+        let seen: Vec<usize> = columns.filter(|column| self.visible(*column)).collect();
+        let Some(principal) = self.principal(&seen) else {
+            return 0.0;
+        };
+        let values = principal.eigen.eigenvalues.iter();
+        let directions = values.zip(principal.along.iter());
+        let told_apart = directions.filter(|(value, _)| **value > VISIBLE);
         told_apart.map(|(value, along)| along * along / value).sum()
     }
 
@@ -278,10 +296,58 @@ impl ScoreBank {
     }
 }
 
+/// Some columns along their principal directions.
+pub(crate) struct Principal {
+    pub(crate) eigen: SymmetricEigen<f64, Dyn>,
+    /// Score along each direction.
+    pub(crate) along: DVector<f64>,
+    /// Unit of each column.
+    pub(crate) scale: DVector<f64>,
+}
+
 /// Joint score test of some columns.
 #[derive(Clone, Debug)]
 pub struct JointScore {
     pub(crate) statistic: f64,
     pub(crate) estimate: DVector<f64>,
     pub(crate) covariance: DMatrix<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of columns with these products; nothing was projected out.
+    fn bank(information: DMatrix<f64>, score: &[f64]) -> ScoreBank {
+        ScoreBank {
+            raw: information.diagonal(),
+            information,
+            score: DVector::from_row_slice(score),
+        }
+    }
+
+    #[test]
+    fn columns_explain_as_much_together_as_their_joint_test() {
+        let bank = bank(
+            DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 9.0]),
+            &[6.0, -3.0],
+        );
+        let joint = bank
+            .joint(&[0, 1])
+            .map_or(f64::NAN, |joint| joint.statistic);
+        // Rounding of a matrix of two rows.
+        assert!((bank.explained(&[0, 1]) - joint).abs() < 1e-12 * joint);
+    }
+
+    #[test]
+    fn equal_columns_explain_as_much_as_one_and_none_explain_nothing() {
+        // The second is twice the first: no Cholesky factor, and no joint test.
+        let bank = bank(
+            DMatrix::from_row_slice(2, 2, &[4.0, 8.0, 8.0, 16.0]),
+            &[6.0, 12.0],
+        );
+        assert!((bank.explained(&[0, 1]) - bank.explained(&[0])).abs() < 1e-12);
+        assert!((bank.explained(&[0]) - 9.0).abs() < 1e-12);
+        assert!(bank.explained(&[]).abs() < 1e-300);
+    }
 }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use gyrocal_scalar::effect::Enters;
 use gyrocal_statistics::math::ln;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::DVector;
 
-use crate::bank::ScoreBank;
+use crate::bank::{Principal, ScoreBank};
 use crate::column::Column;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
@@ -110,20 +110,12 @@ fn spanned(
     which: (ChannelIndex, Pattern),
     ln_tests: f64,
 ) -> Option<Unmodelled> {
-    let (information, score) = bank.part(places);
-    let scale = DVector::from_iterator(
-        places.len(),
-        places.iter().map(|place| bank.raw[*place].sqrt().recip()),
-    );
-    if !scale.iter().all(|scale| scale.is_finite()) {
-        return None;
-    }
-    let scaled = DMatrix::from_fn(places.len(), places.len(), |i, j| {
-        information[(i, j)] * scale[i] * scale[j]
-    });
-    let eigen = SymmetricEigen::new(scaled);
+    let Principal {
+        eigen,
+        along,
+        scale,
+    } = bank.principal(places)?;
     let most = eigen.eigenvalues.max();
-    let along = eigen.eigenvectors.tr_mul(&score.component_mul(&scale));
     let mut statistic = 0.0;
     let mut combinations = Vec::new();
     let mut size = 0.0;
