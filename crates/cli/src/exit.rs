@@ -8,7 +8,7 @@ pub(crate) const FAILED: u8 = 1;
 pub(crate) const USAGE: u8 = 2;
 /// With `--exit-code`: effects were found, or a figure misses its target.
 pub(crate) const FOUND: u8 = 3;
-/// With `--exit-code`: the residuals are unexplained.
+/// With `--exit-code`: the residuals are unexplained, or the search ended at its budget with nothing named.
 pub(crate) const UNEXPLAINED: u8 = 4;
 /// With `--exit-code`: the set-up is wrong.
 pub(crate) const SETUP: u8 = 5;
@@ -21,5 +21,5 @@ Exit codes:
   2  the command line is wrong
   with --exit-code (diagnose, characterise) also
   3  diagnose: effects were found; characterise: a figure misses its target
-  4  diagnose: the residuals are unexplained
+  4  diagnose: the residuals are unexplained, or the search ended with nothing named
   5  diagnose: the set-up is wrong";

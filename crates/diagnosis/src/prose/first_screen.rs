@@ -27,10 +27,6 @@ const TOLD: f64 = 0.2;
 const STRAPDOWN: &str = "coefficients and effects are errors of the outputs of instruments that are fixed to a body, \
                          in their own axes";
 
-/// What a record of less than [`LEAST_TURN_S`] does not tell.
-const TOO_SHORT_FOR_TURN: &str =
-    "axes, their signs, latitude and clock were not checked: that takes a record of 1.5 h";
-
 /// The first screen: verdict, size, significance, alternatives, effect on the coefficients, next step.
 #[must_use]
 pub fn first_screen(result: &DiagnosisResult) -> Screen {
@@ -53,7 +49,7 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
     }
     if result.verdict != Verdict::Setup {
         if result.record.duration_s < LEAST_TURN_S && !result.strapdown {
-            screen.fact("set-up", TOO_SHORT_FOR_TURN);
+            screen.fact("set-up", too_short_for_turn());
         }
         let problems = result.setup.iter().take(PROBLEMS_SHOWN);
         for problem in problems {
@@ -68,6 +64,14 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
     }
     screen.fact("record", verdict::record(result));
     screen
+}
+
+/// What a record of less than [`LEAST_TURN_S`] does not tell.
+fn too_short_for_turn() -> String {
+    format!(
+        "axes, their signs, latitude and clock were not checked: that takes a record of {} h",
+        short(LEAST_TURN_S / 3600.0)
+    )
 }
 
 fn found(result: &DiagnosisResult) -> Screen {
