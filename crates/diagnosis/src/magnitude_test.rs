@@ -33,8 +33,8 @@ pub struct MagnitudeTest {
     pub channel: MagnitudeChannel,
 }
 
-/// Tests the magnitude in a record without outliers: its mean, and binned means over each
-/// component, time and temperature, at the family-wise false-alarm probability `false_alarm`.
+/// Tests the magnitude in a record without outliers: its mean, and whether binned means over each
+/// component, time and temperature are equal, at the family-wise false-alarm probability `false_alarm`.
 ///
 /// `accel_noise_g` is the standard deviation of white noise with the long-term power of the
 /// accelerometer noise. If the bench declares gravity uncertain, the mean of the magnitude is used
@@ -80,16 +80,15 @@ pub fn magnitude_test(
         tests.push((channel.mean_p_value, z * z, words));
     }
     let mut depends = |on: &str, found: &BinnedMeans| {
+        let Some(test) = found.equal_means() else {
+            return;
+        };
         let words = format!(
             "it varies with {on} (chi-square {:.0} for {} degrees of freedom)",
-            found.chi_square,
-            found.bins.len()
+            test.chi_square, test.degrees_of_freedom
         );
-        tests.push((
-            found.p_value,
-            found.chi_square / found.bins.len() as f64,
-            words,
-        ));
+        let share = test.chi_square / test.degrees_of_freedom;
+        tests.push((test.p_value, share, words));
     };
     for (axis, found) in channel.on_component.iter().enumerate() {
         let values = rows.iter().map(|row| row[axis]);

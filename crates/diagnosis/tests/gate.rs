@@ -1,9 +1,9 @@
 //! The gate: what rows alone do not decide is decided by fits of both signs of the latitude.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use gyrocal_calibration::{Options, Run};
+use gyrocal_calibration::{Options, Run, calibrate};
 use gyrocal_diagnosis::prose::first_screen;
-use gyrocal_diagnosis::result::Relation;
+use gyrocal_diagnosis::result::{DiagnosisResult, Relation};
 use gyrocal_diagnosis::{DiagnoseOptions, Gate, diagnose};
 use gyrocal_record::RecordFile;
 use gyrocal_setup::{PlatformKind, check_setup};
@@ -98,15 +98,40 @@ fn problems_of_a_file_have_its_lines_and_the_rest_is_checked() {
     assert!(error.starts_with("r.csv:101:1: found a norm"), "{error}");
 }
 
+fn diagnosed(simulation: &Simulation) -> DiagnosisResult {
+    let options = DiagnoseOptions::default();
+    let found = diagnose(&simulation.record, &simulation.bench, &options);
+    found.unwrap().result
+}
+
+/// The turn of gravity is not known of an hour, and the answer says so.
+#[test]
+fn what_a_short_record_does_not_tell_of_the_set_up_is_told() {
+    for (hours, is_told) in [(1.0, true), (12.0, false)] {
+        let found = diagnosed(&record(2_180_400, 47.0, hours));
+        let facts = first_screen(&found).facts;
+        let told = facts.iter().any(|fact| fact.label == "set-up");
+        assert_eq!(told, is_told, "{hours} h: {facts:?}");
+    }
+}
+
+/// One band for the NIS of both commands.
+#[test]
+fn calibration_and_diagnosis_expect_the_same_of_the_innovations() {
+    let simulation = record(2_180_500, 47.0, 24.0);
+    let found = diagnosed(&simulation).residuals.unwrap().nis.unwrap();
+    let (record, bench) = (&simulation.record, &simulation.bench);
+    let calibration = calibrate(record, bench, &Options::default(), |_| ()).unwrap();
+    for (diagnosed, calibrated) in found.band.into_iter().zip(calibration.fit.nis_band()) {
+        // The same quantile, divided in another order.
+        assert!((diagnosed / calibrated - 1.0).abs() < 1e-12, "{found:?}");
+    }
+}
+
 /// Exchanged axes fit every record without angles: the answer says so, and proposes no run for it.
 #[test]
 fn set_ups_that_fit_alike_are_told_without_angles() {
     let mut simulation = record(2_180_300, 47.0, 24.0);
-    let diagnosed = |simulation: &Simulation| {
-        let options = DiagnoseOptions::default();
-        let found = diagnose(&simulation.record, &simulation.bench, &options);
-        found.unwrap().result
-    };
     let found = diagnosed(&simulation);
     let groups: Vec<Relation> = found.cannot_tell.iter().map(|g| g.relation).collect();
     assert_eq!(groups, [Relation::SetUps]);

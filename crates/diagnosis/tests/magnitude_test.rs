@@ -75,3 +75,20 @@ fn errors_of_accelerometers_are_told_by_what_they_go_with() {
     let norm = magnitude_test(&scaled, &uncertain, &[SIGMA_G; 3], 1e-3).unwrap();
     assert!(!norm.accelerometers, "{norm:?}");
 }
+
+/// Where all probabilities underflow, what is largest is still told: a common error as one of the mean, that of
+/// one accelerometer by its force.
+#[test]
+fn large_errors_are_told_by_what_they_go_with() {
+    type ErrorG = fn(usize, [f64; 3]) -> [f64; 3];
+    let cases: [(ErrorG, &str); 2] = [
+        (|_, a| a.map(|a| 3e-4 * a), "above gravity by"),
+        (|_, a| [3e-4, 3e-5 * a[1], 0.0], "specific force along x"),
+    ];
+    for (error_g, words) in cases {
+        let record = record(9, error_g);
+        let found = magnitude_test(&record, &bench(""), &[SIGMA_G; 3], 1e-3).unwrap();
+        assert!(found.accelerometers && found.p_value < 1e-300);
+        assert!(found.description.contains(words), "{}", found.description);
+    }
+}

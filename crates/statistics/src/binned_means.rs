@@ -27,6 +27,40 @@ pub struct BinnedMeans {
     pub p_value: f64,
 }
 
+/// Test that all means of bins are equal, whatever they are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EqualMeans {
+    /// Sum of squared deviations from the weighted mean of all bins, over their variances.
+    pub chi_square: f64,
+    /// Number of bins less one.
+    pub degrees_of_freedom: f64,
+    /// Probability of as large a sum if all means are equal.
+    pub p_value: f64,
+}
+
+impl BinnedMeans {
+    /// Tests whether the residuals depend on the abscissa, their mean left free; `None` of one bin.
+    #[must_use]
+    pub fn equal_means(&self) -> Option<EqualMeans> {
+        let weight = |bin: &BinMean| bin.sigma.powi(-2);
+        let all: f64 = self.bins.iter().map(weight).sum();
+        let mean = self
+            .bins
+            .iter()
+            .map(|bin| weight(bin) * bin.mean)
+            .sum::<f64>()
+            / all;
+        let deviations = self.bins.iter().map(|bin| (bin.mean - mean) / bin.sigma);
+        let chi_square = deviations.map(|deviation| deviation * deviation).sum();
+        let degrees_of_freedom = self.bins.len().saturating_sub(1) as f64;
+        (self.bins.len() > 1).then(|| EqualMeans {
+            chi_square,
+            degrees_of_freedom,
+            p_value: chi_square_tail(chi_square, degrees_of_freedom).unwrap_or(1.0),
+        })
+    }
+}
+
 /// Means of residuals in `bins` bins of equal numbers over an abscissa, such as a component of
 /// specific force, time, or temperature. Each residual has standard deviation `sigma`; `NaN` in
 /// either series is missing.
@@ -100,6 +134,28 @@ pub fn binned_means(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn equal_means_leave_the_mean_free() -> Result<(), StatisticsError> {
+        let abscissa: Vec<f64> = (0..40).map(f64::from).collect();
+        let of = |step: f64| {
+            let residuals: Vec<f64> = abscissa
+                .iter()
+                .map(|at| 5.0 + if *at < 20.0 { 0.0 } else { step })
+                .collect();
+            Ok::<_, StatisticsError>(binned_means(&abscissa, &residuals, 1.0, 4)?.equal_means())
+        };
+        assert!(of(0.0)?.is_some_and(|test| test.chi_square < 1e-20 && test.p_value > 0.999));
+        // Four bins of ten values: each mean is half a step from that of all, over a sigma of 1/√10.
+        let expected = 4.0 * 10.0 * 0.25;
+        assert!(of(1.0)?.is_some_and(|test| (test.chi_square - expected).abs() < 1e-9));
+        assert!(
+            binned_means(&abscissa, &abscissa, 1.0, 1)?
+                .equal_means()
+                .is_none()
+        );
+        Ok(())
+    }
 
     #[test]
     fn bins_hold_equal_numbers_and_sum_to_chi_square() -> Result<(), StatisticsError> {

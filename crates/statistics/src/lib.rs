@@ -62,7 +62,7 @@ mod whiteness;
 
 pub use allan_test::{AllanTest, NoiseCourse, allan_test};
 pub use bands::{chi_square_band, mean_square_band, rms_ratio_interval};
-pub use binned_means::{BinMean, BinnedMeans, binned_means};
+pub use binned_means::{BinMean, BinnedMeans, EqualMeans, binned_means};
 pub use descriptive::{
     mean, median, quantile, rms_of_present, root_mean_square, standard_error, upper_median,
 };
