@@ -247,6 +247,7 @@ mod tests {
             rivals: alternatives.clone(),
             alternatives,
             none_of_these: None,
+            none_of_these_log_likelihood_ratio: None,
             by_record: None,
             equivalents: equivalents.collect(),
             gain_nats: Some(20.0),

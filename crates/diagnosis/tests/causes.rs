@@ -6,7 +6,9 @@ use gyrocal_diagnosis::result::{
 };
 use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
 use gyrocal_record::{Bench, Record};
-use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
+use gyrocal_truth::{
+    Coefficients, Hidden, InitialAttitude, Moment, Scenario, Term, simulate, simulate_with,
+};
 
 /// Two days at a random attitude with an effect hidden.
 fn record(seed: u64, effect: &str, parameters: &[(&str, f64)]) -> (Record, Bench) {
@@ -52,6 +54,43 @@ fn only_finding(effect: &str, parameters: &[(&str, f64)]) -> Vec<(String, f64, O
     parameters
         .map(|parameter| (parameter.name.clone(), parameter.estimate, parameter.sigma))
         .collect()
+}
+
+#[test]
+fn none_of_these_is_likelier_where_the_catalogue_lacks_the_cause() {
+    let none = |terms: &[Term], hidden: Vec<Hidden>| {
+        let scenario = Scenario {
+            seed: 7,
+            coefficients: Coefficients::PAPER_LIKE,
+            initial: InitialAttitude::Random,
+            duration_s: 2.0 * 86_400.0,
+            hidden,
+            ..Scenario::default()
+        };
+        let simulation = simulate_with(&scenario, terms).unwrap();
+        let options = DiagnoseOptions::default();
+        let found = diagnose(&simulation.record, &simulation.bench, &options);
+        let found = found.unwrap().result;
+        let first = found.causes().next().unwrap();
+        let nats = first.none_of_these_log_likelihood_ratio.unwrap();
+        let probability = first.none_of_these.unwrap();
+        // At prior odds of one to one; rounding only.
+        assert!((probability - 1.0 / (1.0 + (-nats).exp())).abs() < 1e-12);
+        nats
+    };
+    // A scale that changes during two days.
+    let ageing = |at: &Moment| [0.0, 1.3e-5 * at.time_s / 172_800.0 * at.accel_g[1], 0.0];
+    let ageing = Term::Output(Box::new(ageing));
+    let outside = none(&[ageing], Vec::new());
+    let listed = none(
+        &[],
+        vec![Hidden::new("gyro_y.g_z", &[("size", 0.01)]).unwrap()],
+    );
+    // Likelier than not, and less likely than one to ten.
+    assert!(
+        outside > 0.0 && listed < -(10.0_f64.ln()),
+        "{outside} {listed}"
+    );
 }
 
 #[test]

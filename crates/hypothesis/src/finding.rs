@@ -1,5 +1,7 @@
 //! A detected effect as it is told: estimates, confidence set, exact equivalents.
 
+use gyrocal_statistics::math::exp;
+
 use crate::bank::NominalEstimate;
 
 /// Deviance of the confidence set: hypotheses whose penalised statistics are within it of the named
@@ -63,6 +65,22 @@ pub struct Finding {
     pub alternatives: Vec<Alternative>,
     /// Exact equivalents.
     pub exact_equivalents: Vec<ExactEquivalent>,
-    /// Probability that nothing of the catalogue is the cause; `None` where it was not estimated.
-    pub none_of_these: Option<f64>,
+    /// Whether the cause is outside of the catalogue; `None` where it was not estimated.
+    pub none_of_these: Option<NoneOfThese>,
+}
+
+/// A cause outside of the catalogue beside what is named.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoneOfThese {
+    /// Likelihood of a smooth function of what moves the platform beside what is named, over that of the
+    /// named effect and its set; its natural logarithm, amplitudes integrated out \[nats\].
+    pub log_likelihood_ratio: f64,
+}
+
+impl NoneOfThese {
+    /// Probability that nothing of the catalogue is the cause, the prior odds being one to one.
+    #[must_use]
+    pub fn probability(&self) -> f64 {
+        1.0 / (1.0 + exp(-self.log_likelihood_ratio))
+    }
 }

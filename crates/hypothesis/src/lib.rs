@@ -147,7 +147,9 @@ pub use column::{Column, ExtraColumns};
 pub use context::SearchOptions;
 pub use continuation::{Phase, RecordOffset, continued, continued_shapes, recurs};
 pub use error::Singular;
-pub use finding::{Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, ExactEquivalent, Finding};
+pub use finding::{
+    Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, ExactEquivalent, Finding, NoneOfThese,
+};
 pub use given::{FittedWith, fit_with};
 pub use hypothesis::{Hypothesis, HypothesisSet, Selection, Unavailable, Variant};
 pub use information::{information, sigmas};

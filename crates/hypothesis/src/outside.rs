@@ -31,7 +31,7 @@ use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use crate::bank::ScoreBank;
 use crate::column::Column;
 use crate::context::SearchContext;
-use crate::finding::Finding;
+use crate::finding::{Finding, NoneOfThese};
 use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::pattern::{ChannelIndex, Unmodelled};
@@ -127,7 +127,7 @@ fn ln_evidence(block: &[Direction]) -> f64 {
     }))
 }
 
-/// Adds the probability that nothing of the catalogue is the cause to the findings of a search.
+/// Adds what speaks for a cause outside of the catalogue to the findings of a search.
 pub(crate) fn add_none_of_these<F: FittedModel>(
     context: &SearchContext<'_>,
     (stage, unmodelled): (&FittedStage<F>, &[Unmodelled]),
@@ -143,17 +143,19 @@ pub(crate) fn add_none_of_these<F: FittedModel>(
     let found = unmodelled.iter().map(|found| 0.5 * found.equivalent());
     let ln_rich = found.fold(beside, f64::max);
     for effect in effects {
-        effect.finding.none_of_these = Some(probability(ln_rich, effect.ln_others));
+        effect.finding.none_of_these = Some(over(ln_rich, effect.ln_others));
     }
     for walk in walks {
-        walk.none_of_these = Some(probability(ln_rich, 0.0));
+        walk.none_of_these = Some(over(ln_rich, 0.0));
     }
     Ok(())
 }
 
-/// Probability of the rich alternative, the prior odds being one to one.
-fn probability(ln_rich: f64, ln_others: f64) -> f64 {
-    1.0 / (1.0 + exp(ln_others - ln_rich))
+/// The rich alternative over what is named.
+fn over(ln_rich: f64, ln_others: f64) -> NoneOfThese {
+    NoneOfThese {
+        log_likelihood_ratio: ln_rich - ln_others,
+    }
 }
 
 fn ln_mean_exp(values: &[f64]) -> f64 {
@@ -228,8 +230,10 @@ mod tests {
 
     #[test]
     fn equal_evidence_is_an_even_chance() {
-        assert!((probability(3.0, 3.0) - 0.5).abs() < 1e-15);
-        assert!(probability(-800.0, 800.0) < 1e-300);
-        assert!((probability(900.0, -900.0) - 1.0).abs() < 1e-15);
+        assert!((over(3.0, 3.0).probability() - 0.5).abs() < 1e-15);
+        assert!(over(-800.0, 800.0).probability() < 1e-300);
+        assert!((over(900.0, -900.0).probability() - 1.0).abs() < 1e-15);
+        // Where the probability rounds to one, the likelihood still tells by how much.
+        assert_eq!(over(900.0, -900.0).log_likelihood_ratio, 1800.0);
     }
 }

@@ -206,7 +206,7 @@ fn found(fitted: &FittedPlant, finding: &Finding, scale: f64) -> Found {
             .iter()
             .map(|other| other.effect.to_owned())
             .collect(),
-        none_of_these: finding.none_of_these,
+        none_of_these: finding.none_of_these.map(|none| none.probability()),
     }
 }
 

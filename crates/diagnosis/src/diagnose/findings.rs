@@ -44,6 +44,7 @@ pub(super) fn of_cause(finding: &hypothesis::Finding, decision: &KeepDecision) -
         effect: other.effect.to_owned(),
         parameters: parameters(&other.parameters),
     });
+    let none = finding.none_of_these;
     Finding {
         parameters: parameters(&finding.parameters),
         // That of sets of random walks was not measured.
@@ -52,7 +53,8 @@ pub(super) fn of_cause(finding: &hypothesis::Finding, decision: &KeepDecision) -
             .map(|_| CONFIDENCE_SET_COVERAGE),
         rivals: alternatives.clone(),
         alternatives,
-        none_of_these: finding.none_of_these,
+        none_of_these: none.map(|none| none.probability()),
+        none_of_these_log_likelihood_ratio: none.map(|none| none.log_likelihood_ratio),
         equivalents: equivalents.collect(),
         gain_nats: decision.gain_nats,
         accepted: Some(decision.accepted),
@@ -82,6 +84,7 @@ fn bare(effect: &str, kind: FindingKind, z: f64, p_value: f64) -> Finding {
         rivals: Vec::new(),
         alternatives: Vec::new(),
         none_of_these: None,
+        none_of_these_log_likelihood_ratio: None,
         by_record: None,
         equivalents: Vec::new(),
         gain_nats: None,

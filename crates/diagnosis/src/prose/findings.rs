@@ -1,6 +1,6 @@
 //! Detected effects, one entry each.
 
-use gyrocal_statistics::format::{p_value, percent};
+use gyrocal_statistics::format::{p_value, percent, short as rounded};
 
 use super::Block;
 use super::format::{short, with_sigma};
@@ -35,12 +35,7 @@ fn paragraphs(finding: &Finding) -> Vec<String> {
     if !finding.alternatives.is_empty() {
         paragraphs.push(alternatives(finding));
     }
-    paragraphs.extend(
-        finding
-            .none_of_these
-            .filter(|none| *none >= TOLD)
-            .map(none_of_these),
-    );
+    paragraphs.extend(none_of_these(finding));
     let equivalents = finding.equivalents.iter();
     paragraphs.extend(equivalents.map(|equivalent| {
         format!(
@@ -81,8 +76,9 @@ fn alternatives(finding: &Finding) -> String {
     format!("Alternatives ({set}): {}{more}.", shown.join(", "))
 }
 
-/// The probability that the cause is not in the catalogue.
-fn none_of_these(probability: f64) -> String {
+/// The probability that the cause is not in the catalogue, and how much likelier it is than what is named.
+fn none_of_these(finding: &Finding) -> Option<String> {
+    let probability = finding.none_of_these.filter(|none| *none >= TOLD)?;
     let followed = "the residuals follow the specific force, its past, its products with time or the \
                     temperature as no effect of the catalogue does";
     let likelier = if probability > 0.5 {
@@ -90,19 +86,18 @@ fn none_of_these(probability: f64) -> String {
     } else {
         "less likely than not".to_owned()
     };
-    // At prior odds of one to one; beyond rounding the ratio is not known.
-    let ratio = probability / (1.0 - probability);
-    let ratio = match ratio.is_finite() {
-        true => format!(
-            ", {} times the likelihood of these",
-            gyrocal_statistics::format::short(ratio, 2)
-        ),
-        false => String::new(),
-    };
-    format!(
-        "None of these: probability {}{ratio}, {likelier}.",
-        percent(probability)
-    )
+    let ratio = finding.none_of_these_log_likelihood_ratio.map(|nats| {
+        let ratio = match nats.exp() {
+            ratio if ratio.is_finite() => rounded(ratio, 2),
+            _ => format!("exp({nats:.0})"),
+        };
+        format!(", {ratio} times the likelihood of these")
+    });
+    Some(format!(
+        "None of these: probability {}{}, {likelier}.",
+        percent(probability),
+        ratio.unwrap_or_default()
+    ))
 }
 
 /// All parameters with their sigmas and units.

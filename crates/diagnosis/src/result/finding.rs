@@ -30,6 +30,10 @@ pub struct Finding {
     /// Probability that a cause outside of the catalogue leaves eight standard deviations or more beside
     /// what is named, at prior odds of one to one; `None` where it was not estimated.
     pub none_of_these: Option<f64>,
+    /// Natural logarithm of the likelihood of such a cause over that of the named effect and its set
+    /// \[nats\]; `None` where it was not estimated.
+    #[serde(default)]
+    pub none_of_these_log_likelihood_ratio: Option<f64>,
     /// Sizes in each of several records; `None` of one record, of noise, and of an effect that lies in one
     /// record by its nature.
     #[serde(default, skip_serializing_if = "Option::is_none")]
