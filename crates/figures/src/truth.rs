@@ -1,6 +1,7 @@
 //! Truth of the diagnosis outside of the population that its constants were tuned on.
 
 mod causes;
+mod coverage;
 mod hostile;
 mod noise;
 mod outside;

@@ -10,6 +10,7 @@ use record::{Caused, record};
 pub(super) use record::{covered, holds, plain};
 
 use super::Extent;
+use super::coverage::of_coefficients;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
@@ -207,23 +208,27 @@ impl Told<'_> {
     }
 
     /// Intervals of the coefficients.
-    fn coefficients(&self) -> [Figure; 3] {
+    fn coefficients(&self) -> Vec<Figure> {
         let all = || self.records.iter();
-        let covered = all().flat_map(|one| one.over_set.iter().copied());
+        let covered: Vec<&[bool]> = all().map(|one| one.over_set.as_slice()).collect();
         let first = all().flat_map(|one| one.first.iter().copied());
         let mut widths: Vec<f64> = all().flat_map(|one| one.widths.clone()).collect();
         widths.sort_by(f64::total_cmp);
         let median = widths.get(widths.len() / 2).copied().unwrap_or(f64::NAN);
-        let what = "coefficients in the 95 % intervals over the sets, whatever was named";
-        [
-            self.share(what, 0.93, covered),
+        let name = format!(
+            "{}: coefficients in the 95 % intervals over the sets, whatever was named",
+            self.cell.name
+        );
+        let mut figures = of_coefficients(&name, &covered, self.seeds, self.small);
+        figures.extend([
             self.note("in those of the first member", first),
             self.ratio(
                 "median width of these over the true model's",
                 [0.0, 1.3],
                 median,
             ),
-        ]
+        ]);
+        figures
     }
 }
 

@@ -5,14 +5,15 @@ use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, diagnose};
 use gyrocal_evaluation::{EvaluationError, scenario};
+use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_statistics::{Judgement, Proportion};
 use gyrocal_truth::{Hidden, Scenario, Simulation, Term, simulate, simulate_with};
 use serde::{Deserialize, Serialize};
 
+use super::coverage::of_intervals;
 use super::{Extent, interval_s};
 use crate::error::Error;
-use crate::figure::{Figure, coverage};
+use crate::figure::Figure;
 use crate::resumable;
 
 /// Purposes of the streams of draws: of the noise levels, and of the series.
@@ -118,9 +119,6 @@ struct Noisy {
     covered: Vec<bool>,
 }
 
-/// Range of a coverage of 95 % in cells of a thousand intervals.
-const COVERAGE: [f64; 2] = [0.93, 0.97];
-
 pub(super) fn of_walks(extent: Extent) -> Result<Vec<Figure>, Error> {
     let rows = WALKING.iter().filter(|row| row.small > 0 || !extent.small);
     let all: Result<Vec<Vec<Figure>>, Error> = rows.map(|row| of_row(row, extent)).collect();
@@ -160,20 +158,11 @@ fn of_row(row: &Row, extent: Extent) -> Result<Vec<Figure>, Error> {
             .successes()
             .flat_map(|(_, record)| record.covered.iter());
         let all: Vec<bool> = all.copied().collect();
-        let count = all.len();
-        let covered = Proportion::of(all);
         let name = format!(
             "{}: coverage of the 95 % interval of a walk's size",
             row.cell
         );
-        let mut figure = Figure::within(&name, COVERAGE, covered.share()).of_share(covered);
-        let judgement = coverage(covered, COVERAGE);
-        if small {
-            figure = figure.judged(judgement);
-        } else if count < 1000 {
-            figure.holds = Some(judgement != Judgement::Missed);
-        }
-        figures.push(figure.over(count, seeds.as_str()));
+        figures.push(of_intervals(&name, &all, &seeds, small));
     }
     Ok(figures)
 }

@@ -71,15 +71,19 @@ struct Outside {
 
 impl Outside {
     /// Probability that none of the catalogue is the cause, as the diagnosis states it: that of its
-    /// likeliest name. One without a name states it with certainty.
-    fn none(&self) -> f64 {
+    /// likeliest name. One without a name states it with certainty, one of a search that was cut not at all.
+    fn none(&self) -> Option<f64> {
+        if self.named.is_empty() {
+            return Some(1.0);
+        }
         let all = self.named.iter().filter_map(|named| named.none);
-        all.reduce(f64::min).unwrap_or(1.0)
+        all.reduce(f64::min)
     }
 
-    /// Whether one effect is named without alternatives.
+    /// Whether one effect is named without alternatives, and nothing says that none of these is likelier.
     fn is_named_alone(&self) -> bool {
         matches!(self.named.as_slice(), [only] if only.alternatives.is_empty())
+            && self.none().is_none_or(|none| none < 0.5)
     }
 }
 
@@ -98,32 +102,34 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for (records, which) in unlisted.iter().zip(["used in development", "not used"]) {
         let strong: Vec<&Outside> = records.iter().filter(|one| one.beside >= BESIDE).collect();
-        let misnamed = strong
-            .iter()
-            .map(|one| one.is_named_alone() && one.none() < 0.5)
-            .collect();
+        let misnamed = strong.iter().map(|one| one.is_named_alone()).collect();
         let name = format!(
             "outside of the catalogue, kinds {which}, 8 σ beside what is named: named alone, none of \
              these below a half"
         );
         figures.push(share(&name, MISNAMED, misnamed, small));
-        let alone = records
-            .iter()
-            .map(|one| one.is_named_alone() && one.none() < 0.5);
+        let alone = records.iter().map(Outside::is_named_alone);
         let name = format!("the same, kinds {which}, 8 to 200 σ of which the names may leave less");
         let measured = format!("{:.3}", Proportion::of(alone).share());
         figures.push(Figure::note(&name, measured).over(records.len(), ""));
+        let name =
+            format!("the same, kinds {which}, 8 σ beside: of searches cut, which state none");
+        let silent = Proportion::of(strong.iter().map(|one| one.none().is_none()));
+        figures.push(Figure::note_share(&name, silent, ""));
     }
-    let denied = listed.iter().map(|one| one.none() > 0.5).collect();
+    let denied = listed.iter();
+    let denied = denied.map(|one| one.none().is_some_and(|none| none > 0.5));
+    let denied = denied.collect();
     let name = "effects of the catalogue: none of these above a half";
     figures.push(share(name, DENIED, denied, small));
     let strong = unlisted.iter().flatten().filter(|one| one.beside >= BESIDE);
-    let strong = strong.map(|one| (one.none(), true));
+    let strong = strong.filter_map(|one| Some((one.none()?, true)));
     let mut stated: Vec<(f64, bool)> = strong.collect();
     let outside = stated.len();
     // Prior odds of one to one.
     let named = listed.iter().filter(|one| !one.named.is_empty());
-    stated.extend(named.take(outside).map(|one| (one.none(), false)));
+    let named = named.filter_map(|one| Some((one.none()?, false)));
+    stated.extend(named.take(outside));
     figures.push(calibration(&mut stated, small));
     Ok(figures)
 }

@@ -6,15 +6,16 @@ use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose, fit_effects};
 use gyrocal_evaluation::{EvaluationError, InjectedEffect, draw_shape, inject_into};
+use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_statistics::{Judgement, Proportion};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::Extent;
 use super::causes::plain;
+use super::coverage::of_intervals;
 use crate::error::Error;
-use crate::figure::{Figure, coverage};
+use crate::figure::Figure;
 use crate::resumable;
 
 /// Seeds of the records, and their number in the small version.
@@ -32,9 +33,6 @@ const DRAWS: usize = 50;
 
 /// Largest share of records with a spurious cause.
 const SPURIOUS: f64 = 0.02;
-
-/// Range of a coverage of 95 % in cells of a thousand records.
-const COVERAGE: [f64; 2] = [0.93, 0.97];
 
 /// Result for one record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -80,20 +78,10 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
             .filter(|record| kind_of(&record.effect) == Some(kind))
             .filter_map(|record| record.covered)
             .collect();
-        let covered = Proportion::of(own.iter().copied());
-        let mut figure = Figure::within(
-            &format!("the same, fitted with the effect, named or not: coverage of the 95 % interval of the {name}"),
-            COVERAGE,
-            covered.share(),
-        )
-        .of_share(covered);
-        let judgement = coverage(covered, COVERAGE);
-        if small {
-            figure = figure.judged(judgement);
-        } else if own.len() < 1000 {
-            figure.holds = Some(judgement != Judgement::Missed);
-        }
-        figures.push(figure.over(own.len(), seeds.as_str()));
+        let name = format!(
+            "the same, fitted with the effect, named or not: coverage of the 95 % interval of the {name}"
+        );
+        figures.push(of_intervals(&name, &own, &seeds, small));
     }
     for failure in outcome.failures() {
         eprintln!(

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Extent;
 use super::causes::{covered, holds};
+use super::coverage::of_coefficients;
 use super::noise::{MISDECLARED, WALKS, false_causes};
 use crate::error::Error;
 use crate::figure::Figure;
@@ -31,9 +32,6 @@ const SMALL: u64 = 3;
 
 /// Largest share of records with a cause that neither is there nor may be a walk.
 const FALSE: f64 = 0.05;
-
-/// Least share of coefficients in their intervals.
-const COVERAGE: f64 = 0.93;
 
 /// Result for one record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -60,17 +58,10 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let mut first = Figure::within(name, [0.0, FALSE], bound).of_share(wrong);
     first.target = format!("<= {FALSE} (upper 95 % bound)");
     first.measured = format!("{:.3}, bound {bound:.3}", wrong.share());
-    let covered: Vec<bool> = records
-        .iter()
-        .flat_map(|one| one.covered.iter().copied())
-        .collect();
-    let coefficients = covered.len();
-    let covered = Proportion::of(covered);
+    let covered: Vec<&[bool]> = records.iter().map(|one| one.covered.as_slice()).collect();
     let name = "a cause beside walks: coefficients in their 95 % intervals";
-    let mut second = Figure::within(name, [COVERAGE, 1.0], covered.share()).of_share(covered);
     if extent.small {
         first = first.judged(wrong.at_most(FALSE));
-        second = second.judged(covered.at_least(COVERAGE));
     }
     let held = |walks_itself: bool| {
         let of = records
@@ -88,12 +79,9 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         );
         Figure::note(&name, format!("{:.3}", Proportion::of(held).share())).over(count, &*seeds)
     };
-    Ok(vec![
-        first.over(records.len(), &*seeds),
-        second.over(coefficients, &*seeds),
-        held(false),
-        held(true),
-    ])
+    let mut figures = vec![first.over(records.len(), &*seeds), held(false), held(true)];
+    figures.extend(of_coefficients(name, &covered, &seeds, extent.small));
+    Ok(figures)
 }
 
 fn record(seed: u64) -> Result<Mixed, EvaluationError> {
