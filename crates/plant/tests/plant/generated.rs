@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
 
-#[path = "../../../examples/duffing/plant.rs"]
+#[path = "../../../../examples/duffing/plant.rs"]
 #[rustfmt::skip]
 #[allow(missing_docs, unreachable_pub, dead_code, clippy::all)]
 mod duffing;

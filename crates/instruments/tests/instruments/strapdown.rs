@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 
-mod common;
-
-use common::{EARTH_RATE_RAD_PER_S, log};
+use crate::common::{EARTH_RATE_RAD_PER_S, log};
 use gyrocal_instruments::strapdown::{ImportSettings, Imported, import, integrate};
 use gyrocal_instruments::{Description, InstrumentError, Log, Unfit};
 use gyrocal_truth::{Attitude, Coefficients, InitialAttitude, Scenario, simulate};
@@ -118,7 +116,7 @@ fn the_vertical_error_is_that_of_the_mean_within_its_sigma() {
     // White noise of 1 deg/h over a second: 0.017 deg/h over an hour; accelerometers of 1e-4 g, with which
     // the path of gravity tells it ten times worse.
     let error = Vector3::new(0.2, -0.3, 0.5) * DEG_PER_H;
-    let mut noise = common::Noise::of_seed(21);
+    let mut noise = crate::common::Noise::of_seed(21);
     let rate = body_c_enu() * earth_enu() + error;
     let samples: Vec<_> = (0..3600)
         .map(|_| {
@@ -220,7 +218,7 @@ fn a_heading_that_is_known_goes_into_the_bench_file() {
 #[test]
 fn disturbed_rows_are_missing_and_told() {
     let mut log = at_rest(Vector3::zeros(), 1200);
-    let mut noise = common::Noise::of_seed(1);
+    let mut noise = crate::common::Noise::of_seed(1);
     for sample in 0..log.len() {
         let scatter = if (600..650).contains(&sample) {
             50.0

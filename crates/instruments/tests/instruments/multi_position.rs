@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 
-mod common;
-
-use common::{Noise, Unit, stops_and_turns};
+use crate::common::{Noise, Unit, stops_and_turns};
 use gyrocal_instruments::multi_position::{
     MultiPositionSettings, Positions, PreparedTest, SearchSettings, Term, multi_position_test,
     prepare, search,
@@ -349,7 +347,7 @@ fn standard_errors_hold_for_coloured_noise() {
             (state, Vector3::z())
         })
         .collect();
-    let log = common::log(0.01, &samples);
+    let log = crate::common::log(0.01, &samples);
     let ranges: Vec<_> = (0..60)
         .map(|stop| 1000 * stop..1000 * stop + 1000)
         .collect();
@@ -420,7 +418,11 @@ fn a_log_that_never_rests_is_refused() {
             )
         })
         .collect();
-    let error = find_stops(&common::log(0.01, &samples), &StopSettings::default()).unwrap_err();
+    let error = find_stops(
+        &crate::common::log(0.01, &samples),
+        &StopSettings::default(),
+    )
+    .unwrap_err();
     assert_eq!(error.kind(), Some(Unfit::NeverStatic), "{error}");
 }
 

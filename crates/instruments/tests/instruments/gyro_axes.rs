@@ -3,9 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
 
-mod common;
-
-use common::{EARTH_RATE_RAD_PER_S, Noise, log};
+use crate::common::{EARTH_RATE_RAD_PER_S, Noise, log};
 use gyrocal_calibration::{
     Calibration, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };

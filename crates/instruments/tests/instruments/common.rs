@@ -1,7 +1,5 @@
 //! Logs of a unit whose motion and errors are known.
 
-#![allow(dead_code)] // each test file uses a part
-
 use gyrocal_instruments::Log;
 use gyrocal_statistics::deviates::Normals;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};

@@ -1,0 +1,16 @@
+//! Tests of the library in one program: to compile and link one for each file would take most of their time.
+#![allow(missing_docs)]
+
+mod causes;
+mod extended_unit;
+mod gain;
+mod gate;
+mod hostile;
+mod magnitude;
+mod magnitude_test;
+mod noise;
+mod outliers;
+mod records;
+mod signatures;
+mod strapdown;
+mod temperature;

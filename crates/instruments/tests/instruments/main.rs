@@ -1,0 +1,12 @@
+//! Tests of the library in one program: to compile and link one for each file would take most of their time.
+#![allow(missing_docs)]
+
+mod common;
+mod dialects;
+mod few_positions;
+mod gyro_axes;
+mod logs;
+mod multi_position;
+mod rates;
+mod strapdown;
+mod typed_files;
