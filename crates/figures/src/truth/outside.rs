@@ -16,9 +16,11 @@ use crate::resumable;
 /// First seeds: kinds that served to choose constants, others, effects of the catalogue.
 const FIRST_SEEDS: [u64; 3] = [760_000, 770_000, 780_000];
 
-/// Records of each, and in the small version.
+/// Records of each kind outside of the catalogue, of which there are two; there are as many of the catalogue
+/// as of both. The same in the small version.
 const RECORDS: u64 = 1000;
 const SMALL: u64 = 2;
+const OF_CATALOGUE: usize = 2;
 
 /// Names of the cells of results.
 const CELLS: [&str; 3] = ["outside-developed", "outside-unseen", "outside-listed"];
@@ -71,10 +73,11 @@ struct Outside {
 
 impl Outside {
     /// Probability that none of the catalogue is the cause, as the diagnosis states it: that of its
-    /// likeliest name. One without a name states it with certainty, one of a search that was cut not at all.
+    /// likeliest name. One that is unexplained without a name states it with certainty; one that is called
+    /// clean, or of which the search was cut, not at all.
     fn none(&self) -> Option<f64> {
         if self.named.is_empty() {
-            return Some(1.0);
+            return self.unexplained.then_some(1.0);
         }
         let all = self.named.iter().filter_map(|named| named.none);
         all.reduce(f64::min)
@@ -91,14 +94,19 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let small = extent.small;
     let count = extent.records(RECORDS, SMALL);
     let cell = |place: usize| -> Result<Vec<Outside>, Error> {
-        let seeds = FIRST_SEEDS[place]..FIRST_SEEDS[place] + count;
+        let times = if place == OF_CATALOGUE && !small {
+            2
+        } else {
+            1
+        };
+        let seeds = FIRST_SEEDS[place]..FIRST_SEEDS[place] + times * count;
         let campaign = resumable::campaign("truth", CELLS[place], seeds, small)?;
         let outcome = campaign.run(|seed| record(place, seed), |_| ())?;
         let found = outcome.successes().filter_map(|(_, found)| found.clone());
         Ok(found.collect())
     };
     let unlisted = [cell(0)?, cell(1)?];
-    let listed = cell(2)?;
+    let listed = cell(OF_CATALOGUE)?;
     let mut figures = Vec::new();
     for (records, which) in unlisted.iter().zip(["used in development", "not used"]) {
         let strong: Vec<&Outside> = records.iter().filter(|one| one.beside >= BESIDE).collect();
@@ -112,9 +120,15 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         let name = format!("the same, kinds {which}, 8 to 200 σ of which the names may leave less");
         let measured = format!("{:.3}", Proportion::of(alone).share());
         figures.push(Figure::note(&name, measured).over(records.len(), ""));
-        let name =
-            format!("the same, kinds {which}, 8 σ beside: of searches cut, which state none");
-        let silent = Proportion::of(strong.iter().map(|one| one.none().is_none()));
+        let is_clean = |one: &Outside| one.named.is_empty() && !one.unexplained;
+        let name = format!("the same, kinds {which}, 8 σ beside what is named: called clean");
+        let missed = Proportion::of(strong.iter().map(|one| is_clean(one)));
+        figures.push(Figure::note_share(&name, missed, ""));
+        let name = format!(
+            "the same, kinds {which}, 8 σ beside: searches cut, which state no probability"
+        );
+        let is_silent = |one: &Outside| one.none().is_none() && !is_clean(one);
+        let silent = Proportion::of(strong.iter().map(|one| is_silent(one)));
         figures.push(Figure::note_share(&name, silent, ""));
     }
     let denied = listed.iter();
@@ -123,15 +137,38 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let name = "effects of the catalogue: none of these above a half";
     figures.push(share(name, DENIED, denied, small));
     let strong = unlisted.iter().flatten().filter(|one| one.beside >= BESIDE);
-    let strong = strong.filter_map(|one| Some((one.none()?, true)));
-    let mut stated: Vec<(f64, bool)> = strong.collect();
-    let outside = stated.len();
-    // Prior odds of one to one.
+    let strong: Vec<(f64, f64)> = strong
+        .filter_map(|one| Some((one.beside, one.none()?)))
+        .collect();
     let named = listed.iter().filter(|one| !one.named.is_empty());
-    let named = named.filter_map(|one| Some((one.none()?, false)));
-    stated.extend(named.take(outside));
+    let named: Vec<(f64, f64)> = named
+        .filter_map(|one| Some((one.strength, one.none()?)))
+        .collect();
+    // Prior odds of one to one.
+    let mut stated: Vec<(f64, bool)> = of_equal_strength(&strong, named)
+        .into_iter()
+        .map(|none| (none, false))
+        .collect();
+    stated.extend(strong.into_iter().map(|(_, none)| (none, true)));
     figures.push(calibration(&mut stated, small));
     Ok(figures)
+}
+
+/// What is stated of a record of the catalogue for each of some records: of the one whose strength is the
+/// nearest by its ratio, none of them twice, the strongest first, which few match.
+fn of_equal_strength(records: &[(f64, f64)], mut catalogue: Vec<(f64, f64)>) -> Vec<f64> {
+    let mut strengths: Vec<f64> = records.iter().map(|(strength, _)| *strength).collect();
+    strengths.sort_by(|a, b| b.total_cmp(a));
+    let mut matched = Vec::new();
+    for strength in strengths {
+        let off = |of: &(f64, f64)| (of.0 / strength).ln().abs();
+        let nearest =
+            (0..catalogue.len()).min_by(|a, b| off(&catalogue[*a]).total_cmp(&off(&catalogue[*b])));
+        if let Some(nearest) = nearest {
+            matched.push(catalogue.swap_remove(nearest).1);
+        }
+    }
+    matched
 }
 
 fn share(name: &str, limit: f64, all: Vec<bool>, small: bool) -> Figure {
@@ -162,7 +199,7 @@ fn calibration(stated: &mut [(f64, bool)], small: bool) -> Figure {
         .iter()
         .map(|[mean, share]| format!("{mean:.2} of {share:.2}"))
         .collect();
-    let name = "stated probability of none of these, of the share that is so, in five bins";
+    let name = "stated probability of none of these, of the share that is so, in five bins of records of equal strength";
     let mut figure = Figure::within(name, [0.0, CALIBRATED], worst);
     figure.measured = shown.join(", ");
     if small {
@@ -251,5 +288,32 @@ fn outside(effect: String, [strength, beside]: [f64; 2], found: &Diagnosis<'_>) 
         beside,
         named: named.collect(),
         unexplained: found.result.is_unexplained(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_of_the_catalogue_are_as_strong_and_taken_once() {
+        let catalogue = vec![(8.0, 0.1), (9.0, 0.2), (20.0, 0.3), (200.0, 0.4)];
+        let matched = of_equal_strength(&[(8.1, 1.0), (19.0, 1.0), (21.0, 1.0)], catalogue);
+        // 21 takes the one of 20; for 19 that of 9 is nearer than that of 200.
+        assert_eq!(matched, [0.3, 0.2, 0.1]);
+    }
+
+    #[test]
+    fn a_record_that_is_called_clean_states_nothing() {
+        let mut record = Outside {
+            effect: String::new(),
+            strength: 9.0,
+            beside: 9.0,
+            named: Vec::new(),
+            unexplained: false,
+        };
+        assert_eq!(record.none(), None);
+        record.unexplained = true;
+        assert_eq!(record.none(), Some(1.0));
     }
 }

@@ -15,7 +15,7 @@ use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::{Cell, effect};
+use super::{Causes, Cell, effect};
 use crate::truth::interval_s;
 
 /// Purposes of the streams of draws.
@@ -93,7 +93,11 @@ fn draw(
     let mut random = Draw::new(seed, CAUSES);
     let effects: Vec<_> = testable_effects(plain)
         .into_iter()
-        .filter(|effect| !cell.slow || is_slow(effect))
+        .filter(|effect| match cell.of {
+            Causes::All => true,
+            Causes::Slow => is_slow(effect),
+            Causes::WarmUps => effect.rate().is_some() && effect.kind == EffectKind::Exponential,
+        })
         .collect();
     let clean = simulate(plain)?;
     let run = Run {
