@@ -43,7 +43,11 @@ impl<'a> Gate<'a> {
     pub fn new(kind: PlatformKind, run: &Run<'a>, options: &Options) -> Self {
         let check = check_setup_of(kind, run.record, run.bench);
         let findings = check.findings.iter();
-        let problems = findings.map(|finding| with_fits(finding, run, options));
+        let fitted = Run {
+            record: check.mended.as_ref().unwrap_or(run.record),
+            bench: run.bench,
+        };
+        let problems = findings.map(|finding| with_fits(finding, &fitted, options));
         let mut problems: Vec<SetupProblem> = problems.collect();
         let mut usable = check.usable;
         if let (Some(finding), Some(record)) = (&check.unconfirmed, &usable) {
@@ -181,7 +185,9 @@ impl Fits {
 
     fn text(&self, correction: &Correction) -> String {
         let nis = |fit: Option<Fit>| {
-            fit.map_or("no fit".to_owned(), |fit| format!("{:.3}", fit.nis_mean))
+            fit.map_or("none, as no fit converges,".to_owned(), |fit| {
+                format!("{:.3}", fit.nis_mean)
+            })
         };
         format!(
             "mean NIS of {} rows, 3 is expected: {} as given, {} corrected ({} at {:.4} deg)",

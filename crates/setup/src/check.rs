@@ -18,6 +18,9 @@ pub struct SetupCheck {
     /// The record with what can be mended left out or corrected; `None` if an error leaves nothing
     /// sound. The same as was given if there is no finding.
     pub usable: Option<Record>,
+    /// The record with what can be mended left out or corrected, also if an error stops; `None` if
+    /// nothing was mended.
+    pub mended: Option<Record>,
     /// An error that stops, which the rows alone do not decide: it is one if the record fits its
     /// correction much better than what was given. Only where nothing else stops.
     pub unconfirmed: Option<SetupFinding>,
@@ -50,20 +53,23 @@ pub fn check_setup_of(kind: PlatformKind, record: &Record, bench: &Bench) -> Set
         return SetupCheck {
             findings: disorder,
             usable,
+            mended: None,
             unconfirmed: None,
         };
     }
     let mut samples = Samples::new(record, bench);
-    let mut findings = Vec::new();
-    let tests = TESTS.iter().filter(|(of, _)| of.contains(&kind));
-    for (_, test) in tests {
-        findings.extend(test(&mut samples));
+    let mut findings: Vec<SetupFinding> = Vec::new();
+    let tests = TESTS.iter().filter(|(of, ..)| of.contains(&kind));
+    for (_, judged, test) in tests {
         // What follows would judge values that are known to be wrong.
-        if findings.iter().any(|finding| finding.stops) {
+        let mut stopping = findings.iter().filter(|finding| finding.stops);
+        if stopping.any(|finding| !judged.stands_beside(finding)) {
             break;
         }
+        findings.extend(test(&mut samples));
     }
     let stops = findings.iter().any(|finding| finding.stops);
+    let is_mended = findings.iter().any(|finding| !finding.stops);
     let usable = match (stops, findings.is_empty()) {
         (true, _) => None,
         (false, true) => Some(record.clone()),
@@ -72,12 +78,29 @@ pub fn check_setup_of(kind: PlatformKind, record: &Record, bench: &Bench) -> Set
     SetupCheck {
         findings,
         usable,
+        mended: is_mended.then(|| samples.to_record()),
         unconfirmed: samples.unconfirmed.filter(|_| !stops),
     }
 }
 
 /// A test: takes out of the samples what it explains.
 type Test = fn(&mut Samples<'_>) -> Vec<SetupFinding>;
+
+/// What a test judges.
+#[derive(Clone, Copy)]
+enum Judged {
+    /// Magnitudes of specific force and nothing else.
+    Magnitudes,
+    /// More than that.
+    Rows,
+}
+
+impl Judged {
+    /// Whether an error that stops leaves it as it is: wrong axes or a wrong latitude change no magnitude.
+    fn stands_beside(self, error: &SetupFinding) -> bool {
+        matches!(self, Self::Magnitudes) && error.kind.is_of_directions()
+    }
+}
 
 /// All kinds of platforms; those whose attitude in space gyros hold.
 const ANY: &[PlatformKind] = &PlatformKind::ALL;
@@ -87,18 +110,18 @@ const HELD: &[PlatformKind] = &[PlatformKind::Stabilised];
 /// before it took out. Magnitudes say the same of every platform. Those that follow the direction of
 /// gravity take the drift to be that of gyros that the priors describe, and the fine errors of
 /// accelerometers to be those of a laboratory.
-const TESTS: [(&[PlatformKind], Test); 13] = [
-    (ANY, missing::find),
-    (ANY, coded::find),
-    (ANY, temperature::find),
-    (ANY, unit::find),
-    (ANY, clipped::find),
-    (ANY, stuck::find),
-    (ANY, repeated::find),
-    (ANY, duplicated::find),
-    (HELD, motion::find),
-    (ANY, scale::find),
-    (HELD, jump::find),
-    (HELD, rotation::find),
-    (HELD, gravity::find),
+const TESTS: [(&[PlatformKind], Judged, Test); 13] = [
+    (ANY, Judged::Rows, missing::find),
+    (ANY, Judged::Rows, coded::find),
+    (ANY, Judged::Rows, temperature::find),
+    (ANY, Judged::Rows, unit::find),
+    (ANY, Judged::Rows, clipped::find),
+    (ANY, Judged::Rows, stuck::find),
+    (ANY, Judged::Rows, repeated::find),
+    (ANY, Judged::Rows, duplicated::find),
+    (HELD, Judged::Rows, motion::find),
+    (ANY, Judged::Rows, scale::find),
+    (HELD, Judged::Rows, jump::find),
+    (HELD, Judged::Rows, rotation::find),
+    (HELD, Judged::Magnitudes, gravity::find),
 ];

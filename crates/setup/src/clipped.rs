@@ -1,11 +1,11 @@
 //! Accelerometers that do not go beyond a value.
 
-use crate::coded::STOPPING_SHARE;
+use crate::coded::of_rows;
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::Samples;
 use crate::scale;
-use crate::text::{AXES, number, row, rows, span};
+use crate::text::{AXES, number, row, rows};
 
 /// Width of the band below an extreme, in sigmas: noise that was added after the limit, and steps.
 const BAND_SIGMAS: f64 = 8.0;
@@ -102,22 +102,18 @@ fn finding(samples: &Samples<'_>, limits: &[&End], at: &[usize]) -> SetupFinding
         .map(|end| number(end.sign * end.limit))
         .collect();
     let description = format!(
-        "Accelerometer {} is clipped at {}: its range ends there. The rows are left out; use a \
-         larger range.",
+        "Accelerometer {} is clipped at {}: its range ends there; use a larger one.",
         AXES[axis],
         values.join(" and "),
     );
+    let left_out = "The rows are left out.".to_owned();
     let evidence = format!(
         "{} at the extreme, the first is row {}; the magnitude is too small in them",
         rows(at.len()),
         row(at.first().copied().unwrap_or(0))
     );
-    let found = SetupFinding::new(SetupKind::Clipped, description, evidence).at(span(at));
-    if at.len() as f64 > STOPPING_SHARE * samples.accel_g.len() as f64 {
-        found.stopping()
-    } else {
-        found
-    }
+    let rows = (at, samples.accel_g.len());
+    of_rows(SetupKind::Clipped, [description, left_out], evidence, rows)
 }
 
 /// Number of rows whose magnitude an end makes too small; `None` if it is no limit.

@@ -16,7 +16,29 @@ const WILD: f64 = 5.0;
 const OFF: f64 = 0.02;
 
 /// Beyond this share of the rows a record does not stand for the platform.
-pub(crate) const STOPPING_SHARE: f64 = 0.2;
+const STOPPING_SHARE: f64 = 0.2;
+
+/// A finding of rows that are left out, of a record of `all` rows: where they are too many it stops, and says
+/// so in the place of `left_out`.
+pub(crate) fn of_rows(
+    kind: SetupKind,
+    [description, left_out]: [String; 2],
+    evidence: String,
+    (at, all): (&[usize], usize),
+) -> SetupFinding {
+    let share = at.len() as f64 / all as f64;
+    if share <= STOPPING_SHARE {
+        let description = format!("{description} {left_out}");
+        return SetupFinding::new(kind, description, evidence).at(span(at));
+    }
+    let description = format!(
+        "{description} These are {:.0} % of the rows; of more than {:.0} % the rest is not used.",
+        100.0 * share,
+        100.0 * STOPPING_SHARE
+    );
+    let found = SetupFinding::new(kind, description, evidence);
+    found.at(span(at)).stopping()
+}
 
 /// Numbers that stand for missing values: 0, -999 and the like.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
@@ -57,27 +79,27 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
 
 fn finding(samples: &Samples<'_>, code: f64, axes: &[usize], at: &[usize]) -> SetupFinding {
     let description = format!(
-        "Missing values of {} are written as {}. They are left out; write `nan` for what was not \
-         measured.",
+        "Missing values of {} are written as {}.",
         accelerometers(axes),
         number(code),
     );
+    let left_out = "They are left out; write `nan` for what was not measured.".to_owned();
     let evidence = format!(
         "{}, the first is row {}; the magnitude is off by more than 1 % there",
         rows(at.len()),
         row(at[0])
     );
-    let found = SetupFinding::new(SetupKind::MissingCoded, description, evidence)
-        .at(span(at))
-        .or(
-            SetupKind::Stuck,
-            format!("an accelerometer that fails and reads {}", number(code)),
-        );
-    if at.len() as f64 > STOPPING_SHARE * samples.accel_g.len() as f64 {
-        found.stopping()
-    } else {
-        found
-    }
+    let rows = (at, samples.accel_g.len());
+    of_rows(
+        SetupKind::MissingCoded,
+        [description, left_out],
+        evidence,
+        rows,
+    )
+    .or(
+        SetupKind::Stuck,
+        format!("an accelerometer that fails and reads {}", number(code)),
+    )
 }
 
 /// Values of a column that may be codes, the most frequent first.

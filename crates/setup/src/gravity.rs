@@ -1,5 +1,6 @@
 //! Magnitude of specific force at rest.
 
+use gyrocal_record::Gravity;
 use gyrocal_statistics::upper_median;
 use nalgebra::{DMatrix, DVector};
 
@@ -106,10 +107,11 @@ fn finding(samples: &Samples<'_>, middle: f64, error: f64) -> SetupFinding {
     let ratio = 1.0 + middle;
     let description = format!(
         "Specific force at rest is {} at all attitudes, {} is declared: gravity at the site, the \
-         unit of the record or a common scale is another. It is corrected; give \
-         gravity_m_per_s2 and unit_m_per_s2 in [site].",
+         unit of the record or a common scale is another. It is corrected; give {} and {} in [site].",
         six_digits(ratio * samples.rest_g),
-        six_digits(samples.rest_g)
+        six_digits(samples.rest_g),
+        Gravity::KEYS[0],
+        Gravity::KEYS[1],
     );
     let evidence = format!(
         "the median magnitude is off by {:.2e} of it, with a standard error of {:.1e}",

@@ -65,6 +65,15 @@ impl SetupKind {
         Self::Gravity,
     ];
 
+    /// Whether it leaves the magnitudes of specific force as they are.
+    #[must_use]
+    pub fn is_of_directions(self) -> bool {
+        matches!(
+            self,
+            Self::Handedness | Self::Axes | Self::Angles | Self::Latitude | Self::Attitude
+        )
+    }
+
     /// Its name in results.
     #[must_use]
     pub fn as_str(self) -> &'static str {

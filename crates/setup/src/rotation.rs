@@ -93,10 +93,9 @@ fn without_angles(declared: f64, turn: &Turn) -> Option<SetupFinding> {
 }
 
 fn handedness(turn: &Turn, latitude_deg: f64) -> SetupFinding {
-    let description = "Gravity turns the wrong way for this latitude: its sign is wrong, or the \
-                       axes are mirrored (one or three negated, or two exchanged). The record \
-                       cannot tell which."
-        .to_owned();
+    let description =
+        "Gravity turns the wrong way: the sign of the latitude is wrong, or the axes are mirrored."
+            .to_owned();
     let evidence = turn.evidence(latitude_deg.to_radians());
     let mut finding = SetupFinding::new(SetupKind::Handedness, description, evidence)
         .stopping()

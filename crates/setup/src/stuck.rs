@@ -1,10 +1,10 @@
 //! Accelerometers that repeat one value.
 
-use crate::coded::STOPPING_SHARE;
+use crate::coded::of_rows;
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::Samples;
-use crate::text::{AXES, number, row, rows, span};
+use crate::text::{AXES, counted, number, row, rows};
 
 /// Equal values in so many successive rows may be stuck; the magnitude decides.
 const LEAST_ROWS: usize = 3;
@@ -121,25 +121,25 @@ fn finding(samples: &Samples<'_>, axis: usize, runs: &[Vec<usize>]) -> Option<Se
         String::new()
     };
     let description = format!(
-        "Accelerometer {} reads {} in {} from row {} on, while gravity moved{several}. It is left \
-         out there; look for an accelerometer, or a logger, that hangs.",
+        "Accelerometer {} reads {} in {} from row {} on, while gravity moved{several}: look for an \
+         accelerometer, or a logger, that hangs.",
         AXES[axis],
         number(value),
         rows(longest.len()),
         row(longest[0]),
     );
+    let left_out = "It is left out there.".to_owned();
     let evidence = format!(
-        "{} in {} runs of equal values; the squared magnitude varies by more than {} in each",
+        "{} in {} of equal values; the squared magnitude varies by more than {} in each",
         rows(at.len()),
-        runs.len(),
+        counted(runs.len(), "run"),
         number(samples.square_tolerance_g2()),
     );
-    let found = SetupFinding::new(SetupKind::Stuck, description, evidence).at(span(&at));
-    Some(
-        if at.len() as f64 > STOPPING_SHARE * samples.accel_g.len() as f64 {
-            found.stopping()
-        } else {
-            found
-        },
-    )
+    let all = samples.accel_g.len();
+    Some(of_rows(
+        SetupKind::Stuck,
+        [description, left_out],
+        evidence,
+        (&at, all),
+    ))
 }

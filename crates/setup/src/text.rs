@@ -29,8 +29,13 @@ pub(crate) fn capitalised(text: &str) -> String {
 
 /// `1 row` or `12 rows`.
 pub(crate) fn rows(count: usize) -> String {
+    counted(count, "row")
+}
+
+/// A number of things, in the singular for one.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };
-    format!("{count} row{ending}")
+    format!("{count} {thing}{ending}")
 }
 
 /// Rows counted from 1, as people count them.

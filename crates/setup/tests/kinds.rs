@@ -1,6 +1,6 @@
 //! Every breakage is told by a finding of its kind, or of one that no record tells from it.
 
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{Bench, Gravity, Record};
 use gyrocal_setup::{SetupCheck, SetupKind, check_setup};
 use gyrocal_testkit::broken_setups::{BREAKAGES, Breakage, Broken, sound};
 
@@ -80,6 +80,17 @@ fn two_errors_at_once_are_told_both_or_the_one_that_stops() {
             "standard g at another site",
             ["duplicated", "gravity"],
         ),
+        // Wrong axes or a wrong latitude stop, and leave magnitudes as they are.
+        (
+            "two axes exchanged",
+            "standard g at another site",
+            ["axes", "gravity"],
+        ),
+        (
+            "latitude negated, no angles",
+            "a common scale",
+            ["handedness", "gravity"],
+        ),
     ] {
         for seed in [2_170_000, 2_170_002, 2_170_004] {
             let broken = broken(first, second, seed);
@@ -95,6 +106,42 @@ fn two_errors_at_once_are_told_both_or_the_one_that_stops() {
             assert_eq!(told, expected, "{first} and {second}, seed {seed}");
         }
     }
+}
+
+#[test]
+fn what_stops_is_not_said_to_be_left_out() {
+    let text = |name: &str| {
+        let breakage = BREAKAGES.iter().find(|breakage| breakage.name == name);
+        let broken = breakage.map(|breakage| breakage.record(2_176_000));
+        let broken = broken.unwrap_or_else(|| panic!("no breakage {name}"));
+        let check = check_setup(&broken.record, &broken.bench);
+        (
+            check.findings[0].stops,
+            check.findings[0].problem().description,
+        )
+    };
+    let (stops, words) = text("stuck from the middle on");
+    assert!(
+        stops && words.contains("of more than 20 % the rest is not used"),
+        "{words}"
+    );
+    assert!(!words.contains("left out"), "{words}");
+    let (stops, words) = text("stuck for hours");
+    assert!(!stops && words.contains("left out"), "{words}");
+}
+
+#[test]
+fn keys_that_a_description_names_are_those_of_a_bench_file() {
+    let breakage = BREAKAGES
+        .iter()
+        .find(|one| one.name == "standard g at another site");
+    let broken = breakage.map(|breakage| breakage.record(2_177_000));
+    let broken = broken.unwrap_or_else(|| panic!("a breakage"));
+    let check = check_setup(&broken.record, &broken.bench);
+    let words = check.findings[0].problem().description;
+    let named = words.split(|letter: char| !(letter.is_alphanumeric() || letter == '_'));
+    let keys: Vec<&str> = named.filter(|word| word.contains('_')).collect();
+    assert_eq!(keys, Gravity::KEYS, "{words}");
 }
 
 #[test]
