@@ -385,7 +385,7 @@ impl Chosen<'_, '_> {
             rivals,
             in_place_of,
         } = replaced(self.context, self.candidates, state, self.threshold, draws)?;
-        let mut named = named(&state, walks, p_value)?;
+        let mut named = named(self.candidates, &state, walks, p_value)?;
         for (walk, finding) in &mut named {
             let own = in_place_of.iter().find(|(rate, _)| *rate == walk.rate);
             let own = own.map(|(_, effects)| effects);
@@ -402,8 +402,11 @@ impl Chosen<'_, '_> {
     }
 }
 
-/// The walks of a model that are named.
+/// The walks of a model that are named. The test is one of all walks together; what one of them gains beside
+/// the others is held against all as well, which is no less than its p-value in a closed test (Marcus,
+/// Peritz, Gabriel, Biometrika 63, 655, 1976).
 fn named<F: FittedModel>(
+    candidates: &Candidates,
     state: &SearchState<F>,
     walks: Vec<Needed>,
     p_value: f64,
@@ -416,7 +419,7 @@ fn named<F: FittedModel>(
             walk.effect,
             sizes[walk.rate],
             interval,
-            (walk.gain, p_value),
+            (walk.gain, p_value.max(candidates.p_value(walk.gain))),
         );
         (walk, finding)
     };
