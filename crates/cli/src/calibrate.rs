@@ -16,8 +16,7 @@ use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
 use gyrocal_diagnosis::{
-    CalibrationVerdict, DiagnoseOptions, calibration_verdict, effect_test, fit_effects,
-    screen_record,
+    CalibrationVerdict, DiagnoseOptions, calibration_verdict, fit_effects, screen_record,
 };
 use gyrocal_pages::of_calibration;
 use gyrocal_record::{
@@ -325,7 +324,7 @@ fn effects(measurements: &[Measurement], gyro_axes: &[GyroAxes]) -> Vec<EffectTe
             screen_record(&measurement.run(), axes, &DiagnoseOptions::default())
                 .inspect_err(|error| tracing::warn!(%error, path, "not tested for effects"))
                 .ok()
-                .map(|screened| effect_test(&path, &screened))
+                .map(|screened| screened.test(&path))
         });
     tests.collect()
 }

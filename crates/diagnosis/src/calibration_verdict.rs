@@ -1,7 +1,6 @@
 //! The verdict on a calibration, in the scale of a diagnosis.
 
 use gyrocal_calibration::{Consistency, FitStatistics};
-use gyrocal_hypothesis::Screened;
 use gyrocal_record::{EffectTest, FitVerdict, printable_line};
 use gyrocal_statistics::format::p_value;
 
@@ -12,18 +11,6 @@ pub struct CalibrationVerdict {
     pub verdict: FitVerdict,
     /// The same in a few sentences.
     pub text: String,
-}
-
-/// The outcome of the detection test as a result tells it; `file` is the record.
-#[must_use]
-pub fn effect_test(file: &str, screened: &Screened) -> EffectTest {
-    EffectTest {
-        record: file.to_owned(),
-        effect: screened.effect.map(str::to_owned),
-        z: screened.z,
-        p_value: screened.p_value,
-        significant: screened.is_significant,
-    }
 }
 
 /// The verdict on a fit: an effect that a record shows comes before the size of the innovations, since
@@ -40,19 +27,17 @@ pub fn calibration_verdict(
         Consistency::Overconfident => FitVerdict::TooLarge,
         Consistency::Underconfident => FitVerdict::TooSmall,
     };
-    let shown: Vec<&EffectTest> = effects.iter().filter(|test| test.significant).collect();
-    if shown.is_empty() || fit.is_gross() {
-        let none = match fit.is_gross() {
-            true => several_platforms(records),
-            false if effects.is_empty() => String::new(),
-            false => " No effect of the catalogue is significant.".to_owned(),
-        };
+    if fit.is_gross() {
         return CalibrationVerdict {
             verdict: of_size,
-            text: format!("{}{none}", fit.consistency_text()),
+            text: format!("{}{}", fit.consistency_text(), several_platforms(records)),
         };
     }
+    let shown: Vec<&EffectTest> = effects.iter().filter(|test| test.significant).collect();
     let several = records.len() > 1;
+    if shown.is_empty() {
+        return without_effects(fit, of_size, effects, several);
+    }
     let sentences: Vec<String> = shown.iter().map(|test| sentence(test, several)).collect();
     let [low, high] = fit.nis_band();
     let size = match of_size {
@@ -70,6 +55,61 @@ pub fn calibration_verdict(
             fit.nis_mean(),
         ),
     }
+}
+
+/// The verdict where no effect is significant: innovations that are not white come before noise that differs,
+/// and both before the size of the innovations.
+fn without_effects(
+    fit: &FitStatistics,
+    of_size: FitVerdict,
+    effects: &[EffectTest],
+    several: bool,
+) -> CalibrationVerdict {
+    let of = |test: &EffectTest| match several {
+        true => format!("of {} ", printable_line(&test.record)),
+        false => String::new(),
+    };
+    let coloured = effects.iter().filter(|test| test.white == Some(false));
+    let coloured: Vec<String> = coloured
+        .map(|test| {
+            let p = test
+                .residual_p_value
+                .map_or_else(String::new, |p| format!(" ({})", p_value(p)));
+            format!("the innovations {}are not white{p}", of(test))
+        })
+        .collect();
+    let noisy = effects.iter().filter(|test| !test.noise.is_empty());
+    let noisy: Vec<String> = noisy
+        .map(|test| {
+            let ids = test.noise.join(", ");
+            format!("The noise {}differs from the declared: {ids}.", of(test))
+        })
+        .collect();
+    let verdict = match (coloured.is_empty(), of_size, noisy.is_empty()) {
+        (false, ..) => FitVerdict::Unexplained,
+        (true, FitVerdict::Consistent, false) => FitVerdict::NoiseDiffers,
+        _ => of_size,
+    };
+    let none = match effects.is_empty() {
+        true => "",
+        false => " No effect of the catalogue is significant.",
+    };
+    let size = fit.consistency_text();
+    let first = match verdict {
+        FitVerdict::Unexplained => format!(
+            "Model mismatch detected: {}, and no effect of the catalogue is significant. The coefficients may \
+             be biased by more than their sigmas. {size}",
+            coloured.join("; "),
+        ),
+        FitVerdict::NoiseDiffers => format!(
+            "The mean NIS of all channels, {:.3}, is as expected, and single channels are not.{none}",
+            fit.nis_mean()
+        ),
+        _ => format!("{size}{none}"),
+    };
+    let sentences: Vec<String> = core::iter::once(first).chain(noisy).collect();
+    let text = sentences.join(" ");
+    CalibrationVerdict { verdict, text }
 }
 
 /// What a gross misfit of several records may come from.

@@ -47,7 +47,7 @@ pub use records::{
     RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together, problems_of,
     records_summary,
 };
-pub use screening::screen_record;
+pub use screening::{ScreenedRecord, screen_record};
 use shared_or_own::sizes_by_record;
 use untestable_rows::detect_outliers;
 

@@ -95,11 +95,11 @@ mod validation;
 mod watch;
 
 pub use calibration_report::{CalibratedRecord, CalibrationEvidence, calibration_report};
-pub use calibration_verdict::{CalibrationVerdict, calibration_verdict, effect_test};
+pub use calibration_verdict::{CalibrationVerdict, calibration_verdict};
 pub use diagnose::{
-    DiagnoseOptions, Diagnosis, RecordToDiagnose, RecordsDiagnosis, diagnose, diagnose_gated,
-    diagnose_records, diagnose_together, diagnose_watched, fit_effects, manifest, predict_later,
-    problems_of, record_summary, records_summary, screen_record,
+    DiagnoseOptions, Diagnosis, RecordToDiagnose, RecordsDiagnosis, ScreenedRecord, diagnose,
+    diagnose_gated, diagnose_records, diagnose_together, diagnose_watched, fit_effects, manifest,
+    predict_later, problems_of, record_summary, records_summary, screen_record,
 };
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};

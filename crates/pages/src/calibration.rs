@@ -162,6 +162,15 @@ fn summary(report: &CalibrationReport) -> Summary {
             Tone::Found,
             "Innovations smaller than declared noise".to_owned(),
         ),
+        FitVerdict::Unexplained => (
+            Tone::Bad,
+            "The innovations are not white, and no effect of the catalogue is significant"
+                .to_owned(),
+        ),
+        FitVerdict::NoiseDiffers => (
+            Tone::Found,
+            "The noise differs from the declared".to_owned(),
+        ),
         _ => (Tone::Bad, "Wrong set-up: nothing was estimated".to_owned()),
     };
     let mut cards = Vec::new();

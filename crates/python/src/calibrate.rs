@@ -9,7 +9,7 @@ use gyrocal_calibration::{
 use gyrocal_cli::NotCalibrated;
 use gyrocal_diagnosis::{
     CalibratedRecord, CalibrationEvidence, DiagnoseOptions, Gate, calibration_report,
-    calibration_verdict, effect_test, fit_effects, screen_record,
+    calibration_verdict, fit_effects, screen_record,
 };
 use gyrocal_record::{
     AveragedReport, Bench, CalibrationMethod, CalibrationReport, EffectTest, FittedEffects,
@@ -344,7 +344,7 @@ fn effects(names: &[String], runs: &[Run<'_>], axes: &[GyroAxes]) -> Vec<EffectT
     let tests = pairs.filter_map(|(index, (name, run))| {
         let axes = axes.get(index);
         let screened = screen_record(run, axes, &DiagnoseOptions::default()).ok()?;
-        Some(effect_test(name, &screened))
+        Some(screened.test(name))
     });
     tests.collect()
 }

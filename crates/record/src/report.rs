@@ -105,6 +105,16 @@ pub struct EffectTest {
     pub p_value: f64,
     /// Whether a diagnosis would name an effect.
     pub significant: bool,
+    /// What differs from the declared noise, without an effect in the model, by the ids of a diagnosis.
+    #[serde(default)]
+    pub noise: Vec<String>,
+    /// Whether the innovations are white, without an effect in the model; `None` of a record too short for the
+    /// test.
+    #[serde(default)]
+    pub white: Option<bool>,
+    /// p-value of that test.
+    #[serde(default)]
+    pub residual_p_value: Option<f64>,
 }
 
 /// The drift coefficients with given effects in the model.
@@ -181,6 +191,11 @@ pub enum FitVerdict {
     TooSmall,
     /// A record shows an effect of the catalogue, whatever the size of the innovations.
     EffectsFound,
+    /// The innovations of a record are not white, and no effect of the catalogue is significant.
+    Unexplained,
+    /// The noise of a record is not the declared one in another way than its size: it is correlated, has outliers
+    /// or steps, or that of single channels is not as declared.
+    NoiseDiffers,
     /// A gross error of a set-up leaves nothing sound: nothing was estimated.
     Setup,
 }

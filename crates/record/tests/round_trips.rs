@@ -178,6 +178,9 @@ fn report() -> CalibrationReport {
             z: 16.1,
             p_value: 1e-40,
             significant: true,
+            noise: vec!["accel.coloured_noise".to_owned()],
+            white: Some(true),
+            residual_p_value: Some(0.4),
         }],
         coefficients: vec![Coefficient {
             name: "gyro_x.bias".to_owned(),

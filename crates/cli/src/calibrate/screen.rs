@@ -31,7 +31,11 @@ pub(super) fn first(found: &CalibrationRun, next: Option<String>) -> Screen {
         );
     }
     let [low, high] = fit.nis_band();
+    let is_white = |test: &EffectTest| test.white == Some(true);
     let effects = match (shown.is_empty(), found.effects.is_empty()) {
+        (true, false) if found.effects.iter().all(is_white) => {
+            "; no effect of the catalogue is significant, innovations white"
+        }
         (true, false) => "; no effect of the catalogue is significant",
         _ => "",
     };
@@ -121,6 +125,20 @@ fn verdict(found: &CalibrationRun) -> Screen {
             "the innovations are smaller than the declared noise: the sigmas are too large"
                 .to_owned(),
         ),
+        FitVerdict::Unexplained => (
+            Standing::Bad,
+            "UNEXPLAINED",
+            "the innovations are not white, and no effect of the catalogue is significant"
+                .to_owned(),
+        ),
+        FitVerdict::NoiseDiffers => (
+            Standing::Doubtful,
+            "MISFIT",
+            format!(
+                "the noise differs from the declared ({}): the sigmas are not those of this noise",
+                noise_found(&found.effects).join(", ")
+            ),
+        ),
         _ => (
             Standing::Good,
             "CALIBRATED",
@@ -128,6 +146,15 @@ fn verdict(found: &CalibrationRun) -> Screen {
         ),
     };
     Screen::new(standing, verdict, what)
+}
+
+/// What the noise audits of the records found.
+fn noise_found(effects: &[EffectTest]) -> Vec<&str> {
+    let all = effects.iter().flat_map(|test| &test.noise);
+    let mut ids: Vec<&str> = all.map(String::as_str).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    ids
 }
 
 fn results(found: &CalibrationRun, screen: &mut Screen) {

@@ -86,3 +86,45 @@ fn coefficients_that_mean_nothing_are_not_tabled() {
     assert_eq!(found.verdict, FitVerdict::TooLarge);
     assert!(found.coefficients.iter().all(|one| !one.determined));
 }
+
+/// A record with an effect hidden, and its bench description, calibrated.
+fn calibrated(hidden: &str) -> (String, CalibrationReport) {
+    let folder = Folder::new();
+    let scenario = String::from_utf8(example("three_days.scenario.toml").into()).unwrap();
+    folder.put("s.toml", format!("{scenario}\n{hidden}"));
+    folder.succeed(&[
+        "simulate",
+        "s.toml",
+        "--out",
+        "r.csv",
+        "--bench-out",
+        "b.toml",
+    ]);
+    let said = unwrapped(&folder.succeed(&JSON));
+    (said, report(&folder))
+}
+
+#[test]
+fn innovations_that_are_not_white_are_not_called_calibrated() {
+    // A tone of half the sigma of a sample.
+    let (said, found) =
+        calibrated("[[hidden]]\neffect = \"accel_x.tone\"\nsize = 5e-6\nperiod_h = 0.5\n");
+    assert_eq!(found.verdict, FitVerdict::Unexplained, "{said}");
+    assert!(said.contains("the innovations are not white"), "{said}");
+    assert_eq!(found.effects[0].white, Some(false));
+    assert!(!found.effects[0].significant);
+}
+
+#[test]
+fn noise_that_the_audit_finds_is_told() {
+    let (said, found) =
+        calibrated("[[hidden]]\neffect = \"accel.coloured_noise\"\ncorrelation = 0.2\n");
+    assert_eq!(found.verdict, FitVerdict::NoiseDiffers, "{said}");
+    assert_eq!(found.effects[0].noise, ["accel.coloured_noise"]);
+    assert_eq!(found.effects[0].white, Some(true));
+    assert!(said.contains("accel.coloured_noise"), "{said}");
+    // One gyro has more noise than declared, which the mean NIS of all channels hardly shows.
+    let (said, found) = calibrated("[[hidden]]\neffect = \"gyro_x.noise\"\nratio = 2.0\n");
+    assert_eq!(found.effects[0].noise, ["gyro_x.noise"], "{said}");
+    assert_ne!(found.verdict, FitVerdict::Consistent);
+}
