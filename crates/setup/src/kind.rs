@@ -74,6 +74,20 @@ impl SetupKind {
         )
     }
 
+    /// Whether the samples that it concerns are lost: no other bench file or unit brings them back.
+    #[must_use]
+    pub fn loses_samples(self) -> bool {
+        matches!(
+            self,
+            Self::Missing
+                | Self::MissingCoded
+                | Self::Stuck
+                | Self::Clipped
+                | Self::Repeated
+                | Self::Duplicated
+        )
+    }
+
     /// Its name in results.
     #[must_use]
     pub fn as_str(self) -> &'static str {

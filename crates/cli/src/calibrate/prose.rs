@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use gyrocal::EFFECTS;
+use gyrocal::effect::{EffectKind, NoiseProperty};
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
     AzimuthSearch, Calibration, ConsiderSensitivity, NoiseDifference, NoiseEstimate, NoiseRatio,
@@ -34,8 +36,8 @@ pub(super) fn summary(found: &CalibrationRun) -> String {
         return text;
     }
     text.push_str(&observability(found));
-    for (measurement, run) in found.measurements.iter().zip(&calibration.runs) {
-        text.push_str(&run_results(measurement, run, found.has_several_records()));
+    for index in 0..found.measurements.len().min(calibration.runs.len()) {
+        text.push_str(&run_results(found, index));
     }
     text.push_str(&site(found));
     text.push_str(&overlapping_times(&found.measurements));
@@ -162,7 +164,17 @@ fn observability(found: &CalibrationRun) -> String {
     text
 }
 
-fn run_results(measurement: &Measurement, run: &RunResult, several: bool) -> String {
+fn run_results(found: &CalibrationRun, index: usize) -> String {
+    let (measurement, run) = (&found.measurements[index], &found.calibration.runs[index]);
+    let path = measurement.path.to_string_lossy();
+    let is_correlated = found.effects.iter().any(|test| {
+        let mut noise = EFFECTS
+            .iter()
+            .filter(|row| test.noise.iter().any(|id| id == row.id));
+        test.record == path
+            && noise.any(|row| row.kind == EffectKind::Noise(NoiseProperty::Correlation))
+    });
+    let several = found.has_several_records();
     let mut text = String::new();
     let of = if several {
         format!(" of {}", printable_path(&measurement.path))
@@ -180,6 +192,12 @@ fn run_results(measurement: &Measurement, run: &RunResult, several: bool) -> Str
             ratios(&noise.gyro)
         );
         text.push_str(&paragraph(&noise_differences(noise)));
+        if is_correlated {
+            text.push_str(&paragraph(
+                "The noise of the accelerometers is correlated. These ratios take it to be white, and its slow \
+                 part for noise of the gyros.",
+            ));
+        }
     }
     if run.bounded_values > 0 {
         text.push_str(&paragraph(&format!(

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use gyrocal_calibration::{NoiseRatio, RunResult, SiteQuantity};
 use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table, command_files, few};
-use gyrocal_record::{EffectTest, FitVerdict, InputRole};
+use gyrocal_record::{EffectTest, FitVerdict, FittedEffects, InputRole};
 use gyrocal_statistics::format;
 
 use super::{CalibrateArguments, CalibrationRun};
@@ -46,6 +46,9 @@ pub(super) fn first(found: &CalibrationRun, next: Option<String>) -> Screen {
             fit.nis_mean()
         ),
     );
+    if let Some(with) = &found.with_effects {
+        screen.fact("with it", fitted(with));
+    }
     for problem in found.setup().take(RECORDS_SHOWN) {
         screen.fact("set-up mended", &*problem.description);
     }
@@ -68,7 +71,14 @@ pub(super) fn first(found: &CalibrationRun, next: Option<String>) -> Screen {
         FitVerdict::Consistent => "all tests, and what could go undetected",
         _ => "looks for the causes",
     };
-    if let Some(command) = next {
+    if let Some(with) = &found.with_effects {
+        let ids: Vec<&str> = with.effects.iter().map(|one| one.effect.as_str()).collect();
+        let effects = ids.join(",");
+        screen.then(
+            format!("gyrocal extend --effects {effects} --out NAME.model.toml"),
+            "the filter",
+        );
+    } else if let Some(command) = next {
         screen.then(command, why);
     }
     screen
@@ -111,7 +121,12 @@ fn verdict(found: &CalibrationRun) -> Screen {
         FitVerdict::EffectsFound => (
             Standing::Bad,
             "FAULT",
-            format!("{of} an effect that the model lacks: the coefficients may be biased"),
+            match &found.with_effects {
+                None => {
+                    format!("{of} an effect that the model lacks: the coefficients may be biased")
+                }
+                Some(_) => format!("{of} an effect that the nominal model lacks"),
+            },
         ),
         FitVerdict::TooLarge => (
             Standing::Doubtful,
@@ -146,6 +161,36 @@ fn verdict(found: &CalibrationRun) -> Screen {
         ),
     };
     Screen::new(standing, verdict, what)
+}
+
+/// Sizes of effects that were given, and what they gain.
+fn fitted(with: &FittedEffects) -> String {
+    let effects = with.effects.iter().map(|one| {
+        let values = one.parameters.iter().map(|own| {
+            let value = match (own.sigma, own.interval.as_deref()) {
+                (Some(sigma), _) => format::estimate(own.estimate, sigma).join(" ± "),
+                (None, Some([[low, high]])) => format!(
+                    "{} (95 %: {} to {})",
+                    format::short(own.estimate, 4),
+                    format::short(*low, 3),
+                    format::short(*high, 3)
+                ),
+                (None, _) => format::short(own.estimate, 4),
+            };
+            let unit = match own.unit.as_str() {
+                "1" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            match own.name.as_str() {
+                "size" => format!("{value}{unit}"),
+                name => format!("{name} {value}{unit}"),
+            }
+        });
+        let values: Vec<String> = values.collect();
+        format!("{} {}", one.effect, values.join(", "))
+    });
+    let effects: Vec<String> = effects.collect();
+    format!("{}; {:+.1} nats", effects.join("; "), with.gained_nats)
 }
 
 /// What the noise audits of the records found.

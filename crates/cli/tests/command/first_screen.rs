@@ -1,7 +1,7 @@
 //! The first screen of every command, on a terminal of 80 columns and 24 lines: it fits, with the
 //! prompt, and its first three lines hold the verdict.
 
-use crate::folder::{Folder, repository, repository_argument};
+use crate::folder::{Folder, example, repository, repository_argument};
 
 const COLUMNS: usize = 80;
 
@@ -249,4 +249,39 @@ fn nothing_is_printed_if_asked_so_and_colours_on_request_only() {
     assert!(colour("always") && !colour("never") && !colour("auto"));
     let wrong = folder.run(&["diagnose", "--colour", "--color=always"]);
     assert!(String::from_utf8(wrong.stderr).unwrap().contains('\u{1b}'));
+}
+
+#[test]
+fn a_record_that_can_show_little_is_too_short_to_tell() {
+    let folder = examples();
+    let rows: Vec<String> = folder
+        .text("three_days.csv")
+        .lines()
+        .take(40)
+        .map(str::to_owned)
+        .collect();
+    folder.put("short.csv", rows.join("\n") + "\n");
+    let arguments = ["diagnose", "short.csv", "--bench", "three_days.bench.toml"];
+    let said = assert_screen(&folder, &arguments, &["TOO SHORT TO TELL"]);
+    assert!(said.contains("record for a day or longer"), "{said}");
+    assert!(!said.contains("NO FAULT FOUND"), "{said}");
+}
+
+#[test]
+fn a_random_walk_is_told_with_its_interval_and_without_a_simulation() {
+    let folder = examples();
+    let scenario = example("three_days.scenario.toml");
+    let hidden = "[[hidden]]\neffect = \"gyro_x.random_walk\"\nsize = 1e-3\n";
+    folder.put("s.toml", format!("{scenario}\n{hidden}"));
+    folder.succeed(&[
+        "simulate",
+        "s.toml",
+        "--out",
+        "w.csv",
+        "--bench-out",
+        "w.toml",
+    ]);
+    let arguments = ["diagnose", "w.csv", "--bench", "w.toml"];
+    let said = assert_screen(&folder, &arguments, &["gyro_x.random_walk", "(95 %: "]);
+    assert!(!said.contains("open-loop"), "{said}");
 }

@@ -10,9 +10,6 @@ use crate::result::{Alternative, DiagnosisResult, Finding, Parameter};
 /// Alternatives that an entry names; the ranking shows all of them.
 const ALTERNATIVES_SHOWN: usize = 4;
 
-/// Probability of none of the catalogue from which on it is told.
-const TOLD: f64 = 0.2;
-
 /// One entry for each detected effect.
 pub(super) fn entries(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
     let findings = result.findings.iter().enumerate();
@@ -78,7 +75,7 @@ fn alternatives(finding: &Finding) -> String {
 
 /// The probability that the cause is not in the catalogue, and how much likelier it is than what is named.
 fn none_of_these(finding: &Finding) -> Option<String> {
-    let probability = finding.none_of_these.filter(|none| *none >= TOLD)?;
+    let probability = finding.none_of_these?;
     let followed = "the residuals follow the specific force, its past, its products with time or the \
                     temperature as no effect of the catalogue does";
     let likelier = if probability > 0.5 {
@@ -95,7 +92,7 @@ fn none_of_these(finding: &Finding) -> Option<String> {
     });
     Some(format!(
         "None of these: probability {}{}, {likelier}.",
-        percent(probability),
+        likely(probability),
         ratio.unwrap_or_default()
     ))
 }
@@ -113,11 +110,27 @@ pub fn parameter_values(parameters: &[Parameter]) -> String {
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// Estimate and sigma of a parameter.
+/// Estimate and sigma of a parameter, or its interval where the likelihood is not symmetric.
 pub(super) fn value(parameter: &Parameter) -> String {
-    match parameter.sigma {
-        Some(sigma) => with_sigma(parameter.estimate, sigma),
-        None => short(parameter.estimate),
+    match (parameter.sigma, &parameter.interval) {
+        (Some(sigma), _) => with_sigma(parameter.estimate, sigma),
+        (None, Some(pieces)) if !pieces.is_empty() => {
+            let piece =
+                |[low, high]: &[f64; 2]| format!("{} to {}", rounded(*low, 3), rounded(*high, 3));
+            let pieces: Vec<String> = pieces.iter().map(piece).collect();
+            let interval = pieces.join(" or ");
+            format!("{} (95 %: {interval})", short(parameter.estimate))
+        }
+        (None, _) => short(parameter.estimate),
+    }
+}
+
+/// An estimated probability, in whole percents: its own error is of this size.
+pub(super) fn likely(probability: f64) -> String {
+    match probability {
+        high if high > 0.99 => "above 99 %".to_owned(),
+        low if low < 0.01 => "below 1 %".to_owned(),
+        between => format!("{:.0} %", 100.0 * between),
     }
 }
 
@@ -141,6 +154,31 @@ pub fn likelihood(alternative: &Alternative) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_size_without_a_sigma_has_its_interval() {
+        let of = |interval: Option<Vec<[f64; 2]>>| {
+            value(&Parameter {
+                name: "size".to_owned(),
+                estimate: 0.001_05,
+                sigma: None,
+                interval,
+                unit: "1".to_owned(),
+            })
+        };
+        assert_eq!(of(None), "0.00105");
+        assert_eq!(
+            of(Some(vec![[0.000_72, 0.001_38]])),
+            "0.00105 (95 %: 7.2e-4 to 0.00138)"
+        );
+    }
+
+    #[test]
+    fn a_probability_has_no_more_digits_than_it_is_known_with() {
+        assert_eq!(likely(0.3838), "38 %");
+        assert_eq!(likely(1.0), "above 99 %");
+        assert_eq!(likely(1e-7), "below 1 %");
+    }
 
     #[test]
     fn an_alternative_is_described_by_its_likelihood() {

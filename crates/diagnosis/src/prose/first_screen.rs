@@ -1,21 +1,25 @@
 //! The first screen of a diagnosis.
 
-use gyrocal_setup::LEAST_TURN_S;
+use gyrocal::EFFECTS;
+use gyrocal::effect::EffectKind;
+use gyrocal_setup::{LEAST_TURN_S, SetupKind};
 use gyrocal_statistics::format::{self, p_value, percent, with_sigma};
 
+use super::clean_screen;
+use super::findings::{likely, value};
 use super::format::{counted, short};
 use super::records::{self, files};
 use super::screen::{Screen, Standing, few};
 use super::verdict;
 use crate::result::{
-    DiagnosisResult, Finding, FindingKind, Indistinguishable, NotTestedReason, Parameter, Relation,
-    ResidualVerdict, Verdict,
+    DiagnosisResult, Finding, FindingKind, Indistinguishable, Parameter, Relation, ResidualVerdict,
+    Verdict,
 };
 
 /// Findings that are told one by one.
 const FINDINGS_SHOWN: usize = 4;
 /// Alternatives that are named.
-const ALTERNATIVES_SHOWN: usize = 4;
+pub(super) const ALTERNATIVES_SHOWN: usize = 4;
 /// Coefficients that are named with their change.
 const SHIFTS_SHOWN: usize = 3;
 /// Errors of a set-up that are told.
@@ -34,7 +38,7 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
         Verdict::EffectsFound => found(result),
         Verdict::Unexplained => unexplained(result),
         Verdict::Setup => wrong_setup(result),
-        Verdict::Clean => clean(result),
+        Verdict::Clean => clean_screen::clean(result),
     };
     if result.strapdown {
         screen.fact("axes", STRAPDOWN);
@@ -131,7 +135,7 @@ fn size(finding: &Finding) -> String {
 fn value_with_unit(parameter: &Parameter) -> String {
     let value = match parameter.sigma {
         Some(sigma) => with_sigma(parameter.estimate, sigma),
-        None => short(parameter.estimate),
+        None => value(parameter),
     };
     match parameter.unit.as_str() {
         "1" => value,
@@ -168,7 +172,7 @@ pub fn may_also_be(result: &DiagnosisResult) -> String {
     let unlisted = (unlisted >= TOLD).then(|| {
         format!(
             "a cause outside of the catalogue (probability {})",
-            percent(unlisted)
+            likely(unlisted)
         )
     });
     let listed = (!names.is_empty()).then(|| few(&names, ALTERNATIVES_SHOWN));
@@ -194,6 +198,11 @@ fn nothing_else(result: &DiagnosisResult) -> String {
     }
 }
 
+fn is_random_walk(id: &str) -> bool {
+    let row = EFFECTS.iter().find(|row| row.id == id);
+    row.is_some_and(|row| row.kind == EffectKind::RandomWalk)
+}
+
 /// Error of the open-loop simulation, gain and changes of the coefficients.
 fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
     let Some(gain) = &result.gain else {
@@ -201,17 +210,21 @@ fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
     };
     let micro = |g: f64| format::short(1e6 * g, 3);
     let rms = gain.free_run_rms_g;
-    screen.fact(
-        "what it does",
-        format!(
-            "open-loop error {} → {} µg with it in the model (noise {}); {:+.1} nats on left-out \
-             blocks",
+    let left_out = format!(
+        "{:+.1} nats on left-out blocks",
+        gain.cross_validated_log_score_nats
+    );
+    // A simulation without measurements cannot follow a random walk.
+    let what = match result.causes().any(|cause| is_random_walk(&cause.effect)) {
+        true => left_out,
+        false => format!(
+            "open-loop error {} → {} µg with it in the model (noise {}); {left_out}",
             micro(rms.before),
             micro(rms.after),
             micro(rms.noise),
-            gain.cross_validated_log_score_nats
         ),
-    );
+    };
+    screen.fact("what it does", what);
     if let Some(validation) = &gain.validation {
         let error = &validation.compensation;
         screen.fact(
@@ -241,7 +254,7 @@ fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
 }
 
 /// The residual with all causes in the model.
-fn remainder(result: &DiagnosisResult) -> String {
+pub(super) fn remainder(result: &DiagnosisResult) -> String {
     let test = &result.remainder;
     match test.verdict {
         ResidualVerdict::White => format!("nothing: innovations white ({})", p_value(test.p_value)),
@@ -287,7 +300,7 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
 }
 
 /// The next step that plans a run.
-fn plan(result: &DiagnosisResult, screen: &mut Screen, why: &str) {
+pub(super) fn plan(result: &DiagnosisResult, screen: &mut Screen, why: &str) {
     screen.then(format!("gyrocal plan {}", files(result)), why);
 }
 
@@ -352,73 +365,6 @@ fn not_settled(result: &DiagnosisResult) -> Screen {
     screen
 }
 
-fn clean(result: &DiagnosisResult) -> Screen {
-    let mut screen = Screen::new(
-        Standing::Good,
-        "NO FAULT FOUND",
-        "the record fits the model and the declared noise",
-    );
-    screen.fact(
-        "how sure",
-        format!(
-            "{} tested, false-alarm rate {}; {}",
-            counted(result.ranking.len(), "effect"),
-            percent(result.false_alarm_probability),
-            remainder(result).replace("nothing: ", "")
-        ),
-    );
-    screen.fact("may still hide", undetected(result));
-    screen.fact("not tested", untested(result));
-    if let Some(nis) = result.residuals.as_ref().and_then(|shown| shown.nis) {
-        let [low, high] = nis.band;
-        screen.fact(
-            "innovations",
-            format!("mean NIS {:.3} (expected {low:.3} to {high:.3})", nis.mean),
-        );
-    }
-    let files = files(result);
-    screen.then(
-        format!("gyrocal calibrate {files}"),
-        "the nine coefficients with their sigmas",
-    );
-    plan(result, &mut screen, "the run that reduces the sigmas most");
-    screen
-}
-
-/// Effects that would go undetected at their typical size.
-fn undetected(result: &DiagnosisResult) -> String {
-    let low = result.not_searched.iter();
-    let low: Vec<&str> = low
-        .filter(|effect| effect.reason == NotTestedReason::LowPower)
-        .map(|effect| &*effect.effect)
-        .collect();
-    match low.len() {
-        0 => "effects well below their typical size (gyrocal effects)".to_owned(),
-        count => format!(
-            "{count} of {} of typical size, as the record is short: {}",
-            counted(result.ranking.len(), "effect"),
-            few(&low, ALTERNATIVES_SHOWN)
-        ),
-    }
-}
-
-/// Effects that were not tested for.
-fn untested(result: &DiagnosisResult) -> String {
-    let others = result.not_searched.iter();
-    let others: Vec<&str> = others
-        .filter(|effect| effect.reason != NotTestedReason::LowPower)
-        .map(|effect| &*effect.effect)
-        .collect();
-    match others.len() {
-        0 => String::new(),
-        count => format!(
-            "{} (missing inputs, or on request): {}",
-            counted(count, "effect"),
-            few(&others, 2)
-        ),
-    }
-}
-
 fn wrong_setup(result: &DiagnosisResult) -> Screen {
     let mut screen = Screen::new(
         Standing::Bad,
@@ -432,9 +378,18 @@ fn wrong_setup(result: &DiagnosisResult) -> Screen {
         let more = result.setup.len() - PROBLEMS_SHOWN;
         screen.fact("and", format!("{more} more: --verbose lists them"));
     }
+    let kinds = SetupKind::ALL.iter();
+    let mut lost = kinds.filter(|kind| kind.loses_samples());
+    let is_lost = lost.any(|kind| {
+        let mut problems = result.setup.iter();
+        problems.any(|problem| problem.kind == kind.as_str())
+    });
     screen.fact(
         "what to do",
-        "mend the record or its bench file: docs/setup-checks.md lists what is checked",
+        match is_lost {
+            true => "record again, or diagnose the sound rows alone: docs/setup-checks.md lists what is checked",
+            false => "mend the record or its bench file: docs/setup-checks.md lists what is checked",
+        },
     );
     screen
 }

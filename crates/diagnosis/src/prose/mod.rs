@@ -5,6 +5,7 @@
 //! shows it breaks lines and draws tables. [`first_screen`] gives what a person reads first.
 
 mod catalogue;
+mod clean_screen;
 mod findings;
 mod first_screen;
 mod format;

@@ -1,12 +1,16 @@
 //! The tables of an answer.
 
+use gyrocal::EFFECTS;
+use gyrocal::effect::{EffectKind, NoiseProperty};
 use gyrocal_record::NoiseRatioReport;
 use gyrocal_statistics::format::{self, p_cell};
 
 use super::findings::{likelihood, value};
 use super::format::{short, with_sigma};
 use super::{AXES, Block, Column, Table};
-use crate::result::{CoefficientEstimate, Coefficients, DiagnosisResult, Finding, Gain, Residuals};
+use crate::result::{
+    CoefficientEstimate, Coefficients, DiagnosisResult, Finding, FindingKind, Gain, Residuals,
+};
 
 /// Rows of the ranking that are shown.
 const TOP: usize = 12;
@@ -91,7 +95,7 @@ fn coefficients(shown: &Coefficients) -> Option<Table> {
         ]
     });
     Some(Table {
-        title: "Drift coefficients; the 95 % interval is over all members of the confidence sets, \
+        title: "Drift coefficients, noise as estimated; the 95 % interval is over all members of the confidence sets, \
                 weighted by their likelihoods:"
             .to_owned(),
         columns: vec![
@@ -267,13 +271,22 @@ fn noise(result: &DiagnosisResult) -> Option<Table> {
         let cells = ratios.iter().map(interval);
         core::iter::once(name.to_owned()).chain(cells).collect()
     };
+    // The likelihood of white noise takes the slow part of correlated noise for that of the gyros.
+    let is_correlated = result.of_kind(FindingKind::Noise).any(|finding| {
+        let row = EFFECTS.iter().find(|row| row.id == finding.effect);
+        row.is_some_and(|row| row.kind == EffectKind::Noise(NoiseProperty::Correlation))
+    });
+    let gyros = (!is_correlated).then(|| row("gyros", &noise.gyro));
+    let of_gyros = match is_correlated {
+        true => "; that of the gyros is not told, as the accelerometers' is correlated",
+        false => "",
+    };
     Some(Table {
-        title: format!("Estimated / declared noise (95 % CI), {model}:"),
+        title: format!("Estimated / declared noise (95 % CI), {model}{of_gyros}:"),
         columns: by_axis(),
-        rows: vec![
-            row("accelerometers", &noise.accel),
-            row("gyros", &noise.gyro),
-        ],
+        rows: core::iter::once(row("accelerometers", &noise.accel))
+            .chain(gyros)
+            .collect(),
     })
 }
 

@@ -1,0 +1,91 @@
+//! The first screen of a record in which nothing was found.
+
+use gyrocal_statistics::format::percent;
+
+use super::first_screen::{ALTERNATIVES_SHOWN, plan, remainder};
+use super::format::counted;
+use super::records::files;
+use super::screen::{Screen, Standing, few};
+use crate::result::{DiagnosisResult, NotTestedReason};
+
+pub(super) fn clean(result: &DiagnosisResult) -> Screen {
+    let hidden = low_power(result).len();
+    let is_short = 2 * hidden > result.ranking.len();
+    let mut screen = match is_short {
+        true => Screen::new(
+            Standing::Doubtful,
+            "TOO SHORT TO TELL",
+            "the record fits the model, and would with most faults of typical size",
+        ),
+        false => Screen::new(
+            Standing::Good,
+            "NO FAULT FOUND",
+            "the record fits the model and the declared noise",
+        ),
+    };
+    screen.fact(
+        "how sure",
+        format!(
+            "{} tested, false-alarm rate {}; {}",
+            counted(result.ranking.len(), "effect"),
+            percent(result.false_alarm_probability),
+            remainder(result).replace("nothing: ", "")
+        ),
+    );
+    screen.fact("may still hide", undetected(result));
+    screen.fact("not tested", untested(result));
+    if let Some(nis) = result.residuals.as_ref().and_then(|shown| shown.nis) {
+        let [low, high] = nis.band;
+        screen.fact(
+            "innovations",
+            format!("mean NIS {:.3} (expected {low:.3} to {high:.3})", nis.mean),
+        );
+    }
+    if is_short {
+        screen.fact("what to do", "record for a day or longer");
+    }
+    let files = files(result);
+    screen.then(
+        format!("gyrocal calibrate {files}"),
+        "the nine coefficients with their sigmas",
+    );
+    plan(result, &mut screen, "the run that reduces the sigmas most");
+    screen
+}
+
+/// Effects that would go undetected at their typical size.
+fn low_power(result: &DiagnosisResult) -> Vec<&str> {
+    let low = result.not_searched.iter();
+    low.filter(|effect| effect.reason == NotTestedReason::LowPower)
+        .map(|effect| &*effect.effect)
+        .collect()
+}
+
+fn undetected(result: &DiagnosisResult) -> String {
+    let low = low_power(result);
+    match low.len() {
+        0 => "effects well below their typical size (gyrocal effects)".to_owned(),
+        count => format!(
+            "{count} of {} of typical size, as the record is short: {}",
+            counted(result.ranking.len(), "effect"),
+            few(&low, ALTERNATIVES_SHOWN)
+        ),
+    }
+}
+
+/// Effects that were not tested for.
+fn untested(result: &DiagnosisResult) -> String {
+    let others = result.not_searched.iter();
+    let others: Vec<&str> = others
+        .filter(|effect| effect.reason != NotTestedReason::LowPower)
+        .map(|effect| &*effect.effect)
+        .collect();
+    match others.len() {
+        0 => String::new(),
+        count => format!(
+            "{} (missing inputs, or on request): {}",
+            counted(count, "effect"),
+            few(&others, 2)
+        ),
+    }
+}
