@@ -40,11 +40,11 @@ enum Causes {
     All,
     /// Those that change slowly in time.
     Slow,
-    /// Warm-ups of gyros, of which there are few among all.
-    WarmUps,
+    /// Those of a kind, of which there are few among all.
+    Of(EffectKind),
 }
 
-const CELLS: [Cell; 6] = [
+const CELLS: [Cell; 4] = [
     Cell {
         name: "d = 8",
         strength: 8.0,
@@ -59,58 +59,99 @@ const CELLS: [Cell; 6] = [
         name: "d = 12",
         strength: 12.0,
         of: Causes::All,
-        tells_sets: false,
         least_alone: [0.97, 0.88],
         first_seed: 811_000,
         records: 600,
-        small: 0,
+        ..FURTHER
     },
     Cell {
         name: "slow causes, d = 5",
         strength: 5.0,
         of: Causes::Slow,
-        tells_sets: false,
-        least_alone: [0.0, 0.0],
         first_seed: 821_000,
-        records: 300,
-        small: 0,
+        ..FURTHER
     },
     Cell {
         name: "slow causes, d = 6",
         strength: 6.0,
         of: Causes::Slow,
-        tells_sets: false,
-        least_alone: [0.0, 0.0],
         first_seed: 831_000,
-        records: 300,
-        small: 0,
+        ..FURTHER
     },
+];
+
+/// A further population, of the full version only.
+const FURTHER: Cell = Cell {
+    name: "",
+    strength: 8.0,
+    of: Causes::All,
+    tells_sets: false,
+    least_alone: [0.0, 0.0],
+    first_seed: 0,
+    records: 300,
+    small: 0,
+};
+
+/// Populations of one kind of causes, of which the coverage of sets is measured.
+const KINDS: [Cell; 8] = [
     Cell {
         name: "warm-ups, d = 8",
-        strength: 8.0,
-        of: Causes::WarmUps,
-        tells_sets: false,
+        of: Causes::Of(EffectKind::Exponential),
         least_alone: [0.0, 0.55],
         first_seed: 841_000,
-        records: 300,
-        small: 0,
+        ..FURTHER
     },
     Cell {
         name: "warm-ups, d = 12",
         strength: 12.0,
-        of: Causes::WarmUps,
-        tells_sets: false,
+        of: Causes::Of(EffectKind::Exponential),
         least_alone: [0.0, 0.88],
         first_seed: 851_000,
-        records: 300,
-        small: 0,
+        ..FURTHER
+    },
+    Cell {
+        name: "steps, d = 8",
+        of: Causes::Of(EffectKind::Step),
+        first_seed: 861_000,
+        ..FURTHER
+    },
+    Cell {
+        name: "ramps, d = 8",
+        of: Causes::Of(EffectKind::Ramp),
+        first_seed: 862_000,
+        ..FURTHER
+    },
+    Cell {
+        name: "periodic causes, d = 8",
+        of: Causes::Of(EffectKind::Periodic),
+        first_seed: 863_000,
+        ..FURTHER
+    },
+    Cell {
+        name: "causes of a logged quantity, d = 8",
+        of: Causes::Of(EffectKind::Regressor),
+        first_seed: 864_000,
+        ..FURTHER
+    },
+    Cell {
+        name: "jumps of the attitude, d = 8",
+        of: Causes::Of(EffectKind::StateJump),
+        first_seed: 865_000,
+        ..FURTHER
+    },
+    Cell {
+        name: "wrong first attitudes, d = 8",
+        of: Causes::Of(EffectKind::InitialState),
+        first_seed: 866_000,
+        ..FURTHER
     },
 ];
 
 pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let small = extent.small;
     let mut figures = Vec::new();
-    for cell in CELLS.iter().filter(|cell| cell.small > 0 || !small) {
+    let cells = CELLS.iter().chain(&KINDS);
+    for cell in cells.filter(|cell| cell.small > 0 || !small) {
         let count = extent.records(cell.records, cell.small);
         let seeds = cell.first_seed..cell.first_seed + count;
         let campaign = resumable::campaign("truth", cell.name, seeds.clone(), small)?;
@@ -242,6 +283,18 @@ impl Told<'_> {
         self.share(what, self.cell.least_alone[1], of_warm_ups)
     }
 
+    /// Sets of one kind of causes: their coverage where something was found, and warm-ups without a noise process.
+    fn of_kind(&self, kind: EffectKind) -> Vec<Figure> {
+        let found = self.records.iter().filter(|one| one.detected);
+        let name = format!("{}: coverage of the set", self.cell.name);
+        let covered = Proportion::of(found.map(|one| one.in_set));
+        let mut figures = vec![Figure::note_share(&name, covered, self.seeds)];
+        if kind == EffectKind::Exponential {
+            figures.push(self.alone_of_warm_ups());
+        }
+        figures
+    }
+
     /// Intervals of the coefficients.
     fn coefficients(&self) -> Vec<Figure> {
         let all = || self.records.iter();
@@ -270,7 +323,7 @@ impl Told<'_> {
 fn cell_figures(told: &Told<'_>) -> Vec<Figure> {
     match told.cell.of {
         Causes::Slow => return told.power(),
-        Causes::WarmUps => return vec![told.alone_of_warm_ups()],
+        Causes::Of(kind) => return told.of_kind(kind),
         Causes::All => {}
     }
     let mut figures = Vec::new();
