@@ -190,21 +190,33 @@ impl CellFigures {
 
     /// The ratio of two means over the same records, with an upper limit.
     pub(crate) fn ratio_at_most(&mut self, figure: &str, most: f64, pairs: &[[f64; 2]]) {
+        self.ratio(figure, Target::AtMost(most), pairs);
+    }
+
+    /// The same with a lower limit.
+    pub(crate) fn ratio_at_least(&mut self, figure: &str, least: f64, pairs: &[[f64; 2]]) {
+        self.ratio(figure, Target::AtLeast(least), pairs);
+    }
+
+    fn ratio(&mut self, figure: &str, target: Target, pairs: &[[f64; 2]]) {
         let column = |which: usize| -> Vec<f64> { pairs.iter().map(|pair| pair[which]).collect() };
         let ratio = mean(column(0)) / mean(column(1));
-        let excess: Vec<f64> = pairs.iter().map(|pair| pair[0] - most * pair[1]).collect();
-        // The ratio exceeds the limit if the mean of this difference is positive; over tens of records
-        // that mean is normal.
+        // The target is missed if the mean of this difference is positive; over tens of records that mean is
+        // normal.
+        let excess = |pair: &[f64; 2]| match target {
+            Target::AtMost(most) => pair[0] - most * pair[1],
+            Target::AtLeast(least) => least * pair[1] - pair[0],
+        };
+        let excess: Vec<f64> = pairs.iter().map(excess).collect();
         let at = |sigmas: f64| mean(&excess) + sigmas * standard_error(&excess);
         let judged = if self.full {
-            decided(ratio <= most)
+            decided(mean(&excess) <= 0.0)
         } else {
             // One record or none has no standard error, and shows neither.
             Judgement::of(at(MET_SIGMAS) <= 0.0, at(-MISSED_SIGMAS) > 0.0)
         };
-        let target = Some(Target::AtMost(most));
         let runs = pairs.len() as u64;
-        self.push(figure, target, ratio, None, runs, Some(judged));
+        self.push(figure, Some(target), ratio, None, runs, Some(judged));
     }
 }
 
@@ -298,5 +310,17 @@ mod tests {
         // One outlier among others does not reject, and confirms nothing.
         assert_eq!(ratio(false, &[[5.0, 1.0], [1.0, 1.0], [1.0, 1.0]]), None);
         assert_eq!(ratio(false, &[[1.0, 1.0]]), None);
+        let least =
+            |full, pairs: &[[f64; 2]]| judged(full, |all| all.ratio_at_least("", 0.95, pairs));
+        assert_eq!(
+            (least(true, &fine), least(true, &[[1.8, 2.0], [1.0, 1.0]])),
+            (Some(true), Some(false))
+        );
+        // Half of what the oracle finds, in hundreds of records.
+        let half: Vec<[f64; 2]> = (0..400).map(|index| [f64::from(index % 2), 1.0]).collect();
+        assert_eq!(
+            (least(false, &half), least(false, &half[..4])),
+            (Some(false), None)
+        );
     }
 }

@@ -83,6 +83,7 @@ mod effect_family;
 mod error;
 mod injection;
 mod monte_carlo_report;
+mod oracle;
 mod out_of_catalogue;
 mod population;
 mod projection;
@@ -109,6 +110,7 @@ pub use injection::{
     InjectedEffect, draw_shape, inject, inject_any, inject_into, nominal_fit, testable_effects,
 };
 pub use monte_carlo_report::MonteCarloReport;
+pub use oracle::sets_without_walks;
 pub use out_of_catalogue::UnlistedRecord;
 pub use population::PopulationCell;
 pub use projection::ProjectedScores;

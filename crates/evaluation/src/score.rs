@@ -13,9 +13,13 @@ use crate::catalogue::{effect_of, same_or_equivalent};
 use crate::coefficient_score::CoefficientScore;
 use crate::error::EvaluationError;
 use crate::injection::{InjectedEffect, nominal_fit, testable_effects};
+use crate::oracle::sets_without_walks;
 use crate::projection::ProjectedScores;
 use crate::record_score::{BaselineScore, FindingScore, InjectedScore, RecordScore};
 use crate::signature::{Signature, SignatureColumns};
+
+/// Strength below which not every effect is found: detection is then held against an oracle.
+const WEAK: f64 = 7.0;
 
 /// Number of hypotheses next to the best of the first search that are kept.
 const NEAREST_KEPT: usize = 10;
@@ -86,9 +90,12 @@ pub(crate) fn score(
         };
         methods.iter().map(of).collect()
     });
+    let is_weak = injected.iter().any(|(_, strength)| *strength < WEAK);
+    let oracle = is_weak.then(|| sets_without_walks(&found, simulation));
     Ok(RecordScore {
         hidden,
         oracle_set_size: oracle_set_size(simulation, &found)?,
+        oracle_detected: oracle.transpose()?.map(|sets| !sets.is_empty()),
         coefficients: found
             .result
             .coefficients
@@ -185,6 +192,7 @@ pub(crate) fn findings_score(found: &DiagnosisResult) -> RecordScore {
             .is_unexplained()
             .then(|| found.remainder.description.clone()),
         oracle_set_size: None,
+        oracle_detected: None,
         nearest: nearest(&found.ranking),
         coefficients: None,
         methods: Vec::new(),

@@ -159,7 +159,7 @@ fn of_row(row: &Row, extent: Extent) -> Result<Vec<Figure>, Error> {
             .flat_map(|(_, record)| record.covered.iter());
         let all: Vec<bool> = all.copied().collect();
         let name = format!(
-            "{}: coverage of the 95 % interval of a walk's size",
+            "{}: coverage of the 95 % interval of the size of a named walk",
             row.cell
         );
         figures.push(of_intervals(&name, &all, &seeds, small));

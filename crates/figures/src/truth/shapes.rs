@@ -19,7 +19,7 @@ use crate::figure::Figure;
 use crate::resumable;
 
 /// Seeds of the records, and their number in the small version.
-const SEEDS: [u64; 2] = [705_000, 1000];
+const SEEDS: [u64; 2] = [705_000, 2000];
 const SMALL: u64 = 24;
 
 /// Sizes, in standard deviations of the effect's own bound.

@@ -4,12 +4,12 @@ use gyrocal::Effect;
 use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run, rows};
 use gyrocal_diagnosis::result::{Coefficients, DiagnosisResult, Finding};
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, selection};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_evaluation::{
     EvaluationError, InjectedEffect, draw_shape, inject_into, same_or_equivalent, scenario,
-    testable_effects,
+    sets_without_walks, testable_effects,
 };
-use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension, SearchOptions, search};
+use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension};
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
@@ -149,7 +149,8 @@ pub(super) fn record(cell: &Cell, seed: u64) -> Result<Caused, EvaluationError> 
         .causes()
         .any(|finding| holds(finding, id) && !has_noise(finding));
     let [over_set, first, widths] = coefficients(&found, &simulation, &injected)?;
-    let oracle = oracle(&found, &simulation, id)?;
+    let oracle = sets_without_walks(&found, &simulation)?;
+    let holds_it = |set: &Vec<&str>| set.iter().any(|effect| same_or_equivalent(effect, id));
     Ok(Caused {
         effect: id.to_owned(),
         detected: !sets.is_empty(),
@@ -157,8 +158,8 @@ pub(super) fn record(cell: &Cell, seed: u64) -> Result<Caused, EvaluationError> 
         alone,
         set_size: sets.first().map(|(_, size)| *size),
         spurious: sets.len() > 1,
-        oracle_in_set: oracle.0,
-        oracle_set_size: oracle.1,
+        oracle_in_set: oracle.iter().any(holds_it),
+        oracle_set_size: oracle.first().map(Vec::len),
         over_set: over_set.iter().map(|held| *held > 0.5).collect(),
         first: first.iter().map(|held| *held > 0.5).collect(),
         widths,
@@ -180,37 +181,6 @@ fn has_noise(finding: &Finding) -> bool {
         .map(|other| other.effect.as_str());
     let is_walk = |id: &str| effect(id).is_some_and(|one| one.kind == EffectKind::RandomWalk);
     all.chain([finding.effect.as_str()]).any(is_walk)
-}
-
-/// The same search without random walks: whether a set holds the cause, and the size of the first.
-fn oracle(
-    found: &Diagnosis<'_>,
-    simulation: &Simulation,
-    id: &str,
-) -> Result<(bool, Option<usize>), EvaluationError> {
-    let options = SearchOptions {
-        false_alarm_probability: found.result.false_alarm_shares.search,
-        ..SearchOptions::default()
-    };
-    let (record, bench) = (&simulation.record, &simulation.bench);
-    let mut selection = selection(record, bench, &[]);
-    selection
-        .effects
-        .retain(|effect| effect.kind != EffectKind::RandomWalk);
-    let run = Run { record, bench };
-    let mut noise = found.noise_model.clone();
-    noise.gyro_walk_deg_per_h_per_sqrt_h = [0.0; 3];
-    let nominal = FittedPlatform::nominal(&run, &Options::default(), &noise)?;
-    let rows = rows(record, nominal.covariates());
-    let searched = search(nominal, rows, &selection, &options)?;
-    let mut findings = searched.findings.iter();
-    let in_set = findings.any(|finding| {
-        let mut others = finding.alternatives.iter();
-        same_or_equivalent(finding.effect, id)
-            || others.any(|other| same_or_equivalent(other.effect, id))
-    });
-    let first = searched.findings.first();
-    Ok((in_set, first.map(|finding| 1 + finding.alternatives.len())))
 }
 
 /// Whether the intervals over the set hold the true coefficients, whether those of the first member do,
