@@ -49,6 +49,12 @@ impl SetupProblem {
         format!("{}{description}{equivalents} ({evidence})", self.place())
     }
 
+    /// The problem with its place, as one sentence or two.
+    #[must_use]
+    pub fn placed(&self) -> String {
+        format!("{}{}", self.place(), self.description)
+    }
+
     /// File and lines, as the beginning of a sentence.
     fn place(&self) -> String {
         match (&self.file, self.lines) {

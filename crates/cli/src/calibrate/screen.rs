@@ -50,7 +50,7 @@ pub(super) fn first(found: &CalibrationRun, next: Option<String>) -> Screen {
         screen.fact("with it", fitted(with));
     }
     for problem in found.setup().take(RECORDS_SHOWN) {
-        screen.fact("set-up mended", &*problem.description);
+        screen.fact("set-up mended", problem.placed());
     }
     if fit.is_gross() {
         screen.fact(

@@ -57,7 +57,7 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
         }
         let problems = result.setup.iter().take(PROBLEMS_SHOWN);
         for problem in problems {
-            screen.fact("set-up mended", &*problem.description);
+            screen.fact("set-up mended", problem.placed());
         }
         if !result.search_complete {
             screen.fact(
