@@ -402,9 +402,8 @@ impl Chosen<'_, '_> {
     }
 }
 
-/// The walks of a model that are named. The test is one of all walks together; what one of them gains beside
-/// the others is held against all as well, which is no less than its p-value in a closed test (Marcus,
-/// Peritz, Gabriel, Biometrika 63, 655, 1976).
+/// The walks of a model that are named. What one gains beside the others is held against all walks, which is no
+/// less than its p-value in a closed test (Marcus, Peritz, Gabriel, Biometrika 63, 655, 1976).
 fn named<F: FittedModel>(
     candidates: &Candidates,
     state: &SearchState<F>,
