@@ -11,7 +11,8 @@ mod tables;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
-use gyrocal::Platform;
+use gyrocal::effect::{EffectKind, NoiseProperty};
+use gyrocal::{EFFECTS, Platform};
 use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
@@ -347,6 +348,17 @@ struct CalibrationRun {
 }
 
 impl CalibrationRun {
+    /// Whether the noise of the accelerometers of a record is correlated.
+    fn is_correlated(&self, index: usize) -> bool {
+        let path = self.measurements[index].path.to_string_lossy();
+        let correlations = EFFECTS
+            .iter()
+            .filter(|row| row.kind == EffectKind::Noise(NoiseProperty::Correlation));
+        let ids: Vec<&str> = correlations.map(|row| row.id).collect();
+        let mut own = self.effects.iter().filter(|test| test.record == path);
+        own.any(|test| test.noise.iter().any(|id| ids.contains(&id.as_str())))
+    }
+
     /// Gross errors of the set-ups that were mended.
     fn setup(&self) -> impl Iterator<Item = &SetupProblem> {
         self.measurements

@@ -102,7 +102,7 @@ fn without_effects(
             coloured.join("; "),
         ),
         FitVerdict::NoiseDiffers => format!(
-            "The mean NIS of all channels, {:.3}, is as expected, and single channels are not.{none}",
+            "The mean NIS of all channels, {:.3}, is as expected, but it does not see all of the noise.{none}",
             fit.nis_mean()
         ),
         _ => format!("{size}{none}"),

@@ -18,14 +18,13 @@ use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
 const STRICT_CLASS_COSINE: f64 = 0.97;
 
 /// Targets for single effects by strength: detection on average and of the worst family, class of
-/// the first finding. Weak effects are found as often as the unknown noise lets them, and are held against an
-/// oracle.
-const SINGLE_TARGETS: [(u32, Option<[f64; 2]>, Option<f64>); 4] = [
-    (5, None, None),
-    (6, None, None),
-    (8, Some([0.995, 0.99]), Some(0.91)),
-    (12, Some([0.995, 0.99]), Some(0.97)),
-];
+/// the first finding.
+const SINGLE_TARGETS: [(u32, [f64; 2], f64); 2] =
+    [(8, [0.995, 0.99], 0.91), (12, [0.995, 0.99], 0.97)];
+
+/// Weak effects are found as often as the unknown noise lets them. By strength, what detection is not to fall
+/// below: measured were 0.78 and 0.95 of 250 records.
+const WEAK_TARGETS: [(u32, f64); 2] = [(5, 0.72), (6, 0.92)];
 
 /// Least detection of weak effects over that of a search that knows that no rate walks, which also has to
 /// estimate the levels of the noise.
@@ -52,12 +51,15 @@ pub fn characteristics(
         PopulationCell::Clean => clean(&mut figures, &records),
         PopulationCell::Single(strength) => {
             let asked = SINGLE_TARGETS.iter().find(|(of, ..)| *of == strength);
-            if let Some((_, detected, first)) = asked {
-                weak(&mut figures, &records);
-                single(&mut figures, &records, *detected, *first);
+            let is_weak = WEAK_TARGETS.iter().find(|(of, _)| *of == strength);
+            if let Some((_, least)) = is_weak {
+                weak(&mut figures, &records, *least);
+                single(&mut figures, &records, None);
+            } else if let Some((_, detected, first)) = asked {
+                single(&mut figures, &records, Some((*detected, *first)));
             }
         }
-        PopulationCell::LogUniform => single(&mut figures, &records, None, None),
+        PopulationCell::LogUniform => single(&mut figures, &records, None),
         PopulationCell::Pair => pair(&mut figures, &records),
         PopulationCell::OutOfCatalogue => out_of_catalogue(&mut figures, &records),
         PopulationCell::Step => step(&mut figures, &records),
@@ -137,27 +139,28 @@ fn clean(figures: &mut CellFigures, records: &[&RecordScore]) {
     );
 }
 
-/// Detection of weak effects, beside an oracle's.
-fn weak(figures: &mut CellFigures, records: &[&RecordScore]) {
+/// Weak effects: how often they are found, and how often a set holds them beside an oracle's.
+fn weak(figures: &mut CellFigures, records: &[&RecordScore], least: f64) {
+    let in_set = |record: &RecordScore| record.hidden.iter().all(|hidden| hidden.in_set);
     let both: Vec<[bool; 2]> = records
         .iter()
-        .filter_map(|record| Some([record.detected(), record.oracle_detected?]))
+        .filter_map(|record| Some([in_set(record), record.oracle_in_set?]))
         .collect();
-    if both.is_empty() {
-        return;
-    }
     let of = |which: usize| Proportion::of(both.iter().map(|pair| pair[which]));
-    let ratio = "detected, over a search that knows that no rate walks";
     let pairs: Vec<[f64; 2]> = both
         .iter()
-        .map(|pair| pair.map(|found| f64::from(u8::from(found))))
+        .map(|pair| pair.map(|held| f64::from(u8::from(held))))
         .collect();
+    let all = by_effect(records, |record| Some(record.detected()));
+    figures.average_at_least("detected, average of the effects", least, &all);
+    let ratio = "a set holds the truth, over a search that knows that no rate walks";
     figures.ratio_at_least(ratio, OF_ORACLE, &pairs);
-    figures.note("detected", of(0));
-    figures.note("detected by that search", of(1));
+    figures.note("a set holds the truth, of all", of(0));
+    figures.note("the same of that search", of(1));
+    let detected = share(records, |record| Some(record.detected()));
     figures.mean(
         "95 % interval of the size, expected of what is detected as often",
-        &[coverage_given_detection(of(0).share())],
+        &[coverage_given_detection(detected.share())],
     );
 }
 
@@ -167,17 +170,17 @@ fn coverage_given_detection(detected: f64) -> f64 {
     if detected >= 1.0 {
         return 0.95;
     }
+    // What is detected as rarely lies above its interval.
+    if detected <= 0.025 {
+        return f64::NAN;
+    }
     let least = normal_quantile(1.0 - detected).max(-NORMAL_97_5);
     (normal_probability(NORMAL_97_5) - normal_probability(least)) / detected
 }
 
-fn single(
-    figures: &mut CellFigures,
-    records: &[&RecordScore],
-    detected: Option<[f64; 2]>,
-    first: Option<f64>,
-) {
-    if let Some([average, worst]) = detected {
+fn single(figures: &mut CellFigures, records: &[&RecordScore], strong: Option<([f64; 2], f64)>) {
+    let first = strong.map(|(_, first)| first);
+    if let Some(([average, worst], _)) = strong {
         let of = by_effect(records, |record| Some(record.detected()));
         figures.average_at_least("detected, average of the effects", average, &of);
         let all = families(records);
@@ -191,13 +194,8 @@ fn single(
             some.map(|row| row.detected()).collect()
         };
         figures.none_below("detected, the worst family but knocks", worst, &of(false));
-        // No test finds jumps of five and six sigmas as often: docs/characteristics.md.
-        match of(true).as_slice() {
-            [jumps] if first.is_some() => {
-                figures.none_below("detected, knocks", worst, &[*jumps]);
-            }
-            [jumps] => figures.note("detected, knocks", *jumps),
-            _ => {}
+        if let [jumps] = of(true).as_slice() {
+            figures.none_below("detected, knocks", worst, &[*jumps]);
         }
     }
     let in_set = share(records, |record| {
@@ -336,7 +334,7 @@ mod tests {
 
     #[test]
     fn intervals_of_what_is_detected_cover_more_often() {
-        // Half is detected: of those above the truth 97.5 % of 50 % on one side, (0.475)/0.5.
+        // Half is detected, that above the truth: 47.5 of 50 %.
         assert!((coverage_given_detection(0.5) - 0.95).abs() < 1e-9);
         // By tables of the normal distribution: (0.975 - 0.125)/0.875 and 0.95/0.986.
         assert!((coverage_given_detection(0.875) - 0.971_43).abs() < 1e-4);

@@ -24,9 +24,9 @@ pub struct RecordScore {
     pub unexplained: Option<String>,
     /// Size of the first confidence set if the noise is known; `None` without a finding.
     pub oracle_set_size: Option<usize>,
-    /// Whether a search finds something that knows that no rate walks; `None` where it was not made.
+    /// Whether a set of a search that knows that no rate walks holds the effect; `None` where it was not made.
     #[serde(default)]
-    pub oracle_detected: Option<bool>,
+    pub oracle_in_set: Option<bool>,
     /// Hypotheses next to the best in the first search, each with twice its log-likelihood deficit,
     /// search penalties included; without exact equivalents of the best and of each other.
     pub nearest: Vec<(String, f64)>,
@@ -175,7 +175,7 @@ mod tests {
             noise: Vec::new(),
             unexplained: None,
             oracle_set_size: None,
-            oracle_detected: None,
+            oracle_in_set: None,
             nearest: Vec::new(),
             coefficients: None,
             methods: Vec::new(),

@@ -18,8 +18,8 @@ use crate::projection::ProjectedScores;
 use crate::record_score::{BaselineScore, FindingScore, InjectedScore, RecordScore};
 use crate::signature::{Signature, SignatureColumns};
 
-/// Strength below which not every effect is found: detection is then held against an oracle.
-const WEAK: f64 = 7.0;
+/// Strengths of populations of which not every effect is found: sets are then compared with those of an oracle.
+const WEAK: [f64; 2] = [5.0, 6.0];
 
 /// Number of hypotheses next to the best of the first search that are kept.
 const NEAREST_KEPT: usize = 10;
@@ -90,12 +90,18 @@ pub(crate) fn score(
         };
         methods.iter().map(of).collect()
     });
-    let is_weak = injected.iter().any(|(_, strength)| *strength < WEAK);
-    let oracle = is_weak.then(|| sets_without_walks(&found, simulation));
+    let weak = injected
+        .iter()
+        .find(|(_, strength)| WEAK.contains(strength));
+    let oracle = weak.map(|(weak, _)| {
+        let sets = sets_without_walks(&found, simulation)?;
+        let is_it = |effect: &&str| same_or_equivalent(effect, weak.effect.id);
+        Ok::<_, EvaluationError>(sets.iter().any(|set| set.iter().any(is_it)))
+    });
     Ok(RecordScore {
         hidden,
         oracle_set_size: oracle_set_size(simulation, &found)?,
-        oracle_detected: oracle.transpose()?.map(|sets| !sets.is_empty()),
+        oracle_in_set: oracle.transpose()?,
         coefficients: found
             .result
             .coefficients
@@ -192,7 +198,7 @@ pub(crate) fn findings_score(found: &DiagnosisResult) -> RecordScore {
             .is_unexplained()
             .then(|| found.remainder.description.clone()),
         oracle_set_size: None,
-        oracle_detected: None,
+        oracle_in_set: None,
         nearest: nearest(&found.ranking),
         coefficients: None,
         methods: Vec::new(),

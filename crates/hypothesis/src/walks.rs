@@ -402,8 +402,8 @@ impl Chosen<'_, '_> {
     }
 }
 
-/// The walks of a model that are named. What one gains beside the others is held against all walks, which is no
-/// less than its p-value in a closed test (Marcus, Peritz, Gabriel, Biometrika 63, 655, 1976).
+/// The walks of a model that are named. The one that gains most has the p-value of the test of all walks together;
+/// another one, what it gains beside the others in the model, by the distribution of that test.
 fn named<F: FittedModel>(
     candidates: &Candidates,
     state: &SearchState<F>,
@@ -412,13 +412,18 @@ fn named<F: FittedModel>(
 ) -> Result<Vec<(Needed, Finding)>, F::Error> {
     let sizes = &state.stage.noise.noise.walk;
     let intervals = state.stage.fitted.walk_intervals()?;
+    let most = walks.iter().map(|walk| walk.gain).fold(0.0, f64::max);
     let finding = |walk: Needed| {
+        let p_value = match walk.gain < most {
+            true => p_value.max(candidates.p_value(walk.gain)),
+            false => p_value,
+        };
         let interval = intervals.get(walk.rate).copied().flatten();
         let finding = walk_finding(
             walk.effect,
             sizes[walk.rate],
             interval,
-            (walk.gain, p_value.max(candidates.p_value(walk.gain))),
+            (walk.gain, p_value),
         );
         (walk, finding)
     };

@@ -244,6 +244,9 @@ fn next(report: &CalibrationReport) -> Card {
         FitVerdict::Consistent => {
             "The diagnosis tests for all else, and says what could go undetected.".to_owned()
         }
+        FitVerdict::NoiseDiffers | FitVerdict::TooLarge | FitVerdict::TooSmall => {
+            "The sigmas are not those of this noise: the diagnosis looks for the causes.".to_owned()
+        }
         _ => "The coefficients may be biased: the diagnosis looks for the causes.".to_owned(),
     });
     Card {

@@ -64,7 +64,7 @@ pub fn check_setup_of(kind: PlatformKind, record: &Record, bench: &Bench) -> Set
         // What follows would judge values that are known to be wrong.
         let mut stopping = findings.iter().filter(|finding| finding.stops);
         if stopping.any(|finding| !judged.stands_beside(finding)) {
-            break;
+            continue;
         }
         findings.extend(test(&mut samples));
     }

@@ -32,7 +32,7 @@ pub(crate) fn of_rows(
         return SetupFinding::new(kind, description, evidence).at(span(at));
     }
     let description = format!(
-        "{description} These are {:.0} % of the rows; of more than {:.0} % the rest is not used.",
+        "{description} These are {:.1} % of the rows. Where more than {:.0} % are lost, a record is not used.",
         100.0 * share,
         100.0 * STOPPING_SHARE
     );
@@ -79,11 +79,11 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
 
 fn finding(samples: &Samples<'_>, code: f64, axes: &[usize], at: &[usize]) -> SetupFinding {
     let description = format!(
-        "Missing values of {} are written as {}.",
+        "Missing values of {} are written as {}: write `nan` for what was not measured.",
         accelerometers(axes),
         number(code),
     );
-    let left_out = "They are left out; write `nan` for what was not measured.".to_owned();
+    let left_out = "They are left out.".to_owned();
     let evidence = format!(
         "{}, the first is row {}; the magnitude is off by more than 1 % there",
         rows(at.len()),

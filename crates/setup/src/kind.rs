@@ -79,12 +79,7 @@ impl SetupKind {
     pub fn loses_samples(self) -> bool {
         matches!(
             self,
-            Self::Missing
-                | Self::MissingCoded
-                | Self::Stuck
-                | Self::Clipped
-                | Self::Repeated
-                | Self::Duplicated
+            Self::Stuck | Self::Clipped | Self::Repeated | Self::Duplicated
         )
     }
 

@@ -2,8 +2,6 @@
 
 use std::fmt::Write as _;
 
-use gyrocal::EFFECTS;
-use gyrocal::effect::{EffectKind, NoiseProperty};
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
     AzimuthSearch, Calibration, ConsiderSensitivity, NoiseDifference, NoiseEstimate, NoiseRatio,
@@ -166,14 +164,7 @@ fn observability(found: &CalibrationRun) -> String {
 
 fn run_results(found: &CalibrationRun, index: usize) -> String {
     let (measurement, run) = (&found.measurements[index], &found.calibration.runs[index]);
-    let path = measurement.path.to_string_lossy();
-    let is_correlated = found.effects.iter().any(|test| {
-        let mut noise = EFFECTS
-            .iter()
-            .filter(|row| test.noise.iter().any(|id| id == row.id));
-        test.record == path
-            && noise.any(|row| row.kind == EffectKind::Noise(NoiseProperty::Correlation))
-    });
+    let is_correlated = found.is_correlated(index);
     let several = found.has_several_records();
     let mut text = String::new();
     let of = if several {
@@ -185,19 +176,22 @@ fn run_results(found: &CalibrationRun, index: usize) -> String {
         text.push_str(&paragraph(&azimuth(run, search, &of)));
     }
     if let Some(noise) = &run.noise {
+        let gyros = match is_correlated {
+            true => String::new(),
+            false => format!("\n  gyros          {}", ratios(&noise.gyro)),
+        };
         let _ = writeln!(
             text,
-            "Estimated / declared noise{of} (95 % CI):\n  accelerometers {}\n  gyros          {}",
-            ratios(&noise.accel),
-            ratios(&noise.gyro)
+            "Estimated / declared noise{of} (95 % CI):\n  accelerometers {}{gyros}",
+            ratios(&noise.accel)
         );
-        text.push_str(&paragraph(&noise_differences(noise)));
-        if is_correlated {
-            text.push_str(&paragraph(
-                "The noise of the accelerometers is correlated. These ratios take it to be white, and its slow \
-                 part for noise of the gyros.",
-            ));
-        }
+        text.push_str(&match is_correlated {
+            true => paragraph(
+                "No ratio for the gyros: the noise of the accelerometers is correlated, and its slow part would \
+                 be taken for theirs.",
+            ),
+            false => paragraph(&noise_differences(noise)),
+        });
     }
     if run.bounded_values > 0 {
         text.push_str(&paragraph(&format!(

@@ -8,6 +8,7 @@ use gyrocal_record::{EffectTest, FitVerdict, FittedEffects, InputRole};
 use gyrocal_statistics::format;
 
 use super::{CalibrateArguments, CalibrationRun};
+use crate::extend::known;
 
 /// Records that are told one by one.
 const RECORDS_SHOWN: usize = 2;
@@ -71,11 +72,13 @@ pub(super) fn first(found: &CalibrationRun, next: Option<String>) -> Screen {
         FitVerdict::Consistent => "all tests, and what could go undetected",
         _ => "looks for the causes",
     };
-    if let Some(with) = &found.with_effects {
-        let ids: Vec<&str> = with.effects.iter().map(|one| one.effect.as_str()).collect();
-        let effects = ids.join(",");
+    if let Some(effects) = found.with_effects.as_ref().and_then(terms) {
+        let gyros = match found.gyro_axes.is_empty() {
+            true => "",
+            false => " --gyros strapdown",
+        };
         screen.then(
-            format!("gyrocal extend --effects {effects} --out NAME.model.toml"),
+            format!("gyrocal extend --effects {effects}{gyros} --out NAME.model.toml"),
             "the filter",
         );
     } else if let Some(command) = next {
@@ -163,6 +166,17 @@ fn verdict(found: &CalibrationRun) -> Screen {
     Screen::new(standing, verdict, what)
 }
 
+/// The effects that were given, if a filter can have all of them; random walks and attitude jumps are no terms.
+fn terms(with: &FittedEffects) -> Option<String> {
+    let known = known();
+    let ids: Vec<&str> = with.effects.iter().map(|one| one.effect.as_str()).collect();
+    let is_term = |id: &&str| {
+        let mut terms = known.iter().filter(|one| one.objection().is_none());
+        terms.any(|one| one.id == *id)
+    };
+    ids.iter().all(is_term).then(|| ids.join(","))
+}
+
 /// Sizes of effects that were given, and what they gain.
 fn fitted(with: &FittedEffects) -> String {
     let effects = with.effects.iter().map(|one| {
@@ -207,10 +221,11 @@ fn results(found: &CalibrationRun, screen: &mut Screen) {
     let open = coefficients.iter().filter(|one| !one.determined);
     let open: Vec<&str> = open.map(|one| one.id).collect();
     screen.fact("not determined", few(&open, NAMES_SHOWN));
-    for run in found.calibration.runs.iter().take(RECORDS_SHOWN) {
+    let runs = found.calibration.runs.iter().enumerate();
+    for (index, run) in runs.take(RECORDS_SHOWN) {
         // Of several records the details have it.
         if !found.has_several_records() {
-            screen.fact("noise", noise(run));
+            screen.fact("noise", noise(run, found.is_correlated(index)));
         }
         if run
             .azimuth
@@ -227,8 +242,8 @@ fn results(found: &CalibrationRun, screen: &mut Screen) {
     screen.table = Some(table(found));
 }
 
-/// Estimated over declared noise.
-fn noise(run: &RunResult) -> String {
+/// Estimated over declared noise; of the gyros not where the noise of the accelerometers is correlated.
+fn noise(run: &RunResult, is_correlated: bool) -> String {
     let Some(noise) = &run.noise else {
         return String::new();
     };
@@ -239,11 +254,14 @@ fn noise(run: &RunResult) -> String {
         });
         each.join(", ")
     };
-    format!(
-        "of the declared one: accelerometers {}, gyros {} times",
-        list(&noise.accel),
-        list(&noise.gyro)
-    )
+    let accelerometers = list(&noise.accel);
+    match is_correlated {
+        true => format!("of the declared one: accelerometers {accelerometers} times, correlated"),
+        false => format!(
+            "of the declared one: accelerometers {accelerometers}, gyros {} times",
+            list(&noise.gyro)
+        ),
+    }
 }
 
 /// What an error of the latitude does.

@@ -284,4 +284,43 @@ fn a_random_walk_is_told_with_its_interval_and_without_a_simulation() {
     let arguments = ["diagnose", "w.csv", "--bench", "w.toml"];
     let said = assert_screen(&folder, &arguments, &["gyro_x.random_walk", "(95 %: "]);
     assert!(!said.contains("open-loop"), "{said}");
+    // A filter cannot have it: the next step is not to extend one.
+    let arguments = [
+        "calibrate",
+        "w.csv",
+        "--bench",
+        "w.toml",
+        "--with",
+        "gyro_x.random_walk",
+    ];
+    let said = assert_screen(&folder, &arguments, &["FAULT"]);
+    assert!(
+        said.contains("next") && !said.contains("gyrocal extend"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_to_do_about_a_wrong_set_up_goes_by_what_stops() {
+    let folder = examples();
+    // Zeros in a few rows, which can be left out, and a latitude of the wrong sign, which stops.
+    let zero = |(index, line): (usize, &str)| match (100..130).contains(&index) {
+        true => {
+            let mut fields: Vec<&str> = line.split(',').collect();
+            fields[1] = "0";
+            fields.join(",")
+        }
+        false => line.to_owned(),
+    };
+    let text = folder.text("three_days.csv");
+    let rows: Vec<String> = text.lines().enumerate().map(zero).collect();
+    folder.put("zeros.csv", rows.join("\n") + "\n");
+    let bench = folder
+        .text("three_days.bench.toml")
+        .replace("latitude_deg = ", "latitude_deg = -");
+    folder.put("south.toml", bench);
+    let arguments = ["diagnose", "zeros.csv", "--bench", "south.toml"];
+    let said = assert_screen(&folder, &arguments, &["SET-UP WRONG"]);
+    assert!(said.contains("mend the record or its bench file"), "{said}");
+    assert!(said.contains("can be mended"), "{said}");
 }

@@ -9,8 +9,7 @@ use super::screen::{Screen, Standing, few};
 use crate::result::{DiagnosisResult, NotTestedReason};
 
 pub(super) fn clean(result: &DiagnosisResult) -> Screen {
-    let hidden = low_power(result).len();
-    let is_short = 2 * hidden > result.ranking.len();
+    let is_short = result.hides_most();
     let mut screen = match is_short {
         true => Screen::new(
             Standing::Doubtful,
@@ -54,15 +53,8 @@ pub(super) fn clean(result: &DiagnosisResult) -> Screen {
 }
 
 /// Effects that would go undetected at their typical size.
-fn low_power(result: &DiagnosisResult) -> Vec<&str> {
-    let low = result.not_searched.iter();
-    low.filter(|effect| effect.reason == NotTestedReason::LowPower)
-        .map(|effect| &*effect.effect)
-        .collect()
-}
-
 fn undetected(result: &DiagnosisResult) -> String {
-    let low = low_power(result);
+    let low = result.low_power();
     match low.len() {
         0 => "effects well below their typical size (gyrocal effects)".to_owned(),
         count => format!(

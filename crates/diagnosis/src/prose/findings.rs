@@ -125,11 +125,11 @@ pub(super) fn value(parameter: &Parameter) -> String {
     }
 }
 
-/// An estimated probability, in whole percents: its own error is of this size.
+/// An estimated probability: `cargo figures truth --part outside` holds it within five points.
 pub(super) fn likely(probability: f64) -> String {
     match probability {
-        high if high > 0.99 => "above 99 %".to_owned(),
-        low if low < 0.01 => "below 1 %".to_owned(),
+        high if high > 0.95 => "above 95 %".to_owned(),
+        low if low < 0.05 => "below 5 %".to_owned(),
         between => format!("{:.0} %", 100.0 * between),
     }
 }
@@ -176,8 +176,8 @@ mod tests {
     #[test]
     fn a_probability_has_no_more_digits_than_it_is_known_with() {
         assert_eq!(likely(0.3838), "38 %");
-        assert_eq!(likely(1.0), "above 99 %");
-        assert_eq!(likely(1e-7), "below 1 %");
+        assert_eq!(likely(1.0), "above 95 %");
+        assert_eq!(likely(1e-7), "below 5 %");
     }
 
     #[test]

@@ -198,9 +198,15 @@ fn nothing_else(result: &DiagnosisResult) -> String {
     }
 }
 
-fn is_random_walk(id: &str) -> bool {
-    let row = EFFECTS.iter().find(|row| row.id == id);
-    row.is_some_and(|row| row.kind == EffectKind::RandomWalk)
+/// Whether a random walk is among the causes.
+pub(super) fn has_random_walk(result: &DiagnosisResult) -> bool {
+    let walks = EFFECTS
+        .iter()
+        .filter(|row| row.kind == EffectKind::RandomWalk);
+    let ids: Vec<&str> = walks.map(|row| row.id).collect();
+    result
+        .causes()
+        .any(|cause| ids.contains(&cause.effect.as_str()))
 }
 
 /// Error of the open-loop simulation, gain and changes of the coefficients.
@@ -215,7 +221,7 @@ fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
         gain.cross_validated_log_score_nats
     );
     // A simulation without measurements cannot follow a random walk.
-    let what = match result.causes().any(|cause| is_random_walk(&cause.effect)) {
+    let what = match has_random_walk(result) {
         true => left_out,
         false => format!(
             "open-loop error {} → {} µg with it in the model (noise {}); {left_out}",
@@ -371,8 +377,13 @@ fn wrong_setup(result: &DiagnosisResult) -> Screen {
         "SET-UP WRONG",
         "the record was not diagnosed",
     );
-    for problem in result.setup.iter().take(PROBLEMS_SHOWN) {
-        screen.fact("what is wrong", problem.text());
+    // What stops comes first.
+    let stopping = result.setup.iter().filter(|problem| problem.stops);
+    let mended = result.setup.iter().filter(|problem| !problem.stops);
+    let labelled = stopping.map(|problem| ("what is wrong", problem));
+    let labelled = labelled.chain(mended.map(|problem| ("can be mended", problem)));
+    for (label, problem) in labelled.take(PROBLEMS_SHOWN) {
+        screen.fact(label, problem.text());
     }
     if result.setup.len() > PROBLEMS_SHOWN {
         let more = result.setup.len() - PROBLEMS_SHOWN;
@@ -381,8 +392,8 @@ fn wrong_setup(result: &DiagnosisResult) -> Screen {
     let kinds = SetupKind::ALL.iter();
     let mut lost = kinds.filter(|kind| kind.loses_samples());
     let is_lost = lost.any(|kind| {
-        let mut problems = result.setup.iter();
-        problems.any(|problem| problem.kind == kind.as_str())
+        let mut stopping = result.setup.iter().filter(|problem| problem.stops);
+        stopping.any(|problem| problem.kind == kind.as_str())
     });
     screen.fact(
         "what to do",

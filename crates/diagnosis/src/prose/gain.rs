@@ -2,6 +2,7 @@
 
 use gyrocal_record::printable_line;
 
+use super::first_screen::has_random_walk;
 use crate::result::{CoefficientShift, DiagnosisResult, Gain, Prediction};
 
 /// Coefficient changes that a paragraph names; the table shows all of them.
@@ -10,10 +11,12 @@ const SHIFTS_SHOWN: usize = 3;
 /// Gain on the record itself, and on a later one if there is one.
 pub(super) fn paragraphs(result: &DiagnosisResult) -> impl Iterator<Item = String> {
     let gain = result.gain.as_ref();
-    gain.map(on_the_record).into_iter().chain(later(result))
+    gain.map(|gain| on_the_record(result, gain))
+        .into_iter()
+        .chain(later(result))
 }
 
-fn on_the_record(gain: &Gain) -> String {
+fn on_the_record(result: &DiagnosisResult, gain: &Gain) -> String {
     let nats = gain.cross_validated_log_score_nats;
     let folds = gain.block_log_score_nats.len();
     let effects = gain.effects.join(", ");
@@ -42,12 +45,17 @@ fn on_the_record(gain: &Gain) -> String {
     let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
     shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
     let shifts: Vec<String> = shifts.into_iter().take(SHIFTS_SHOWN).map(shifted).collect();
+    // A simulation without measurements cannot follow a random walk.
+    let simulation = match has_random_walk(result) {
+        true => String::new(),
+        false => format!(
+            " Open-loop simulation error (no measurement updates): {:.2e} g rms, was {:.2e} g; \
+             accelerometer noise {:.2e} g.",
+            rms.after, rms.before, rms.noise
+        ),
+    };
     format!(
-        "{validated} Open-loop simulation error (no measurement updates): {:.2e} g rms, was {:.2e} \
-         g; accelerometer noise {:.2e} g. Largest coefficient changes: {}.",
-        rms.after,
-        rms.before,
-        rms.noise,
+        "{validated}{simulation} Largest coefficient changes: {}.",
         shifts.join(", ")
     )
 }

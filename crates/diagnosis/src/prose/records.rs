@@ -68,6 +68,7 @@ pub(super) fn table(result: &DiagnosisResult) -> Option<Table> {
 /// The answer of a record alone, in a few words.
 fn alone(result: &DiagnosisResult) -> String {
     match result.verdict {
+        Verdict::Clean if result.hides_most() => "too short to tell".to_owned(),
         Verdict::Clean => "no fault found".to_owned(),
         Verdict::Unexplained => "unexplained".to_owned(),
         Verdict::Setup => "wrong set-up".to_owned(),

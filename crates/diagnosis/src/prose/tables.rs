@@ -278,7 +278,7 @@ fn noise(result: &DiagnosisResult) -> Option<Table> {
     });
     let gyros = (!is_correlated).then(|| row("gyros", &noise.gyro));
     let of_gyros = match is_correlated {
-        true => "; that of the gyros is not told, as the accelerometers' is correlated",
+        true => "; no row for the gyros, as the noise of the accelerometers is correlated",
         false => "",
     };
     Some(Table {

@@ -6,9 +6,7 @@ use gyrocal_statistics::format::{p_value, percent};
 use super::Block;
 use super::format::counted;
 use super::screen::few;
-use crate::result::{
-    DiagnosisResult, FindingKind, NotTestedReason, ResidualVerdict, SetupProblem, Verdict,
-};
+use crate::result::{DiagnosisResult, FindingKind, ResidualVerdict, SetupProblem, Verdict};
 
 /// Records that are named.
 const RECORDS_SHOWN: usize = 4;
@@ -107,9 +105,7 @@ fn least_p_value(result: &DiagnosisResult) -> f64 {
 
 /// The caveat on the verdict of a short record.
 fn low_power(result: &DiagnosisResult) -> String {
-    let undetected = result.not_searched.iter();
-    let undetected = undetected.filter(|effect| effect.reason == NotTestedReason::LowPower);
-    match undetected.count() {
+    match result.low_power().len() {
         0 => String::new(),
         count => format!(
             " Low power: {count} of {} of typical size would go undetected in so short a record. \

@@ -142,6 +142,21 @@ impl DiagnosisResult {
         findings.filter(move |finding| finding.kind == kind)
     }
 
+    /// Effects that would go undetected at their typical size.
+    #[must_use]
+    pub fn low_power(&self) -> Vec<&str> {
+        let low = self.not_searched.iter();
+        low.filter(|effect| effect.reason == NotTestedReason::LowPower)
+            .map(|effect| &*effect.effect)
+            .collect()
+    }
+
+    /// Whether most effects would: that nothing was found then says little.
+    #[must_use]
+    pub fn hides_most(&self) -> bool {
+        2 * self.low_power().len() > self.ranking.len()
+    }
+
     /// Causes: findings of the search.
     pub fn causes(&self) -> impl Iterator<Item = &Finding> {
         self.of_kind(FindingKind::Cause)

@@ -42,7 +42,7 @@ fn score(own: &[&str], selected: &[&str], coefficients: CoefficientScore) -> Rec
         noise: Vec::new(),
         unexplained: None,
         oracle_set_size: None,
-        oracle_detected: None,
+        oracle_in_set: None,
         nearest: Vec::new(),
         coefficients: Some(coefficients),
         methods: vec![BaselineScore {

@@ -5,6 +5,7 @@ mod record;
 
 use gyrocal::effect::EffectKind;
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_diagnosis::error_budget::CONFIDENCE_SET_COVERAGE;
 use gyrocal_statistics::{Judgement, Proportion};
 use record::{Caused, record};
 pub(super) use record::{covered, holds, plain};
@@ -288,7 +289,12 @@ impl Told<'_> {
         let found = self.records.iter().filter(|one| one.detected);
         let name = format!("{}: coverage of the set", self.cell.name);
         let covered = Proportion::of(found.map(|one| one.in_set));
-        let mut figures = vec![Figure::note_share(&name, covered, self.seeds)];
+        let mut figures = vec![Figure {
+            target: format!("{CONFIDENCE_SET_COVERAGE} not excluded"),
+            // Of eight kinds none is to fail by chance.
+            holds: Some(covered.at_least(CONFIDENCE_SET_COVERAGE) != Judgement::Missed),
+            ..Figure::note_share(&name, covered, self.seeds)
+        }];
         if kind == EffectKind::Exponential {
             figures.push(self.alone_of_warm_ups());
         }

@@ -13,6 +13,11 @@ const FEW: usize = 1000;
 /// Least coverage of the coefficients, all together.
 const OF_COEFFICIENTS: f64 = 0.93;
 
+/// One-sided points of the normal distribution at which few records show that a limit is met (95 %) or missed
+/// (99.9 %).
+const MET_SIGMAS: f64 = 1.645;
+const MISSED_SIGMAS: f64 = 3.090;
+
 /// The coefficients, in the order of the model.
 const COEFFICIENTS: [&str; 9] = [
     "D_F of gyro x",
@@ -53,13 +58,17 @@ pub(super) fn of_coefficients(
         .collect();
     let of_record = |held: &&[bool]| Proportion::of(held.iter().copied()).share();
     let shares: Vec<f64> = stated.iter().map(of_record).collect();
-    let all = Proportion::of(stated.iter().flat_map(|held| held.iter().copied()));
-    let mut pooled = Figure::within(name, [OF_COEFFICIENTS, 1.0], mean(&shares)).of_share(all);
+    let (share, error) = (mean(&shares), standard_error(&shares));
+    let all = Proportion {
+        hits: (share * stated.len() as f64).round() as u64,
+        trials: stated.len() as u64,
+    };
+    let mut pooled = Figure::within(name, [OF_COEFFICIENTS, 1.0], share).of_share(all);
+    pooled.measured = format!("{} (standard error {error:.3})", pooled.measured);
     if small {
-        pooled = pooled.judged(all.at_least(OF_COEFFICIENTS));
-    } else {
-        let error = standard_error(&shares);
-        pooled.measured = format!("{} (standard error {error:.3})", pooled.measured);
+        let met = share - MET_SIGMAS * error >= OF_COEFFICIENTS;
+        let missed = share + MISSED_SIGMAS * error < OF_COEFFICIENTS;
+        pooled = pooled.judged(Judgement::of(met, missed));
     }
     let mut figures = vec![pooled.over(stated.len(), seeds)];
     figures.extend(COEFFICIENTS.iter().enumerate().map(|(index, coefficient)| {

@@ -37,6 +37,9 @@ const DENIED: f64 = 0.05;
 const BINS: usize = 5;
 const CALIBRATED: f64 = 0.05;
 
+/// Largest ratio of strengths that count as equal.
+const EQUAL: f64 = 1.25;
+
 /// Purposes of the streams of draws.
 const EFFECTS: u64 = 45;
 const LEVELS: u64 = 46;
@@ -137,38 +140,39 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let name = "effects of the catalogue: none of these above a half";
     figures.push(share(name, DENIED, denied, small));
     let strong = unlisted.iter().flatten().filter(|one| one.beside >= BESIDE);
-    let strong: Vec<(f64, f64)> = strong
-        .filter_map(|one| Some((one.beside, one.none()?)))
-        .collect();
-    let named = listed.iter().filter(|one| !one.named.is_empty());
-    let named: Vec<(f64, f64)> = named
-        .filter_map(|one| Some((one.strength, one.none()?)))
-        .collect();
-    // Prior odds of one to one.
-    let mut stated: Vec<(f64, bool)> = of_equal_strength(&strong, named)
-        .into_iter()
-        .map(|none| (none, false))
-        .collect();
-    stated.extend(strong.into_iter().map(|(_, none)| (none, true)));
-    figures.push(calibration(&mut stated, small));
+    let stated = |one: &Outside| Some((one.strength, one.none()?));
+    let pairs = of_equal_strength(
+        strong.filter_map(stated).collect(),
+        listed.iter().filter_map(stated).collect(),
+    );
+    let name = "the same, of which there is a record of the catalogue that is as strong";
+    figures.push(Figure::note(name, pairs.len().to_string()).over(pairs.len(), ""));
+    let both = pairs
+        .iter()
+        .flat_map(|[outside, of_catalogue]| [(*outside, true), (*of_catalogue, false)]);
+    figures.push(calibration(&mut both.collect::<Vec<_>>(), small));
     Ok(figures)
 }
 
-/// What is stated of a record of the catalogue for each of some records: of the one whose strength is the
-/// nearest by its ratio, none of them twice, the strongest first, which few match.
-fn of_equal_strength(records: &[(f64, f64)], mut catalogue: Vec<(f64, f64)>) -> Vec<f64> {
-    let mut strengths: Vec<f64> = records.iter().map(|(strength, _)| *strength).collect();
-    strengths.sort_by(|a, b| b.total_cmp(a));
-    let mut matched = Vec::new();
-    for strength in strengths {
+/// Pairs of what is stated of a record outside of the catalogue and of one of it: of the one whose strength given
+/// the nominal model is the nearest, within a quarter, none of them twice, the strongest first, which few match.
+/// Prior odds are one to one so.
+fn of_equal_strength(
+    mut outside: Vec<(f64, f64)>,
+    mut catalogue: Vec<(f64, f64)>,
+) -> Vec<[f64; 2]> {
+    outside.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut pairs = Vec::new();
+    for (strength, none) in outside {
         let off = |of: &(f64, f64)| (of.0 / strength).ln().abs();
-        let nearest =
-            (0..catalogue.len()).min_by(|a, b| off(&catalogue[*a]).total_cmp(&off(&catalogue[*b])));
+        let nearest = (0..catalogue.len())
+            .filter(|one| off(&catalogue[*one]) < EQUAL.ln())
+            .min_by(|a, b| off(&catalogue[*a]).total_cmp(&off(&catalogue[*b])));
         if let Some(nearest) = nearest {
-            matched.push(catalogue.swap_remove(nearest).1);
+            pairs.push([none, catalogue.swap_remove(nearest).1]);
         }
     }
-    matched
+    pairs
 }
 
 fn share(name: &str, limit: f64, all: Vec<bool>, small: bool) -> Figure {
@@ -298,9 +302,12 @@ mod tests {
     #[test]
     fn records_of_the_catalogue_are_as_strong_and_taken_once() {
         let catalogue = vec![(8.0, 0.1), (9.0, 0.2), (20.0, 0.3), (200.0, 0.4)];
-        let matched = of_equal_strength(&[(8.1, 1.0), (19.0, 1.0), (21.0, 1.0)], catalogue);
-        // 21 takes the one of 20; for 19 that of 9 is nearer than that of 200.
-        assert_eq!(matched, [0.3, 0.2, 0.1]);
+        let outside = vec![(8.1, 0.8), (19.0, 0.6), (21.0, 0.7)];
+        // 21 takes the one of 20, and for 19 none is left.
+        assert_eq!(
+            of_equal_strength(outside, catalogue),
+            [[0.7, 0.3], [0.8, 0.1]]
+        );
     }
 
     #[test]

@@ -96,6 +96,7 @@ fn advice(result: &DiagnosisResult) -> String {
             "Look at the residuals below, and record again under other conditions.".to_owned()
         }
         (_, Some(experiment)) => format!("To tell what remains apart: {experiment}."),
+        (Verdict::Clean, None) if result.hides_most() => "Record for a day or longer.".to_owned(),
         (Verdict::Clean, None) => format!("Use the coefficients. {FOR_SMALLER_SIGMAS}"),
         (_, None) => format!("The cause is unique. {FOR_SMALLER_SIGMAS}"),
     }

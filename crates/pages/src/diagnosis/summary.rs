@@ -47,6 +47,10 @@ pub(super) fn summary(result: &DiagnosisResult) -> Summary {
 
 fn verdict(result: &DiagnosisResult) -> (Tone, String) {
     match result.verdict {
+        Verdict::Clean if result.hides_most() => (
+            Tone::Found,
+            "Too short to tell: most faults would not show".to_owned(),
+        ),
         Verdict::Clean => (Tone::Good, "No model mismatch detected".to_owned()),
         Verdict::EffectsFound => {
             let effects: Vec<&str> = found(result).iter().map(|one| &*one.effect).collect();

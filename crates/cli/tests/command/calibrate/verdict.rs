@@ -123,6 +123,7 @@ fn noise_that_the_audit_finds_is_told() {
     assert_eq!(found.effects[0].noise, ["accel.coloured_noise"]);
     assert_eq!(found.effects[0].white, Some(true));
     assert!(said.contains("accel.coloured_noise"), "{said}");
+    assert!(said.contains("No ratio for the gyros"), "{said}");
     // One gyro has more noise than declared, which the mean NIS of all channels hardly shows.
     let (said, found) = calibrated("[[hidden]]\neffect = \"gyro_x.noise\"\nratio = 2.0\n");
     assert_eq!(found.effects[0].noise, ["gyro_x.noise"], "{said}");
