@@ -140,6 +140,7 @@ mod state;
 mod unmodelled;
 mod walk_by_rate;
 mod walk_candidates;
+mod walk_findings;
 mod walks;
 
 pub use bank::{JointScore, NominalEstimate, ScoreBank};

@@ -4,12 +4,10 @@
 //! deterministic effects and the model with walks are both fitted, each with its own noise, and their
 //! likelihoods are compared.
 
-use gyrocal_scalar::effect::Effect;
-
 use crate::accepted::value_places;
 use crate::bank::NominalEstimate;
 use crate::context::SearchContext;
-use crate::finding::{Alternative, EffectEstimate, Finding};
+use crate::finding::{Alternative, Finding};
 use crate::fitted_stage::FittedStage;
 use crate::forward::{Beside, FirstRound, forward};
 use crate::model::FittedModel;
@@ -19,9 +17,9 @@ use crate::score::Ranked;
 use crate::state::{SearchState, settled, stage};
 use crate::walk_by_rate::{ByRate, replaced};
 use crate::walk_candidates::{
-    BESIDE_WALKS, Candidates, Needed, Rival, WALK_SET_DEVIANCE, alternatives, needed,
-    with_their_sets,
+    BESIDE_WALKS, Candidates, Rival, WALK_SET_DEVIANCE, alternatives, needed, with_their_sets,
 };
+use crate::walk_findings::named;
 
 /// Advantage of effects over a walk in the place of one of them, the shapes of the others held, above
 /// which no full comparison is made: with shapes of their own walks gain some tens at most.
@@ -399,57 +397,5 @@ impl Chosen<'_, '_> {
             },
             ranking: self.ranking.to_vec(),
         })
-    }
-}
-
-/// The walks of a model that are named. The one that gains most has the p-value of the test of all walks together;
-/// another one, what it gains beside the others in the model, by the distribution of that test.
-fn named<F: FittedModel>(
-    candidates: &Candidates,
-    state: &SearchState<F>,
-    walks: Vec<Needed>,
-    p_value: f64,
-) -> Result<Vec<(Needed, Finding)>, F::Error> {
-    let sizes = &state.stage.noise.noise.walk;
-    let intervals = state.stage.fitted.walk_intervals()?;
-    let most = walks.iter().map(|walk| walk.gain).fold(0.0, f64::max);
-    let finding = |walk: Needed| {
-        let p_value = match walk.gain < most {
-            true => p_value.max(candidates.p_value(walk.gain)),
-            false => p_value,
-        };
-        let interval = intervals.get(walk.rate).copied().flatten();
-        let finding = walk_finding(
-            walk.effect,
-            sizes[walk.rate],
-            interval,
-            (walk.gain, p_value),
-        );
-        (walk, finding)
-    };
-    Ok(walks.into_iter().map(finding).collect())
-}
-
-fn walk_finding(
-    effect: &'static Effect,
-    size: f64,
-    interval: Option<[f64; 2]>,
-    (gain, p_value): (f64, f64),
-) -> Finding {
-    let parameters = effect.parameters.first().map(|parameter| EffectEstimate {
-        name: parameter.name,
-        estimate: size,
-        sigma: None,
-        interval: interval.map(|ends| vec![ends]),
-        unit: parameter.unit,
-    });
-    Finding {
-        effect: effect.id,
-        parameters: parameters.into_iter().collect(),
-        z: gain.max(0.0).sqrt(),
-        p_value,
-        alternatives: Vec::new(),
-        exact_equivalents: Vec::new(),
-        none_of_these: None,
     }
 }
