@@ -11,11 +11,11 @@ mod tables;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
-use gyrocal::effect::{EffectKind, NoiseProperty};
-use gyrocal::{EFFECTS, Platform};
+use gyrocal::Platform;
 use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
+use gyrocal_diagnosis::prose::is_correlation;
 use gyrocal_diagnosis::{
     CalibrationVerdict, DiagnoseOptions, calibration_verdict, fit_effects, screen_record,
 };
@@ -351,12 +351,8 @@ impl CalibrationRun {
     /// Whether the noise of the accelerometers of a record is correlated.
     fn is_correlated(&self, index: usize) -> bool {
         let path = self.measurements[index].path.to_string_lossy();
-        let correlations = EFFECTS
-            .iter()
-            .filter(|row| row.kind == EffectKind::Noise(NoiseProperty::Correlation));
-        let ids: Vec<&str> = correlations.map(|row| row.id).collect();
         let mut own = self.effects.iter().filter(|test| test.record == path);
-        own.any(|test| test.noise.iter().any(|id| ids.contains(&id.as_str())))
+        own.any(|test| test.noise.iter().any(|id| is_correlation(id)))
     }
 
     /// Gross errors of the set-ups that were mended.

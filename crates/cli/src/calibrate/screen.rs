@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use gyrocal_calibration::{NoiseRatio, RunResult, SiteQuantity};
-use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table, command_files, few};
+use gyrocal_diagnosis::prose::{
+    Column, Screen, Standing, Table, command_files, few, parameter_values,
+};
+use gyrocal_diagnosis::result::Parameter;
 use gyrocal_record::{EffectTest, FitVerdict, FittedEffects, InputRole};
 use gyrocal_statistics::format;
 
@@ -180,28 +183,15 @@ fn terms(with: &FittedEffects) -> Option<String> {
 /// Sizes of effects that were given, and what they gain.
 fn fitted(with: &FittedEffects) -> String {
     let effects = with.effects.iter().map(|one| {
-        let values = one.parameters.iter().map(|own| {
-            let value = match (own.sigma, own.interval.as_deref()) {
-                (Some(sigma), _) => format::estimate(own.estimate, sigma).join(" ± "),
-                (None, Some([[low, high]])) => format!(
-                    "{} (95 %: {} to {})",
-                    format::short(own.estimate, 4),
-                    format::short(*low, 3),
-                    format::short(*high, 3)
-                ),
-                (None, _) => format::short(own.estimate, 4),
-            };
-            let unit = match own.unit.as_str() {
-                "1" => String::new(),
-                unit => format!(" {unit}"),
-            };
-            match own.name.as_str() {
-                "size" => format!("{value}{unit}"),
-                name => format!("{name} {value}{unit}"),
-            }
+        let parameters = one.parameters.iter().map(|own| Parameter {
+            name: own.name.clone(),
+            estimate: own.estimate,
+            sigma: own.sigma,
+            interval: own.interval.clone(),
+            unit: own.unit.clone(),
         });
-        let values: Vec<String> = values.collect();
-        format!("{} {}", one.effect, values.join(", "))
+        let parameters: Vec<Parameter> = parameters.collect();
+        format!("{}: {}", one.effect, parameter_values(&parameters))
     });
     let effects: Vec<String> = effects.collect();
     format!("{}; {:+.1} nats", effects.join("; "), with.gained_nats)

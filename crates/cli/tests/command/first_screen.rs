@@ -270,26 +270,18 @@ fn a_record_that_can_show_little_is_too_short_to_tell() {
 #[test]
 fn a_random_walk_is_told_with_its_interval_and_without_a_simulation() {
     let folder = examples();
-    let scenario = example("three_days.scenario.toml");
     let hidden = "[[hidden]]\neffect = \"gyro_x.random_walk\"\nsize = 1e-3\n";
-    folder.put("s.toml", format!("{scenario}\n{hidden}"));
-    folder.succeed(&[
-        "simulate",
-        "s.toml",
-        "--out",
-        "w.csv",
-        "--bench-out",
-        "w.toml",
-    ]);
-    let arguments = ["diagnose", "w.csv", "--bench", "w.toml"];
+    let scenario = example("three_days.scenario.toml");
+    folder.simulate(&format!("{scenario}\n{hidden}"));
+    let arguments = ["diagnose", "r.csv", "--bench", "b.toml"];
     let said = assert_screen(&folder, &arguments, &["gyro_x.random_walk", "(95 %: "]);
     assert!(!said.contains("open-loop"), "{said}");
     // A filter cannot have it: the next step is not to extend one.
     let arguments = [
         "calibrate",
-        "w.csv",
+        "r.csv",
         "--bench",
-        "w.toml",
+        "b.toml",
         "--with",
         "gyro_x.random_walk",
     ];

@@ -1,10 +1,11 @@
 //! Entries of the catalogue in words.
 
-use gyrocal::Effect;
 use gyrocal::effect::{Continuation, EffectKind, Experiment, Need, NoiseProperty};
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_statistics::format;
 
 use super::{Screen, Standing};
+use crate::result::DiagnosisResult;
 
 /// All that the catalogue says of an effect.
 #[must_use]
@@ -67,6 +68,23 @@ pub fn tested(effect: &Effect) -> &'static str {
 }
 
 /// A formula with blanks, at which a line may break.
+/// Whether an id is that of correlated noise: its slow part looks like noise of the gyros.
+#[must_use]
+pub fn is_correlation(id: &str) -> bool {
+    kind(id) == Some(EffectKind::Noise(NoiseProperty::Correlation))
+}
+
+/// Whether a random walk is among the causes: a simulation without measurements cannot follow it.
+pub(super) fn has_random_walk(result: &DiagnosisResult) -> bool {
+    let mut causes = result.causes();
+    causes.any(|cause| kind(&cause.effect) == Some(EffectKind::RandomWalk))
+}
+
+fn kind(id: &str) -> Option<EffectKind> {
+    let row = EFFECTS.iter().find(|row| row.id == id);
+    row.map(|row| row.kind)
+}
+
 fn spaced(formula: &str) -> String {
     let spaced = formula.replace('*', " * ").replace('/', " / ");
     spaced.replace(',', ", ").replace(",  ", ", ")

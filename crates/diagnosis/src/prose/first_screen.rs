@@ -1,10 +1,9 @@
 //! The first screen of a diagnosis.
 
-use gyrocal::EFFECTS;
-use gyrocal::effect::EffectKind;
 use gyrocal_setup::{LEAST_TURN_S, SetupKind};
 use gyrocal_statistics::format::{self, p_value, percent, with_sigma};
 
+use super::catalogue::has_random_walk;
 use super::clean_screen;
 use super::findings::{likely, value};
 use super::format::{counted, short};
@@ -198,17 +197,6 @@ fn nothing_else(result: &DiagnosisResult) -> String {
     }
 }
 
-/// Whether a random walk is among the causes.
-pub(super) fn has_random_walk(result: &DiagnosisResult) -> bool {
-    let walks = EFFECTS
-        .iter()
-        .filter(|row| row.kind == EffectKind::RandomWalk);
-    let ids: Vec<&str> = walks.map(|row| row.id).collect();
-    result
-        .causes()
-        .any(|cause| ids.contains(&cause.effect.as_str()))
-}
-
 /// Error of the open-loop simulation, gain and changes of the coefficients.
 fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
     let Some(gain) = &result.gain else {
@@ -220,7 +208,6 @@ fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
         "{:+.1} nats on left-out blocks",
         gain.cross_validated_log_score_nats
     );
-    // A simulation without measurements cannot follow a random walk.
     let what = match has_random_walk(result) {
         true => left_out,
         false => format!(
@@ -389,12 +376,13 @@ fn wrong_setup(result: &DiagnosisResult) -> Screen {
         let more = result.setup.len() - PROBLEMS_SHOWN;
         screen.fact("and", format!("{more} more: --verbose lists them"));
     }
-    let kinds = SetupKind::ALL.iter();
-    let mut lost = kinds.filter(|kind| kind.loses_samples());
-    let is_lost = lost.any(|kind| {
-        let mut stopping = result.setup.iter().filter(|problem| problem.stops);
-        stopping.any(|problem| problem.kind == kind.as_str())
-    });
+    let lost: Vec<&str> = SetupKind::ALL
+        .iter()
+        .filter(|kind| kind.loses_samples())
+        .map(|kind| kind.as_str())
+        .collect();
+    let mut stopping = result.setup.iter().filter(|problem| problem.stops);
+    let is_lost = stopping.any(|problem| lost.contains(&problem.kind.as_str()));
     screen.fact(
         "what to do",
         match is_lost {

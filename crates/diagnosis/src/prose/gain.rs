@@ -2,7 +2,7 @@
 
 use gyrocal_record::printable_line;
 
-use super::first_screen::has_random_walk;
+use super::catalogue::has_random_walk;
 use crate::result::{CoefficientShift, DiagnosisResult, Gain, Prediction};
 
 /// Coefficient changes that a paragraph names; the table shows all of them.
@@ -45,7 +45,6 @@ fn on_the_record(result: &DiagnosisResult, gain: &Gain) -> String {
     let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
     shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
     let shifts: Vec<String> = shifts.into_iter().take(SHIFTS_SHOWN).map(shifted).collect();
-    // A simulation without measurements cannot follow a random walk.
     let simulation = match has_random_walk(result) {
         true => String::new(),
         false => format!(

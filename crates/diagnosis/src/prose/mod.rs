@@ -21,7 +21,7 @@ use serde::Serialize;
 
 use crate::result::{DiagnosisResult, Verdict};
 
-pub use catalogue::{explained, tested, typical_size};
+pub use catalogue::{explained, is_correlation, tested, typical_size};
 pub use findings::{likelihood, parameter_values};
 pub use first_screen::{first_screen, may_also_be};
 pub use format::counted;

@@ -1,10 +1,9 @@
 //! The tables of an answer.
 
-use gyrocal::EFFECTS;
-use gyrocal::effect::{EffectKind, NoiseProperty};
 use gyrocal_record::NoiseRatioReport;
 use gyrocal_statistics::format::{self, p_cell};
 
+use super::catalogue::is_correlation;
 use super::findings::{likelihood, value};
 use super::format::{short, with_sigma};
 use super::{AXES, Block, Column, Table};
@@ -272,10 +271,8 @@ fn noise(result: &DiagnosisResult) -> Option<Table> {
         core::iter::once(name.to_owned()).chain(cells).collect()
     };
     // The likelihood of white noise takes the slow part of correlated noise for that of the gyros.
-    let is_correlated = result.of_kind(FindingKind::Noise).any(|finding| {
-        let row = EFFECTS.iter().find(|row| row.id == finding.effect);
-        row.is_some_and(|row| row.kind == EffectKind::Noise(NoiseProperty::Correlation))
-    });
+    let mut of_noise = result.of_kind(FindingKind::Noise);
+    let is_correlated = of_noise.any(|finding| is_correlation(&finding.effect));
     let gyros = (!is_correlated).then(|| row("gyros", &noise.gyro));
     let of_gyros = match is_correlated {
         true => "; no row for the gyros, as the noise of the accelerometers is correlated",

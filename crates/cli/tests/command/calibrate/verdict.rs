@@ -90,16 +90,10 @@ fn coefficients_that_mean_nothing_are_not_tabled() {
 /// A record with an effect hidden, and its bench description, calibrated.
 fn calibrated(hidden: &str) -> (String, CalibrationReport) {
     let folder = Folder::new();
-    let scenario = String::from_utf8(example("three_days.scenario.toml").into()).unwrap();
-    folder.put("s.toml", format!("{scenario}\n{hidden}"));
-    folder.succeed(&[
-        "simulate",
-        "s.toml",
-        "--out",
-        "r.csv",
-        "--bench-out",
-        "b.toml",
-    ]);
+    folder.simulate(&format!(
+        "{}\n{hidden}",
+        example("three_days.scenario.toml")
+    ));
     let said = unwrapped(&folder.succeed(&JSON));
     (said, report(&folder))
 }
