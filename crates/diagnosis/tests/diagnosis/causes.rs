@@ -94,6 +94,31 @@ fn none_of_these_is_likelier_where_the_catalogue_lacks_the_cause() {
 }
 
 #[test]
+fn each_random_walk_has_its_own_p_value() {
+    let walk =
+        |gyro: &str, size| Hidden::new(&format!("gyro_{gyro}.random_walk"), &[("size", size)]);
+    let found = diagnosed(Scenario {
+        seed: 5,
+        duration_s: 2.0 * 86_400.0,
+        hidden: vec![walk("x", 1e-3).unwrap(), walk("y", 3e-4).unwrap()],
+        ..Scenario::default()
+    });
+    let of = |id: &str| {
+        let mut causes = found.causes();
+        causes
+            .find(|cause| cause.effect == id)
+            .map(|cause| (cause.z, cause.p_value))
+            .unwrap()
+    };
+    let (large, small) = (of("gyro_x.random_walk"), of("gyro_y.random_walk"));
+    // The joint test is that of the larger one; the smaller one is held against what it gains itself.
+    assert!(
+        large.0 > small.0 && large.1 < small.1,
+        "{large:?} {small:?}"
+    );
+}
+
+#[test]
 fn a_term_of_the_drift_is_found_with_its_size() {
     let found = only_finding("gyro_y.g_z", &[("size", 0.01)]);
     let (_, estimate, sigma) = &found[0];
