@@ -54,8 +54,8 @@ pub const UNTESTABLE_OUTLIER_Z: f64 = 7.0;
 /// Part of α that no test spends: drawn thresholds and asymptotic p-values are each a little off.
 const RESERVE: f64 = 0.05;
 
-/// Coverage of the confidence sets of causes: what `cargo figures truth --part causes` measures of each kind is
-/// more, or does not exclude it. That of effects of noise and filter was not measured.
+/// Least coverage of confidence sets that [`CONFIDENCE_SET_DEVIANCE`] is chosen for. What was measured is in
+/// [`crate::set_coverage`].
 pub const CONFIDENCE_SET_COVERAGE: f64 = 0.95;
 
 /// Origin of a constant.

@@ -88,6 +88,7 @@ mod residual_test;
 mod residuals;
 pub mod result;
 mod series;
+pub mod set_coverage;
 mod stage;
 mod uncertainty;
 mod untested;

@@ -1,13 +1,12 @@
 //! Findings of the tests as entries of the answer.
 
-use gyrocal::effect::EffectKind;
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_hypothesis::{self as hypothesis, EffectEstimate};
 
-use crate::error_budget::CONFIDENCE_SET_COVERAGE;
 use crate::filter_test::FILTER_EFFECT;
 use crate::noise::NoiseFinding;
 use crate::result::{Alternative, Equivalent, Finding, FindingKind, Parameter};
+use crate::set_coverage;
 use crate::validation::KeepDecision;
 
 /// A finding of the noise audit or of the gyro noise.
@@ -45,12 +44,10 @@ pub(super) fn of_cause(finding: &hypothesis::Finding, decision: &KeepDecision) -
         parameters: parameters(&other.parameters),
     });
     let none = finding.none_of_these;
+    let others = finding.alternatives.iter().map(|other| other.effect);
     Finding {
         parameters: parameters(&finding.parameters),
-        // That of sets of random walks was not measured.
-        coverage: row(finding.effect)
-            .filter(|row| row.kind != EffectKind::RandomWalk)
-            .map(|_| CONFIDENCE_SET_COVERAGE),
+        coverage: set_coverage::of_set(finding.effect, others, finding.z),
         rivals: alternatives.clone(),
         alternatives,
         none_of_these: none.map(|none| none.probability()),

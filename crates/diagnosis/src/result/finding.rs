@@ -20,8 +20,9 @@ pub struct Finding {
     pub z: f64,
     /// Family-wise p-value: probability of as large a statistic anywhere in the search by chance.
     pub p_value: f64,
-    /// Coverage of the confidence set: probability that effect and alternatives together hold the
-    /// cause. `None` where it was not measured: of noise, of random walks and of a filter.
+    /// Coverage of the confidence set: share of sets that held the cause, as measured of causes of that kind
+    /// (of a set with several kinds the least). `None` where it was not measured: of findings below seven
+    /// sigma, of noise, of random walks and of a filter.
     pub coverage: Option<f64>,
     /// The same as `alternatives`, under the name that schema version 1 gave it.
     pub rivals: Vec<Alternative>,

@@ -348,3 +348,38 @@ fn kind(one: &Caused) -> Option<EffectKind> {
 fn effect(id: &str) -> Option<&'static Effect> {
     EFFECTS.iter().find(|effect| effect.id == id)
 }
+
+#[cfg(test)]
+mod tests {
+    use gyrocal_diagnosis::set_coverage::SET_COVERAGE;
+
+    use super::*;
+    use crate::topic_page;
+
+    /// The row of the page with the coverage of a kind.
+    fn row_of(kind: EffectKind) -> String {
+        let own = |cell: &&Cell| cell.of == Causes::Of(kind) && cell.name.ends_with("d = 8");
+        match KINDS.iter().find(own) {
+            Some(cell) => format!("{}: coverage of the set", cell.name),
+            None => format!("d = 8: coverage of the set, kind {kind:?}"),
+        }
+    }
+
+    #[test]
+    #[allow(clippy::unwrap_used)]
+    fn stated_coverages_are_those_of_the_page() {
+        let page = std::fs::read_to_string(topic_page::path("truth")).unwrap();
+        for (kind, stated) in SET_COVERAGE {
+            let start = format!("| {} ", row_of(kind));
+            let row = page.lines().find(|line| line.starts_with(&start));
+            let measured = row.and_then(|row| row.split('|').nth(3)?.split_whitespace().next());
+            let measured: f64 = measured.expect(&start).parse().unwrap();
+            // Rounded down, and never all of them; three decimals have no exact binary form.
+            let rounded = ((100.0 * measured + 1e-9).floor() / 100.0).min(0.99);
+            assert!(
+                (rounded - stated).abs() < 1e-9,
+                "{start}: {measured}, stated {stated}"
+            );
+        }
+    }
+}
