@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    #[allow(clippy::unwrap_used)]
+    #[allow(clippy::expect_used, clippy::unwrap_used)]
     fn stated_coverages_are_those_of_the_page() {
         let page = std::fs::read_to_string(topic_page::path("truth")).unwrap();
         for (kind, stated) in SET_COVERAGE {
