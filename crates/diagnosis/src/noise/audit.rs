@@ -96,7 +96,8 @@ pub fn audit_noise(
 
     let mut open = open_loop(innovations, &declared.accel_g);
     let first = ((interval_s / 12.0) as usize).clamp(FIRST_ROW[0], FIRST_ROW[1]);
-    let (outliers, finding) = outliers(&open, &runs, first, declared, shares.outliers);
+    let tested = (open.as_slice(), runs.as_slice(), first);
+    let (outliers, finding) = outliers(record, tested, declared, shares.outliers);
     findings.extend(finding);
     for outlier in &outliers {
         open[outlier.row][outlier.axis] = f64::NAN;
@@ -231,10 +232,10 @@ fn quantised(axis: usize, lattice: &Lattice) -> NoiseFinding {
     }
 }
 
+/// Outliers among the open-loop residuals of `runs` from the row `first` on, which the readings show too.
 fn outliers(
-    open: &[[f64; 3]],
-    runs: &[core::ops::Range<usize>],
-    first: usize,
+    record: &Record,
+    (open, runs, first): (&[[f64; 3]], &[core::ops::Range<usize>], usize),
     declared: &DeclaredNoise,
     share: f64,
 ) -> (Vec<Outlier>, Option<NoiseFinding>) {
@@ -244,23 +245,20 @@ fn outliers(
         let series: Vec<f64> = open.iter().map(|row| row[axis]).collect();
         let search = outlier::search(&series, runs, first);
         samples += search.samples;
-        let sizes = search
-            .outliers
-            .iter()
-            .map(|(_, _, deviation)| deviation.abs());
-        single_p = single_p.min(search.single_p(sizes.fold(0.0, f64::max)));
         let sigma_g = declared.accel_g[axis];
-        found.extend(
-            search
-                .outliers
-                .iter()
-                .map(|(row, value, deviation)| Outlier {
-                    row: *row,
-                    axis,
-                    size_g: value * sigma_g,
-                    deviation: *deviation,
-                }),
-        );
+        let all = search.outliers.iter();
+        let all = all.map(|(row, value, deviation)| Outlier {
+            row: *row,
+            axis,
+            size_g: value * sigma_g,
+            deviation: *deviation,
+        });
+        let shown: Vec<Outlier> = all
+            .filter(|outlier| outlier::is_in_readings(&record.accel_g, outlier))
+            .collect();
+        let sizes = shown.iter().map(|outlier| outlier.deviation.abs());
+        single_p = single_p.min(search.single_p(sizes.fold(0.0, f64::max)));
+        found.extend(shown);
     }
     // Bonferroni bound over all samples.
     let p_value = (samples as f64 * single_p).min(1.0);

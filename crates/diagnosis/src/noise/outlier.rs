@@ -20,6 +20,20 @@ const ISOLATED_SIGMAS: f64 = 3.0;
 /// that there are outliers: with half a percent of them at 8 sigma the densities are equal at 4.7.
 /// Noise alone exceeds 4.5 once in 150 000 samples.
 const OUTLIER_SIGMAS: f64 = 4.5;
+/// Distance in standard deviations beyond which the readings themselves must show at least half of an outlier.
+/// The error of the cubic through both sides is 1.4 standard deviations: it hides one such outlier in 5000.
+const LARGE_SIGMAS: f64 = 10.0;
+/// Rows from a sample with their weights, for a cubic through both sides and parabolas through either.
+const EXTRAPOLATIONS: [&[(isize, f64)]; 3] = [
+    &[
+        (-2, -1.0 / 6.0),
+        (-1, 2.0 / 3.0),
+        (1, 2.0 / 3.0),
+        (2, -1.0 / 6.0),
+    ],
+    &[(-3, 1.0), (-2, -3.0), (-1, 3.0)],
+    &[(1, 3.0), (2, -3.0), (3, 1.0)],
+];
 
 /// An outlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,6 +153,28 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
         .filter(|(_, _, deviation)| deviation.abs() > OUTLIER_SIGMAS)
         .collect();
     Search { outliers, samples }
+}
+
+/// Whether the readings \[g\] show a large outlier as well. A filter without a large effect that
+/// changes fast is led astray, and its innovations jump from row to row; the readings follow the motion.
+pub(crate) fn is_in_readings(accel_g: &[[f64; 3]], outlier: &Outlier) -> bool {
+    if outlier.deviation.abs() < LARGE_SIGMAS {
+        return true;
+    }
+    let at = |offset: isize| {
+        let row = outlier.row.checked_add_signed(offset)?;
+        let value = accel_g.get(row)?[outlier.axis];
+        (!value.is_nan()).then_some(value)
+    };
+    let Some(own) = at(0) else { return true };
+    let off = |weights: &[(isize, f64)]| {
+        let parts = weights.iter().map(|(row, weight)| Some(weight * at(*row)?));
+        Some((own - parts.sum::<Option<f64>>()?).abs())
+    };
+    // A neighbour may be an outlier too.
+    let most = EXTRAPOLATIONS.iter().filter_map(|weights| off(weights));
+    let most = most.reduce(f64::max);
+    most.is_none_or(|most| most > 0.5 * outlier.size_g.abs())
 }
 
 #[derive(Clone, Debug)]
